@@ -1,0 +1,69 @@
+#include <fmt/format.h>
+
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+
+#include "cli/verbs.h"
+#include "framework/gpu/context.h"
+
+namespace aftershade::cli {
+
+namespace {
+
+/// "model name" of /proc/cpuinfo: pictures are bit-identical on one kind of CPU, so reports name it.
+std::string cpu_model() {
+    std::ifstream info("/proc/cpuinfo");
+    for (std::string line; std::getline(info, line);)
+        if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+    return "unknown";
+}
+
+void print_table(const std::vector<gpu::BackendReport>& reports) {
+    fmt::print("{:<13} {:<7} {:<45} {}\n", "backend", "usable", "renderer", "version");
+    for (const gpu::BackendReport& report : reports) {
+        const std::string_view name = gpu::backend_name(report.backend);
+        if (report.usable) fmt::print("{:<13} {:<7} {:<45} {}\n", name, "yes", report.info.renderer, report.info.version);
+        else fmt::print("{:<13} {:<7} {}\n", name, "no", report.reason);
+    }
+    fmt::print("cpu           {} ({} threads)\n", cpu_model(), std::thread::hardware_concurrency());
+}
+
+void print_json(const std::vector<gpu::BackendReport>& reports) {
+    nlohmann::ordered_json document;
+    document["aftershade"] = 1;
+    document["cpu"] = {{"model", cpu_model()}, {"threads", std::thread::hardware_concurrency()}};
+    document["backends"] = nlohmann::ordered_json::array();
+    for (const gpu::BackendReport& report : reports) {
+        nlohmann::ordered_json row{{"backend", gpu::backend_name(report.backend)}, {"usable", report.usable}};
+        if (report.usable) {
+            row["renderer"] = report.info.renderer;
+            row["version"] = report.info.version;
+            row["vendor"] = report.info.vendor;
+            row["software"] = report.info.software;
+        } else {
+            row["reason"] = report.reason;
+        }
+        document["backends"].push_back(std::move(row));
+    }
+    fmt::print("{}\n", document.dump(2));
+}
+
+}  // namespace
+
+Verb add_doctor(CLI::App& app) {
+    auto json = std::make_shared<bool>(false);
+    app.add_flag("--json", *json, "Machine-readable output");
+    return [json] {
+        const std::vector<gpu::BackendReport> reports = gpu::probe_backends();
+        if (*json) print_json(reports);
+        else print_table(reports);
+        for (const gpu::BackendReport& report : reports)
+            if (report.usable) return ExitCode::done;
+        return ExitCode::gl;
+    };
+}
+
+}  // namespace aftershade::cli

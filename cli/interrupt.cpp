@@ -1,0 +1,27 @@
+#include "cli/interrupt.h"
+
+#include <csignal>
+#include <cstring>
+
+namespace aftershade::cli {
+
+namespace {
+
+std::atomic<bool> interrupted{false};  // a signal handler can reach nothing but a global
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+void on_signal(int) { interrupted = true; }
+
+}  // namespace
+
+const std::atomic<bool>& watch_for_interrupt() {
+    struct sigaction action;
+    std::memset(&action, 0, sizeof action);
+    action.sa_handler = on_signal;
+    action.sa_flags = SA_RESETHAND;
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+    return interrupted;
+}
+
+}  // namespace aftershade::cli

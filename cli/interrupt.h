@@ -1,0 +1,12 @@
+// SIGINT and SIGTERM as a flag that the work looks at between frames.
+#pragma once
+
+#include <atomic>
+
+namespace aftershade::cli {
+
+/// Installs the handlers. The first signal sets the flag; a second one ends the process at once, leaving no partial file
+/// because files appear by rename.
+const std::atomic<bool>& watch_for_interrupt();
+
+}  // namespace aftershade::cli

@@ -1,0 +1,53 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <map>
+#include <new>
+
+#include "cli/verbs.h"
+
+using aftershade::ExitCode;
+
+namespace {
+
+int fail(ExitCode code, const char* message) {
+    // Messages of documents bring their own "file:line:column: error: ".
+    const bool has_place = std::string_view(message).find(": error: ") != std::string_view::npos;
+    std::fprintf(stderr, "%s%s\n", has_place ? "" : "aftershade: error: ", message);
+    return int(code);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{"Runs chains of shader effects over G-buffer captures, without a display.", "aftershade"};
+    app.set_version_flag("--version", std::string("aftershade " AFTERSHADE_VERSION));
+    app.require_subcommand(1);
+    app.footer("Exit codes: 0 done, 1 some frames failed, 2 wrong words or documents, 3 no readable frame or role,\n"
+               "4 no usable GL, 5 an effect failed, 6 an output could not be written, 130 interrupted.");
+    std::map<CLI::App*, aftershade::cli::Verb> verbs;
+    const auto add = [&](const char* name, const char* help, auto add_options) {
+        CLI::App* verb = app.add_subcommand(name, help);
+        verbs[verb] = add_options(*verb);
+    };
+    add("run", "Run a look over a capture and write the result", aftershade::cli::add_run);
+    add("doctor", "Tell which GL backends work on this machine, and why others do not", aftershade::cli::add_doctor);
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& asked_for_help) {
+        return app.exit(asked_for_help);
+    } catch (const CLI::ParseError& error) {
+        app.exit(error);
+        return int(ExitCode::usage);
+    }
+    try {
+        return int(verbs.at(app.get_subcommands().front())());
+    } catch (const aftershade::Error& error) {
+        return fail(error.exit_code(), error.what());
+    } catch (const std::bad_alloc&) {
+        return fail(ExitCode::effect, "out of memory");
+    } catch (const std::exception& error) {
+        return fail(ExitCode::effect, error.what());
+    }
+}

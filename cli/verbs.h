@@ -1,0 +1,16 @@
+// The verbs of the command. Each adds its options to a subcommand and returns what runs when it was chosen.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+#include "framework/core/error.h"
+
+namespace aftershade::cli {
+
+using Verb = std::function<ExitCode()>;
+
+Verb add_run(CLI::App& app);
+Verb add_doctor(CLI::App& app);
+
+}  // namespace aftershade::cli

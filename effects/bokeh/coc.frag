@@ -1,0 +1,45 @@
+#version 450 core
+#include <pass>
+#include <coc.glsl>
+#include "packing.glsl"
+
+ivec2 inside(ivec2 p) { return clamp(p, ivec2(0), ivec2(color_size.xy) - 1); }
+
+float coc_at(ivec2 p) {
+    float px_per_mm = float(frame.display_size.x) / param.sensor_width;
+    float at_infinity = coc_radius_at_infinity_px(param.focus_distance, param.focal_length, param.f_number, px_per_mm,
+                                                  LENS_MODEL == LENS_MODEL_THIN);
+    float coc = coc_radius_px(texelFetch(depth, inside(p), 0).r, param.focus_distance, at_infinity);
+    return clamp(coc, -param.max_coc_radius, param.max_coc_radius);
+}
+
+// An antialiased pixel at the edge of a small light has the light's colour but may have the background's depth, and would
+// throw a large polygon around the light's own. Where all of a pixel's light came across such an edge, it takes the CoC of
+// the brighter neighbour on the other side.
+float repaired_coc(ivec2 p, float coc, float own_amount) {
+    const ivec2 kNeighbours[4] = ivec2[](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
+    float darkest = own_amount, brightest = own_amount, other_coc = coc;
+    for (int i = 0; i < 4; ++i) {
+        ivec2 q = p + kNeighbours[i];
+        float tap_amount = amount(texelFetch(color, inside(q), 0).rgb);
+        float tap_coc = coc_at(q);
+        if (abs(tap_coc - coc) <= 1.0) {
+            darkest = min(darkest, tap_amount);
+        } else if (tap_amount > brightest) {
+            brightest = tap_amount;
+            other_coc = tap_coc;
+        }
+    }
+    return mix(coc, other_coc, clamp(1.0 - kHighlight * darkest / max(own_amount, 1e-6), 0.0, 1.0));
+}
+
+void main() {
+    ivec2 p = ivec2(gl_FragCoord.xy);
+    vec4 texel = texelFetch(color, p, 0);
+    float coc = coc_at(p);
+#if WEIGHTS == WEIGHTS_COVERAGE
+    coc = repaired_coc(p, coc, amount(texel.rgb));
+#endif
+    out_light = pack_light(Light(texel.rgb, texel.a, coc));
+    out_coc = coc;
+}

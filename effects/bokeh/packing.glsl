@@ -1,0 +1,23 @@
+// Colour and CoC in one RGBA32UI texel, so that a tap is one fetch: RGB as the bits of 32-bit floats, alpha and signed CoC
+// radius (px) as halves. A half keeps a radius of 64 px to 1/32 px, and 0 and 1 of alpha exactly. Integers, because a
+// float texture need not keep the bits of what is not a number.
+struct Light {
+    vec3 rgb;     // premultiplied
+    float alpha;
+    float coc;
+};
+
+uvec4 pack_light(Light light) {
+    return uvec4(floatBitsToUint(light.rgb), packHalf2x16(vec2(light.alpha, light.coc)));
+}
+
+Light unpack_light(uvec4 texel) {
+    vec2 alpha_coc = unpackHalf2x16(texel.w);
+    return Light(uintBitsToFloat(texel.xyz), alpha_coc.x, alpha_coc.y);
+}
+
+// Sum of R, G and B: what light means where only its amount matters.
+float amount(vec3 rgb) { return rgb.r + rgb.g + rgb.b; }
+
+// A texel of light that outshines the rest this many times is a highlight.
+const float kHighlight = 4.0;

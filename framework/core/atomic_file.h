@@ -1,0 +1,27 @@
+// A file that appears whole or not at all.
+#pragma once
+
+#include <filesystem>
+
+namespace aftershade {
+
+/// Names a temporary file beside `final_path` (".<name>.<pid>-<n>.tmp"); commit() flushes it to disk and renames it,
+/// the destructor removes it if it was not committed.
+class AtomicFile {
+public:
+    explicit AtomicFile(std::filesystem::path final_path);
+    ~AtomicFile();
+    AtomicFile(const AtomicFile&) = delete;
+    AtomicFile& operator=(const AtomicFile&) = delete;
+
+    const std::filesystem::path& temporary_path() const { return temporary_path_; }
+    /// Throws Error(ExitCode::output) naming the final path and the system's reason.
+    void commit();
+
+private:
+    std::filesystem::path final_path_;
+    std::filesystem::path temporary_path_;
+    bool committed_ = false;
+};
+
+}  // namespace aftershade

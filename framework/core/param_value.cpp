@@ -1,0 +1,121 @@
+#include <algorithm>
+#include <cmath>
+
+#include "framework/core/param.h"
+#include "framework/core/units.h"
+
+namespace aftershade {
+
+namespace {
+
+/// One value being read; collects what a message needs.
+struct ValueReader {
+    const ParamSpec& spec;
+    const std::string label;  // "bokeh.f_number"
+    Diagnostics& diagnostics;
+
+    std::nullopt_t fault(const Node& node, const std::string& text) const {
+        diagnostics.error(node.place, label + ": " + text);
+        return std::nullopt;
+    }
+    std::nullopt_t wrong_kind(const Node& node, std::string_view expected) const {
+        return fault(node, "expected " + std::string(expected) + ", not " + std::string(kind_name(node.kind)));
+    }
+    std::string with_unit(double value) const {
+        return format_number(value) + (spec.unit.empty() ? "" : " " + spec.unit);
+    }
+
+    std::optional<double> in_range(const Node& node, double value) const {
+        if (spec.min && value < *spec.min)
+            return fault(node, with_unit(value) + " is below the minimum " + with_unit(*spec.min));
+        if (spec.max && value > *spec.max)
+            return fault(node, with_unit(value) + " is above the maximum " + with_unit(*spec.max));
+        return value;
+    }
+
+    std::optional<double> scalar(const Node& node) const {
+        if (node.is_number()) return in_range(node, node.number);
+        const std::string expected = spec.unit.empty() ? "a number" : "a number in " + spec.unit;
+        if (!node.is_string()) return wrong_kind(node, expected);
+        const auto quantity = parse_quantity(node.string);
+        if (!quantity) {
+            const bool has_unit = !spec.unit.empty();
+            const std::string remedy = has_unit ? " or a string such as \"1 " + spec.unit + "\"" : "";
+            return fault(node, "'" + node.string + "' is not " + expected + remedy);
+        }
+        if (spec.unit.empty()) return fault(node, "'" + node.string + "' has a unit, but this is a pure number");
+        const auto converted = convert_unit(quantity->value, quantity->unit, spec.unit);
+        if (!converted)
+            return fault(node, "'" + node.string + "' cannot be converted to " + spec.unit + "; write " +
+                                   list_of_names(compatible_units(spec.unit)));
+        return in_range(node, *converted);
+    }
+
+    std::optional<ParamValue> vector(const Node& node) const {
+        const std::size_t count = std::size_t(component_count(spec.type));
+        if (!node.is_array() || node.items.size() != count)
+            return fault(node, "expected an array of " + std::to_string(count) + " numbers");
+        std::vector<double> values;
+        for (const Node& item : node.items)
+            if (const auto value = scalar(item)) values.push_back(*value);
+        if (values.size() != count) return std::nullopt;
+        return values;
+    }
+
+    std::optional<ParamValue> integer(const Node& node) const {
+        const auto value = scalar(node);
+        if (!value) return std::nullopt;
+        if (*value != std::floor(*value)) return fault(node, format_number(*value) + " is not a whole number");
+        if (std::abs(*value) > 2147483647.0) return fault(node, format_number(*value) + " does not fit 32 bits");
+        return std::int64_t(*value);
+    }
+
+    std::optional<ParamValue> enumerator(const Node& node) const {
+        if (!node.is_string()) return wrong_kind(node, "one of " + list_of_names(spec.values));
+        if (std::find(spec.values.begin(), spec.values.end(), node.string) == spec.values.end())
+            return fault(node, "'" + node.string + "' is not one of " + list_of_names(spec.values) +
+                                   did_you_mean(node.string, spec.values));
+        return node.string;
+    }
+};
+
+}  // namespace
+
+std::optional<ParamValue> parse_param_value(const ParamSpec& spec, const Node& node, const std::string& label,
+                                            Diagnostics& diagnostics) {
+    const ValueReader reader{spec, label, diagnostics};
+    switch (spec.type) {
+        case ParamType::bool_:
+            if (node.kind != Node::Kind::boolean) return reader.wrong_kind(node, "true or false");
+            return node.boolean;
+        case ParamType::int_: return reader.integer(node);
+        case ParamType::enum_: return reader.enumerator(node);
+        case ParamType::float_:
+        case ParamType::angle: {
+            const auto value = reader.scalar(node);
+            return value ? std::optional<ParamValue>(*value) : std::nullopt;
+        }
+        case ParamType::color:
+        case ParamType::vec2:
+        case ParamType::vec3:
+        case ParamType::vec4: return reader.vector(node);
+    }
+    return std::nullopt;
+}
+
+std::string format_value(const ParamValue& value) {
+    struct Visitor {
+        std::string operator()(bool v) const { return v ? "true" : "false"; }
+        std::string operator()(std::int64_t v) const { return std::to_string(v); }
+        std::string operator()(double v) const { return format_number(v); }
+        std::string operator()(const std::string& v) const { return "\"" + v + "\""; }
+        std::string operator()(const std::vector<double>& v) const {
+            std::string text = "[";
+            for (std::size_t i = 0; i < v.size(); ++i) text += (i ? ", " : "") + format_number(v[i]);
+            return text + "]";
+        }
+    };
+    return std::visit(Visitor{}, value);
+}
+
+}  // namespace aftershade

@@ -1,0 +1,36 @@
+#include "framework/effect/registry.h"
+
+#include "framework/core/document.h"
+
+namespace aftershade {
+
+namespace fs = std::filesystem;
+
+EffectRegistry::EffectRegistry(std::vector<fs::path> folders) {
+    for (const fs::path& folder : folders) {
+        std::error_code failure;
+        for (const auto& entry : fs::directory_iterator(folder, failure))
+            if (fs::is_regular_file(entry.path() / "effect.json"))
+                folders_.emplace(entry.path().filename().string(), entry.path());
+    }
+}
+
+std::vector<std::string> EffectRegistry::ids() const {
+    std::vector<std::string> ids;
+    for (const auto& [id, folder] : folders_) ids.push_back(id);
+    return ids;
+}
+
+const EffectManifest* EffectRegistry::find(const std::string& id, Diagnostics& diagnostics) {
+    const auto folder = folders_.find(id);
+    if (folder == folders_.end()) return nullptr;
+    auto manifest = manifests_.find(id);
+    if (manifest == manifests_.end()) {
+        const auto node = read_document(folder->second / "effect.json", diagnostics);
+        auto parsed = node ? parse_manifest(*node, folder->second, diagnostics) : std::nullopt;
+        manifest = manifests_.emplace(id, std::move(parsed)).first;
+    }
+    return manifest->second ? &*manifest->second : nullptr;
+}
+
+}  // namespace aftershade

@@ -1,0 +1,32 @@
+// Finds effects on disk. Nothing outside an effect's folder names the effect.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/core/diagnostics.h"
+#include "framework/effect/manifest.h"
+
+namespace aftershade {
+
+/// Folders of effects, searched in order; each effect is a folder <id>/ with an effect.json.
+/// [one thread at a time: manifests are read when they are first asked for]
+class EffectRegistry {
+public:
+    explicit EffectRegistry(std::vector<std::filesystem::path> folders);
+
+    /// Ids of all effects, sorted. The first folder wins where two have an effect of one id.
+    std::vector<std::string> ids() const;
+    bool contains(const std::string& id) const { return folders_.contains(id); }
+    /// nullptr after faults in the manifest, which go to `diagnostics` the first time.
+    const EffectManifest* find(const std::string& id, Diagnostics& diagnostics);
+
+private:
+    std::map<std::string, std::filesystem::path> folders_;  // by id
+    std::map<std::string, std::optional<EffectManifest>> manifests_;
+};
+
+}  // namespace aftershade

@@ -1,0 +1,210 @@
+#include "framework/gpu/commands.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "framework/core/error.h"
+#include "framework/gpu/context_impl.h"
+#include "framework/gpu/texture_format.h"
+
+namespace aftershade::gpu {
+namespace {
+
+[[noreturn]] void fail(const Program& program, std::string_view why) {
+    throw Error(ExitCode::effect, fmt::format("{}: {}", program.label(), why));
+}
+
+GLenum gl_access(Access access) {
+    switch (access) {
+        case Access::read:
+            return GL_READ_ONLY;
+        case Access::write:
+            return GL_WRITE_ONLY;
+        case Access::read_write:
+            break;
+    }
+    return GL_READ_WRITE;
+}
+
+/// What a pass binds, for as long as the pass runs; nothing of it stays behind, even where GL refuses
+/// something.
+class PassScope {
+public:
+    PassScope(Context& context, const Program& program, const Bindings& bindings)
+        : impl_(context.impl()), gl_(context.gl()), program_(program), bindings_(bindings) {
+        check_bindings();
+        const std::string_view name = debug_text(program.label());
+        gl_.PushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, static_cast<GLsizei>(name.size()), name.data());
+        gl_.UseProgram(program.handle());
+        bind_textures();
+        for (const ImageBinding& image : bindings_.images) {
+            const TextureDesc& desc = image.texture->desc();
+            gl_.BindImageTexture(unit(image.binding), image.texture->handle(), image.level, desc.layers > 1,
+                                 0, gl_access(image.access), gl_format(desc.format).internal);
+        }
+        bind_buffers(GL_UNIFORM_BUFFER, bindings_.uniforms);
+        bind_buffers(GL_SHADER_STORAGE_BUFFER, bindings_.storage);
+    }
+
+    ~PassScope() {
+        for (const SampledTexture& sampled : bindings_.textures) {
+            gl_.BindTextureUnit(unit(sampled.binding), 0);
+            gl_.BindSampler(unit(sampled.binding), 0);
+        }
+        for (const ImageBinding& image : bindings_.images) {
+            gl_.BindImageTexture(unit(image.binding), 0, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32F);
+        }
+        for (const BufferBinding& b : bindings_.uniforms)
+            gl_.BindBufferBase(GL_UNIFORM_BUFFER, unit(b.binding), 0);
+        for (const BufferBinding& b : bindings_.storage) {
+            gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, unit(b.binding), 0);
+        }
+        gl_.UseProgram(0);
+        gl_.PopDebugGroup();
+    }
+
+    PassScope(const PassScope&) = delete;
+    PassScope& operator=(const PassScope&) = delete;
+
+    bool writes_memory() const { return !bindings_.images.empty() || !bindings_.storage.empty(); }
+
+private:
+    static GLuint unit(int binding) { return static_cast<GLuint>(binding); }
+
+    /// What GL would let pass and then do wrong.
+    void check_bindings() const {
+        for (const SampledTexture& sampled : bindings_.textures) {
+            if (sampled.filter == Filter::linear && is_integer(sampled.texture->desc().format)) {
+                fail(program_,
+                     fmt::format("texture '{}' holds integers and cannot be read with a linear filter",
+                                 sampled.texture->label()));
+            }
+        }
+        check_sizes(bindings_.uniforms, impl_.limits.uniform_block_bytes, "GL_MAX_UNIFORM_BLOCK_SIZE");
+        check_sizes(bindings_.storage, impl_.limits.storage_block_bytes, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE");
+    }
+
+    void check_sizes(std::span<const BufferBinding> buffers, std::int64_t limit,
+                     std::string_view limit_name) const {
+        for (const BufferBinding& binding : buffers) {
+            const auto bytes = static_cast<std::int64_t>(binding.buffer->size());
+            if (bytes <= limit) continue;
+            fail(program_, fmt::format("the buffer at binding {} has {} bytes; the limit is {} ({})",
+                                       binding.binding, bytes, limit, limit_name));
+        }
+    }
+
+    void bind_textures() {
+        for (const SampledTexture& sampled : bindings_.textures) {
+            const bool mips = sampled.texture->desc().mips > 1;
+            gl_.BindTextureUnit(unit(sampled.binding), sampled.texture->handle());
+            gl_.BindSampler(unit(sampled.binding), impl_.cache->sampler(sampled.filter, sampled.wrap, mips));
+        }
+    }
+
+    void bind_buffers(GLenum target, std::span<const BufferBinding> buffers) {
+        for (const BufferBinding& binding : buffers) {
+            gl_.BindBufferBase(target, unit(binding.binding), binding.buffer->handle());
+        }
+    }
+
+    Context::Impl& impl_;
+    const GladGLContext& gl_;
+    const Program& program_;
+    const Bindings& bindings_;
+};
+
+class BlendScope {
+public:
+    BlendScope(const GladGLContext& gl, Blend blend) : gl_(gl), enabled_(blend != Blend::none) {
+        if (!enabled_) return;
+        gl_.Enable(GL_BLEND);
+        gl_.BlendFunc(GL_ONE, GL_ONE);
+        gl_.BlendEquation(blend == Blend::add ? GL_FUNC_ADD : blend == Blend::min ? GL_MIN : GL_MAX);
+    }
+    ~BlendScope() {
+        if (enabled_) gl_.Disable(GL_BLEND);
+    }
+    BlendScope(const BlendScope&) = delete;
+    BlendScope& operator=(const BlendScope&) = delete;
+
+private:
+    const GladGLContext& gl_;
+    bool enabled_;
+};
+
+void check_targets(const Limits& limits, const Program& program, std::span<const Texture* const> targets) {
+    if (targets.empty()) fail(program, "there is no target to draw to");
+    if (targets.size() > static_cast<std::size_t>(limits.colour_attachments)) {
+        fail(program, fmt::format("{} targets; the limit is {} (GL_MAX_COLOR_ATTACHMENTS)", targets.size(),
+                                  limits.colour_attachments));
+    }
+    const TextureDesc& first = targets.front()->desc();
+    for (const Texture* target : targets) {
+        const TextureDesc& desc = target->desc();
+        if (desc.width == first.width && desc.height == first.height) continue;
+        fail(program,
+             fmt::format("targets differ in size: '{}' is {}x{}, '{}' is {}x{}", targets.front()->label(),
+                         first.width, first.height, target->label(), desc.width, desc.height));
+    }
+}
+
+GLuint framebuffer(Context& context, const Program& program, std::span<const Texture* const> targets) {
+    try {
+        return context.impl().cache->framebuffer(targets);
+    } catch (const Error& error) {
+        context.check(fmt::format("{}: {}", program.label(), error.what()));
+        fail(program, error.what());
+    }
+}
+
+void check_feedback(const Program& program, std::span<const Texture* const> targets,
+                    const Bindings& bindings) {
+    for (const SampledTexture& sampled : bindings.textures) {
+        if (std::find(targets.begin(), targets.end(), sampled.texture) == targets.end()) continue;
+        fail(program,
+             fmt::format("texture '{}' is read and drawn to by the same pass", sampled.texture->label()));
+    }
+}
+
+}  // namespace
+
+void draw(Context& context, const Program& program, std::span<const Texture* const> targets,
+          const Bindings& bindings, Blend blend) {
+    context.make_current();
+    const Context::Impl& impl = context.impl();
+    const GladGLContext& gl = impl.gl;
+    // GL draws nothing with it, and reports nothing.
+    if (program.is_compute()) fail(program, "a compute program cannot draw");
+    check_targets(impl.limits, program, targets);
+    check_feedback(program, targets, bindings);
+    const GLuint target = framebuffer(context, program, targets);
+    {
+        const PassScope pass(context, program, bindings);
+        const BlendScope blending(gl, blend);
+        gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
+        gl.Viewport(0, 0, targets.front()->desc().width, targets.front()->desc().height);
+        gl.BindVertexArray(impl.vertex_array);
+        gl.DrawArrays(GL_TRIANGLES, 0, 3);
+        if (pass.writes_memory()) gl.MemoryBarrier(GL_ALL_BARRIER_BITS);
+        gl.BindVertexArray(0);
+        gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    }
+    context.check(program.label());
+}
+
+void dispatch(Context& context, const Program& program, int groups_x, int groups_y, int groups_z,
+              const Bindings& bindings) {
+    context.make_current();
+    const GladGLContext& gl = context.gl();
+    {
+        const PassScope pass(context, program, bindings);
+        gl.DispatchCompute(static_cast<GLuint>(groups_x), static_cast<GLuint>(groups_y),
+                           static_cast<GLuint>(groups_z));
+        gl.MemoryBarrier(GL_ALL_BARRIER_BITS);
+    }
+    context.check(program.label());
+}
+
+}  // namespace aftershade::gpu

@@ -1,0 +1,251 @@
+#include "framework/gpu/context.h"
+
+#include <array>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "framework/core/error.h"
+#include "framework/gpu/context_impl.h"
+#include "framework/gpu/self_test.h"
+
+namespace aftershade::gpu {
+namespace {
+
+constexpr std::array kBackends = {Backend::egl, Backend::egl_software, Backend::osmesa};
+constexpr std::size_t kMaxErrors = 16;
+constexpr std::size_t kMaxDebugText = 255;
+
+/// What is current in this thread; EGL and OSMesa share Mesa's slot and would not see each other's change.
+thread_local Context::Impl* current = nullptr;
+
+/// An Error that keeps its reasons apart, for probe_backends().
+class Refusal : public Error {
+public:
+    explicit Refusal(std::vector<std::pair<Backend, std::string>> reasons)
+        : Error(ExitCode::gl, text(reasons)), reasons_(std::move(reasons)) {}
+    const std::string& last_reason() const { return reasons_.back().second; }
+
+private:
+    static std::string text(std::span<const std::pair<Backend, std::string>> reasons) {
+        std::string result = "no usable GL";
+        for (const auto& [backend, reason] : reasons) {
+            result += fmt::format("\n  {}: {}", backend_name(backend), reason);
+        }
+        return result;
+    }
+
+    std::vector<std::pair<Backend, std::string>> reasons_;
+};
+
+std::string error_name(GLenum code) {
+    switch (code) {
+        case GL_INVALID_ENUM:
+            return "GL_INVALID_ENUM";
+        case GL_INVALID_VALUE:
+            return "GL_INVALID_VALUE";
+        case GL_INVALID_OPERATION:
+            return "GL_INVALID_OPERATION";
+        case GL_INVALID_FRAMEBUFFER_OPERATION:
+            return "GL_INVALID_FRAMEBUFFER_OPERATION";
+        case GL_OUT_OF_MEMORY:
+            return "GL_OUT_OF_MEMORY";
+        case GL_CONTEXT_LOST:
+            return "GL_CONTEXT_LOST";
+        default:
+            return fmt::format("GL error 0x{:04x}", code);
+    }
+}
+
+void GLAD_API_PTR on_debug_message(GLenum, GLenum type, GLuint, GLenum, GLsizei length, const GLchar* message,
+                                   const void* user) {
+    auto& errors = *static_cast<std::vector<std::string>*>(const_cast<void*>(user));
+    if (type != GL_DEBUG_TYPE_ERROR || errors.size() >= kMaxErrors) return;
+    errors.push_back(length < 0 ? std::string(message)
+                                : std::string(message, static_cast<std::size_t>(length)));
+}
+
+}  // namespace
+
+std::optional<Backend> parse_backend(std::string_view name) {
+    for (Backend backend : {Backend::automatic, Backend::egl, Backend::egl_software, Backend::osmesa}) {
+        if (name == backend_name(backend)) return backend;
+    }
+    return std::nullopt;
+}
+
+std::string_view backend_name(Backend backend) {
+    switch (backend) {
+        case Backend::egl:
+            return "egl";
+        case Backend::egl_software:
+            return "egl-software";
+        case Backend::osmesa:
+            return "osmesa";
+        case Backend::automatic:
+            break;
+    }
+    return "auto";
+}
+
+std::vector<BackendReport> probe_backends() {
+    std::vector<BackendReport> reports;
+    for (Backend backend : kBackends) {
+        BackendReport report;
+        report.backend = backend;
+        try {
+            report.info = Context(backend).info();
+            report.usable = true;
+        } catch (const Refusal& refusal) {
+            report.reason = refusal.last_reason();
+        }
+        reports.push_back(std::move(report));
+    }
+    if (current) current->release();
+    return reports;
+}
+
+Context::Context(Backend backend) {
+    std::vector<std::pair<Backend, std::string>> reasons;
+    for (Backend candidate : kBackends) {
+        if (backend != Backend::automatic && backend != candidate) continue;
+        try {
+            impl_ = std::make_unique<Impl>(candidate);
+            self_test(*this);
+            return;
+        } catch (const Error& error) {
+            impl_.reset();
+            reasons.emplace_back(candidate, error.what());
+        }
+    }
+    throw Refusal(std::move(reasons));
+}
+
+Context::~Context() = default;
+
+const ContextInfo& Context::info() const {
+    return impl_->info;
+}
+
+void Context::make_current() {
+    impl_->make_current();
+}
+
+void Context::finish() {
+    make_current();
+    impl_->gl.Finish();
+}
+
+void Context::check(std::string_view what) {
+    make_current();
+    std::vector<std::string> reported = std::exchange(impl_->errors, {});
+    const bool described = !reported.empty();
+    // Bounded, since a lost context reports an error for ever.
+    for (std::size_t i = 0; i < kMaxErrors; ++i) {
+        const GLenum code = impl_->gl.GetError();
+        if (code == GL_NO_ERROR) break;
+        if (!described) reported.push_back(error_name(code));
+    }
+    if (reported.empty()) return;
+    throw Error(ExitCode::effect,
+                fmt::format("{}: {} [{}]", what, fmt::join(reported, "; "), impl_->info.renderer));
+}
+
+const GladGLContext& Context::gl() const {
+    return impl_->gl;
+}
+
+Context::Impl::Impl(Backend backend) {
+    if (current) current->release();
+    platform = make_platform(backend);
+    current = this;
+    info.backend = backend;
+    try {
+        load_functions();
+    } catch (...) {
+        release();
+        throw;
+    }
+    cache = std::make_unique<ObjectCache>(gl);
+    watch_errors();
+    set_state();
+}
+
+Context::Impl::~Impl() {
+    if (!try_make_current()) return;
+    gl.DebugMessageCallback(nullptr, nullptr);
+    cache.reset();
+    gl.DeleteVertexArrays(1, &vertex_array);
+    release();
+}
+
+void Context::Impl::make_current() {
+    if (current == this) return;
+    if (current) current->release();
+    platform->make_current();
+    current = this;
+}
+
+bool Context::Impl::try_make_current() noexcept {
+    try {
+        make_current();
+        return true;
+    } catch (const std::exception&) {
+        return false;
+    }
+}
+
+void Context::Impl::release() noexcept {
+    platform->release();
+    current = nullptr;
+}
+
+void Context::Impl::load_functions() {
+    const auto load = [](void* user, const char* name) {
+        return static_cast<const Platform*>(user)->proc(name);
+    };
+    const int version = gladLoadGLContextUserPtr(&gl, load, platform.get());
+    info.renderer = gl_string(*platform, GL_RENDERER);
+    info.version = gl_string(*platform, GL_VERSION);
+    info.vendor = gl_string(*platform, GL_VENDOR);
+    info.software = is_software_renderer(info.renderer);
+    if (version < GLAD_MAKE_VERSION(4, 5)) {
+        throw Error(ExitCode::gl,
+                    fmt::format("{} offers GL '{}'; 4.5 core is needed", info.renderer, info.version));
+    }
+}
+
+void Context::Impl::set_state() {
+    gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
+    gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    gl.Disable(GL_DITHER);
+    // DESIGN.md section 3: NDC y up, z in [0, 1], texel row 0 at the top.
+    gl.ClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
+    gl.CreateVertexArrays(1, &vertex_array);
+    gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &limits.texture_size);
+    gl.GetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &limits.array_layers);
+    gl.GetIntegerv(GL_MAX_COLOR_ATTACHMENTS, &limits.colour_attachments);
+    gl.GetInteger64v(GL_MAX_UNIFORM_BLOCK_SIZE, &limits.uniform_block_bytes);
+    gl.GetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &limits.storage_block_bytes);
+}
+
+void Context::Impl::watch_errors() {
+    gl.Enable(GL_DEBUG_OUTPUT);
+    gl.Enable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+    gl.DebugMessageControl(GL_DONT_CARE, GL_DONT_CARE, GL_DONT_CARE, 0, nullptr, GL_FALSE);
+    gl.DebugMessageControl(GL_DEBUG_SOURCE_API, GL_DEBUG_TYPE_ERROR, GL_DONT_CARE, 0, nullptr, GL_TRUE);
+    // Shader messages stay off: Program reads the log, and an error in it must not fail the next pass too.
+    gl.DebugMessageCallback(on_debug_message, &errors);
+}
+
+std::string_view debug_text(std::string_view text) {
+    return text.substr(0, kMaxDebugText);
+}
+
+void set_label(const GladGLContext& gl, GLenum kind, GLuint handle, std::string_view text) {
+    const std::string_view label = debug_text(text);
+    gl.ObjectLabel(kind, handle, static_cast<GLsizei>(label.size()), label.data());
+}
+
+}  // namespace aftershade::gpu

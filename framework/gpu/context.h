@@ -1,0 +1,70 @@
+// A GL 4.5 core context without a window, through EGL or OSMesa, both opened at run time.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+struct GladGLContext;
+
+namespace aftershade::gpu {
+
+/// Which library and which kind of renderer. `automatic` tries the three others in this order.
+enum class Backend { automatic, egl, egl_software, osmesa };
+
+/// "auto", "egl", "egl-software", "osmesa"; nullopt for anything else.
+std::optional<Backend> parse_backend(std::string_view name);
+std::string_view backend_name(Backend backend);
+
+struct ContextInfo {
+    Backend backend = Backend::automatic;  ///< never `automatic` in a made context
+    std::string renderer;                  ///< GL_RENDERER
+    std::string version;                   ///< GL_VERSION
+    std::string vendor;                    ///< GL_VENDOR
+    bool software = false;                 ///< a CPU rasteriser (llvmpipe, softpipe, swrast)
+};
+
+/// One row of `aftershade doctor`.
+struct BackendReport {
+    Backend backend = Backend::automatic;
+    bool usable = false;
+    std::string reason;  ///< why not, with the package to install where that is known; empty when usable
+    ContextInfo info;    ///< filled when usable
+};
+
+/// Tries egl, egl_software and osmesa in turn, each with the self-test, and leaves no context current.
+std::vector<BackendReport> probe_backends();
+
+/// Owns the GL context and its function table. Objects made from it keep a reference and must die first.
+/// Construction draws a known colour into a float framebuffer and reads it back; a context that cannot is
+/// refused. [one thread: the one that made it; several contexts may exist in one process, make_current()
+/// selects]
+class Context {
+public:
+    /// Throws Error(ExitCode::gl) that lists each backend tried and why it was refused.
+    explicit Context(Backend backend);
+    ~Context();
+    Context(const Context&) = delete;
+    Context& operator=(const Context&) = delete;
+
+    const ContextInfo& info() const;
+    void make_current();
+    /// Waits until the driver has done everything asked so far (glFinish).
+    void finish();
+    /// Throws Error(ExitCode::effect) if GL has reported an error (KHR_debug, or glGetError) since the last
+    /// call. `what` names the pass or the operation, for the message.
+    void check(std::string_view what);
+
+    /// The function table; for framework/gpu only, which alone includes <glad/gl.h>.
+    const GladGLContext& gl() const;
+
+    struct Impl;                           ///< framework/gpu/context_impl.h
+    Impl& impl() const { return *impl_; }  ///< for framework/gpu
+
+private:
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace aftershade::gpu

@@ -1,0 +1,57 @@
+// What a Context is made of. Internal to framework/gpu, whose sources alone see GL's types.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "framework/gpu/context.h"
+#include "framework/gpu/object_cache.h"
+#include "framework/gpu/platform.h"
+
+#include <glad/gl.h>
+
+namespace aftershade::gpu {
+
+struct Limits {
+    int texture_size = 0;
+    int array_layers = 0;
+    int colour_attachments = 0;
+    std::int64_t uniform_block_bytes = 0;
+    std::int64_t storage_block_bytes = 0;
+};
+
+struct Context::Impl {
+    /// Throws Error(ExitCode::gl) whose message is the reason alone; else current in this thread.
+    explicit Impl(Backend backend);
+    ~Impl();
+    Impl(const Impl&) = delete;
+    Impl& operator=(const Impl&) = delete;
+
+    void make_current();
+    /// For destructors: false where make_current() throws.
+    bool try_make_current() noexcept;
+    void release() noexcept;
+
+    std::unique_ptr<Platform> platform;
+    GladGLContext gl{};
+    ContextInfo info;
+    Limits limits;
+    std::vector<std::string> errors;  ///< what KHR_debug reported since the last check()
+    GLuint vertex_array = 0;          ///< empty; core profile draws nothing without one
+    std::unique_ptr<ObjectCache> cache;
+
+private:
+    void load_functions();
+    void set_state();
+    void watch_errors();
+};
+
+/// `text` cut to what every driver takes as a label or a debug group's name (GL_MAX_LABEL_LENGTH is at least
+/// 256).
+std::string_view debug_text(std::string_view text);
+void set_label(const GladGLContext& gl, GLenum kind, GLuint handle, std::string_view text);
+
+}  // namespace aftershade::gpu

@@ -1,0 +1,104 @@
+#include "framework/gpu/osmesa_platform.h"
+
+#include <array>
+
+#include <dlfcn.h>
+
+#include "framework/core/error.h"
+
+#if defined(__SANITIZE_ADDRESS__)
+// OSMesaMakeCurrent keeps 160 bytes for each context to the end of the process (Mesa 22.3).
+extern "C" const char* __lsan_default_suppressions() {
+    return "leak:libOSMesa\n";
+}
+#endif
+
+namespace aftershade::gpu {
+namespace {
+
+// From GL/osmesa.h of Mesa 22.3. Not included: Mesa 25.1 dropped the header with the library.
+constexpr int kOsmesaFormat = 0x22;
+constexpr int kOsmesaRgba = 0x1908;
+constexpr int kOsmesaProfile = 0x33;
+constexpr int kOsmesaCoreProfile = 0x34;
+constexpr int kOsmesaMajorVersion = 0x36;
+constexpr int kOsmesaMinorVersion = 0x37;
+constexpr unsigned int kUnsignedByte = 0x1401;
+constexpr unsigned int kGlVersion = 0x1F02;
+
+// OSMesa demands a buffer to be current; every pass draws to textures, so it is never looked at.
+constexpr int kBufferSide = 16;
+
+using OsmesaContext = void*;
+
+void* library() {
+    static void* const handle =
+        open_library({"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"}, "libosmesa6");
+    return handle;
+}
+
+template <typename Function>
+Function symbol(const char* name) {
+    void* address = dlsym(library(), name);
+    if (!address)
+        throw Error(ExitCode::gl, std::string("libOSMesa has no ") + name + "; Mesa 12 or later is needed");
+    return reinterpret_cast<Function>(address);
+}
+
+class OsmesaPlatform : public Platform {
+public:
+    OsmesaPlatform()
+        : destroy_(symbol<void (*)(OsmesaContext)>("OSMesaDestroyContext")),
+          make_current_(symbol<MakeCurrent>("OSMesaMakeCurrent")),
+          get_proc_(symbol<Proc (*)(const char*)>("OSMesaGetProcAddress")) {
+        const auto create =
+            symbol<OsmesaContext (*)(const int*, OsmesaContext)>("OSMesaCreateContextAttribs");
+        const int attributes[] = {kOsmesaFormat,
+                                  kOsmesaRgba,
+                                  kOsmesaProfile,
+                                  kOsmesaCoreProfile,
+                                  kOsmesaMajorVersion,
+                                  4,
+                                  kOsmesaMinorVersion,
+                                  5,
+                                  0};
+        context_ = create(attributes, nullptr);
+        if (!context_)
+            throw Error(ExitCode::gl, "OSMesa makes no GL 4.5 core context; install Mesa 22 or later");
+    }
+
+    ~OsmesaPlatform() override { destroy_(context_); }
+
+    void make_current() override {
+        if (!make_current_(context_, buffer_.data(), kUnsignedByte, kBufferSide, kBufferSide)) {
+            throw Error(ExitCode::gl, "OSMesaMakeCurrent failed");
+        }
+    }
+
+    void release() noexcept override { make_current_(nullptr, nullptr, 0, 0, 0); }
+
+    Proc proc(const char* name) const override { return get_proc_(name); }
+
+private:
+    using MakeCurrent = unsigned char (*)(OsmesaContext, void*, unsigned int, int, int);
+
+    void (*destroy_)(OsmesaContext);
+    MakeCurrent make_current_;
+    Proc (*get_proc_)(const char*);
+    OsmesaContext context_ = nullptr;
+    std::array<unsigned char, 4 * kBufferSide * kBufferSide> buffer_{};
+};
+
+}  // namespace
+
+std::unique_ptr<Platform> make_osmesa_platform() {
+    auto platform = std::make_unique<OsmesaPlatform>();
+    platform->make_current();
+    if (gl_string(*platform, kGlVersion).empty()) {
+        platform->release();
+        throw Error(ExitCode::gl, "OSMesaMakeCurrent succeeded but there is no GL (GL_VERSION is null)");
+    }
+    return platform;
+}
+
+}  // namespace aftershade::gpu

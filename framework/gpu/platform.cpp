@@ -1,0 +1,48 @@
+#include "framework/gpu/platform.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include "framework/core/error.h"
+#include "framework/gpu/egl_platform.h"
+#include "framework/gpu/osmesa_platform.h"
+
+namespace aftershade::gpu {
+
+std::unique_ptr<Platform> make_platform(Backend backend) {
+    if (backend == Backend::osmesa) return make_osmesa_platform();
+    return make_egl_platform(backend == Backend::egl_software ? Renderer::software : Renderer::hardware);
+}
+
+bool is_software_renderer(std::string_view renderer) {
+    static constexpr std::array<std::string_view, 5> kNames = {"llvmpipe", "softpipe", "swrast",
+                                                               "software rasterizer", "swiftshader"};
+    std::string lower(renderer);
+    std::transform(lower.begin(), lower.end(), lower.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return std::any_of(kNames.begin(), kNames.end(),
+                       [&](std::string_view name) { return lower.find(name) != std::string::npos; });
+}
+
+void* open_library(std::initializer_list<const char*> names, std::string_view package) {
+    std::string reason;
+    for (const char* name : names) {
+        if (void* library = dlopen(name, RTLD_NOW | RTLD_LOCAL)) return library;
+        const char* message = dlerror();
+        if (reason.empty()) reason = message ? message : name;
+    }
+    throw Error(ExitCode::gl, fmt::format("{}; install the Debian package {}", reason, package));
+}
+
+std::string gl_string(const Platform& platform, unsigned int name) {
+    using GetString = const unsigned char* (*)(unsigned int);
+    const auto get_string = reinterpret_cast<GetString>(platform.proc("glGetString"));
+    const unsigned char* text = get_string ? get_string(name) : nullptr;
+    return text ? reinterpret_cast<const char*>(text) : "";
+}
+
+}  // namespace aftershade::gpu

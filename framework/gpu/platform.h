@@ -1,0 +1,43 @@
+// What a library (EGL, OSMesa) must do for a Context. Internal to framework/gpu, free of GL, EGL and OSMesa
+// types.
+#pragma once
+
+#include <initializer_list>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "framework/gpu/context.h"
+
+namespace aftershade::gpu {
+
+/// One GL 4.5 core context without a window; current once it is made.
+class Platform {
+public:
+    using Proc = void (*)();
+
+    Platform() = default;
+    virtual ~Platform() = default;
+    Platform(const Platform&) = delete;
+    Platform& operator=(const Platform&) = delete;
+
+    /// Throws Error(ExitCode::gl).
+    virtual void make_current() = 0;
+    /// Leaves this thread without a context.
+    virtual void release() noexcept = 0;
+    virtual Proc proc(const char* name) const = 0;
+};
+
+/// Throws Error(ExitCode::gl) whose message is the reason alone.
+std::unique_ptr<Platform> make_platform(Backend backend);
+
+/// True for the GL_RENDERER of a CPU rasteriser.
+bool is_software_renderer(std::string_view renderer);
+
+/// dlopen of the first of `names` that loads. Throws Error(ExitCode::gl) naming the Debian package.
+void* open_library(std::initializer_list<const char*> names, std::string_view package);
+
+/// glGetString through `platform`; empty where GL gives null, which is how a null context shows itself.
+std::string gl_string(const Platform& platform, unsigned int name);
+
+}  // namespace aftershade::gpu

@@ -1,0 +1,168 @@
+#include "framework/gpu/program.h"
+
+#include <algorithm>
+#include <initializer_list>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "framework/gpu/context_impl.h"
+
+namespace aftershade::gpu {
+namespace {
+
+/// The 1-based line `number` of `text`; empty past its end.
+std::string_view nth_line(std::string_view text, int number) {
+    for (int i = 1; i < number; ++i) {
+        const std::size_t end = text.find('\n');
+        if (end == std::string_view::npos) return {};
+        text.remove_prefix(end + 1);
+    }
+    return text.substr(0, text.find('\n'));
+}
+
+/// Mesa counts columns after its preprocessor has made one blank of each run of blanks: counts them in `line`
+/// instead.
+int written_column(std::string_view line, int column) {
+    const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
+    int mesa_column = 0;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        if (i > 0 && is_blank(line[i]) && is_blank(line[i - 1])) continue;
+        if (++mesa_column == column) return static_cast<int>(i) + 1;
+    }
+    return column;
+}
+
+std::vector<ShaderMessage> messages_of(const GladGLContext& gl, const std::string& source,
+                                       const std::string& log) {
+    std::vector<ShaderMessage> messages = parse_shader_log(log);
+    const std::string_view version = reinterpret_cast<const char*>(gl.GetString(GL_VERSION));
+    if (version.find("Mesa") == std::string_view::npos || source.find("#line") != std::string::npos)
+        return messages;
+    for (ShaderMessage& message : messages) {
+        if (message.line > 0 && message.column > 0) {
+            message.column = written_column(nth_line(source, message.line), message.column);
+        }
+    }
+    return messages;
+}
+
+/// A compiled shader until it is in its program.
+class Stage {
+public:
+    Stage(const GladGLContext& gl, GLenum kind, std::string name, const std::string& source,
+          const std::string& label)
+        : gl_(gl), handle_(gl.CreateShader(kind)) {
+        const char* text = source.c_str();
+        const auto length = static_cast<GLint>(source.size());
+        gl_.ShaderSource(handle_, 1, &text, &length);
+        gl_.CompileShader(handle_);
+        GLint compiled = 0;
+        gl_.GetShaderiv(handle_, GL_COMPILE_STATUS, &compiled);
+        if (compiled) {
+            set_label(gl_, GL_SHADER, handle_, label);
+            return;
+        }
+        const std::string log = info_log();
+        gl_.DeleteShader(handle_);
+        throw ShaderError(std::move(name), messages_of(gl_, source, log), log);
+    }
+    ~Stage() { gl_.DeleteShader(handle_); }
+    Stage(const Stage&) = delete;
+    Stage& operator=(const Stage&) = delete;
+
+    GLuint handle() const { return handle_; }
+
+private:
+    std::string info_log() const {
+        GLint size = 0;
+        gl_.GetShaderiv(handle_, GL_INFO_LOG_LENGTH, &size);
+        std::string log(static_cast<std::size_t>(std::max(size, 1)), '\0');
+        GLsizei length = 0;
+        gl_.GetShaderInfoLog(handle_, static_cast<GLsizei>(log.size()), &length, log.data());
+        log.resize(static_cast<std::size_t>(length));
+        return log;
+    }
+
+    const GladGLContext& gl_;
+    GLuint handle_;
+};
+
+std::string program_log(const GladGLContext& gl, GLuint program) {
+    GLint size = 0;
+    gl.GetProgramiv(program, GL_INFO_LOG_LENGTH, &size);
+    std::string log(static_cast<std::size_t>(std::max(size, 1)), '\0');
+    GLsizei length = 0;
+    gl.GetProgramInfoLog(program, static_cast<GLsizei>(log.size()), &length, log.data());
+    log.resize(static_cast<std::size_t>(length));
+    return log;
+}
+
+GLuint link(const GladGLContext& gl, std::initializer_list<const Stage*> stages, const std::string& label) {
+    const GLuint program = gl.CreateProgram();
+    for (const Stage* stage : stages)
+        gl.AttachShader(program, stage->handle());
+    gl.LinkProgram(program);
+    for (const Stage* stage : stages)
+        gl.DetachShader(program, stage->handle());
+    GLint linked = 0;
+    gl.GetProgramiv(program, GL_LINK_STATUS, &linked);
+    if (!linked) {
+        const std::string log = program_log(gl, program);
+        gl.DeleteProgram(program);
+        throw ShaderError("link", parse_shader_log(log), log);
+    }
+    set_label(gl, GL_PROGRAM, program, label);
+    return program;
+}
+
+}  // namespace
+
+ShaderError::ShaderError(std::string stage, std::vector<ShaderMessage> messages, const std::string& log)
+    : Error(ExitCode::effect, log), stage_(std::move(stage)), messages_(std::move(messages)) {}
+
+Program Program::draw(Context& context, const std::string& vertex, const std::string& fragment,
+                      std::string label) {
+    context.make_current();
+    const GladGLContext& gl = context.gl();
+    const Stage vertex_stage(gl, GL_VERTEX_SHADER, "vertex", vertex, label);
+    const Stage fragment_stage(gl, GL_FRAGMENT_SHADER, "fragment", fragment, label);
+    Program program(context, link(gl, {&vertex_stage, &fragment_stage}, label), false, std::move(label));
+    context.check(fmt::format("program '{}'", program.label()));
+    return program;
+}
+
+Program Program::compute(Context& context, const std::string& source, std::string label) {
+    context.make_current();
+    const GladGLContext& gl = context.gl();
+    const Stage stage(gl, GL_COMPUTE_SHADER, "compute", source, label);
+    Program program(context, link(gl, {&stage}, label), true, std::move(label));
+    context.check(fmt::format("program '{}'", program.label()));
+    return program;
+}
+
+Program::Program(Context& context, unsigned int handle, bool is_compute, std::string label)
+    : context_(&context), handle_(handle), is_compute_(is_compute), label_(std::move(label)) {}
+
+Program::~Program() {
+    if (handle_ == 0 || !context_->impl().try_make_current()) return;
+    context_->gl().DeleteProgram(handle_);
+}
+
+Program::Program(Program&& other) noexcept
+    : context_(other.context_),
+      handle_(std::exchange(other.handle_, 0)),
+      is_compute_(other.is_compute_),
+      label_(std::move(other.label_)) {}
+
+Program& Program::operator=(Program&& other) noexcept {
+    Program taken(std::move(other));
+    std::swap(context_, taken.context_);
+    std::swap(handle_, taken.handle_);
+    std::swap(is_compute_, taken.is_compute_);
+    std::swap(label_, taken.label_);
+    return *this;
+}
+
+}  // namespace aftershade::gpu

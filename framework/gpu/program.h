@@ -1,0 +1,61 @@
+// Compiled GLSL: a vertex and a fragment shader, or one compute shader.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/core/error.h"
+#include "framework/gpu/context.h"
+
+namespace aftershade::gpu {
+
+/// One line of the driver's log. Mesa prints "0:17(6): error: ...", NVIDIA "0(17) : error C1008: ...".
+struct ShaderMessage {
+    int line = 0;    ///< 1-based line of the text given to Program, 0 where the log names none
+    int column = 0;  ///< 1-based, 0 where unknown
+    bool error = true;
+    std::string text;
+};
+
+/// A shader that did not compile or link. what() is the whole log.
+class ShaderError : public Error {
+public:
+    ShaderError(std::string stage, std::vector<ShaderMessage> messages, const std::string& log);
+    const std::string& stage() const { return stage_; }  ///< "vertex", "fragment", "compute" or "link"
+    const std::vector<ShaderMessage>& messages() const { return messages_; }
+
+private:
+    std::string stage_;
+    std::vector<ShaderMessage> messages_;
+};
+
+/// Splits a driver's log into messages; public because its tests need no GL.
+std::vector<ShaderMessage> parse_shader_log(const std::string& log);
+
+/// Bindings are fixed in the text by layout(binding = N); there is no lookup by name at draw time.
+/// [the context's thread]
+class Program {
+public:
+    /// Throws ShaderError.
+    static Program draw(Context& context, const std::string& vertex, const std::string& fragment,
+                        std::string label);
+    static Program compute(Context& context, const std::string& source, std::string label);
+    ~Program();
+    Program(Program&& other) noexcept;
+    Program& operator=(Program&& other) noexcept;
+    Program(const Program&) = delete;
+    Program& operator=(const Program&) = delete;
+
+    const std::string& label() const { return label_; }
+    bool is_compute() const { return is_compute_; }
+    unsigned int handle() const { return handle_; }  ///< for framework/gpu
+
+private:
+    Program(Context& context, unsigned int handle, bool is_compute, std::string label);
+    Context* context_ = nullptr;
+    unsigned int handle_ = 0;
+    bool is_compute_ = false;
+    std::string label_;
+};
+
+}  // namespace aftershade::gpu

@@ -1,0 +1,238 @@
+#include "framework/gpu/texture.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "framework/core/error.h"
+#include "framework/gpu/context_impl.h"
+#include "framework/gpu/texture_format.h"
+
+namespace aftershade::gpu {
+namespace {
+
+constexpr std::size_t kMaxReadBytes = std::size_t{1} << 30;
+
+/// The nearest integer that Integer holds; 0 for NaN.
+template <typename Integer>
+Integer to_integer(float value) {
+    constexpr double kLow = std::numeric_limits<Integer>::min();
+    constexpr double kHigh = std::numeric_limits<Integer>::max();
+    if (std::isnan(value)) return 0;
+    return static_cast<Integer>(std::clamp(std::nearbyint(static_cast<double>(value)), kLow, kHigh));
+}
+
+template <typename To, typename From, typename Convert>
+std::vector<To> converted(std::span<const From> values, Convert convert) {
+    std::vector<To> result(values.size());
+    std::transform(values.begin(), values.end(), result.begin(), convert);
+    return result;
+}
+
+float from_bits(std::uint32_t value, TextureFormat format) {
+    return is_signed_integer(format) ? static_cast<float>(static_cast<std::int32_t>(value))
+                                     : static_cast<float>(value);
+}
+
+std::uint32_t to_bits(float value, TextureFormat format) {
+    return is_signed_integer(format) ? static_cast<std::uint32_t>(to_integer<std::int32_t>(value))
+                                     : to_integer<std::uint32_t>(value);
+}
+
+int level_side(int side, int level) {
+    return std::max(1, side >> level);
+}
+
+std::size_t value_count(const TextureDesc& desc, int level = 0) {
+    return static_cast<std::size_t>(level_side(desc.width, level)) *
+           static_cast<std::size_t>(level_side(desc.height, level)) *
+           static_cast<std::size_t>(channel_count(desc.format));
+}
+
+/// The type of client memory that holds `desc`'s values unchanged.
+GLenum value_type(const TextureDesc& desc) {
+    if (!is_integer(desc.format)) return GL_FLOAT;
+    return is_signed_integer(desc.format) ? GL_INT : GL_UNSIGNED_INT;
+}
+
+void check_desc(const Limits& limits, const TextureDesc& desc, const std::string& label) {
+    if (desc.width < 1 || desc.height < 1 || std::max(desc.width, desc.height) > limits.texture_size) {
+        throw Error(ExitCode::effect,
+                    fmt::format("texture '{}': {}x{} texels; each side must be 1 to {} (GL_MAX_TEXTURE_SIZE)",
+                                label, desc.width, desc.height, limits.texture_size));
+    }
+    if (desc.layers < 1 || desc.layers > limits.array_layers) {
+        throw Error(
+            ExitCode::effect,
+            fmt::format("texture '{}': {} layers; there must be 1 to {} (GL_MAX_ARRAY_TEXTURE_LAYERS)", label,
+                        desc.layers, limits.array_layers));
+    }
+    const int most = std::bit_width(static_cast<unsigned>(std::max(desc.width, desc.height)));
+    if (desc.mips < 1 || desc.mips > most) {
+        throw Error(ExitCode::effect, fmt::format("texture '{}': {} mip levels; {}x{} texels have 1 to {}",
+                                                  label, desc.mips, desc.width, desc.height, most));
+    }
+}
+
+GLuint make_texture(const GladGLContext& gl, const TextureDesc& desc, const std::string& label) {
+    GLuint handle = 0;
+    const GLenum internal = gl_format(desc.format).internal;
+    if (desc.layers > 1) {
+        gl.CreateTextures(GL_TEXTURE_2D_ARRAY, 1, &handle);
+        gl.TextureStorage3D(handle, desc.mips, internal, desc.width, desc.height, desc.layers);
+    } else {
+        gl.CreateTextures(GL_TEXTURE_2D, 1, &handle);
+        gl.TextureStorage2D(handle, desc.mips, internal, desc.width, desc.height);
+    }
+    set_label(gl, GL_TEXTURE, handle, label);
+    return handle;
+}
+
+void sub_image(const GladGLContext& gl, const Texture& texture, int layer, const void* values) {
+    const TextureDesc& desc = texture.desc();
+    const GLenum pixel = gl_format(desc.format).pixel;
+    const GLenum type = value_type(desc);
+    if (desc.layers > 1) {
+        gl.TextureSubImage3D(texture.handle(), 0, 0, 0, layer, desc.width, desc.height, 1, pixel, type,
+                             values);
+    } else {
+        gl.TextureSubImage2D(texture.handle(), 0, 0, 0, desc.width, desc.height, pixel, type, values);
+    }
+}
+
+template <typename Value>
+std::vector<Value> read_values(Context& context, const Texture& texture, int level, int layer) {
+    const TextureDesc& desc = texture.desc();
+    assert(level >= 0 && level < desc.mips && layer >= 0 && layer < desc.layers);
+    context.make_current();
+    std::vector<Value> values(value_count(desc, level));
+    const int width = level_side(desc.width, level);
+    const int height = level_side(desc.height, level);
+    const auto row_values =
+        static_cast<std::size_t>(width) * static_cast<std::size_t>(channel_count(desc.format));
+    // In bands, because GL counts the bytes of one call in a signed 32-bit integer.
+    const int band = static_cast<int>(kMaxReadBytes / (row_values * sizeof(Value)));
+    for (int row = 0; row < height; row += band) {
+        const int rows = std::min(band, height - row);
+        const std::size_t bytes = row_values * static_cast<std::size_t>(rows) * sizeof(Value);
+        context.gl().GetTextureSubImage(texture.handle(), level, 0, row, layer, width, rows, 1,
+                                        gl_format(desc.format).pixel, value_type(desc),
+                                        static_cast<GLsizei>(bytes),
+                                        &values[row_values * static_cast<std::size_t>(row)]);
+    }
+    context.check(fmt::format("reading texture '{}'", texture.label()));
+    return values;
+}
+
+}  // namespace
+
+Texture::Texture(Context& context, const TextureDesc& desc, std::string label)
+    : context_(&context), desc_(desc), label_(std::move(label)) {
+    context.make_current();
+    check_desc(context.impl().limits, desc_, label_);
+    handle_ = make_texture(context.gl(), desc_, label_);
+    try {
+        context.check(fmt::format("texture '{}', {}x{} {}, {} MiB", label_, desc_.width, desc_.height,
+                                  texture_format_name(desc_.format), byte_size(desc_) >> 20));
+    } catch (const Error&) {
+        context.gl().DeleteTextures(1, &handle_);
+        throw;
+    }
+}
+
+Texture::~Texture() {
+    if (handle_ == 0 || !context_->impl().try_make_current()) return;
+    context_->impl().cache->forget_texture(handle_);
+    context_->gl().DeleteTextures(1, &handle_);
+}
+
+Texture::Texture(Texture&& other) noexcept
+    : context_(other.context_),
+      handle_(std::exchange(other.handle_, 0)),
+      desc_(std::exchange(other.desc_, {})),
+      label_(std::move(other.label_)) {}
+
+Texture& Texture::operator=(Texture&& other) noexcept {
+    Texture taken(std::move(other));
+    std::swap(context_, taken.context_);
+    std::swap(handle_, taken.handle_);
+    std::swap(desc_, taken.desc_);
+    std::swap(label_, taken.label_);
+    return *this;
+}
+
+void Texture::upload(std::span<const float> values, int layer) {
+    assert(values.size() == value_count(desc_) && layer >= 0 && layer < desc_.layers);
+    if (is_integer(desc_.format)) {
+        const TextureFormat format = desc_.format;
+        upload(converted<std::uint32_t>(values, [format](float v) { return to_bits(v, format); }), layer);
+        return;
+    }
+    context_->make_current();
+    sub_image(context_->gl(), *this, layer, values.data());
+    context_->check(fmt::format("uploading texture '{}'", label_));
+}
+
+void Texture::upload(std::span<const std::uint32_t> values, int layer) {
+    assert(values.size() == value_count(desc_) && layer >= 0 && layer < desc_.layers);
+    if (!is_integer(desc_.format)) {
+        upload(converted<float>(values, [](std::uint32_t v) { return static_cast<float>(v); }), layer);
+        return;
+    }
+    context_->make_current();
+    sub_image(context_->gl(), *this, layer, values.data());
+    context_->check(fmt::format("uploading texture '{}'", label_));
+}
+
+std::vector<float> Texture::read_floats(int level, int layer) const {
+    if (!is_integer(desc_.format)) return read_values<float>(*context_, *this, level, layer);
+    const auto bits = read_values<std::uint32_t>(*context_, *this, level, layer);
+    const TextureFormat format = desc_.format;
+    return converted<float>(std::span(bits), [format](std::uint32_t v) { return from_bits(v, format); });
+}
+
+std::vector<std::uint32_t> Texture::read_uints(int level, int layer) const {
+    if (is_integer(desc_.format)) return read_values<std::uint32_t>(*context_, *this, level, layer);
+    const auto floats = read_values<float>(*context_, *this, level, layer);
+    return converted<std::uint32_t>(std::span(floats), to_integer<std::uint32_t>);
+}
+
+void Texture::clear(float value) {
+    if (is_integer(desc_.format)) {
+        clear_uint(to_bits(value, desc_.format));
+        return;
+    }
+    context_->make_current();
+    const float texel[4] = {value, value, value, value};
+    for (int level = 0; level < desc_.mips; ++level) {
+        context_->gl().ClearTexImage(handle_, level, gl_format(desc_.format).pixel, GL_FLOAT, texel);
+    }
+    context_->check(fmt::format("clearing texture '{}'", label_));
+}
+
+void Texture::clear_uint(std::uint32_t value) {
+    if (!is_integer(desc_.format)) {
+        clear(static_cast<float>(value));
+        return;
+    }
+    context_->make_current();
+    const std::uint32_t texel[4] = {value, value, value, value};
+    for (int level = 0; level < desc_.mips; ++level) {
+        context_->gl().ClearTexImage(handle_, level, gl_format(desc_.format).pixel, value_type(desc_), texel);
+    }
+    context_->check(fmt::format("clearing texture '{}'", label_));
+}
+
+void Texture::generate_mips() {
+    assert(!is_integer(desc_.format));
+    context_->make_current();
+    context_->gl().GenerateTextureMipmap(handle_);
+    context_->check(fmt::format("mip levels of texture '{}'", label_));
+}
+
+}  // namespace aftershade::gpu

@@ -1,0 +1,92 @@
+// Immutable-size textures with a debug label. Texel row 0 is the top row of the image.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "framework/gpu/context.h"
+
+namespace aftershade::gpu {
+
+enum class TextureFormat {
+    r8,
+    rg8,
+    rgba8,  // unsigned normalised
+    r16f,
+    rg16f,
+    rgba16f,  // half
+    r32f,
+    rg32f,
+    rgba32f,  // float
+    r32ui,
+    rg32ui,
+    rgba32ui,
+    r32i  // integer
+};
+
+/// "rgba16f" and so on, as manifests spell them. Three-channel formats do not exist: llvmpipe refuses half
+/// ones.
+std::optional<TextureFormat> parse_texture_format(std::string_view name);
+std::string_view texture_format_name(TextureFormat format);
+std::vector<std::string_view> texture_format_names();
+int channel_count(TextureFormat format);
+int bytes_per_texel(TextureFormat format);
+bool is_integer(TextureFormat format);  ///< sampled through usampler2D or isampler2D
+bool is_signed_integer(TextureFormat format);
+
+struct TextureDesc {
+    int width = 0;
+    int height = 0;
+    TextureFormat format = TextureFormat::rgba32f;
+    int layers = 1;  ///< > 1 makes a 2-D array
+    int mips = 1;
+    bool operator==(const TextureDesc&) const = default;
+};
+
+/// Bytes that the texture's texels take, all layers and levels.
+std::uint64_t byte_size(const TextureDesc& desc);
+
+/// [the context's thread]
+class Texture {
+public:
+    /// Throws Error(ExitCode::effect) when GL has no memory for it or a side exceeds GL_MAX_TEXTURE_SIZE.
+    Texture(Context& context, const TextureDesc& desc, std::string label);
+    ~Texture();
+    Texture(Texture&& other) noexcept;
+    Texture& operator=(Texture&& other) noexcept;
+    Texture(const Texture&) = delete;
+    Texture& operator=(const Texture&) = delete;
+
+    const TextureDesc& desc() const { return desc_; }
+    const std::string& label() const { return label_; }
+
+    /// width * height * channel_count(format) values of level 0, layer `layer`, rows from the top, channels
+    /// interleaved.
+    /// Values are numbers as a shader fetches them, whatever the format: floats that go into integers are
+    /// rounded and kept in range, integers that go into floats keep their value. r32i as std::uint32_t is
+    /// two's complement.
+    void upload(std::span<const float> values, int layer = 0);
+    void upload(std::span<const std::uint32_t> values, int layer = 0);
+    std::vector<float> read_floats(int level = 0, int layer = 0) const;
+    std::vector<std::uint32_t> read_uints(int level = 0, int layer = 0) const;
+
+    /// Every texel, every level and layer.
+    void clear(float value);
+    void clear_uint(std::uint32_t value);
+    /// Fills levels 1.. from level 0 with GL's own box filter.
+    void generate_mips();
+
+    unsigned int handle() const { return handle_; }  ///< for framework/gpu
+
+private:
+    Context* context_ = nullptr;
+    unsigned int handle_ = 0;
+    TextureDesc desc_;
+    std::string label_;
+};
+
+}  // namespace aftershade::gpu

@@ -1,0 +1,45 @@
+#include "framework/image/camera.h"
+
+#include <algorithm>
+
+#include "framework/core/param.h"
+
+namespace aftershade {
+
+const std::vector<CameraField>& camera_fields() {
+    static const std::vector<CameraField> fields = {
+        {"focus_distance", "m", 0.001}, {"focal_length", "mm", 0.1}, {"sensor_width", "mm", 0.1},
+        {"f_number", "", 0.01},         {"blades", "", 0},           {"rotation", "deg", -1e6},
+    };
+    return fields;
+}
+
+const CameraField* find_camera_field(const std::string& name) {
+    const auto& fields = camera_fields();
+    const auto found = std::find_if(fields.begin(), fields.end(), [&](const auto& f) { return f.name == name; });
+    return found == fields.end() ? nullptr : &*found;
+}
+
+std::optional<double> Camera::get(const std::string& name) const {
+    const auto found = values_.find(name);
+    return found == values_.end() ? std::nullopt : std::optional(found->second);
+}
+
+Camera parse_camera(const Node& node, Diagnostics& diagnostics) {
+    Camera camera;
+    ObjectReader reader(node, "the camera", diagnostics);
+    for (const CameraField& field : camera_fields()) {
+        const Node* value = reader.any(field.name);
+        if (!value) continue;
+        ParamSpec spec;
+        spec.name = field.name;
+        spec.unit = field.unit;
+        spec.min = field.min;
+        if (const auto parsed = parse_param_value(spec, *value, "camera." + field.name, diagnostics))
+            camera.set(field.name, std::get<double>(*parsed));
+    }
+    reader.finish();
+    return camera;
+}
+
+}  // namespace aftershade

@@ -1,0 +1,120 @@
+// Reading and writing OpenEXR files by channel name.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "framework/image/image.h"
+
+namespace aftershade {
+
+enum class PixelType { half, float32, uint32 };
+std::string_view pixel_type_name(PixelType type);  ///< "half", "float", "uint"
+
+/// What a reader accepts before it allocates anything.
+struct ReadLimits {
+    int max_side_px = 16384;                              ///< of the data and the display window
+    std::uint64_t max_image_bytes = 512ull * 1024 * 1024; ///< of the channels asked for, as this program stores them
+};
+
+struct ExrChannel {
+    std::string name;
+    PixelType type = PixelType::half;
+    int x_sampling = 1;
+    int y_sampling = 1;
+};
+
+using ExrValue = std::variant<std::string, int, float, std::vector<float>>;
+
+/// The header attributes of one part, kept whole so that they can be carried to an output bit for bit.
+/// [thread-safe to read; cheap to copy]
+class ExrMetadata {
+public:
+    ExrMetadata();
+    std::vector<std::string> names() const;
+    /// string, int, float, double (as float); v2i/v2f/v3i/v3f, m33f, m44f, box2i, floatvector and chromaticities
+    /// (red, green, blue, white) as float vectors, row by row as EXR stores them; nullopt where absent or of
+    /// another type.
+    std::optional<ExrValue> value(const std::string& name) const;
+    std::optional<std::string> text(const std::string& name) const;    ///< string attributes only
+    /// Numbers, rationals (framesPerSecond), and strings that are wholly a number.
+    std::optional<double> number(const std::string& name) const;
+
+    struct Impl;  ///< an Imf::Header
+    std::shared_ptr<const Impl> impl;
+};
+
+struct ExrPart {
+    std::string name;
+    std::string view;
+    std::string type;         ///< "scanlineimage", "tiledimage", "deepscanline", "deeptile"
+    std::string compression;  ///< "none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"
+    Window data_window;
+    Window display_window;
+    float pixel_aspect = 1;
+    std::vector<ExrChannel> channels;  ///< in the file's order
+    ExrMetadata metadata;
+};
+
+/// An open file. Headers are read and held against the limits on construction; nothing larger than a header is
+/// allocated before. Every failure is Error(ExitCode::capture) that begins with the path.
+/// [one thread at a time]
+class ExrFile {
+public:
+    explicit ExrFile(const std::filesystem::path& path, const ReadLimits& limits = {});
+    ~ExrFile();
+    ExrFile(ExrFile&&) noexcept;
+    ExrFile& operator=(ExrFile&&) noexcept;
+
+    const std::filesystem::path& path() const;
+    const std::vector<ExrPart>& parts() const;
+
+    /// The named channels of a part, interleaved in the order given, over the part's data window (level 0 of a tiled
+    /// part). half and uint channels are widened to float by read_floats (uint values above 2^24 lose bits: use
+    /// read_uints, which takes uint channels only). Deep parts, subsampled channels, incomplete files and channels that
+    /// do not exist are errors.
+    Image read_floats(int part, std::span<const std::string> channels) const;
+    Image read_uints(int part, std::span<const std::string> channels) const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// One channel to write: component `component` of `image`, stored as `type`.
+struct ExrOutputChannel {
+    std::string name;
+    PixelType type = PixelType::half;
+    const Image* image = nullptr;
+    int component = 0;
+};
+
+struct ExrWriteOptions {
+    Window data_window;     ///< the images' size
+    Window display_window;
+    float pixel_aspect = 1;
+    std::string compression = "zip";
+    /// Every attribute but windows, pixel aspect, channels, compression, type, name, line order, tiles, preview.
+    std::optional<ExrMetadata> carry_over;
+    /// Instead of those carried over. Vectors of 2, 3, 9 and 16 become v2f, v3f, m33f and m44f, "chromaticities"
+    /// of 8 its own type, others floatvector.
+    std::map<std::string, ExrValue> attributes;
+};
+
+/// Writes one scan-line part: to a temporary file in the same folder, flushed, then renamed over `path`.
+/// Throws Error(ExitCode::output) that begins with the path; then no temporary file remains and an older file is whole.
+void write_exr(const std::filesystem::path& path, std::span<const ExrOutputChannel> channels,
+               const ExrWriteOptions& options);
+
+/// Threads that OpenEXR uses for compression, process-wide; 0 does the work on the caller's thread.
+void set_exr_threads(int count);
+
+}  // namespace aftershade

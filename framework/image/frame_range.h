@@ -1,0 +1,37 @@
+// Frame numbers as people write them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace aftershade {
+
+/// "7", "1-100", "1-100x2", "1-10:2", "1..10", "10-1" (backwards), "-5--1", and lists of these with commas. Frames come in
+/// the order written; a frame that is named again is dropped. nullopt for anything else, for a step of 0 and for more
+/// than a million frames.
+std::optional<std::vector<int>> parse_frame_range(std::string_view text);
+
+/// A file name with the frame number left open: "####" (padded to the number of #), "%04d", "%d", or "@" (no padding;
+/// "@@@@" pads).
+class FramePattern {
+public:
+    explicit FramePattern(std::string text);
+    bool has_frame() const { return length_ > 0; }
+    const std::string& text() const { return text_; }
+    std::string path(int frame) const;
+    /// The frame number in `name` if the pattern fits it.
+    std::optional<int> match(std::string_view name) const;
+
+private:
+    std::string text_;
+    std::size_t start_ = 0;
+    std::size_t length_ = 0;  // of the placeholder
+    int width_ = 0;           // digits, padded with zeros
+};
+
+/// The last group of digits in a file's stem: "gbuffer_0004.exr" is frame 4.
+std::optional<int> frame_in_name(std::string_view stem);
+
+}  // namespace aftershade

@@ -1,0 +1,139 @@
+#include "framework/image/png_file.h"
+
+#include "framework/core/error.h"
+#include "framework/image/output_stream.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cerrno>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+// Internal linkage, so that another copy of stb in the program cannot be linked instead of this one.
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_PNG
+#define STBI_NO_STDIO
+#define STBI_MAX_DIMENSIONS 16384
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STBI_WRITE_NO_STDIO
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wshadow"
+#include <stb/stb_image.h>
+#include <stb/stb_image_write.h>
+#pragma GCC diagnostic pop
+
+namespace aftershade {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::uintmax_t kMaxFileBytes = 512u * 1024 * 1024;
+constexpr int kMaxSidePx = STBI_MAX_DIMENSIONS;
+
+[[noreturn]] void fail(const fs::path& path, const std::string& what) {
+    throw Error(ExitCode::capture, path.string() + ": " + what);
+}
+
+std::uint8_t to_byte(float value) {
+    // The comparison is false for NaN.
+    if (!(value > 0.0f)) return 0;
+    return static_cast<std::uint8_t>(std::lround(255.0f * std::min(value, 1.0f)));
+}
+
+/// stb is written in C: an exception must not pass through it, so the failure is kept until it has returned.
+struct Sink {
+    OutputStream& stream;
+    std::exception_ptr failure;
+};
+
+void write_to_sink(void* context, void* bytes, int count) {
+    Sink& sink = *static_cast<Sink*>(context);
+    if (sink.failure) return;
+    try {
+        sink.stream.write(bytes, std::size_t(count));
+    } catch (...) {
+        sink.failure = std::current_exception();
+    }
+}
+
+std::vector<unsigned char> read_bytes(const fs::path& path) {
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (error) fail(path, fmt::format("cannot be opened: {}", error.message()));
+    if (fs::is_directory(status)) fail(path, "is a folder, not a PNG file");
+    if (!fs::is_regular_file(status)) fail(path, "is not a regular file");
+    const std::uintmax_t size = fs::file_size(path, error);
+    if (error) fail(path, fmt::format("cannot be opened: {}", error.message()));
+    if (size == 0) fail(path, "the file is empty");
+    if (size > kMaxFileBytes)
+        fail(path, fmt::format("the file has {} bytes, the limit is {}", size, kMaxFileBytes));
+    std::vector<unsigned char> bytes(size);
+    std::ifstream file(path, std::ios::binary);
+    if (!file) fail(path, fmt::format("cannot be opened: {}", std::strerror(errno)));
+    if (!file.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size)))
+        fail(path, "cannot be read to its end");
+    return bytes;
+}
+
+}  // namespace
+
+void write_png(const fs::path& path, const Image& display) {
+    const int channels = display.channels();
+    assert(channels == 1 || channels == 3 || channels == 4);
+    assert(!display.empty());
+    if (display.width() > kMaxSidePx || display.height() > kMaxSidePx) {
+        throw Error(ExitCode::output,
+                    fmt::format("{}: {} x {} px is too large for PNG output, the limit is {} px a side",
+                                path.string(), display.width(), display.height(), kMaxSidePx));
+    }
+    const std::span<const float> values = display.floats();
+    std::vector<std::uint8_t> bytes(values.size());
+    std::ranges::transform(values, bytes.begin(), to_byte);
+
+    OutputStream stream(path);
+    Sink sink{stream, nullptr};
+    const int written = stbi_write_png_to_func(write_to_sink, &sink, display.width(), display.height(),
+                                               channels, bytes.data(), display.width() * channels);
+    if (sink.failure) std::rethrow_exception(sink.failure);
+    if (written == 0) stream.fail("cannot be encoded: not enough memory");
+    stream.commit();
+}
+
+Image read_png(const fs::path& path) {
+    const std::vector<unsigned char> bytes = read_bytes(path);
+    const int size = static_cast<int>(bytes.size());
+    int width = 0, height = 0, channels = 0;
+    if (stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) == 0) {
+        fail(path, fmt::format("not a PNG file that can be read: {}", stbi_failure_reason()));
+    }
+    if (width > kMaxSidePx || height > kMaxSidePx) {
+        fail(path, fmt::format("{} x {} px, the limit is {} px a side", width, height, kMaxSidePx));
+    }
+    if (stbi_is_16_bit_from_memory(bytes.data(), size) != 0)
+        fail(path, "has 16 bits a channel, 8 are supported");
+    const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
+        stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 0), &stbi_image_free);
+    if (!pixels) fail(path, fmt::format("damaged: {}", stbi_failure_reason()));
+    Image image(width, height, channels);
+    const std::span<float> values = image.floats();
+    std::transform(pixels.get(), pixels.get() + values.size(), values.begin(),
+                   [](stbi_uc value) { return static_cast<float>(value) / 255.0f; });
+    return image;
+}
+
+}  // namespace aftershade

@@ -1,0 +1,208 @@
+#include <algorithm>
+#include <utility>
+
+#include "framework/core/units.h"
+#include "framework/image/role.h"
+#include "framework/pipeline/pipeline.h"
+
+namespace aftershade {
+
+namespace {
+
+std::vector<std::string> step_names(const Pipeline& pipeline) {
+    std::vector<std::string> names;
+    for (const PipelineStep& step : pipeline.steps) names.push_back(step.name);
+    return names;
+}
+
+std::vector<std::string> output_names(const EffectManifest& manifest) {
+    std::vector<std::string> names;
+    for (const OutputSpec& output : manifest.outputs) names.push_back(output.name);
+    return names;
+}
+
+/// Binds one step after the other; `pipeline_` holds those before.
+class Compiler {
+public:
+    Compiler(EffectRegistry& effects, Diagnostics& diagnostics) : effects_(effects), diagnostics_(diagnostics) {}
+
+    void add(const LookStep& look_step) {
+        if (look_step.effect.empty()) return;
+        if (!effects_.contains(look_step.effect)) {
+            const auto ids = effects_.ids();
+            diagnostics_.error(look_step.effect_place,
+                               "no effect '" + look_step.effect + "'" + did_you_mean(look_step.effect, ids));
+            return;
+        }
+        PipelineStep step;
+        step.name = look_step.name;
+        step.manifest = effects_.find(look_step.effect, diagnostics_);
+        if (!step.manifest) return;
+        apply_preset(look_step, step);
+        for (const Member& member : look_step.params) set_value(step, member.key, member.value, member.key_place);
+        wire(look_step, step);
+        if (look_step.enabled) pipeline_.steps.push_back(std::move(step));
+    }
+
+    void apply_set(const std::string& text) {
+        const Place place{"--set " + text};
+        const std::size_t equals = text.find('=');
+        const std::size_t dot = text.find('.');
+        if (equals == std::string::npos || dot == std::string::npos || dot > equals) {
+            diagnostics_.error(place, "expected step.param=value, such as bokeh.f_number=2.8");
+            return;
+        }
+        PipelineStep* step = find_step(text.substr(0, dot), place);
+        if (!step) return;
+        // A value is JSON where it reads as JSON, else a bare word: --set bokeh.shape=square.
+        const std::string value = text.substr(equals + 1);
+        Diagnostics not_json;
+        auto node = parse_document(value, place.file, not_json);
+        if (!node) {
+            node.emplace();
+            node->kind = Node::Kind::string;
+            node->string = value;
+        }
+        clear_lines(*node, place);
+        set_value(*step, text.substr(dot + 1, equals - dot - 1), *node, place);
+    }
+
+    void add_tap(const std::string& text) {
+        const Place place{"--tap " + text};
+        const std::size_t dot = text.find('.');
+        if (dot == std::string::npos) {
+            diagnostics_.error(place, "expected step.texture, such as bokeh.coc");
+            return;
+        }
+        const PipelineStep* step = find_step(text.substr(0, dot), place);
+        if (!step) return;
+        const std::string texture = text.substr(dot + 1);
+        std::vector<std::string> known = output_names(*step->manifest);
+        for (const TextureSpec& spec : step->manifest->textures) known.push_back(spec.name);
+        if (std::find(known.begin(), known.end(), texture) == known.end()) {
+            diagnostics_.error(place, step->name + " has no texture '" + texture + "'" + did_you_mean(texture, known) +
+                                          " (known: " + list_of_names(known, "and") + ")");
+            return;
+        }
+        pipeline_.taps.push_back({step->name, texture});
+    }
+
+    Pipeline take() { return std::move(pipeline_); }
+
+private:
+    static void clear_lines(Node& node, const Place& place) {
+        node.place = place;
+        for (Node& item : node.items) clear_lines(item, place);
+        for (Member& member : node.members) clear_lines(member.value, place);
+    }
+
+    PipelineStep* find_step(const std::string& name, const Place& place) {
+        for (PipelineStep& step : pipeline_.steps)
+            if (step.name == name) return &step;
+        const auto names = step_names(pipeline_);
+        diagnostics_.error(place, "the look has no step '" + name + "'" + did_you_mean(name, names));
+        return nullptr;
+    }
+
+    void apply_preset(const LookStep& look_step, PipelineStep& step) {
+        if (!look_step.preset) return;
+        const PresetSpec* preset = step.manifest->find_preset(*look_step.preset);
+        if (preset) {
+            step.values = preset->values;
+            return;
+        }
+        std::vector<std::string> names;
+        for (const PresetSpec& known : step.manifest->presets) names.push_back(known.name);
+        diagnostics_.error(look_step.preset_place, step.manifest->id + " has no preset '" + *look_step.preset + "'" +
+                                                       did_you_mean(*look_step.preset, names));
+    }
+
+    void set_value(PipelineStep& step, const std::string& name, const Node& value, const Place& key_place) {
+        const ParamSpec* spec = step.manifest->find_param(name);
+        if (!spec) {
+            const auto names = step.manifest->param_names();
+            diagnostics_.error(key_place,
+                               step.manifest->id + " has no parameter '" + name + "'" + did_you_mean(name, names));
+            return;
+        }
+        if (auto parsed = parse_param_value(*spec, value, step.name + "." + name, diagnostics_))
+            step.values[name] = std::move(*parsed);
+    }
+
+    void wire(const LookStep& look_step, PipelineStep& step) {
+        for (const WiringSpec& wiring : look_step.wiring) wire_input(wiring, step);
+        for (const InputSpec& input : step.manifest->inputs) {
+            if (step.inputs.contains(input.name)) continue;
+            step.inputs[input.name] = nearest_source(input.role);
+            if (input.role == "color" && pipeline_.writes_role("display"))
+                diagnostics_.error(look_step.place, "step '" + step.name +
+                                                        "' reads color after a step has made display; put it before");
+        }
+    }
+
+    InputSource nearest_source(const std::string& role) const {
+        for (int i = int(pipeline_.steps.size()) - 1; i >= 0; --i)
+            for (const OutputSpec& output : pipeline_.steps[std::size_t(i)].manifest->outputs)
+                if (output.role == role) return {i, output.name};
+        return {-1, role};
+    }
+
+    void wire_input(const WiringSpec& wiring, PipelineStep& step) {
+        const InputSpec* input = step.manifest->find_input(wiring.input);
+        if (!input) {
+            std::vector<std::string> names;
+            for (const InputSpec& known : step.manifest->inputs) names.push_back(known.name);
+            diagnostics_.error(wiring.place, step.manifest->id + " has no input '" + wiring.input + "'" +
+                                                 did_you_mean(wiring.input, names));
+            return;
+        }
+        std::string role = wiring.output;
+        InputSource source{-1, wiring.output};
+        if (wiring.source != "capture") {
+            const auto names = step_names(pipeline_);
+            const auto found = std::find(names.begin(), names.end(), wiring.source);
+            if (found == names.end()) {
+                diagnostics_.error(wiring.place, "no step '" + wiring.source + "' before '" + step.name + "'" +
+                                                     did_you_mean(wiring.source, names));
+                return;
+            }
+            source.step = int(found - names.begin());
+            const EffectManifest& manifest = *pipeline_.steps[std::size_t(source.step)].manifest;
+            const OutputSpec* output = manifest.find_output(wiring.output);
+            if (!output) {
+                const auto outputs = output_names(manifest);
+                diagnostics_.error(wiring.place, manifest.id + " has no output '" + wiring.output + "'" +
+                                                     did_you_mean(wiring.output, outputs));
+                return;
+            }
+            role = output->role;
+        } else if (!find_role(wiring.output)) {
+            diagnostics_.error(wiring.place,
+                               "'" + wiring.output + "' is not a role" + did_you_mean(wiring.output, role_names()));
+            return;
+        }
+        if (role != input->role) {
+            diagnostics_.error(wiring.place, "input '" + input->name + "' of " + step.manifest->id + " takes the role '" +
+                                                 input->role + "', not '" + role + "'");
+            return;
+        }
+        step.inputs[input->name] = source;
+    }
+
+    EffectRegistry& effects_;
+    Diagnostics& diagnostics_;
+    Pipeline pipeline_;
+};
+
+}  // namespace
+
+Pipeline compile_pipeline(const Look& look, EffectRegistry& effects, const PipelineOptions& options,
+                          Diagnostics& diagnostics) {
+    Compiler compiler(effects, diagnostics);
+    for (const LookStep& step : look.steps) compiler.add(step);
+    for (const std::string& text : options.sets) compiler.apply_set(text);
+    for (const std::string& text : options.taps) compiler.add_tap(text);
+    return compiler.take();
+}
+
+}  // namespace aftershade

@@ -1,0 +1,180 @@
+#include "framework/pipeline/output.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/core/error.h"
+#include "framework/image/png_file.h"
+#include "framework/image/role.h"
+
+namespace aftershade {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string extension(const fs::path& path) {
+    std::string text = path.extension().string();
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return text;
+}
+
+const Image* find_image(const std::string& role, const FrameResult& result, const Capture& capture) {
+    if (const auto made = result.images.find(role); made != result.images.end()) return &made->second;
+    if (const auto captured = capture.images.find(role); captured != capture.images.end()) return &captured->second;
+    return nullptr;
+}
+
+ExrWriteOptions write_options(const OutputOptions& options, const CaptureHeader& header) {
+    ExrWriteOptions write;
+    write.data_window = header.data_window;
+    write.display_window = header.display_window;
+    write.pixel_aspect = header.pixel_aspect;
+    write.carry_over = header.metadata;
+    write.attributes["aftershade/look"] = options.look;
+    write.attributes["aftershade/renderer"] = options.renderer;
+    write.attributes["aftershade/profile"] = header.profile;
+    write.attributes["aftershade/frame"] = header.frame;
+    return write;
+}
+
+void write_exr_output(const fs::path& path, const OutputOptions& options, const FrameResult& result,
+                      const Capture& capture) {
+    std::vector<ExrOutputChannel> channels;
+    for (const std::string& name : options.roles) {
+        const auto role = find_role(name);
+        const Image* image = find_image(name, result, capture);
+        if (!image)
+            throw Error(ExitCode::capture, capture.header.path.string() + ": the role '" + name +
+                                               "', asked for in the output, is in neither the capture nor the look");
+        const PixelType type = role->pixel_type == PixelType::half ? options.color_type : role->pixel_type;
+        for (int c = 0; c < role->channels; ++c) channels.push_back({role->native_channels[std::size_t(c)], type, image, c});
+    }
+    write_exr(path, channels, write_options(options, capture.header));
+}
+
+/// Display-referred RGB with straight alpha.
+Image display_of_color(const Image& color) {
+    Image display(color.width(), color.height(), 4);
+    for (std::size_t i = 0; i < color.floats().size(); i += 4) {
+        const float alpha = color.floats()[i + 3];
+        for (std::size_t c = 0; c < 3; ++c) {
+            const float premultiplied = color.floats()[i + c];
+            display.floats()[i + c] = encode_srgb(alpha > 0 ? premultiplied / alpha : premultiplied);
+        }
+        display.floats()[i + 3] = alpha;
+    }
+    return display;
+}
+
+/// The pixels of the display window; 0 where the data window does not reach. An opaque picture loses its alpha.
+Image cropped_for_png(const Image& display, const Window& data, const Window& window) {
+    const std::span<const float> values = display.floats();
+    bool opaque = data == window;
+    for (std::size_t i = 3; opaque && i < values.size(); i += 4) opaque = values[i] >= 1.0f;
+    Image picture(window.width(), window.height(), opaque ? 3 : 4);
+    for (int y = 0; y < window.height(); ++y)
+        for (int x = 0; x < window.width(); ++x) {
+            const int source_x = x + window.min_x - data.min_x;
+            const int source_y = y + window.min_y - data.min_y;
+            if (!data.contains(x + window.min_x, y + window.min_y)) continue;
+            for (int c = 0; c < picture.channels(); ++c) picture.at(x, y, c) = display.at(source_x, source_y, c);
+        }
+    return picture;
+}
+
+void write_png_output(const fs::path& path, const FrameResult& result, const Capture& capture) {
+    const auto made = result.images.find("display");
+    const CaptureHeader& header = capture.header;
+    const Image display =
+        made != result.images.end() ? made->second : display_of_color(*find_image("color", result, capture));
+    write_png(path, cropped_for_png(display, header.data_window, header.display_window));
+}
+
+fs::path tap_path(const std::string& pattern, const std::string& tap, int frame) {
+    const FramePattern first(pattern);
+    fs::path path = first.path(frame);
+    std::string stem = path.stem().string();
+    if (first.has_frame()) {
+        // "out_0004" without its number and what joins it.
+        const std::string number = std::to_string(frame);
+        if (const std::size_t at = stem.rfind(number); at != std::string::npos) stem.erase(at);
+        while (!stem.empty() && std::string_view("0._-").find(stem.back()) != std::string_view::npos) stem.pop_back();
+    }
+    return path.parent_path() / FramePattern(stem + (stem.empty() ? "" : ".") + tap + ".####.exr").path(frame);
+}
+
+void write_tap(const fs::path& path, const Image& image, const OutputOptions& options, const CaptureHeader& header) {
+    constexpr std::string_view kNames = "RGBA";
+    const bool is_uint = image.type() == ComponentType::uint32;
+    std::vector<ExrOutputChannel> channels;
+    for (int c = 0; c < image.channels(); ++c) {
+        const std::string name = image.channels() == 1 ? "Y" : std::string(1, kNames[std::size_t(c)]);
+        channels.push_back({name, is_uint ? PixelType::uint32 : PixelType::float32, &image, c});
+    }
+    ExrWriteOptions write = write_options(options, header);
+    // A texture of another size than the working grid has windows of its own.
+    if (image.width() != header.data_window.width() || image.height() != header.data_window.height())
+        write.data_window = write.display_window = {0, 0, image.width() - 1, image.height() - 1};
+    write_exr(path, channels, write);
+}
+
+}  // namespace
+
+float encode_srgb(float linear) {
+    if (linear <= 0.0031308f) return 12.92f * linear;
+    return 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
+}
+
+void check_outputs(const OutputOptions& options, const Sequence& sequence, Diagnostics& diagnostics) {
+    if (options.patterns.empty()) diagnostics.error({"-o"}, "no output; name at least one file, such as -o out_####.exr");
+    for (const std::string& text : options.patterns) {
+        const Place place{"-o " + text};
+        const FramePattern pattern(text);
+        const std::string type = extension(text);
+        if (type != ".exr" && type != ".png")
+            diagnostics.error(place, "the format '" + type + "' is not known; outputs end in .exr or .png");
+        if (sequence.frames.size() > 1 && !pattern.has_frame())
+            diagnostics.error(place, std::to_string(sequence.frames.size()) +
+                                         " frames cannot share one file; write the number as #### or %04d");
+        for (const int frame : sequence.frames) {
+            std::error_code absent;
+            if (!fs::equivalent(pattern.path(frame), sequence.path_of(frame), absent) || absent) continue;
+            diagnostics.error(place, "would replace the input " + sequence.path_of(frame).string());
+            break;
+        }
+    }
+    for (const std::string& role : options.roles)
+        if (!find_role(role))
+            diagnostics.error({"--output-roles " + role}, "not a role" + did_you_mean(role, role_names()));
+}
+
+std::vector<std::string> wanted_roles(const OutputOptions& options) {
+    std::vector<std::string> roles;
+    for (const std::string& pattern : options.patterns) {
+        if (extension(pattern) == ".exr") roles.insert(roles.end(), options.roles.begin(), options.roles.end());
+        else roles.insert(roles.end(), {"display", "color"});
+    }
+    std::sort(roles.begin(), roles.end());
+    roles.erase(std::unique(roles.begin(), roles.end()), roles.end());
+    return roles;
+}
+
+std::vector<fs::path> write_outputs(const OutputOptions& options, const FrameResult& result, const Capture& capture) {
+    std::vector<fs::path> written;
+    const int frame = capture.header.frame;
+    for (const std::string& text : options.patterns) {
+        const fs::path path = FramePattern(text).path(frame);
+        if (extension(path) == ".exr") write_exr_output(path, options, result, capture);
+        else write_png_output(path, result, capture);
+        written.push_back(path);
+    }
+    for (const auto& [tap, image] : result.taps) {
+        const fs::path path = tap_path(options.patterns.front(), tap, frame);
+        write_tap(path, image, options, capture.header);
+        written.push_back(path);
+    }
+    return written;
+}
+
+}  // namespace aftershade

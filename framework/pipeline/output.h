@@ -1,0 +1,37 @@
+// What `run` writes: EXR of color and other roles, PNG of display, EXR of taps.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "framework/core/diagnostics.h"
+#include "framework/image/capture.h"
+#include "framework/image/frame_range.h"
+#include "framework/pipeline/renderer.h"
+
+namespace aftershade {
+
+struct OutputOptions {
+    std::vector<std::string> patterns;         ///< "out.exr", "out_####.png": format by extension
+    std::vector<std::string> roles{"color"};   ///< in EXR files
+    PixelType color_type = PixelType::half;    ///< of roles that are half by default
+    std::string look;                          ///< written as attribute aftershade/look
+    std::string renderer;                      ///< GL_RENDERER, written as attribute aftershade/renderer
+};
+
+/// Faults that show before any work: an unknown extension, several frames for one file, an output that is an input.
+void check_outputs(const OutputOptions& options, const Sequence& sequence, Diagnostics& diagnostics);
+
+/// Roles that the options need from the pipeline: those of EXR, and display where a PNG is asked for.
+std::vector<std::string> wanted_roles(const OutputOptions& options);
+
+/// Writes one frame, each file by rename. A role that no step made is taken from the capture. PNG takes `display`, else
+/// color encoded as sRGB, over the display window. Returns the paths. Throws Error(ExitCode::output).
+std::vector<std::filesystem::path> write_outputs(const OutputOptions& options, const FrameResult& result,
+                                                 const Capture& capture);
+
+/// The piecewise sRGB curve, IEC 61966-2-1.
+float encode_srgb(float linear);
+
+}  // namespace aftershade

@@ -1,0 +1,97 @@
+#include "framework/pipeline/pipeline.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/core/error.h"
+#include "framework/core/units.h"
+
+namespace aftershade {
+
+namespace {
+
+bool contains(const std::vector<std::string>& list, const std::string& item) {
+    return std::find(list.begin(), list.end(), item) != list.end();
+}
+
+std::string list_channels(const std::vector<std::string>& channels) {
+    constexpr std::size_t kShown = 40;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(channels.size(), kShown); ++i) text += (i ? ", " : "") + channels[i];
+    if (channels.size() > kShown) text += " and " + std::to_string(channels.size() - kShown) + " more";
+    return text;
+}
+
+/// The capture's value for a parameter that has a "from", in the parameter's unit.
+std::optional<double> value_from_capture(const ParamSpec& spec, const CaptureHeader& header) {
+    constexpr std::string_view kCamera = "camera.";
+    if (!spec.from.starts_with(kCamera)) return std::nullopt;
+    const std::string field = spec.from.substr(kCamera.size());
+    const auto value = header.camera.get(field);
+    const std::string& unit = find_camera_field(field)->unit;
+    if (!value || unit == spec.unit) return value;
+    return convert_unit(*value, unit, spec.unit);
+}
+
+ParamValue checked_value(const PipelineStep& step, const ParamSpec& spec, double value, const CaptureHeader& header) {
+    if ((spec.min && value < *spec.min) || (spec.max && value > *spec.max))
+        throw Error(ExitCode::capture, header.path.string() + ": " + spec.from + " is " + format_number(value) +
+                                           ", outside the range of " + step.name + "." + spec.name +
+                                           " (set the parameter in the look, or mend the capture's camera)");
+    if (spec.type == ParamType::int_) return std::int64_t(std::llround(value));
+    return value;
+}
+
+}  // namespace
+
+std::vector<std::string> Pipeline::capture_roles() const {
+    std::vector<std::string> roles{"color"};
+    for (const PipelineStep& step : steps)
+        for (const auto& [input, source] : step.inputs)
+            if (source.step < 0 && !contains(roles, source.output)) roles.push_back(source.output);
+    return roles;
+}
+
+bool Pipeline::writes_role(const std::string& role) const {
+    for (const PipelineStep& step : steps)
+        for (const OutputSpec& output : step.manifest->outputs)
+            if (output.role == role) return true;
+    return false;
+}
+
+void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header) {
+    const auto missing = [&](const std::string& who, const std::string& role) {
+        throw Error(ExitCode::capture, header.path.string() + ": " + who + " needs the role '" + role +
+                                           "', which the profile '" + header.profile +
+                                           "' does not find among the channels " + list_channels(header.channels));
+    };
+    for (const PipelineStep& step : pipeline.steps)
+        for (const InputSpec& input : step.manifest->inputs) {
+            const InputSource& source = step.inputs.at(input.name);
+            if (!input.optional && source.step < 0 && !contains(header.roles, source.output))
+                missing("step '" + step.name + "' (effect " + step.manifest->id + ")", source.output);
+        }
+    if (!contains(header.roles, "color")) missing("the output", "color");
+}
+
+std::vector<std::string> present_inputs(const Pipeline& pipeline, int step,
+                                        const std::vector<std::string>& capture_roles) {
+    std::vector<std::string> present;
+    for (const auto& [input, source] : pipeline.steps[std::size_t(step)].inputs)
+        if (source.step >= 0 || contains(capture_roles, source.output)) present.push_back(input);
+    return present;
+}
+
+ParamSet resolve_params(const PipelineStep& step, const CaptureHeader& header) {
+    ParamSet params;
+    for (const ParamSpec& spec : step.manifest->params) {
+        const auto asked = step.values.find(spec.name);
+        const auto captured = value_from_capture(spec, header);
+        if (asked != step.values.end()) params.set(spec.name, asked->second);
+        else if (captured) params.set(spec.name, checked_value(step, spec, *captured, header));
+        else params.set(spec.name, spec.default_value);
+    }
+    return params;
+}
+
+}  // namespace aftershade

@@ -1,0 +1,148 @@
+#include "framework/gpu/context.h"
+
+#include <cstdlib>
+#include <set>
+#include <type_traits>
+
+#include "framework/core/error.h"
+#include "framework/gpu/platform.h"
+#include "tests/gpu/gpu_test.h"
+
+namespace aftershade::gpu {
+namespace {
+
+static_assert(!std::is_copy_constructible_v<Context> && !std::is_move_constructible_v<Context>);
+
+class ContextOn : public SoftwareTest {};
+ON_SOFTWARE_BACKENDS(ContextOn);
+
+TEST_P(ContextOn, PassesItsSelfTestAndSaysThatItIsSoftware) {
+    const ContextInfo& info = context().info();
+    EXPECT_EQ(info.backend, GetParam());
+    EXPECT_TRUE(info.software) << info.renderer;
+    EXPECT_FALSE(info.renderer.empty());
+    EXPECT_FALSE(info.vendor.empty());
+    EXPECT_EQ(info.version.substr(0, 2), "4.") << info.version;
+}
+
+TEST_P(ContextOn, ReportsNoErrorWhenThereIsNone) {
+    context().finish();
+    EXPECT_NO_THROW(context().check("nothing"));
+}
+
+TEST_P(ContextOn, TwoOfTheSameKindAlternate) {
+    Context other(GetParam());
+    Texture mine(context(), {.width = 1, .height = 1, .format = TextureFormat::r32f}, "mine");
+    Texture theirs(other, {.width = 1, .height = 1, .format = TextureFormat::r32f}, "theirs");
+    for (int i = 0; i < 3; ++i) {
+        mine.clear(1.0F + static_cast<float>(i));
+        theirs.clear(10.0F + static_cast<float>(i));
+        EXPECT_EQ(mine.read_floats(), std::vector<float>{1.0F + static_cast<float>(i)});
+        EXPECT_EQ(theirs.read_floats(), std::vector<float>{10.0F + static_cast<float>(i)});
+    }
+}
+
+TEST_P(ContextOn, SurvivesTheDeathOfAnother) {
+    Texture mine = texture(1, 1, TextureFormat::r32f);
+    mine.clear(3.0F);
+    { Context other(GetParam()); }
+    EXPECT_EQ(mine.read_floats(), std::vector<float>{3.0F});
+}
+
+TEST_P(ContextOn, KeepsMovedFromObjectsHarmless) {
+    Texture first = texture(1, 1, TextureFormat::r32f);
+    first.clear(1.0F);
+    Texture second(std::move(first));
+    EXPECT_EQ(first.handle(), 0U);  // NOLINT: the moved-from state is what is tested
+    Texture third = texture(2, 2, TextureFormat::r32f);
+    third = std::move(second);
+    EXPECT_EQ(third.read_floats(), std::vector<float>{1.0F});
+    Buffer buffer(context(), 4, "a");
+    Buffer moved(std::move(buffer));
+    buffer = Buffer(context(), 8, "b");
+    EXPECT_EQ(buffer.size(), 8U);
+    EXPECT_EQ(moved.size(), 4U);
+    Program program = fragment("layout(location = 0) out vec4 c; void main() { c = vec4(1); }");
+    Program taken(std::move(program));
+    EXPECT_EQ(program.handle(), 0U);  // NOLINT: as above
+    EXPECT_EQ(drawn(taken, 1, 1), std::vector<float>(4, 1.0F));
+}
+
+TEST(Context, EglAndOsmesaAlternateInOneProcess) {
+    for (Backend backend : {Backend::egl_software, Backend::osmesa}) {
+        if (const std::string reason = why_not(backend); !reason.empty()) GTEST_SKIP() << reason;
+    }
+    Context egl(Backend::egl_software);
+    Context osmesa(Backend::osmesa);
+    Texture a(egl, {.width = 1, .height = 1, .format = TextureFormat::r32f}, "a");
+    Texture b(osmesa, {.width = 1, .height = 1, .format = TextureFormat::r32f}, "b");
+    for (int i = 0; i < 3; ++i) {
+        a.clear(1.0F);
+        b.clear(2.0F);
+        EXPECT_EQ(a.read_floats(), std::vector<float>{1.0F});
+        EXPECT_EQ(b.read_floats(), std::vector<float>{2.0F});
+    }
+}
+
+TEST(Context, ProbesEveryBackendWithAReasonForEachThatFails) {
+    const std::vector<BackendReport> reports = probe_backends();
+    ASSERT_EQ(reports.size(), 3U);
+    std::set<Backend> seen;
+    for (const BackendReport& report : reports) {
+        seen.insert(report.backend);
+        EXPECT_EQ(report.usable, report.reason.empty()) << report.reason;
+        if (report.usable) {
+            EXPECT_EQ(report.info.backend, report.backend);
+            EXPECT_EQ(report.info.software, report.backend != Backend::egl);
+        }
+        RecordProperty(std::string(backend_name(report.backend)),
+                       report.usable ? report.info.renderer : report.reason);
+    }
+    EXPECT_EQ(seen.size(), 3U);
+}
+
+TEST(Context, RefusesWithEveryBackendTriedAndItsReason) {
+    if (why_not(Backend::egl).empty()) GTEST_SKIP() << "this machine has hardware GL";
+    try {
+        const Context context(Backend::egl);
+        FAIL() << "made a context";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.exit_code(), ExitCode::gl);
+        EXPECT_EQ(std::string(error.what()), "no usable GL\n  egl: " + why_not(Backend::egl));
+    }
+}
+
+TEST(Context, SpellsItsBackendsAsTheCommandLineDoes) {
+    for (Backend backend : {Backend::automatic, Backend::egl, Backend::egl_software, Backend::osmesa}) {
+        EXPECT_EQ(parse_backend(backend_name(backend)), backend);
+    }
+    EXPECT_EQ(parse_backend("egl-software"), Backend::egl_software);
+    EXPECT_EQ(parse_backend("EGL"), std::nullopt);
+}
+
+TEST(Context, LeavesTheEnvironmentAsItWas) {
+    const char* before = std::getenv("LIBGL_ALWAYS_SOFTWARE");
+    const std::string text = before ? before : "";
+    probe_backends();
+    const char* after = std::getenv("LIBGL_ALWAYS_SOFTWARE");
+    EXPECT_EQ(before != nullptr, after != nullptr);
+    EXPECT_EQ(text, after ? after : "");
+}
+
+TEST(Platform, KnowsSoftwareRenderersByTheirNames) {
+    EXPECT_TRUE(is_software_renderer("llvmpipe (LLVM 15.0.6, 256 bits)"));
+    EXPECT_TRUE(is_software_renderer("zink Vulkan 1.3(llvmpipe (LLVM 15.0.6, 256 bits))"));
+    EXPECT_TRUE(is_software_renderer("softpipe"));
+    EXPECT_TRUE(is_software_renderer("Software Rasterizer"));
+    EXPECT_FALSE(is_software_renderer("NVIDIA H200/PCIe/SSE2"));
+    EXPECT_FALSE(is_software_renderer("AMD Radeon RX 6800 (navi21, LLVM 15.0.6, DRM 3.49)"));
+}
+
+TEST(Platform, NamesThePackageOfALibraryThatIsMissing) {
+    const std::string message = error_of([] { open_library({"libnone.so.1", "libnone.so"}, "libnone1"); });
+    EXPECT_NE(message.find("libnone.so.1"), std::string::npos) << message;
+    EXPECT_NE(message.find("install the Debian package libnone1"), std::string::npos) << message;
+}
+
+}  // namespace
+}  // namespace aftershade::gpu

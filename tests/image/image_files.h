@@ -1,0 +1,111 @@
+// Files for the image tests: a folder that goes away, patterns, captures.
+#pragma once
+
+#include "framework/core/error.h"
+#include "framework/image/exr_file.h"
+#include "framework/image/image.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace aftershade::test {
+
+class TemporaryFolder {
+public:
+    TemporaryFolder() {
+        static std::atomic<int> counter{0};
+        path_ = std::filesystem::temp_directory_path() /
+                ("aftershade-test-" + std::to_string(getpid()) + "-" + std::to_string(counter++));
+        std::filesystem::create_directories(path_);
+    }
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+    const std::filesystem::path& path() const { return path_; }
+    std::size_t file_count() const {
+        return std::size_t(std::distance(std::filesystem::directory_iterator(path_), {}));
+    }
+
+private:
+    std::filesystem::path path_;
+};
+
+inline std::string read_text(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+inline void write_text(const std::filesystem::path& path, const std::string& bytes) {
+    std::ofstream(path, std::ios::binary) << bytes;
+}
+
+/// Exactly representable in half.
+inline float pattern(int x, int y, int channel) {
+    return float((x * 7 + y * 13 + channel * 5) % 256) / 8.0f - 4.0f;
+}
+
+inline Image pattern_image(int width, int height, int channels) {
+    Image image(width, height, channels);
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            for (int c = 0; c < channels; ++c)
+                image.at(x, y, c) = pattern(x, y, c);
+        }
+    }
+    return image;
+}
+
+/// The message of the Error that `work` throws; the test fails where it throws none or one of another code.
+template <class Work>
+std::string error_of(ExitCode code, Work&& work) {
+    try {
+        work();
+    } catch (const Error& error) {
+        EXPECT_EQ(int(error.exit_code()), int(code)) << error.what();
+        return error.what();
+    } catch (const std::exception& error) {
+        ADD_FAILURE() << "another exception: " << error.what();
+        return {};
+    }
+    ADD_FAILURE() << "no error";
+    return {};
+}
+
+template <class Work>
+std::string capture_error(Work&& work) {
+    return error_of(ExitCode::capture, work);
+}
+
+inline std::vector<std::string> channel_names(const ExrPart& part) {
+    std::vector<std::string> names;
+    for (const ExrChannel& channel : part.channels)
+        names.push_back(channel.name);
+    return names;
+}
+
+/// Real captures are not part of the repository: absent ones skip a test, but fail it on CI.
+inline std::optional<std::filesystem::path> find_captures(const std::string& inside) {
+    const char* set = std::getenv("AFTERSHADE_CAPTURES");
+    const std::filesystem::path root = set ? set : AFTERSHADE_SOURCE_DIR "/../shared/captures";
+    if (std::filesystem::exists(root / inside)) return root / inside;
+    const char* ci = std::getenv("CI");
+    if (ci && std::string(ci) == "true")
+        ADD_FAILURE() << (root / inside) << " is absent; set AFTERSHADE_CAPTURES";
+    return std::nullopt;
+}
+
+}  // namespace aftershade::test
