@@ -37,12 +37,12 @@ struct SyntheticBox {
 
 struct SyntheticScene {
     int width = 64, height = 36;
-    Rgb background;
+    Rgb background{};
     float background_depth_m = std::numeric_limits<float>::infinity();
     float alpha = 1;  ///< of the background; objects are opaque
-    std::optional<SyntheticSphere> sphere;   ///< object 1
-    std::optional<SyntheticBox> box;         ///< object 2
-    std::vector<SyntheticPoint> points;
+    std::optional<SyntheticSphere> sphere{};   ///< object 1
+    std::optional<SyntheticBox> box{};         ///< object 2
+    std::vector<SyntheticPoint> points{};
 };
 
 namespace detail {

@@ -49,7 +49,7 @@ public:
         const std::size_t equals = text.find('=');
         const std::size_t dot = text.find('.');
         if (equals == std::string::npos || dot == std::string::npos || dot > equals) {
-            diagnostics_.error(place, "expected step.param=value, such as bokeh.f_number=2.8");
+            diagnostics_.error(place, "expected step.param=value: the name of a step, a parameter of its effect, and a value");
             return;
         }
         PipelineStep* step = find_step(text.substr(0, dot), place);
@@ -71,7 +71,7 @@ public:
         const Place place{"--tap " + text};
         const std::size_t dot = text.find('.');
         if (dot == std::string::npos) {
-            diagnostics_.error(place, "expected step.texture, such as bokeh.coc");
+            diagnostics_.error(place, "expected step.texture: the name of a step and a texture of its effect");
             return;
         }
         const PipelineStep* step = find_step(text.substr(0, dot), place);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "framework/core/error.h"
+#include "tests/real_captures.h"
 #include "framework/image/exr_file.h"
 #include "framework/image/image.h"
 
@@ -95,17 +96,6 @@ inline std::vector<std::string> channel_names(const ExrPart& part) {
     for (const ExrChannel& channel : part.channels)
         names.push_back(channel.name);
     return names;
-}
-
-/// Real captures are not part of the repository: absent ones skip a test, but fail it on CI.
-inline std::optional<std::filesystem::path> find_captures(const std::string& inside) {
-    const char* set = std::getenv("AFTERSHADE_CAPTURES");
-    const std::filesystem::path root = set ? set : AFTERSHADE_SOURCE_DIR "/../shared/captures";
-    if (std::filesystem::exists(root / inside)) return root / inside;
-    const char* ci = std::getenv("CI");
-    if (ci && std::string(ci) == "true")
-        ADD_FAILURE() << (root / inside) << " is absent; set AFTERSHADE_CAPTURES";
-    return std::nullopt;
 }
 
 }  // namespace aftershade::test

@@ -1,0 +1,44 @@
+// Runs a look, given as text, over captures in memory.
+#pragma once
+
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "framework/effect/registry.h"
+#include "framework/gpu/context.h"
+#include "framework/pipeline/look.h"
+#include "framework/pipeline/renderer.h"
+
+namespace aftershade::test {
+
+/// A fault in the look ends the test by an exception that lists all faults.
+class LookRunner {
+public:
+    LookRunner(const std::string& look, gpu::Backend backend, std::vector<std::string> taps = {})
+        : effects_({data_ / "effects"}) {
+        Diagnostics diagnostics;
+        const auto node = parse_document(look, "test look", diagnostics);
+        if (node)
+            if (const auto parsed = parse_look(*node, diagnostics))
+                pipeline_ = compile_pipeline(*parsed, effects_, {{}, std::move(taps)}, diagnostics);
+        std::ostringstream faults;
+        diagnostics.print(faults);
+        if (diagnostics.has_errors()) throw std::runtime_error(faults.str());
+        context_ = std::make_unique<gpu::Context>(backend);
+        renderer_ = std::make_unique<PipelineRenderer>(*context_, pipeline_, data_);
+    }
+
+    FrameResult run(const Capture& capture) { return renderer_->render(capture, {"color", "display"}, false); }
+    Image color(const Capture& capture) { return run(capture).images.at("color"); }
+
+private:
+    const std::filesystem::path data_ = AFTERSHADE_SOURCE_DIR;
+    EffectRegistry effects_;
+    Pipeline pipeline_;
+    std::unique_ptr<gpu::Context> context_;
+    std::unique_ptr<PipelineRenderer> renderer_;
+};
+
+}  // namespace aftershade::test
