@@ -18,7 +18,7 @@ const std::atomic<bool>& watch_for_interrupt() {
     struct sigaction action;
     std::memset(&action, 0, sizeof action);
     action.sa_handler = on_signal;
-    action.sa_flags = SA_RESETHAND;
+    action.sa_flags = int(SA_RESETHAND | SA_RESTART);  // no file operation ends early because of the signal
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
     return interrupted;

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <map>
@@ -20,6 +21,8 @@ int fail(ExitCode code, const char* message) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    // A file above the shell's limit is then an output that cannot be written, not the end of the process.
+    std::signal(SIGXFSZ, SIG_IGN);
     CLI::App app{"Runs chains of shader effects over G-buffer captures, without a display.", "aftershade"};
     app.set_version_flag("--version", std::string("aftershade " AFTERSHADE_VERSION));
     app.require_subcommand(1);
@@ -31,6 +34,7 @@ int main(int argc, char** argv) {
         verbs[verb] = add_options(*verb);
     };
     add("run", "Run a look over a capture and write the result", aftershade::cli::add_run);
+    add("inspect", "Tell what a capture holds: parts, channels with their figures, roles, camera", aftershade::cli::add_inspect);
     add("doctor", "Tell which GL backends work on this machine, and why others do not", aftershade::cli::add_doctor);
 
     try {

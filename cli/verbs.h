@@ -11,6 +11,7 @@ namespace aftershade::cli {
 using Verb = std::function<ExitCode()>;
 
 Verb add_run(CLI::App& app);
+Verb add_inspect(CLI::App& app);
 Verb add_doctor(CLI::App& app);
 
 }  // namespace aftershade::cli

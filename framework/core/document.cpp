@@ -1,6 +1,8 @@
 #include "framework/core/document.h"
 
 #include <algorithm>
+#include <cctype>
+#include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -90,7 +92,7 @@ public:
     bool string(string_t& value) override {
         Node node;
         node.kind = Node::Kind::string;
-        node.place = place(string_start());
+        node.place = place(string_start(offset() - 1));
         node.string = value;
         return add(std::move(node));
     }
@@ -100,7 +102,7 @@ public:
     bool end_object() override { return close(); }
     bool end_array() override { return close(); }
     bool key(string_t& value) override {
-        const Place at = place(string_start());
+        const Place at = place(string_start(offset() - 1));
         Node& object = *stack_.back();
         for (const Member& member : object.members) {
             if (member.key != value) continue;
@@ -112,12 +114,13 @@ public:
         return true;
     }
     bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception& e) override {
-        diagnostics_.error(place(std::min(position == 0 ? 0 : position - 1, text_.size())), plain_message(e.what()));
+        const std::string message = plain_message(e.what());
+        const std::size_t last = std::min(position == 0 ? 0 : position - 1, text_.size());
+        // "invalid" speaks of one character; any other fault is a whole token out of place.
+        const bool inside_token = message.find(" - invalid ") != std::string::npos;
+        diagnostics_.error(place(inside_token ? last : token_start(last)), message);
         return false;
     }
-
-private:
-    std::size_t offset() const { return reached_ ? std::size_t(reached_ - text_.data()) : 0; }
 
     Place place(std::size_t at) const {
         const auto next = std::upper_bound(line_starts_.begin(), line_starts_.end(), at);
@@ -125,15 +128,30 @@ private:
         return {file_, int(line), int(at - line_starts_[line - 1]) + 1};
     }
 
-    /// The opening quote of the string whose closing quote was just read.
-    std::size_t string_start() const {
-        std::size_t at = offset() - 2;
+private:
+    std::size_t offset() const { return reached_ ? std::size_t(reached_ - text_.data()) : 0; }
+
+    /// The opening quote of the string that ends with the quote at `closing`.
+    std::size_t string_start(std::size_t closing) const {
+        std::size_t at = closing - 1;
         const auto is_escaped = [&](std::size_t quote) {
             std::size_t backslashes = 0;
             while (quote > backslashes && text_[quote - 1 - backslashes] == '\\') ++backslashes;
             return backslashes % 2 == 1;
         };
         while (text_[at] != '"' || is_escaped(at)) --at;
+        return at;
+    }
+
+    /// The first character of the token whose last one is at `last`.
+    std::size_t token_start(std::size_t last) const {
+        if (last >= text_.size()) return last;
+        if (text_[last] == '"') return string_start(last);
+        const auto belongs = [](char c) {
+            return std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '+' || c == '.';
+        };
+        std::size_t at = last;
+        while (at > 0 && belongs(text_[last]) && belongs(text_[at - 1])) --at;
         return at;
     }
 
@@ -218,7 +236,15 @@ std::optional<Node> parse_document(std::string_view text, const std::string& fil
         diagnostics.error({file}, "is larger than " + std::to_string(kMaxDocumentBytes) + " bytes");
         return std::nullopt;
     }
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    // No editor counts the mark as a column.
+    if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
     TreeBuilder builder(text, file, diagnostics);
+    // The lexer takes a NUL for the end of the text, and would leave what follows unread.
+    if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
+        diagnostics.error(builder.place(nul), "a NUL byte: a document is UTF-8 text");
+        return std::nullopt;
+    }
     const CountingIterator begin(text.data(), builder.reached());
     const CountingIterator end(text.data() + text.size(), builder.reached());
     const bool strict = true;           // nothing may follow the value

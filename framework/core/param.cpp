@@ -1,6 +1,7 @@
 #include "framework/core/param.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "framework/core/units.h"
@@ -26,14 +27,15 @@ ParamType type_of_name(const std::string& name) {
     return found->first;
 }
 
-bool may_have_unit(ParamType type) { return type != ParamType::bool_ && type != ParamType::enum_; }
+bool is_numeric(ParamType type) { return type != ParamType::bool_ && type != ParamType::enum_; }
 
 void read_unit(ObjectReader& reader, const Node& node, ParamSpec& spec, Diagnostics& diagnostics) {
     const auto unit = reader.text("unit");
     if (spec.type == ParamType::angle && !unit) spec.unit = "deg";
     if (!unit) return;
     const Place place = node.find("unit")->place;
-    if (!may_have_unit(spec.type)) diagnostics.error(place, "a " + std::string(param_type_name(spec.type)) + " has no unit");
+    if (!is_numeric(spec.type))
+        diagnostics.error(place, "a " + std::string(param_type_name(spec.type)) + " has no unit");
     else if (!is_unit(*unit))
         diagnostics.error(place, "'" + *unit + "' is not a unit; known: " + list_of_names(unit_names(), "and"));
     else spec.unit = *unit;
@@ -45,6 +47,23 @@ void read_enum_values(ObjectReader& reader, const Node& node, ParamSpec& spec, D
         diagnostics.error(node.place, "enum parameter '" + spec.name + "' needs at least two 'values'");
     if (spec.type != ParamType::enum_ && node.find("values"))
         diagnostics.error(node.find("values")->place, "only an enum has 'values'");
+    if (spec.values.empty()) return;
+    std::set<std::string> seen;
+    for (const Node& item : node.find("values")->items) {
+        if (!item.is_string()) continue;
+        // Shaders see a value as a preprocessor symbol: SHAPE_HEXAGON.
+        if (item.string.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != std::string::npos)
+            diagnostics.error(item.place, "'" + item.string + "' cannot name a value: a-z, 0-9 and _ only");
+        if (!seen.insert(item.string).second)
+            diagnostics.error(item.place, "'" + item.string + "' stands twice in 'values'");
+    }
+}
+
+void refuse_range(const Node& node, const ParamSpec& spec, Diagnostics& diagnostics) {
+    for (const char* key : {"min", "max", "ui"})
+        if (const Node* value = node.find(key))
+            diagnostics.error(value->place,
+                              "a " + std::string(param_type_name(spec.type)) + " has no '" + key + "'");
 }
 
 void read_ui_range(ObjectReader& reader, ParamSpec& spec, Diagnostics& diagnostics) {
@@ -93,6 +112,7 @@ std::optional<ParamSpec> parse_param_spec(const std::string& name, const Node& n
     spec.min = reader.number("min");
     spec.max = reader.number("max");
     read_ui_range(reader, spec, diagnostics);
+    if (!is_numeric(spec.type)) refuse_range(node, spec, diagnostics);
     spec.doc = reader.text("doc", Presence::required).value_or("");
     spec.from = reader.text("from").value_or("");
     const auto bind = reader.choice("bind", std::vector<std::string>{"uniform", "define"});

@@ -37,6 +37,12 @@ const Unit* find_unit(std::string_view name) {
     return found == kUnits.end() ? nullptr : &*found;
 }
 
+/// from_chars takes no plus sign; "+-5" stays what it is, and so is no number.
+std::string_view without_plus(std::string_view text) {
+    const bool plus = text.starts_with('+') && !text.starts_with("+-");
+    return plus ? text.substr(1) : text;
+}
+
 }  // namespace
 
 bool is_unit(std::string_view name) { return find_unit(name) != nullptr; }
@@ -48,7 +54,7 @@ std::vector<std::string> unit_names() {
 }
 
 std::optional<Quantity> parse_quantity(std::string_view text) {
-    if (text.starts_with('+')) text.remove_prefix(1);
+    text = without_plus(text);
     double value = 0;
     const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (failure != std::errc{} || !std::isfinite(value)) return std::nullopt;
@@ -75,7 +81,7 @@ std::vector<std::string> compatible_units(std::string_view unit) {
 }
 
 std::optional<double> parse_number(std::string_view text) {
-    if (text.starts_with('+')) text.remove_prefix(1);
+    text = without_plus(text);
     double value = 0;
     const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (failure != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;

@@ -154,6 +154,9 @@ struct ManifestParser {
         if (member.value.is_array())
             for (const Node& item : member.value.items) add(item);
         else add(member.value);
+        if (member.value.is_array() && member.value.items.empty())
+            diagnostics.error(member.value.place,
+                              "the condition '" + member.key + "' has no value, so it never holds");
         return condition;
     }
 
@@ -179,6 +182,10 @@ struct ManifestParser {
     }
 
     void define(PassSpec& pass, const Member& member) {
+        static const std::regex rule("[A-Za-z_][A-Za-z0-9_]*");
+        if (!std::regex_match(member.key, rule))
+            diagnostics.error(member.key_place,
+                              "'" + member.key + "' cannot name a define: letters, 0-9 and _ only");
         if (member.value.is_string()) pass.defines[member.key] = member.value.string;
         else if (member.value.kind == Node::Kind::integer) pass.defines[member.key] = std::to_string(member.value.integer);
         else diagnostics.error(member.value.place, "a define is a string or an integer");
@@ -188,6 +195,9 @@ struct ManifestParser {
         for (const Member& member : section.members) {
             PresetSpec preset;
             preset.name = member.key;
+            if (!member.value.is_object())
+                diagnostics.error(member.value.place, "preset '" + member.key + "' must be an object, not " +
+                                                          std::string(kind_name(member.value.kind)));
             for (const Member& value : member.value.members) {
                 const ParamSpec* spec = manifest.find_param(value.key);
                 if (!spec) {
@@ -234,11 +244,12 @@ std::optional<EffectManifest> parse_manifest(const Node& node, const fs::path& f
     if (!manifest.id.empty() && manifest.id != folder.filename().string())
         diagnostics.error(node.find("id")->place, "the id '" + manifest.id + "' is not the name of its folder, '" +
                                                       folder.filename().string() + "'");
+    ManifestParser parser{manifest, diagnostics};
+    if (!manifest.id.empty()) parser.identifier(manifest.id, node.find("id")->place, "the id");
     manifest.version = reader.text("version", Presence::required).value_or("");
     manifest.summary = reader.text("summary", Presence::required).value_or("");
     manifest.sources = reader.texts("sources");
 
-    ManifestParser parser{manifest, diagnostics};
     if (const Node* section = reader.object("inputs", Presence::required)) parser.inputs(*section);
     if (const Node* section = reader.object("outputs", Presence::required)) parser.outputs(*section);
     if (const Node* section = reader.object("params")) parser.params(*section);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "framework/image/role.h"
 
@@ -24,6 +25,13 @@ public:
         if (!names_.insert(pass.name).second) fault(pass.place, pass, "another pass has this name");
         if (pass.writes.empty()) fault(pass.place, pass, "writes nothing");
         check_shader_file(pass);
+        std::set<std::string> reads, writes;
+        for (const ReadSpec& read : pass.reads)
+            if (!read.name.empty() && !reads.insert(read.name).second)
+                fault(read.place, pass, "reads '" + read.name + "' twice");
+        for (const std::string& name : pass.writes)
+            if (!writes.insert(name).second) fault(pass.place, pass, "writes '" + name + "' twice");
+        check_sizes(pass);
         for (const ReadSpec& read : pass.reads) check_read(pass, read);
         for (const std::string& name : pass.writes) check_write(pass, name);
         for (const WhenSpec& condition : pass.when) check_when(pass, condition);
@@ -72,6 +80,19 @@ private:
                                         (input ? "its role is " + input->role : "its format is integer"));
     }
 
+    /// One draw has targets of one size.
+    void check_sizes(const PassSpec& pass) {
+        const auto size = [&](const std::string& name) {
+            const TextureSpec* texture = manifest_.find_texture(name);
+            if (!texture) return std::pair(1.0, 0);
+            return texture->tile > 0 ? std::pair(1.0, texture->tile) : std::pair(texture->scale, 0);
+        };
+        for (const std::string& name : pass.writes)
+            if (size(name) != size(pass.writes.front()))
+                fault(pass.place, pass,
+                      "writes '" + pass.writes.front() + "' and '" + name + "', which differ in size");
+    }
+
     void check_write(const PassSpec& pass, const std::string& name) {
         if (!manifest_.find_output(name) && !manifest_.find_texture(name)) {
             fault(pass.place, pass, "writes '" + name + "', which is no output and no texture" +
@@ -90,6 +111,10 @@ private:
             const InputSpec* input = manifest_.find_input(condition.subject.substr(kHas.size()));
             if (!input || !input->optional)
                 fault(condition.place, pass, "'" + condition.subject + "' does not name an optional input");
+            for (const ParamValue& value : condition.values)
+                if (!std::holds_alternative<bool>(value))
+                    fault(condition.place, pass,
+                          "'" + condition.subject + "' is true or false, not " + format_value(value));
             return;
         }
         const ParamSpec* spec = manifest_.find_param(condition.subject);
@@ -98,12 +123,17 @@ private:
                                              did_you_mean(condition.subject, manifest_.param_names()));
             return;
         }
-        for (const ParamValue& value : condition.values) {
-            const auto* name = std::get_if<std::string>(&value);
-            const bool known = name && std::find(spec->values.begin(), spec->values.end(), *name) != spec->values.end();
-            if (spec->type == ParamType::enum_ && !known)
+        for (const ParamValue& value : condition.values)
+            if (!may_equal(*spec, value))
                 fault(condition.place, pass, format_value(value) + " is not a value of '" + spec->name + "'");
-        }
+    }
+
+    /// A condition that could never hold is a mistake.
+    static bool may_equal(const ParamSpec& spec, const ParamValue& value) {
+        if (spec.type == ParamType::bool_) return std::holds_alternative<bool>(value);
+        if (spec.type == ParamType::int_) return std::holds_alternative<std::int64_t>(value);
+        const auto* name = std::get_if<std::string>(&value);
+        return name && std::find(spec.values.begin(), spec.values.end(), *name) != spec.values.end();
     }
 
     const EffectManifest& manifest_;

@@ -36,10 +36,23 @@ std::string_view glsl_type(const ParamSpec& spec) {
     return "float";
 }
 
+/// A float literal: "3" would divide as an integer, and without brackets "x -SKEW" might become "x --3".
+std::string float_literal(double value) {
+    std::string text = format_number(value);
+    if (text.find_first_of(".e") == std::string::npos) text += ".0";
+    return value < 0 ? "(" + text + ")" : text;
+}
+
 std::string define_value(const ParamSpec& spec, const ParamValue& value) {
     if (spec.type == ParamType::enum_) return upper(spec.name) + "_" + upper(std::get<std::string>(value));
     if (spec.type == ParamType::bool_) return std::get<bool>(value) ? "1" : "0";
-    return format_value(value);
+    if (const auto* number = std::get_if<double>(&value)) return float_literal(*number);
+    if (const auto* integer = std::get_if<std::int64_t>(&value))
+        return *integer < 0 ? "(" + std::to_string(*integer) + ")" : std::to_string(*integer);
+    std::string components;
+    for (const double component : std::get<std::vector<double>>(value))
+        components += (components.empty() ? "" : ", ") + float_literal(component);
+    return std::string(glsl_type(spec)) + "(" + components + ")";
 }
 
 gpu::TextureFormat format_of(const EffectManifest& manifest, const std::string& name, bool written) {
@@ -168,7 +181,7 @@ private:
 
     void add_include(bool shared, const std::string& name, const Place& place) {
         if (shared && name == "pass") {
-            has_pass_ = true;
+            if (std::exchange(has_pass_, true)) return;
             std::istringstream lines(InterfaceWriter(context_).write());
             for (std::string line; std::getline(lines, line);) add_line(line, "<generated>", place.line);
             return;

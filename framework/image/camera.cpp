@@ -10,6 +10,7 @@ const std::vector<CameraField>& camera_fields() {
     static const std::vector<CameraField> fields = {
         {"focus_distance", "m", 0.001}, {"focal_length", "mm", 0.1}, {"sensor_width", "mm", 0.1},
         {"f_number", "", 0.01},         {"blades", "", 0},           {"rotation", "deg", -1e6},
+        {"near", "m", 0},               {"far", "m", 0},
     };
     return fields;
 }
@@ -25,6 +26,13 @@ std::optional<double> Camera::get(const std::string& name) const {
     return found == values_.end() ? std::nullopt : std::optional(found->second);
 }
 
+void Camera::complete_from(const Camera& other) {
+    values_.insert(other.values_.begin(), other.values_.end());
+    if (lens_model.empty()) lens_model = other.lens_model;
+    if (!camera_from_world) camera_from_world = other.camera_from_world;
+    if (!ndc_from_world) ndc_from_world = other.ndc_from_world;
+}
+
 Camera parse_camera(const Node& node, Diagnostics& diagnostics) {
     Camera camera;
     ObjectReader reader(node, "the camera", diagnostics);
@@ -38,6 +46,7 @@ Camera parse_camera(const Node& node, Diagnostics& diagnostics) {
         if (const auto parsed = parse_param_value(spec, *value, "camera." + field.name, diagnostics))
             camera.set(field.name, std::get<double>(*parsed));
     }
+    camera.lens_model = reader.choice("lens_model", std::vector<std::string>{"thin", "pinhole"}).value_or("");
     reader.finish();
     return camera;
 }

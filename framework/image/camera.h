@@ -1,6 +1,7 @@
-// What is known of a capture's lens and sensor.
+// What is known of a capture's camera: lens and sensor as numbers, and where it stands.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -10,7 +11,7 @@
 
 namespace aftershade {
 
-/// A value that a camera may have, named as parameters' "from" names it.
+/// A number that a camera may have, named as parameters' "from" names it.
 struct CameraField {
     std::string name;  ///< "focus_distance"
     std::string unit;  ///< "" for a pure number
@@ -20,19 +21,27 @@ struct CameraField {
 const std::vector<CameraField>& camera_fields();
 const CameraField* find_camera_field(const std::string& name);
 
-/// Values by field name, in the field's unit; a field that is absent is not known.
+/// Row by row, acting on column vectors: clip = matrix * world.
+using CameraMatrix = std::array<double, 16>;
+
+/// Numbers by field name, in the field's unit; a field that is absent is not known.
 class Camera {
 public:
     std::optional<double> get(const std::string& name) const;
     void set(const std::string& name, double value) { values_[name] = value; }
+    const std::map<std::string, double>& values() const { return values_; }
     /// Fills what is not known here from `other`.
-    void complete_from(const Camera& other) { values_.insert(other.values_.begin(), other.values_.end()); }
+    void complete_from(const Camera& other);
+
+    std::string lens_model;  ///< "thin" or "pinhole"; "" where not known
+    std::optional<CameraMatrix> camera_from_world;  ///< view space: right-handed, looks along -z, y up, m
+    std::optional<CameraMatrix> ndc_from_world;     ///< projective; x right and y up from -1 to 1 over the display window
 
 private:
     std::map<std::string, double> values_;
 };
 
-/// Reads "camera": {"focal_length": "50 mm", ...}: numbers in the field's unit, or strings with a unit.
+/// Reads "camera": {"focal_length": "50 mm", ...}: numbers in the field's unit, or strings with a unit; "lens_model".
 Camera parse_camera(const Node& node, Diagnostics& diagnostics);
 
 }  // namespace aftershade

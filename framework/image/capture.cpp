@@ -1,71 +1,266 @@
 #include "framework/image/capture.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "framework/core/error.h"
+#include "framework/image/camera_metadata.h"
+#include "framework/image/camera_motion.h"
+#include "framework/image/cryptomatte.h"
 #include "framework/image/decode.h"
+#include "framework/image/frame_file.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
 
-struct CaptureReader::OpenFrame {
-    ExrFile file;
-    CaptureHeader header;
-    const Profile* profile = nullptr;
-    std::string layer;
+/// Where one role's pixels lie and how they are decoded.
+struct CaptureReader::RoleSource {
+    const FrameFile* file = nullptr;
+    RoleDecoding decoding;
+    FoundChannels channels;      // empty for luminance and Cryptomatte
+    std::string luminance;       // the Y channel that stands for color
+    bool from_cryptomatte = false;
 };
+
+struct CaptureReader::OpenFrame {
+    std::unique_ptr<FrameFile> main;
+    std::map<std::string, std::unique_ptr<FrameFile>> role_files;
+    const Profile* profile = nullptr;
+    std::map<std::string, RoleSource> roles;
+    Chromaticities stored_primaries{};
+    CaptureHeader header;
+};
+
+namespace {
+
+/// Roles whose three channels are colours in the capture's primaries.
+bool is_color_role(const std::string& role) {
+    static const std::set<std::string> roles = {"color", "irradiance", "albedo", "specular", "emission"};
+    return roles.contains(role);
+}
+
+/// What a file of one role may call its channels, by their number.
+std::vector<std::vector<std::string>> plain_names(int channels) {
+    switch (channels) {
+        case 1: return {{"Z"}, {"Y"}, {"R"}, {"V"}, {"X"}, {"I"}};
+        case 2: return {{"R", "G"}, {"X", "Y"}, {"x", "y"}, {"u", "v"}, {"U", "V"}};
+        case 3: return {{"R", "G", "B"}, {"X", "Y", "Z"}};
+        default: return {{"R", "G", "B", "A?"}};
+    }
+}
+
+std::vector<std::string> listed(const FoundChannels& found) {
+    std::vector<std::string> names;
+    for (const auto& layer : found)
+        for (const std::string& name : layer)
+            if (!name.empty()) names.push_back(name);
+    return names;
+}
+
+Window grid_of(const FrameFile& file, const FoundChannels& channels, const std::string& luminance) {
+    if (!luminance.empty()) return file.window_of(luminance);
+    return channels.empty() ? file.merged().data_window : file.window_of(channels[0][0]);
+}
+
+/// One layer over the grid, in the role's channel order. Of a component that the file lacks, alpha is 1 and others 0.
+Image read_layer(const FrameFile& file, const std::vector<std::string>& names, const Window& grid, float outside) {
+    std::vector<std::string> present;
+    for (const std::string& name : names)
+        if (!name.empty()) present.push_back(name);
+    if (present.empty()) return Image(grid.width(), grid.height(), int(names.size()));
+    Image stored = file.read_floats(present, grid, outside);
+    if (present.size() == names.size()) return stored;
+
+    constexpr std::size_t kAlpha = 3;
+    Image filled(stored.width(), stored.height(), int(names.size()));
+    const std::size_t pixels = stored.floats().size() / present.size();
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+        std::size_t next = 0;
+        for (std::size_t c = 0; c < names.size(); ++c) {
+            const float absent = c == kAlpha ? 1.0f : 0.0f;
+            filled.floats()[pixel * names.size() + c] =
+                names[c].empty() ? absent : stored.floats()[pixel * present.size() + next++];
+        }
+    }
+    return filled;
+}
+
+Image read_layers(const FrameFile& file, const FoundChannels& channels, const Window& grid, float outside) {
+    Image image = read_layer(file, channels[0], grid, outside);
+    for (std::size_t i = 1; i < channels.size(); ++i) {
+        const Image layer = read_layer(file, channels[i], grid, outside);
+        for (std::size_t j = 0; j < layer.floats().size(); ++j) image.floats()[j] += layer.floats()[j];
+    }
+    return image;
+}
+
+}  // namespace
 
 CaptureReader::CaptureReader(const Sequence& sequence, std::vector<Profile> profiles, ReadLimits limits)
     : sequence_(sequence), profiles_(std::move(profiles)), limits_(limits) {}
 
+CaptureReader::~CaptureReader() = default;
+
+const Profile& CaptureReader::choose_profile(const ExrPart& part, CaptureHeader& header) const {
+    if (sequence_.profile == "auto") {
+        const ProfileChoice choice = detect_profile(profiles_, part, header.path.string());
+        header.profile_reason = choice.reason;
+        return *choice.profile;
+    }
+    header.profile_reason = "chosen by name";
+    for (const Profile& profile : profiles_)
+        if (profile.id == sequence_.profile) return profile;
+    std::vector<std::string> ids;
+    for (const Profile& profile : profiles_) ids.push_back(profile.id);
+    throw Error(ExitCode::usage, "no profile '" + sequence_.profile + "'; known: " + list_of_names(ids, "and"));
+}
+
+void CaptureReader::add_role(OpenFrame& open, const std::string& role, const RoleDecoding& decoding) const {
+    const auto own_file = open.role_files.find(role);
+    const FrameFile& file = own_file == open.role_files.end() ? *open.main : *own_file->second;
+    RoleSource source;
+    source.file = &file;
+    source.decoding = decoding;
+    const std::string layer = find_layer(*open.profile, file.merged());
+    auto found = decoding.layers.empty() ? std::nullopt : find_channels(decoding, layer, file.merged());
+    if (!found && own_file != open.role_files.end())
+        for (const auto& names : plain_names(find_role(role)->channels)) {
+            RoleDecoding plain;
+            plain.layers = {names};
+            if (!found) found = find_channels(plain, "", file.merged());
+        }
+    RoleDecoding luminance;
+    luminance.layers = {{decoding.luminance}};
+    if (found) source.channels = std::move(*found);
+    else if (!decoding.luminance.empty() && find_channels(luminance, "", file.merged())) source.luminance = decoding.luminance;
+    else return;
+    open.header.role_channels[role] = source.luminance.empty() ? listed(source.channels) : std::vector{source.luminance};
+    open.roles[role] = std::move(source);
+}
+
+void CaptureReader::find_roles(OpenFrame& open) const {
+    std::set<std::string> names;  // aov:<name> too, which no table lists
+    for (const auto& [name, decoding] : open.profile->roles) names.insert(name);
+    for (const auto& [name, decoding] : sequence_.channels) names.insert(name);
+    for (const auto& [name, file] : open.role_files) names.insert(name);
+    for (const std::string& name : names) {
+        const auto own = sequence_.channels.find(name);
+        const auto profiled = open.profile->roles.find(name);
+        if (own != sequence_.channels.end()) add_role(open, name, own->second);
+        else if (profiled != open.profile->roles.end()) add_role(open, name, profiled->second);
+        else add_role(open, name, RoleDecoding{});
+    }
+    if (sequence_.cryptomatte) {
+        RoleSource source;
+        source.file = open.main.get();
+        source.from_cryptomatte = true;
+        if (!sequence_.cryptomatte->mask.empty()) open.roles["mask"] = source;
+        if (!open.roles.contains("object_id")) open.roles["object_id"] = source;
+    }
+    for (const auto& [role, source] : open.roles) open.header.roles.push_back(role);
+}
+
 CaptureReader::OpenFrame CaptureReader::open(int frame) const {
-    OpenFrame open{ExrFile(sequence_.path_of(frame), limits_), {}, nullptr, {}};
-    const ExrPart& part = open.file.parts().front();
+    OpenFrame open;
+    open.main = std::make_unique<FrameFile>(sequence_.path_of(frame), limits_, sequence_.view);
+    for (const auto& [role, pattern] : sequence_.role_files)
+        open.role_files[role] = std::make_unique<FrameFile>(pattern.path(frame), limits_, sequence_.view);
+    const ExrPart& part = open.main->merged();
     CaptureHeader& header = open.header;
     header.frame = frame;
-    header.path = open.file.path();
-    header.data_window = part.data_window;
+    header.path = open.main->path();
+    header.view = open.main->view();
     header.display_window = part.display_window;
     header.pixel_aspect = part.pixel_aspect;
     header.metadata = part.metadata;
-    header.camera = sequence_.camera;
     for (const ExrChannel& channel : part.channels) header.channels.push_back(channel.name);
-
-    if (sequence_.profile == "auto") {
-        const ProfileChoice choice = detect_profile(profiles_, part, header.path.string());
-        open.profile = choice.profile;
-        header.profile_reason = choice.reason;
-    } else {
-        const auto found = std::find_if(profiles_.begin(), profiles_.end(),
-                                        [&](const Profile& p) { return p.id == sequence_.profile; });
-        if (found == profiles_.end()) {
-            std::vector<std::string> ids;
-            for (const Profile& profile : profiles_) ids.push_back(profile.id);
-            throw Error(ExitCode::usage, "no profile '" + sequence_.profile + "'; known: " + list_of_names(ids, "and"));
-        }
-        open.profile = &*found;
-        header.profile_reason = "chosen by name";
-    }
+    open.profile = &choose_profile(part, header);
     header.profile = open.profile->id;
-    open.layer = find_layer(*open.profile, part);
-    for (const auto& [role, decoding] : open.profile->roles)
-        if (find_channels(decoding, open.layer, part)) header.roles.push_back(role);
+    header.camera = sequence_.camera;
+    header.camera.complete_from(camera_of_metadata(part.metadata, *open.profile));
+    find_roles(open);
+
+    const auto color = open.roles.find("color");
+    header.data_window = color == open.roles.end()
+                             ? part.data_window
+                             : grid_of(*color->second.file, color->second.channels, color->second.luminance);
+    const std::string& space = sequence_.color_space == "auto" ? open.profile->color_space : sequence_.color_space;
+    open.stored_primaries = space == "auto" ? stored_primaries(part.metadata) : *color_space_primaries(space);
+    // XYZ has no primaries that light could have: effects see it as Rec. 709.
+    header.primaries = is_xyz(open.stored_primaries) ? *color_space_primaries("rec709") : open.stored_primaries;
     return open;
 }
 
 CaptureHeader CaptureReader::read_header(int frame) const { return open(frame).header; }
 
+void CaptureReader::read_motion(const OpenFrame& open, const std::string& role, Image& velocity, const Image* color,
+                                Capture& capture) const {
+    const CaptureHeader& header = open.header;
+    const RoleSource& source = open.roles.at(role);
+    const DecodeContext context{header.path.string(), header.data_window, header.display_window, header.camera, color};
+    const std::vector<std::size_t> missing = decode_velocity(velocity, source.decoding, context);
+    if (role != "velocity" || missing.empty()) return;
+    capture.pixels_without_motion = missing.size();
+    const std::filesystem::path before = sequence_.path_of(header.frame - 1);
+    std::error_code unreadable;
+    if (!open.roles.contains("depth") || !sequence_.files.has_frame() || !std::filesystem::exists(before, unreadable)) return;
+    const FrameFile previous(before, limits_, sequence_.view);
+    const Camera camera = camera_of_metadata(previous.merged().metadata, *open.profile);
+    if (!knows_motion(header.camera, camera)) return;
+    const Image depth = read_role(open, "depth", nullptr, capture);
+    fill_camera_velocity(velocity, missing, depth, header.data_window, header.display_window, header.camera, camera);
+    capture.motion_from_camera = true;
+}
+
+Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, const Image* color,
+                               Capture& capture) const {
+    const CaptureHeader& header = open.header;
+    const ChannelRole role = *find_role(name);
+    const RoleSource& source = open.roles.at(name);
+    const FrameFile& file = *source.file;
+    if (source.from_cryptomatte) {
+        const auto layers = find_cryptomattes(file);
+        const CryptomatteLayer& layer = choose_cryptomatte(layers, sequence_.cryptomatte->layer, file);
+        return name == "mask" ? cryptomatte_mask(file, layer, sequence_.cryptomatte->mask, header.data_window)
+                              : cryptomatte_ids(file, layer, header.data_window);
+    }
+    if (role.type == ComponentType::uint32) {
+        if (file.type_of(source.channels[0][0]) == PixelType::uint32)
+            return file.read_uints(source.channels[0], header.data_window);
+        return decode_ids(file.read_floats(source.channels[0], header.data_window, 0),
+                          file.path().string() + ": " + source.channels[0][0]);
+    }
+    // A stored value beyond the data window is none: it gets the role's value after decoding, except where decoding
+    // itself turns it into that.
+    const float outside = name == "depth" ? source.decoding.no_hit : role.outside;
+    Image image = source.luminance.empty() ? read_layers(file, source.channels, header.data_window, outside)
+                                           : file.read_luminance_chroma(source.luminance, header.data_window);
+    if (name == "depth")
+        decode_depth(image, source.decoding,
+                     {file.path().string(), header.data_window, header.display_window, header.camera, nullptr});
+    if (name == "velocity" || name == "velocity_next") read_motion(open, name, image, color, capture);
+    if (is_color_role(name) && open.stored_primaries != header.primaries)
+        convert_colors(image, conversion_matrix(open.stored_primaries, header.primaries));
+    return image;
+}
+
 Capture CaptureReader::read(int frame, std::span<const std::string> roles) const {
     OpenFrame open = this->open(frame);
     Capture capture;
-    for (const std::string& name : roles) {
-        const auto decoding = open.profile->roles.find(name);
-        if (decoding == open.profile->roles.end()) continue;
-        const auto channels = find_channels(decoding->second, open.layer, open.file.parts().front());
-        if (!channels) continue;
-        capture.images[name] = decode_role(open.file, 0, *find_role(name), decoding->second, *channels);
-    }
+    const auto wants = [&](const std::string& role) {
+        return open.roles.contains(role) && std::find(roles.begin(), roles.end(), role) != roles.end();
+    };
+    const auto is_premultiplied = [&](const auto& entry) {
+        return entry.second.decoding.premultiplied && wants(entry.first);
+    };
+    Image color;
+    const bool needs_color = std::any_of(open.roles.begin(), open.roles.end(), is_premultiplied);
+    if (open.roles.contains("color") && (wants("color") || needs_color)) color = read_role(open, "color", nullptr, capture);
+    for (const auto& [role, source] : open.roles)
+        if (role != "color" && wants(role))
+            capture.images[role] = read_role(open, role, color.empty() ? nullptr : &color, capture);
+    if (wants("color")) capture.images["color"] = std::move(color);
     capture.header = std::move(open.header);
     return capture;
 }

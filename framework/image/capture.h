@@ -2,11 +2,13 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "framework/image/camera.h"
+#include "framework/image/color_space.h"
 #include "framework/image/exr_file.h"
 #include "framework/image/image.h"
 #include "framework/image/profile.h"
@@ -20,11 +22,14 @@ struct CaptureHeader {
     std::filesystem::path path;
     std::string profile;          ///< id
     std::string profile_reason;   ///< why: "chosen by name", "attribute BlenderMultiChannel"
-    Window data_window;
+    std::string view;             ///< of a multi-view file
+    Window data_window;           ///< colour's: the working grid
     Window display_window;
     float pixel_aspect = 1;
-    std::vector<std::string> roles;     ///< that can be read
-    std::vector<std::string> channels;  ///< of the file
+    std::vector<std::string> roles;     ///< that can be read, sorted
+    std::map<std::string, std::vector<std::string>> role_channels;  ///< the stored channels of each
+    std::vector<std::string> channels;  ///< of the file, in this view
+    Chromaticities primaries{};         ///< of the colours as they are in memory
     Camera camera;                      ///< capture.json's, completed by the file's metadata
     ExrMetadata metadata;
 };
@@ -33,21 +38,33 @@ struct CaptureHeader {
 struct Capture {
     CaptureHeader header;
     std::map<std::string, Image> images;  ///< by role
+    std::size_t pixels_without_motion = 0;  ///< of velocity: filled, from the camera where that is known, else with 0
+    bool motion_from_camera = false;
 };
 
-/// Opens frames of a sequence. [one thread at a time; several readers may work side by side]
+/// Opens frames of a sequence. [read() and read_header() may be called from several threads]
 class CaptureReader {
 public:
+    /// `sequence` must outlive the reader.
     CaptureReader(const Sequence& sequence, std::vector<Profile> profiles, ReadLimits limits);
+    ~CaptureReader();
 
     /// Throws Error(ExitCode::capture): no such file, not readable, no profile.
     CaptureHeader read_header(int frame) const;
-    /// Reads the header and the roles asked for. A role that the file lacks is left out of `images`.
+    /// Reads the header and the roles asked for. A role that the files lack is left out of `images`.
     Capture read(int frame, std::span<const std::string> roles) const;
 
 private:
     struct OpenFrame;
+    struct RoleSource;
     OpenFrame open(int frame) const;
+    const Profile& choose_profile(const ExrPart& part, CaptureHeader& header) const;
+    void find_roles(OpenFrame& open) const;
+    void add_role(OpenFrame& open, const std::string& role, const RoleDecoding& decoding) const;
+    Image read_role(const OpenFrame& open, const std::string& role, const Image* color, Capture& capture) const;
+    void read_motion(const OpenFrame& open, const std::string& role, Image& velocity, const Image* color,
+                     Capture& capture) const;
+
     const Sequence& sequence_;
     std::vector<Profile> profiles_;
     ReadLimits limits_;

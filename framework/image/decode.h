@@ -1,25 +1,35 @@
-// From a producer's channels to the canonical image of a role.
+// From a producer's stored values to the canonical image of a role.
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <vector>
 
-#include "framework/image/exr_file.h"
+#include "framework/image/camera.h"
+#include "framework/image/image.h"
 #include "framework/image/profile.h"
-#include "framework/image/role.h"
 
 namespace aftershade {
 
-/// Reads the stored channels of `role` and brings them into the role's contract: layers added up, depth in metres with
-/// +inf for nothing hit, velocity as current minus previous (velocity_next: next minus current) with +y down, ids as
-/// integers. A colour without alpha gets alpha 1. Velocity that is NaN or infinite becomes 0.
-/// Throws Error(ExitCode::capture), also for ids that are not whole numbers.
-Image decode_role(const ExrFile& file, int part, const ChannelRole& role, const RoleDecoding& decoding,
-                  const FoundChannels& channels);
+/// What a decoding needs beside the stored values.
+struct DecodeContext {
+    std::string file;         ///< begins the message of an error
+    Window grid;              ///< of the image
+    Window display;
+    Camera camera;
+    const Image* color = nullptr;  ///< RGBA of the same grid, for premultiplied vectors
+};
 
-/// The arithmetic alone, on stored values in the role's channel order.
-void decode_depth(Image& depth, const RoleDecoding& decoding);
-void decode_velocity(Image& velocity, const RoleDecoding& decoding);
-/// `context` begins the message of the error.
-Image decode_ids(const Image& stored, const std::string& context);
+/// Depth in m along the view axis; +inf where nothing was hit. Throws Error(ExitCode::capture) where near and far, or the
+/// lens of a radial depth, are needed and not known.
+void decode_depth(Image& depth, const RoleDecoding& decoding, const DecodeContext& context = {});
+
+/// Current minus previous (velocity_next: next minus current) position, px, +y down. Returns the row-major indices of the
+/// pixels that have no motion data (not finite, or the producer's mark); they are 0.
+std::vector<std::size_t> decode_velocity(Image& velocity, const RoleDecoding& decoding,
+                                         const DecodeContext& context = {});
+
+/// Floats as unsigned integers. Throws Error(ExitCode::capture) naming the first pixel that is no whole number.
+Image decode_ids(const Image& stored, const std::string& file);
 
 }  // namespace aftershade

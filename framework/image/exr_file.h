@@ -45,6 +45,7 @@ public:
     /// another type.
     std::optional<ExrValue> value(const std::string& name) const;
     std::optional<std::string> text(const std::string& name) const;    ///< string attributes only
+    std::optional<std::vector<std::string>> texts(const std::string& name) const;  ///< stringvector attributes only
     /// Numbers, rationals (framesPerSecond), and strings that are wholly a number.
     std::optional<double> number(const std::string& name) const;
 
@@ -83,6 +84,9 @@ public:
     /// do not exist are errors.
     Image read_floats(int part, std::span<const std::string> channels) const;
     Image read_uints(int part, std::span<const std::string> channels) const;
+    /// RGBA of a part that stores luminance Y, or Y with subsampled RY and BY, as OpenEXR's own RgbaInputFile converts
+    /// it, to half precision.
+    Image read_luminance_chroma(int part) const;
 
 private:
     struct Impl;

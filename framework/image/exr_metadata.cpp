@@ -13,6 +13,7 @@
 #include <OpenEXR/ImfMatrixAttribute.h>
 #include <OpenEXR/ImfRationalAttribute.h>
 #include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfStringVectorAttribute.h>
 #include <OpenEXR/ImfVecAttribute.h>
 #include <fmt/format.h>
 
@@ -133,6 +134,12 @@ std::optional<std::string> ExrMetadata::text(const std::string& name) const {
     const Imf::Attribute* attribute = find_attribute(impl, name);
     const std::string* found = attribute ? value_as<std::string>(*attribute) : nullptr;
     return found ? std::optional<std::string>(*found) : std::nullopt;
+}
+
+std::optional<std::vector<std::string>> ExrMetadata::texts(const std::string& name) const {
+    const Imf::Attribute* attribute = find_attribute(impl, name);
+    const Imf::StringVector* found = attribute ? value_as<Imf::StringVector>(*attribute) : nullptr;
+    return found ? std::optional<std::vector<std::string>>(*found) : std::nullopt;
 }
 
 std::optional<double> ExrMetadata::number(const std::string& name) const {

@@ -6,6 +6,7 @@
 #include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfRgbaFile.h>
 #include <OpenEXR/ImfThreading.h>
 #include <OpenEXR/ImfTiledInputPart.h>
 #include <fcntl.h>
@@ -266,6 +267,27 @@ Image ExrFile::read_floats(int part, std::span<const std::string> channels) cons
 
 Image ExrFile::read_uints(int part, std::span<const std::string> channels) const {
     return impl_->read(part, channels, ComponentType::uint32);
+}
+
+Image ExrFile::read_luminance_chroma(int part) const {
+    impl_->check_type(part);
+    impl_->check_bytes(part, 4);
+    // The library's converter of 3.1 opens files by name and takes their first part.
+    if (part != 0) exr::fail(path(), "luminance-chroma is supported in the first part only");
+    return exr::translate_errors(path(), ExitCode::capture, "damaged pixel data", [&] {
+        exr::check_blocks(*impl_->stream, path(), impl_->layout, part);
+        const Window& window = parts()[std::size_t(part)].data_window;
+        Imf::RgbaInputFile input(path().c_str(), Imf::globalThreadCount());
+        std::vector<Imf::Rgba> pixels(std::size_t(window.width()) * std::size_t(window.height()));
+        const std::ptrdiff_t origin = window.min_x + std::ptrdiff_t(window.min_y) * window.width();
+        input.setFrameBuffer(pixels.data() - origin, 1, std::size_t(window.width()));
+        input.readPixels(window.min_y, window.max_y);
+        Image image(window.width(), window.height(), 4);
+        float* out = image.floats().data();
+        for (const Imf::Rgba& pixel : pixels)
+            for (const half value : {pixel.r, pixel.g, pixel.b, pixel.a}) *out++ = value;
+        return image;
+    });
 }
 
 void set_exr_threads(int count) {

@@ -1,6 +1,7 @@
 #include "framework/image/frame_range.h"
 
 #include <charconv>
+#include <cstdint>
 #include <cstdlib>
 #include <regex>
 #include <unordered_set>
@@ -10,7 +11,7 @@ namespace aftershade {
 
 namespace {
 
-constexpr int kMaxFrames = 1'000'000;
+constexpr std::size_t kMaxFrames = 1'000'000;
 
 std::optional<int> parse_int(std::string_view text) {
     int value = 0;
@@ -35,10 +36,11 @@ std::optional<std::vector<int>> parse_frame_range(std::string_view text) {
         const int first = *parse_int(match[1].str());
         const int last = match[2].matched ? *parse_int(match[2].str()) : first;
         const int step = match[3].matched ? *parse_int(match[3].str()) : 1;
-        if (step == 0 || std::abs(last - first) / step >= kMaxFrames) return std::nullopt;
+        if (step == 0 || std::size_t(std::abs(last - first) / step) >= kMaxFrames) return std::nullopt;
         const int direction = last >= first ? step : -step;
         for (int frame = first; direction > 0 ? frame <= last : frame >= last; frame += direction)
             if (seen.insert(frame).second) frames.push_back(frame);
+        if (frames.size() > kMaxFrames) return std::nullopt;
     }
     return frames;
 }
@@ -65,7 +67,7 @@ FramePattern::FramePattern(std::string text) : text_(std::move(text)) {
 
 std::string FramePattern::path(int frame) const {
     if (!has_frame()) return text_;
-    std::string digits = std::to_string(std::abs(frame));
+    std::string digits = std::to_string(std::abs(std::int64_t(frame)));
     const std::size_t width = std::size_t(width_) - (frame < 0 && width_ > 1 ? 1 : 0);
     if (digits.size() < width) digits.insert(0, width - digits.size(), '0');
     if (frame < 0) digits.insert(0, "-");

@@ -1,25 +1,15 @@
 #include "framework/image/profile.h"
 
 #include <algorithm>
-#include <array>
 
 #include "framework/core/error.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
 
-namespace fs = std::filesystem;
-
 namespace {
 
 constexpr std::string_view kLayer = "{layer}";
-
-constexpr std::array<std::pair<std::string_view, VelocityDelta>, 4> kDeltas = {{
-    {"cur-prev", VelocityDelta::cur_minus_prev},
-    {"prev-cur", VelocityDelta::prev_minus_cur},
-    {"next-cur", VelocityDelta::next_minus_cur},
-    {"cur-next", VelocityDelta::cur_minus_next},
-}};
 
 std::vector<std::string> split_alternatives(const std::string& text) {
     std::vector<std::string> parts;
@@ -46,94 +36,7 @@ std::string first_present(const std::string& alternatives, const std::string& la
     return "";
 }
 
-std::vector<std::string> read_names(const Node& list, Diagnostics& diagnostics) {
-    std::vector<std::string> names;
-    for (const Node& item : list.items) {
-        if (item.is_string()) names.push_back(item.string);
-        else diagnostics.error(item.place, "a channel name must be a string");
-    }
-    return names;
-}
-
-void read_delta(ObjectReader& reader, const std::string& role, const Node& node, RoleDecoding& decoding,
-                Diagnostics& diagnostics) {
-    std::vector<std::string> names;
-    for (const auto& [name, delta] : kDeltas) names.emplace_back(name);
-    const auto chosen = reader.choice("delta", names);
-    if (!chosen) return;
-    for (const auto& [name, delta] : kDeltas)
-        if (name == *chosen) decoding.delta = delta;
-    const bool is_next = chosen->find("next") != std::string::npos;
-    if (is_next != (role == "velocity_next"))
-        diagnostics.error(node.find("delta")->place, "role '" + role + "' cannot be decoded from '" + *chosen +
-                                                         "': 'next' vectors fill velocity_next and no other role");
-}
-
-RoleDecoding parse_decoding(const std::string& role, const Node& node, Diagnostics& diagnostics) {
-    RoleDecoding decoding;
-    ObjectReader reader(node, "the decoding of '" + role + "'", diagnostics);
-    const std::size_t components = std::size_t(find_role(role)->channels);
-    if (const Node* channels = reader.array("channels")) decoding.layers.push_back(read_names(*channels, diagnostics));
-    if (const Node* sum = reader.array("sum"))
-        for (const Node& layer : sum->items) decoding.layers.push_back(read_names(layer, diagnostics));
-    for (const auto& layer : decoding.layers)
-        if (layer.size() != components)
-            diagnostics.error(node.place, "role '" + role + "' has " + std::to_string(components) + " channels, not " +
-                                              std::to_string(layer.size()));
-    if (decoding.layers.empty() && node.is_object())
-        diagnostics.error(node.place, "role '" + role + "' needs 'channels', or 'sum' with lists of channels");
-    decoding.scale = float(reader.number("scale").value_or(1.0));
-    if (const auto no_hit = reader.number("no_hit")) decoding.no_hit = float(*no_hit);
-    if (role == "velocity_next") decoding.delta = VelocityDelta::next_minus_cur;
-    read_delta(reader, role, node, decoding, diagnostics);
-    decoding.y_axis_up = reader.choice("y_axis", std::vector<std::string>{"up", "down"}) == "up";
-    reader.finish();
-    return decoding;
-}
-
 }  // namespace
-
-std::optional<Profile> parse_profile(const Node& node, Diagnostics& diagnostics) {
-    using Presence = ObjectReader::Presence;
-    ObjectReader reader(node, "the profile", diagnostics);
-    if (!reader.is_object()) return std::nullopt;
-    check_document_version(reader, node, diagnostics);
-    Profile profile;
-    profile.id = reader.text("id", Presence::required).value_or("");
-    profile.summary = reader.text("summary", Presence::required).value_or("");
-    if (const Node* detect = reader.object("detect", Presence::required)) {
-        ObjectReader rule(*detect, "'detect'", diagnostics);
-        profile.detect_attributes = rule.texts("attributes");
-        profile.detect_channels = rule.texts("channels");
-        rule.finish();
-    }
-    if (const Node* roles = reader.object("roles", Presence::required)) {
-        for (const Member& member : roles->members) {
-            if (find_role(member.key)) {
-                profile.roles[member.key] = parse_decoding(member.key, member.value, diagnostics);
-            } else {
-                diagnostics.error(member.key_place,
-                                  "'" + member.key + "' is not a role" + did_you_mean(member.key, role_names()));
-            }
-        }
-    }
-    reader.finish();
-    return profile;
-}
-
-std::vector<Profile> read_profiles(const fs::path& folder, Diagnostics& diagnostics) {
-    std::vector<fs::path> files;
-    std::error_code failure;
-    for (const auto& entry : fs::directory_iterator(folder, failure))
-        if (entry.path().extension() == ".json") files.push_back(entry.path());
-    if (failure) diagnostics.error({folder.string()}, "cannot list the profiles: " + failure.message());
-    std::sort(files.begin(), files.end());
-    std::vector<Profile> profiles;
-    for (const fs::path& file : files)
-        if (const auto node = read_document(file, diagnostics))
-            if (auto profile = parse_profile(*node, diagnostics)) profiles.push_back(std::move(*profile));
-    return profiles;
-}
 
 std::optional<FoundChannels> find_channels(const RoleDecoding& decoding, const std::string& layer,
                                            const ExrPart& part) {
@@ -163,21 +66,36 @@ std::string find_layer(const Profile& profile, const ExrPart& part) {
     return "";
 }
 
+bool matches_pattern(const std::string& name, const std::string& pattern) {
+    const std::size_t star = pattern.find('*');
+    if (star == std::string::npos) return name == pattern;
+    if (name.substr(0, star) != pattern.substr(0, star)) return false;
+    const std::string rest = pattern.substr(star + 1);
+    for (std::size_t at = star; at <= name.size(); ++at)
+        if (matches_pattern(name.substr(at), rest)) return true;
+    return false;
+}
+
 ProfileChoice detect_profile(const std::vector<Profile>& profiles, const ExrPart& part, const std::string& path) {
     const std::vector<std::string> attributes = part.metadata.names();
     std::vector<ProfileChoice> by_attribute, by_channels;
+    std::size_t most_channels = 1;
     for (const Profile& profile : profiles) {
-        for (const std::string& name : profile.detect_attributes)
-            if (std::find(attributes.begin(), attributes.end(), name) != attributes.end()) {
-                by_attribute.push_back({&profile, "attribute " + name});
-                break;
-            }
+        for (const std::string& pattern : profile.detect_attributes) {
+            const auto fits = [&](const std::string& name) { return matches_pattern(name, pattern); };
+            const auto found = std::find_if(attributes.begin(), attributes.end(), fits);
+            if (found == attributes.end()) continue;
+            by_attribute.push_back({&profile, "attribute " + *found});
+            break;
+        }
         RoleDecoding wanted;
         wanted.layers = {profile.detect_channels};
-        const std::string layer = find_layer(profile, part);
-        const auto found = find_channels(wanted, layer, part);
-        if (found && !profile.detect_channels.empty())
-            by_channels.push_back({&profile, "channel " + found->front().front()});
+        const auto found = find_channels(wanted, find_layer(profile, part), part);
+        if (!found || profile.detect_channels.size() < most_channels) continue;
+        // A profile that asks for more of what is there says more of where the file comes from.
+        if (profile.detect_channels.size() > most_channels) by_channels.clear();
+        most_channels = profile.detect_channels.size();
+        by_channels.push_back({&profile, "channel " + found->front().back()});
     }
     // An attribute is one producer's own mark; channel names are shared by several.
     const auto& fitting = by_attribute.empty() ? by_channels : by_attribute;

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <map>
+#include <optional>
 #include <utility>
 
 #include "framework/core/units.h"
@@ -27,21 +29,9 @@ public:
     Compiler(EffectRegistry& effects, Diagnostics& diagnostics) : effects_(effects), diagnostics_(diagnostics) {}
 
     void add(const LookStep& look_step) {
-        if (look_step.effect.empty()) return;
-        if (!effects_.contains(look_step.effect)) {
-            const auto ids = effects_.ids();
-            diagnostics_.error(look_step.effect_place,
-                               "no effect '" + look_step.effect + "'" + did_you_mean(look_step.effect, ids));
-            return;
-        }
-        PipelineStep step;
-        step.name = look_step.name;
-        step.manifest = effects_.find(look_step.effect, diagnostics_);
-        if (!step.manifest) return;
-        apply_preset(look_step, step);
-        for (const Member& member : look_step.params) set_value(step, member.key, member.value, member.key_place);
-        wire(look_step, step);
-        if (look_step.enabled) pipeline_.steps.push_back(std::move(step));
+        const auto step = bind(look_step);
+        if (step && look_step.enabled) pipeline_.steps.push_back(*step);
+        else absent_[look_step.name] = step ? Absence::disabled : Absence::faulty;
     }
 
     void apply_set(const std::string& text) {
@@ -90,6 +80,27 @@ public:
     Pipeline take() { return std::move(pipeline_); }
 
 private:
+    enum class Absence { faulty, disabled };
+
+    /// nullopt where the step has no manifest to be held against.
+    std::optional<PipelineStep> bind(const LookStep& look_step) {
+        if (look_step.effect.empty()) return std::nullopt;
+        if (!effects_.contains(look_step.effect)) {
+            const auto ids = effects_.ids();
+            diagnostics_.error(look_step.effect_place,
+                               "no effect '" + look_step.effect + "'" + did_you_mean(look_step.effect, ids));
+            return std::nullopt;
+        }
+        PipelineStep step;
+        step.name = look_step.name;
+        step.manifest = effects_.find(look_step.effect, diagnostics_);
+        if (!step.manifest) return std::nullopt;
+        apply_preset(look_step, step);
+        for (const Member& member : look_step.params) set_value(step, member.key, member.value, member.key_place);
+        wire(look_step, step);
+        return step;
+    }
+
     static void clear_lines(Node& node, const Place& place) {
         node.place = place;
         for (Node& item : node.items) clear_lines(item, place);
@@ -99,9 +110,19 @@ private:
     PipelineStep* find_step(const std::string& name, const Place& place) {
         for (PipelineStep& step : pipeline_.steps)
             if (step.name == name) return &step;
+        if (tell_of_absence(name, place)) return nullptr;
         const auto names = step_names(pipeline_);
         diagnostics_.error(place, "the look has no step '" + name + "'" + did_you_mean(name, names));
         return nullptr;
+    }
+
+    /// Whether the look has a step of that name which does not run; a faulty one has had its message.
+    bool tell_of_absence(const std::string& name, const Place& place) {
+        const auto absent = absent_.find(name);
+        if (absent == absent_.end()) return false;
+        if (absent->second == Absence::disabled)
+            diagnostics_.error(place, "the step '" + name + "' is disabled; remove its \"enabled\": false");
+        return true;
     }
 
     void apply_preset(const LookStep& look_step, PipelineStep& step) {
@@ -132,8 +153,7 @@ private:
     void wire(const LookStep& look_step, PipelineStep& step) {
         for (const WiringSpec& wiring : look_step.wiring) wire_input(wiring, step);
         for (const InputSpec& input : step.manifest->inputs) {
-            if (step.inputs.contains(input.name)) continue;
-            step.inputs[input.name] = nearest_source(input.role);
+            step.inputs.try_emplace(input.name, nearest_source(input.role));
             if (input.role == "color" && pipeline_.writes_role("display"))
                 diagnostics_.error(look_step.place, "step '" + step.name +
                                                         "' reads color after a step has made display; put it before");
@@ -162,6 +182,7 @@ private:
             const auto names = step_names(pipeline_);
             const auto found = std::find(names.begin(), names.end(), wiring.source);
             if (found == names.end()) {
+                if (tell_of_absence(wiring.source, wiring.place)) return;
                 diagnostics_.error(wiring.place, "no step '" + wiring.source + "' before '" + step.name + "'" +
                                                      did_you_mean(wiring.source, names));
                 return;
@@ -192,6 +213,7 @@ private:
     EffectRegistry& effects_;
     Diagnostics& diagnostics_;
     Pipeline pipeline_;
+    std::map<std::string, Absence> absent_;  // steps of the look that are not in the pipeline
 };
 
 }  // namespace

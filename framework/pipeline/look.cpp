@@ -39,9 +39,20 @@ LookStep parse_step(const Node& node, Diagnostics& diagnostics) {
     return step;
 }
 
+bool is_snake_case(const std::string& name) {
+    const auto is_letter = [](char c) { return c >= 'a' && c <= 'z'; };
+    const auto fits = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; };
+    return !name.empty() && is_letter(name.front()) && std::all_of(name.begin(), name.end(), fits);
+}
+
 void check_names(const Look& look, Diagnostics& diagnostics) {
     for (std::size_t i = 0; i < look.steps.size(); ++i) {
         const LookStep& step = look.steps[i];
+        if (step.name.empty() && step.effect.empty()) continue;  // told of already
+        // Wiring, --set and --tap part a name from what follows at the first dot, and taps are files of that name.
+        if (step.name != step.effect && !is_snake_case(step.name))
+            diagnostics.error(step.place, "the name '" + step.name +
+                                              "' must be snake_case: a-z, 0-9 and _, beginning with a letter");
         if (step.name == "capture")
             diagnostics.error(step.place, "a step cannot be named 'capture': wiring means the input by it");
         const auto same = [&](const LookStep& other) { return other.name == step.name; };
@@ -53,7 +64,6 @@ void check_names(const Look& look, Diagnostics& diagnostics) {
 }  // namespace
 
 std::optional<Look> parse_look(const Node& node, Diagnostics& diagnostics) {
-    const int errors_before = diagnostics.error_count();
     Look look;
     look.file = node.place.file;
     ObjectReader reader(node, "the look", diagnostics);
@@ -65,7 +75,7 @@ std::optional<Look> parse_look(const Node& node, Diagnostics& diagnostics) {
         if (steps->items.empty()) diagnostics.warning(steps->place, "the look has no steps: frames pass through");
     }
     reader.finish();
-    if (diagnostics.error_count() == errors_before) check_names(look, diagnostics);
+    check_names(look, diagnostics);
     // A look whose form is wrong may still be checked against its effects, so that all faults come at once.
     return look;
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "framework/core/error.h"
 #include "framework/image/png_file.h"
@@ -12,6 +14,13 @@ namespace aftershade {
 namespace fs = std::filesystem;
 
 namespace {
+
+/// With links followed, so that two ways to one file are one.
+fs::path resolved(const fs::path& path) {
+    std::error_code failure;
+    const fs::path result = fs::weakly_canonical(fs::absolute(path), failure);
+    return failure ? path : result;
+}
 
 std::string extension(const fs::path& path) {
     std::string text = path.extension().string();
@@ -69,9 +78,10 @@ Image display_of_color(const Image& color) {
 
 /// The pixels of the display window; 0 where the data window does not reach. An opaque picture loses its alpha.
 Image cropped_for_png(const Image& display, const Window& data, const Window& window) {
-    const std::span<const float> values = display.floats();
-    bool opaque = data == window;
-    for (std::size_t i = 3; opaque && i < values.size(); i += 4) opaque = values[i] >= 1.0f;
+    bool opaque = data.contains(window.min_x, window.min_y) && data.contains(window.max_x, window.max_y);
+    for (int y = window.min_y; opaque && y <= window.max_y; ++y)
+        for (int x = window.min_x; opaque && x <= window.max_x; ++x)
+            opaque = display.at(x - data.min_x, y - data.min_y, 3) >= 1.0f;
     Image picture(window.width(), window.height(), opaque ? 3 : 4);
     for (int y = 0; y < window.height(); ++y)
         for (int x = 0; x < window.width(); ++x) {
@@ -91,17 +101,23 @@ void write_png_output(const fs::path& path, const FrameResult& result, const Cap
     write_png(path, cropped_for_png(display, header.data_window, header.display_window));
 }
 
-fs::path tap_path(const std::string& pattern, const std::string& tap, int frame) {
-    const FramePattern first(pattern);
-    fs::path path = first.path(frame);
+fs::path tap_path(const std::string& text, const std::string& tap, int frame) {
+    const FramePattern pattern(text);
+    const fs::path path = pattern.path(frame);
     std::string stem = path.stem().string();
-    if (first.has_frame()) {
-        // "out_0004" without its number and what joins it.
-        const std::string number = std::to_string(frame);
-        if (const std::size_t at = stem.rfind(number); at != std::string::npos) stem.erase(at);
-        while (!stem.empty() && std::string_view("0._-").find(stem.back()) != std::string_view::npos) stem.pop_back();
+    if (pattern.has_frame()) {
+        // "out_####" without the number and what joins it to what stands before.
+        const std::string open = fs::path(text).stem().string();
+        const auto first = std::mismatch(open.begin(), open.end(), stem.begin(), stem.end());
+        const auto last = std::mismatch(open.rbegin(), open.rend(), stem.rbegin(), stem.rend());
+        std::string before(open.begin(), first.first);
+        std::string after(last.first.base(), open.end());
+        constexpr std::string_view kJoints = "._-";
+        while (!before.empty() && kJoints.find(before.back()) != std::string_view::npos) before.pop_back();
+        if (before.empty()) after.erase(0, std::min(after.find_first_not_of(kJoints), after.size()));
+        stem = before + after;
     }
-    return path.parent_path() / FramePattern(stem + (stem.empty() ? "" : ".") + tap + ".####.exr").path(frame);
+    return path.parent_path() / (stem + (stem.empty() ? "" : ".") + tap + "." + FramePattern("####").path(frame) + ".exr");
 }
 
 void write_tap(const fs::path& path, const Image& image, const OutputOptions& options, const CaptureHeader& header) {
@@ -127,6 +143,9 @@ float encode_srgb(float linear) {
 }
 
 void check_outputs(const OutputOptions& options, const Sequence& sequence, Diagnostics& diagnostics) {
+    std::map<fs::path, fs::path> inputs;
+    for (const int frame : sequence.frames) inputs.emplace(resolved(sequence.path_of(frame)), sequence.path_of(frame));
+    std::set<fs::path> named;
     if (options.patterns.empty()) diagnostics.error({"-o"}, "no output; name at least one file, such as -o out_####.exr");
     for (const std::string& text : options.patterns) {
         const Place place{"-o " + text};
@@ -137,16 +156,21 @@ void check_outputs(const OutputOptions& options, const Sequence& sequence, Diagn
         if (sequence.frames.size() > 1 && !pattern.has_frame())
             diagnostics.error(place, std::to_string(sequence.frames.size()) +
                                          " frames cannot share one file; write the number as #### or %04d");
+        if (!sequence.frames.empty() && !named.insert(resolved(pattern.path(sequence.frames.front()))).second)
+            diagnostics.error(place, "another output has this name");
         for (const int frame : sequence.frames) {
-            std::error_code absent;
-            if (!fs::equivalent(pattern.path(frame), sequence.path_of(frame), absent) || absent) continue;
-            diagnostics.error(place, "would replace the input " + sequence.path_of(frame).string());
+            const auto input = inputs.find(resolved(pattern.path(frame)));
+            if (input == inputs.end()) continue;
+            diagnostics.error(place, "would replace the input " + input->second.string());
             break;
         }
     }
-    for (const std::string& role : options.roles)
-        if (!find_role(role))
-            diagnostics.error({"--output-roles " + role}, "not a role" + did_you_mean(role, role_names()));
+    std::set<std::string> roles;
+    for (const std::string& role : options.roles) {
+        const Place place{"--output-roles " + role};
+        if (!find_role(role)) diagnostics.error(place, "not a role" + did_you_mean(role, role_names()));
+        if (!roles.insert(role).second) diagnostics.error(place, "this role is named twice");
+    }
 }
 
 std::vector<std::string> wanted_roles(const OutputOptions& options) {

@@ -16,8 +16,8 @@ struct OutputOptions {
     std::vector<std::string> patterns;         ///< "out.exr", "out_####.png": format by extension
     std::vector<std::string> roles{"color"};   ///< in EXR files
     PixelType color_type = PixelType::half;    ///< of roles that are half by default
-    std::string look;                          ///< written as attribute aftershade/look
-    std::string renderer;                      ///< GL_RENDERER, written as attribute aftershade/renderer
+    std::string look{};                        ///< written as attribute aftershade/look
+    std::string renderer{};                    ///< GL_RENDERER, written as attribute aftershade/renderer
 };
 
 /// Faults that show before any work: an unknown extension, several frames for one file, an output that is an input.

@@ -1,0 +1,35 @@
+// CAPTURE, --frames, --profile and the limits, shared by every verb that reads a capture.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/core/diagnostics.h"
+#include "framework/image/exr_file.h"
+#include "framework/image/profile.h"
+#include "framework/image/sequence.h"
+
+namespace aftershade::cli {
+
+struct CaptureOptions {
+    std::string capture;
+    std::string frames;   ///< "" for the capture's own
+    std::string profile;  ///< "" for the capture's own
+    ReadLimits limits;
+};
+
+/// The argument CAPTURE; add it where it belongs in the order of the verb's arguments.
+void add_capture_argument(CLI::App& app, CaptureOptions& options);
+/// --frames (what they are for is the verb's), --profile, --max-size, --max-image-bytes.
+void add_capture_options(CLI::App& app, CaptureOptions& options, const std::string& frames_help);
+
+/// nullopt after a fault in capture.json, or after frames were not found while the user has other faults to mend.
+std::optional<Sequence> find_sequence(const CaptureOptions& options, const std::vector<Profile>& profiles,
+                                      Diagnostics& diagnostics);
+
+/// Throws Error(ExitCode::usage) with every fault collected so far.
+void stop_at_errors(const Diagnostics& diagnostics);
+
+}  // namespace aftershade::cli

@@ -1,0 +1,180 @@
+#include "cli/inspect_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "framework/image/role.h"
+
+namespace aftershade::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Names in files may hold anything, a terminal's commands too.
+std::string printable(std::string text) {
+    for (char& c : text)
+        if ((c >= 0 && c < ' ') || c == '\x7f') c = '?';
+    return text;
+}
+
+std::string window_text(const Window& window) {
+    return fmt::format("({}, {})-({}, {}), {} x {} px", window.min_x, window.min_y, window.max_x, window.max_y,
+                       window.width(), window.height());
+}
+
+std::string part_title(const InspectedPart& part, std::size_t index) {
+    const ExrPart& header = part.header;
+    std::string title = fmt::format("part {}", index);
+    if (!header.name.empty()) title += fmt::format(" '{}'", printable(header.name));
+    if (!header.view.empty()) title += fmt::format(", view '{}'", printable(header.view));
+    title += fmt::format(": {}, {}\n", header.type, header.compression);
+    title += fmt::format("  data window     {}\n", window_text(header.data_window));
+    title += fmt::format("  display window  {}\n", window_text(header.display_window));
+    return title + fmt::format("  pixel aspect    {}\n", header.pixel_aspect);
+}
+
+std::string number_text(const std::optional<double>& value) { return value ? fmt::format("{:.6g}", *value) : "-"; }
+
+std::string channel_table(const std::vector<InspectedChannel>& channels) {
+    std::size_t width = 7;
+    for (const InspectedChannel& channel : channels) width = std::max(width, channel.channel.name.size());
+    std::string table = fmt::format("  {:<{}}  {:<5}  {:<8}  {:>12}  {:>12}  {:>9}  {:>9}  {:>9}\n", "channel", width, "type",
+                                    "sampling", "min", "max", "NaN", "Inf", "negative");
+    for (const InspectedChannel& row : channels) {
+        const ExrChannel& channel = row.channel;
+        table += fmt::format("  {:<{}}  {:<5}  {:<8}", printable(channel.name), width, pixel_type_name(channel.type),
+                             fmt::format("{} x {}", channel.x_sampling, channel.y_sampling));
+        if (row.statistics)
+            table += fmt::format("  {:>12}  {:>12}  {:>9}  {:>9}  {:>9}\n", number_text(row.statistics->min),
+                                 number_text(row.statistics->max), row.statistics->nan, row.statistics->infinite,
+                                 row.statistics->negative);
+        else table += fmt::format("  {}\n", printable(row.reason));
+    }
+    return table;
+}
+
+std::vector<std::string> channels_of(const CaptureHeader& capture, const std::string& role) {
+    const auto found = capture.role_channels.find(role);
+    return found == capture.role_channels.end() ? std::vector<std::string>{} : found->second;
+}
+
+std::string role_lines(const Inspection& inspection) {
+    std::string text = "roles:\n";
+    if (inspection.capture)
+        for (const std::string& role : inspection.capture->roles)
+            text += fmt::format("  {:<14}  {}\n", role, printable(fmt::format("{}", fmt::join(channels_of(*inspection.capture, role), " "))));
+    return text + fmt::format("  {:<14}  {}\n", "(missing)", fmt::join(inspection.missing_roles(), ", "));
+}
+
+std::string camera_lines(const Camera& camera) {
+    std::string text;
+    for (const auto& [name, value] : camera.values()) {
+        const CameraField* field = find_camera_field(name);
+        text += fmt::format("  {:<14}  {:g} {}\n", name, value, field ? field->unit : "");
+    }
+    if (!camera.lens_model.empty()) text += fmt::format("  {:<14}  {}\n", "lens_model", camera.lens_model);
+    if (camera.camera_from_world) text += "  camera_from_world and the rest of its place are known\n";
+    return text.empty() ? "camera: nothing is known\n" : "camera:\n" + text;
+}
+
+/// A float as the shortest number that reads back as it, not as the double nearest to it.
+Json number_json(const std::optional<double>& value, PixelType type) {
+    if (!value) return nullptr;
+    if (type == PixelType::uint32) return std::uint64_t(*value);
+    char digits[32];
+    const auto written = std::to_chars(digits, digits + sizeof digits, float(*value));
+    double shortest = 0;
+    std::from_chars(digits, written.ptr, shortest);
+    return shortest;
+}
+
+Json window_json(const Window& window) {
+    return {{"min", {window.min_x, window.min_y}}, {"max", {window.max_x, window.max_y}}};
+}
+
+Json channel_json(const InspectedChannel& row) {
+    Json channel{{"name", row.channel.name}, {"type", pixel_type_name(row.channel.type)}};
+    if (row.statistics) {
+        channel["min"] = number_json(row.statistics->min, row.channel.type);
+        channel["max"] = number_json(row.statistics->max, row.channel.type);
+        channel["nan"] = row.statistics->nan;
+        channel["inf"] = row.statistics->infinite;
+        channel["negative"] = row.statistics->negative;
+    } else {
+        for (const char* figure : {"min", "max", "nan", "inf", "negative"}) channel[figure] = nullptr;
+        channel["reason"] = row.reason;
+    }
+    return channel;
+}
+
+Json part_json(const InspectedPart& part) {
+    Json json{{"name", part.header.name},
+              {"view", part.header.view},
+              {"data_window", window_json(part.header.data_window)},
+              {"display_window", window_json(part.header.display_window)},
+              {"compression", part.header.compression},
+              {"channels", Json::array()}};
+    for (const InspectedChannel& channel : part.channels) json["channels"].push_back(channel_json(channel));
+    return json;
+}
+
+Json camera_json(const Camera& camera) {
+    Json json = Json::object();
+    for (const auto& [name, value] : camera.values()) json[name] = value;
+    if (!camera.lens_model.empty()) json["lens_model"] = camera.lens_model;
+    if (camera.camera_from_world) json["camera_from_world"] = *camera.camera_from_world;
+    if (camera.ndc_from_world) json["ndc_from_world"] = *camera.ndc_from_world;
+    return json;
+}
+
+}  // namespace
+
+std::vector<std::string> Inspection::missing_roles() const {
+    std::vector<std::string> missing;
+    for (const std::string& role : role_names()) {
+        if (role == "display") continue;  // what effects make, not what renderers write
+        const bool found = capture && std::find(capture->roles.begin(), capture->roles.end(), role) != capture->roles.end();
+        if (!found) missing.push_back(role);
+    }
+    return missing;
+}
+
+const InspectedChannel* Inspection::first_unreadable() const {
+    for (const InspectedPart& part : parts)
+        for (const InspectedChannel& channel : part.channels)
+            if (!channel.readable) return &channel;
+    return nullptr;
+}
+
+std::string text_of(const Inspection& inspection) {
+    std::string text = inspection.file.string() + "\n";
+    for (std::size_t i = 0; i < inspection.parts.size(); ++i)
+        text += part_title(inspection.parts[i], i) + channel_table(inspection.parts[i].channels);
+    if (inspection.capture)
+        text += fmt::format("profile: {} ({})\n", inspection.capture->profile, printable(inspection.capture->profile_reason));
+    else text += fmt::format("profile: none ({})\n", printable(inspection.no_profile_reason));
+    if (inspection.capture && !inspection.capture->view.empty())
+        text += fmt::format("view: {}\n", printable(inspection.capture->view));
+    return text + role_lines(inspection) + camera_lines(inspection.capture ? inspection.capture->camera : Camera{});
+}
+
+std::string json_of(const Inspection& inspection) {
+    Json json{{"file", inspection.file.string()}, {"parts", Json::array()}};
+    for (const InspectedPart& part : inspection.parts) json["parts"].push_back(part_json(part));
+    if (inspection.capture)
+        json["profile"] = {{"id", inspection.capture->profile}, {"reason", inspection.capture->profile_reason}};
+    else json["profile"] = {{"id", nullptr}, {"reason", inspection.no_profile_reason}};
+    json["roles"] = Json::object();
+    if (inspection.capture)
+        for (const std::string& role : inspection.capture->roles) json["roles"][role] = channels_of(*inspection.capture, role);
+    json["missing"] = inspection.missing_roles();
+    json["camera"] = camera_json(inspection.capture ? inspection.capture->camera : Camera{});
+    // Names in files need not be UTF-8.
+    return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace aftershade::cli

@@ -1,0 +1,36 @@
+// What `inspect` tells of a capture, as text for people and as JSON.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/image/capture.h"
+#include "framework/image/channel_statistics.h"
+#include "framework/image/exr_file.h"
+
+namespace aftershade::cli {
+
+struct InspectedPart {
+    ExrPart header;
+    std::vector<InspectedChannel> channels;
+};
+
+struct Inspection {
+    std::filesystem::path file;
+    std::vector<InspectedPart> parts;
+    std::optional<CaptureHeader> capture;  ///< nullopt where no profile fits
+    std::string no_profile_reason;
+
+    /// The fixed roles that the capture lacks; all where no profile fits.
+    std::vector<std::string> missing_roles() const;
+    /// The first channel that could not be read for a fault of the file; nullptr where all could.
+    const InspectedChannel* first_unreadable() const;
+};
+
+std::string text_of(const Inspection& inspection);
+/// {file, parts, profile, roles, missing, camera}, indented, without a line end.
+std::string json_of(const Inspection& inspection);
+
+}  // namespace aftershade::cli

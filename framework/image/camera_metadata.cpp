@@ -1,0 +1,68 @@
+#include "framework/image/camera_metadata.h"
+
+#include <algorithm>
+#include <array>
+
+#include "framework/core/units.h"
+
+namespace aftershade {
+
+namespace {
+
+/// OpenEXR's standard attributes, ImfStandardAttributes.h: focus in metres, lengths in millimetres.
+struct StandardAttribute {
+    const char* attribute;
+    const char* field;
+};
+constexpr std::array kStandard = {
+    StandardAttribute{"focus", "focus_distance"},
+    StandardAttribute{"aperture", "f_number"},
+    StandardAttribute{"nominalFocalLength", "focal_length"},
+    StandardAttribute{"effectiveFocalLength", "focal_length"},
+};
+
+void set_if_known(Camera& camera, const CameraField& field, std::optional<double> value) {
+    if (value && *value >= field.min && !camera.get(field.name)) camera.set(field.name, *value);
+}
+
+/// EXR's matrices act on row vectors.
+std::optional<CameraMatrix> transposed_matrix(const ExrMetadata& metadata, const char* name) {
+    const auto value = metadata.value(name);
+    const auto* stored = value ? std::get_if<std::vector<float>>(&*value) : nullptr;
+    if (!stored || stored->size() != 16) return std::nullopt;
+    CameraMatrix matrix{};
+    for (std::size_t row = 0; row < 4; ++row)
+        for (std::size_t column = 0; column < 4; ++column) matrix[row * 4 + column] = (*stored)[column * 4 + row];
+    return matrix;
+}
+
+}  // namespace
+
+Camera camera_of_metadata(const ExrMetadata& metadata, const Profile& profile) {
+    Camera camera;
+    const std::vector<std::string> names = metadata.names();
+    for (const auto& [name, source] : profile.camera) {
+        const CameraField& field = *find_camera_field(name);
+        for (const std::string& pattern : source.attributes) {
+            const auto found = std::find_if(names.begin(), names.end(),
+                                            [&](const std::string& n) { return matches_pattern(n, pattern); });
+            if (found == names.end()) continue;
+            const auto stored = metadata.number(*found);
+            const bool same = source.unit == field.unit;
+            set_if_known(camera, field, stored && !same ? convert_unit(*stored, source.unit, field.unit) : stored);
+        }
+    }
+    for (const CameraField& field : camera_fields())
+        set_if_known(camera, field, metadata.number("aftershade/camera/" + field.name));
+    for (const StandardAttribute& standard : kStandard)
+        set_if_known(camera, *find_camera_field(standard.field), metadata.number(standard.attribute));
+    const auto sensor = metadata.value("sensorOverallDimensions");
+    if (const auto* size = sensor ? std::get_if<std::vector<float>>(&*sensor) : nullptr; size && !size->empty())
+        set_if_known(camera, *find_camera_field("sensor_width"), size->front());
+    camera.lens_model = metadata.text("aftershade/camera/lens_model").value_or(profile.lens_model);
+    camera.camera_from_world = transposed_matrix(metadata, "worldToCamera");
+    camera.ndc_from_world = transposed_matrix(metadata, "worldToNDC");
+    return camera;
+}
+
+}  // namespace aftershade

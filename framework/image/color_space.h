@@ -1,0 +1,40 @@
+// Primaries of scene-linear RGB and conversion between them.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "framework/image/exr_file.h"
+#include "framework/image/image.h"
+
+namespace aftershade {
+
+/// CIE xy of red, green, blue and white, as EXR's attribute `chromaticities`.
+using Chromaticities = std::array<float, 8>;
+
+/// Row by row: out = matrix * rgb.
+using ColorMatrix = std::array<double, 9>;
+
+/// "rec709", "acescg", "ap0", "rec2020"; nullopt for anything else.
+std::optional<Chromaticities> color_space_primaries(std::string_view name);
+std::vector<std::string> color_space_names();
+/// The name of known primaries, to 0.0005 a coordinate; "" for others.
+std::string name_of_primaries(const Chromaticities& primaries);
+
+/// The header's attribute; Rec. 709, as the OpenEXR specification says, where there is none.
+Chromaticities stored_primaries(const ExrMetadata& metadata);
+
+/// CIE XYZ stored as RGB: its values are absolute, so nothing is adapted to another white.
+bool is_xyz(const Chromaticities& primaries);
+
+/// From light in one space to the same light in another. Whites that differ are adapted by Bradford's method (ICC v4,
+/// annex E). Throws Error(ExitCode::capture) for primaries that span no space.
+ColorMatrix conversion_matrix(const Chromaticities& from, const Chromaticities& to);
+
+/// Applies the matrix to the first three channels.
+void convert_colors(Image& image, const ColorMatrix& matrix);
+
+}  // namespace aftershade

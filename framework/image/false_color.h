@@ -1,0 +1,76 @@
+// A picture for people out of the image of any role.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "framework/image/color_space.h"
+#include "framework/image/image.h"
+#include "framework/image/label_text.h"
+
+namespace aftershade {
+
+/// What is wrong with a pixel; a later one outweighs an earlier one.
+enum class PixelFault { none, negative, infinite, nan };
+inline constexpr std::array kPixelFaults = {PixelFault::negative, PixelFault::infinite, PixelFault::nan};
+std::string_view pixel_fault_name(PixelFault fault);
+DisplayColor pixel_fault_color(PixelFault fault);
+
+/// Depth where nothing was hit: a grey, which the ramp has not.
+inline constexpr DisplayColor kNothingHitColor = {0.45f, 0.45f, 0.45f};
+
+/// viridis, from dark to bright, t in 0..1.
+DisplayColor ramp_color(float t);
+/// Direction (+x right, +y down) as hue, length 0..1 from black to the full colour; longer vectors turn paler.
+DisplayColor wheel_color(float x, float y);
+
+/// What explains the colours beside the words.
+enum class Legend { none, ramp, wheel };
+
+/// Shows one role's image. Negative values are faults only where the role's contract forbids them.
+/// [thread-safe; `image` must outlive it]
+class FalseColor {
+public:
+    /// `primaries` of the stored colours; all zero: Rec. 709.
+    FalseColor(const std::string& role, const Image& image, const Chromaticities& primaries);
+
+    DisplayColor color(int x, int y) const;
+    PixelFault fault(int x, int y) const;
+    std::uint64_t fault_count(PixelFault fault) const { return fault_counts_[std::size_t(fault)]; }
+    /// Two lines: range and unit, and how they are shown.
+    const std::array<std::string, 2>& label() const { return label_; }
+    Legend legend() const;
+    bool is_blendable() const { return kind_ != Kind::ids; }  ///< false: the mean of two colours would be a third id
+
+private:
+    enum class Kind { color, depth, velocity, normal, position, ids, grey };
+    static Kind kind_of(const std::string& role, const Image& image);
+    void count_faults();
+    void fit_color(const std::string& role, const Chromaticities& primaries);
+    void fit_depth();
+    void fit_velocity();
+    void fit_ids();
+    void fit_position();
+    void fit_grey();
+    DisplayColor exposed(const float* pixel) const;
+    DisplayColor scaled(const float* pixel) const;
+    const float* pixel(int x, int y) const;
+    float luminance(const float* pixel) const;
+
+    const Image& image_;
+    Kind kind_;
+    bool may_be_negative_;
+    bool may_be_infinite_;
+    ColorMatrix to_rec709_ = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    float exposure_ = 1;                     // color: factor
+    std::array<float, 3> low_ = {0, 0, 0};   // of the range shown; depth: ln m
+    std::array<float, 3> high_ = {1, 1, 1};
+    float longest_px_ = 1;                   // velocity: at the rim of the wheel
+    std::array<std::uint64_t, 4> fault_counts_{};
+    std::array<std::string, 2> label_;
+};
+
+}  // namespace aftershade

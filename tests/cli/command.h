@@ -1,0 +1,141 @@
+// Starts the real executable in a folder and keeps what it printed.
+#pragma once
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/temporary_folder.h"
+
+namespace aftershade::test {
+
+using Environment = std::map<std::string, std::string>;
+
+struct CommandResult {
+    int exit_code = -1;  ///< 128 + signal where one ended the process
+    std::string out;
+    std::string err;
+};
+
+inline std::vector<std::string> lines_of_text(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);)
+        lines.push_back(line);
+    return lines;
+}
+
+/// A running command. Its output goes to files, so that it never waits for a reader.
+class Command {
+public:
+    /// `environment` is put above the test's own, from which AFTERSHADE_* is taken out.
+    Command(std::vector<std::string> words, const std::filesystem::path& folder,
+            const Environment& environment = {}) {
+        std::vector<char*> arguments, variables;
+        for (std::string& word : words)
+            arguments.push_back(word.data());
+        arguments.push_back(nullptr);
+        std::vector<std::string> settings = merged(environment);
+        for (std::string& setting : settings)
+            variables.push_back(setting.data());
+        variables.push_back(nullptr);
+
+        posix_spawn_file_actions_t actions;
+        posix_spawn_file_actions_init(&actions);
+        const int flags = O_WRONLY | O_CREAT | O_TRUNC;
+        posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, (output_ / "out").c_str(), flags, 0600);
+        posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, (output_ / "err").c_str(), flags, 0600);
+        posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+        const int failure =
+            posix_spawn(&process_, words[0].c_str(), &actions, nullptr, arguments.data(), variables.data());
+        posix_spawn_file_actions_destroy(&actions);
+        if (failure != 0) throw std::runtime_error("cannot start " + words[0]);
+    }
+    ~Command() {
+        if (process_ > 0) kill(process_, SIGKILL), waitpid(process_, nullptr, 0);
+    }
+    Command(const Command&) = delete;
+    Command& operator=(const Command&) = delete;
+
+    void send(int signal) const { kill(process_, signal); }
+
+    /// False if the command ended or ten seconds passed before it had printed that many lines to stdout.
+    bool wait_for_lines(std::size_t count) const {
+        using namespace std::chrono_literals;
+        for (auto waited = 0ms; waited < 10s; waited += 2ms) {
+            if (lines_of_text(read_text(output_ / "out")).size() >= count) return true;
+            siginfo_t ended{};
+            waitid(P_PID, id_t(process_), &ended, WEXITED | WNOHANG | WNOWAIT);
+            if (ended.si_pid != 0) return false;
+            std::this_thread::sleep_for(2ms);
+        }
+        return false;
+    }
+
+    CommandResult wait() {
+        int status = 0;
+        waitpid(process_, &status, 0);
+        process_ = 0;
+        const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+        return {code, read_text(output_ / "out"), read_text(output_ / "err")};
+    }
+
+private:
+    static std::vector<std::string> merged(Environment above) {
+        above.emplace("LSAN_OPTIONS", "print_suppressions=0");  // stderr is for what the command says
+        std::vector<std::string> settings;
+        for (char** entry = environ; *entry; ++entry) {
+            const std::string text = *entry;
+            const std::string name = text.substr(0, text.find('='));
+            if (!above.contains(name) && !name.starts_with("AFTERSHADE_")) settings.push_back(text);
+        }
+        for (const auto& [name, value] : above)
+            settings.push_back(name + "=" + value);
+        return settings;
+    }
+
+    TemporaryFolder output_;
+    pid_t process_ = 0;
+};
+
+inline std::vector<std::string> aftershade_words(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), AFTERSHADE_EXECUTABLE);
+    return arguments;
+}
+
+/// On OSMesa unless `environment` or an argument says otherwise.
+inline CommandResult run_aftershade(const std::vector<std::string>& arguments,
+                                    const std::filesystem::path& folder, Environment environment = {}) {
+    environment.try_emplace("AFTERSHADE_BACKEND", "osmesa");
+    return Command(aftershade_words(arguments), folder, environment).wait();
+}
+
+/// Every file below `folder` with its bytes; folders have none.
+inline std::map<std::string, std::string> contents(const std::filesystem::path& folder) {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+        files[std::filesystem::relative(entry.path(), folder).string()] =
+            entry.is_regular_file() ? read_text(entry.path()) : "";
+    return files;
+}
+
+/// Makes dlopen of every GL library fail.
+inline Environment without_gl(const std::filesystem::path& folder) {
+    std::filesystem::create_directories(folder);
+    for (const char* library :
+         {"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so", "libEGL.so.1", "libEGL.so"})
+        write_text(folder / library, "");
+    return {{"LD_LIBRARY_PATH", folder.string()}};
+}
+
+}  // namespace aftershade::test

@@ -1,0 +1,227 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "framework/core/error.h"
+#include "framework/image/png_file.h"
+#include "tests/cli/command.h"
+#include "tests/real_captures.h"
+#include "tests/synthetic_capture.h"
+
+namespace aftershade::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+const std::string kSuzanne = AFTERSHADE_SOURCE_DIR "/scenes/suzanne/capture.json";
+
+std::set<std::string> keys_of(const Json& object) {
+    std::set<std::string> keys;
+    for (const auto& [key, value] : object.items()) keys.insert(key);
+    return keys;
+}
+
+const Json& channel_named(const Json& part, const std::string& name) {
+    for (const Json& channel : part["channels"])
+        if (channel["name"] == name) return channel;
+    ADD_FAILURE() << "no channel " << name;
+    static const Json none;
+    return none;
+}
+
+class Inspect : public testing::Test {
+protected:
+    CommandResult inspect(std::vector<std::string> arguments, ExitCode expected = ExitCode::done,
+                          const Environment& environment = {}) {
+        arguments.insert(arguments.begin(), "inspect");
+        CommandResult result = run_aftershade(arguments, folder_.path(), environment);
+        EXPECT_EQ(result.exit_code, int(expected)) << arguments[1] << ": " << result.err;
+        return result;
+    }
+    Json json(std::vector<std::string> arguments, ExitCode expected = ExitCode::done) {
+        arguments.push_back("--json");
+        return Json::parse(inspect(arguments, expected).out);
+    }
+    /// One float channel each, 64 x 4 px.
+    fs::path write_channels(const std::string& name, const std::vector<std::string>& channels, float value = 1) {
+        Image image(64, 4, 1);
+        std::fill(image.floats().begin(), image.floats().end(), value);
+        std::vector<ExrOutputChannel> outputs;
+        for (const std::string& channel : channels) outputs.push_back({channel, PixelType::float32, &image, 0});
+        ExrWriteOptions options;
+        options.data_window = options.display_window = {0, 0, 63, 3};
+        write_exr(folder_ / name, outputs, options);
+        return folder_ / name;
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_F(Inspect, TellsTheSuzanneCaptureAsJson) {
+    const Json document = json({kSuzanne});
+    EXPECT_EQ(keys_of(document), (std::set<std::string>{"file", "parts", "profile", "roles", "missing", "camera"}));
+    EXPECT_TRUE(document["file"].get<std::string>().ends_with("scenes/suzanne/gbuffer_0003.exr"));
+    ASSERT_EQ(document["parts"].size(), 1);
+    const Json& part = document["parts"][0];
+    EXPECT_EQ(keys_of(part), (std::set<std::string>{"name", "view", "data_window", "display_window", "compression", "channels"}));
+    EXPECT_EQ(part["data_window"], Json::parse(R"({"min": [0, 0], "max": [479, 269]})"));
+    EXPECT_EQ(part["compression"], "zip");
+    ASSERT_EQ(part["channels"].size(), 25);
+    for (const Json& channel : part["channels"])
+        EXPECT_EQ(keys_of(channel), (std::set<std::string>{"name", "type", "min", "max", "nan", "inf", "negative"}));
+    // As oiiotool --stats says.
+    EXPECT_EQ(channel_named(part, "ViewLayer.IndexOB.X")["max"], 30);
+    EXPECT_EQ(channel_named(part, "ViewLayer.Depth.Z")["max"], 1e10);
+    EXPECT_EQ(channel_named(part, "ViewLayer.Depth.Z")["type"], "float");
+    EXPECT_EQ(channel_named(part, "ViewLayer.Combined.R")["type"], "half");
+    EXPECT_EQ(channel_named(part, "ViewLayer.Combined.R")["max"], 60.28125);
+    EXPECT_EQ(channel_named(part, "ViewLayer.Combined.R")["nan"], 0);
+    EXPECT_EQ(document["profile"], Json::parse(R"({"id": "blender", "reason": "chosen by name"})"));
+    EXPECT_EQ(document["roles"]["depth"], Json::parse(R"(["ViewLayer.Depth.Z"])"));
+    EXPECT_EQ(document["missing"], Json::parse(R"(["specular", "emission", "mask"])"));
+    EXPECT_EQ(document["camera"]["focal_length"], 50);
+}
+
+TEST_F(Inspect, TellsAPersonTheSame) {
+    const CommandResult result = inspect({kSuzanne, "--frames", "4"});
+    for (const char* words : {"scenes/suzanne/gbuffer_0004.exr\n", "part 0: scanlineimage, zip\n",
+                              "data window     (0, 0)-(479, 269), 480 x 270 px\n", "ViewLayer.IndexOB.X   float  1 x 1 ",
+                              "profile: blender (chosen by name)\n", "  depth           ViewLayer.Depth.Z\n",
+                              "(missing)       specular, emission, mask\n", "  focal_length    50 mm\n"})
+        EXPECT_NE(result.out.find(words), std::string::npos) << words << "\n" << result.out;
+    EXPECT_EQ(result.err, "");
+}
+
+TEST_F(Inspect, CountsWhatIsNotFinite) {
+    Capture capture = make_capture({.width = 8, .height = 4, .background = {0.5f, 0.5f, 0.5f}});
+    capture.images["color"].at(1, 2, 0) = std::numeric_limits<float>::quiet_NaN();
+    capture.images["color"].at(3, 2, 0) = -1;
+    write_capture(capture, folder_ / "a.exr");
+    const Json document = json({"a.exr"});
+    const Json& red = channel_named(document["parts"][0], "R");
+    EXPECT_EQ(red["nan"], 1);
+    EXPECT_EQ(red["negative"], 1);
+    EXPECT_EQ(red["min"], -1);
+    const Json& depth = channel_named(document["parts"][0], "Z");
+    EXPECT_EQ(depth["inf"], 32);
+    EXPECT_TRUE(depth["min"].is_null());
+    EXPECT_TRUE(depth["max"].is_null());
+    EXPECT_EQ(channel_named(document["parts"][0], "object_id.I")["type"], "uint");
+    EXPECT_EQ(document["profile"]["id"], "native");
+}
+
+TEST_F(Inspect, NeedsNoProfileAndNoGl) {
+    write_channels("a.exr", {"foo.\xff", "bar"});
+    const Json document = Json::parse(inspect({"a.exr", "--json"}, ExitCode::done, without_gl(folder_ / "no_gl")).out);
+    EXPECT_TRUE(document["profile"]["id"].is_null());
+    EXPECT_EQ(document["profile"]["reason"], "no profile fits its channels (name one with --profile)");
+    EXPECT_EQ(document["roles"], Json::object());
+    EXPECT_EQ(document["parts"][0]["channels"].size(), 2);
+    EXPECT_EQ(document["missing"].size(), 12);
+}
+
+TEST_F(Inspect, ShowsNamesFromTheFileWithoutControlCharacters) {
+    write_channels("a.exr", {"R\x1b[31m"});
+    EXPECT_EQ(inspect({"a.exr"}).out.find('\x1b'), std::string::npos);
+}
+
+TEST_F(Inspect, ListsWhatAFileWithDamagedPixelsStillTells) {
+    std::string bytes = read_text(write_channels("a.exr", {"R", "G", "B"}, 0.3f));
+    write_text(folder_ / "cut.exr", bytes.substr(0, bytes.size() - 10));
+    const CommandResult result = inspect({"cut.exr", "--json"}, ExitCode::capture);
+    EXPECT_TRUE(result.err.starts_with("aftershade: error: cut.exr: cut off or damaged")) << result.err;
+    const Json document = Json::parse(result.out);
+    EXPECT_TRUE(channel_named(document["parts"][0], "R")["reason"].get<std::string>().starts_with("cut off"));
+    EXPECT_TRUE(channel_named(document["parts"][0], "R")["min"].is_null());
+    EXPECT_EQ(document["profile"]["id"], "native");
+
+    write_text(folder_ / "none.exr", "# no picture");
+    EXPECT_EQ(inspect({"none.exr"}, ExitCode::capture).out, "");
+    inspect({"absent.exr"}, ExitCode::capture);
+    inspect({"a.exr", "--max-size", "32"}, ExitCode::capture);
+}
+
+TEST_F(Inspect, RefusesWrongWords) {
+    write_channels("a.exr", {"R", "G", "B"});
+    const auto told = [&](std::vector<std::string> arguments) { return inspect(std::move(arguments), ExitCode::usage).err; };
+    EXPECT_NE(told({"a.exr", "--profile", "blendr"}).find("did you mean 'blender'?"), std::string::npos);
+    EXPECT_NE(told({kSuzanne, "--frames", "9"}).find("the capture has no frame 9"), std::string::npos);
+    EXPECT_NE(told({kSuzanne, "--frames", "3-4"}).find("inspect looks at one"), std::string::npos);
+    EXPECT_NE(told({"a.exr", "--contact-sheet", "a.exr"}).find("a contact sheet is a .png file"), std::string::npos);
+}
+
+TEST_F(Inspect, PutsEveryRoleOnAContactSheet) {
+    SyntheticScene scene{.width = 64, .height = 36, .background = {0.1f, 0.2f, 0.4f}, .background_depth_m = 8};
+    scene.box = SyntheticBox{4, 6, 16, 12, 5, 2};
+    write_capture(make_capture(scene), folder_ / "a.exr");
+    const CommandResult result = inspect({"a.exr", "--contact-sheet", "sheet.png", "--json"});
+    EXPECT_EQ(Json::parse(result.out)["roles"].size(), 12);
+    EXPECT_EQ(result.err, "contact sheet: sheet.png\n");
+    const Image sheet = read_png(folder_ / "sheet.png");
+    EXPECT_EQ(sheet.channels(), 3);
+    EXPECT_GT(sheet.width(), 3 * 448);
+
+    const Json nothing = json({write_channels("b.exr", {"foo"}).string(), "--contact-sheet", "b.png"}, ExitCode::capture);
+    EXPECT_TRUE(nothing["profile"]["id"].is_null());
+    EXPECT_FALSE(fs::exists(folder_ / "b.png"));
+    inspect({"a.exr", "--contact-sheet", "no/such/folder.png"}, ExitCode::output);
+}
+
+TEST_F(Inspect, ShowsTheOtherRolesWhereOneCannotBeDecoded) {
+    Image ids(64, 4, 1);
+    std::fill(ids.floats().begin(), ids.floats().end(), 1.5f);  // no whole number
+    const Image color(64, 4, 1);
+    const std::vector<ExrOutputChannel> channels = {{"R", PixelType::half, &color, 0}, {"G", PixelType::half, &color, 0},
+        {"B", PixelType::half, &color, 0}, {"object_id.I", PixelType::float32, &ids, 0}};
+    ExrWriteOptions options;
+    options.data_window = options.display_window = {0, 0, 63, 3};
+    write_exr(folder_ / "a.exr", channels, options);
+    inspect({"a.exr", "--contact-sheet", "a.png"});
+    EXPECT_GT(read_png(folder_ / "a.png").width(), 448);
+}
+
+TEST_F(Inspect, ListsSubsampledChannelsWithTheReason) {
+    AFTERSHADE_REQUIRE_CAPTURE(suite, "exr-suite");
+    const Json luminance = json({(*suite / "Chromaticities/Rec709_YC.exr").string()});
+    EXPECT_EQ(channel_named(luminance["parts"][0], "RY")["reason"], "subsampled 2 x 2");
+    EXPECT_TRUE(channel_named(luminance["parts"][0], "RY")["nan"].is_null());
+    EXPECT_TRUE(channel_named(luminance["parts"][0], "Y")["max"].is_number());
+    EXPECT_EQ(luminance["roles"]["color"], Json::parse(R"(["Y"])"));
+    const Json deep = json({(*suite / "v2/LowResLeftView/Trunks.exr").string()});
+    EXPECT_EQ(channel_named(deep["parts"][0], "Z")["reason"], "deep: any number of values a pixel");
+}
+
+TEST_F(Inspect, ReadsEveryFileOfOpenExrsSuiteAndBeachball) {
+    AFTERSHADE_REQUIRE_CAPTURE(suite, "exr-suite");
+    AFTERSHADE_REQUIRE_CAPTURE(beachball, "beachball");
+    int files = 0;
+    for (const fs::path& folder : {*suite, *beachball})
+        for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+            if (entry.path().extension() != ".exr") continue;
+            ++files;
+            EXPECT_NE(inspect({entry.path().string()}).out, "");
+            EXPECT_FALSE(json({entry.path().string()})["parts"].empty()) << entry.path();
+        }
+    EXPECT_GE(files, 40);
+}
+
+TEST_F(Inspect, EndsInOrderOnEveryDamagedFile) {
+    AFTERSHADE_REQUIRE_CAPTURE(damaged, "exr-damaged");
+    int files = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(*damaged)) {
+        if (!entry.is_regular_file()) continue;
+        ++files;
+        const CommandResult result = run_aftershade({"inspect", entry.path().string(), "--json"}, folder_.path());
+        EXPECT_TRUE(result.exit_code == 0 || result.exit_code == 3) << entry.path() << ": " << result.exit_code << result.err;
+        if (!result.out.empty()) {
+            EXPECT_TRUE(Json::accept(result.out)) << entry.path();
+        }
+    }
+    EXPECT_GT(files, 100);
+}
+
+}  // namespace
+}  // namespace aftershade::test
