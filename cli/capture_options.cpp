@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <iostream>
 
+#include "framework/core/data_path.h"
 #include "framework/core/error.h"
+#include "framework/image/color_space.h"
 #include "framework/image/frame_range.h"
 
 namespace aftershade::cli {
@@ -18,8 +20,8 @@ void choose_frames(const CaptureOptions& options, Sequence& sequence, Diagnostic
         diagnostics.error(place, "not a frame range such as 1-100x2,120");
         return;
     }
-    // With a range of its own, the capture says which frames there are; else the files on disk do, when they are read.
-    for (const int frame : *frames)
+    // A capture with a range says which frames there are; else the disk does, when they are read.
+    for (const int frame : sequence.frames_declared ? *frames : std::vector<int>{})
         if (std::find(sequence.frames.begin(), sequence.frames.end(), frame) == sequence.frames.end()) {
             diagnostics.error(place, "the capture has no frame " + std::to_string(frame));
             return;
@@ -27,21 +29,47 @@ void choose_frames(const CaptureOptions& options, Sequence& sequence, Diagnostic
     sequence.frames = *frames;
 }
 
+void choose_color_space(const CaptureOptions& options, Sequence& sequence, Diagnostics& diagnostics) {
+    if (options.color_space.empty()) return;
+    std::vector<std::string> names = color_space_names();
+    names.insert(names.begin(), "auto");
+    if (std::find(names.begin(), names.end(), options.color_space) == names.end())
+        diagnostics.error({"--color-space " + options.color_space},
+                          "must be " + list_of_names(names) + did_you_mean(options.color_space, names));
+    else sequence.color_space = options.color_space;
+}
+
 }  // namespace
 
-void add_capture_argument(CLI::App& app, CaptureOptions& options) {
-    app.add_option("capture", options.capture, "capture.json, an EXR file, or a pattern such as frame_####.exr")->required();
+CLI::Option* add_capture_argument(CLI::App& app, CaptureOptions& options) {
+    return app.add_option("capture", options.capture,
+                   "capture.json, an EXR file, a pattern such as frame_####.exr, or a folder")
+        ->required();
 }
 
 void add_capture_options(CLI::App& app, CaptureOptions& options, const std::string& frames_help) {
     app.add_option("--frames", options.frames, frames_help);
-    app.add_option("--profile", options.profile, "Conventions of the capture's producer (default: the capture's, else auto)");
+    app.add_option("--profile", options.profile,
+                   "Conventions of the capture's producer (default: the capture's, else auto)");
+    app.add_option("--profile-path", options.profile_paths, "Folder of profiles, searched before the shipped ones; repeatable")
+        ->allow_extra_args(false);
+    app.add_option("--role", options.role_files, "role=file or pattern, for a role in files of its own; repeatable")
+        ->allow_extra_args(false);
+    app.add_option("--view", options.view, "View of a multi-view file (default: the file's first)");
+    app.add_option("--color-space", options.color_space, "Primaries of the stored colours: auto, rec709, acescg, ap0, rec2020");
     app.add_option("--max-size", options.limits.max_side_px, "Refuse images with a side above this, px")
         ->check(CLI::Range(1, 65536))
         ->capture_default_str();
-    app.add_option("--max-image-bytes", options.limits.max_image_bytes, "Refuse images of more bytes than this")
+    app.add_option("--max-image-bytes", options.limits.max_image_bytes,
+                   "Refuse images of more bytes than this")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
+}
+
+std::vector<Profile> load_profiles(const CaptureOptions& options, Diagnostics& diagnostics) {
+    std::vector<std::filesystem::path> folders(options.profile_paths.begin(), options.profile_paths.end());
+    folders.push_back(data_path() / "profiles");
+    return read_profiles(folders, diagnostics);
 }
 
 std::optional<Sequence> find_sequence(const CaptureOptions& options, const std::vector<Profile>& profiles,
@@ -55,8 +83,12 @@ std::optional<Sequence> find_sequence(const CaptureOptions& options, const std::
     }
     if (!sequence) return std::nullopt;
     if (!options.profile.empty()) sequence->profile = options.profile;
+    if (!options.view.empty()) sequence->view = options.view;
+    for (const std::string& text : options.role_files) add_role_file(*sequence, text, diagnostics);
+    choose_color_space(options, *sequence, diagnostics);
     std::vector<std::string> ids{"auto"};
-    for (const Profile& profile : profiles) ids.push_back(profile.id);
+    for (const Profile& profile : profiles)
+        ids.push_back(profile.id);
     if (std::find(ids.begin(), ids.end(), sequence->profile) == ids.end())
         diagnostics.error({options.profile.empty() ? options.capture : "--profile " + options.profile},
                           "no profile '" + sequence->profile + "'" + did_you_mean(sequence->profile, ids) +
@@ -69,7 +101,8 @@ void stop_at_errors(const Diagnostics& diagnostics) {
     if (!diagnostics.has_errors()) return;
     diagnostics.print(std::cerr);
     throw Error(ExitCode::usage, std::to_string(diagnostics.error_count()) +
-                                     (diagnostics.error_count() == 1 ? " error" : " errors") + "; nothing was run");
+                                     (diagnostics.error_count() == 1 ? " error" : " errors") +
+                                     "; nothing was run");
 }
 
 }  // namespace aftershade::cli

@@ -17,15 +17,23 @@ struct CaptureOptions {
     std::string capture;
     std::string frames;   ///< "" for the capture's own
     std::string profile;  ///< "" for the capture's own
+    std::vector<std::string> profile_paths;  ///< folders, searched before the shipped profiles
+    std::vector<std::string> role_files;     ///< "depth=z.####.exr"
+    std::string view;                        ///< "" for the capture's own
+    std::string color_space;                 ///< "" for the capture's own
     ReadLimits limits;
 };
 
 /// The argument CAPTURE; add it where it belongs in the order of the verb's arguments.
-void add_capture_argument(CLI::App& app, CaptureOptions& options);
-/// --frames (what they are for is the verb's), --profile, --max-size, --max-image-bytes.
+CLI::Option* add_capture_argument(CLI::App& app, CaptureOptions& options);
+/// --frames (what they are for is the verb's), --profile, --profile-path, --role, --view, --color-space and the limits.
 void add_capture_options(CLI::App& app, CaptureOptions& options, const std::string& frames_help);
 
-/// nullopt after a fault in capture.json, or after frames were not found while the user has other faults to mend.
+/// The profiles of --profile-path and the shipped ones.
+std::vector<Profile> load_profiles(const CaptureOptions& options, Diagnostics& diagnostics);
+
+/// nullopt after a fault in capture.json, or after frames were not found while the user has other faults to
+/// mend.
 std::optional<Sequence> find_sequence(const CaptureOptions& options, const std::vector<Profile>& profiles,
                                       Diagnostics& diagnostics);
 

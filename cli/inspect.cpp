@@ -1,4 +1,5 @@
 #include <iostream>
+#include <map>
 #include <memory>
 #include <string>
 #include <thread>
@@ -6,6 +7,7 @@
 #include <vector>
 
 #include "cli/capture_options.h"
+#include "cli/check_velocity.h"
 #include "cli/inspect_report.h"
 #include "cli/verbs.h"
 #include "framework/core/data_path.h"
@@ -19,10 +21,12 @@ namespace {
 struct InspectOptions {
     CaptureOptions capture;
     std::string contact_sheet;
+    std::vector<std::string> check_velocity;
     bool json = false;
 };
 
-void check_options(const InspectOptions& options, const std::optional<Sequence>& sequence, Diagnostics& diagnostics) {
+void check_options(const InspectOptions& options, const std::optional<Sequence>& sequence,
+                   Diagnostics& diagnostics) {
     if (!options.contact_sheet.empty() && !options.contact_sheet.ends_with(".png"))
         diagnostics.error({"--contact-sheet " + options.contact_sheet}, "a contact sheet is a .png file");
     if (sequence && !options.capture.frames.empty() && sequence->frames.size() > 1)
@@ -30,22 +34,43 @@ void check_options(const InspectOptions& options, const std::optional<Sequence>&
                           std::to_string(sequence->frames.size()) + " frames; inspect looks at one");
 }
 
+std::string without_path(const std::string& message, const std::filesystem::path& path) {
+    const std::string prefix = path.string() + ": ";
+    return message.starts_with(prefix) ? message.substr(prefix.size()) : message;
+}
+
 /// Throws Error(ExitCode::capture) where the frame's file, or that of one of its roles, cannot be opened.
-Inspection inspect_frame(const Sequence& sequence, int frame, const CaptureReader& reader, const ReadLimits& limits) {
+Inspection inspect_frame(const Sequence& sequence, int frame, const CaptureReader& reader,
+                         const ReadLimits& limits) {
     Inspection inspection;
     inspection.file = sequence.path_of(frame);
     const ExrFile file(inspection.file, limits);
-    for (const auto& [role, pattern] : sequence.role_files) ExrFile(pattern.path(frame), limits);
+    for (const auto& [role, pattern] : sequence.role_files)
+        ExrFile(pattern.path(frame), limits);
     for (std::size_t i = 0; i < file.parts().size(); ++i)
         inspection.parts.push_back({file.parts()[i], inspect_channels(file, int(i), limits)});
     try {
         inspection.capture = reader.read_header(frame);
     } catch (const Error& error) {
         // The files are sound, but what they mean is not known: no profile, several, no such view.
-        const std::string message = error.what(), path = inspection.file.string() + ": ";
-        inspection.no_profile_reason = message.starts_with(path) ? message.substr(path.size()) : message;
+        inspection.no_profile_reason = without_path(error.what(), inspection.file);
     }
     return inspection;
+}
+
+/// One role that cannot be decoded does not hide the others.
+Capture read_role_by_role(const CaptureHeader& header, const CaptureReader& reader,
+                          std::map<std::string, std::string>& unreadable) {
+    Capture capture;
+    capture.header = header;
+    for (const std::string& role : header.roles) {
+        try {
+            capture.images.merge(reader.read(header.frame, std::vector{role}).images);
+        } catch (const Error& error) {
+            unreadable[role] = without_path(error.what(), header.path);
+        }
+    }
+    return capture;
 }
 
 void write_contact_sheet(const std::string& path, const CaptureHeader& header, const CaptureReader& reader) {
@@ -54,22 +79,17 @@ void write_contact_sheet(const std::string& path, const CaptureHeader& header, c
     try {
         capture = reader.read(header.frame, header.roles);
     } catch (const Error&) {
-        // One role that cannot be decoded does not hide the others.
-        capture.header = header;
-        for (const std::string& role : header.roles) try {
-                capture.images.merge(reader.read(header.frame, std::vector{role}).images);
-            } catch (const Error& error) {
-                unreadable[role] = error.what();
-            }
+        capture = read_role_by_role(header, reader, unreadable);
     }
     if (capture.images.empty() && unreadable.empty())
-        throw Error(ExitCode::capture, header.path.string() + ": has no role, so there is nothing to put on a contact sheet");
+        throw Error(ExitCode::capture,
+                    header.path.string() + ": has no role, so there is nothing to put on a contact sheet");
     write_png(path, draw_contact_sheet(capture, unreadable));
 }
 
 ExitCode inspect(const InspectOptions& options) {
     Diagnostics diagnostics;
-    std::vector<Profile> profiles = read_profiles(data_path() / "profiles", diagnostics);
+    std::vector<Profile> profiles = load_profiles(options.capture, diagnostics);
     const std::optional<Sequence> sequence = find_sequence(options.capture, profiles, diagnostics);
     check_options(options, sequence, diagnostics);
     stop_at_errors(diagnostics);
@@ -81,10 +101,12 @@ ExitCode inspect(const InspectOptions& options) {
         inspect_frame(*sequence, sequence->frames.front(), reader, options.capture.limits);
     std::cout << (options.json ? json_of(inspection) + "\n" : text_of(inspection)) << std::flush;
     const std::string file = inspection.file.string() + ": ";
-    if (const InspectedChannel* channel = inspection.first_unreadable()) throw Error(ExitCode::capture, file + channel->reason);
+    if (const InspectedChannel* channel = inspection.first_unreadable())
+        throw Error(ExitCode::capture, file + channel->reason);
     if (options.contact_sheet.empty()) return ExitCode::done;
     if (!inspection.capture)
-        throw Error(ExitCode::capture, file + inspection.no_profile_reason + ", so there is no role for a contact sheet");
+        throw Error(ExitCode::capture,
+                    file + inspection.no_profile_reason + ", so there is no role for a contact sheet");
     write_contact_sheet(options.contact_sheet, *inspection.capture, reader);
     std::cerr << "contact sheet: " << options.contact_sheet << "\n";
     return ExitCode::done;
@@ -94,11 +116,22 @@ ExitCode inspect(const InspectOptions& options) {
 
 Verb add_inspect(CLI::App& app) {
     auto options = std::make_shared<InspectOptions>();
-    add_capture_argument(app, options->capture);
+    CLI::Option* capture = add_capture_argument(app, options->capture);
+    CLI::Option* check = app.add_option("--check-velocity", options->check_velocity,
+                                        "Two consecutive frames: do their motion vectors mean what the profile says? Exit 1: no");
+    check->expected(2)->type_name("A B");
+    capture->required(false)->excludes(check);
     add_capture_options(app, options->capture, "The frame to look at (default: the first)");
     app.add_flag("--json", options->json, "Machine-readable output");
-    app.add_option("--contact-sheet", options->contact_sheet, "Write every role in false colour to this .png file");
-    return [options] { return inspect(*options); };
+    app.add_option("--contact-sheet", options->contact_sheet,
+                   "Write every role in false colour to this .png file");
+    return [options] {
+        if (!options->check_velocity.empty())
+            return check_velocity_of_files(options->check_velocity, options->capture, options->json);
+        if (options->capture.capture.empty())
+            throw Error(ExitCode::usage, "inspect: name a capture, or two files with --check-velocity");
+        return inspect(*options);
+    };
 }
 
 }  // namespace aftershade::cli

@@ -22,8 +22,8 @@ std::string printable(std::string text) {
 }
 
 std::string window_text(const Window& window) {
-    return fmt::format("({}, {})-({}, {}), {} x {} px", window.min_x, window.min_y, window.max_x, window.max_y,
-                       window.width(), window.height());
+    return fmt::format("({}, {})-({}, {}), {} x {} px", window.min_x, window.min_y, window.max_x,
+                       window.max_y, window.width(), window.height());
 }
 
 std::string part_title(const InspectedPart& part, std::size_t index) {
@@ -37,22 +37,28 @@ std::string part_title(const InspectedPart& part, std::size_t index) {
     return title + fmt::format("  pixel aspect    {}\n", header.pixel_aspect);
 }
 
-std::string number_text(const std::optional<double>& value) { return value ? fmt::format("{:.6g}", *value) : "-"; }
+std::string number_text(const std::optional<double>& value) {
+    return value ? fmt::format("{:.6g}", *value) : "-";
+}
 
 std::string channel_table(const std::vector<InspectedChannel>& channels) {
     std::size_t width = 7;
-    for (const InspectedChannel& channel : channels) width = std::max(width, channel.channel.name.size());
-    std::string table = fmt::format("  {:<{}}  {:<5}  {:<8}  {:>12}  {:>12}  {:>9}  {:>9}  {:>9}\n", "channel", width, "type",
-                                    "sampling", "min", "max", "NaN", "Inf", "negative");
+    for (const InspectedChannel& channel : channels)
+        width = std::max(width, channel.channel.name.size());
+    std::string table =
+        fmt::format("  {:<{}}  {:<5}  {:<8}  {:>12}  {:>12}  {:>9}  {:>9}  {:>9}\n", "channel", width, "type",
+                    "sampling", "min", "max", "NaN", "Inf", "negative");
     for (const InspectedChannel& row : channels) {
         const ExrChannel& channel = row.channel;
-        table += fmt::format("  {:<{}}  {:<5}  {:<8}", printable(channel.name), width, pixel_type_name(channel.type),
+        table += fmt::format("  {:<{}}  {:<5}  {:<8}", printable(channel.name), width,
+                             pixel_type_name(channel.type),
                              fmt::format("{} x {}", channel.x_sampling, channel.y_sampling));
         if (row.statistics)
             table += fmt::format("  {:>12}  {:>12}  {:>9}  {:>9}  {:>9}\n", number_text(row.statistics->min),
-                                 number_text(row.statistics->max), row.statistics->nan, row.statistics->infinite,
-                                 row.statistics->negative);
-        else table += fmt::format("  {}\n", printable(row.reason));
+                                 number_text(row.statistics->max), row.statistics->nan,
+                                 row.statistics->infinite, row.statistics->negative);
+        else
+            table += fmt::format("  {}\n", printable(row.reason));
     }
     return table;
 }
@@ -66,7 +72,9 @@ std::string role_lines(const Inspection& inspection) {
     std::string text = "roles:\n";
     if (inspection.capture)
         for (const std::string& role : inspection.capture->roles)
-            text += fmt::format("  {:<14}  {}\n", role, printable(fmt::format("{}", fmt::join(channels_of(*inspection.capture, role), " "))));
+            text += fmt::format(
+                "  {:<14}  {}\n", role,
+                printable(fmt::format("{}", fmt::join(channels_of(*inspection.capture, role), " "))));
     return text + fmt::format("  {:<14}  {}\n", "(missing)", fmt::join(inspection.missing_roles(), ", "));
 }
 
@@ -105,7 +113,8 @@ Json channel_json(const InspectedChannel& row) {
         channel["inf"] = row.statistics->infinite;
         channel["negative"] = row.statistics->negative;
     } else {
-        for (const char* figure : {"min", "max", "nan", "inf", "negative"}) channel[figure] = nullptr;
+        for (const char* figure : {"min", "max", "nan", "inf", "negative"})
+            channel[figure] = nullptr;
         channel["reason"] = row.reason;
     }
     return channel;
@@ -118,13 +127,15 @@ Json part_json(const InspectedPart& part) {
               {"display_window", window_json(part.header.display_window)},
               {"compression", part.header.compression},
               {"channels", Json::array()}};
-    for (const InspectedChannel& channel : part.channels) json["channels"].push_back(channel_json(channel));
+    for (const InspectedChannel& channel : part.channels)
+        json["channels"].push_back(channel_json(channel));
     return json;
 }
 
 Json camera_json(const Camera& camera) {
     Json json = Json::object();
-    for (const auto& [name, value] : camera.values()) json[name] = value;
+    for (const auto& [name, value] : camera.values())
+        json[name] = value;
     if (!camera.lens_model.empty()) json["lens_model"] = camera.lens_model;
     if (camera.camera_from_world) json["camera_from_world"] = *camera.camera_from_world;
     if (camera.ndc_from_world) json["ndc_from_world"] = *camera.ndc_from_world;
@@ -137,7 +148,8 @@ std::vector<std::string> Inspection::missing_roles() const {
     std::vector<std::string> missing;
     for (const std::string& role : role_names()) {
         if (role == "display") continue;  // what effects make, not what renderers write
-        const bool found = capture && std::find(capture->roles.begin(), capture->roles.end(), role) != capture->roles.end();
+        const bool found =
+            capture && std::find(capture->roles.begin(), capture->roles.end(), role) != capture->roles.end();
         if (!found) missing.push_back(role);
     }
     return missing;
@@ -155,22 +167,29 @@ std::string text_of(const Inspection& inspection) {
     for (std::size_t i = 0; i < inspection.parts.size(); ++i)
         text += part_title(inspection.parts[i], i) + channel_table(inspection.parts[i].channels);
     if (inspection.capture)
-        text += fmt::format("profile: {} ({})\n", inspection.capture->profile, printable(inspection.capture->profile_reason));
-    else text += fmt::format("profile: none ({})\n", printable(inspection.no_profile_reason));
+        text += fmt::format("profile: {} ({})\n", inspection.capture->profile,
+                            printable(inspection.capture->profile_reason));
+    else
+        text += fmt::format("profile: none ({})\n", printable(inspection.no_profile_reason));
     if (inspection.capture && !inspection.capture->view.empty())
         text += fmt::format("view: {}\n", printable(inspection.capture->view));
-    return text + role_lines(inspection) + camera_lines(inspection.capture ? inspection.capture->camera : Camera{});
+    return text + role_lines(inspection) +
+           camera_lines(inspection.capture ? inspection.capture->camera : Camera{});
 }
 
 std::string json_of(const Inspection& inspection) {
     Json json{{"file", inspection.file.string()}, {"parts", Json::array()}};
-    for (const InspectedPart& part : inspection.parts) json["parts"].push_back(part_json(part));
+    for (const InspectedPart& part : inspection.parts)
+        json["parts"].push_back(part_json(part));
     if (inspection.capture)
-        json["profile"] = {{"id", inspection.capture->profile}, {"reason", inspection.capture->profile_reason}};
-    else json["profile"] = {{"id", nullptr}, {"reason", inspection.no_profile_reason}};
+        json["profile"] = {{"id", inspection.capture->profile},
+                           {"reason", inspection.capture->profile_reason}};
+    else
+        json["profile"] = {{"id", nullptr}, {"reason", inspection.no_profile_reason}};
     json["roles"] = Json::object();
     if (inspection.capture)
-        for (const std::string& role : inspection.capture->roles) json["roles"][role] = channels_of(*inspection.capture, role);
+        for (const std::string& role : inspection.capture->roles)
+            json["roles"][role] = channels_of(*inspection.capture, role);
     json["missing"] = inspection.missing_roles();
     json["camera"] = camera_json(inspection.capture ? inspection.capture->camera : Camera{});
     // Names in files need not be UTF-8.

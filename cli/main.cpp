@@ -34,7 +34,8 @@ int main(int argc, char** argv) {
         verbs[verb] = add_options(*verb);
     };
     add("run", "Run a look over a capture and write the result", aftershade::cli::add_run);
-    add("inspect", "Tell what a capture holds: parts, channels with their figures, roles, camera", aftershade::cli::add_inspect);
+    add("inspect", "Tell what a capture holds: parts, channels with their figures, roles, camera",
+        aftershade::cli::add_inspect);
     add("doctor", "Tell which GL backends work on this machine, and why others do not", aftershade::cli::add_doctor);
 
     try {

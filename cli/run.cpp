@@ -20,7 +20,7 @@ namespace aftershade::cli {
 
 namespace {
 
-struct RunOptions {
+struct RunArguments {
     std::string look;
     std::vector<std::string> outputs;
     std::vector<std::string> roles;
@@ -28,11 +28,16 @@ struct RunOptions {
     std::string pixel_type = "half";
     std::string backend;
     std::string progress = "auto";
+    std::string missing = "error";
+    std::string crop = "data";
+    std::string compression = "zip";
+    bool keep_channels = false;
+    bool audit = false;
     PipelineOptions pipeline;
     CaptureOptions capture;
 };
 
-void add_options(CLI::App& app, RunOptions& options) {
+void add_options(CLI::App& app, RunArguments& options) {
     app.add_option("look", options.look, "The look: a JSON file of effects in order")->required();
     add_capture_argument(app, options.capture);
     app.add_option("-o,--output", options.outputs, "Output file or pattern (.exr, .png); repeatable")
@@ -46,13 +51,36 @@ void add_options(CLI::App& app, RunOptions& options) {
     app.add_option("--output-roles", options.roles, "Roles in EXR outputs (default: color)")->delimiter(',');
     app.add_option("--pixel-type", options.pixel_type, "half or float, for roles that are half by default")
         ->check(CLI::IsMember({"half", "float"}));
+    app.add_flag("--keep-channels", options.keep_channels,
+                 "EXR: every channel of the source too, bit for bit but for those of roles that a step changed");
+    app.add_option("--crop", options.crop, "EXR: data (the windows as they are) or display (its pixels only)")
+        ->check(CLI::IsMember({"data", "display"}))
+        ->capture_default_str();
+    app.add_option("--compression", options.compression, "EXR: none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa or dwab")
+        ->capture_default_str();
+    app.add_option("--missing", options.missing, "A frame whose file is not there: error, skip, or hold the last one")
+        ->check(CLI::IsMember({"error", "skip", "hold"}))
+        ->capture_default_str();
+    app.add_flag("--audit", options.audit, "Tell which pass first writes NaN or infinite values, where and how many; slow");
     app.add_option("--effect-path", options.effect_paths, "Folder of effects, searched before the shipped ones; repeatable")
         ->allow_extra_args(false);
     app.add_option("--progress", options.progress, "auto, none or plain")->capture_default_str();
     add_backend_option(app, options.backend);
 }
 
-ExitCode run(const RunOptions& options) {
+OutputOptions output_options(const RunArguments& options) {
+    OutputOptions outputs;
+    outputs.patterns = options.outputs;
+    if (!options.roles.empty()) outputs.roles = options.roles;
+    if (options.pixel_type == "float") outputs.color_type = PixelType::float32;
+    outputs.keep_channels = options.keep_channels;
+    outputs.crop_to_display = options.crop == "display";
+    outputs.compression = options.compression;
+    outputs.look = options.look;
+    return outputs;
+}
+
+ExitCode run(const RunArguments& options) {
     const std::atomic<bool>& stop = watch_for_interrupt();
     const std::filesystem::path data = data_path();
     std::vector<std::filesystem::path> effect_folders(options.effect_paths.begin(), options.effect_paths.end());
@@ -69,11 +97,9 @@ ExitCode run(const RunOptions& options) {
     const auto look = read_look(options.look, diagnostics);
     Pipeline pipeline;
     if (look) pipeline = compile_pipeline(*look, effects, options.pipeline, diagnostics);
-    std::vector<Profile> profiles = read_profiles(data / "profiles", diagnostics);
+    std::vector<Profile> profiles = load_profiles(options.capture, diagnostics);
     const std::optional<Sequence> sequence = find_sequence(options.capture, profiles, diagnostics);
-    OutputOptions outputs{options.outputs, {"color"}, PixelType::half, options.look, ""};
-    if (!options.roles.empty()) outputs.roles = options.roles;
-    if (options.pixel_type == "float") outputs.color_type = PixelType::float32;
+    OutputOptions outputs = output_options(options);
     check_outputs(outputs, sequence.value_or(Sequence{}), diagnostics);
     stop_at_errors(diagnostics);
     diagnostics.print(std::cerr);
@@ -86,8 +112,11 @@ ExitCode run(const RunOptions& options) {
     gpu::Context context(backend);
     outputs.renderer = context.info().renderer;
     RunReporter reporter(progress, int(sequence->frames.size()));
-    const RunReport report =
-        run_frames(context, pipeline, reader, sequence->frames, outputs, data, reporter.observer(), stop);
+    const MissingFrame missing = options.missing == "skip"   ? MissingFrame::skip
+                                 : options.missing == "hold" ? MissingFrame::hold
+                                                             : MissingFrame::error;
+    const RunReport report = run_frames(context, pipeline, reader, {sequence->frames, missing, options.audit}, outputs, data,
+                                        reporter.observer(), stop);
     if (progress != ProgressStyle::none)
         std::cerr << gpu::backend_name(context.info().backend) << ": " << context.info().renderer << ", "
                   << context.info().version << "\n";
@@ -98,7 +127,7 @@ ExitCode run(const RunOptions& options) {
 }  // namespace
 
 Verb add_run(CLI::App& app) {
-    auto options = std::make_shared<RunOptions>();
+    auto options = std::make_shared<RunArguments>();
     add_options(app, *options);
     return [options] { return run(*options); };
 }

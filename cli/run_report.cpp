@@ -48,6 +48,16 @@ RunObserver RunReporter::observer() {
         clear_line();
         fmt::print(stderr, "aftershade: error: {}\n", message);
     };
+    observer.frame_missing = [this](int frame, const std::string& what) {
+        clear_line();
+        fmt::print(stderr, "frame {} is missing: {}\n", frame, what);
+    };
+    observer.frame_audited = [this](const CaptureHeader& header, const std::vector<AuditFinding>& findings) {
+        clear_line();
+        if (findings.empty()) fmt::print(stderr, "audit: frame {}: every value is finite\n", header.frame);
+        for (const AuditFinding& finding : findings)
+            fmt::print(stderr, "audit: frame {}: {}\n", header.frame, describe_finding(finding));
+    };
     return observer;
 }
 

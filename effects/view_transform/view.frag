@@ -39,5 +39,6 @@ void main() {
     // A tone curve is not linear, so it is for the colour itself, not for the colour times its coverage. Light without
     // coverage (glows, flames) has none to divide by.
     vec3 light = texel.a > 0.0 ? texel.rgb / texel.a : texel.rgb;
-    out_display = vec4(clamp(transform(max(light, 0.0) * exp2(param.exposure)), 0.0, 1.0), clamp(texel.a, 0.0, 1.0));
+    vec3 rec709 = max(frame.rec709_from_color * light, 0.0) * exp2(param.exposure);
+    out_display = vec4(clamp(transform(rec709), 0.0, 1.0), clamp(texel.a, 0.0, 1.0));
 }

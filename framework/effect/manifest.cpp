@@ -82,7 +82,9 @@ struct ManifestParser {
     void check_from(const ParamSpec& spec, const Place& place) {
         constexpr std::string_view kCamera = "camera.";
         std::vector<std::string> known;
-        for (const CameraField& field : camera_fields()) known.push_back(std::string(kCamera) + field.name);
+        if (spec.type == ParamType::enum_) known.push_back(std::string(kCamera) + "lens_model");
+        else
+            for (const CameraField& field : camera_fields()) known.push_back(std::string(kCamera) + field.name);
         if (std::find(known.begin(), known.end(), spec.from) == known.end())
             diagnostics.error(place, "'" + spec.from + "' is not a value of the capture" + did_you_mean(spec.from, known) +
                                          " (known: " + list_of_names(known, "and") + ")");

@@ -82,6 +82,7 @@ std::string_view frame_block_glsl() {
            "    ivec2 origin;\n"
            "    int number;\n"
            "    uint step_seed;\n"
+           "    mat3 rec709_from_color;\n"
            "} frame;\n";
 }
 

@@ -65,7 +65,8 @@ struct FrameBlock {
     std::int32_t origin_px[2] = {0, 0};        ///< display-window pixel of texel (0, 0)
     std::int32_t number = 0;                   ///< of the frame
     std::uint32_t step_seed = 0;               ///< differs between the steps of a look
-    std::int32_t padding[2] = {0, 0};          ///< std140 rounds a block up to 16 bytes
+    std::int32_t padding[2] = {0, 0};          ///< std140 begins a matrix at 16 bytes
+    float rec709_from_color[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};  ///< by columns, each a vec4
 };
 std::string_view frame_block_glsl();
 

@@ -61,17 +61,16 @@ void Executor::run_pass(int index) {
     gpu::draw(context_, *pass.program, targets, bindings);
 }
 
-std::vector<PassTime> Executor::run(bool timed) {
+std::vector<PassTime> Executor::run(bool timed, const PassObserver& observer) {
     std::vector<PassTime> times;
     gpu::Timer timer(context_);
     for (const int index : compiled_.passes) {
-        if (!timed) {
-            run_pass(index);
-            continue;
-        }
-        timer.start();
+        if (timed) timer.start();
         run_pass(index);
-        times.push_back({graph_.pass(index).name, timer.stop_ms()});
+        if (timed) times.push_back({graph_.pass(index).name, timer.stop_ms()});
+        if (!observer) continue;
+        for (const TextureHandle target : graph_.targets(index))
+            observer(graph_.pass(index).name, graph_.textures()[std::size_t(target.texture)].name, *texture(target));
     }
     return times;
 }

@@ -1,6 +1,7 @@
 // Runs a compiled graph, frame after frame, in the same memory.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -29,8 +30,13 @@ public:
     /// Replaces the content of a uniform block of a pass; `bytes` has the size that the pass was added with.
     void set_uniforms(int pass, int binding, std::vector<std::byte> bytes);
 
+    /// What a pass has just written: its name and its targets, by their names in the graph.
+    using PassObserver =
+        std::function<void(const std::string& pass, const std::string& texture, const gpu::Texture& target)>;
+
     /// Runs every pass. With `timed`, waits for each and returns its milliseconds (see gpu::Timer); else returns {}.
-    std::vector<PassTime> run(bool timed);
+    /// `observer`, if any, sees each target right after its pass; its time is nobody's.
+    std::vector<PassTime> run(bool timed, const PassObserver& observer = {});
 
 private:
     void run_pass(int index);

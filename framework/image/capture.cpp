@@ -1,4 +1,4 @@
-#include "framework/image/capture.h"
+#include "framework/image/capture_internal.h"
 
 #include <algorithm>
 #include <set>
@@ -9,36 +9,11 @@
 #include "framework/image/camera_motion.h"
 #include "framework/image/cryptomatte.h"
 #include "framework/image/decode.h"
-#include "framework/image/frame_file.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
 
-/// Where one role's pixels lie and how they are decoded.
-struct CaptureReader::RoleSource {
-    const FrameFile* file = nullptr;
-    RoleDecoding decoding;
-    FoundChannels channels;      // empty for luminance and Cryptomatte
-    std::string luminance;       // the Y channel that stands for color
-    bool from_cryptomatte = false;
-};
-
-struct CaptureReader::OpenFrame {
-    std::unique_ptr<FrameFile> main;
-    std::map<std::string, std::unique_ptr<FrameFile>> role_files;
-    const Profile* profile = nullptr;
-    std::map<std::string, RoleSource> roles;
-    Chromaticities stored_primaries{};
-    CaptureHeader header;
-};
-
 namespace {
-
-/// Roles whose three channels are colours in the capture's primaries.
-bool is_color_role(const std::string& role) {
-    static const std::set<std::string> roles = {"color", "irradiance", "albedo", "specular", "emission"};
-    return roles.contains(role);
-}
 
 /// What a file of one role may call its channels, by their number.
 std::vector<std::vector<std::string>> plain_names(int channels) {
@@ -168,7 +143,7 @@ CaptureReader::OpenFrame CaptureReader::open(int frame) const {
         open.role_files[role] = std::make_unique<FrameFile>(pattern.path(frame), limits_, sequence_.view);
     const ExrPart& part = open.main->merged();
     CaptureHeader& header = open.header;
-    header.frame = frame;
+    header.frame = header.source_frame = frame;
     header.path = open.main->path();
     header.view = open.main->view();
     header.display_window = part.display_window;
@@ -188,8 +163,13 @@ CaptureReader::OpenFrame CaptureReader::open(int frame) const {
     const std::string& space = sequence_.color_space == "auto" ? open.profile->color_space : sequence_.color_space;
     open.stored_primaries = space == "auto" ? stored_primaries(part.metadata) : *color_space_primaries(space);
     // XYZ has no primaries that light could have: effects see it as Rec. 709.
-    header.primaries = is_xyz(open.stored_primaries) ? *color_space_primaries("rec709") : open.stored_primaries;
+    header.primaries = is_xyz(open.stored_primaries) ? kRec709 : open.stored_primaries;
     return open;
+}
+
+bool CaptureReader::has_frame(int frame) const {
+    std::error_code unreadable;
+    return std::filesystem::exists(sequence_.path_of(frame), unreadable);
 }
 
 CaptureHeader CaptureReader::read_header(int frame) const { return open(frame).header; }

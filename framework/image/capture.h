@@ -18,7 +18,8 @@ namespace aftershade {
 
 /// The header of one frame, read before its pixels: what it has, and where.
 struct CaptureHeader {
-    int frame = 0;
+    int frame = 0;                ///< its number in the output
+    int source_frame = 0;         ///< the number that it was read under; another where a missing frame is held
     std::filesystem::path path;
     std::string profile;          ///< id
     std::string profile_reason;   ///< why: "chosen by name", "attribute BlenderMultiChannel"
@@ -29,7 +30,7 @@ struct CaptureHeader {
     std::vector<std::string> roles;     ///< that can be read, sorted
     std::map<std::string, std::vector<std::string>> role_channels;  ///< the stored channels of each
     std::vector<std::string> channels;  ///< of the file, in this view
-    Chromaticities primaries{};         ///< of the colours as they are in memory
+    Chromaticities primaries = kRec709; ///< of the colours as they are in memory
     Camera camera;                      ///< capture.json's, completed by the file's metadata
     ExrMetadata metadata;
 };
@@ -42,6 +43,13 @@ struct Capture {
     bool motion_from_camera = false;
 };
 
+/// One channel as the file stores it.
+struct StoredChannel {
+    std::string name;
+    PixelType type = PixelType::half;
+    Image image;  ///< over the working grid
+};
+
 /// Opens frames of a sequence. [read() and read_header() may be called from several threads]
 class CaptureReader {
 public:
@@ -49,10 +57,20 @@ public:
     CaptureReader(const Sequence& sequence, std::vector<Profile> profiles, ReadLimits limits);
     ~CaptureReader();
 
+    /// Whether the frame's main file is there.
+    bool has_frame(int frame) const;
     /// Throws Error(ExitCode::capture): no such file, not readable, no profile.
     CaptureHeader read_header(int frame) const;
     /// Reads the header and the roles asked for. A role that the files lack is left out of `images`.
     Capture read(int frame, std::span<const std::string> roles) const;
+
+    /// How the roles of a frame are decoded: its profile's ways, or capture.json's.
+    std::map<std::string, RoleDecoding> decodings(int frame) const;
+
+    /// Every channel of the frame's main file, in this view, bit for bit and under its own name; but the channels of the
+    /// roles in `changed` hold those images, brought back to the producer's conventions. Of a role that the file stores as
+    /// a sum of layers the first layer holds all. Channels of another data window are placed in the working grid.
+    std::vector<StoredChannel> read_stored_channels(int frame, const std::map<std::string, const Image*>& changed) const;
 
 private:
     struct OpenFrame;
@@ -64,6 +82,8 @@ private:
     Image read_role(const OpenFrame& open, const std::string& role, const Image* color, Capture& capture) const;
     void read_motion(const OpenFrame& open, const std::string& role, Image& velocity, const Image* color,
                      Capture& capture) const;
+
+    std::map<std::string, Image> encode_role(const OpenFrame& open, const std::string& role, const Image& canonical) const;
 
     const Sequence& sequence_;
     std::vector<Profile> profiles_;

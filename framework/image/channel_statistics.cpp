@@ -48,11 +48,13 @@ using Batch = std::vector<InspectedChannel*>;
 
 void read_batch(const ExrFile& file, int part, const Batch& batch) {
     std::vector<std::string> names;
-    for (const InspectedChannel* inspected : batch) names.push_back(inspected->channel.name);
+    for (const InspectedChannel* inspected : batch)
+        names.push_back(inspected->channel.name);
     try {
         const bool is_uint = batch.front()->channel.type == PixelType::uint32;
         const Image image = is_uint ? file.read_uints(part, names) : file.read_floats(part, names);
-        for (std::size_t i = 0; i < batch.size(); ++i) batch[i]->statistics = channel_statistics(image, int(i));
+        for (std::size_t i = 0; i < batch.size(); ++i)
+            batch[i]->statistics = channel_statistics(image, int(i));
     } catch (const Error& error) {
         for (InspectedChannel* inspected : batch) {
             inspected->reason = without_path(error.what(), file);
@@ -76,8 +78,10 @@ std::vector<InspectedChannel> inspect_channels(const ExrFile& file, int part, co
         channels.push_back({channel, std::nullopt, obstacle(header, channel), true});
 
     // Every read decompresses the whole part, so as many channels as may be are read together.
-    const std::uint64_t bytes = std::uint64_t(header.data_window.width()) * std::uint64_t(header.data_window.height()) * 4;
-    const std::size_t most = std::max<std::uint64_t>(1, limits.max_image_bytes / 2 / std::max<std::uint64_t>(bytes, 1));
+    const std::uint64_t bytes =
+        std::uint64_t(header.data_window.width()) * std::uint64_t(header.data_window.height()) * 4;
+    const std::size_t most =
+        std::max<std::uint64_t>(1, limits.max_image_bytes / 2 / std::max<std::uint64_t>(bytes, 1));
     for (const bool uints : {false, true}) {
         Batch batch;
         for (InspectedChannel& inspected : channels) {

@@ -24,12 +24,13 @@ ChannelStatistics channel_statistics(const Image& image, int channel);
 struct InspectedChannel {
     ExrChannel channel;
     std::optional<ChannelStatistics> statistics;
-    std::string reason;     ///< where there are no statistics
-    bool readable = true;   ///< false: the file is damaged, incomplete or above the limits, and `reason` says how
+    std::string reason;  ///< where there are no statistics
+    bool readable =
+        true;  ///< false: the file is damaged, incomplete or above the limits, and `reason` says how
 };
 
-/// Every channel of a part, in the file's order. Deep parts and subsampled channels have a reason instead of figures. At
-/// most half of `limits.max_image_bytes` is read at once, or a single channel.
+/// Every channel of a part, in the file's order. Deep parts and subsampled channels have a reason instead of
+/// figures. At most half of `limits.max_image_bytes` is read at once, or a single channel.
 std::vector<InspectedChannel> inspect_channels(const ExrFile& file, int part, const ReadLimits& limits);
 
 }  // namespace aftershade

@@ -17,7 +17,7 @@ struct NamedPrimaries {
 
 /// ITU-R BT.709 and BT.2020; SMPTE ST 2065-1 (AP0); Academy S-2014-004 (ACEScg, AP1).
 constexpr std::array kSpaces = {
-    NamedPrimaries{"rec709", {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f}},
+    NamedPrimaries{"rec709", kRec709},
     NamedPrimaries{"acescg", {0.713f, 0.293f, 0.165f, 0.830f, 0.128f, 0.044f, 0.32168f, 0.33767f}},
     NamedPrimaries{"ap0", {0.7347f, 0.2653f, 0.0f, 1.0f, 0.0001f, -0.0770f, 0.32168f, 0.33767f}},
     NamedPrimaries{"rec2020", {0.708f, 0.292f, 0.170f, 0.797f, 0.131f, 0.046f, 0.3127f, 0.3290f}},
@@ -112,7 +112,7 @@ bool is_xyz(const Chromaticities& p) {
 }
 
 Chromaticities stored_primaries(const ExrMetadata& metadata) {
-    Chromaticities primaries = kSpaces[0].primaries;
+    Chromaticities primaries = kRec709;
     const auto value = metadata.value("chromaticities");
     const auto* stored = value ? std::get_if<std::vector<float>>(&*value) : nullptr;
     if (stored && stored->size() == primaries.size()) std::copy(stored->begin(), stored->end(), primaries.begin());
@@ -120,6 +120,7 @@ Chromaticities stored_primaries(const ExrMetadata& metadata) {
 }
 
 ColorMatrix conversion_matrix(const Chromaticities& from, const Chromaticities& to) {
+    if (from == to) return {1, 0, 0, 0, 1, 0, 0, 0, 1};  // to the last bit
     const ColorMatrix xyz = multiply(adaptation(from, to), xyz_from_rgb(from));
     return multiply(inverse(xyz_from_rgb(to)), xyz);
 }

@@ -15,6 +15,9 @@ namespace aftershade {
 /// CIE xy of red, green, blue and white, as EXR's attribute `chromaticities`.
 using Chromaticities = std::array<float, 8>;
 
+/// ITU-R BT.709.
+inline constexpr Chromaticities kRec709 = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
+
 /// Row by row: out = matrix * rgb.
 using ColorMatrix = std::array<double, 9>;
 

@@ -37,13 +37,16 @@ struct Footprint {
         : first(int(std::int64_t(at) * image_px / tile_px)),
           last(std::max(int(std::int64_t(at + 1) * image_px / tile_px), first + 1)) {}
     int middle() const { return (first + last) / 2; }
-    int step() const { return std::max(1, (last - first) / 4); }  // of 4 x 4 samples, the eye asks for no more
+    int step() const {
+        return std::max(1, (last - first) / 4);
+    }  // of 4 x 4 samples, the eye asks for no more
 };
 
 PixelFault worst_fault(const FalseColor& picture, const Footprint& columns, const Footprint& rows) {
     PixelFault worst = PixelFault::none;
     for (int y = rows.first; y < rows.last; ++y)
-        for (int x = columns.first; x < columns.last; ++x) worst = std::max(worst, picture.fault(x, y));
+        for (int x = columns.first; x < columns.last; ++x)
+            worst = std::max(worst, picture.fault(x, y));
     return worst;
 }
 
@@ -56,10 +59,12 @@ DisplayColor reduced(const FalseColor& picture, const Footprint& columns, const 
     for (int y = rows.first; y < rows.last; y += rows.step())
         for (int x = columns.first; x < columns.last; x += columns.step()) {
             const DisplayColor color = picture.color(x, y);
-            for (std::size_t c = 0; c < 3; ++c) sum[c] += color[c];
+            for (std::size_t c = 0; c < 3; ++c)
+                sum[c] += color[c];
             ++samples;
         }
-    for (float& component : sum) component /= float(samples);
+    for (float& component : sum)
+        component /= float(samples);
     return sum;
 }
 
@@ -75,7 +80,8 @@ void draw_wheel(Image& sheet, int left, int top) {
 void draw_ramp(Image& sheet, int right, int top) {
     constexpr int kRampWidth_px = 100;
     for (int x = 0; x < kRampWidth_px; ++x)
-        fill_rectangle(sheet, right - kRampWidth_px + x, top, 1, kLine_px - 8, ramp_color(1 - float(x) / kRampWidth_px));
+        fill_rectangle(sheet, right - kRampWidth_px + x, top, 1, kLine_px - 8,
+                       ramp_color(1 - float(x) / kRampWidth_px));
     const int words_width_px = text_width_px("near far") * kTextScale;
     draw_text(sheet, right - words_width_px, top + kLine_px, "near far", kTextScale, words_width_px, kQuiet);
 }
@@ -101,9 +107,11 @@ public:
         if (picture.legend() != Legend::none) legend_width_px = 110;
         const int legend_top = top() + layout_.tile_height_px + 6;
         if (picture.legend() == Legend::ramp) draw_ramp(sheet_, left() + cell_width_px_, legend_top);
-        if (picture.legend() == Legend::wheel) draw_wheel(sheet_, left() + cell_width_px_ - kWheelSide_px, legend_top);
+        if (picture.legend() == Legend::wheel)
+            draw_wheel(sheet_, left() + cell_width_px_ - kWheelSide_px, legend_top);
         write(0, role, kBright, legend_width_px);
-        for (int line = 0; line < 2; ++line) write(line + 1, picture.label()[std::size_t(line)], kQuiet, legend_width_px);
+        for (int line = 0; line < 2; ++line)
+            write(line + 1, picture.label()[std::size_t(line)], kQuiet, legend_width_px);
         write_faults(picture);
         ++tile_;
     }
@@ -114,8 +122,11 @@ public:
         write(1, "cannot be shown:", pixel_fault_color(PixelFault::infinite), 0);
         // Two lines of it, broken at a word where there is one.
         std::size_t cut = message.size();
-        while (cut > 0 && text_width_px(message.substr(0, cut)) * kTextScale > cell_width_px_) --cut;
-        if (const std::size_t space = message.rfind(' ', cut); cut < message.size() && space != std::string::npos) cut = space;
+        while (cut > 0 && text_width_px(message.substr(0, cut)) * kTextScale > cell_width_px_)
+            --cut;
+        if (const std::size_t space = message.rfind(' ', cut);
+            cut < message.size() && space != std::string::npos)
+            cut = space;
         write(2, message.substr(0, cut), kQuiet, 0);
         write(3, message.substr(std::min(message.size(), cut + 1)), kQuiet, 0);
         ++tile_;
@@ -146,7 +157,8 @@ private:
         for (const PixelFault fault : kPixelFaults) {
             if (picture.fault_count(fault) == 0) continue;
             faults_.insert(fault);
-            const std::string text = fmt::format("{} {}  ", picture.fault_count(fault), pixel_fault_name(fault));
+            const std::string text =
+                fmt::format("{} {}  ", picture.fault_count(fault), pixel_fault_name(fault));
             draw_text(sheet_, x, top() + layout_.tile_height_px + 8 + 3 * kLine_px, text, kTextScale,
                       left() + cell_width_px_ - x, pixel_fault_color(fault));
             x += text_width_px(text) * kTextScale;
@@ -164,14 +176,15 @@ void draw_title(Image& sheet, const CaptureHeader& header) {
     const int width_px = sheet.width() - 2 * kMargin_px;
     const Window& window = header.data_window;
     const std::string view = header.view.empty() ? "" : "  view " + header.view;
-    const std::string file =
-        fmt::format("{}{}  {} x {} px", header.path.filename().string(), view, window.width(), window.height());
+    const std::string file = fmt::format("{}{}  {} x {} px", header.path.filename().string(), view,
+                                         window.width(), window.height());
     draw_text(sheet, kMargin_px, kMargin_px, file, kTextScale, width_px, kBright);
     const std::string profile = fmt::format("profile {} ({})", header.profile, header.profile_reason);
     draw_text(sheet, kMargin_px, kMargin_px + kLine_px, profile, kTextScale, width_px, kQuiet);
 }
 
-/// What marks mean that are on the sheet; a mark that is not would only be taken for a colour that happens to be like it.
+/// What marks mean that are on the sheet; a mark that is not would only be taken for a colour that happens to
+/// be like it.
 void draw_footer(Image& sheet, const std::set<PixelFault>& faults, bool has_depth) {
     int x = kMargin_px;
     const int y = sheet.height() - kFooterHeight_px;
@@ -183,7 +196,8 @@ void draw_footer(Image& sheet, const std::set<PixelFault>& faults, bool has_dept
         x += text_width_px(text) * kTextScale + kMargin_px;
     };
     if (faults.empty()) add("no NaN, no Inf, nothing negative where it must not be", kPaper);
-    for (const PixelFault fault : faults) add(pixel_fault_name(fault), pixel_fault_color(fault));
+    for (const PixelFault fault : faults)
+        add(pixel_fault_name(fault), pixel_fault_color(fault));
     if (has_depth) add("nothing hit", kNothingHitColor);
 }
 
@@ -201,15 +215,19 @@ int chosen_columns(int tiles, int cell_width_px, int cell_height_px) {
 }
 
 /// In the order of the documentation, what is passed through at the end.
-std::vector<std::string> ordered_roles(const Capture& capture, const std::map<std::string, std::string>& unreadable) {
+std::vector<std::string> ordered_roles(const Capture& capture,
+                                       const std::map<std::string, std::string>& unreadable) {
     std::vector<std::string> roles;
     const auto add = [&](const std::string& role) {
         const bool known = capture.images.contains(role) || unreadable.contains(role);
         if (known && std::find(roles.begin(), roles.end(), role) == roles.end()) roles.push_back(role);
     };
-    for (const std::string& role : role_names()) add(role);
-    for (const auto& [role, image] : capture.images) add(role);
-    for (const auto& [role, message] : unreadable) add(role);
+    for (const std::string& role : role_names())
+        add(role);
+    for (const auto& [role, image] : capture.images)
+        add(role);
+    for (const auto& [role, message] : unreadable)
+        add(role);
     return roles;
 }
 
@@ -225,7 +243,8 @@ int ContactSheetLayout::tile_y(int tile) const {
 
 ContactSheetLayout contact_sheet_layout(const CaptureHeader& header, int tiles) {
     assert(tiles > 0);
-    const double aspect = header.pixel_aspect > 0.01f && header.pixel_aspect < 100 ? double(header.pixel_aspect) : 1;
+    const double aspect =
+        header.pixel_aspect > 0.01f && header.pixel_aspect < 100 ? double(header.pixel_aspect) : 1;
     const double width = header.data_window.width() * std::max(aspect, 1.0);
     const double height = header.data_window.height() / std::min(aspect, 1.0);
     double scale = kTileSide_px / std::max(width, height);
@@ -237,7 +256,8 @@ ContactSheetLayout contact_sheet_layout(const CaptureHeader& header, int tiles) 
     layout.columns = chosen_columns(tiles, std::max(layout.tile_width_px, kMinCellWidth_px) + kMargin_px,
                                     layout.tile_height_px + kLabelHeight_px);
     layout.rows = (tiles + layout.columns - 1) / layout.columns;
-    layout.width_px = layout.tile_x(layout.columns - 1) + std::max(layout.tile_width_px, kMinCellWidth_px) + kMargin_px;
+    layout.width_px =
+        layout.tile_x(layout.columns - 1) + std::max(layout.tile_width_px, kMinCellWidth_px) + kMargin_px;
     layout.height_px = layout.tile_y(tiles - 1) + layout.tile_height_px + kLabelHeight_px + kFooterHeight_px;
     return layout;
 }

@@ -34,8 +34,26 @@ float ranged_depth(float stored, const RoleDecoding& decoding, const DepthRange&
     return float(range.near_m * range.far_m / (range.far_m - t * (range.far_m - range.near_m)));
 }
 
-/// The cosine between each pixel's ray and the view axis turns distance along the ray into distance along the axis.
-void planar_from_radial(Image& depth, const DecodeContext& context) {
+/// The inverse of ranged_depth.
+float ranged_value(float depth_m, const RoleDecoding& decoding, const DepthRange& range) {
+    double t = 1;
+    if (std::isfinite(depth_m)) {
+        const double span_m = range.far_m - range.near_m;
+        const bool normalized = decoding.encoding == DepthEncoding::normalized;
+        t = normalized ? (depth_m - range.near_m) / span_m
+                       : (range.far_m - range.near_m * range.far_m / double(depth_m)) / span_m;
+    }
+    return float(decoding.reversed ? 1 - t : t);
+}
+
+bool is_ranged(const RoleDecoding& decoding) {
+    return decoding.encoding == DepthEncoding::z_buffer || decoding.encoding == DepthEncoding::normalized;
+}
+
+enum class RayScale { to_axis, to_ray };
+
+/// The cosine between a pixel's ray and the view axis turns distance along the ray into distance along the axis.
+void scale_by_cosine(Image& depth, const DecodeContext& context, RayScale scale) {
     const auto focal_length_mm = context.camera.get("focal_length"), sensor_width_mm = context.camera.get("sensor_width");
     if (!focal_length_mm || !sensor_width_mm)
         throw Error(ExitCode::capture, context.file + ": this depth is radial and needs the camera's focal_length and "
@@ -45,15 +63,38 @@ void planar_from_radial(Image& depth, const DecodeContext& context) {
         for (int x = 0; x < depth.width(); ++x) {
             const double dx = x + context.grid.min_x - context.display.min_x + 0.5 - 0.5 * context.display.width();
             const double dy = y + context.grid.min_y - context.display.min_y + 0.5 - 0.5 * context.display.height();
-            depth.at(x, y, 0) *= float(focal_px / std::sqrt(focal_px * focal_px + dx * dx + dy * dy));
+            const double cosine = focal_px / std::sqrt(focal_px * focal_px + dx * dx + dy * dy);
+            depth.at(x, y, 0) *= float(scale == RayScale::to_axis ? cosine : 1 / cosine);
         }
+}
+
+/// What a stored component, its bias taken away, is multiplied by: px, cur-prev or next-cur, +y down.
+struct VelocityFactor {
+    float x = 1;
+    float y = 1;
+};
+
+VelocityFactor velocity_factor(const RoleDecoding& decoding, const DecodeContext& context) {
+    const bool reversed =
+        decoding.delta == VelocityDelta::prev_minus_cur || decoding.delta == VelocityDelta::cur_minus_next;
+    const bool px = decoding.unit == VelocityUnit::px;
+    const double part = decoding.unit == VelocityUnit::ndc ? 0.5 : 1;
+    const double per_frame = 1 / decoding.shutter_frames * (reversed ? -1 : 1);
+    const double unit_x = px ? 1 : part * context.display.width(), unit_y = px ? 1 : part * context.display.height();
+    return {float(unit_x * decoding.velocity_scale[0] * per_frame),
+            float(unit_y * decoding.velocity_scale[1] * per_frame * (decoding.y_axis_up ? -1 : 1))};
+}
+
+/// By which a premultiplied vector is divided.
+float vector_alpha(std::size_t pixel, const RoleDecoding& decoding, const DecodeContext& context) {
+    const float alpha = decoding.premultiplied && context.color ? context.color->floats()[4 * pixel + 3] : 1;
+    return alpha > 0 ? alpha : 1;
 }
 
 }  // namespace
 
 void decode_depth(Image& depth, const RoleDecoding& decoding, const DecodeContext& context) {
-    const bool ranged =
-        decoding.encoding == DepthEncoding::z_buffer || decoding.encoding == DepthEncoding::normalized;
+    const bool ranged = is_ranged(decoding);
     const DepthRange range = ranged ? depth_range(decoding, context) : DepthRange{};
     for (float& z : depth.floats()) {
         // Written so that NaN is nothing hit too: effects never see one.
@@ -63,19 +104,25 @@ void decode_depth(Image& depth, const RoleDecoding& decoding, const DecodeContex
         else if (decoding.encoding == DepthEncoding::inverse) z = z == 0 ? kNothingHit : decoding.scale / z;
         else z *= decoding.scale;
     }
-    if (decoding.radial) planar_from_radial(depth, context);
+    if (decoding.radial) scale_by_cosine(depth, context, RayScale::to_axis);
+}
+
+void encode_depth(Image& depth, const RoleDecoding& decoding, const DecodeContext& context) {
+    const bool ranged = is_ranged(decoding);
+    const DepthRange range = ranged ? depth_range(decoding, context) : DepthRange{};
+    if (decoding.radial) scale_by_cosine(depth, context, RayScale::to_ray);
+    const bool zero = decoding.zero_is_no_hit || decoding.encoding == DepthEncoding::inverse;
+    const float no_hit = zero ? 0 : decoding.no_hit_stored.value_or(decoding.no_hit);
+    for (float& z : depth.floats()) {
+        if (ranged) z = ranged_value(z / decoding.scale, decoding, range);
+        else if (std::isinf(z)) z = no_hit;
+        else if (decoding.encoding == DepthEncoding::inverse) z = decoding.scale / z;
+        else z /= decoding.scale;
+    }
 }
 
 std::vector<std::size_t> decode_velocity(Image& velocity, const RoleDecoding& decoding, const DecodeContext& context) {
-    const bool reversed =
-        decoding.delta == VelocityDelta::prev_minus_cur || decoding.delta == VelocityDelta::cur_minus_next;
-    const double side_part = decoding.unit == VelocityUnit::px ? 0 : decoding.unit == VelocityUnit::uv ? 1 : 0.5;
-    const double unit_x = side_part == 0 ? 1 : side_part * context.display.width();
-    const double unit_y = side_part == 0 ? 1 : side_part * context.display.height();
-    const double per_frame = 1 / decoding.shutter_frames * (reversed ? -1 : 1);
-    const float factor_x = float(unit_x * decoding.velocity_scale[0] * per_frame);
-    const float factor_y = float(unit_y * decoding.velocity_scale[1] * per_frame * (decoding.y_axis_up ? -1 : 1));
-
+    const VelocityFactor factor = velocity_factor(decoding, context);
     std::vector<std::size_t> without_motion;
     const std::span<float> values = velocity.floats();
     for (std::size_t pixel = 0; 2 * pixel + 1 < values.size(); ++pixel) {
@@ -87,12 +134,21 @@ std::vector<std::size_t> decode_velocity(Image& velocity, const RoleDecoding& de
             without_motion.push_back(pixel);
             continue;
         }
-        const float alpha = decoding.premultiplied && context.color ? context.color->floats()[4 * pixel + 3] : 1;
-        const float coverage = alpha > 0 ? 1 / alpha : 1;
-        x = (x * coverage - decoding.bias) * factor_x;
-        y = (y * coverage - decoding.bias) * factor_y;
+        const float alpha = vector_alpha(pixel, decoding, context);
+        x = (x / alpha - decoding.bias) * factor.x;
+        y = (y / alpha - decoding.bias) * factor.y;
     }
     return without_motion;
+}
+
+void encode_velocity(Image& velocity, const RoleDecoding& decoding, const DecodeContext& context) {
+    const VelocityFactor factor = velocity_factor(decoding, context);
+    const std::span<float> values = velocity.floats();
+    for (std::size_t pixel = 0; 2 * pixel + 1 < values.size(); ++pixel) {
+        const float alpha = vector_alpha(pixel, decoding, context);
+        values[2 * pixel] = (values[2 * pixel] / factor.x + decoding.bias) * alpha;
+        values[2 * pixel + 1] = (values[2 * pixel + 1] / factor.y + decoding.bias) * alpha;
+    }
 }
 
 Image decode_ids(const Image& stored, const std::string& file) {

@@ -1,4 +1,4 @@
-// From a producer's stored values to the canonical image of a role.
+// From a producer's stored values to the canonical image of a role, and back.
 #pragma once
 
 #include <cstddef>
@@ -28,6 +28,13 @@ void decode_depth(Image& depth, const RoleDecoding& decoding, const DecodeContex
 /// pixels that have no motion data (not finite, or the producer's mark); they are 0.
 std::vector<std::size_t> decode_velocity(Image& velocity, const RoleDecoding& decoding,
                                          const DecodeContext& context = {});
+
+/// The way back: values whose decoding is the depth, to float precision. +inf becomes the producer's mark for nothing hit.
+/// Throws as decode_depth does.
+void encode_depth(Image& depth, const RoleDecoding& decoding, const DecodeContext& context = {});
+
+/// The way back. Pixels that had no motion data get the motion that they were filled with.
+void encode_velocity(Image& velocity, const RoleDecoding& decoding, const DecodeContext& context = {});
 
 /// Floats as unsigned integers. Throws Error(ExitCode::capture) naming the first pixel that is no whole number.
 Image decode_ids(const Image& stored, const std::string& file);

@@ -118,6 +118,9 @@ struct ExrWriteOptions {
 void write_exr(const std::filesystem::path& path, std::span<const ExrOutputChannel> channels,
                const ExrWriteOptions& options);
 
+/// What ExrWriteOptions::compression may be.
+const std::vector<std::string>& exr_compression_names();
+
 /// Threads that OpenEXR uses for compression, process-wide; 0 does the work on the caller's thread.
 void set_exr_threads(int count);
 

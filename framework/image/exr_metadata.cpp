@@ -109,6 +109,11 @@ std::string_view pixel_type_name(PixelType type) {
     return "unknown";
 }
 
+const std::vector<std::string>& exr_compression_names() {
+    static const std::vector<std::string> names(exr::kCompressionNames.begin(), exr::kCompressionNames.end());
+    return names;
+}
+
 ExrMetadata::ExrMetadata() = default;
 
 std::vector<std::string> ExrMetadata::names() const {

@@ -22,18 +22,22 @@ void for_some_pixels(const Image& image, Visit visit) {
     const std::size_t pixels = std::size_t(image.width()) * std::size_t(image.height());
     const std::size_t channels = std::size_t(image.channels());
     const std::size_t step = pixels / kMostSamples + 1;
-    for (std::size_t i = 0; i < pixels; i += step) visit(&image.floats()[i * channels]);
+    for (std::size_t i = 0; i < pixels; i += step)
+        visit(&image.floats()[i * channels]);
 }
 
+/// The value of the nearest rank; reorders the values.
 std::optional<float> percentile(std::vector<float>& values, double fraction) {
     if (values.empty()) return std::nullopt;
-    const auto at = values.begin() + std::ptrdiff_t(fraction * double(values.size() - 1));
+    const auto at = values.begin() + std::lround(fraction * double(values.size() - 1));
     std::nth_element(values.begin(), at, values.end());
     return *at;
 }
 
 /// Three values that producers write where nothing was hit; no normal, and hardly ever a position.
-bool is_zero(const float* pixel) { return pixel[0] == 0 && pixel[1] == 0 && pixel[2] == 0; }
+bool is_zero(const float* pixel) {
+    return pixel[0] == 0 && pixel[1] == 0 && pixel[2] == 0;
+}
 
 struct Range {
     float min = 0, max = 0;
@@ -128,24 +132,40 @@ FalseColor::FalseColor(const std::string& role, const Image& image, const Chroma
       may_be_infinite_(kind_ == Kind::depth) {
     count_faults();
     switch (kind_) {
-        case Kind::color: fit_color(role, primaries); break;
-        case Kind::depth: fit_depth(); break;
-        case Kind::velocity: fit_velocity(); break;
-        case Kind::normal: label_ = {"world space, -1 to 1", "x red, y green, z blue"}; break;
-        case Kind::position: fit_position(); break;
-        case Kind::ids: fit_ids(); break;
-        case Kind::grey: fit_grey(); break;
+        case Kind::color:
+            fit_color(role, primaries);
+            break;
+        case Kind::depth:
+            fit_depth();
+            break;
+        case Kind::velocity:
+            fit_velocity();
+            break;
+        case Kind::normal:
+            label_ = {"world space, -1 to 1", "x red, y green, z blue"};
+            break;
+        case Kind::position:
+            fit_position();
+            break;
+        case Kind::ids:
+            fit_ids();
+            break;
+        case Kind::grey:
+            fit_grey();
+            break;
     }
 }
 
 void FalseColor::count_faults() {
     for (int y = 0; y < image_.height(); ++y)
-        for (int x = 0; x < image_.width(); ++x) ++fault_counts_[std::size_t(fault(x, y))];
+        for (int x = 0; x < image_.width(); ++x)
+            ++fault_counts_[std::size_t(fault(x, y))];
 }
 
 void FalseColor::fit_color(const std::string& role, const Chromaticities& primaries) {
     const Chromaticities rec709 = *color_space_primaries("rec709");
-    if (primaries != Chromaticities{} && primaries != rec709) to_rec709_ = conversion_matrix(primaries, rec709);
+    if (primaries != Chromaticities{} && primaries != rec709)
+        to_rec709_ = conversion_matrix(primaries, rec709);
     // Reinhard et al. 2002: the geometric mean of what is lit becomes middle grey ...
     std::vector<float> lit;
     double sum_of_logs = 0;
@@ -191,7 +211,9 @@ void FalseColor::fit_depth() {
     for_some_pixels(image_, [&](const float* pixel) {
         if (std::isfinite(*pixel) && *pixel > 0) depths.push_back(*pixel);
     });
-    const auto percent = [&](std::uint64_t count) { return 100 * double(count) / double(image_.floats().size()); };
+    const auto percent = [&](std::uint64_t count) {
+        return 100 * double(count) / double(image_.floats().size());
+    };
     label_[1] = fmt::format("nothing hit: {:.3g} %", percent(nothing_hit));
     if (zero > 0) label_[1] += fmt::format(", 0 m: {:.3g} %", percent(zero));
     if (!range) {
@@ -214,7 +236,8 @@ void FalseColor::fit_velocity() {
     constexpr float kLeastRim_px = 0.1f;  // less is rounding
     const float rim = std::max(most > 0 ? most : longest, kLeastRim_px);
     longest_px_ = std::strtof(fmt::format("{:.2g}", rim).c_str(), nullptr);
-    label_ = {fmt::format("up to {:.4g} px a frame", longest), fmt::format("rim of the wheel: {:g} px", longest_px_)};
+    label_ = {fmt::format("up to {:.4g} px a frame", longest),
+              fmt::format("rim of the wheel: {:g} px", longest_px_)};
 }
 
 void FalseColor::fit_position() {
@@ -276,9 +299,12 @@ PixelFault FalseColor::fault(int x, int y) const {
     for (int c = 0; c < image_.channels(); ++c) {
         const float value = values[c];
         PixelFault fault = PixelFault::none;
-        if (std::isnan(value)) fault = PixelFault::nan;
-        else if (std::isinf(value) && !(may_be_infinite_ && value > 0)) fault = PixelFault::infinite;
-        else if (value < 0 && !may_be_negative_) fault = PixelFault::negative;
+        if (std::isnan(value))
+            fault = PixelFault::nan;
+        else if (std::isinf(value) && !(may_be_infinite_ && value > 0))
+            fault = PixelFault::infinite;
+        else if (value < 0 && !may_be_negative_)
+            fault = PixelFault::negative;
         worst = std::max(worst, fault);
     }
     return worst;
@@ -288,7 +314,8 @@ DisplayColor FalseColor::exposed(const float* pixel) const {
     DisplayColor color{};
     for (std::size_t row = 0; row < 3; ++row) {
         double linear = 0;
-        for (std::size_t column = 0; column < 3; ++column) linear += to_rec709_[row * 3 + column] * double(pixel[column]);
+        for (std::size_t column = 0; column < 3; ++column)
+            linear += to_rec709_[row * 3 + column] * double(pixel[column]);
         color[row] = srgb_encoded(float(linear) * exposure_);
     }
     return color;
@@ -314,17 +341,20 @@ DisplayColor FalseColor::color(int x, int y) const {
             const float span = high_[0] - low_[0];
             return ramp_color(span > 0 ? 1 - (std::log(std::max(values[0], 1e-30f)) - low_[0]) / span : 1);
         }
-        case Kind::velocity: return wheel_color(values[0] / longest_px_, values[1] / longest_px_);
+        case Kind::velocity:
+            return wheel_color(values[0] / longest_px_, values[1] / longest_px_);
         case Kind::normal:
             if (is_zero(values)) return {0, 0, 0};
             return {values[0] / 2 + 0.5f, values[1] / 2 + 0.5f, values[2] / 2 + 0.5f};
-        case Kind::position: return is_zero(values) ? DisplayColor{} : scaled(values);
+        case Kind::position:
+            return is_zero(values) ? DisplayColor{} : scaled(values);
         case Kind::grey: {
             const float span = high_[0] - low_[0];
             const float grey = span > 0 ? (values[0] - low_[0]) / span : 0.5f;
             return {grey, grey, grey};
         }
-        default: return exposed(values);
+        default:
+            return exposed(values);
     }
 }
 

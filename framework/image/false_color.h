@@ -24,7 +24,8 @@ inline constexpr DisplayColor kNothingHitColor = {0.45f, 0.45f, 0.45f};
 
 /// viridis, from dark to bright, t in 0..1.
 DisplayColor ramp_color(float t);
-/// Direction (+x right, +y down) as hue, length 0..1 from black to the full colour; longer vectors turn paler.
+/// Direction (+x right, +y down) as hue, length 0..1 from black to the full colour; longer vectors turn
+/// paler.
 DisplayColor wheel_color(float x, float y);
 
 /// What explains the colours beside the words.
@@ -43,7 +44,9 @@ public:
     /// Two lines: range and unit, and how they are shown.
     const std::array<std::string, 2>& label() const { return label_; }
     Legend legend() const;
-    bool is_blendable() const { return kind_ != Kind::ids; }  ///< false: the mean of two colours would be a third id
+    bool is_blendable() const {
+        return kind_ != Kind::ids;
+    }  ///< false: the mean of two colours would be a third id
 
 private:
     enum class Kind { color, depth, velocity, normal, position, ids, grey };
@@ -65,10 +68,10 @@ private:
     bool may_be_negative_;
     bool may_be_infinite_;
     ColorMatrix to_rec709_ = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    float exposure_ = 1;                     // color: factor
-    std::array<float, 3> low_ = {0, 0, 0};   // of the range shown; depth: ln m
+    float exposure_ = 1;                    // color: factor
+    std::array<float, 3> low_ = {0, 0, 0};  // of the range shown; depth: ln m
     std::array<float, 3> high_ = {1, 1, 1};
-    float longest_px_ = 1;                   // velocity: at the rim of the wheel
+    float longest_px_ = 1;  // velocity: at the rim of the wheel
     std::array<std::uint64_t, 4> fault_counts_{};
     std::array<std::string, 2> label_;
 };

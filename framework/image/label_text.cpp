@@ -30,24 +30,29 @@ struct Vertex {
 
 std::string shortened(std::string text, int scale, int max_width_px) {
     if (text_width_px(text) * scale <= max_width_px) return text;
-    while (!text.empty() && text_width_px(text + "..") * scale > max_width_px) text.pop_back();
+    while (!text.empty() && text_width_px(text + "..") * scale > max_width_px)
+        text.pop_back();
     return text + "..";
 }
 
 }  // namespace
 
-int text_width_px(std::string_view text) { return stb_easy_font_width(printable(text).data()); }
+int text_width_px(std::string_view text) {
+    return stb_easy_font_width(printable(text).data());
+}
 
-void draw_text(Image& picture, int x, int y, std::string_view text, int scale, int max_width_px, DisplayColor color) {
+void draw_text(Image& picture, int x, int y, std::string_view text, int scale, int max_width_px,
+               DisplayColor color) {
     std::string line = shortened(printable(text), scale, max_width_px);
     constexpr std::size_t kQuadsPerLetter = 16;  // '@' has the most, 11
     std::vector<Vertex> vertices((line.size() + 1) * kQuadsPerLetter * 4);
-    const int quads = stb_easy_font_print(0, 0, line.data(), nullptr, vertices.data(), int(vertices.size() * sizeof(Vertex)));
+    const int quads = stb_easy_font_print(0, 0, line.data(), nullptr, vertices.data(),
+                                          int(vertices.size() * sizeof(Vertex)));
     for (int i = 0; i < quads; ++i) {
         const Vertex& first = vertices[std::size_t(i) * 4];
         const Vertex& last = vertices[std::size_t(i) * 4 + 2];
-        fill_rectangle(picture, x + int(first.x) * scale, y + int(first.y) * scale, int(last.x - first.x) * scale,
-                       int(last.y - first.y) * scale, color);
+        fill_rectangle(picture, x + int(first.x) * scale, y + int(first.y) * scale,
+                       int(last.x - first.x) * scale, int(last.y - first.y) * scale, color);
     }
 }
 
@@ -55,7 +60,8 @@ void fill_rectangle(Image& picture, int x, int y, int width, int height, Display
     const int right = std::min(x + width, picture.width()), bottom = std::min(y + height, picture.height());
     for (int row = std::max(y, 0); row < bottom; ++row)
         for (int column = std::max(x, 0); column < right; ++column)
-            for (int c = 0; c < 3; ++c) picture.at(column, row, c) = color[std::size_t(c)];
+            for (int c = 0; c < 3; ++c)
+                picture.at(column, row, c) = color[std::size_t(c)];
 }
 
 }  // namespace aftershade

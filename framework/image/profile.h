@@ -34,6 +34,7 @@ struct RoleDecoding {
     // depth
     float scale = 1;  ///< metres for one stored unit, after decoding
     float no_hit = std::numeric_limits<float>::infinity();  ///< stored values from here up mean that nothing was hit
+    std::optional<float> no_hit_stored;  ///< what the producer itself writes there; else no_hit
     bool zero_is_no_hit = false;
     DepthEncoding encoding = DepthEncoding::linear;
     bool reversed = false;  ///< z_buffer and normalized: 1 is near, 0 is far

@@ -83,6 +83,7 @@ std::optional<double> read_length_m(ObjectReader& reader, const std::string& key
 void read_depth(ObjectReader& reader, RoleDecoding& decoding, Diagnostics& diagnostics) {
     decoding.scale = float(reader.number("scale").value_or(1.0));
     if (const auto no_hit = reader.number("no_hit")) decoding.no_hit = float(*no_hit);
+    if (const auto stored = reader.number("no_hit_stored")) decoding.no_hit_stored = float(*stored);
     decoding.zero_is_no_hit = reader.boolean("zero_is_no_hit").value_or(false);
     read_choice(reader, "encoding", kEncodings, decoding.encoding);
     decoding.reversed = reader.boolean("reversed").value_or(false);

@@ -123,6 +123,7 @@ FramePattern pattern_of_folder(const fs::path& folder) {
 }
 
 void find_missing_range(Sequence& sequence, const std::string& argument) {
+    sequence.frames_declared = !sequence.frames.empty() || !sequence.files.has_frame();
     if (!sequence.frames.empty()) return;
     if (sequence.files.has_frame()) {
         sequence.frames = find_frames(sequence.files);
@@ -131,7 +132,7 @@ void find_missing_range(Sequence& sequence, const std::string& argument) {
         return;
     }
     const fs::path file = sequence.files.text();
-    if (!fs::exists(file)) throw Error(ExitCode::capture, file.string() + ": no such file");
+    if (std::error_code failure; !fs::exists(file, failure)) throw Error(ExitCode::capture, file.string() + ": no such file");
     sequence.frames = {frame_in_name(file.stem().string()).value_or(1)};
 }
 
@@ -153,7 +154,7 @@ std::optional<Sequence> open_sequence(const std::string& argument, Diagnostics& 
     const fs::path path = argument;
     Sequence sequence;
     if (path.extension() == ".json") {
-        if (!fs::exists(path)) throw Error(ExitCode::capture, argument + ": no such file");
+        if (std::error_code failure; !fs::exists(path, failure)) throw Error(ExitCode::capture, argument + ": no such file");
         auto read = read_capture_document(path, diagnostics);
         if (!read) return std::nullopt;
         sequence = std::move(*read);

@@ -23,6 +23,7 @@ struct CryptomatteChoice {
 /// Ordered captures. Made from a capture.json, a bare EXR file, a pattern of files, or a folder of them.
 struct Sequence {
     std::vector<int> frames;        ///< in the order to be run
+    bool frames_declared = false;   ///< by a capture.json's range or a bare file, not by what lies on disk
     FramePattern files{""};         ///< absolute, or relative to the working directory
     std::map<std::string, FramePattern> role_files;   ///< roles that lie in files of their own
     std::map<std::string, RoleDecoding> channels;     ///< of capture.json, instead of the profile's

@@ -8,6 +8,7 @@
 #include "framework/core/error.h"
 #include "framework/image/png_file.h"
 #include "framework/image/role.h"
+#include "framework/pipeline/exr_output.h"
 
 namespace aftershade {
 
@@ -28,42 +29,9 @@ std::string extension(const fs::path& path) {
     return text;
 }
 
-const Image* find_image(const std::string& role, const FrameResult& result, const Capture& capture) {
-    if (const auto made = result.images.find(role); made != result.images.end()) return &made->second;
-    if (const auto captured = capture.images.find(role); captured != capture.images.end()) return &captured->second;
-    return nullptr;
-}
-
-ExrWriteOptions write_options(const OutputOptions& options, const CaptureHeader& header) {
-    ExrWriteOptions write;
-    write.data_window = header.data_window;
-    write.display_window = header.display_window;
-    write.pixel_aspect = header.pixel_aspect;
-    write.carry_over = header.metadata;
-    write.attributes["aftershade/look"] = options.look;
-    write.attributes["aftershade/renderer"] = options.renderer;
-    write.attributes["aftershade/profile"] = header.profile;
-    write.attributes["aftershade/frame"] = header.frame;
-    return write;
-}
-
-void write_exr_output(const fs::path& path, const OutputOptions& options, const FrameResult& result,
-                      const Capture& capture) {
-    std::vector<ExrOutputChannel> channels;
-    for (const std::string& name : options.roles) {
-        const auto role = find_role(name);
-        const Image* image = find_image(name, result, capture);
-        if (!image)
-            throw Error(ExitCode::capture, capture.header.path.string() + ": the role '" + name +
-                                               "', asked for in the output, is in neither the capture nor the look");
-        const PixelType type = role->pixel_type == PixelType::half ? options.color_type : role->pixel_type;
-        for (int c = 0; c < role->channels; ++c) channels.push_back({role->native_channels[std::size_t(c)], type, image, c});
-    }
-    write_exr(path, channels, write_options(options, capture.header));
-}
-
-/// Display-referred RGB with straight alpha.
-Image display_of_color(const Image& color) {
+/// Display-referred RGB with straight alpha, for an sRGB monitor.
+Image display_of_color(Image color, const Chromaticities& primaries) {
+    if (primaries != kRec709) convert_colors(color, conversion_matrix(primaries, kRec709));
     Image display(color.width(), color.height(), 4);
     for (std::size_t i = 0; i < color.floats().size(); i += 4) {
         const float alpha = color.floats()[i + 3];
@@ -97,7 +65,7 @@ void write_png_output(const fs::path& path, const FrameResult& result, const Cap
     const auto made = result.images.find("display");
     const CaptureHeader& header = capture.header;
     const Image display =
-        made != result.images.end() ? made->second : display_of_color(*find_image("color", result, capture));
+        made != result.images.end() ? made->second : display_of_color(*find_image("color", result, capture), header.primaries);
     write_png(path, cropped_for_png(display, header.data_window, header.display_window));
 }
 
@@ -128,7 +96,7 @@ void write_tap(const fs::path& path, const Image& image, const OutputOptions& op
         const std::string name = image.channels() == 1 ? "Y" : std::string(1, kNames[std::size_t(c)]);
         channels.push_back({name, is_uint ? PixelType::uint32 : PixelType::float32, &image, c});
     }
-    ExrWriteOptions write = write_options(options, header);
+    ExrWriteOptions write = exr_write_options(options, header);
     // A texture of another size than the working grid has windows of its own.
     if (image.width() != header.data_window.width() || image.height() != header.data_window.height())
         write.data_window = write.display_window = {0, 0, image.width() - 1, image.height() - 1};
@@ -165,6 +133,9 @@ void check_outputs(const OutputOptions& options, const Sequence& sequence, Diagn
             break;
         }
     }
+    const auto& known = exr_compression_names();
+    if (std::find(known.begin(), known.end(), options.compression) == known.end())
+        diagnostics.error({"--compression " + options.compression}, "must be one of " + list_of_names(known));
     std::set<std::string> roles;
     for (const std::string& role : options.roles) {
         const Place place{"--output-roles " + role};
@@ -174,6 +145,7 @@ void check_outputs(const OutputOptions& options, const Sequence& sequence, Diagn
 }
 
 std::vector<std::string> wanted_roles(const OutputOptions& options) {
+    if (options.keep_channels) return role_names();
     std::vector<std::string> roles;
     for (const std::string& pattern : options.patterns) {
         if (extension(pattern) == ".exr") roles.insert(roles.end(), options.roles.begin(), options.roles.end());
@@ -184,12 +156,13 @@ std::vector<std::string> wanted_roles(const OutputOptions& options) {
     return roles;
 }
 
-std::vector<fs::path> write_outputs(const OutputOptions& options, const FrameResult& result, const Capture& capture) {
+std::vector<fs::path> write_outputs(const OutputOptions& options, const FrameResult& result, const Capture& capture,
+                                    const CaptureReader& reader) {
     std::vector<fs::path> written;
     const int frame = capture.header.frame;
     for (const std::string& text : options.patterns) {
         const fs::path path = FramePattern(text).path(frame);
-        if (extension(path) == ".exr") write_exr_output(path, options, result, capture);
+        if (extension(path) == ".exr") write_exr_output(path, options, result, capture, reader);
         else write_png_output(path, result, capture);
         written.push_back(path);
     }

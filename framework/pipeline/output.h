@@ -16,6 +16,9 @@ struct OutputOptions {
     std::vector<std::string> patterns;         ///< "out.exr", "out_####.png": format by extension
     std::vector<std::string> roles{"color"};   ///< in EXR files
     PixelType color_type = PixelType::half;    ///< of roles that are half by default
+    bool keep_channels = false;                ///< EXR: every channel of the source too, under its own name
+    bool crop_to_display = false;              ///< EXR: the display window's pixels only; PNG always has just these
+    std::string compression = "zip";           ///< EXR
     std::string look{};                        ///< written as attribute aftershade/look
     std::string renderer{};                    ///< GL_RENDERER, written as attribute aftershade/renderer
 };
@@ -29,7 +32,7 @@ std::vector<std::string> wanted_roles(const OutputOptions& options);
 /// Writes one frame, each file by rename. A role that no step made is taken from the capture. PNG takes `display`, else
 /// color encoded as sRGB, over the display window. Returns the paths. Throws Error(ExitCode::output).
 std::vector<std::filesystem::path> write_outputs(const OutputOptions& options, const FrameResult& result,
-                                                 const Capture& capture);
+                                                 const Capture& capture, const CaptureReader& reader);
 
 /// The piecewise sRGB curve, IEC 61966-2-1.
 float encode_srgb(float linear);

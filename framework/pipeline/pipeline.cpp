@@ -22,24 +22,37 @@ std::string list_channels(const std::vector<std::string>& channels) {
     return text;
 }
 
-/// The capture's value for a parameter that has a "from", in the parameter's unit.
-std::optional<double> value_from_capture(const ParamSpec& spec, const CaptureHeader& header) {
-    constexpr std::string_view kCamera = "camera.";
-    if (!spec.from.starts_with(kCamera)) return std::nullopt;
-    const std::string field = spec.from.substr(kCamera.size());
-    const auto value = header.camera.get(field);
+/// The capture's number for a parameter that has a "from", in the parameter's unit.
+std::optional<double> number_from_capture(const ParamSpec& spec, const std::string& field, const Camera& camera) {
+    const auto value = camera.get(field);
     const std::string& unit = find_camera_field(field)->unit;
     if (!value || unit == spec.unit) return value;
     return convert_unit(*value, unit, spec.unit);
 }
 
-ParamValue checked_value(const PipelineStep& step, const ParamSpec& spec, double value, const CaptureHeader& header) {
-    if ((spec.min && value < *spec.min) || (spec.max && value > *spec.max))
-        throw Error(ExitCode::capture, header.path.string() + ": " + spec.from + " is " + format_number(value) +
-                                           ", outside the range of " + step.name + "." + spec.name +
-                                           " (set the parameter in the look, or mend the capture's camera)");
-    if (spec.type == ParamType::int_) return std::int64_t(std::llround(value));
-    return value;
+[[noreturn]] void refuse_value(const PipelineStep& step, const ParamSpec& spec, const std::string& value,
+                               const CaptureHeader& header) {
+    throw Error(ExitCode::capture, header.path.string() + ": " + spec.from + " is " + value +
+                                       ", outside the range of " + step.name + "." + spec.name +
+                                       " (set the parameter in the look, or mend the capture's camera)");
+}
+
+std::optional<ParamValue> value_from_capture(const PipelineStep& step, const ParamSpec& spec,
+                                             const CaptureHeader& header) {
+    constexpr std::string_view kCamera = "camera.";
+    if (!spec.from.starts_with(kCamera)) return std::nullopt;
+    if (spec.type == ParamType::enum_) {
+        const std::string& name = header.camera.lens_model;
+        if (name.empty()) return std::nullopt;
+        if (!contains(spec.values, name)) refuse_value(step, spec, "'" + name + "'", header);
+        return name;
+    }
+    const auto number = number_from_capture(spec, spec.from.substr(kCamera.size()), header.camera);
+    if (!number) return std::nullopt;
+    if ((spec.min && *number < *spec.min) || (spec.max && *number > *spec.max))
+        refuse_value(step, spec, format_number(*number), header);
+    if (spec.type == ParamType::int_) return std::int64_t(std::llround(*number));
+    return *number;
 }
 
 }  // namespace
@@ -86,10 +99,8 @@ ParamSet resolve_params(const PipelineStep& step, const CaptureHeader& header) {
     ParamSet params;
     for (const ParamSpec& spec : step.manifest->params) {
         const auto asked = step.values.find(spec.name);
-        const auto captured = value_from_capture(spec, header);
         if (asked != step.values.end()) params.set(spec.name, asked->second);
-        else if (captured) params.set(spec.name, checked_value(step, spec, *captured, header));
-        else params.set(spec.name, spec.default_value);
+        else params.set(spec.name, value_from_capture(step, spec, header).value_or(spec.default_value));
     }
     return params;
 }

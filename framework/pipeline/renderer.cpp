@@ -29,6 +29,10 @@ std::vector<std::byte> frame_block(const CaptureHeader& header, std::uint32_t st
     block.origin_px[1] = header.data_window.min_y - header.display_window.min_y;
     block.number = header.frame;
     block.step_seed = step_seed;
+    const ColorMatrix matrix = conversion_matrix(header.primaries, kRec709);
+    for (std::size_t row = 0; row < 3; ++row)
+        for (std::size_t column = 0; column < 3; ++column)
+            block.rec709_from_color[column][row] = float(matrix[row * 3 + column]);
     std::vector<std::byte> bytes(sizeof block);
     std::memcpy(bytes.data(), &block, sizeof block);
     return bytes;
@@ -60,6 +64,32 @@ Image read_back(const gpu::Texture& texture, int channels) {
 int scaled_side(int side, const TextureSpec& spec) {
     if (spec.tile > 0) return (side + spec.tile - 1) / spec.tile;
     return std::max(1, int(std::ceil(side * spec.scale)));
+}
+
+}  // namespace
+
+namespace {
+
+bool infinity_allowed(const std::string& role) { return std::isinf(find_role(role)->outside); }
+
+void audit_input(const std::string& role, const Image& image, std::vector<AuditFinding>& findings) {
+    if (image.type() != ComponentType::float32) return;
+    audit_values(image.floats(), image.width(), image.channels(), infinity_allowed(role), "capture", "capture." + role,
+                 findings);
+}
+
+/// Integer textures hold ids and packed bits, of which no value is wrong.
+graph::Executor::PassObserver auditor(const Pipeline& pipeline, std::vector<AuditFinding>& findings) {
+    std::map<std::string, std::string> role_of_output;
+    for (const PipelineStep& step : pipeline.steps)
+        for (const OutputSpec& output : step.manifest->outputs) role_of_output[step.name + "." + output.name] = output.role;
+    return [role_of_output, &findings](const std::string& pass, const std::string& texture, const gpu::Texture& target) {
+        const gpu::TextureDesc& desc = target.desc();
+        if (gpu::is_integer(desc.format)) return;
+        const auto role = role_of_output.find(texture);
+        const bool infinity = role != role_of_output.end() && infinity_allowed(role->second);
+        audit_values(target.read_floats(), desc.width, gpu::channel_count(desc.format), infinity, pass, texture, findings);
+    };
 }
 
 }  // namespace
@@ -249,7 +279,9 @@ FrameResult PipelineRenderer::render(const Capture& capture, const std::vector<s
         built_->executor->set_uniforms(pass.pass, kFrameBinding, frame_block(capture.header, hash_name(step.name)));
     }
     const double upload_ms = timer.stop_ms();
-    result.times = built_->executor->run(timed);
+    if (audit_)
+        for (const auto& [role, handle] : built_->imports) audit_input(role, capture.images.at(role), result.audit);
+    result.times = built_->executor->run(timed, audit_ ? auditor(pipeline_, result.audit) : graph::Executor::PassObserver{});
 
     timer.start();
     for (const std::string& role : roles)

@@ -10,6 +10,7 @@
 #include "framework/effect/pass_program.h"
 #include "framework/graph/executor.h"
 #include "framework/image/capture.h"
+#include "framework/pipeline/audit.h"
 #include "framework/pipeline/pipeline.h"
 
 namespace aftershade {
@@ -18,6 +19,7 @@ struct FrameResult {
     std::map<std::string, Image> images;  ///< by role: what the steps made of the roles asked for
     std::map<std::string, Image> taps;    ///< by "step.texture"
     std::vector<graph::PassTime> times;   ///< upload, each pass, readback; empty unless timed
+    std::vector<AuditFinding> audit;      ///< in the order of the passes; empty unless audited
 };
 
 /// Builds the frame graph on the first frame and again only when the size, the roles present, or a value that chooses
@@ -29,6 +31,8 @@ public:
 
     /// `roles` are read back where a step makes them. Throws Error(ExitCode::effect).
     FrameResult render(const Capture& capture, const std::vector<std::string>& roles, bool timed);
+    /// Reads every input and every float texture back after its pass and looks for NaN and infinities. Slow.
+    void set_audit(bool audit) { audit_ = audit; }
 
 private:
     struct Built;
@@ -41,6 +45,7 @@ private:
     const Pipeline& pipeline_;
     ProgramCache programs_;
     std::unique_ptr<Built> built_;
+    bool audit_ = false;
 };
 
 }  // namespace aftershade

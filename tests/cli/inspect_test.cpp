@@ -21,7 +21,8 @@ const std::string kSuzanne = AFTERSHADE_SOURCE_DIR "/scenes/suzanne/capture.json
 
 std::set<std::string> keys_of(const Json& object) {
     std::set<std::string> keys;
-    for (const auto& [key, value] : object.items()) keys.insert(key);
+    for (const auto& [key, value] : object.items())
+        keys.insert(key);
     return keys;
 }
 
@@ -47,11 +48,13 @@ protected:
         return Json::parse(inspect(arguments, expected).out);
     }
     /// One float channel each, 64 x 4 px.
-    fs::path write_channels(const std::string& name, const std::vector<std::string>& channels, float value = 1) {
+    fs::path write_channels(const std::string& name, const std::vector<std::string>& channels,
+                            float value = 1) {
         Image image(64, 4, 1);
         std::fill(image.floats().begin(), image.floats().end(), value);
         std::vector<ExrOutputChannel> outputs;
-        for (const std::string& channel : channels) outputs.push_back({channel, PixelType::float32, &image, 0});
+        for (const std::string& channel : channels)
+            outputs.push_back({channel, PixelType::float32, &image, 0});
         ExrWriteOptions options;
         options.data_window = options.display_window = {0, 0, 63, 3};
         write_exr(folder_ / name, outputs, options);
@@ -62,16 +65,19 @@ protected:
 
 TEST_F(Inspect, TellsTheSuzanneCaptureAsJson) {
     const Json document = json({kSuzanne});
-    EXPECT_EQ(keys_of(document), (std::set<std::string>{"file", "parts", "profile", "roles", "missing", "camera"}));
+    EXPECT_EQ(keys_of(document),
+              (std::set<std::string>{"file", "parts", "profile", "roles", "missing", "camera"}));
     EXPECT_TRUE(document["file"].get<std::string>().ends_with("scenes/suzanne/gbuffer_0003.exr"));
     ASSERT_EQ(document["parts"].size(), 1);
     const Json& part = document["parts"][0];
-    EXPECT_EQ(keys_of(part), (std::set<std::string>{"name", "view", "data_window", "display_window", "compression", "channels"}));
+    EXPECT_EQ(keys_of(part), (std::set<std::string>{"name", "view", "data_window", "display_window",
+                                                    "compression", "channels"}));
     EXPECT_EQ(part["data_window"], Json::parse(R"({"min": [0, 0], "max": [479, 269]})"));
     EXPECT_EQ(part["compression"], "zip");
     ASSERT_EQ(part["channels"].size(), 25);
     for (const Json& channel : part["channels"])
-        EXPECT_EQ(keys_of(channel), (std::set<std::string>{"name", "type", "min", "max", "nan", "inf", "negative"}));
+        EXPECT_EQ(keys_of(channel),
+                  (std::set<std::string>{"name", "type", "min", "max", "nan", "inf", "negative"}));
     // As oiiotool --stats says.
     EXPECT_EQ(channel_named(part, "ViewLayer.IndexOB.X")["max"], 30);
     EXPECT_EQ(channel_named(part, "ViewLayer.Depth.Z")["max"], 1e10);
@@ -87,10 +93,11 @@ TEST_F(Inspect, TellsTheSuzanneCaptureAsJson) {
 
 TEST_F(Inspect, TellsAPersonTheSame) {
     const CommandResult result = inspect({kSuzanne, "--frames", "4"});
-    for (const char* words : {"scenes/suzanne/gbuffer_0004.exr\n", "part 0: scanlineimage, zip\n",
-                              "data window     (0, 0)-(479, 269), 480 x 270 px\n", "ViewLayer.IndexOB.X   float  1 x 1 ",
-                              "profile: blender (chosen by name)\n", "  depth           ViewLayer.Depth.Z\n",
-                              "(missing)       specular, emission, mask\n", "  focal_length    50 mm\n"})
+    for (const char* words :
+         {"scenes/suzanne/gbuffer_0004.exr\n", "part 0: scanlineimage, zip\n",
+          "data window     (0, 0)-(479, 269), 480 x 270 px\n", "ViewLayer.IndexOB.X   float  1 x 1 ",
+          "profile: blender (chosen by name)\n", "  depth           ViewLayer.Depth.Z\n",
+          "(missing)       specular, emission, mask\n", "  focal_length    50 mm\n"})
         EXPECT_NE(result.out.find(words), std::string::npos) << words << "\n" << result.out;
     EXPECT_EQ(result.err, "");
 }
@@ -115,7 +122,8 @@ TEST_F(Inspect, CountsWhatIsNotFinite) {
 
 TEST_F(Inspect, NeedsNoProfileAndNoGl) {
     write_channels("a.exr", {"foo.\xff", "bar"});
-    const Json document = Json::parse(inspect({"a.exr", "--json"}, ExitCode::done, without_gl(folder_ / "no_gl")).out);
+    const Json document =
+        Json::parse(inspect({"a.exr", "--json"}, ExitCode::done, without_gl(folder_ / "no_gl")).out);
     EXPECT_TRUE(document["profile"]["id"].is_null());
     EXPECT_EQ(document["profile"]["reason"], "no profile fits its channels (name one with --profile)");
     EXPECT_EQ(document["roles"], Json::object());
@@ -146,15 +154,19 @@ TEST_F(Inspect, ListsWhatAFileWithDamagedPixelsStillTells) {
 
 TEST_F(Inspect, RefusesWrongWords) {
     write_channels("a.exr", {"R", "G", "B"});
-    const auto told = [&](std::vector<std::string> arguments) { return inspect(std::move(arguments), ExitCode::usage).err; };
+    const auto told = [&](std::vector<std::string> arguments) {
+        return inspect(std::move(arguments), ExitCode::usage).err;
+    };
     EXPECT_NE(told({"a.exr", "--profile", "blendr"}).find("did you mean 'blender'?"), std::string::npos);
     EXPECT_NE(told({kSuzanne, "--frames", "9"}).find("the capture has no frame 9"), std::string::npos);
     EXPECT_NE(told({kSuzanne, "--frames", "3-4"}).find("inspect looks at one"), std::string::npos);
-    EXPECT_NE(told({"a.exr", "--contact-sheet", "a.exr"}).find("a contact sheet is a .png file"), std::string::npos);
+    EXPECT_NE(told({"a.exr", "--contact-sheet", "a.exr"}).find("a contact sheet is a .png file"),
+              std::string::npos);
 }
 
 TEST_F(Inspect, PutsEveryRoleOnAContactSheet) {
-    SyntheticScene scene{.width = 64, .height = 36, .background = {0.1f, 0.2f, 0.4f}, .background_depth_m = 8};
+    SyntheticScene scene{
+        .width = 64, .height = 36, .background = {0.1f, 0.2f, 0.4f}, .background_depth_m = 8};
     scene.box = SyntheticBox{4, 6, 16, 12, 5, 2};
     write_capture(make_capture(scene), folder_ / "a.exr");
     const CommandResult result = inspect({"a.exr", "--contact-sheet", "sheet.png", "--json"});
@@ -164,7 +176,8 @@ TEST_F(Inspect, PutsEveryRoleOnAContactSheet) {
     EXPECT_EQ(sheet.channels(), 3);
     EXPECT_GT(sheet.width(), 3 * 448);
 
-    const Json nothing = json({write_channels("b.exr", {"foo"}).string(), "--contact-sheet", "b.png"}, ExitCode::capture);
+    const Json nothing =
+        json({write_channels("b.exr", {"foo"}).string(), "--contact-sheet", "b.png"}, ExitCode::capture);
     EXPECT_TRUE(nothing["profile"]["id"].is_null());
     EXPECT_FALSE(fs::exists(folder_ / "b.png"));
     inspect({"a.exr", "--contact-sheet", "no/such/folder.png"}, ExitCode::output);
@@ -174,8 +187,10 @@ TEST_F(Inspect, ShowsTheOtherRolesWhereOneCannotBeDecoded) {
     Image ids(64, 4, 1);
     std::fill(ids.floats().begin(), ids.floats().end(), 1.5f);  // no whole number
     const Image color(64, 4, 1);
-    const std::vector<ExrOutputChannel> channels = {{"R", PixelType::half, &color, 0}, {"G", PixelType::half, &color, 0},
-        {"B", PixelType::half, &color, 0}, {"object_id.I", PixelType::float32, &ids, 0}};
+    const std::vector<ExrOutputChannel> channels = {{"R", PixelType::half, &color, 0},
+                                                    {"G", PixelType::half, &color, 0},
+                                                    {"B", PixelType::half, &color, 0},
+                                                    {"object_id.I", PixelType::float32, &ids, 0}};
     ExrWriteOptions options;
     options.data_window = options.display_window = {0, 0, 63, 3};
     write_exr(folder_ / "a.exr", channels, options);
@@ -214,8 +229,10 @@ TEST_F(Inspect, EndsInOrderOnEveryDamagedFile) {
     for (const auto& entry : fs::recursive_directory_iterator(*damaged)) {
         if (!entry.is_regular_file()) continue;
         ++files;
-        const CommandResult result = run_aftershade({"inspect", entry.path().string(), "--json"}, folder_.path());
-        EXPECT_TRUE(result.exit_code == 0 || result.exit_code == 3) << entry.path() << ": " << result.exit_code << result.err;
+        const CommandResult result =
+            run_aftershade({"inspect", entry.path().string(), "--json"}, folder_.path());
+        EXPECT_TRUE(result.exit_code == 0 || result.exit_code == 3)
+            << entry.path() << ": " << result.exit_code << result.err;
         if (!result.out.empty()) {
             EXPECT_TRUE(Json::accept(result.out)) << entry.path();
         }

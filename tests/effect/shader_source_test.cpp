@@ -81,6 +81,7 @@ TEST(ShaderInterface, DeclaresWhatThePassSees) {
         "    ivec2 origin;",
         "    int number;",
         "    uint step_seed;",
+        "    mat3 rec709_from_color;",
         "} frame;",
         "layout(binding = 0) uniform sampler2D color;",
         "layout(binding = 1) uniform sampler2D depth;",
@@ -331,10 +332,10 @@ TEST(ParamBlock, IsAbsentWithoutUniforms) {
     EXPECT_EQ(assembly.sound().text.find("ParamBlock"), std::string::npos);
 }
 
-// The same rules for ivec2, ivec2, int, uint: 0, 8, 16, 20, and 24 rounded up to 32.
+// The same rules for ivec2, ivec2, int, uint: 0, 8, 16, 20; and a mat3 of three vec4 at 24 rounded up to 32.
 static_assert(offsetof(FrameBlock, display_size_px) == 0 && offsetof(FrameBlock, origin_px) == 8);
 static_assert(offsetof(FrameBlock, number) == 16 && offsetof(FrameBlock, step_seed) == 20);
-static_assert(sizeof(FrameBlock) == 32);
+static_assert(offsetof(FrameBlock, rec709_from_color) == 32 && sizeof(FrameBlock) == 80);
 
 }  // namespace
 }  // namespace aftershade

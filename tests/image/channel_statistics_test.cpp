@@ -64,7 +64,8 @@ TEST(ChannelStatistics, KeepEveryBitOfUnsignedIntegers) {
 TEST(ChannelStatistics, AreTheSameInPiecesOfALimitedSize) {
     const test::TemporaryFolder folder;
     test::write_channels(folder / "a.exr", 40,
-                         {{"A", std::vector<float>(1600, 1)}, {"B", std::vector<float>(1600, -2)},
+                         {{"A", std::vector<float>(1600, 1)},
+                          {"B", std::vector<float>(1600, -2)},
                           {"I", std::vector<float>(1600, 70000), PixelType::uint32},
                           {"Z", std::vector<float>(1600, kInf)}});
     ReadLimits limits;
@@ -72,7 +73,8 @@ TEST(ChannelStatistics, AreTheSameInPiecesOfALimitedSize) {
     const ExrFile file(folder / "a.exr", limits);
     const std::vector<InspectedChannel> channels = inspect_channels(file, 0, limits);
     ASSERT_EQ(channels.size(), 4);
-    for (const InspectedChannel& channel : channels) ASSERT_TRUE(channel.statistics) << channel.reason;
+    for (const InspectedChannel& channel : channels)
+        ASSERT_TRUE(channel.statistics) << channel.reason;
     EXPECT_EQ(channels[1].statistics->negative, 1600);
     EXPECT_EQ(channels[2].statistics->max, 70000);
     EXPECT_EQ(channels[3].statistics->infinite, 1600);
@@ -96,14 +98,16 @@ TEST(ChannelStatistics, SayWhyThereAreNone) {
 std::vector<double> numbers_after(const std::string& text, const std::string& label) {
     std::istringstream in(text.substr(text.find(label) + label.size()));
     std::vector<double> numbers;
-    for (double number; in >> number;) numbers.push_back(number);
+    for (double number; in >> number;)
+        numbers.push_back(number);
     return numbers;
 }
 
 std::string oiiotool_stats(const std::filesystem::path& file) {
     std::FILE* pipe = popen(("oiiotool -v --stats '" + file.string() + "'").c_str(), "r");
     std::string text;
-    for (int c; (c = std::fgetc(pipe)) != EOF;) text.push_back(char(c));
+    for (int c; (c = std::fgetc(pipe)) != EOF;)
+        text.push_back(char(c));
     pclose(pipe);
     return text;
 }
@@ -114,7 +118,8 @@ std::vector<std::string> oiiotool_channels(const std::string& text) {
     std::istringstream in(text.substr(begin, text.find('\n', begin) - begin));
     std::vector<std::string> names;
     for (std::string word; in >> word;)
-        if (!word.starts_with('(')) names.push_back(word.ends_with(',') ? word.substr(0, word.size() - 1) : word);
+        if (!word.starts_with('('))
+            names.push_back(word.ends_with(',') ? word.substr(0, word.size() - 1) : word);
     return names;
 }
 
@@ -123,7 +128,8 @@ TEST(ChannelStatistics, OfTheSuzanneFileAreThoseOfOiiotool) {
     const std::filesystem::path path = AFTERSHADE_SOURCE_DIR "/scenes/suzanne/gbuffer_0003.exr";
     const std::string text = oiiotool_stats(path);
     const std::vector<std::string> names = oiiotool_channels(text);
-    const std::vector<double> min = numbers_after(text, "Stats Min:"), max = numbers_after(text, "Stats Max:");
+    const std::vector<double> min = numbers_after(text, "Stats Min:"),
+                              max = numbers_after(text, "Stats Max:");
     const std::vector<double> nan = numbers_after(text, "NanCount:"), inf = numbers_after(text, "InfCount:");
     ASSERT_EQ(names.size(), 25) << text;
     ASSERT_EQ(min.size(), 25) << text;
@@ -134,7 +140,8 @@ TEST(ChannelStatistics, OfTheSuzanneFileAreThoseOfOiiotool) {
         ASSERT_NE(found, names.end()) << name << "\n" << text;
         const std::size_t i = std::size_t(found - names.begin());
         ASSERT_TRUE(inspected.statistics) << inspected.reason;
-        EXPECT_NEAR(*inspected.statistics->min, min[i], 1e-6 * std::abs(min[i]) + 1e-6) << name;  // six decimals
+        EXPECT_NEAR(*inspected.statistics->min, min[i], 1e-6 * std::abs(min[i]) + 1e-6)
+            << name;  // six decimals
         EXPECT_NEAR(*inspected.statistics->max, max[i], 1e-6 * std::abs(max[i]) + 1e-6) << name;
         EXPECT_EQ(double(inspected.statistics->nan), nan[i]) << name;
         EXPECT_EQ(double(inspected.statistics->infinite), inf[i]) << name;

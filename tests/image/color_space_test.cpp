@@ -7,7 +7,6 @@
 namespace aftershade::test {
 namespace {
 
-const Chromaticities kRec709 = *color_space_primaries("rec709");
 const Chromaticities kXyz = {1, 0, 0, 1, 0, 0, 1.0f / 3, 1.0f / 3};
 
 void expect_near(const ColorMatrix& matrix, const ColorMatrix& expected, double tolerance) {

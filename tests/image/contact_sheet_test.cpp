@@ -18,7 +18,8 @@ constexpr float kInf = std::numeric_limits<float>::infinity();
 Capture capture_of(const std::string& role, Image image) {
     Capture capture;
     capture.header.path = "a.exr";
-    capture.header.data_window = capture.header.display_window = {0, 0, image.width() - 1, image.height() - 1};
+    capture.header.data_window =
+        capture.header.display_window = {0, 0, image.width() - 1, image.height() - 1};
     capture.images[role] = std::move(image);
     return capture;
 }
@@ -49,9 +50,10 @@ struct Shape {
 };
 
 TEST(ContactSheet, TilesKeepTheAspectAndStayBelow480Px) {
-    for (const Shape& shape : {Shape{480, 270, 1, 480, 270}, Shape{960, 540, 1, 480, 270}, Shape{1920, 1080, 1, 480, 270},
-                               Shape{100, 50, 1, 400, 200}, Shape{500, 1000, 1, 240, 480}, Shape{1, 1, 1, 480, 480},
-                               Shape{4000, 1, 1, 480, 1}, Shape{480, 480, 2, 480, 240}, Shape{480, 480, 0.5f, 240, 480}}) {
+    for (const Shape& shape :
+         {Shape{480, 270, 1, 480, 270}, Shape{960, 540, 1, 480, 270}, Shape{1920, 1080, 1, 480, 270},
+          Shape{100, 50, 1, 400, 200}, Shape{500, 1000, 1, 240, 480}, Shape{1, 1, 1, 480, 480},
+          Shape{4000, 1, 1, 480, 1}, Shape{480, 480, 2, 480, 240}, Shape{480, 480, 0.5f, 240, 480}}) {
         CaptureHeader header;
         header.data_window = {10, 20, 10 + shape.width - 1, 20 + shape.height - 1};
         header.pixel_aspect = shape.pixel_aspect;
@@ -79,10 +81,12 @@ TEST(ContactSheet, HoldsEveryRoleWithItsLabelBelowWithoutOverlap) {
         int bright = 0;  // the role's name, in white
         for (int y = 0; y < 20; ++y)
             for (int x = 0; x < 100; ++x)
-                bright += sheet.at(layout.tile_x(tile) + x, layout.tile_y(tile) + layout.tile_height_px + 8 + y, 1) == 1;
+                bright += sheet.at(layout.tile_x(tile) + x,
+                                   layout.tile_y(tile) + layout.tile_height_px + 8 + y, 1) == 1;
         EXPECT_GT(bright, 50) << tile;
     }
-    for (const float value : sheet.floats()) ASSERT_TRUE(value >= 0 && value <= 1) << value;
+    for (const float value : sheet.floats())
+        ASSERT_TRUE(value >= 0 && value <= 1) << value;
 }
 
 TEST(ContactSheet, MarksAPixelOnlyWhereItIsFaulty) {
@@ -102,8 +106,9 @@ TEST(ContactSheet, MarksAPixelOnlyWhereItIsFaulty) {
 }
 
 TEST(ContactSheet, ShowsOneFaultyPixelOfALargeImage) {
-    for (const auto& [fault, value] : {std::pair{PixelFault::nan, kNan}, std::pair{PixelFault::infinite, kInf},
-                                       std::pair{PixelFault::negative, -1.0f}}) {
+    for (const auto& [fault, value] :
+         {std::pair{PixelFault::nan, kNan}, std::pair{PixelFault::infinite, kInf},
+          std::pair{PixelFault::negative, -1.0f}}) {
         Image image = filled(4000, 2000, 3, 0.5f);
         image.at(1234, 987, 2) = value;
         const Capture capture = capture_of("irradiance", std::move(image));
@@ -129,7 +134,8 @@ TEST(FalseColor, ShowsColorsAsTheyAreUpToOneExposure) {
     const double luminance = 0.2126 * 0.18 + 0.7152 * 0.09 + 0.0722 * 0.045;
     const double exposure = std::exp2(std::round(std::log2(0.18 / luminance) * 10) / 10);
     for (std::size_t c = 0; c < 3; ++c)
-        EXPECT_NEAR(picture.color(0, 0)[c], 1.055 * std::pow(double(linear[c]) * exposure, 1 / 2.4) - 0.055, 1e-5);
+        EXPECT_NEAR(picture.color(0, 0)[c], 1.055 * std::pow(double(linear[c]) * exposure, 1 / 2.4) - 0.055,
+                    1e-5);
     EXPECT_EQ(picture.label()[0], "up to 0.18");
 }
 
@@ -176,7 +182,8 @@ TEST(FalseColor, TellsDirectionsApartByHueAndStandsStillInBlack) {
 
 TEST(FalseColor, GivesNeighbouringIdsColorsThatDiffer) {
     Image ids(257, 1, 1, ComponentType::uint32);
-    for (int i = 0; i < 257; ++i) ids.uint_at(i, 0, 0) = std::uint32_t(i);
+    for (int i = 0; i < 257; ++i)
+        ids.uint_at(i, 0, 0) = std::uint32_t(i);
     const FalseColor picture("object_id", ids, {});
     EXPECT_EQ(picture.color(0, 0), (DisplayColor{0, 0, 0}));
     for (int i = 1; i < 257; ++i) {
@@ -195,8 +202,8 @@ TEST(FalseColor, CountsFaultsByTheRolesContract) {
     image.at(2, 0, 0) = kNan;
     const auto counts = [&](const std::string& role) {
         const FalseColor picture(role, image, {});
-        return std::array{picture.fault_count(PixelFault::negative), picture.fault_count(PixelFault::infinite),
-                          picture.fault_count(PixelFault::nan)};
+        return std::array{picture.fault_count(PixelFault::negative),
+                          picture.fault_count(PixelFault::infinite), picture.fault_count(PixelFault::nan)};
     };
     using Counts = std::array<std::uint64_t, 3>;
     EXPECT_EQ(counts("mask"), (Counts{1, 1, 1}));

@@ -97,7 +97,7 @@ protected:
         options.roles = roles;
         options.look = "look.json";
         std::vector<std::string> names;
-        for (const fs::path& path : write_outputs(options, result_, capture_)) {
+        for (const fs::path& path : write_outputs(options, result_, capture_, reader_)) {
             EXPECT_TRUE(fs::is_regular_file(path)) << path;
             names.push_back(fs::relative(path, folder_.path()).string());
         }
@@ -111,6 +111,8 @@ protected:
     Capture capture_ =
         make_capture({.width = 6, .height = 4, .background = {0.25f, 0.5f, 0.75f}, .background_depth_m = 3});
     FrameResult result_;
+    Sequence sequence_;
+    CaptureReader reader_{sequence_, {}, {}};
 };
 
 TEST_F(Write, TakesARoleFromTheStepsElseFromTheCapture) {

@@ -1,0 +1,28 @@
+// Where values that are no numbers come from.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace aftershade {
+
+/// Non-finite values of one image: an input of the pipeline, or a texture that a pass has written.
+struct AuditFinding {
+    std::string pass;     ///< "bokeh.second"; "capture" for an input
+    std::string texture;  ///< "bokeh.color", "capture.color"
+    std::size_t nan_count = 0;
+    std::size_t inf_count = 0;
+    int x = 0;  ///< the first such pixel, rows from the top
+    int y = 0;
+};
+
+/// Looks at every value; adds a finding if there is one to tell. `infinity_allowed`: depth, where +inf is nothing hit.
+void audit_values(std::span<const float> values, int width, int channels, bool infinity_allowed, const std::string& pass,
+                  const std::string& texture, std::vector<AuditFinding>& findings);
+
+/// "bokeh.second: bokeh.color has 12 NaN and 3 infinite values, the first at (10, 4)".
+std::string describe_finding(const AuditFinding& finding);
+
+}  // namespace aftershade

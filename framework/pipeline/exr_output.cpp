@@ -1,0 +1,114 @@
+#include "framework/pipeline/exr_output.h"
+
+#include <algorithm>
+#include <deque>
+#include <utility>
+
+#include "framework/core/error.h"
+#include "framework/image/role.h"
+#include "framework/image/window.h"
+
+namespace aftershade {
+
+namespace {
+
+/// Channels and, where they are not the result's or the capture's, the images behind them.
+struct ExrContent {
+    std::vector<ExrOutputChannel> channels;
+    std::deque<Image> images;  // its elements stay where they are
+};
+
+void add_role(ExrContent& content, const ChannelRole& role, const Image& image, PixelType color_type) {
+    const PixelType type = role.pixel_type == PixelType::half ? color_type : role.pixel_type;
+    for (int c = 0; c < role.channels; ++c)
+        content.channels.push_back({role.native_channels[std::size_t(c)], type, &image, c});
+}
+
+/// Roles of which a step made another image than the capture's.
+std::map<std::string, const Image*> changed_roles(const FrameResult& result) {
+    std::map<std::string, const Image*> changed;
+    for (const auto& [role, image] : result.images) changed[role] = &image;
+    return changed;
+}
+
+void add_stored_channels(ExrContent& content, const FrameResult& result, const Capture& capture,
+                         const CaptureReader& reader) {
+    for (StoredChannel& stored : reader.read_stored_channels(capture.header.source_frame, changed_roles(result))) {
+        content.images.push_back(std::move(stored.image));
+        content.channels.push_back({stored.name, stored.type, &content.images.back(), 0});
+    }
+}
+
+void crop(ExrContent& content, const Window& from, const Window& to) {
+    std::map<const Image*, const Image*> cropped;
+    for (ExrOutputChannel& channel : content.channels) {
+        const Image*& image = cropped[channel.image];
+        if (!image) {
+            content.images.push_back(place_in_window(*channel.image, from, to, 0));
+            image = &content.images.back();
+        }
+        channel.image = image;
+    }
+}
+
+bool is_id_channel(const ExrOutputChannel& channel) {
+    return channel.type == PixelType::uint32 || channel.name.find("Crypto") != std::string::npos;
+}
+
+/// Ids are names, not amounts: the next lower one is another object.
+void refuse_lossy_ids(const std::filesystem::path& path, const ExrContent& content, const std::string& compression) {
+    const bool lossy = compression.starts_with("b44") || compression.starts_with("dwa") || compression == "pxr24";
+    const auto id = std::find_if(content.channels.begin(), content.channels.end(), is_id_channel);
+    if (lossy && id != content.channels.end())
+        throw Error(ExitCode::output, path.string() + ": the compression " + compression + " loses bits, and the channel '" +
+                                          id->name + "' holds ids (choose zip, zips, piz, rle or none)");
+}
+
+}  // namespace
+
+const Image* find_image(const std::string& role, const FrameResult& result, const Capture& capture) {
+    if (const auto made = result.images.find(role); made != result.images.end()) return &made->second;
+    if (const auto captured = capture.images.find(role); captured != capture.images.end()) return &captured->second;
+    return nullptr;
+}
+
+ExrWriteOptions exr_write_options(const OutputOptions& options, const CaptureHeader& header) {
+    ExrWriteOptions write;
+    write.data_window = header.data_window;
+    write.display_window = header.display_window;
+    write.pixel_aspect = header.pixel_aspect;
+    write.compression = options.compression;
+    write.carry_over = header.metadata;
+    write.attributes["aftershade/look"] = options.look;
+    write.attributes["aftershade/renderer"] = options.renderer;
+    write.attributes["aftershade/profile"] = header.profile;
+    write.attributes["aftershade/frame"] = header.frame;
+    // A file without the attribute is Rec. 709, so colours of other primaries must say so.
+    if (!options.keep_channels && header.primaries != stored_primaries(header.metadata))
+        write.attributes["chromaticities"] = std::vector<float>(header.primaries.begin(), header.primaries.end());
+    return write;
+}
+
+void write_exr_output(const std::filesystem::path& path, const OutputOptions& options, const FrameResult& result,
+                      const Capture& capture, const CaptureReader& reader) {
+    ExrContent content;
+    const auto& source_channels = capture.header.role_channels;
+    if (options.keep_channels) add_stored_channels(content, result, capture, reader);
+    for (const std::string& name : options.roles) {
+        if (options.keep_channels && source_channels.contains(name)) continue;
+        const Image* image = find_image(name, result, capture);
+        if (!image)
+            throw Error(ExitCode::capture, capture.header.path.string() + ": the role '" + name +
+                                               "', asked for in the output, is in neither the capture nor the look");
+        add_role(content, *find_role(name), *image, options.color_type);
+    }
+    ExrWriteOptions write = exr_write_options(options, capture.header);
+    refuse_lossy_ids(path, content, write.compression);
+    if (options.crop_to_display) {
+        crop(content, write.data_window, write.display_window);
+        write.data_window = write.display_window;
+    }
+    write_exr(path, content.channels, write);
+}
+
+}  // namespace aftershade
