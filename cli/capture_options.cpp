@@ -42,8 +42,9 @@ void choose_color_space(const CaptureOptions& options, Sequence& sequence, Diagn
 }  // namespace
 
 CLI::Option* add_capture_argument(CLI::App& app, CaptureOptions& options) {
-    return app.add_option("capture", options.capture,
-                   "capture.json, an EXR file, a pattern such as frame_####.exr, or a folder")
+    return app
+        .add_option("capture", options.capture,
+                    "capture.json, an EXR file, a pattern such as frame_####.exr, or a folder")
         ->required();
 }
 
@@ -51,12 +52,15 @@ void add_capture_options(CLI::App& app, CaptureOptions& options, const std::stri
     app.add_option("--frames", options.frames, frames_help);
     app.add_option("--profile", options.profile,
                    "Conventions of the capture's producer (default: the capture's, else auto)");
-    app.add_option("--profile-path", options.profile_paths, "Folder of profiles, searched before the shipped ones; repeatable")
+    app.add_option("--profile-path", options.profile_paths,
+                   "Folder of profiles, searched before the shipped ones; repeatable")
         ->allow_extra_args(false);
-    app.add_option("--role", options.role_files, "role=file or pattern, for a role in files of its own; repeatable")
+    app.add_option("--role", options.role_files,
+                   "role=file or pattern, for a role in files of its own; repeatable")
         ->allow_extra_args(false);
     app.add_option("--view", options.view, "View of a multi-view file (default: the file's first)");
-    app.add_option("--color-space", options.color_space, "Primaries of the stored colours: auto, rec709, acescg, ap0, rec2020");
+    app.add_option("--color-space", options.color_space,
+                   "Primaries of the stored colours: auto, rec709, acescg, ap0, rec2020");
     app.add_option("--max-size", options.limits.max_side_px, "Refuse images with a side above this, px")
         ->check(CLI::Range(1, 65536))
         ->capture_default_str();
@@ -87,8 +91,7 @@ std::optional<Sequence> find_sequence(const CaptureOptions& options, const std::
     for (const std::string& text : options.role_files) add_role_file(*sequence, text, diagnostics);
     choose_color_space(options, *sequence, diagnostics);
     std::vector<std::string> ids{"auto"};
-    for (const Profile& profile : profiles)
-        ids.push_back(profile.id);
+    for (const Profile& profile : profiles) ids.push_back(profile.id);
     if (std::find(ids.begin(), ids.end(), sequence->profile) == ids.end())
         diagnostics.error({options.profile.empty() ? options.capture : "--profile " + options.profile},
                           "no profile '" + sequence->profile + "'" + did_you_mean(sequence->profile, ids) +

@@ -30,38 +30,50 @@ VelocitySettings settings_of(const RoleDecoding& decoding) {
 const Image* on_display(Capture& capture, const std::string& role) {
     const auto image = capture.images.find(role);
     if (image == capture.images.end()) return nullptr;
-    image->second = place_in_window(std::move(image->second), capture.header.data_window, capture.header.display_window, 0);
+    image->second = place_in_window(std::move(image->second), capture.header.data_window,
+                                    capture.header.display_window, 0);
     return &image->second;
 }
 
 nlohmann::ordered_json json_of(const VelocitySettings& settings) {
-    return {{"delta", settings.delta}, {"y_axis", settings.y_axis}, {"unit", settings.unit}, {"scale", settings.scale},
+    return {{"delta", settings.delta},
+            {"y_axis", settings.y_axis},
+            {"unit", settings.unit},
+            {"scale", settings.scale},
             {"exchange_channels", settings.exchange_channels}};
 }
 
 nlohmann::ordered_json json_of(const std::string& role, const VelocityCheck& check) {
-    nlohmann::ordered_json row{{"role", role}, {"verdict", velocity_verdict_name(check.verdict)}, {"sentence", check.sentence}};
+    nlohmann::ordered_json row{
+        {"role", role}, {"verdict", velocity_verdict_name(check.verdict)}, {"sentence", check.sentence}};
     row["settings"] = json_of(check.settings);
     row["suggested"] = json_of(check.suggested);
     row["score"] = check.identity.score;
     row["hypotheses"] = nlohmann::ordered_json::array();
     for (const VelocityScore& score : check.hypotheses)
-        row["hypotheses"].push_back({{"other_time", score.hypothesis.other_time}, {"swapped", score.hypothesis.swapped},
-                                     {"scale_x", score.hypothesis.scale_x}, {"scale_y", score.hypothesis.scale_y},
-                                     {"tested", score.tested}, {"score", score.score}});
+        row["hypotheses"].push_back({{"other_time", score.hypothesis.other_time},
+                                     {"swapped", score.hypothesis.swapped},
+                                     {"scale_x", score.hypothesis.scale_x},
+                                     {"scale_y", score.hypothesis.scale_y},
+                                     {"tested", score.tested},
+                                     {"score", score.score}});
     if (check.fit) {
         const auto number = [](const std::optional<double>& value) {
             return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
         };
-        row["free_scale"] = {{"other_time", check.fit->other_time}, {"swapped", check.fit->swapped},
-                             {"x", number(check.fit->scale_x)}, {"y", number(check.fit->scale_y)}, {"score", check.fit->score}};
+        row["free_scale"] = {{"other_time", check.fit->other_time},
+                             {"swapped", check.fit->swapped},
+                             {"x", number(check.fit->scale_x)},
+                             {"y", number(check.fit->scale_y)},
+                             {"score", check.fit->score}};
     }
     return row;
 }
 
 }  // namespace
 
-ExitCode check_velocity_of_files(const std::vector<std::string>& files, const CaptureOptions& options, bool json) {
+ExitCode check_velocity_of_files(const std::vector<std::string>& files, const CaptureOptions& options,
+                                 bool json) {
     Diagnostics diagnostics;
     const std::vector<Profile> profiles = load_profiles(options, diagnostics);
     std::vector<Sequence> sequences;
@@ -69,7 +81,8 @@ ExitCode check_velocity_of_files(const std::vector<std::string>& files, const Ca
         CaptureOptions one = options;
         one.capture = file;
         one.frames = "";
-        if (auto sequence = find_sequence(one, profiles, diagnostics)) sequences.push_back(std::move(*sequence));
+        if (auto sequence = find_sequence(one, profiles, diagnostics))
+            sequences.push_back(std::move(*sequence));
     }
     stop_at_errors(diagnostics);
     set_exr_threads(int(std::thread::hardware_concurrency()));
@@ -84,9 +97,12 @@ ExitCode check_velocity_of_files(const std::vector<std::string>& files, const Ca
     }
     const Image* color_a = on_display(captures[0], "color");
     const Image* color_b = on_display(captures[1], "color");
-    if (!color_a || !color_b) throw Error(ExitCode::capture, files[color_a ? 1 : 0] + ": has no color to compare");
+    if (!color_a || !color_b)
+        throw Error(ExitCode::capture, files[color_a ? 1 : 0] + ": has no color to compare");
 
-    nlohmann::ordered_json document{{"aftershade", 1}, {"files", files}, {"profile", captures[1].header.profile},
+    nlohmann::ordered_json document{{"aftershade", 1},
+                                    {"files", files},
+                                    {"profile", captures[1].header.profile},
                                     {"checks", nlohmann::ordered_json::array()}};
     bool all_confirmed = true;
     for (const std::string role : {"velocity", "velocity_next"}) {
@@ -100,7 +116,8 @@ ExitCode check_velocity_of_files(const std::vector<std::string>& files, const Ca
         if (!json) fmt::print("{}\n", format_velocity_check(check));
     }
     if (document["checks"].empty())
-        throw Error(ExitCode::capture, files[1] + ": the profile '" + captures[1].header.profile + "' finds no motion vectors");
+        throw Error(ExitCode::capture,
+                    files[1] + ": the profile '" + captures[1].header.profile + "' finds no motion vectors");
     if (json) fmt::print("{}\n", document.dump(2));
     return all_confirmed ? ExitCode::done : ExitCode::partial;
 }

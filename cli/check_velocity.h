@@ -9,9 +9,11 @@
 
 namespace aftershade::cli {
 
-/// Warps one of two consecutive frames by its motion vectors and prints how well every reading of them explains the other.
-/// ExitCode::done where the profile's reading is the best by a clear margin for every velocity role that the files have,
-/// else ExitCode::partial. Throws Error(ExitCode::capture) where they have none.
-ExitCode check_velocity_of_files(const std::vector<std::string>& files, const CaptureOptions& options, bool json);
+/// Warps one of two consecutive frames by its motion vectors and prints how well every reading of them
+/// explains the other. ExitCode::done where the profile's reading is the best by a clear margin for every
+/// velocity role that the files have, else ExitCode::partial. Throws Error(ExitCode::capture) where they have
+/// none.
+ExitCode check_velocity_of_files(const std::vector<std::string>& files, const CaptureOptions& options,
+                                 bool json);
 
 }  // namespace aftershade::cli

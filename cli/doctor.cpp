@@ -25,7 +25,8 @@ void print_table(const std::vector<gpu::BackendReport>& reports) {
     fmt::print("{:<13} {:<7} {:<45} {}\n", "backend", "usable", "renderer", "version");
     for (const gpu::BackendReport& report : reports) {
         const std::string_view name = gpu::backend_name(report.backend);
-        if (report.usable) fmt::print("{:<13} {:<7} {:<45} {}\n", name, "yes", report.info.renderer, report.info.version);
+        if (report.usable)
+            fmt::print("{:<13} {:<7} {:<45} {}\n", name, "yes", report.info.renderer, report.info.version);
         else fmt::print("{:<13} {:<7} {}\n", name, "no", report.reason);
     }
     fmt::print("cpu           {} ({} threads)\n", cpu_model(), std::thread::hardware_concurrency());

@@ -11,7 +11,8 @@
 namespace aftershade::cli {
 
 inline void add_backend_option(CLI::App& app, std::string& backend) {
-    app.add_option("--backend", backend, "auto, egl, egl-software or osmesa (default: $AFTERSHADE_BACKEND, else auto)");
+    app.add_option("--backend", backend,
+                   "auto, egl, egl-software or osmesa (default: $AFTERSHADE_BACKEND, else auto)");
 }
 
 /// Throws Error(ExitCode::usage) for a name that is none, telling where it came from.
@@ -21,7 +22,8 @@ inline gpu::Backend chosen_backend(const std::string& option) {
     const std::string name = from_environment ? environment : option.empty() ? "auto" : option;
     const auto backend = gpu::parse_backend(name);
     if (!backend)
-        throw Error(ExitCode::usage, std::string(from_environment ? "AFTERSHADE_BACKEND" : "--backend") + ": '" + name +
+        throw Error(ExitCode::usage, std::string(from_environment ? "AFTERSHADE_BACKEND" : "--backend") +
+                                         ": '" + name +
                                          "' is not one of 'auto', 'egl', 'egl-software' or 'osmesa'");
     return *backend;
 }

@@ -45,8 +45,7 @@ Inspection inspect_frame(const Sequence& sequence, int frame, const CaptureReade
     Inspection inspection;
     inspection.file = sequence.path_of(frame);
     const ExrFile file(inspection.file, limits);
-    for (const auto& [role, pattern] : sequence.role_files)
-        ExrFile(pattern.path(frame), limits);
+    for (const auto& [role, pattern] : sequence.role_files) ExrFile(pattern.path(frame), limits);
     for (std::size_t i = 0; i < file.parts().size(); ++i)
         inspection.parts.push_back({file.parts()[i], inspect_channels(file, int(i), limits)});
     try {
@@ -117,8 +116,9 @@ ExitCode inspect(const InspectOptions& options) {
 Verb add_inspect(CLI::App& app) {
     auto options = std::make_shared<InspectOptions>();
     CLI::Option* capture = add_capture_argument(app, options->capture);
-    CLI::Option* check = app.add_option("--check-velocity", options->check_velocity,
-                                        "Two consecutive frames: do their motion vectors mean what the profile says? Exit 1: no");
+    CLI::Option* check = app.add_option(
+        "--check-velocity", options->check_velocity,
+        "Two consecutive frames: do their motion vectors mean what the profile says? Exit 1: no");
     check->expected(2)->type_name("A B");
     capture->required(false)->excludes(check);
     add_capture_options(app, options->capture, "The frame to look at (default: the first)");

@@ -43,8 +43,7 @@ std::string number_text(const std::optional<double>& value) {
 
 std::string channel_table(const std::vector<InspectedChannel>& channels) {
     std::size_t width = 7;
-    for (const InspectedChannel& channel : channels)
-        width = std::max(width, channel.channel.name.size());
+    for (const InspectedChannel& channel : channels) width = std::max(width, channel.channel.name.size());
     std::string table =
         fmt::format("  {:<{}}  {:<5}  {:<8}  {:>12}  {:>12}  {:>9}  {:>9}  {:>9}\n", "channel", width, "type",
                     "sampling", "min", "max", "NaN", "Inf", "negative");
@@ -57,8 +56,7 @@ std::string channel_table(const std::vector<InspectedChannel>& channels) {
             table += fmt::format("  {:>12}  {:>12}  {:>9}  {:>9}  {:>9}\n", number_text(row.statistics->min),
                                  number_text(row.statistics->max), row.statistics->nan,
                                  row.statistics->infinite, row.statistics->negative);
-        else
-            table += fmt::format("  {}\n", printable(row.reason));
+        else table += fmt::format("  {}\n", printable(row.reason));
     }
     return table;
 }
@@ -113,8 +111,7 @@ Json channel_json(const InspectedChannel& row) {
         channel["inf"] = row.statistics->infinite;
         channel["negative"] = row.statistics->negative;
     } else {
-        for (const char* figure : {"min", "max", "nan", "inf", "negative"})
-            channel[figure] = nullptr;
+        for (const char* figure : {"min", "max", "nan", "inf", "negative"}) channel[figure] = nullptr;
         channel["reason"] = row.reason;
     }
     return channel;
@@ -127,15 +124,13 @@ Json part_json(const InspectedPart& part) {
               {"display_window", window_json(part.header.display_window)},
               {"compression", part.header.compression},
               {"channels", Json::array()}};
-    for (const InspectedChannel& channel : part.channels)
-        json["channels"].push_back(channel_json(channel));
+    for (const InspectedChannel& channel : part.channels) json["channels"].push_back(channel_json(channel));
     return json;
 }
 
 Json camera_json(const Camera& camera) {
     Json json = Json::object();
-    for (const auto& [name, value] : camera.values())
-        json[name] = value;
+    for (const auto& [name, value] : camera.values()) json[name] = value;
     if (!camera.lens_model.empty()) json["lens_model"] = camera.lens_model;
     if (camera.camera_from_world) json["camera_from_world"] = *camera.camera_from_world;
     if (camera.ndc_from_world) json["ndc_from_world"] = *camera.ndc_from_world;
@@ -169,8 +164,7 @@ std::string text_of(const Inspection& inspection) {
     if (inspection.capture)
         text += fmt::format("profile: {} ({})\n", inspection.capture->profile,
                             printable(inspection.capture->profile_reason));
-    else
-        text += fmt::format("profile: none ({})\n", printable(inspection.no_profile_reason));
+    else text += fmt::format("profile: none ({})\n", printable(inspection.no_profile_reason));
     if (inspection.capture && !inspection.capture->view.empty())
         text += fmt::format("view: {}\n", printable(inspection.capture->view));
     return text + role_lines(inspection) +
@@ -179,13 +173,11 @@ std::string text_of(const Inspection& inspection) {
 
 std::string json_of(const Inspection& inspection) {
     Json json{{"file", inspection.file.string()}, {"parts", Json::array()}};
-    for (const InspectedPart& part : inspection.parts)
-        json["parts"].push_back(part_json(part));
+    for (const InspectedPart& part : inspection.parts) json["parts"].push_back(part_json(part));
     if (inspection.capture)
         json["profile"] = {{"id", inspection.capture->profile},
                            {"reason", inspection.capture->profile_reason}};
-    else
-        json["profile"] = {{"id", nullptr}, {"reason", inspection.no_profile_reason}};
+    else json["profile"] = {{"id", nullptr}, {"reason", inspection.no_profile_reason}};
     json["roles"] = Json::object();
     if (inspection.capture)
         for (const std::string& role : inspection.capture->roles)

@@ -10,7 +10,9 @@ namespace {
 std::atomic<bool> interrupted{false};  // a signal handler can reach nothing but a global
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-void on_signal(int) { interrupted = true; }
+void on_signal(int) {
+    interrupted = true;
+}
 
 }  // namespace
 

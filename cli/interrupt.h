@@ -5,8 +5,8 @@
 
 namespace aftershade::cli {
 
-/// Installs the handlers. The first signal sets the flag; a second one ends the process at once, leaving no partial file
-/// because files appear by rename.
+/// Installs the handlers. The first signal sets the flag; a second one ends the process at once, leaving no
+/// partial file because files appear by rename.
 const std::atomic<bool>& watch_for_interrupt();
 
 }  // namespace aftershade::cli

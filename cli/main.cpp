@@ -26,8 +26,9 @@ int main(int argc, char** argv) {
     CLI::App app{"Runs chains of shader effects over G-buffer captures, without a display.", "aftershade"};
     app.set_version_flag("--version", std::string("aftershade " AFTERSHADE_VERSION));
     app.require_subcommand(1);
-    app.footer("Exit codes: 0 done, 1 some frames failed, 2 wrong words or documents, 3 no readable frame or role,\n"
-               "4 no usable GL, 5 an effect failed, 6 an output could not be written, 130 interrupted.");
+    app.footer(
+        "Exit codes: 0 done, 1 some frames failed, 2 wrong words or documents, 3 no readable frame or role,\n"
+        "4 no usable GL, 5 an effect failed, 6 an output could not be written, 130 interrupted.");
     std::map<CLI::App*, aftershade::cli::Verb> verbs;
     const auto add = [&](const char* name, const char* help, auto add_options) {
         CLI::App* verb = app.add_subcommand(name, help);
@@ -36,7 +37,8 @@ int main(int argc, char** argv) {
     add("run", "Run a look over a capture and write the result", aftershade::cli::add_run);
     add("inspect", "Tell what a capture holds: parts, channels with their figures, roles, camera",
         aftershade::cli::add_inspect);
-    add("doctor", "Tell which GL backends work on this machine, and why others do not", aftershade::cli::add_doctor);
+    add("doctor", "Tell which GL backends work on this machine, and why others do not",
+        aftershade::cli::add_doctor);
 
     try {
         app.parse(argc, argv);

@@ -33,6 +33,7 @@ struct RunArguments {
     std::string compression = "zip";
     bool keep_channels = false;
     bool audit = false;
+    bool explain = false;
     PipelineOptions pipeline;
     CaptureOptions capture;
 };
@@ -45,24 +46,32 @@ void add_options(CLI::App& app, RunArguments& options) {
         ->allow_extra_args(false);
     app.add_option("--set", options.pipeline.sets, "step.param=value, above the look's own; repeatable")
         ->allow_extra_args(false);
-    app.add_option("--tap", options.pipeline.taps, "step.texture to write beside the first output; repeatable")
+    app.add_option("--tap", options.pipeline.taps,
+                   "step.texture to write beside the first output; repeatable")
         ->allow_extra_args(false);
     add_capture_options(app, options.capture, "Frames to run, such as 1-100x2,120");
     app.add_option("--output-roles", options.roles, "Roles in EXR outputs (default: color)")->delimiter(',');
     app.add_option("--pixel-type", options.pixel_type, "half or float, for roles that are half by default")
         ->check(CLI::IsMember({"half", "float"}));
-    app.add_flag("--keep-channels", options.keep_channels,
-                 "EXR: every channel of the source too, bit for bit but for those of roles that a step changed");
+    app.add_flag(
+        "--keep-channels", options.keep_channels,
+        "EXR: every channel of the source too, bit for bit but for those of roles that a step changed");
     app.add_option("--crop", options.crop, "EXR: data (the windows as they are) or display (its pixels only)")
         ->check(CLI::IsMember({"data", "display"}))
         ->capture_default_str();
-    app.add_option("--compression", options.compression, "EXR: none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa or dwab")
+    app.add_option("--compression", options.compression,
+                   "EXR: none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa or dwab")
         ->capture_default_str();
-    app.add_option("--missing", options.missing, "A frame whose file is not there: error, skip, or hold the last one")
+    app.add_option("--missing", options.missing,
+                   "A frame whose file is not there: error, skip, or hold the last one")
         ->check(CLI::IsMember({"error", "skip", "hold"}))
         ->capture_default_str();
-    app.add_flag("--audit", options.audit, "Tell which pass first writes NaN or infinite values, where and how many; slow");
-    app.add_option("--effect-path", options.effect_paths, "Folder of effects, searched before the shipped ones; repeatable")
+    app.add_flag("--explain", options.explain,
+                 "Print every parameter's value and where it is from, and run nothing");
+    app.add_flag("--audit", options.audit,
+                 "Tell which pass first writes NaN or infinite values, where and how many; slow");
+    app.add_option("--effect-path", options.effect_paths,
+                   "Folder of effects, searched before the shipped ones; repeatable")
         ->allow_extra_args(false);
     app.add_option("--progress", options.progress, "auto, none or plain")->capture_default_str();
     add_backend_option(app, options.backend);
@@ -83,7 +92,8 @@ OutputOptions output_options(const RunArguments& options) {
 ExitCode run(const RunArguments& options) {
     const std::atomic<bool>& stop = watch_for_interrupt();
     const std::filesystem::path data = data_path();
-    std::vector<std::filesystem::path> effect_folders(options.effect_paths.begin(), options.effect_paths.end());
+    std::vector<std::filesystem::path> effect_folders(options.effect_paths.begin(),
+                                                      options.effect_paths.end());
     effect_folders.push_back(data / "effects");
 
     // Everything that the user wrote is checked, and every fault listed, before any work starts.
@@ -105,8 +115,13 @@ ExitCode run(const RunArguments& options) {
     diagnostics.print(std::cerr);
 
     const CaptureReader reader(*sequence, std::move(profiles), options.capture.limits);
+    if (options.explain) {
+        std::cout << explain_params(pipeline, reader.read_header(sequence->frames.front()));
+        return ExitCode::done;
+    }
     // A lone frame that cannot be read is told of before a context is made.
-    if (sequence->frames.size() == 1) require_capture_roles(pipeline, reader.read_header(sequence->frames.front()));
+    if (sequence->frames.size() == 1)
+        require_capture_roles(pipeline, reader.read_header(sequence->frames.front()));
 
     set_exr_threads(int(std::thread::hardware_concurrency()));
     gpu::Context context(backend);
@@ -115,8 +130,8 @@ ExitCode run(const RunArguments& options) {
     const MissingFrame missing = options.missing == "skip"   ? MissingFrame::skip
                                  : options.missing == "hold" ? MissingFrame::hold
                                                              : MissingFrame::error;
-    const RunReport report = run_frames(context, pipeline, reader, {sequence->frames, missing, options.audit}, outputs, data,
-                                        reporter.observer(), stop);
+    const RunReport report = run_frames(context, pipeline, reader, {sequence->frames, missing, options.audit},
+                                        outputs, data, reporter.observer(), stop);
     if (progress != ProgressStyle::none)
         std::cerr << gpu::backend_name(context.info().backend) << ": " << context.info().renderer << ", "
                   << context.info().version << "\n";

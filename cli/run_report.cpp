@@ -21,7 +21,8 @@ void RunReporter::clear_line() {
 
 RunObserver RunReporter::observer() {
     RunObserver observer;
-    observer.frame_started = [this](const CaptureHeader& header) {
+    observer.frame_started = [this](const Capture& capture) {
+        const CaptureHeader& header = capture.header;
         ++started_;
         if (style_ == ProgressStyle::none) return;
         const std::string profile = "profile " + header.profile + " (" + header.profile_reason + ")";
@@ -29,6 +30,12 @@ RunObserver RunReporter::observer() {
             clear_line();
             fmt::print(stderr, "{}: {}\n", header.path.string(), profile);
             profile_ = profile;
+        }
+        if (capture.pixels_without_motion > 0) {
+            clear_line();
+            fmt::print(stderr, "frame {}: {} pixels have no motion data; {}\n", header.frame,
+                       capture.pixels_without_motion,
+                       capture.motion_from_camera ? "filled from camera and depth" : "filled with 0");
         }
         if (style_ == ProgressStyle::plain) {
             fmt::print(stderr, "frame {} ({}/{})\n", header.frame, started_, frame_count_);
@@ -64,12 +71,15 @@ RunObserver RunReporter::observer() {
 void RunReporter::print_summary(const RunReport& report, const std::string& clock) {
     clear_line();
     if (style_ == ProgressStyle::none || report.frames_done == 0) return;
-    fmt::print(stderr, "{:<28} {:>9} {:>9} {:>9}   ms a frame, {} clock\n", "pass", "mean", "min", "max", clock);
+    fmt::print(stderr, "{:<28} {:>9} {:>9} {:>9}   ms a frame, {} clock\n", "pass", "mean", "min", "max",
+               clock);
     for (const PassStatistics& pass : report.passes)
-        fmt::print(stderr, "{:<28} {:>9.2f} {:>9.2f} {:>9.2f}\n", pass.pass, pass.total_ms / pass.frames, pass.min_ms,
-                   pass.max_ms);
-    fmt::print(stderr, "{} of {} frames in {:.2f} s; waited {:.2f} s for files to be read, {:.2f} s to be written\n",
-               report.frames_done, frame_count_, report.wall_ms / 1000, report.read_ms / 1000, report.write_ms / 1000);
+        fmt::print(stderr, "{:<28} {:>9.2f} {:>9.2f} {:>9.2f}\n", pass.pass, pass.total_ms / pass.frames,
+                   pass.min_ms, pass.max_ms);
+    fmt::print(stderr,
+               "{} of {} frames in {:.2f} s; waited {:.2f} s for files to be read, {:.2f} s to be written\n",
+               report.frames_done, frame_count_, report.wall_ms / 1000, report.read_ms / 1000,
+               report.write_ms / 1000);
 }
 
 }  // namespace aftershade::cli

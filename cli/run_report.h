@@ -1,5 +1,5 @@
-// What `run` tells a person: progress while it works, and the time of each pass at the end. All on stderr; stdout holds
-// the paths of the files written, one a line.
+// What `run` tells a person: progress while it works, and the time of each pass at the end. All on stderr;
+// stdout holds the paths of the files written, one a line.
 #pragma once
 
 #include <string>

@@ -43,7 +43,8 @@ std::vector<Line> code_lines(const fs::path& folder, const std::set<std::string>
         for (std::string text; std::getline(in, text);) {
             ++number;
             const std::size_t comment = text.find("//");
-            const std::string place = fs::relative(entry.path(), kRoot).string() + ":" + std::to_string(number);
+            const std::string place =
+                fs::relative(entry.path(), kRoot).string() + ":" + std::to_string(number);
             lines.push_back({place, text.substr(0, comment)});
         }
     }
@@ -55,9 +56,11 @@ TEST(Architecture, IncludesPointOneWay) {
     for (const auto& entry : fs::directory_iterator(kRoot / "framework")) {
         if (!entry.is_directory()) continue;
         const std::string module = entry.path().filename().string();
-        ASSERT_TRUE(kAllowed.contains(module)) << "say in this test what framework/" << module << " may include";
+        ASSERT_TRUE(kAllowed.contains(module))
+            << "say in this test what framework/" << module << " may include";
         for (const Line& line : code_lines(entry.path(), {".h", ".cpp"})) {
-            EXPECT_FALSE(std::regex_search(line.text, std::regex(R"(#include "(cli|tests|effects)/)"))) << line.place;
+            EXPECT_FALSE(std::regex_search(line.text, std::regex(R"(#include "(cli|tests|effects)/)")))
+                << line.place;
             std::smatch match;
             if (!std::regex_match(line.text, match, include) || match[1] == module) continue;
             EXPECT_TRUE(kAllowed.at(module).contains(match[1])) << line.place << ": " << line.text;
@@ -82,7 +85,8 @@ TEST(Architecture, NothingOutsideAnEffectsFolderNamesIt) {
     for (const char* folder : {"framework", "glsl"})
         for (const Line& line : code_lines(kRoot / folder, {".h", ".cpp", ".glsl", ".vert", ".json"}))
             for (const std::string& id : ids)
-                EXPECT_FALSE(std::regex_search(line.text, std::regex("\\b" + id + "\\b"))) << line.place << ": " << line.text;
+                EXPECT_FALSE(std::regex_search(line.text, std::regex("\\b" + id + "\\b")))
+                    << line.place << ": " << line.text;
 }
 
 TEST(Architecture, TheGraphKnowsNoDocuments) {

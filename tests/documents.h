@@ -21,8 +21,7 @@ inline Lines lines_of(const Diagnostics& diagnostics) {
     diagnostics.print(text);
     std::istringstream in(text.str());
     Lines lines;
-    for (std::string line; std::getline(in, line);)
-        lines.push_back(line);
+    for (std::string line; std::getline(in, line);) lines.push_back(line);
     return lines;
 }
 

@@ -30,7 +30,9 @@ public:
         renderer_ = std::make_unique<PipelineRenderer>(*context_, pipeline_, data_);
     }
 
-    FrameResult run(const Capture& capture) { return renderer_->render(capture, {"color", "display"}, false); }
+    FrameResult run(const Capture& capture) {
+        return renderer_->render(capture, {"color", "display"}, false);
+    }
     Image color(const Capture& capture) { return run(capture).images.at("color"); }
 
 private:

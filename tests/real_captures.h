@@ -10,7 +10,8 @@
 
 namespace aftershade::test {
 
-/// $AFTERSHADE_CAPTURES, else ../shared/captures beside the repository. Absent ones skip a test, but fail it on CI.
+/// $AFTERSHADE_CAPTURES, else ../shared/captures beside the repository. Absent ones skip a test, but fail it
+/// on CI.
 inline std::optional<std::filesystem::path> find_captures(const std::string& inside) {
     const char* set = std::getenv("AFTERSHADE_CAPTURES");
     const std::filesystem::path root = set ? set : AFTERSHADE_SOURCE_DIR "/../shared/captures";
@@ -22,8 +23,8 @@ inline std::optional<std::filesystem::path> find_captures(const std::string& ins
 }
 
 /// Skips the calling test loudly where the capture is absent.
-#define AFTERSHADE_REQUIRE_CAPTURE(variable, inside)                                              \
-    const auto variable = ::aftershade::test::find_captures(inside);                              \
+#define AFTERSHADE_REQUIRE_CAPTURE(variable, inside)                 \
+    const auto variable = ::aftershade::test::find_captures(inside); \
     if (!variable) GTEST_SKIP() << "SKIPPED: no " << (inside) << "; set AFTERSHADE_CAPTURES"
 
 }  // namespace aftershade::test

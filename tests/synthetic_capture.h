@@ -1,4 +1,5 @@
-// Captures from formulas, so that a test knows every pixel before it looks: a plane, a sphere, bright points, a moving box.
+// Captures from formulas, so that a test knows every pixel before it looks: a plane, a sphere, bright points,
+// a moving box.
 #pragma once
 
 #include <cmath>
@@ -17,13 +18,13 @@ struct Rgb {
 };
 
 struct SyntheticPoint {
-    int x = 0, y = 0;      ///< px
-    float intensity = 1;   ///< of each channel, added to what is there
+    int x = 0, y = 0;     ///< px
+    float intensity = 1;  ///< of each channel, added to what is there
 };
 
 struct SyntheticSphere {
     float x = 0, y = 0, radius_px = 0;  ///< centre and radius in the image
-    float depth_m = 1;                  ///< of the whole disk: a billboard, so that its circle of confusion is one number
+    float depth_m = 1;  ///< of the whole disk: a billboard, so that its circle of confusion is one number
     Rgb color{0.8f, 0.5f, 0.3f};
 };
 
@@ -39,9 +40,9 @@ struct SyntheticScene {
     int width = 64, height = 36;
     Rgb background{};
     float background_depth_m = std::numeric_limits<float>::infinity();
-    float alpha = 1;  ///< of the background; objects are opaque
-    std::optional<SyntheticSphere> sphere{};   ///< object 1
-    std::optional<SyntheticBox> box{};         ///< object 2
+    float alpha = 1;                          ///< of the background; objects are opaque
+    std::optional<SyntheticSphere> sphere{};  ///< object 1
+    std::optional<SyntheticBox> box{};        ///< object 2
     std::vector<SyntheticPoint> points{};
 };
 
@@ -54,7 +55,8 @@ inline void set_rgb(Image& image, int x, int y, Rgb value) {
 }
 
 /// Writes one surface point into every role. All light is diffuse: albedo is the colour, irradiance 1.
-inline void set_surface(Capture& capture, int x, int y, Rgb color, float alpha, float depth_m, std::uint32_t id) {
+inline void set_surface(Capture& capture, int x, int y, Rgb color, float alpha, float depth_m,
+                        std::uint32_t id) {
     auto& images = capture.images;
     const float irradiance = 1;
     set_rgb(images["color"], x, y, {color.r * alpha, color.g * alpha, color.b * alpha});
@@ -86,7 +88,8 @@ inline Capture make_capture(const SyntheticScene& scene, int frame = 1) {
     for (int y = 0; y < scene.height; ++y)
         for (int x = 0; x < scene.width; ++x) {
             detail::set_surface(capture, x, y, scene.background, scene.alpha, scene.background_depth_m, 0);
-            if (scene.sphere && std::hypot(float(x) - scene.sphere->x, float(y) - scene.sphere->y) <= scene.sphere->radius_px)
+            if (scene.sphere &&
+                std::hypot(float(x) - scene.sphere->x, float(y) - scene.sphere->y) <= scene.sphere->radius_px)
                 detail::set_surface(capture, x, y, scene.sphere->color, 1, scene.sphere->depth_m, 1);
             if (!scene.box) continue;
             const SyntheticBox& box = *scene.box;
@@ -109,7 +112,8 @@ inline void write_capture(const Capture& capture, const std::filesystem::path& p
     for (const auto& [name, image] : capture.images) {
         const ChannelRole role = *find_role(name);
         const PixelType type = role.type == ComponentType::uint32 ? PixelType::uint32 : PixelType::float32;
-        for (int c = 0; c < role.channels; ++c) channels.push_back({role.native_channels[std::size_t(c)], type, &image, c});
+        for (int c = 0; c < role.channels; ++c)
+            channels.push_back({role.native_channels[std::size_t(c)], type, &image, c});
     }
     ExrWriteOptions options;
     options.data_window = capture.header.data_window;

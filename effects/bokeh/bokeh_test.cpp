@@ -42,7 +42,8 @@ struct CocCase {
     double diameter_px;
 };
 
-/// reference/algorithms.md section 10: f = 50 mm, N = 2, focus 2 m, 1920 px wide, 36 mm: diameters by equation 2.1.
+/// reference/algorithms.md section 10: f = 50 mm, N = 2, focus 2 m, 1920 px wide, 36 mm: diameters by
+/// equation 2.1.
 TEST(BokehCoc, MatchesTheThinLensTableToATenthOfAPercent) {
     constexpr CocCase kTable[] = {{1.0f, 34.19}, {1.5f, 11.40}, {2.0f, 0}, {4.0f, 17.09}, {kInfinity, 34.19}};
     Capture capture = make_capture({.width = 1920, .height = 2});
@@ -56,7 +57,8 @@ TEST(BokehCoc, MatchesTheThinLensTableToATenthOfAPercent) {
         const double diameter_px = aperture_mm * ratio * 50 / (s1 - 50) * 1920 / 36;
         EXPECT_NEAR(diameter_px, kTable[i].diameter_px, 0.006);
         const double sign = kTable[i].depth_m < 2 ? -1 : 1;
-        EXPECT_NEAR(coc.at(100 * i, 0, 0), sign * diameter_px / 2, 0.001 * diameter_px / 2 + 1e-6) << kTable[i].depth_m;
+        EXPECT_NEAR(coc.at(100 * i, 0, 0), sign * diameter_px / 2, 0.001 * diameter_px / 2 + 1e-6)
+            << kTable[i].depth_m;
     }
 }
 
@@ -101,11 +103,12 @@ TEST_P(BokehShape, OfABrightPointIsThePolygonWithItsEnergy) {
     // At half the focus distance the radius is minus that at infinity.
     const float depth_m = c.near ? float(kFocusM / 2) : kInfinity;
     const float intensity = 1000;
-    const Capture capture = make_capture({.width = size, .height = size, .background_depth_m = depth_m,
+    const Capture capture = make_capture({.width = size,
+                                          .height = size,
+                                          .background_depth_m = depth_m,
                                           .points = {{center, center, intensity}}});
-    const std::string shape =
-        fmt::format(R"({}, "shape": "{}", "combine": "{}", "rotation": {})", lens(c.radius_px, size), c.shape, c.combine,
-                    c.rotation_deg);
+    const std::string shape = fmt::format(R"({}, "shape": "{}", "combine": "{}", "rotation": {})",
+                                          lens(c.radius_px, size), c.shape, c.combine, c.rotation_deg);
     const Image blurred = LookRunner(look(shape), gpu::Backend::osmesa).color(capture);
 
     double energy = 0;
@@ -113,7 +116,8 @@ TEST_P(BokehShape, OfABrightPointIsThePolygonWithItsEnergy) {
         for (int x = 0; x < size; ++x) energy += blurred.at(x, y, 0) / intensity;
     EXPECT_NEAR(energy, c.energy, 0.02 * c.energy);
     if (c.sides == 0) return;
-    const Image polygon = coverage(regular_polygon(c.sides, c.radius_px, c.rotation_deg), size, size, center, center);
+    const Image polygon =
+        coverage(regular_polygon(c.sides, c.radius_px, c.rotation_deg), size, size, center, center);
     const double iou = shape_iou(blurred, blurred.at(center, center, 0), polygon);
     RecordProperty("iou", fmt::format("{:.4f}", iou));
     RecordProperty("energy", fmt::format("{:.4f}", energy));
@@ -121,16 +125,19 @@ TEST_P(BokehShape, OfABrightPointIsThePolygonWithItsEnergy) {
 }
 
 constexpr double kOctagonEnergy = 2 * (std::numbers::sqrt2 - 1);  // 0.828: regular octagon over its square
-INSTANTIATE_TEST_SUITE_P(
-    AtR24, BokehShape,
-    testing::Values(ShapeCase{"hexagon", "min", 6, 0.75, 24, 0, false}, ShapeCase{"hexagon", "min", 6, 0.75, 24, 0, true},
-                    ShapeCase{"hexagon", "max", 0, 1.25, 24, 0, false}, ShapeCase{"hexagon", "min", 6, 0.75, 24, 30, false},
-                    ShapeCase{"hexagon", "min", 6, 0.75, 24, 10, false}, ShapeCase{"square", "min", 4, 1, 24, 0, false},
-                    ShapeCase{"square", "min", 4, 1, 23.5, 45, false}, ShapeCase{"square", "max", 4, 1, 24, 0, true},
-                    ShapeCase{"octagon", "min", 8, kOctagonEnergy, 24, 0, false},
-                    ShapeCase{"octagon", "min", 8, kOctagonEnergy, 24, 0, true},
-                    ShapeCase{"octagon", "max", 0, 2 - kOctagonEnergy, 24, 0, false},
-                    ShapeCase{"octagon", "min", 8, kOctagonEnergy, 24, 22.5, false}));
+INSTANTIATE_TEST_SUITE_P(AtR24, BokehShape,
+                         testing::Values(ShapeCase{"hexagon", "min", 6, 0.75, 24, 0, false},
+                                         ShapeCase{"hexagon", "min", 6, 0.75, 24, 0, true},
+                                         ShapeCase{"hexagon", "max", 0, 1.25, 24, 0, false},
+                                         ShapeCase{"hexagon", "min", 6, 0.75, 24, 30, false},
+                                         ShapeCase{"hexagon", "min", 6, 0.75, 24, 10, false},
+                                         ShapeCase{"square", "min", 4, 1, 24, 0, false},
+                                         ShapeCase{"square", "min", 4, 1, 23.5, 45, false},
+                                         ShapeCase{"square", "max", 4, 1, 24, 0, true},
+                                         ShapeCase{"octagon", "min", 8, kOctagonEnergy, 24, 0, false},
+                                         ShapeCase{"octagon", "min", 8, kOctagonEnergy, 24, 0, true},
+                                         ShapeCase{"octagon", "max", 0, 2 - kOctagonEnergy, 24, 0, false},
+                                         ShapeCase{"octagon", "min", 8, kOctagonEnergy, 24, 22.5, false}));
 INSTANTIATE_TEST_SUITE_P(AtR8AndR48, BokehShape,
                          testing::Values(ShapeCase{"hexagon", "min", 6, 0.75, 8, 0, false},
                                          ShapeCase{"square", "min", 4, 1, 8, 0, false},
@@ -169,21 +176,24 @@ Capture varied_depth(SyntheticScene scene) {
 class BokehSettings : public testing::TestWithParam<const char*> {};
 
 TEST_P(BokehSettings, LeaveAUniformImageUnchanged) {
-    const Capture capture = varied_depth({.width = 96, .height = 64, .background = {0.7f, 0.4f, 12.0f}, .alpha = 0.5f});
+    const Capture capture =
+        varied_depth({.width = 96, .height = 64, .background = {0.7f, 0.4f, 12.0f}, .alpha = 0.5f});
     const std::string params = fmt::format("{}, {}", lens(12, 96), GetParam());
     const Image blurred = LookRunner(look(params), gpu::Backend::osmesa).color(capture);
     for (int y = 0; y < 64; ++y)
         for (int x = 0; x < 96; ++x)
             for (int c = 0; c < 4; ++c) {
                 const float source = capture.images.at("color").at(x, y, c);
-                ASSERT_NEAR(blurred.at(x, y, c), source, 2e-6 * source + (c == 3 ? 5e-4 : 0)) << x << " " << y << " " << c;
+                ASSERT_NEAR(blurred.at(x, y, c), source, 2e-6 * source + (c == 3 ? 5e-4 : 0))
+                    << x << " " << y << " " << c;
             }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BokehSettings,
                          testing::Values(R"("shape": "hexagon")", R"("shape": "octagon", "combine": "max")",
-                                         R"("shape": "square", "rotation": 17)", R"("shape": "parallelogram")",
-                                         R"("weights": "seed")", R"("taps": 7)"));
+                                         R"("shape": "square", "rotation": 17)",
+                                         R"("shape": "parallelogram")", R"("weights": "seed")",
+                                         R"("taps": 7)"));
 
 TEST(Bokeh, CopiesPixelsInFocusBitForBit) {
     Capture capture = make_capture({.width = 64, .height = 36, .background_depth_m = float(kFocusM)});
@@ -195,7 +205,8 @@ TEST(Bokeh, CopiesPixelsInFocusBitForBit) {
 }
 
 TEST(Bokeh, KeepsAFocusedObjectOutOfTheBlurBehindIt) {
-    const SyntheticBox box{.x = 20, .y = 10, .width = 24, .height = 20, .depth_m = float(kFocusM), .color = {9, 9, 9}};
+    const SyntheticBox box{
+        .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = float(kFocusM), .color = {9, 9, 9}};
     const Capture capture = make_capture({.width = 96, .height = 48, .box = box}, 0);
     const Image out = LookRunner(look(lens(12, 96)), gpu::Backend::osmesa).color(capture);
     for (int y = 0; y < 48; ++y)
@@ -207,17 +218,22 @@ TEST(Bokeh, KeepsAFocusedObjectOutOfTheBlurBehindIt) {
 }
 
 TEST(Bokeh, SpreadsANearObjectSoftlyOverWhatIsInFocus) {
-    const SyntheticBox box{.x = 30, .y = -10, .width = 34, .height = 80, .depth_m = float(kFocusM / 2), .color = {1, 1, 1}};
-    const Capture capture = make_capture({.width = 96, .height = 48, .background_depth_m = float(kFocusM), .box = box}, 0);
-    const Image out = LookRunner(look(lens(12, 96) + R"(, "shape": "square")"), gpu::Backend::osmesa).color(capture);
-    // A square of circumradius 12 px reaches 8.5 px: the box's edge at x = 64 becomes a ramp from 55.5 to 72.5.
+    const SyntheticBox box{
+        .x = 30, .y = -10, .width = 34, .height = 80, .depth_m = float(kFocusM / 2), .color = {1, 1, 1}};
+    const Capture capture =
+        make_capture({.width = 96, .height = 48, .background_depth_m = float(kFocusM), .box = box}, 0);
+    const Image out =
+        LookRunner(look(lens(12, 96) + R"(, "shape": "square")"), gpu::Backend::osmesa).color(capture);
+    // A square of circumradius 12 px reaches 8.5 px: the box's edge at x = 64 becomes a ramp from 55.5
+    // to 72.5.
     EXPECT_NEAR(out.at(66, 24, 0), 0.5f - 2.5f / 17, 0.05f);
     EXPECT_NEAR(out.at(69, 24, 0), 0.5f - 5.5f / 17, 0.05f);
     EXPECT_LE(out.at(74, 24, 0), 0.001f);
 }
 
 TEST(Bokeh, BlursAlphaWithTheColorThatItCovers) {
-    const SyntheticBox box{.x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kInfinity, .color = {1, 1, 1}};
+    const SyntheticBox box{
+        .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kInfinity, .color = {1, 1, 1}};
     const Capture capture = make_capture({.width = 96, .height = 48, .alpha = 0, .box = box}, 0);
     const Image out = LookRunner(look(lens(6, 96)), gpu::Backend::osmesa).color(capture);
     for (int x = 10; x < 56; ++x) ASSERT_NEAR(out.at(x, 20, 3), out.at(x, 20, 0), 2e-3f) << x;
@@ -253,13 +269,15 @@ TEST(BokehOnSuzanne, ComesWithinReachOfTheRenderersLens) {
 
     const auto psnr = [&](const std::string& more) {
         LookRunner runner(R"({"aftershade": 1, "steps": [{"effect": "bokeh", "params": {"focus_distance": 6.4,
-            "focal_length": 50, "f_number": 0.25, "sensor_width": 36, "lens_model": "pinhole")" + more + "}}]}",
+            "focal_length": 50, "f_number": 0.25, "sensor_width": 36, "lens_model": "pinhole")" +
+                              more + "}}]}",
                           gpu::Backend::osmesa);
         return display_psnr_db(truth, runner.color(capture));
     };
     const double hexagon_db = psnr("");
     const double seed_db = psnr(R"(, "weights": "seed")");
-    fmt::print("PSNR against the lens: sharp {:.2f}, hexagon {:.2f}, weights seed {:.2f} dB\n", sharp_db, hexagon_db, seed_db);
+    fmt::print("PSNR against the lens: sharp {:.2f}, hexagon {:.2f}, weights seed {:.2f} dB\n", sharp_db,
+               hexagon_db, seed_db);
     EXPECT_GE(hexagon_db, 31.0);  // measured 31.35; the project asks for 26.5
     EXPECT_GE(seed_db, 23.5);     // measured 24.6: no gate of the project, but a change here is to be noticed
 }

@@ -57,7 +57,8 @@ TEST(Sanitize, ClampsEachKindToItsOwnValue) {
     color.at(5, 2, 0) = kInfinity;
     color.at(8, 2, 0) = -kInfinity;
     color.at(11, 2, 0) = -3;
-    const Image out = sanitized(capture, R"(, "params": {"nan": "clamp", "inf": "clamp", "max_value": 100})").images.at("color");
+    const Image out = sanitized(capture, R"(, "params": {"nan": "clamp", "inf": "clamp", "max_value": 100})")
+                          .images.at("color");
     EXPECT_EQ(out.at(2, 2, 0), 0);
     EXPECT_EQ(out.at(5, 2, 0), 100);
     EXPECT_EQ(out.at(8, 2, 0), 0);
@@ -77,8 +78,10 @@ TEST(Sanitize, ReportLeavesThePixelAndMarksIt) {
 }
 
 TEST(Sanitize, DimsAFireflyToItsFactorOfTheMedian) {
-    Capture capture = make_capture({.width = 9, .height = 9, .background = {0.5f, 0.5f, 0.5f}, .points = {{4, 4, 999.5f}}});
-    const Image out = sanitized(capture, R"(, "params": {"firefly": "clamp", "firefly_factor": 4})").images.at("color");
+    Capture capture =
+        make_capture({.width = 9, .height = 9, .background = {0.5f, 0.5f, 0.5f}, .points = {{4, 4, 999.5f}}});
+    const Image out =
+        sanitized(capture, R"(, "params": {"firefly": "clamp", "firefly_factor": 4})").images.at("color");
     EXPECT_NEAR(out.at(4, 4, 0), 2, 1e-4);
     EXPECT_EQ(out.at(3, 4, 0), 0.5f);
     const FrameResult reported = sanitized(capture, "");

@@ -16,7 +16,9 @@ double difference(double reference, double test, bool nan_equal) {
     return same && nan_equal ? 0 : kInfinity;
 }
 
-double psnr_of_mse(double mse) { return mse == 0 ? kInfinity : -10 * std::log10(mse); }
+double psnr_of_mse(double mse) {
+    return mse == 0 ? kInfinity : -10 * std::log10(mse);
+}
 
 }  // namespace
 

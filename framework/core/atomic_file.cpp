@@ -17,8 +17,9 @@ namespace fs = std::filesystem;
 AtomicFile::AtomicFile(fs::path final_path) : final_path_(std::move(final_path)) {
     // The process id keeps two commands apart, the counter two files of one command.
     static std::atomic<unsigned> counter{0};
-    temporary_path_ = final_path_.parent_path() / ("." + final_path_.filename().string() + "." +
-                                                   std::to_string(getpid()) + "-" + std::to_string(counter++) + ".tmp");
+    temporary_path_ =
+        final_path_.parent_path() / ("." + final_path_.filename().string() + "." + std::to_string(getpid()) +
+                                     "-" + std::to_string(counter++) + ".tmp");
 }
 
 AtomicFile::~AtomicFile() {

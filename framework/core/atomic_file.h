@@ -5,8 +5,8 @@
 
 namespace aftershade {
 
-/// Names a temporary file beside `final_path` (".<name>.<pid>-<n>.tmp"); commit() flushes it to disk and renames it,
-/// the destructor removes it if it was not committed.
+/// Names a temporary file beside `final_path` (".<name>.<pid>-<n>.tmp"); commit() flushes it to disk and
+/// renames it, the destructor removes it if it was not committed.
 class AtomicFile {
 public:
     explicit AtomicFile(std::filesystem::path final_path);

@@ -27,7 +27,8 @@ fs::path data_path() {
         if (fs::is_directory(place / "effects")) return place;
         tried += (tried.empty() ? "" : ", ") + place.string();
     }
-    throw Error(ExitCode::usage, "no folder 'effects' in " + tried + " (set AFTERSHADE_DATA to the folder that holds it)");
+    throw Error(ExitCode::usage,
+                "no folder 'effects' in " + tried + " (set AFTERSHADE_DATA to the folder that holds it)");
 }
 
 }  // namespace aftershade

@@ -9,7 +9,8 @@
 
 namespace aftershade {
 
-/// Where a fault is. line 0: the whole file, or no file at all (then `file` says what, such as "--set bokeh.taps=2").
+/// Where a fault is. line 0: the whole file, or no file at all (then `file` says what, such as "--set
+/// bokeh.taps=2").
 struct Place {
     std::string file;
     int line = 0;    ///< 1-based

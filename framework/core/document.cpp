@@ -64,8 +64,8 @@ private:
     const char** reached_;
 };
 
-/// Builds nodes from SAX events. Each event comes right after its token was read, so the token's first character is
-/// found by walking back from there.
+/// Builds nodes from SAX events. Each event comes right after its token was read, so the token's first
+/// character is found by walking back from there.
 class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
 public:
     TreeBuilder(std::string_view text, const std::string& file, Diagnostics& diagnostics)
@@ -113,7 +113,8 @@ public:
         object.members.push_back({value, at, {}});
         return true;
     }
-    bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception& e) override {
+    bool parse_error(std::size_t position, const std::string&,
+                     const nlohmann::detail::exception& e) override {
         const std::string message = plain_message(e.what());
         const std::size_t last = std::min(position == 0 ? 0 : position - 1, text_.size());
         // "invalid" speaks of one character; any other fault is a whole token out of place.
@@ -202,7 +203,8 @@ private:
         node->place = place(offset() - 1);
         stack_.push_back(node);
         if (stack_.size() <= std::size_t(kMaxDocumentDepth)) return true;
-        diagnostics_.error(node->place, "nested deeper than " + std::to_string(kMaxDocumentDepth) + " levels");
+        diagnostics_.error(node->place,
+                           "nested deeper than " + std::to_string(kMaxDocumentDepth) + " levels");
         return false;
     }
     bool close() {
@@ -210,7 +212,8 @@ private:
         return true;
     }
 
-    /// "[json.exception.parse_error.101] parse error at line 3, column 5: syntax error while ..." without its head.
+    /// "[json.exception.parse_error.101] parse error at line 3, column 5: syntax error while ..." without its
+    /// head.
     static std::string plain_message(std::string_view what) {
         const std::size_t column = what.find("column ");
         const std::size_t colon = what.find(": ", column == std::string_view::npos ? 0 : column);
@@ -247,7 +250,7 @@ std::optional<Node> parse_document(std::string_view text, const std::string& fil
     }
     const CountingIterator begin(text.data(), builder.reached());
     const CountingIterator end(text.data() + text.size(), builder.reached());
-    const bool strict = true;           // nothing may follow the value
+    const bool strict = true;  // nothing may follow the value
     const bool ignore_comments = true;
     if (!nlohmann::json::sax_parse(begin, end, &builder, nlohmann::json::input_format_t::json, strict,
                                    ignore_comments))
@@ -285,7 +288,8 @@ std::optional<Node> read_document(const fs::path& path, Diagnostics& diagnostics
 ObjectReader::ObjectReader(const Node& node, std::string thing, Diagnostics& diagnostics)
     : node_(node), thing_(std::move(thing)), diagnostics_(diagnostics) {
     if (!node.is_object())
-        diagnostics.error(node.place, thing_ + " must be an object, not " + std::string(kind_name(node.kind)));
+        diagnostics.error(node.place,
+                          thing_ + " must be an object, not " + std::string(kind_name(node.kind)));
 }
 
 const Node* ObjectReader::any(const std::string& key, Presence presence) {
@@ -334,9 +338,8 @@ std::optional<std::string> ObjectReader::choice(const std::string& key, std::spa
     const Node* value = typed(key, presence, Node::Kind::string);
     if (!value) return std::nullopt;
     if (std::find(values.begin(), values.end(), value->string) != values.end()) return value->string;
-    diagnostics_.error(value->place,
-                       "'" + key + "' is '" + value->string + "' but must be " + list_of_names(values) +
-                           did_you_mean(value->string, values));
+    diagnostics_.error(value->place, "'" + key + "' is '" + value->string + "' but must be " +
+                                         list_of_names(values) + did_you_mean(value->string, values));
     return std::nullopt;
 }
 
@@ -346,7 +349,9 @@ std::vector<std::string> ObjectReader::texts(const std::string& key) {
     if (!list) return found;
     for (const Node& item : list->items) {
         if (item.is_string()) found.push_back(item.string);
-        else diagnostics_.error(item.place, "'" + key + "' holds strings, not " + std::string(kind_name(item.kind)));
+        else
+            diagnostics_.error(item.place,
+                               "'" + key + "' holds strings, not " + std::string(kind_name(item.kind)));
     }
     return found;
 }
@@ -362,8 +367,8 @@ void ObjectReader::finish() {
 void check_document_version(ObjectReader& reader, const Node& node, Diagnostics& diagnostics) {
     const auto version = reader.integer("aftershade", ObjectReader::Presence::required);
     if (version && *version != 1)
-        diagnostics.error(node.find("aftershade")->place,
-                          "document version " + std::to_string(*version) + " is not known; this program reads version 1");
+        diagnostics.error(node.find("aftershade")->place, "document version " + std::to_string(*version) +
+                                                              " is not known; this program reads version 1");
 }
 
 }  // namespace aftershade

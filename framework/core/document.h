@@ -1,6 +1,6 @@
-// JSON with positions: looks, captures, manifests, profiles. `//` comments are accepted; duplicate keys and nesting
-// deeper than 64 are errors. Built on nlohmann-json's SAX parser, which reports values as it passes them: its 3.11 tree
-// keeps no positions.
+// JSON with positions: looks, captures, manifests, profiles. `//` comments are accepted; duplicate keys and
+// nesting deeper than 64 are errors. Built on nlohmann-json's SAX parser, which reports values as it passes
+// them: its 3.11 tree keeps no positions.
 #pragma once
 
 #include <cstdint>

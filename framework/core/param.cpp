@@ -11,9 +11,15 @@ namespace aftershade {
 namespace {
 
 constexpr std::array<std::pair<ParamType, std::string_view>, 9> kTypeNames = {{
-    {ParamType::float_, "float"}, {ParamType::int_, "int"},   {ParamType::bool_, "bool"},
-    {ParamType::enum_, "enum"},   {ParamType::angle, "angle"}, {ParamType::color, "color"},
-    {ParamType::vec2, "vec2"},    {ParamType::vec3, "vec3"},  {ParamType::vec4, "vec4"},
+    {ParamType::float_, "float"},
+    {ParamType::int_, "int"},
+    {ParamType::bool_, "bool"},
+    {ParamType::enum_, "enum"},
+    {ParamType::angle, "angle"},
+    {ParamType::color, "color"},
+    {ParamType::vec2, "vec2"},
+    {ParamType::vec3, "vec3"},
+    {ParamType::vec4, "vec4"},
 }};
 
 std::vector<std::string> type_names() {
@@ -23,11 +29,14 @@ std::vector<std::string> type_names() {
 }
 
 ParamType type_of_name(const std::string& name) {
-    const auto found = std::find_if(kTypeNames.begin(), kTypeNames.end(), [&](auto& t) { return t.second == name; });
+    const auto found =
+        std::find_if(kTypeNames.begin(), kTypeNames.end(), [&](auto& t) { return t.second == name; });
     return found->first;
 }
 
-bool is_numeric(ParamType type) { return type != ParamType::bool_ && type != ParamType::enum_; }
+bool is_numeric(ParamType type) {
+    return type != ParamType::bool_ && type != ParamType::enum_;
+}
 
 void read_unit(ObjectReader& reader, const Node& node, ParamSpec& spec, Diagnostics& diagnostics) {
     const auto unit = reader.text("unit");
@@ -37,7 +46,8 @@ void read_unit(ObjectReader& reader, const Node& node, ParamSpec& spec, Diagnost
     if (!is_numeric(spec.type))
         diagnostics.error(place, "a " + std::string(param_type_name(spec.type)) + " has no unit");
     else if (!is_unit(*unit))
-        diagnostics.error(place, "'" + *unit + "' is not a unit; known: " + list_of_names(unit_names(), "and"));
+        diagnostics.error(place,
+                          "'" + *unit + "' is not a unit; known: " + list_of_names(unit_names(), "and"));
     else spec.unit = *unit;
 }
 
@@ -92,11 +102,13 @@ int component_count(ParamType type) {
 }
 
 std::string_view param_type_name(ParamType type) {
-    const auto found = std::find_if(kTypeNames.begin(), kTypeNames.end(), [&](auto& t) { return t.first == type; });
+    const auto found =
+        std::find_if(kTypeNames.begin(), kTypeNames.end(), [&](auto& t) { return t.first == type; });
     return found->second;
 }
 
-std::optional<ParamSpec> parse_param_spec(const std::string& name, const Node& node, Diagnostics& diagnostics) {
+std::optional<ParamSpec> parse_param_spec(const std::string& name, const Node& node,
+                                          Diagnostics& diagnostics) {
     using Presence = ObjectReader::Presence;
     ObjectReader reader(node, "parameter '" + name + "'", diagnostics);
     if (!reader.is_object()) return std::nullopt;
@@ -128,7 +140,8 @@ std::optional<ParamSpec> parse_param_spec(const std::string& name, const Node& n
     }
     const auto value = parse_param_value(spec, *default_node, name + ".default", diagnostics);
     if (value) spec.default_value = *value;
-    if (identity_node) spec.identity = parse_param_value(spec, *identity_node, name + ".identity", diagnostics);
+    if (identity_node)
+        spec.identity = parse_param_value(spec, *identity_node, name + ".identity", diagnostics);
     return value ? std::optional(spec) : std::nullopt;
 }
 

@@ -19,7 +19,8 @@ struct ValueReader {
         return std::nullopt;
     }
     std::nullopt_t wrong_kind(const Node& node, std::string_view expected) const {
-        return fault(node, "expected " + std::string(expected) + ", not " + std::string(kind_name(node.kind)));
+        return fault(node,
+                     "expected " + std::string(expected) + ", not " + std::string(kind_name(node.kind)));
     }
     std::string with_unit(double value) const {
         return format_number(value) + (spec.unit.empty() ? "" : " " + spec.unit);
@@ -43,7 +44,8 @@ struct ValueReader {
             const std::string remedy = has_unit ? " or a string such as \"1 " + spec.unit + "\"" : "";
             return fault(node, "'" + node.string + "' is not " + expected + remedy);
         }
-        if (spec.unit.empty()) return fault(node, "'" + node.string + "' has a unit, but this is a pure number");
+        if (spec.unit.empty())
+            return fault(node, "'" + node.string + "' has a unit, but this is a pure number");
         const auto converted = convert_unit(quantity->value, quantity->unit, spec.unit);
         if (!converted)
             return fault(node, "'" + node.string + "' cannot be converted to " + spec.unit + "; write " +
@@ -65,8 +67,10 @@ struct ValueReader {
     std::optional<ParamValue> integer(const Node& node) const {
         const auto value = scalar(node);
         if (!value) return std::nullopt;
-        if (*value != std::floor(*value)) return fault(node, format_number(*value) + " is not a whole number");
-        if (std::abs(*value) > 2147483647.0) return fault(node, format_number(*value) + " does not fit 32 bits");
+        if (*value != std::floor(*value))
+            return fault(node, format_number(*value) + " is not a whole number");
+        if (std::abs(*value) > 2147483647.0)
+            return fault(node, format_number(*value) + " does not fit 32 bits");
         return std::int64_t(*value);
     }
 

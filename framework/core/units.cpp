@@ -12,8 +12,8 @@ namespace {
 
 enum class Dimension { length, angle, image_length, time, exposure };
 
-/// One of it is numerator / denominator metres, radians, pixels, seconds or stops. The two stay apart so that "85 mm" in
-/// metres is one division, correctly rounded: the double that 0.085 reads as.
+/// One of it is numerator / denominator metres, radians, pixels, seconds or stops. The two stay apart so that
+/// "85 mm" in metres is one division, correctly rounded: the double that 0.085 reads as.
 struct Unit {
     std::string_view name;
     Dimension dimension;
@@ -23,17 +23,18 @@ struct Unit {
 
 constexpr double kPi = std::numbers::pi;
 constexpr std::array kUnits = {
-    Unit{"um", Dimension::length, 1, 1e6},      Unit{"mm", Dimension::length, 1, 1e3},
-    Unit{"cm", Dimension::length, 1, 1e2},      Unit{"m", Dimension::length, 1, 1},
-    Unit{"km", Dimension::length, 1e3, 1},      Unit{"in", Dimension::length, 254, 1e4},
-    Unit{"ft", Dimension::length, 3048, 1e4},   Unit{"deg", Dimension::angle, kPi, 180},
-    Unit{"rad", Dimension::angle, 1, 1},        Unit{"turn", Dimension::angle, 2 * kPi, 1},
-    Unit{"px", Dimension::image_length, 1, 1},  Unit{"s", Dimension::time, 1, 1},
-    Unit{"ms", Dimension::time, 1, 1e3},        Unit{"ev", Dimension::exposure, 1, 1},
+    Unit{"um", Dimension::length, 1, 1e6},     Unit{"mm", Dimension::length, 1, 1e3},
+    Unit{"cm", Dimension::length, 1, 1e2},     Unit{"m", Dimension::length, 1, 1},
+    Unit{"km", Dimension::length, 1e3, 1},     Unit{"in", Dimension::length, 254, 1e4},
+    Unit{"ft", Dimension::length, 3048, 1e4},  Unit{"deg", Dimension::angle, kPi, 180},
+    Unit{"rad", Dimension::angle, 1, 1},       Unit{"turn", Dimension::angle, 2 * kPi, 1},
+    Unit{"px", Dimension::image_length, 1, 1}, Unit{"s", Dimension::time, 1, 1},
+    Unit{"ms", Dimension::time, 1, 1e3},       Unit{"ev", Dimension::exposure, 1, 1},
 };
 
 const Unit* find_unit(std::string_view name) {
-    const auto found = std::find_if(kUnits.begin(), kUnits.end(), [&](const Unit& u) { return u.name == name; });
+    const auto found =
+        std::find_if(kUnits.begin(), kUnits.end(), [&](const Unit& u) { return u.name == name; });
     return found == kUnits.end() ? nullptr : &*found;
 }
 
@@ -45,7 +46,9 @@ std::string_view without_plus(std::string_view text) {
 
 }  // namespace
 
-bool is_unit(std::string_view name) { return find_unit(name) != nullptr; }
+bool is_unit(std::string_view name) {
+    return find_unit(name) != nullptr;
+}
 
 std::vector<std::string> unit_names() {
     std::vector<std::string> names;
@@ -84,7 +87,8 @@ std::optional<double> parse_number(std::string_view text) {
     text = without_plus(text);
     double value = 0;
     const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (failure != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+    if (failure != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
+        return std::nullopt;
     return value;
 }
 

@@ -18,7 +18,8 @@ namespace {
 
 template <typename T>
 const T* find_named(const std::vector<T>& list, const std::string& name) {
-    const auto found = std::find_if(list.begin(), list.end(), [&](const T& item) { return item.name == name; });
+    const auto found =
+        std::find_if(list.begin(), list.end(), [&](const T& item) { return item.name == name; });
     return found == list.end() ? nullptr : &*found;
 }
 
@@ -30,13 +31,15 @@ struct ManifestParser {
     void identifier(const std::string& name, const Place& place, const std::string& thing) {
         static const std::regex rule("[a-z][a-z0-9_]*");
         if (!std::regex_match(name, rule))
-            diagnostics.error(place, thing + " '" + name + "' must be snake_case: a-z, 0-9 and _, beginning with a letter");
+            diagnostics.error(
+                place, thing + " '" + name + "' must be snake_case: a-z, 0-9 and _, beginning with a letter");
     }
 
     std::string role(ObjectReader& reader, const Node& node) {
         const auto name = reader.text("role", Presence::required);
         if (name && !find_role(*name))
-            diagnostics.error(node.find("role")->place, "'" + *name + "' is not a role" + did_you_mean(*name, role_names()));
+            diagnostics.error(node.find("role")->place,
+                              "'" + *name + "' is not a role" + did_you_mean(*name, role_names()));
         return name.value_or("");
     }
 
@@ -84,9 +87,11 @@ struct ManifestParser {
         std::vector<std::string> known;
         if (spec.type == ParamType::enum_) known.push_back(std::string(kCamera) + "lens_model");
         else
-            for (const CameraField& field : camera_fields()) known.push_back(std::string(kCamera) + field.name);
+            for (const CameraField& field : camera_fields())
+                known.push_back(std::string(kCamera) + field.name);
         if (std::find(known.begin(), known.end(), spec.from) == known.end())
-            diagnostics.error(place, "'" + spec.from + "' is not a value of the capture" + did_you_mean(spec.from, known) +
+            diagnostics.error(place, "'" + spec.from + "' is not a value of the capture" +
+                                         did_you_mean(spec.from, known) +
                                          " (known: " + list_of_names(known, "and") + ")");
     }
 
@@ -125,7 +130,9 @@ struct ManifestParser {
             return read;
         }
         if (!node.is_object() || node.members.size() != 1) {
-            diagnostics.error(node.place, "a read is a name, or an object of one name with its filter: {\"color\": \"linear\"}");
+            diagnostics.error(
+                node.place,
+                "a read is a name, or an object of one name with its filter: {\"color\": \"linear\"}");
             return read;
         }
         const Member& member = node.members[0];
@@ -135,7 +142,8 @@ struct ManifestParser {
             if (reader.choice("filter", kFilters) == "linear") read.filter = gpu::Filter::linear;
             if (reader.choice("outside", kOutside) == "zero") read.wrap = gpu::Wrap::zero;
             reader.finish();
-        } else if (member.value.is_string() && (member.value.string == "linear" || member.value.string == "nearest")) {
+        } else if (member.value.is_string() &&
+                   (member.value.string == "linear" || member.value.string == "nearest")) {
             if (member.value.string == "linear") read.filter = gpu::Filter::linear;
         } else {
             diagnostics.error(member.value.place, "the filter of a read is 'nearest' or 'linear'");
@@ -151,7 +159,8 @@ struct ManifestParser {
             if (value.kind == Node::Kind::boolean) condition.values.emplace_back(value.boolean);
             else if (value.kind == Node::Kind::integer) condition.values.emplace_back(value.integer);
             else if (value.is_string()) condition.values.emplace_back(value.string);
-            else diagnostics.error(value.place, "a condition compares with true, false, an integer or a name");
+            else
+                diagnostics.error(value.place, "a condition compares with true, false, an integer or a name");
         };
         if (member.value.is_array())
             for (const Node& item : member.value.items) add(item);
@@ -189,7 +198,8 @@ struct ManifestParser {
             diagnostics.error(member.key_place,
                               "'" + member.key + "' cannot name a define: letters, 0-9 and _ only");
         if (member.value.is_string()) pass.defines[member.key] = member.value.string;
-        else if (member.value.kind == Node::Kind::integer) pass.defines[member.key] = std::to_string(member.value.integer);
+        else if (member.value.kind == Node::Kind::integer)
+            pass.defines[member.key] = std::to_string(member.value.integer);
         else diagnostics.error(member.value.place, "a define is a string or an integer");
     }
 
@@ -222,11 +232,21 @@ struct ManifestParser {
 
 }  // namespace
 
-const InputSpec* EffectManifest::find_input(const std::string& name) const { return find_named(inputs, name); }
-const OutputSpec* EffectManifest::find_output(const std::string& name) const { return find_named(outputs, name); }
-const ParamSpec* EffectManifest::find_param(const std::string& name) const { return find_named(params, name); }
-const TextureSpec* EffectManifest::find_texture(const std::string& name) const { return find_named(textures, name); }
-const PresetSpec* EffectManifest::find_preset(const std::string& name) const { return find_named(presets, name); }
+const InputSpec* EffectManifest::find_input(const std::string& name) const {
+    return find_named(inputs, name);
+}
+const OutputSpec* EffectManifest::find_output(const std::string& name) const {
+    return find_named(outputs, name);
+}
+const ParamSpec* EffectManifest::find_param(const std::string& name) const {
+    return find_named(params, name);
+}
+const TextureSpec* EffectManifest::find_texture(const std::string& name) const {
+    return find_named(textures, name);
+}
+const PresetSpec* EffectManifest::find_preset(const std::string& name) const {
+    return find_named(presets, name);
+}
 
 std::vector<std::string> EffectManifest::param_names() const {
     std::vector<std::string> names;
@@ -234,7 +254,8 @@ std::vector<std::string> EffectManifest::param_names() const {
     return names;
 }
 
-std::optional<EffectManifest> parse_manifest(const Node& node, const fs::path& folder, Diagnostics& diagnostics) {
+std::optional<EffectManifest> parse_manifest(const Node& node, const fs::path& folder,
+                                             Diagnostics& diagnostics) {
     ObjectReader reader(node, "the manifest", diagnostics);
     if (!reader.is_object()) return std::nullopt;
     const int errors_before = diagnostics.error_count();
@@ -244,7 +265,8 @@ std::optional<EffectManifest> parse_manifest(const Node& node, const fs::path& f
     reader.text("$schema");
     manifest.id = reader.text("id", Presence::required).value_or("");
     if (!manifest.id.empty() && manifest.id != folder.filename().string())
-        diagnostics.error(node.find("id")->place, "the id '" + manifest.id + "' is not the name of its folder, '" +
+        diagnostics.error(node.find("id")->place, "the id '" + manifest.id +
+                                                      "' is not the name of its folder, '" +
                                                       folder.filename().string() + "'");
     ManifestParser parser{manifest, diagnostics};
     if (!manifest.id.empty()) parser.identifier(manifest.id, node.find("id")->place, "the id");

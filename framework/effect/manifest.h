@@ -15,7 +15,8 @@
 
 namespace aftershade {
 
-/// An image that the effect takes. A shader reads it under its name; an optional one defines HAS_<NAME> when present.
+/// An image that the effect takes. A shader reads it under its name; an optional one defines HAS_<NAME> when
+/// present.
 struct InputSpec {
     std::string name;
     std::string role;
@@ -24,7 +25,8 @@ struct InputSpec {
     Place place;
 };
 
-/// An image that the effect makes. A pass writes it under its name; its texture has the role's channels as floats.
+/// An image that the effect makes. A pass writes it under its name; its texture has the role's channels as
+/// floats.
 struct OutputSpec {
     std::string name;
     std::string role;
@@ -92,9 +94,9 @@ struct EffectManifest {
     std::vector<std::string> param_names() const;
 };
 
-/// Parses and checks everything that can be known without GL: names, roles, ranges, that each pass reads only what an
-/// earlier one may have written, that every output and texture is written, that shader files exist. Every fault is
-/// reported; nullopt if there was one.
+/// Parses and checks everything that can be known without GL: names, roles, ranges, that each pass reads only
+/// what an earlier one may have written, that every output and texture is written, that shader files exist.
+/// Every fault is reported; nullopt if there was one.
 std::optional<EffectManifest> parse_manifest(const Node& node, const std::filesystem::path& folder,
                                              Diagnostics& diagnostics);
 

@@ -45,7 +45,8 @@ public:
             if (!written_.contains(output.name))
                 diagnostics_.error(output.place, "no pass writes the output '" + output.name + "'");
         for (const InputSpec& input : manifest_.inputs)
-            if (!read_.contains(input.name)) diagnostics_.error(input.place, "no pass reads the input '" + input.name + "'");
+            if (!read_.contains(input.name))
+                diagnostics_.error(input.place, "no pass reads the input '" + input.name + "'");
     }
 
 private:
@@ -56,7 +57,8 @@ private:
     void check_shader_file(const PassSpec& pass) {
         if (pass.shader.empty()) return;
         // A shader is part of its effect: nothing from elsewhere on the disk is read.
-        if (pass.shader.find('/') != std::string::npos) fault(pass.place, pass, "'shader' is a file name without folders");
+        if (pass.shader.find('/') != std::string::npos)
+            fault(pass.place, pass, "'shader' is a file name without folders");
         else if (!std::filesystem::is_regular_file(manifest_.folder / pass.shader))
             fault(pass.place, pass, "no file '" + pass.shader + "' in " + manifest_.folder.string());
     }
@@ -67,8 +69,9 @@ private:
         const InputSpec* input = manifest_.find_input(read.name);
         const TextureSpec* texture = manifest_.find_texture(read.name);
         if (!input && !texture) {
-            fault(read.place, pass, "reads '" + read.name + "', which is no input and no texture" +
-                                        did_you_mean(read.name, readable_));
+            fault(read.place, pass,
+                  "reads '" + read.name + "', which is no input and no texture" +
+                      did_you_mean(read.name, readable_));
             return;
         }
         if (texture && !written_.contains(read.name))
@@ -76,8 +79,9 @@ private:
         const auto role = input ? find_role(input->role) : std::nullopt;
         const bool filterable = input ? !role || role->filterable : !gpu::is_integer(texture->format);
         if (read.filter == gpu::Filter::linear && !filterable)
-            fault(read.place, pass, "'" + read.name + "' cannot be filtered linearly: " +
-                                        (input ? "its role is " + input->role : "its format is integer"));
+            fault(read.place, pass,
+                  "'" + read.name + "' cannot be filtered linearly: " +
+                      (input ? "its role is " + input->role : "its format is integer"));
     }
 
     /// One draw has targets of one size.
@@ -95,11 +99,13 @@ private:
 
     void check_write(const PassSpec& pass, const std::string& name) {
         if (!manifest_.find_output(name) && !manifest_.find_texture(name)) {
-            fault(pass.place, pass, "writes '" + name + "', which is no output and no texture" +
-                                        did_you_mean(name, writable_));
+            fault(pass.place, pass,
+                  "writes '" + name + "', which is no output and no texture" + did_you_mean(name, writable_));
             return;
         }
-        const auto reads_it = [&](const ReadSpec& read) { return read.name == name && !manifest_.find_input(name); };
+        const auto reads_it = [&](const ReadSpec& read) {
+            return read.name == name && !manifest_.find_input(name);
+        };
         if (std::any_of(pass.reads.begin(), pass.reads.end(), reads_it))
             fault(pass.place, pass, "reads and writes '" + name + "'");
         written_.insert(name);
@@ -119,8 +125,9 @@ private:
         }
         const ParamSpec* spec = manifest_.find_param(condition.subject);
         if (!spec) {
-            fault(condition.place, pass, "the condition '" + condition.subject + "' is not a parameter" +
-                                             did_you_mean(condition.subject, manifest_.param_names()));
+            fault(condition.place, pass,
+                  "the condition '" + condition.subject + "' is not a parameter" +
+                      did_you_mean(condition.subject, manifest_.param_names()));
             return;
         }
         for (const ParamValue& value : condition.values)
@@ -152,7 +159,8 @@ void check_manifest(const EffectManifest& manifest, const Node& node, Diagnostic
     if (manifest.outputs.empty()) diagnostics.error(node.place, "the effect has no outputs");
     for (const TextureSpec& texture : manifest.textures)
         if (manifest.find_input(texture.name) || manifest.find_output(texture.name))
-            diagnostics.error(texture.place, "the texture '" + texture.name + "' has the name of an input or an output");
+            diagnostics.error(texture.place,
+                              "the texture '" + texture.name + "' has the name of an input or an output");
     PassChecker checker(manifest, diagnostics);
     for (const PassSpec& pass : manifest.passes) checker.check(pass);
     checker.check_all_used();

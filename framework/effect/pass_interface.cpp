@@ -12,14 +12,16 @@ std::vector<ReadSpec> present_reads(const EffectManifest& manifest, const PassSp
     std::vector<ReadSpec> present;
     for (const ReadSpec& read : pass.reads) {
         const InputSpec* input = manifest.find_input(read.name);
-        const bool absent = input && input->optional &&
-                            std::find(present_inputs.begin(), present_inputs.end(), read.name) == present_inputs.end();
+        const bool absent =
+            input && input->optional &&
+            std::find(present_inputs.begin(), present_inputs.end(), read.name) == present_inputs.end();
         if (!absent) present.push_back(read);
     }
     return present;
 }
 
-bool pass_enabled(const PassSpec& pass, const ParamSet& params, const std::vector<std::string>& present_inputs) {
+bool pass_enabled(const PassSpec& pass, const ParamSet& params,
+                  const std::vector<std::string>& present_inputs) {
     constexpr std::string_view kHas = "has.";
     const auto holds = [&](const WhenSpec& condition) {
         ParamValue actual;
@@ -56,7 +58,8 @@ std::vector<std::byte> param_block(const EffectManifest& manifest, const ParamSe
             case ParamType::bool_: block.add(std::int32_t(std::get<bool>(value))); break;
             case ParamType::int_: block.add(std::int32_t(std::get<std::int64_t>(value))); break;
             case ParamType::enum_: {
-                const auto found = std::find(spec.values.begin(), spec.values.end(), std::get<std::string>(value));
+                const auto found =
+                    std::find(spec.values.begin(), spec.values.end(), std::get<std::string>(value));
                 block.add(std::int32_t(found - spec.values.begin()));
                 break;
             }
@@ -67,7 +70,8 @@ std::vector<std::byte> param_block(const EffectManifest& manifest, const ParamSe
             case ParamType::vec3:
             case ParamType::vec4: {
                 std::vector<float> vector;
-                for (const double component : std::get<std::vector<double>>(value)) vector.push_back(float(component));
+                for (const double component : std::get<std::vector<double>>(value))
+                    vector.push_back(float(component));
                 block.add(std::span<const float>(vector));
                 break;
             }

@@ -33,7 +33,9 @@ std::string trimmed(std::ostringstream& text) {
 }  // namespace
 
 ProgramCache::ProgramCache(gpu::Context& context, std::filesystem::path glsl_folder)
-    : context_(context), glsl_folder_(std::move(glsl_folder)), vertex_(read_text(glsl_folder_ / "fullscreen.vert")) {}
+    : context_(context),
+      glsl_folder_(std::move(glsl_folder)),
+      vertex_(read_text(glsl_folder_ / "fullscreen.vert")) {}
 
 const gpu::Program& ProgramCache::get(const ShaderContext& context) {
     const std::string where = "pass " + context.pass->name + ", " + context_.info().renderer;
@@ -48,8 +50,10 @@ const gpu::Program& ProgramCache::get(const ShaderContext& context) {
             return programs_.emplace(source.text, std::move(program)).first->second;
         } catch (const gpu::ShaderError& error) {
             for (const gpu::ShaderMessage& message : error.messages())
-                if (message.error) faults.error(author_place(source, message), message.text + "   [" + where + "]");
-            if (!faults.has_errors()) faults.error({(context.manifest->folder / context.pass->shader).string()}, error.what());
+                if (message.error)
+                    faults.error(author_place(source, message), message.text + "   [" + where + "]");
+            if (!faults.has_errors())
+                faults.error({(context.manifest->folder / context.pass->shader).string()}, error.what());
         }
     }
     std::ostringstream text;

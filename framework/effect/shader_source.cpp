@@ -17,7 +17,8 @@ namespace fs = std::filesystem;
 namespace {
 
 std::string upper(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::toupper(c)); });
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return char(std::toupper(c)); });
     return text;
 }
 
@@ -57,7 +58,8 @@ std::string define_value(const ParamSpec& spec, const ParamValue& value) {
 
 gpu::TextureFormat format_of(const EffectManifest& manifest, const std::string& name, bool written) {
     if (const TextureSpec* texture = manifest.find_texture(name)) return texture->format;
-    return texture_format_of_role(written ? manifest.find_output(name)->role : manifest.find_input(name)->role);
+    return texture_format_of_role(written ? manifest.find_output(name)->role
+                                          : manifest.find_input(name)->role);
 }
 
 std::string sampler_type(gpu::TextureFormat format) {
@@ -75,7 +77,8 @@ std::string output_type(gpu::TextureFormat format) {
 /// What `#include <pass>` stands for.
 class InterfaceWriter {
 public:
-    explicit InterfaceWriter(const ShaderContext& context) : context_(context), manifest_(*context.manifest) {}
+    explicit InterfaceWriter(const ShaderContext& context)
+        : context_(context), manifest_(*context.manifest) {}
 
     std::string write() {
         defines();
@@ -90,27 +93,31 @@ private:
     void defines() {
         for (const std::string& name : context_.present_inputs)
             if (manifest_.find_input(name)->optional) text_ << "#define HAS_" << upper(name) << " 1\n";
-        for (const auto& [name, value] : context_.pass->defines) text_ << "#define " << name << " " << value << "\n";
+        for (const auto& [name, value] : context_.pass->defines)
+            text_ << "#define " << name << " " << value << "\n";
         for (const ParamSpec& spec : manifest_.params) {
             for (std::size_t i = 0; i < spec.values.size(); ++i)
                 text_ << "#define " << upper(spec.name) << "_" << upper(spec.values[i]) << " " << i << "\n";
             if (spec.bind == ParamBind::define)
-                text_ << "#define " << upper(spec.name) << " " << define_value(spec, context_.params->get(spec.name)) << "\n";
+                text_ << "#define " << upper(spec.name) << " "
+                      << define_value(spec, context_.params->get(spec.name)) << "\n";
         }
     }
 
     void params() {
         text_ << "layout(std140, binding = " << kParamBinding << ") uniform ParamBlock {\n";
         for (const ParamSpec& spec : manifest_.params)
-            if (spec.bind == ParamBind::uniform) text_ << "    " << glsl_type(spec) << " " << spec.name << ";\n";
+            if (spec.bind == ParamBind::uniform)
+                text_ << "    " << glsl_type(spec) << " " << spec.name << ";\n";
         text_ << "} param;\n";
     }
 
     void reads() {
         const auto reads = present_reads(manifest_, *context_.pass, context_.present_inputs);
         for (std::size_t i = 0; i < reads.size(); ++i)
-            text_ << "layout(binding = " << i << ") uniform " << sampler_type(format_of(manifest_, reads[i].name, false))
-                  << " " << reads[i].name << ";\n";
+            text_ << "layout(binding = " << i << ") uniform "
+                  << sampler_type(format_of(manifest_, reads[i].name, false)) << " " << reads[i].name
+                  << ";\n";
         if (reads.empty()) return;
         text_ << "layout(std140, binding = " << kSizeBinding << ") uniform SizeBlock {\n";
         for (const ReadSpec& read : reads) text_ << "    vec4 " << read.name << "_size;\n";
@@ -120,8 +127,8 @@ private:
     void writes() {
         const auto& writes = context_.pass->writes;
         for (std::size_t i = 0; i < writes.size(); ++i)
-            text_ << "layout(location = " << i << ") out " << output_type(format_of(manifest_, writes[i], true)) << " out_"
-                  << writes[i] << ";\n";
+            text_ << "layout(location = " << i << ") out "
+                  << output_type(format_of(manifest_, writes[i], true)) << " out_" << writes[i] << ";\n";
     }
 
     const ShaderContext& context_;
@@ -129,11 +136,12 @@ private:
     std::ostringstream text_;
 };
 
-/// Expands includes into one text and remembers where each line came from: Mesa keeps the line of #line but always
-/// prints source string 0, so a table of our own is the only way back.
+/// Expands includes into one text and remembers where each line came from: Mesa keeps the line of #line but
+/// always prints source string 0, so a table of our own is the only way back.
 class Assembler {
 public:
-    Assembler(const ShaderContext& context, Diagnostics& diagnostics) : context_(context), diagnostics_(diagnostics) {}
+    Assembler(const ShaderContext& context, Diagnostics& diagnostics)
+        : context_(context), diagnostics_(diagnostics) {}
 
     ShaderSource assemble() {
         const fs::path file = context_.manifest->folder / context_.pass->shader;

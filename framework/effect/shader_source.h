@@ -1,9 +1,10 @@
 // From an effect's shader file to the text that GL compiles, with a table back to the author's lines.
 //
-// A shader begins `#version 450 core` and `#include <pass>`. The host generates what <pass> stands for: a sampler and
+// A shader begins `#version 450 core` and `#include <pass>`. The host generates what <pass> stands for: a
+// sampler and
 // `<name>_size` = vec4(w, h, 1/w, 1/h) per read, `out_<name>` per write, and the blocks `param` and `frame`
-// (docs/shaders.md). `#include <x.glsl>` takes a module of glsl/, `#include "x.glsl"` one of the effect's folder; each is
-// included once.
+// (docs/shaders.md). `#include <x.glsl>` takes a module of glsl/, `#include "x.glsl"` one of the effect's
+// folder; each is included once.
 #pragma once
 
 #include <cstddef>
@@ -27,8 +28,8 @@ inline constexpr int kSizeBinding = 2;
 struct ShaderContext {
     const EffectManifest* manifest = nullptr;
     const PassSpec* pass = nullptr;
-    const ParamSet* params = nullptr;            ///< define-bound values become preprocessor symbols
-    std::vector<std::string> present_inputs;     ///< optional inputs that the frame has
+    const ParamSet* params = nullptr;         ///< define-bound values become preprocessor symbols
+    std::vector<std::string> present_inputs;  ///< optional inputs that the frame has
     std::filesystem::path glsl_folder;
 };
 
@@ -45,12 +46,14 @@ struct ShaderSource {
 /// Faults (a missing include, a shader that does not begin as it must) go to `diagnostics`.
 ShaderSource assemble_shader(const ShaderContext& context, Diagnostics& diagnostics);
 
-/// The reads of a pass that are there: inputs that are present, and textures. Their order gives the sampler bindings.
+/// The reads of a pass that are there: inputs that are present, and textures. Their order gives the sampler
+/// bindings.
 std::vector<ReadSpec> present_reads(const EffectManifest& manifest, const PassSpec& pass,
                                     const std::vector<std::string>& present_inputs);
 
 /// Whether every condition of the pass holds.
-bool pass_enabled(const PassSpec& pass, const ParamSet& params, const std::vector<std::string>& present_inputs);
+bool pass_enabled(const PassSpec& pass, const ParamSet& params,
+                  const std::vector<std::string>& present_inputs);
 
 /// Format of an input's or output's texture: its role's channels as floats, or unsigned integers.
 gpu::TextureFormat texture_format_of_role(const std::string& role);

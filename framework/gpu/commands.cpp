@@ -17,12 +17,9 @@ namespace {
 
 GLenum gl_access(Access access) {
     switch (access) {
-        case Access::read:
-            return GL_READ_ONLY;
-        case Access::write:
-            return GL_WRITE_ONLY;
-        case Access::read_write:
-            break;
+        case Access::read: return GL_READ_ONLY;
+        case Access::write: return GL_WRITE_ONLY;
+        case Access::read_write: break;
     }
     return GL_READ_WRITE;
 }

@@ -41,20 +41,13 @@ private:
 
 std::string error_name(GLenum code) {
     switch (code) {
-        case GL_INVALID_ENUM:
-            return "GL_INVALID_ENUM";
-        case GL_INVALID_VALUE:
-            return "GL_INVALID_VALUE";
-        case GL_INVALID_OPERATION:
-            return "GL_INVALID_OPERATION";
-        case GL_INVALID_FRAMEBUFFER_OPERATION:
-            return "GL_INVALID_FRAMEBUFFER_OPERATION";
-        case GL_OUT_OF_MEMORY:
-            return "GL_OUT_OF_MEMORY";
-        case GL_CONTEXT_LOST:
-            return "GL_CONTEXT_LOST";
-        default:
-            return fmt::format("GL error 0x{:04x}", code);
+        case GL_INVALID_ENUM: return "GL_INVALID_ENUM";
+        case GL_INVALID_VALUE: return "GL_INVALID_VALUE";
+        case GL_INVALID_OPERATION: return "GL_INVALID_OPERATION";
+        case GL_INVALID_FRAMEBUFFER_OPERATION: return "GL_INVALID_FRAMEBUFFER_OPERATION";
+        case GL_OUT_OF_MEMORY: return "GL_OUT_OF_MEMORY";
+        case GL_CONTEXT_LOST: return "GL_CONTEXT_LOST";
+        default: return fmt::format("GL error 0x{:04x}", code);
     }
 }
 
@@ -77,14 +70,10 @@ std::optional<Backend> parse_backend(std::string_view name) {
 
 std::string_view backend_name(Backend backend) {
     switch (backend) {
-        case Backend::egl:
-            return "egl";
-        case Backend::egl_software:
-            return "egl-software";
-        case Backend::osmesa:
-            return "osmesa";
-        case Backend::automatic:
-            break;
+        case Backend::egl: return "egl";
+        case Backend::egl_software: return "egl-software";
+        case Backend::osmesa: return "osmesa";
+        case Backend::automatic: break;
     }
     return "auto";
 }

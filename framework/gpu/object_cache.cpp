@@ -13,16 +13,12 @@ namespace {
 
 std::string status_name(GLenum status) {
     switch (status) {
-        case GL_FRAMEBUFFER_INCOMPLETE_ATTACHMENT:
-            return "GL_FRAMEBUFFER_INCOMPLETE_ATTACHMENT";
+        case GL_FRAMEBUFFER_INCOMPLETE_ATTACHMENT: return "GL_FRAMEBUFFER_INCOMPLETE_ATTACHMENT";
         case GL_FRAMEBUFFER_INCOMPLETE_MISSING_ATTACHMENT:
             return "GL_FRAMEBUFFER_INCOMPLETE_MISSING_ATTACHMENT";
-        case GL_FRAMEBUFFER_UNSUPPORTED:
-            return "GL_FRAMEBUFFER_UNSUPPORTED";
-        case GL_FRAMEBUFFER_INCOMPLETE_LAYER_TARGETS:
-            return "GL_FRAMEBUFFER_INCOMPLETE_LAYER_TARGETS";
-        default:
-            return fmt::format("status 0x{:04x}", status);
+        case GL_FRAMEBUFFER_UNSUPPORTED: return "GL_FRAMEBUFFER_UNSUPPORTED";
+        case GL_FRAMEBUFFER_INCOMPLETE_LAYER_TARGETS: return "GL_FRAMEBUFFER_INCOMPLETE_LAYER_TARGETS";
+        default: return fmt::format("status 0x{:04x}", status);
     }
 }
 
@@ -46,8 +42,7 @@ GLuint make_sampler(const GladGLContext& gl, Filter filter, Wrap wrap, bool mips
 }  // namespace
 
 ObjectCache::~ObjectCache() {
-    for (const auto& [targets, framebuffer] : framebuffers_)
-        gl_.DeleteFramebuffers(1, &framebuffer);
+    for (const auto& [targets, framebuffer] : framebuffers_) gl_.DeleteFramebuffers(1, &framebuffer);
     gl_.DeleteSamplers(static_cast<GLsizei>(samplers_.size()), samplers_.data());
 }
 
@@ -60,8 +55,7 @@ unsigned int ObjectCache::sampler(Filter filter, Wrap wrap, bool mips) {
 
 unsigned int ObjectCache::framebuffer(std::span<const Texture* const> targets) {
     std::vector<unsigned int> key;
-    for (const Texture* target : targets)
-        key.push_back(target->handle());
+    for (const Texture* target : targets) key.push_back(target->handle());
     if (const auto found = framebuffers_.find(key); found != framebuffers_.end()) return found->second;
 
     GLuint framebuffer = 0;

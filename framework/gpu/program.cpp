@@ -101,11 +101,9 @@ std::string program_log(const GladGLContext& gl, GLuint program) {
 
 GLuint link(const GladGLContext& gl, std::initializer_list<const Stage*> stages, const std::string& label) {
     const GLuint program = gl.CreateProgram();
-    for (const Stage* stage : stages)
-        gl.AttachShader(program, stage->handle());
+    for (const Stage* stage : stages) gl.AttachShader(program, stage->handle());
     gl.LinkProgram(program);
-    for (const Stage* stage : stages)
-        gl.DetachShader(program, stage->handle());
+    for (const Stage* stage : stages) gl.DetachShader(program, stage->handle());
     GLint linked = 0;
     gl.GetProgramiv(program, GL_LINK_STATUS, &linked);
     if (!linked) {

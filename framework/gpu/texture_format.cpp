@@ -54,8 +54,7 @@ std::string_view texture_format_name(TextureFormat format) {
 
 std::vector<std::string_view> texture_format_names() {
     std::vector<std::string_view> names;
-    for (const FormatInfo& format : kFormats)
-        names.push_back(format.name);
+    for (const FormatInfo& format : kFormats) names.push_back(format.name);
     return names;
 }
 

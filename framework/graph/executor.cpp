@@ -70,7 +70,8 @@ std::vector<PassTime> Executor::run(bool timed, const PassObserver& observer) {
         if (timed) times.push_back({graph_.pass(index).name, timer.stop_ms()});
         if (!observer) continue;
         for (const TextureHandle target : graph_.targets(index))
-            observer(graph_.pass(index).name, graph_.textures()[std::size_t(target.texture)].name, *texture(target));
+            observer(graph_.pass(index).name, graph_.textures()[std::size_t(target.texture)].name,
+                     *texture(target));
     }
     return times;
 }

@@ -21,7 +21,8 @@ struct PassTime {
 /// [the context's thread]
 class Executor {
 public:
-    /// Allocates every texture and uniform buffer. Throws Error(ExitCode::effect) when GL has no memory for them.
+    /// Allocates every texture and uniform buffer. Throws Error(ExitCode::effect) when GL has no memory for
+    /// them.
     Executor(gpu::Context& context, FrameGraph graph);
 
     const CompiledGraph& compiled() const { return compiled_; }
@@ -34,8 +35,8 @@ public:
     using PassObserver =
         std::function<void(const std::string& pass, const std::string& texture, const gpu::Texture& target)>;
 
-    /// Runs every pass. With `timed`, waits for each and returns its milliseconds (see gpu::Timer); else returns {}.
-    /// `observer`, if any, sees each target right after its pass; its time is nobody's.
+    /// Runs every pass. With `timed`, waits for each and returns its milliseconds (see gpu::Timer); else
+    /// returns {}. `observer`, if any, sees each target right after its pass; its time is nobody's.
     std::vector<PassTime> run(bool timed, const PassObserver& observer = {});
 
 private:

@@ -35,7 +35,8 @@ const FrameGraph::Texture& FrameGraph::live(TextureHandle handle, const std::str
     const Texture& texture = textures_[std::size_t(handle.texture)];
     if (handle.version != texture.version)
         throw GraphError(user + " uses version " + std::to_string(handle.version) + " of '" + texture.name +
-                         "', which has been written since and is now version " + std::to_string(texture.version));
+                         "', which has been written since and is now version " +
+                         std::to_string(texture.version));
     return texture;
 }
 
@@ -43,7 +44,8 @@ std::vector<TextureHandle> FrameGraph::add_pass(Pass pass, std::span<const Textu
     if (targets.empty()) throw GraphError("pass '" + pass.name + "' writes nothing");
     for (const Read& read : pass.reads) {
         const Texture& texture = live(read.texture, "pass '" + pass.name + "'");
-        if (texture.version == 0) throw GraphError("pass '" + pass.name + "' reads '" + texture.name + "' before any write");
+        if (texture.version == 0)
+            throw GraphError("pass '" + pass.name + "' reads '" + texture.name + "' before any write");
         if (std::find(targets.begin(), targets.end(), read.texture) != targets.end())
             throw GraphError("pass '" + pass.name + "' reads and writes '" + texture.name + "'");
     }
@@ -52,7 +54,8 @@ std::vector<TextureHandle> FrameGraph::add_pass(Pass pass, std::span<const Textu
     for (const TextureHandle target : targets) {
         const Texture& texture = live(target, "pass '" + pass.name + "'");
         if (texture.imported || texture.kept)
-            throw GraphError("pass '" + pass.name + "' writes '" + texture.name + "', which is imported or kept");
+            throw GraphError("pass '" + pass.name + "' writes '" + texture.name +
+                             "', which is imported or kept");
         if (texture.desc.width != size.width || texture.desc.height != size.height)
             throw GraphError("pass '" + pass.name + "' writes targets of two sizes");
         written.push_back({target.texture, ++textures_[std::size_t(target.texture)].version});
@@ -106,7 +109,9 @@ CompiledGraph FrameGraph::compile() const {
         if (life.first < 0) continue;
         const gpu::TextureDesc& desc = textures_[std::size_t(index)].desc;
         std::size_t slot = 0;
-        while (slot < compiled.slots.size() && !(compiled.slots[slot] == desc && free_after[slot] < life.first)) ++slot;
+        while (slot < compiled.slots.size() &&
+               !(compiled.slots[slot] == desc && free_after[slot] < life.first))
+            ++slot;
         if (slot == compiled.slots.size()) {
             compiled.slots.push_back(desc);
             free_after.push_back(0);

@@ -46,11 +46,12 @@ struct Pass {
 
 /// A graph made ready to run: which passes, in which order, and which texture lies in which memory.
 struct CompiledGraph {
-    std::vector<int> passes;              ///< indices of the passes that something kept depends on, in order
-    std::vector<int> slot_of_texture;     ///< per texture: index into slots, -1 for one that is not needed
-    std::vector<gpu::TextureDesc> slots;  ///< memory; textures of one description whose lifetimes do not meet share a slot
-    std::uint64_t bytes = 0;              ///< of all slots
-    std::uint64_t bytes_unaliased = 0;    ///< what one texture per handle would take
+    std::vector<int> passes;           ///< indices of the passes that something kept depends on, in order
+    std::vector<int> slot_of_texture;  ///< per texture: index into slots, -1 for one that is not needed
+    std::vector<gpu::TextureDesc>
+        slots;  ///< memory; textures of one description whose lifetimes do not meet share a slot
+    std::uint64_t bytes = 0;            ///< of all slots
+    std::uint64_t bytes_unaliased = 0;  ///< what one texture per handle would take
 };
 
 class FrameGraph {
@@ -60,8 +61,8 @@ public:
     /// A transient: lives from its first write to its last read. Reading it before any write is a GraphError.
     TextureHandle create_texture(std::string name, const gpu::TextureDesc& desc);
 
-    /// Appends a draw over `targets`, which all have one size, and returns their new versions. Passes run in the order
-    /// of the calls.
+    /// Appends a draw over `targets`, which all have one size, and returns their new versions. Passes run in
+    /// the order of the calls.
     [[nodiscard]] std::vector<TextureHandle> add_pass(Pass pass, std::span<const TextureHandle> targets);
 
     /// Marks a texture that is read after the frame: an output or a tap. Nothing may write it afterwards.

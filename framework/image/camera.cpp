@@ -8,16 +8,22 @@ namespace aftershade {
 
 const std::vector<CameraField>& camera_fields() {
     static const std::vector<CameraField> fields = {
-        {"focus_distance", "m", 0.001}, {"focal_length", "mm", 0.1}, {"sensor_width", "mm", 0.1},
-        {"f_number", "", 0.01},         {"blades", "", 0},           {"rotation", "deg", -1e6},
-        {"near", "m", 0},               {"far", "m", 0},
+        {"focus_distance", "m", 0.001},
+        {"focal_length", "mm", 0.1},
+        {"sensor_width", "mm", 0.1},
+        {"f_number", "", 0.01},
+        {"blades", "", 0},
+        {"rotation", "deg", -1e6},
+        {"near", "m", 0},
+        {"far", "m", 0},
     };
     return fields;
 }
 
 const CameraField* find_camera_field(const std::string& name) {
     const auto& fields = camera_fields();
-    const auto found = std::find_if(fields.begin(), fields.end(), [&](const auto& f) { return f.name == name; });
+    const auto found =
+        std::find_if(fields.begin(), fields.end(), [&](const auto& f) { return f.name == name; });
     return found == fields.end() ? nullptr : &*found;
 }
 
@@ -26,9 +32,20 @@ std::optional<double> Camera::get(const std::string& name) const {
     return found == values_.end() ? std::nullopt : std::optional(found->second);
 }
 
+std::string Camera::origin(const std::string& name) const {
+    const auto found = origins_.find(name);
+    return found == origins_.end() ? "" : found->second;
+}
+
+void Camera::set_lens_model(const std::string& name, const std::string& origin) {
+    lens_model = name;
+    origins_["lens_model"] = origin;
+}
+
 void Camera::complete_from(const Camera& other) {
     values_.insert(other.values_.begin(), other.values_.end());
     if (lens_model.empty()) lens_model = other.lens_model;
+    origins_.insert(other.origins_.begin(), other.origins_.end());
     if (!camera_from_world) camera_from_world = other.camera_from_world;
     if (!ndc_from_world) ndc_from_world = other.ndc_from_world;
 }
@@ -44,9 +61,10 @@ Camera parse_camera(const Node& node, Diagnostics& diagnostics) {
         spec.unit = field.unit;
         spec.min = field.min;
         if (const auto parsed = parse_param_value(spec, *value, "camera." + field.name, diagnostics))
-            camera.set(field.name, std::get<double>(*parsed));
+            camera.set(field.name, std::get<double>(*parsed), "capture.json");
     }
-    camera.lens_model = reader.choice("lens_model", std::vector<std::string>{"thin", "pinhole"}).value_or("");
+    if (const auto model = reader.choice("lens_model", std::vector<std::string>{"thin", "pinhole"}))
+        camera.set_lens_model(*model, "capture.json");
     reader.finish();
     return camera;
 }

@@ -28,20 +28,30 @@ using CameraMatrix = std::array<double, 16>;
 class Camera {
 public:
     std::optional<double> get(const std::string& name) const;
-    void set(const std::string& name, double value) { values_[name] = value; }
+    /// `origin` tells where the value is from, for `run --explain`: "capture.json", "attribute focus".
+    void set(const std::string& name, double value, const std::string& origin = "") {
+        values_[name] = value;
+        origins_[name] = origin;
+    }
+    /// Of a field that is known, or "lens_model".
+    std::string origin(const std::string& name) const;
+    void set_lens_model(const std::string& name, const std::string& origin);
     const std::map<std::string, double>& values() const { return values_; }
     /// Fills what is not known here from `other`.
     void complete_from(const Camera& other);
 
-    std::string lens_model;  ///< "thin" or "pinhole"; "" where not known
+    std::string lens_model;                         ///< "thin" or "pinhole"; "" where not known
     std::optional<CameraMatrix> camera_from_world;  ///< view space: right-handed, looks along -z, y up, m
-    std::optional<CameraMatrix> ndc_from_world;     ///< projective; x right and y up from -1 to 1 over the display window
+    std::optional<CameraMatrix>
+        ndc_from_world;  ///< projective; x right and y up from -1 to 1 over the display window
 
 private:
     std::map<std::string, double> values_;
+    std::map<std::string, std::string> origins_;
 };
 
-/// Reads "camera": {"focal_length": "50 mm", ...}: numbers in the field's unit, or strings with a unit; "lens_model".
+/// Reads "camera": {"focal_length": "50 mm", ...}: numbers in the field's unit, or strings with a unit;
+/// "lens_model".
 Camera parse_camera(const Node& node, Diagnostics& diagnostics);
 
 }  // namespace aftershade

@@ -21,8 +21,10 @@ constexpr std::array kStandard = {
     StandardAttribute{"effectiveFocalLength", "focal_length"},
 };
 
-void set_if_known(Camera& camera, const CameraField& field, std::optional<double> value) {
-    if (value && *value >= field.min && !camera.get(field.name)) camera.set(field.name, *value);
+void set_if_known(Camera& camera, const CameraField& field, std::optional<double> value,
+                  const std::string& attribute) {
+    if (value && *value >= field.min && !camera.get(field.name))
+        camera.set(field.name, *value, "attribute " + attribute);
 }
 
 /// EXR's matrices act on row vectors.
@@ -32,7 +34,8 @@ std::optional<CameraMatrix> transposed_matrix(const ExrMetadata& metadata, const
     if (!stored || stored->size() != 16) return std::nullopt;
     CameraMatrix matrix{};
     for (std::size_t row = 0; row < 4; ++row)
-        for (std::size_t column = 0; column < 4; ++column) matrix[row * 4 + column] = (*stored)[column * 4 + row];
+        for (std::size_t column = 0; column < 4; ++column)
+            matrix[row * 4 + column] = (*stored)[column * 4 + row];
     return matrix;
 }
 
@@ -44,22 +47,29 @@ Camera camera_of_metadata(const ExrMetadata& metadata, const Profile& profile) {
     for (const auto& [name, source] : profile.camera) {
         const CameraField& field = *find_camera_field(name);
         for (const std::string& pattern : source.attributes) {
-            const auto found = std::find_if(names.begin(), names.end(),
-                                            [&](const std::string& n) { return matches_pattern(n, pattern); });
+            const auto fits = [&](const std::string& n) { return matches_pattern(n, pattern); };
+            const auto found = std::find_if(names.begin(), names.end(), fits);
             if (found == names.end()) continue;
             const auto stored = metadata.number(*found);
             const bool same = source.unit == field.unit;
-            set_if_known(camera, field, stored && !same ? convert_unit(*stored, source.unit, field.unit) : stored);
+            set_if_known(camera, field,
+                         stored && !same ? convert_unit(*stored, source.unit, field.unit) : stored, *found);
         }
     }
-    for (const CameraField& field : camera_fields())
-        set_if_known(camera, field, metadata.number("aftershade/camera/" + field.name));
+    for (const CameraField& field : camera_fields()) {
+        const std::string own = "aftershade/camera/" + field.name;
+        set_if_known(camera, field, metadata.number(own), own);
+    }
     for (const StandardAttribute& standard : kStandard)
-        set_if_known(camera, *find_camera_field(standard.field), metadata.number(standard.attribute));
+        set_if_known(camera, *find_camera_field(standard.field), metadata.number(standard.attribute),
+                     standard.attribute);
     const auto sensor = metadata.value("sensorOverallDimensions");
-    if (const auto* size = sensor ? std::get_if<std::vector<float>>(&*sensor) : nullptr; size && !size->empty())
-        set_if_known(camera, *find_camera_field("sensor_width"), size->front());
-    camera.lens_model = metadata.text("aftershade/camera/lens_model").value_or(profile.lens_model);
+    if (const auto* size = sensor ? std::get_if<std::vector<float>>(&*sensor) : nullptr;
+        size && !size->empty())
+        set_if_known(camera, *find_camera_field("sensor_width"), size->front(), "sensorOverallDimensions");
+    const std::string own_model = "aftershade/camera/lens_model";
+    if (const auto model = metadata.text(own_model)) camera.set_lens_model(*model, "attribute " + own_model);
+    else if (!profile.lens_model.empty()) camera.set_lens_model(profile.lens_model, "profile " + profile.id);
     camera.camera_from_world = transposed_matrix(metadata, "worldToCamera");
     camera.ndc_from_world = transposed_matrix(metadata, "worldToNDC");
     return camera;

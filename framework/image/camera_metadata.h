@@ -8,8 +8,8 @@
 namespace aftershade {
 
 /// The profile's own attributes first, then OpenEXR's standard ones (focus, aperture, nominalFocalLength,
-/// sensorOverallDimensions, worldToCamera, worldToNDC) and aftershade/camera/<field>. Values that are not positive where the
-/// field must be are taken as not known: producers write 0 for that.
+/// sensorOverallDimensions, worldToCamera, worldToNDC) and aftershade/camera/<field>. Values that are not
+/// positive where the field must be are taken as not known: producers write 0 for that.
 Camera camera_of_metadata(const ExrMetadata& metadata, const Profile& profile);
 
 }  // namespace aftershade

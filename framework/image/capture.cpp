@@ -38,8 +38,10 @@ Window grid_of(const FrameFile& file, const FoundChannels& channels, const std::
     return channels.empty() ? file.merged().data_window : file.window_of(channels[0][0]);
 }
 
-/// One layer over the grid, in the role's channel order. Of a component that the file lacks, alpha is 1 and others 0.
-Image read_layer(const FrameFile& file, const std::vector<std::string>& names, const Window& grid, float outside) {
+/// One layer over the grid, in the role's channel order. Of a component that the file lacks, alpha is 1 and
+/// others 0.
+Image read_layer(const FrameFile& file, const std::vector<std::string>& names, const Window& grid,
+                 float outside) {
     std::vector<std::string> present;
     for (const std::string& name : names)
         if (!name.empty()) present.push_back(name);
@@ -88,7 +90,8 @@ const Profile& CaptureReader::choose_profile(const ExrPart& part, CaptureHeader&
         if (profile.id == sequence_.profile) return profile;
     std::vector<std::string> ids;
     for (const Profile& profile : profiles_) ids.push_back(profile.id);
-    throw Error(ExitCode::usage, "no profile '" + sequence_.profile + "'; known: " + list_of_names(ids, "and"));
+    throw Error(ExitCode::usage,
+                "no profile '" + sequence_.profile + "'; known: " + list_of_names(ids, "and"));
 }
 
 void CaptureReader::add_role(OpenFrame& open, const std::string& role, const RoleDecoding& decoding) const {
@@ -108,9 +111,11 @@ void CaptureReader::add_role(OpenFrame& open, const std::string& role, const Rol
     RoleDecoding luminance;
     luminance.layers = {{decoding.luminance}};
     if (found) source.channels = std::move(*found);
-    else if (!decoding.luminance.empty() && find_channels(luminance, "", file.merged())) source.luminance = decoding.luminance;
+    else if (!decoding.luminance.empty() && find_channels(luminance, "", file.merged()))
+        source.luminance = decoding.luminance;
     else return;
-    open.header.role_channels[role] = source.luminance.empty() ? listed(source.channels) : std::vector{source.luminance};
+    open.header.role_channels[role] =
+        source.luminance.empty() ? listed(source.channels) : std::vector{source.luminance};
     open.roles[role] = std::move(source);
 }
 
@@ -160,7 +165,8 @@ CaptureReader::OpenFrame CaptureReader::open(int frame) const {
     header.data_window = color == open.roles.end()
                              ? part.data_window
                              : grid_of(*color->second.file, color->second.channels, color->second.luminance);
-    const std::string& space = sequence_.color_space == "auto" ? open.profile->color_space : sequence_.color_space;
+    const std::string& space =
+        sequence_.color_space == "auto" ? open.profile->color_space : sequence_.color_space;
     open.stored_primaries = space == "auto" ? stored_primaries(part.metadata) : *color_space_primaries(space);
     // XYZ has no primaries that light could have: effects see it as Rec. 709.
     header.primaries = is_xyz(open.stored_primaries) ? kRec709 : open.stored_primaries;
@@ -172,24 +178,30 @@ bool CaptureReader::has_frame(int frame) const {
     return std::filesystem::exists(sequence_.path_of(frame), unreadable);
 }
 
-CaptureHeader CaptureReader::read_header(int frame) const { return open(frame).header; }
+CaptureHeader CaptureReader::read_header(int frame) const {
+    return open(frame).header;
+}
 
-void CaptureReader::read_motion(const OpenFrame& open, const std::string& role, Image& velocity, const Image* color,
-                                Capture& capture) const {
+void CaptureReader::read_motion(const OpenFrame& open, const std::string& role, Image& velocity,
+                                const Image* color, Capture& capture) const {
     const CaptureHeader& header = open.header;
     const RoleSource& source = open.roles.at(role);
-    const DecodeContext context{header.path.string(), header.data_window, header.display_window, header.camera, color};
+    const DecodeContext context{header.path.string(), header.data_window, header.display_window,
+                                header.camera, color};
     const std::vector<std::size_t> missing = decode_velocity(velocity, source.decoding, context);
     if (role != "velocity" || missing.empty()) return;
     capture.pixels_without_motion = missing.size();
     const std::filesystem::path before = sequence_.path_of(header.frame - 1);
     std::error_code unreadable;
-    if (!open.roles.contains("depth") || !sequence_.files.has_frame() || !std::filesystem::exists(before, unreadable)) return;
+    if (!open.roles.contains("depth") || !sequence_.files.has_frame() ||
+        !std::filesystem::exists(before, unreadable))
+        return;
     const FrameFile previous(before, limits_, sequence_.view);
     const Camera camera = camera_of_metadata(previous.merged().metadata, *open.profile);
     if (!knows_motion(header.camera, camera)) return;
     const Image depth = read_role(open, "depth", nullptr, capture);
-    fill_camera_velocity(velocity, missing, depth, header.data_window, header.display_window, header.camera, camera);
+    fill_camera_velocity(velocity, missing, depth, header.data_window, header.display_window, header.camera,
+                         camera);
     capture.motion_from_camera = true;
 }
 
@@ -211,14 +223,15 @@ Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, c
         return decode_ids(file.read_floats(source.channels[0], header.data_window, 0),
                           file.path().string() + ": " + source.channels[0][0]);
     }
-    // A stored value beyond the data window is none: it gets the role's value after decoding, except where decoding
-    // itself turns it into that.
+    // A stored value beyond the data window is none: it gets the role's value after decoding, except where
+    // decoding itself turns it into that.
     const float outside = name == "depth" ? source.decoding.no_hit : role.outside;
     Image image = source.luminance.empty() ? read_layers(file, source.channels, header.data_window, outside)
                                            : file.read_luminance_chroma(source.luminance, header.data_window);
     if (name == "depth")
-        decode_depth(image, source.decoding,
-                     {file.path().string(), header.data_window, header.display_window, header.camera, nullptr});
+        decode_depth(
+            image, source.decoding,
+            {file.path().string(), header.data_window, header.display_window, header.camera, nullptr});
     if (name == "velocity" || name == "velocity_next") read_motion(open, name, image, color, capture);
     if (is_color_role(name) && open.stored_primaries != header.primaries)
         convert_colors(image, conversion_matrix(open.stored_primaries, header.primaries));
@@ -236,7 +249,8 @@ Capture CaptureReader::read(int frame, std::span<const std::string> roles) const
     };
     Image color;
     const bool needs_color = std::any_of(open.roles.begin(), open.roles.end(), is_premultiplied);
-    if (open.roles.contains("color") && (wants("color") || needs_color)) color = read_role(open, "color", nullptr, capture);
+    if (open.roles.contains("color") && (wants("color") || needs_color))
+        color = read_role(open, "color", nullptr, capture);
     for (const auto& [role, source] : open.roles)
         if (role != "color" && wants(role))
             capture.images[role] = read_role(open, role, color.empty() ? nullptr : &color, capture);

@@ -18,20 +18,20 @@ namespace aftershade {
 
 /// The header of one frame, read before its pixels: what it has, and where.
 struct CaptureHeader {
-    int frame = 0;                ///< its number in the output
-    int source_frame = 0;         ///< the number that it was read under; another where a missing frame is held
+    int frame = 0;         ///< its number in the output
+    int source_frame = 0;  ///< the number that it was read under; another where a missing frame is held
     std::filesystem::path path;
-    std::string profile;          ///< id
-    std::string profile_reason;   ///< why: "chosen by name", "attribute BlenderMultiChannel"
-    std::string view;             ///< of a multi-view file
-    Window data_window;           ///< colour's: the working grid
+    std::string profile;         ///< id
+    std::string profile_reason;  ///< why: "chosen by name", "attribute BlenderMultiChannel"
+    std::string view;            ///< of a multi-view file
+    Window data_window;          ///< colour's: the working grid
     Window display_window;
     float pixel_aspect = 1;
-    std::vector<std::string> roles;     ///< that can be read, sorted
+    std::vector<std::string> roles;                                 ///< that can be read, sorted
     std::map<std::string, std::vector<std::string>> role_channels;  ///< the stored channels of each
-    std::vector<std::string> channels;  ///< of the file, in this view
-    Chromaticities primaries = kRec709; ///< of the colours as they are in memory
-    Camera camera;                      ///< capture.json's, completed by the file's metadata
+    std::vector<std::string> channels;                              ///< of the file, in this view
+    Chromaticities primaries = kRec709;                             ///< of the colours as they are in memory
+    Camera camera;  ///< capture.json's, completed by the file's metadata
     ExrMetadata metadata;
 };
 
@@ -39,7 +39,8 @@ struct CaptureHeader {
 struct Capture {
     CaptureHeader header;
     std::map<std::string, Image> images;  ///< by role
-    std::size_t pixels_without_motion = 0;  ///< of velocity: filled, from the camera where that is known, else with 0
+    std::size_t pixels_without_motion =
+        0;  ///< of velocity: filled, from the camera where that is known, else with 0
     bool motion_from_camera = false;
 };
 
@@ -67,10 +68,12 @@ public:
     /// How the roles of a frame are decoded: its profile's ways, or capture.json's.
     std::map<std::string, RoleDecoding> decodings(int frame) const;
 
-    /// Every channel of the frame's main file, in this view, bit for bit and under its own name; but the channels of the
-    /// roles in `changed` hold those images, brought back to the producer's conventions. Of a role that the file stores as
-    /// a sum of layers the first layer holds all. Channels of another data window are placed in the working grid.
-    std::vector<StoredChannel> read_stored_channels(int frame, const std::map<std::string, const Image*>& changed) const;
+    /// Every channel of the frame's main file, in this view, bit for bit and under its own name; but the
+    /// channels of the roles in `changed` hold those images, brought back to the producer's conventions. Of a
+    /// role that the file stores as a sum of layers the first layer holds all. Channels of another data
+    /// window are placed in the working grid.
+    std::vector<StoredChannel> read_stored_channels(int frame,
+                                                    const std::map<std::string, const Image*>& changed) const;
 
 private:
     struct OpenFrame;
@@ -79,11 +82,13 @@ private:
     const Profile& choose_profile(const ExrPart& part, CaptureHeader& header) const;
     void find_roles(OpenFrame& open) const;
     void add_role(OpenFrame& open, const std::string& role, const RoleDecoding& decoding) const;
-    Image read_role(const OpenFrame& open, const std::string& role, const Image* color, Capture& capture) const;
+    Image read_role(const OpenFrame& open, const std::string& role, const Image* color,
+                    Capture& capture) const;
     void read_motion(const OpenFrame& open, const std::string& role, Image& velocity, const Image* color,
                      Capture& capture) const;
 
-    std::map<std::string, Image> encode_role(const OpenFrame& open, const std::string& role, const Image& canonical) const;
+    std::map<std::string, Image> encode_role(const OpenFrame& open, const std::string& role,
+                                             const Image& canonical) const;
 
     const Sequence& sequence_;
     std::vector<Profile> profiles_;

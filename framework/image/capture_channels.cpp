@@ -21,7 +21,8 @@ Image component_of(const Image& image, int component) {
 
 Image floats_of_ids(const Image& ids) {
     Image floats(ids.width(), ids.height(), 1);
-    std::transform(ids.uints().begin(), ids.uints().end(), floats.floats().begin(), [](auto id) { return float(id); });
+    std::transform(ids.uints().begin(), ids.uints().end(), floats.floats().begin(),
+                   [](auto id) { return float(id); });
     return floats;
 }
 
@@ -48,9 +49,10 @@ std::map<std::string, Image> CaptureReader::encode_role(const OpenFrame& open, c
     Image image = canonical;
     Image color;
     Capture unused;
-    if (source.decoding.premultiplied && open.roles.contains("color")) color = read_role(open, "color", nullptr, unused);
-    const DecodeContext context{header.path.string(), header.data_window, header.display_window, header.camera,
-                                color.empty() ? nullptr : &color};
+    if (source.decoding.premultiplied && open.roles.contains("color"))
+        color = read_role(open, "color", nullptr, unused);
+    const DecodeContext context{header.path.string(), header.data_window, header.display_window,
+                                header.camera, color.empty() ? nullptr : &color};
     if (is_color_role(name) && open.stored_primaries != header.primaries)
         convert_colors(image, conversion_matrix(header.primaries, open.stored_primaries));
     if (name == "depth") encode_depth(image, source.decoding, context);
@@ -59,7 +61,8 @@ std::map<std::string, Image> CaptureReader::encode_role(const OpenFrame& open, c
     for (std::size_t layer = 0; layer < source.channels.size(); ++layer)
         for (std::size_t c = 0; c < source.channels[layer].size(); ++c)
             if (const std::string& channel = source.channels[layer][c]; !channel.empty())
-                stored.emplace(channel, layer == 0 ? component_of(image, int(c)) : Image(image.width(), image.height(), 1));
+                stored.emplace(channel, layer == 0 ? component_of(image, int(c))
+                                                   : Image(image.width(), image.height(), 1));
     return stored;
 }
 

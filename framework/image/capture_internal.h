@@ -14,8 +14,8 @@ namespace aftershade {
 struct CaptureReader::RoleSource {
     const FrameFile* file = nullptr;
     RoleDecoding decoding;
-    FoundChannels channels;      // empty for luminance and Cryptomatte
-    std::string luminance;       // the Y channel that stands for color
+    FoundChannels channels;  // empty for luminance and Cryptomatte
+    std::string luminance;   // the Y channel that stands for color
     bool from_cryptomatte = false;
 };
 

@@ -48,8 +48,7 @@ using Batch = std::vector<InspectedChannel*>;
 
 void read_batch(const ExrFile& file, int part, const Batch& batch) {
     std::vector<std::string> names;
-    for (const InspectedChannel* inspected : batch)
-        names.push_back(inspected->channel.name);
+    for (const InspectedChannel* inspected : batch) names.push_back(inspected->channel.name);
     try {
         const bool is_uint = batch.front()->channel.type == PixelType::uint32;
         const Image image = is_uint ? file.read_uints(part, names) : file.read_floats(part, names);

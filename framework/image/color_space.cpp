@@ -29,7 +29,8 @@ ColorMatrix multiply(const ColorMatrix& a, const ColorMatrix& b) {
     ColorMatrix product{};
     for (std::size_t row = 0; row < 3; ++row)
         for (std::size_t column = 0; column < 3; ++column)
-            for (std::size_t k = 0; k < 3; ++k) product[row * 3 + column] += a[row * 3 + k] * b[k * 3 + column];
+            for (std::size_t k = 0; k < 3; ++k)
+                product[row * 3 + column] += a[row * 3 + k] * b[k * 3 + column];
     return product;
 }
 
@@ -46,7 +47,8 @@ ColorMatrix inverse(const ColorMatrix& m) {
         return at(1, 1) * at(2, 2) - at(1, 2) * at(2, 1);
     };
     const double determinant = m[0] * cofactor(0, 0) + m[1] * cofactor(0, 1) + m[2] * cofactor(0, 2);
-    if (std::abs(determinant) < 1e-9) throw Error(ExitCode::capture, "chromaticities: the primaries lie on one line");
+    if (std::abs(determinant) < 1e-9)
+        throw Error(ExitCode::capture, "chromaticities: the primaries lie on one line");
     ColorMatrix result{};
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column)
@@ -75,7 +77,8 @@ ColorMatrix xyz_from_rgb(const Chromaticities& p) {
 
 ColorMatrix adaptation(const Chromaticities& from, const Chromaticities& to) {
     if (is_xyz(from) || is_xyz(to)) return {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    constexpr ColorMatrix kBradford = {0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296};
+    constexpr ColorMatrix kBradford = {0.8951, 0.2664, -0.1614, -0.7502, 1.7135,
+                                       0.0367, 0.0389, -0.0685, 1.0296};
     const Vector source = multiply(kBradford, xyz_of_xy(from[6], from[7]));
     const Vector target = multiply(kBradford, xyz_of_xy(to[6], to[7]));
     ColorMatrix scale{};
@@ -115,7 +118,8 @@ Chromaticities stored_primaries(const ExrMetadata& metadata) {
     Chromaticities primaries = kRec709;
     const auto value = metadata.value("chromaticities");
     const auto* stored = value ? std::get_if<std::vector<float>>(&*value) : nullptr;
-    if (stored && stored->size() == primaries.size()) std::copy(stored->begin(), stored->end(), primaries.begin());
+    if (stored && stored->size() == primaries.size())
+        std::copy(stored->begin(), stored->end(), primaries.begin());
     return primaries;
 }
 

@@ -33,8 +33,8 @@ Chromaticities stored_primaries(const ExrMetadata& metadata);
 /// CIE XYZ stored as RGB: its values are absolute, so nothing is adapted to another white.
 bool is_xyz(const Chromaticities& primaries);
 
-/// From light in one space to the same light in another. Whites that differ are adapted by Bradford's method (ICC v4,
-/// annex E). Throws Error(ExitCode::capture) for primaries that span no space.
+/// From light in one space to the same light in another. Whites that differ are adapted by Bradford's method
+/// (ICC v4, annex E). Throws Error(ExitCode::capture) for primaries that span no space.
 ColorMatrix conversion_matrix(const Chromaticities& from, const Chromaticities& to);
 
 /// Applies the matrix to the first three channels.

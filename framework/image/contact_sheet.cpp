@@ -45,8 +45,7 @@ struct Footprint {
 PixelFault worst_fault(const FalseColor& picture, const Footprint& columns, const Footprint& rows) {
     PixelFault worst = PixelFault::none;
     for (int y = rows.first; y < rows.last; ++y)
-        for (int x = columns.first; x < columns.last; ++x)
-            worst = std::max(worst, picture.fault(x, y));
+        for (int x = columns.first; x < columns.last; ++x) worst = std::max(worst, picture.fault(x, y));
     return worst;
 }
 
@@ -59,12 +58,10 @@ DisplayColor reduced(const FalseColor& picture, const Footprint& columns, const 
     for (int y = rows.first; y < rows.last; y += rows.step())
         for (int x = columns.first; x < columns.last; x += columns.step()) {
             const DisplayColor color = picture.color(x, y);
-            for (std::size_t c = 0; c < 3; ++c)
-                sum[c] += color[c];
+            for (std::size_t c = 0; c < 3; ++c) sum[c] += color[c];
             ++samples;
         }
-    for (float& component : sum)
-        component /= float(samples);
+    for (float& component : sum) component /= float(samples);
     return sum;
 }
 
@@ -122,8 +119,7 @@ public:
         write(1, "cannot be shown:", pixel_fault_color(PixelFault::infinite), 0);
         // Two lines of it, broken at a word where there is one.
         std::size_t cut = message.size();
-        while (cut > 0 && text_width_px(message.substr(0, cut)) * kTextScale > cell_width_px_)
-            --cut;
+        while (cut > 0 && text_width_px(message.substr(0, cut)) * kTextScale > cell_width_px_) --cut;
         if (const std::size_t space = message.rfind(' ', cut);
             cut < message.size() && space != std::string::npos)
             cut = space;
@@ -196,8 +192,7 @@ void draw_footer(Image& sheet, const std::set<PixelFault>& faults, bool has_dept
         x += text_width_px(text) * kTextScale + kMargin_px;
     };
     if (faults.empty()) add("no NaN, no Inf, nothing negative where it must not be", kPaper);
-    for (const PixelFault fault : faults)
-        add(pixel_fault_name(fault), pixel_fault_color(fault));
+    for (const PixelFault fault : faults) add(pixel_fault_name(fault), pixel_fault_color(fault));
     if (has_depth) add("nothing hit", kNothingHitColor);
 }
 
@@ -222,12 +217,9 @@ std::vector<std::string> ordered_roles(const Capture& capture,
         const bool known = capture.images.contains(role) || unreadable.contains(role);
         if (known && std::find(roles.begin(), roles.end(), role) == roles.end()) roles.push_back(role);
     };
-    for (const std::string& role : role_names())
-        add(role);
-    for (const auto& [role, image] : capture.images)
-        add(role);
-    for (const auto& [role, message] : unreadable)
-        add(role);
+    for (const std::string& role : role_names()) add(role);
+    for (const auto& [role, image] : capture.images) add(role);
+    for (const auto& [role, message] : unreadable) add(role);
     return roles;
 }
 

@@ -20,7 +20,8 @@ bool has_channel(const FrameFile& file, const std::string& name) {
     return std::any_of(channels.begin(), channels.end(), [&](const ExrChannel& c) { return c.name == name; });
 }
 
-/// Names in the manifest, {"object": "hex", ...}; a manifest that is damaged counts as none: it is only a help.
+/// Names in the manifest, {"object": "hex", ...}; a manifest that is damaged counts as none: it is only a
+/// help.
 std::vector<std::string> manifest_names(const std::optional<std::string>& manifest) {
     std::vector<std::string> names;
     const auto parsed = nlohmann::json::parse(manifest.value_or("{}"), nullptr, false);
@@ -43,11 +44,13 @@ std::vector<std::string> rank_prefixes(const FrameFile& file, const std::string&
 Image read_ranks(const FrameFile& file, const std::string& prefix, const Window& grid) {
     const std::vector<std::string> channels = {prefix + ".R", prefix + ".G", prefix + ".B", prefix + ".A"};
     const std::string& compression = file.merged().compression;
-    const bool lossy = compression.starts_with("b44") || compression.starts_with("dwa") || compression == "pxr24";
+    const bool lossy =
+        compression.starts_with("b44") || compression.starts_with("dwa") || compression == "pxr24";
     if (lossy || file.type_of(channels[0]) != PixelType::float32)
-        throw Error(ExitCode::capture, file.path().string() + ": the Cryptomatte ids in " + channels[0] + " are " +
-                                           (lossy ? "compressed with loss (" + compression + ")" : "stored as half") +
-                                           ", which destroys them (write them as float, zip)");
+        throw Error(ExitCode::capture,
+                    file.path().string() + ": the Cryptomatte ids in " + channels[0] + " are " +
+                        (lossy ? "compressed with loss (" + compression + ")" : "stored as half") +
+                        ", which destroys them (write them as float, zip)");
     return file.read_floats(channels, grid, 0);
 }
 
@@ -73,15 +76,17 @@ std::vector<CryptomatteLayer> find_cryptomattes(const FrameFile& file) {
     return layers;
 }
 
-const CryptomatteLayer& choose_cryptomatte(const std::vector<CryptomatteLayer>& layers, const std::string& name,
-                                           const FrameFile& file) {
+const CryptomatteLayer& choose_cryptomatte(const std::vector<CryptomatteLayer>& layers,
+                                           const std::string& name, const FrameFile& file) {
     std::vector<std::string> names;
     for (const CryptomatteLayer& layer : layers) {
-        if (layer.name == name || layer.name.ends_with("." + name) || (name.empty() && layers.size() == 1)) return layer;
+        if (layer.name == name || layer.name.ends_with("." + name) || (name.empty() && layers.size() == 1))
+            return layer;
         names.push_back(layer.name);
     }
     if (layers.empty()) throw Error(ExitCode::capture, file.path().string() + ": has no Cryptomatte");
-    throw Error(ExitCode::capture, file.path().string() + ": name one of its Cryptomattes, " + list_of_names(names));
+    throw Error(ExitCode::capture,
+                file.path().string() + ": name one of its Cryptomattes, " + list_of_names(names));
 }
 
 std::uint32_t cryptomatte_hash(const std::string& object) {
@@ -91,14 +96,15 @@ std::uint32_t cryptomatte_hash(const std::string& object) {
     return exponent == 0 || exponent == 0xff ? hash ^ 1u << 23 : hash;
 }
 
-Image cryptomatte_mask(const FrameFile& file, const CryptomatteLayer& layer, const std::vector<std::string>& objects,
-                       const Window& grid) {
+Image cryptomatte_mask(const FrameFile& file, const CryptomatteLayer& layer,
+                       const std::vector<std::string>& objects, const Window& grid) {
     std::vector<std::uint32_t> wanted;
     for (const std::string& object : objects) {
         const auto& known = layer.object_names;
         if (!known.empty() && std::find(known.begin(), known.end(), object) == known.end())
-            throw Error(ExitCode::capture, file.path().string() + ": the Cryptomatte " + layer.name + " has no object '" +
-                                               object + "'" + did_you_mean(object, known));
+            throw Error(ExitCode::capture, file.path().string() + ": the Cryptomatte " + layer.name +
+                                               " has no object '" + object + "'" +
+                                               did_you_mean(object, known));
         wanted.push_back(cryptomatte_hash(object));
     }
     Image mask(grid.width(), grid.height(), 1);
@@ -116,7 +122,8 @@ Image cryptomatte_mask(const FrameFile& file, const CryptomatteLayer& layer, con
 Image cryptomatte_ids(const FrameFile& file, const CryptomatteLayer& layer, const Window& grid) {
     const Image ranks = read_ranks(file, layer.ranks.front(), grid);
     Image ids(grid.width(), grid.height(), 1, ComponentType::uint32);
-    for (std::size_t pixel = 0; pixel < ids.uints().size(); ++pixel) ids.uints()[pixel] = id_bits(ranks, pixel, 0);
+    for (std::size_t pixel = 0; pixel < ids.uints().size(); ++pixel)
+        ids.uints()[pixel] = id_bits(ranks, pixel, 0);
     return ids;
 }
 

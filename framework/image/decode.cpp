@@ -21,8 +21,10 @@ DepthRange depth_range(const RoleDecoding& decoding, const DecodeContext& contex
     const auto near_m = decoding.near_m ? decoding.near_m : context.camera.get("near");
     const auto far_m = decoding.far_m ? decoding.far_m : context.camera.get("far");
     if (!near_m || !far_m || !(*near_m < *far_m))
-        throw Error(ExitCode::capture, context.file + ": this depth needs the camera's near and far, with near < far (give "
-                                                      "'near' and 'far' in capture.json's camera)");
+        throw Error(ExitCode::capture,
+                    context.file +
+                        ": this depth needs the camera's near and far, with near < far (give "
+                        "'near' and 'far' in capture.json's camera)");
     return {*near_m, *far_m};
 }
 
@@ -30,7 +32,8 @@ DepthRange depth_range(const RoleDecoding& decoding, const DecodeContext& contex
 float ranged_depth(float stored, const RoleDecoding& decoding, const DepthRange& range) {
     const double t = decoding.reversed ? 1 - double(stored) : double(stored);
     if (!(t < 1)) return kNothingHit;
-    if (decoding.encoding == DepthEncoding::normalized) return float(range.near_m + t * (range.far_m - range.near_m));
+    if (decoding.encoding == DepthEncoding::normalized)
+        return float(range.near_m + t * (range.far_m - range.near_m));
     return float(range.near_m * range.far_m / (range.far_m - t * (range.far_m - range.near_m)));
 }
 
@@ -52,17 +55,22 @@ bool is_ranged(const RoleDecoding& decoding) {
 
 enum class RayScale { to_axis, to_ray };
 
-/// The cosine between a pixel's ray and the view axis turns distance along the ray into distance along the axis.
+/// The cosine between a pixel's ray and the view axis turns distance along the ray into distance along the
+/// axis.
 void scale_by_cosine(Image& depth, const DecodeContext& context, RayScale scale) {
-    const auto focal_length_mm = context.camera.get("focal_length"), sensor_width_mm = context.camera.get("sensor_width");
+    const auto focal_length_mm = context.camera.get("focal_length"),
+               sensor_width_mm = context.camera.get("sensor_width");
     if (!focal_length_mm || !sensor_width_mm)
-        throw Error(ExitCode::capture, context.file + ": this depth is radial and needs the camera's focal_length and "
-                                                      "sensor_width (give them in capture.json's camera)");
+        throw Error(ExitCode::capture, context.file +
+                                           ": this depth is radial and needs the camera's focal_length and "
+                                           "sensor_width (give them in capture.json's camera)");
     const double focal_px = *focal_length_mm / *sensor_width_mm * context.display.width();
     for (int y = 0; y < depth.height(); ++y)
         for (int x = 0; x < depth.width(); ++x) {
-            const double dx = x + context.grid.min_x - context.display.min_x + 0.5 - 0.5 * context.display.width();
-            const double dy = y + context.grid.min_y - context.display.min_y + 0.5 - 0.5 * context.display.height();
+            const double dx =
+                x + context.grid.min_x - context.display.min_x + 0.5 - 0.5 * context.display.width();
+            const double dy =
+                y + context.grid.min_y - context.display.min_y + 0.5 - 0.5 * context.display.height();
             const double cosine = focal_px / std::sqrt(focal_px * focal_px + dx * dx + dy * dy);
             depth.at(x, y, 0) *= float(scale == RayScale::to_axis ? cosine : 1 / cosine);
         }
@@ -80,7 +88,8 @@ VelocityFactor velocity_factor(const RoleDecoding& decoding, const DecodeContext
     const bool px = decoding.unit == VelocityUnit::px;
     const double part = decoding.unit == VelocityUnit::ndc ? 0.5 : 1;
     const double per_frame = 1 / decoding.shutter_frames * (reversed ? -1 : 1);
-    const double unit_x = px ? 1 : part * context.display.width(), unit_y = px ? 1 : part * context.display.height();
+    const double unit_x = px ? 1 : part * context.display.width(),
+                 unit_y = px ? 1 : part * context.display.height();
     return {float(unit_x * decoding.velocity_scale[0] * per_frame),
             float(unit_y * decoding.velocity_scale[1] * per_frame * (decoding.y_axis_up ? -1 : 1))};
 }
@@ -121,7 +130,8 @@ void encode_depth(Image& depth, const RoleDecoding& decoding, const DecodeContex
     }
 }
 
-std::vector<std::size_t> decode_velocity(Image& velocity, const RoleDecoding& decoding, const DecodeContext& context) {
+std::vector<std::size_t> decode_velocity(Image& velocity, const RoleDecoding& decoding,
+                                         const DecodeContext& context) {
     const VelocityFactor factor = velocity_factor(decoding, context);
     std::vector<std::size_t> without_motion;
     const std::span<float> values = velocity.floats();

@@ -21,8 +21,9 @@ std::string_view pixel_type_name(PixelType type);  ///< "half", "float", "uint"
 
 /// What a reader accepts before it allocates anything.
 struct ReadLimits {
-    int max_side_px = 16384;                              ///< of the data and the display window
-    std::uint64_t max_image_bytes = 512ull * 1024 * 1024; ///< of the channels asked for, as this program stores them
+    int max_side_px = 16384;  ///< of the data and the display window
+    std::uint64_t max_image_bytes =
+        512ull * 1024 * 1024;  ///< of the channels asked for, as this program stores them
 };
 
 struct ExrChannel {
@@ -40,12 +41,13 @@ class ExrMetadata {
 public:
     ExrMetadata();
     std::vector<std::string> names() const;
-    /// string, int, float, double (as float); v2i/v2f/v3i/v3f, m33f, m44f, box2i, floatvector and chromaticities
-    /// (red, green, blue, white) as float vectors, row by row as EXR stores them; nullopt where absent or of
-    /// another type.
+    /// string, int, float, double (as float); v2i/v2f/v3i/v3f, m33f, m44f, box2i, floatvector and
+    /// chromaticities (red, green, blue, white) as float vectors, row by row as EXR stores them; nullopt
+    /// where absent or of another type.
     std::optional<ExrValue> value(const std::string& name) const;
-    std::optional<std::string> text(const std::string& name) const;    ///< string attributes only
-    std::optional<std::vector<std::string>> texts(const std::string& name) const;  ///< stringvector attributes only
+    std::optional<std::string> text(const std::string& name) const;  ///< string attributes only
+    std::optional<std::vector<std::string>> texts(
+        const std::string& name) const;  ///< stringvector attributes only
     /// Numbers, rationals (framesPerSecond), and strings that are wholly a number.
     std::optional<double> number(const std::string& name) const;
 
@@ -65,9 +67,9 @@ struct ExrPart {
     ExrMetadata metadata;
 };
 
-/// An open file. Headers are read and held against the limits on construction; nothing larger than a header is
-/// allocated before. Every failure is Error(ExitCode::capture) that begins with the path.
-/// [one thread at a time]
+/// An open file. Headers are read and held against the limits on construction; nothing larger than a header
+/// is allocated before. Every failure is Error(ExitCode::capture) that begins with the path. [one thread at a
+/// time]
 class ExrFile {
 public:
     explicit ExrFile(const std::filesystem::path& path, const ReadLimits& limits = {});
@@ -78,14 +80,14 @@ public:
     const std::filesystem::path& path() const;
     const std::vector<ExrPart>& parts() const;
 
-    /// The named channels of a part, interleaved in the order given, over the part's data window (level 0 of a tiled
-    /// part). half and uint channels are widened to float by read_floats (uint values above 2^24 lose bits: use
-    /// read_uints, which takes uint channels only). Deep parts, subsampled channels, incomplete files and channels that
-    /// do not exist are errors.
+    /// The named channels of a part, interleaved in the order given, over the part's data window (level 0 of
+    /// a tiled part). half and uint channels are widened to float by read_floats (uint values above 2^24 lose
+    /// bits: use read_uints, which takes uint channels only). Deep parts, subsampled channels, incomplete
+    /// files and channels that do not exist are errors.
     Image read_floats(int part, std::span<const std::string> channels) const;
     Image read_uints(int part, std::span<const std::string> channels) const;
-    /// RGBA of a part that stores luminance Y, or Y with subsampled RY and BY, as OpenEXR's own RgbaInputFile converts
-    /// it, to half precision.
+    /// RGBA of a part that stores luminance Y, or Y with subsampled RY and BY, as OpenEXR's own RgbaInputFile
+    /// converts it, to half precision.
     Image read_luminance_chroma(int part) const;
 
 private:
@@ -102,19 +104,21 @@ struct ExrOutputChannel {
 };
 
 struct ExrWriteOptions {
-    Window data_window;     ///< the images' size
+    Window data_window;  ///< the images' size
     Window display_window;
     float pixel_aspect = 1;
     std::string compression = "zip";
-    /// Every attribute but windows, pixel aspect, channels, compression, type, name, line order, tiles, preview.
+    /// Every attribute but windows, pixel aspect, channels, compression, type, name, line order, tiles,
+    /// preview.
     std::optional<ExrMetadata> carry_over;
-    /// Instead of those carried over. Vectors of 2, 3, 9 and 16 become v2f, v3f, m33f and m44f, "chromaticities"
-    /// of 8 its own type, others floatvector.
+    /// Instead of those carried over. Vectors of 2, 3, 9 and 16 become v2f, v3f, m33f and m44f,
+    /// "chromaticities" of 8 its own type, others floatvector.
     std::map<std::string, ExrValue> attributes;
 };
 
 /// Writes one scan-line part: to a temporary file in the same folder, flushed, then renamed over `path`.
-/// Throws Error(ExitCode::output) that begins with the path; then no temporary file remains and an older file is whole.
+/// Throws Error(ExitCode::output) that begins with the path; then no temporary file remains and an older file
+/// is whole.
 void write_exr(const std::filesystem::path& path, std::span<const ExrOutputChannel> channels,
                const ExrWriteOptions& options);
 

@@ -195,17 +195,13 @@ void check_window(const fs::path& path, const char* what, const Imath::Box2i& bo
 int lines_per_block(Imf::Compression compression) {
     switch (compression) {
         case Imf::ZIP_COMPRESSION:
-        case Imf::PXR24_COMPRESSION:
-            return 16;
+        case Imf::PXR24_COMPRESSION: return 16;
         case Imf::PIZ_COMPRESSION:
         case Imf::B44_COMPRESSION:
         case Imf::B44A_COMPRESSION:
-        case Imf::DWAA_COMPRESSION:
-            return 32;
-        case Imf::DWAB_COMPRESSION:
-            return 256;
-        default:
-            return 1;
+        case Imf::DWAA_COMPRESSION: return 32;
+        case Imf::DWAB_COMPRESSION: return 256;
+        default: return 1;
     }
 }
 
@@ -279,8 +275,7 @@ std::uint64_t tile_count(const Imf::TileDescription& tiles, int width, int heigh
         return result;
     }
     for (int y = 0; y < level_count(height, rounding); ++y) {
-        for (int x = 0; x < level_count(width, rounding); ++x)
-            result += count(x, y);
+        for (int x = 0; x < level_count(width, rounding); ++x) result += count(x, y);
     }
     return result;
 }

@@ -42,8 +42,7 @@ const T* value_as(const Imf::Attribute& attribute) {
 template <class Vector>
 std::vector<float> components(const Vector& vector) {
     std::vector<float> result;
-    for (unsigned i = 0; i < Vector::dimensions(); ++i)
-        result.push_back(static_cast<float>(vector[int(i)]));
+    for (unsigned i = 0; i < Vector::dimensions(); ++i) result.push_back(static_cast<float>(vector[int(i)]));
     return result;
 }
 
@@ -99,12 +98,9 @@ std::size_t utf8_length(std::string_view text) {
 
 std::string_view pixel_type_name(PixelType type) {
     switch (type) {
-        case PixelType::half:
-            return "half";
-        case PixelType::float32:
-            return "float";
-        case PixelType::uint32:
-            return "uint";
+        case PixelType::half: return "half";
+        case PixelType::float32: return "float";
+        case PixelType::uint32: return "uint";
     }
     return "unknown";
 }
@@ -119,8 +115,7 @@ ExrMetadata::ExrMetadata() = default;
 std::vector<std::string> ExrMetadata::names() const {
     std::vector<std::string> result;
     if (!impl) return result;
-    for (auto i = impl->header.begin(); i != impl->header.end(); ++i)
-        result.emplace_back(i.name());
+    for (auto i = impl->header.begin(); i != impl->header.end(); ++i) result.emplace_back(i.name());
     return result;
 }
 
@@ -176,12 +171,9 @@ Imath::Box2i to_box(const Window& window) {
 
 Imf::PixelType to_imf(PixelType type) {
     switch (type) {
-        case PixelType::half:
-            return Imf::HALF;
-        case PixelType::float32:
-            return Imf::FLOAT;
-        case PixelType::uint32:
-            return Imf::UINT;
+        case PixelType::half: return Imf::HALF;
+        case PixelType::float32: return Imf::FLOAT;
+        case PixelType::uint32: return Imf::UINT;
     }
     return Imf::NUM_PIXELTYPES;
 }
@@ -216,10 +208,8 @@ std::string printable(std::string_view text) {
     std::string result;
     for (std::size_t i = 0; i < text.size();) {
         const std::size_t length = utf8_length(text.substr(i));
-        if (length == 0)
-            result += '?';
-        else
-            result += text.substr(i, length);
+        if (length == 0) result += '?';
+        else result += text.substr(i, length);
         i += std::max<std::size_t>(1, length);
     }
     return result;
@@ -229,8 +219,7 @@ std::string library_reason(const std::exception& error) {
     std::string reason = error.what();
     const std::size_t name_end = reason.rfind("\". ");
     if (name_end != std::string::npos) reason.erase(0, name_end + 3);
-    while (!reason.empty() && (reason.back() == '.' || reason.back() == ' '))
-        reason.pop_back();
+    while (!reason.empty() && (reason.back() == '.' || reason.back() == ' ')) reason.pop_back();
     return reason.empty() ? "unknown reason" : reason;
 }
 

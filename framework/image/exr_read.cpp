@@ -43,8 +43,7 @@ void bound_library() {
 std::string list_channels(const ExrPart& part) {
     std::string list;
     const std::size_t shown = std::min(part.channels.size(), kChannelsListed);
-    for (std::size_t i = 0; i < shown; ++i)
-        list += (i == 0 ? "" : ", ") + part.channels[i].name;
+    for (std::size_t i = 0; i < shown; ++i) list += (i == 0 ? "" : ", ") + part.channels[i].name;
     if (part.channels.size() > shown) list += fmt::format(" and {} more", part.channels.size() - shown);
     return list;
 }
@@ -150,8 +149,7 @@ ExrFile::Impl::Impl(const fs::path& file_path, const ReadLimits& file_limits)
         // Without reconstruction of the block tables: an incomplete part is refused, so the search would be
         // in vain.
         file = std::make_unique<Imf::MultiPartInputFile>(*stream, threads, false);
-        for (int i = 0; i < file->parts(); ++i)
-            parts.push_back(exr::describe_part(file->header(i)));
+        for (int i = 0; i < file->parts(); ++i) parts.push_back(exr::describe_part(file->header(i)));
     });
 }
 

@@ -58,24 +58,19 @@ std::unique_ptr<Imf::Attribute> to_attribute(const std::string& name, const std:
             Imf::Chromaticities({v[0], v[1]}, {v[2], v[3]}, {v[4], v[5]}, {v[6], v[7]}));
     }
     switch (v.size()) {
-        case 2:
-            return std::make_unique<Imf::V2fAttribute>(Imath::V2f(v[0], v[1]));
-        case 3:
-            return std::make_unique<Imf::V3fAttribute>(Imath::V3f(v[0], v[1], v[2]));
+        case 2: return std::make_unique<Imf::V2fAttribute>(Imath::V2f(v[0], v[1]));
+        case 3: return std::make_unique<Imf::V3fAttribute>(Imath::V3f(v[0], v[1], v[2]));
         case 9: {
             Imath::M33f matrix;
-            for (int i = 0; i < 9; ++i)
-                matrix[i / 3][i % 3] = v[std::size_t(i)];
+            for (int i = 0; i < 9; ++i) matrix[i / 3][i % 3] = v[std::size_t(i)];
             return std::make_unique<Imf::M33fAttribute>(matrix);
         }
         case 16: {
             Imath::M44f matrix;
-            for (int i = 0; i < 16; ++i)
-                matrix[i / 4][i % 4] = v[std::size_t(i)];
+            for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = v[std::size_t(i)];
             return std::make_unique<Imf::M44fAttribute>(matrix);
         }
-        default:
-            return std::make_unique<Imf::FloatVectorAttribute>(v);
+        default: return std::make_unique<Imf::FloatVectorAttribute>(v);
     }
 }
 
@@ -138,8 +133,7 @@ std::vector<half> to_halfs(const ExrOutputChannel& channel) {
 class Planes {
 public:
     Planes(std::span<const ExrOutputChannel> channels, const Imath::Box2i& window) : window_(window) {
-        for (const ExrOutputChannel& channel : channels)
-            add(channel);
+        for (const ExrOutputChannel& channel : channels) add(channel);
     }
     const Imf::FrameBuffer& frame() const { return frame_; }
 

@@ -22,8 +22,7 @@ void for_some_pixels(const Image& image, Visit visit) {
     const std::size_t pixels = std::size_t(image.width()) * std::size_t(image.height());
     const std::size_t channels = std::size_t(image.channels());
     const std::size_t step = pixels / kMostSamples + 1;
-    for (std::size_t i = 0; i < pixels; i += step)
-        visit(&image.floats()[i * channels]);
+    for (std::size_t i = 0; i < pixels; i += step) visit(&image.floats()[i * channels]);
 }
 
 /// The value of the nearest rank; reorders the values.
@@ -132,34 +131,19 @@ FalseColor::FalseColor(const std::string& role, const Image& image, const Chroma
       may_be_infinite_(kind_ == Kind::depth) {
     count_faults();
     switch (kind_) {
-        case Kind::color:
-            fit_color(role, primaries);
-            break;
-        case Kind::depth:
-            fit_depth();
-            break;
-        case Kind::velocity:
-            fit_velocity();
-            break;
-        case Kind::normal:
-            label_ = {"world space, -1 to 1", "x red, y green, z blue"};
-            break;
-        case Kind::position:
-            fit_position();
-            break;
-        case Kind::ids:
-            fit_ids();
-            break;
-        case Kind::grey:
-            fit_grey();
-            break;
+        case Kind::color: fit_color(role, primaries); break;
+        case Kind::depth: fit_depth(); break;
+        case Kind::velocity: fit_velocity(); break;
+        case Kind::normal: label_ = {"world space, -1 to 1", "x red, y green, z blue"}; break;
+        case Kind::position: fit_position(); break;
+        case Kind::ids: fit_ids(); break;
+        case Kind::grey: fit_grey(); break;
     }
 }
 
 void FalseColor::count_faults() {
     for (int y = 0; y < image_.height(); ++y)
-        for (int x = 0; x < image_.width(); ++x)
-            ++fault_counts_[std::size_t(fault(x, y))];
+        for (int x = 0; x < image_.width(); ++x) ++fault_counts_[std::size_t(fault(x, y))];
 }
 
 void FalseColor::fit_color(const std::string& role, const Chromaticities& primaries) {
@@ -299,12 +283,9 @@ PixelFault FalseColor::fault(int x, int y) const {
     for (int c = 0; c < image_.channels(); ++c) {
         const float value = values[c];
         PixelFault fault = PixelFault::none;
-        if (std::isnan(value))
-            fault = PixelFault::nan;
-        else if (std::isinf(value) && !(may_be_infinite_ && value > 0))
-            fault = PixelFault::infinite;
-        else if (value < 0 && !may_be_negative_)
-            fault = PixelFault::negative;
+        if (std::isnan(value)) fault = PixelFault::nan;
+        else if (std::isinf(value) && !(may_be_infinite_ && value > 0)) fault = PixelFault::infinite;
+        else if (value < 0 && !may_be_negative_) fault = PixelFault::negative;
         worst = std::max(worst, fault);
     }
     return worst;
@@ -341,20 +322,17 @@ DisplayColor FalseColor::color(int x, int y) const {
             const float span = high_[0] - low_[0];
             return ramp_color(span > 0 ? 1 - (std::log(std::max(values[0], 1e-30f)) - low_[0]) / span : 1);
         }
-        case Kind::velocity:
-            return wheel_color(values[0] / longest_px_, values[1] / longest_px_);
+        case Kind::velocity: return wheel_color(values[0] / longest_px_, values[1] / longest_px_);
         case Kind::normal:
             if (is_zero(values)) return {0, 0, 0};
             return {values[0] / 2 + 0.5f, values[1] / 2 + 0.5f, values[2] / 2 + 0.5f};
-        case Kind::position:
-            return is_zero(values) ? DisplayColor{} : scaled(values);
+        case Kind::position: return is_zero(values) ? DisplayColor{} : scaled(values);
         case Kind::grey: {
             const float span = high_[0] - low_[0];
             const float grey = span > 0 ? (values[0] - low_[0]) / span : 0.5f;
             return {grey, grey, grey};
         }
-        default:
-            return exposed(values);
+        default: return exposed(values);
     }
 }
 

@@ -10,9 +10,12 @@ namespace aftershade {
 
 namespace {
 
-bool is_deep(const ExrPart& part) { return part.type.starts_with("deep"); }
+bool is_deep(const ExrPart& part) {
+    return part.type.starts_with("deep");
+}
 
-/// "forward.left.u" without the view "left"; the view stands before the last component. "" where it is not in the name.
+/// "forward.left.u" without the view "left"; the view stands before the last component. "" where it is not in
+/// the name.
 std::string without_view(const std::string& name, const std::string& view) {
     const std::size_t last_dot = name.rfind('.');
     if (last_dot == std::string::npos) return "";
@@ -23,7 +26,8 @@ std::string without_view(const std::string& name, const std::string& view) {
 }
 
 /// What a channel of a single-part multi-view file is called in `view`; "" where it belongs to another.
-std::string name_in_view(const std::string& name, const std::vector<std::string>& views, const std::string& view) {
+std::string name_in_view(const std::string& name, const std::vector<std::string>& views,
+                         const std::string& view) {
     if (const std::string plain = without_view(name, view); !plain.empty()) return plain;
     for (const std::string& other : views)
         if (!without_view(name, other).empty()) return "";
@@ -39,12 +43,15 @@ FrameFile::FrameFile(const std::filesystem::path& path, const ReadLimits& limits
     choose_view(view);
     const std::vector<ExrPart>& parts = file_.parts();
     if (std::all_of(parts.begin(), parts.end(), is_deep))
-        throw Error(ExitCode::capture, path.string() + ": holds nothing but deep data, which is not supported (flatten it first)");
+        throw Error(
+            ExitCode::capture,
+            path.string() + ": holds nothing but deep data, which is not supported (flatten it first)");
     for (int i = 0; i < int(parts.size()); ++i) add_part(i);
     const auto color = stored_.find("R");
     int hero = color != stored_.end() ? color->second.part : -1;
     for (int i = 0; hero < 0 && i < int(parts.size()); ++i)
-        if (!is_deep(parts[std::size_t(i)]) && (parts[std::size_t(i)].view == view_ || parts[std::size_t(i)].view.empty()))
+        if (!is_deep(parts[std::size_t(i)]) &&
+            (parts[std::size_t(i)].view == view_ || parts[std::size_t(i)].view.empty()))
             hero = i;
     describe(std::max(hero, 0));
 }
@@ -54,7 +61,8 @@ void FrameFile::choose_view(const std::string& wanted) {
     for (const ExrPart& part : parts)
         if (!part.view.empty() && std::find(views_.begin(), views_.end(), part.view) == views_.end())
             views_.push_back(part.view);
-    if (const auto names = parts.front().metadata.texts("multiView"); views_.empty() && names) views_ = *names;
+    if (const auto names = parts.front().metadata.texts("multiView"); views_.empty() && names)
+        views_ = *names;
     view_ = wanted.empty() && !views_.empty() ? views_.front() : wanted;
     if (wanted.empty() || std::find(views_.begin(), views_.end(), wanted) != views_.end()) return;
     throw Error(ExitCode::capture, path().string() + ": has no view '" + wanted + "'" +
@@ -89,7 +97,9 @@ void FrameFile::describe(int hero_part) {
     merged_.metadata = hero.metadata;
 }
 
-Window FrameFile::window_of(const std::string& channel) const { return part_of(channel).data_window; }
+Window FrameFile::window_of(const std::string& channel) const {
+    return part_of(channel).data_window;
+}
 
 PixelType FrameFile::type_of(const std::string& channel) const {
     for (const ExrChannel& candidate : merged_.channels)
@@ -104,12 +114,14 @@ Image FrameFile::read_floats(std::span<const std::string> channels, const Window
     for (const std::string& channel : channels)
         if (stored(channel).part == part) names.push_back(stored(channel).name);
     if (names.size() == channels.size())
-        return place_in_window(file_.read_floats(part, names), part_of(channels.front()).data_window, grid, outside);
+        return place_in_window(file_.read_floats(part, names), part_of(channels.front()).data_window, grid,
+                               outside);
 
     Image image(grid.width(), grid.height(), int(channels.size()));
     for (std::size_t c = 0; c < channels.size(); ++c) {
         const Image one = read_floats(channels.subspan(c, 1), grid, outside);
-        for (std::size_t i = 0; i < one.floats().size(); ++i) image.floats()[i * channels.size() + c] = one.floats()[i];
+        for (std::size_t i = 0; i < one.floats().size(); ++i)
+            image.floats()[i * channels.size() + c] = one.floats()[i];
     }
     return image;
 }

@@ -8,12 +8,13 @@
 
 namespace aftershade {
 
-/// "7", "1-100", "1-100x2", "1-10:2", "1..10", "10-1" (backwards), "-5--1", and lists of these with commas. Frames come in
-/// the order written; a frame that is named again is dropped. nullopt for anything else, for a step of 0 and for more
-/// than a million frames.
+/// "7", "1-100", "1-100x2", "1-10:2", "1..10", "10-1" (backwards), "-5--1", and lists of these with commas.
+/// Frames come in the order written; a frame that is named again is dropped. nullopt for anything else, for a
+/// step of 0 and for more than a million frames.
 std::optional<std::vector<int>> parse_frame_range(std::string_view text);
 
-/// A file name with the frame number left open: "####" (padded to the number of #), "%04d", "%d", or "@" (no padding;
+/// A file name with the frame number left open: "####" (padded to the number of #), "%04d", "%d", or "@" (no
+/// padding;
 /// "@@@@" pads).
 class FramePattern {
 public:

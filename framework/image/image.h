@@ -40,7 +40,9 @@ public:
     int height() const { return height_; }
     int channels() const { return channels_; }
     bool empty() const { return width_ == 0 || height_ == 0; }
-    ComponentType type() const { return values_.index() == 0 ? ComponentType::float32 : ComponentType::uint32; }
+    ComponentType type() const {
+        return values_.index() == 0 ? ComponentType::float32 : ComponentType::uint32;
+    }
 
     std::span<float> floats() { return std::get<0>(values_); }
     std::span<const float> floats() const { return std::get<0>(values_); }
@@ -50,12 +52,15 @@ public:
     float& at(int x, int y, int channel) { return std::get<0>(values_)[index(x, y, channel)]; }
     float at(int x, int y, int channel) const { return std::get<0>(values_)[index(x, y, channel)]; }
     std::uint32_t& uint_at(int x, int y, int channel) { return std::get<1>(values_)[index(x, y, channel)]; }
-    std::uint32_t uint_at(int x, int y, int channel) const { return std::get<1>(values_)[index(x, y, channel)]; }
+    std::uint32_t uint_at(int x, int y, int channel) const {
+        return std::get<1>(values_)[index(x, y, channel)];
+    }
 
 private:
     std::size_t index(int x, int y, int channel) const {
         assert(x >= 0 && x < width_ && y >= 0 && y < height_ && channel >= 0 && channel < channels_);
-        return (std::size_t(y) * std::size_t(width_) + std::size_t(x)) * std::size_t(channels_) + std::size_t(channel);
+        return (std::size_t(y) * std::size_t(width_) + std::size_t(x)) * std::size_t(channels_) +
+               std::size_t(channel);
     }
     int width_ = 0;
     int height_ = 0;

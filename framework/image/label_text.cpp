@@ -30,8 +30,7 @@ struct Vertex {
 
 std::string shortened(std::string text, int scale, int max_width_px) {
     if (text_width_px(text) * scale <= max_width_px) return text;
-    while (!text.empty() && text_width_px(text + "..") * scale > max_width_px)
-        text.pop_back();
+    while (!text.empty() && text_width_px(text + "..") * scale > max_width_px) text.pop_back();
     return text + "..";
 }
 
@@ -60,8 +59,7 @@ void fill_rectangle(Image& picture, int x, int y, int width, int height, Display
     const int right = std::min(x + width, picture.width()), bottom = std::min(y + height, picture.height());
     for (int row = std::max(y, 0); row < bottom; ++row)
         for (int column = std::max(x, 0); column < right; ++column)
-            for (int c = 0; c < 3; ++c)
-                picture.at(column, row, c) = color[std::size_t(c)];
+            for (int c = 0; c < 3; ++c) picture.at(column, row, c) = color[std::size_t(c)];
 }
 
 }  // namespace aftershade

@@ -7,9 +7,9 @@
 
 namespace aftershade {
 
-/// Writes display-referred values in [0, 1], already encoded, of 1, 3 or 4 float channels: round(255 * clamp(v)), NaN as 0.
-/// A fourth channel is unassociated alpha. Appears by rename from a temporary file in the same folder.
-/// Throws Error(ExitCode::output).
+/// Writes display-referred values in [0, 1], already encoded, of 1, 3 or 4 float channels: round(255 *
+/// clamp(v)), NaN as 0. A fourth channel is unassociated alpha. Appears by rename from a temporary file in
+/// the same folder. Throws Error(ExitCode::output).
 void write_png(const std::filesystem::path& path, const Image& display);
 
 /// Reads 8-bit PNG into [0, 1] floats, 1 to 4 channels as stored. Throws Error(ExitCode::capture).

@@ -21,7 +21,8 @@ std::vector<std::string> split_alternatives(const std::string& text) {
 }
 
 bool has_channel(const ExrPart& part, const std::string& name) {
-    return std::any_of(part.channels.begin(), part.channels.end(), [&](const auto& c) { return c.name == name; });
+    return std::any_of(part.channels.begin(), part.channels.end(),
+                       [&](const auto& c) { return c.name == name; });
 }
 
 std::string with_layer(const std::string& pattern, const std::string& layer) {
@@ -76,7 +77,8 @@ bool matches_pattern(const std::string& name, const std::string& pattern) {
     return false;
 }
 
-ProfileChoice detect_profile(const std::vector<Profile>& profiles, const ExrPart& part, const std::string& path) {
+ProfileChoice detect_profile(const std::vector<Profile>& profiles, const ExrPart& part,
+                             const std::string& path) {
     const std::vector<std::string> attributes = part.metadata.names();
     std::vector<ProfileChoice> by_attribute, by_channels;
     std::size_t most_channels = 1;

@@ -21,24 +21,28 @@ enum class VelocityDelta { cur_minus_prev, prev_minus_cur, next_minus_cur, cur_m
 /// Length 1 of a stored motion vector: a pixel, the image's side, or half of it (from -1 to +1).
 enum class VelocityUnit { px, uv, ndc };
 
-/// What a stored depth is a function of: distance; 1 / distance; a perspective z-buffer; or linear between near and far.
+/// What a stored depth is a function of: distance; 1 / distance; a perspective z-buffer; or linear between
+/// near and far.
 enum class DepthEncoding { linear, inverse, z_buffer, normalized };
 
 /// How the stored channels of one role become the canonical image.
 struct RoleDecoding {
-    /// Layers to add up (irradiance = direct + indirect); each names its channels, in the role's order. A name may begin
-    /// with "{layer}." and may list alternatives: "{layer}.Depth.Z|{layer}.Depth.V". A name that ends in "?" may be absent.
+    /// Layers to add up (irradiance = direct + indirect); each names its channels, in the role's order. A
+    /// name may begin with "{layer}." and may list alternatives: "{layer}.Depth.Z|{layer}.Depth.V". A name
+    /// that ends in "?" may be absent.
     std::vector<std::vector<std::string>> layers;
-    std::string luminance;  ///< color: the Y channel that stands for it in luminance-chroma files; "" for none
+    std::string
+        luminance;  ///< color: the Y channel that stands for it in luminance-chroma files; "" for none
 
     // depth
     float scale = 1;  ///< metres for one stored unit, after decoding
-    float no_hit = std::numeric_limits<float>::infinity();  ///< stored values from here up mean that nothing was hit
-    std::optional<float> no_hit_stored;  ///< what the producer itself writes there; else no_hit
+    float no_hit =
+        std::numeric_limits<float>::infinity();  ///< stored values from here up mean that nothing was hit
+    std::optional<float> no_hit_stored;          ///< what the producer itself writes there; else no_hit
     bool zero_is_no_hit = false;
     DepthEncoding encoding = DepthEncoding::linear;
-    bool reversed = false;  ///< z_buffer and normalized: 1 is near, 0 is far
-    bool radial = false;    ///< distance to the camera's point, not along its axis
+    bool reversed = false;                ///< z_buffer and normalized: 1 is near, 0 is far
+    bool radial = false;                  ///< distance to the camera's point, not along its axis
     std::optional<double> near_m, far_m;  ///< z_buffer and normalized; else the camera's near and far
 
     // velocity and velocity_next, in the order in which they are undone
@@ -70,26 +74,31 @@ struct Profile {
     std::string summary;
     std::vector<std::string> detect_attributes;  ///< any of these in the header ...
     std::vector<std::string> detect_channels;    ///< ... or all of these channels tell that the profile fits
-    std::string color_space = "auto";            ///< of the stored colours; auto: the header's chromaticities, else Rec. 709
-    std::string lens_model;                      ///< "thin" or "pinhole"; "" where not known
+    std::string color_space =
+        "auto";              ///< of the stored colours; auto: the header's chromaticities, else Rec. 709
+    std::string lens_model;  ///< "thin" or "pinhole"; "" where not known
     std::map<std::string, RoleDecoding> roles;
     std::map<std::string, CameraSource> camera;  ///< by camera field
     std::vector<ProfileFact> facts;
 };
 
-/// All *.json of the folders, in the order of their ids; an earlier folder's profile replaces a later one's of the same id.
-std::vector<Profile> read_profiles(const std::vector<std::filesystem::path>& folders, Diagnostics& diagnostics);
+/// All *.json of the folders, in the order of their ids; an earlier folder's profile replaces a later one's
+/// of the same id.
+std::vector<Profile> read_profiles(const std::vector<std::filesystem::path>& folders,
+                                   Diagnostics& diagnostics);
 std::vector<Profile> read_profiles(const std::filesystem::path& folder, Diagnostics& diagnostics);
 std::optional<Profile> parse_profile(const Node& node, Diagnostics& diagnostics);
 /// One role of a profile, or of capture.json's "channels".
 RoleDecoding parse_role_decoding(const std::string& role, const Node& node, Diagnostics& diagnostics);
 
-/// The stored channels that a role's decoding finds in a part: per layer, per component; "" for an optional one that is
-/// absent. nullopt where a required one is missing.
+/// The stored channels that a role's decoding finds in a part: per layer, per component; "" for an optional
+/// one that is absent. nullopt where a required one is missing.
 using FoundChannels = std::vector<std::vector<std::string>>;
-std::optional<FoundChannels> find_channels(const RoleDecoding& decoding, const std::string& layer, const ExrPart& part);
+std::optional<FoundChannels> find_channels(const RoleDecoding& decoding, const std::string& layer,
+                                           const ExrPart& part);
 
-/// What "{layer}" stands for in this part: the prefix before the channels of the color role; "" where none fits.
+/// What "{layer}" stands for in this part: the prefix before the channels of the color role; "" where none
+/// fits.
 std::string find_layer(const Profile& profile, const ExrPart& part);
 
 struct ProfileChoice {
@@ -97,9 +106,11 @@ struct ProfileChoice {
     std::string reason;  ///< "attribute BlenderMultiChannel"
 };
 
-/// The profile that fits a part's header: by attribute first, else the one that names the most channels. Throws
-/// Error(ExitCode::capture) where none does and Error(ExitCode::usage) where several do alike, naming the remedy.
-ProfileChoice detect_profile(const std::vector<Profile>& profiles, const ExrPart& part, const std::string& path);
+/// The profile that fits a part's header: by attribute first, else the one that names the most channels.
+/// Throws Error(ExitCode::capture) where none does and Error(ExitCode::usage) where several do alike, naming
+/// the remedy.
+ProfileChoice detect_profile(const std::vector<Profile>& profiles, const ExrPart& part,
+                             const std::string& path);
 
 /// Whether `name` is `pattern` with each "*" in it replaced by some text.
 bool matches_pattern(const std::string& name, const std::string& pattern);

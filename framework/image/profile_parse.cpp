@@ -51,7 +51,8 @@ std::vector<std::string> read_names(const Node& list, Diagnostics& diagnostics) 
 void read_layers(ObjectReader& reader, const ChannelRole& role, const Node& node, RoleDecoding& decoding,
                  Diagnostics& diagnostics) {
     const std::size_t components = std::size_t(role.channels);
-    if (const Node* channels = reader.array("channels")) decoding.layers.push_back(read_names(*channels, diagnostics));
+    if (const Node* channels = reader.array("channels"))
+        decoding.layers.push_back(read_names(*channels, diagnostics));
     if (const Node* sum = reader.array("sum"))
         for (const Node& layer : sum->items) decoding.layers.push_back(read_names(layer, diagnostics));
     std::vector<std::string> by_component;
@@ -67,7 +68,8 @@ void read_layers(ObjectReader& reader, const ChannelRole& role, const Node& node
             diagnostics.error(node.place, "role '" + role.name + "' has " + std::to_string(components) +
                                               " channels, not " + std::to_string(layer.size()));
     if (decoding.layers.empty() && node.is_object())
-        diagnostics.error(node.place, "role '" + role.name + "' needs 'channels', or 'sum' with lists of channels");
+        diagnostics.error(node.place,
+                          "role '" + role.name + "' needs 'channels', or 'sum' with lists of channels");
 }
 
 std::optional<double> read_length_m(ObjectReader& reader, const std::string& key, Diagnostics& diagnostics) {
@@ -95,7 +97,8 @@ void read_depth(ObjectReader& reader, RoleDecoding& decoding, Diagnostics& diagn
 void read_velocity_scale(const Node& value, RoleDecoding& decoding, Diagnostics& diagnostics) {
     if (value.is_number()) {
         decoding.velocity_scale = {float(value.number), float(value.number)};
-    } else if (value.is_array() && value.items.size() == 2 && value.items[0].is_number() && value.items[1].is_number()) {
+    } else if (value.is_array() && value.items.size() == 2 && value.items[0].is_number() &&
+               value.items[1].is_number()) {
         decoding.velocity_scale = {float(value.items[0].number), float(value.items[1].number)};
     } else {
         diagnostics.error(value.place, "'scale' of a velocity is a number, or one for x and one for y");
@@ -109,9 +112,9 @@ void read_velocity(ObjectReader& reader, const std::string& role, const Node& no
     const bool is_next =
         decoding.delta == VelocityDelta::next_minus_cur || decoding.delta == VelocityDelta::cur_minus_next;
     if (is_next != (role == "velocity_next") && node.find("delta"))
-        diagnostics.error(node.find("delta")->place, "role '" + role + "' cannot be decoded from '" +
-                                                         node.find("delta")->string +
-                                                         "': 'next' vectors fill velocity_next and no other role");
+        diagnostics.error(node.find("delta")->place,
+                          "role '" + role + "' cannot be decoded from '" + node.find("delta")->string +
+                              "': 'next' vectors fill velocity_next and no other role");
     decoding.y_axis_up = reader.choice("y_axis", std::vector<std::string>{"up", "down"}) == "up";
     read_choice(reader, "unit", kUnits, decoding.unit);
     if (const Node* scale = reader.any("scale")) read_velocity_scale(*scale, decoding, diagnostics);
@@ -191,14 +194,15 @@ std::optional<Profile> parse_profile(const Node& node, Diagnostics& diagnostics)
         rule.finish();
     }
     profile.color_space = read_color_space(reader);
-    profile.lens_model = reader.choice("lens_model", std::vector<std::string>{"thin", "pinhole"}).value_or("");
+    profile.lens_model =
+        reader.choice("lens_model", std::vector<std::string>{"thin", "pinhole"}).value_or("");
     if (const Node* roles = reader.object("roles", Presence::required)) {
         for (const Member& member : roles->members) {
             if (find_role(member.key)) {
                 profile.roles[member.key] = parse_role_decoding(member.key, member.value, diagnostics);
             } else {
-                diagnostics.error(member.key_place,
-                                  "'" + member.key + "' is not a role" + did_you_mean(member.key, role_names()));
+                diagnostics.error(member.key_place, "'" + member.key + "' is not a role" +
+                                                        did_you_mean(member.key, role_names()));
             }
         }
     }
@@ -219,7 +223,8 @@ std::vector<Profile> read_profiles(const std::vector<fs::path>& folders, Diagnos
         std::sort(files.begin(), files.end());
         for (const fs::path& file : files)
             if (const auto node = read_document(file, diagnostics))
-                if (auto profile = parse_profile(*node, diagnostics)) by_id.emplace(profile->id, std::move(*profile));
+                if (auto profile = parse_profile(*node, diagnostics))
+                    by_id.emplace(profile->id, std::move(*profile));
     }
     std::vector<Profile> profiles;
     for (auto& [id, profile] : by_id) profiles.push_back(std::move(profile));

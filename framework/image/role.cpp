@@ -25,8 +25,21 @@ std::vector<ChannelRole> make_roles() {
         return ChannelRole{name, 2, real, false, 0, layer(name, "XY"), PixelType::float32, meaning};
     };
     return {
-        {"color", 4, real, true, 0, {"R", "G", "B", "A"}, PixelType::half, "scene-linear RGB with premultiplied alpha"},
-        {"depth", 1, real, false, kNothingHit, {"Z"}, PixelType::float32,
+        {"color",
+         4,
+         real,
+         true,
+         0,
+         {"R", "G", "B", "A"},
+         PixelType::half,
+         "scene-linear RGB with premultiplied alpha"},
+        {"depth",
+         1,
+         real,
+         false,
+         kNothingHit,
+         {"Z"},
+         PixelType::float32,
          "distance along the view axis, m; +inf where nothing was hit"},
         xy("velocity", "px per frame, current minus previous position, +x right, +y down"),
         xy("velocity_next", "px per frame, next minus current position, +x right, +y down"),
@@ -36,9 +49,22 @@ std::vector<ChannelRole> make_roles() {
         rgb("emission", "scene-linear emitted light"),
         xyz("normal", true, "world space, unit vector"),
         xyz("position", false, "world space, m"),
-        {"object_id", 1, ComponentType::uint32, false, 0, {"object_id.I"}, PixelType::uint32, "unsigned integer"},
+        {"object_id",
+         1,
+         ComponentType::uint32,
+         false,
+         0,
+         {"object_id.I"},
+         PixelType::uint32,
+         "unsigned integer"},
         {"mask", 1, real, true, 0, {"mask.V"}, PixelType::half, "0 to 1"},
-        {"display", 4, real, true, 0, {"display.R", "display.G", "display.B", "display.A"}, PixelType::half,
+        {"display",
+         4,
+         real,
+         true,
+         0,
+         {"display.R", "display.G", "display.B", "display.A"},
+         PixelType::half,
          "display-referred RGB, encoded, 0 to 1, with straight alpha, as PNG has it"},
     };
 }
@@ -50,15 +76,18 @@ const std::vector<ChannelRole>& roles() {
 
 }  // namespace
 
-std::span<const ChannelRole> channel_roles() { return roles(); }
+std::span<const ChannelRole> channel_roles() {
+    return roles();
+}
 
 std::optional<ChannelRole> find_role(std::string_view name) {
     for (const ChannelRole& role : roles())
         if (role.name == name) return role;
     if (name.starts_with("aov:") && name.size() > 4) {
         const std::string aov(name.substr(4));
-        return ChannelRole{std::string(name), 4,    ComponentType::float32, true,
-                           0,                 layer(aov, "RGBA"), PixelType::half, "passed through"};
+        return ChannelRole{
+            std::string(name), 4, ComponentType::float32, true, 0, layer(aov, "RGBA"), PixelType::half,
+            "passed through"};
     }
     return std::nullopt;
 }

@@ -17,8 +17,8 @@ struct ChannelRole {
     std::string name;
     int channels = 0;
     ComponentType type = ComponentType::float32;
-    bool filterable = false;  ///< linear filtering is an error where it is not
-    float outside = 0;        ///< value outside the image's own data window
+    bool filterable = false;                   ///< linear filtering is an error where it is not
+    float outside = 0;                         ///< value outside the image's own data window
     std::vector<std::string> native_channels;  ///< names in the `native` profile and in outputs
     PixelType pixel_type = PixelType::half;    ///< stored as this by default
     std::string meaning;                       ///< one line with unit and space

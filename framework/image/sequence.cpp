@@ -19,7 +19,9 @@ std::vector<int> read_cuts(ObjectReader& reader, Diagnostics& diagnostics) {
     if (!list) return cuts;
     for (const Node& item : list->items) {
         if (item.kind == Node::Kind::integer) cuts.push_back(int(item.integer));
-        else diagnostics.error(item.place, "'cuts' holds frame numbers, not " + std::string(kind_name(item.kind)));
+        else
+            diagnostics.error(item.place,
+                              "'cuts' holds frame numbers, not " + std::string(kind_name(item.kind)));
     }
     return cuts;
 }
@@ -31,11 +33,13 @@ bool is_role(const std::string& name, const Place& place, Diagnostics& diagnosti
     return false;
 }
 
-void read_role_files(const Node& section, const fs::path& folder, Sequence& sequence, Diagnostics& diagnostics) {
+void read_role_files(const Node& section, const fs::path& folder, Sequence& sequence,
+                     Diagnostics& diagnostics) {
     for (const Member& member : section.members) {
         if (!is_role(member.key, member.key_place, diagnostics)) continue;
         if (member.value.is_string())
-            sequence.role_files.insert_or_assign(member.key, FramePattern((folder / member.value.string).string()));
+            sequence.role_files.insert_or_assign(member.key,
+                                                 FramePattern((folder / member.value.string).string()));
         else diagnostics.error(member.value.place, "a file must be a string");
     }
 }
@@ -45,8 +49,8 @@ void read_frames(ObjectReader& reader, const Node& node, const fs::path& folder,
     if (const Node* files = reader.object("files")) read_role_files(*files, folder, sequence, diagnostics);
     // Without a main file the colour's own file takes its place.
     const bool has_color_file = sequence.role_files.contains("color");
-    const auto frames = reader.text("frames", has_color_file ? ObjectReader::Presence::optional
-                                                             : ObjectReader::Presence::required);
+    const auto frames = reader.text(
+        "frames", has_color_file ? ObjectReader::Presence::optional : ObjectReader::Presence::required);
     if (frames) sequence.files = FramePattern((folder / *frames).string());
     else if (has_color_file) sequence.files = sequence.role_files.at("color");
     const auto range = reader.text("range");
@@ -55,8 +59,9 @@ void read_frames(ObjectReader& reader, const Node& node, const fs::path& folder,
     const Place place = node.find("range")->place;
     if (!numbers) diagnostics.error(place, "'" + *range + "' is not a frame range such as \"1-100x2,120\"");
     else if (numbers->size() > 1 && frames && !sequence.files.has_frame() && sequence.role_files.empty())
-        diagnostics.error(place, "'range' has " + std::to_string(numbers->size()) +
-                                     " frames but 'frames' names one file; write the frame number as ####, %04d or @");
+        diagnostics.error(
+            place, "'range' has " + std::to_string(numbers->size()) +
+                       " frames but 'frames' names one file; write the frame number as ####, %04d or @");
     else sequence.frames = *numbers;
 }
 
@@ -93,7 +98,8 @@ std::optional<Sequence> read_capture_document(const fs::path& path, Diagnostics&
             if (is_role(member.key, member.key_place, diagnostics))
                 sequence.channels[member.key] = parse_role_decoding(member.key, member.value, diagnostics);
     if (const Node* camera = reader.object("camera")) sequence.camera = parse_camera(*camera, diagnostics);
-    if (const Node* matte = reader.object("cryptomatte")) sequence.cryptomatte = read_cryptomatte(*matte, diagnostics);
+    if (const Node* matte = reader.object("cryptomatte"))
+        sequence.cryptomatte = read_cryptomatte(*matte, diagnostics);
     sequence.cuts = read_cuts(reader, diagnostics);
     reader.finish();
     if (diagnostics.error_count() > errors_before) return std::nullopt;
@@ -107,17 +113,21 @@ FramePattern pattern_of_folder(const fs::path& folder) {
     for (const auto& entry : fs::directory_iterator(folder, failure)) {
         const std::string name = entry.path().filename().string();
         const std::size_t last = entry.path().stem().string().find_last_of("0123456789");
-        if (entry.path().extension() != ".exr" || last == std::string::npos || name.starts_with('.')) continue;
+        if (entry.path().extension() != ".exr" || last == std::string::npos || name.starts_with('.'))
+            continue;
         std::size_t first = last;
         while (first > 0 && name[first - 1] >= '0' && name[first - 1] <= '9') --first;
         const std::size_t digits = last - first + 1;
-        ++counts[name.substr(0, first) + (digits == 1 ? "%d" : std::string(digits, '#')) + name.substr(last + 1)];
+        ++counts[name.substr(0, first) + (digits == 1 ? "%d" : std::string(digits, '#')) +
+                 name.substr(last + 1)];
     }
     if (counts.empty()) throw Error(ExitCode::capture, folder.string() + ": holds no numbered .exr files");
     const auto most = std::max_element(counts.begin(), counts.end(),
                                        [](const auto& a, const auto& b) { return a.second < b.second; });
-    if (std::count_if(counts.begin(), counts.end(), [&](const auto& c) { return c.second == most->second; }) > 1)
-        throw Error(ExitCode::capture, folder.string() + ": holds several sequences; name one by its pattern, such as " +
+    if (std::count_if(counts.begin(), counts.end(), [&](const auto& c) { return c.second == most->second; }) >
+        1)
+        throw Error(ExitCode::capture, folder.string() +
+                                           ": holds several sequences; name one by its pattern, such as " +
                                            (folder / most->first).string());
     return FramePattern((folder / most->first).string());
 }
@@ -132,7 +142,8 @@ void find_missing_range(Sequence& sequence, const std::string& argument) {
         return;
     }
     const fs::path file = sequence.files.text();
-    if (std::error_code failure; !fs::exists(file, failure)) throw Error(ExitCode::capture, file.string() + ": no such file");
+    if (std::error_code failure; !fs::exists(file, failure))
+        throw Error(ExitCode::capture, file.string() + ": no such file");
     sequence.frames = {frame_in_name(file.stem().string()).value_or(1)};
 }
 
@@ -145,7 +156,8 @@ std::vector<int> find_frames(const FramePattern& pattern) {
     std::vector<int> frames;
     std::error_code failure;
     for (const auto& entry : fs::directory_iterator(folder, failure))
-        if (const auto frame = pattern.match(prefix + entry.path().filename().string())) frames.push_back(*frame);
+        if (const auto frame = pattern.match(prefix + entry.path().filename().string()))
+            frames.push_back(*frame);
     std::sort(frames.begin(), frames.end());
     return frames;
 }
@@ -154,7 +166,8 @@ std::optional<Sequence> open_sequence(const std::string& argument, Diagnostics& 
     const fs::path path = argument;
     Sequence sequence;
     if (path.extension() == ".json") {
-        if (std::error_code failure; !fs::exists(path, failure)) throw Error(ExitCode::capture, argument + ": no such file");
+        if (std::error_code failure; !fs::exists(path, failure))
+            throw Error(ExitCode::capture, argument + ": no such file");
         auto read = read_capture_document(path, diagnostics);
         if (!read) return std::nullopt;
         sequence = std::move(*read);

@@ -16,30 +16,30 @@ namespace aftershade {
 
 /// "cryptomatte": {"layer": "CryptoObject", "mask": ["Suzanne"]} of a capture.json.
 struct CryptomatteChoice {
-    std::string layer;               ///< "" for the only one
-    std::vector<std::string> mask;   ///< objects whose coverage is the role `mask`; empty: none
+    std::string layer;              ///< "" for the only one
+    std::vector<std::string> mask;  ///< objects whose coverage is the role `mask`; empty: none
 };
 
 /// Ordered captures. Made from a capture.json, a bare EXR file, a pattern of files, or a folder of them.
 struct Sequence {
-    std::vector<int> frames;        ///< in the order to be run
-    bool frames_declared = false;   ///< by a capture.json's range or a bare file, not by what lies on disk
-    FramePattern files{""};         ///< absolute, or relative to the working directory
-    std::map<std::string, FramePattern> role_files;   ///< roles that lie in files of their own
-    std::map<std::string, RoleDecoding> channels;     ///< of capture.json, instead of the profile's
+    std::vector<int> frames;       ///< in the order to be run
+    bool frames_declared = false;  ///< by a capture.json's range or a bare file, not by what lies on disk
+    FramePattern files{""};        ///< absolute, or relative to the working directory
+    std::map<std::string, FramePattern> role_files;  ///< roles that lie in files of their own
+    std::map<std::string, RoleDecoding> channels;    ///< of capture.json, instead of the profile's
     std::string profile = "auto";
     std::string color_space = "auto";  ///< of the stored colours; auto: the profile's
     std::string view;                  ///< of multi-view files; "" for the default
     double fps = 24;
-    Camera camera;                     ///< of capture.json
-    std::vector<int> cuts;             ///< frames that begin a shot
+    Camera camera;          ///< of capture.json
+    std::vector<int> cuts;  ///< frames that begin a shot
     std::optional<CryptomatteChoice> cryptomatte;
 
     std::filesystem::path path_of(int frame) const { return files.path(frame); }
 };
 
-/// `argument` is CAPTURE of the command line. Faults of capture.json go to `diagnostics`; a file, pattern or folder that
-/// holds nothing is Error(ExitCode::capture).
+/// `argument` is CAPTURE of the command line. Faults of capture.json go to `diagnostics`; a file, pattern or
+/// folder that holds nothing is Error(ExitCode::capture).
 std::optional<Sequence> open_sequence(const std::string& argument, Diagnostics& diagnostics);
 
 /// Adds "--role depth=z.####.exr".

@@ -126,10 +126,8 @@ ScoredMap refine(const WarpTest& test, ScoredMap start, double step, double last
                 const double score = test.score(map, rough);
                 if (score > best.score) best = {map, score};
             }
-        if (best.score > start.score)
-            start = best;
-        else
-            step /= 2;
+        if (best.score > start.score) start = best;
+        else step /= 2;
     }
     return start;
 }
@@ -193,8 +191,7 @@ std::optional<VelocityFit> fit_scales(const Tests& tests, const VelocityHypothes
     const std::vector<FitClass> classes = fit_classes(tests);
     if (classes.empty()) return std::nullopt;
     double best_score = kWorst;
-    for (const FitClass& one : classes)
-        best_score = std::max(best_score, one.fit.score);
+    for (const FitClass& one : classes) best_score = std::max(best_score, one.fit.score);
     const FitClass* chosen = nullptr;
     for (const FitClass& one : classes) {
         if (one.fit.score < best_score - kFitSlack) continue;
@@ -257,10 +254,8 @@ void judge(const Tests& tests, VelocityCheck& check) {
     const VelocityScore& leader = refuted ? check.best : check.identity;
     check.suggested = correct_settings(check.settings, leader.hypothesis);
     check.untold = list_untold(tests, check, leader);
-    if (refuted)
-        check.verdict = VelocityVerdict::wrong;
-    else
-        check.verdict = check.untold.empty() ? VelocityVerdict::confirmed : VelocityVerdict::undecided;
+    if (refuted) check.verdict = VelocityVerdict::wrong;
+    else check.verdict = check.untold.empty() ? VelocityVerdict::confirmed : VelocityVerdict::undecided;
 }
 
 }  // namespace

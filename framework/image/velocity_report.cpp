@@ -122,16 +122,11 @@ std::string scale_or_unknown(const std::optional<double>& scale) {
 
 std::string velocity_verdict_name(VelocityVerdict verdict) {
     switch (verdict) {
-        case VelocityVerdict::confirmed:
-            return "confirmed";
-        case VelocityVerdict::undecided:
-            return "undecided";
-        case VelocityVerdict::wrong:
-            return "wrong";
-        case VelocityVerdict::no_fit:
-            return "no_fit";
-        case VelocityVerdict::untestable:
-            break;
+        case VelocityVerdict::confirmed: return "confirmed";
+        case VelocityVerdict::undecided: return "undecided";
+        case VelocityVerdict::wrong: return "wrong";
+        case VelocityVerdict::no_fit: return "no_fit";
+        case VelocityVerdict::untestable: break;
     }
     return "untestable";
 }
@@ -203,10 +198,8 @@ std::string describe_verdict(const VelocityCheck& check) {
                 "profile's own reading {}{}",
                 describe_change(check.settings, check.suggested), percent(check.best.score), own,
                 untold.empty() ? "" : " (these frames do not tell " + untold + ")");
-        case VelocityVerdict::no_fit:
-            return describe_no_fit(check);
-        case VelocityVerdict::untestable:
-            break;
+        case VelocityVerdict::no_fit: return describe_no_fit(check);
+        case VelocityVerdict::untestable: break;
     }
     return describe_untestable(check);
 }

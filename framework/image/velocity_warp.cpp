@@ -27,8 +27,7 @@ float tone(float value, double pivot) {
 
 Texel blend(const Texel& before, const Texel& here, const Texel& after) {
     Texel sum;
-    for (std::size_t c = 0; c < 4; ++c)
-        sum[c] = 0.25f * (before[c] + 2 * here[c] + after[c]);
+    for (std::size_t c = 0; c < 4; ++c) sum[c] = 0.25f * (before[c] + 2 * here[c] + after[c]);
     return sum;
 }
 
@@ -88,17 +87,14 @@ ComparedFrame make_compared(const Image& color, double pivot) {
             const std::size_t i = std::size_t(y) * std::size_t(frame.width) + std::size_t(x);
             usable[i] = is_usable(color, x, y);
             if (!usable[i]) continue;
-            for (int c = 0; c < 3; ++c)
-                frame.texels[i][std::size_t(c)] = tone(color.at(x, y, c), pivot);
+            for (int c = 0; c < 3; ++c) frame.texels[i][std::size_t(c)] = tone(color.at(x, y, c), pivot);
             frame.texels[i][3] = 1;
         }
-    for (int pass = 0; pass < 2; ++pass)
-        blur(frame);
+    for (int pass = 0; pass < 2; ++pass) blur(frame);
     for (std::size_t i = 0; i < frame.texels.size(); ++i) {
         Texel& texel = frame.texels[i];
         const float weight = texel[3];
-        for (std::size_t c = 0; c < 3 && weight > 0; ++c)
-            texel[c] /= weight;
+        for (std::size_t c = 0; c < 3 && weight > 0; ++c) texel[c] /= weight;
         texel[3] = usable[i] ? 1.0f : weight > 0 ? 0.0f : -1.0f;
     }
     return frame;
@@ -132,8 +128,7 @@ std::vector<float> WarpTest::weigh(const ComparedFrame& source, const Image& vec
 void WarpTest::draw_samples(const ComparedFrame& source, const Image& vectors,
                             const std::vector<float>& weights) {
     double total = 0;
-    for (const float weight : weights)
-        total += weight;
+    for (const float weight : weights) total += weight;
     const double step = total / std::min(2 * moving_px_, kMaxSamples);
     double sum = 0, next = 0.5 * step;
     for (int y = 0; y < source.height; ++y)
@@ -149,8 +144,7 @@ void WarpTest::draw_samples(const ComparedFrame& source, const Image& vectors,
                               vectors.at(x, y, 1),
                               {texel[0], texel[1], texel[2]},
                               0};
-                for (std::size_t c = 0; c < 3; ++c)
-                    sample.still_error += std::abs(texel[c] - still[c]) / 3;
+                for (std::size_t c = 0; c < 3; ++c) sample.still_error += std::abs(texel[c] - still[c]) / 3;
                 samples_.push_back(sample);
             }
         }
@@ -180,8 +174,7 @@ float WarpTest::error(const Sample& sample, Move move) const {
 
 double WarpTest::still_error() const {
     double sum = 0;
-    for (const Sample& sample : samples_)
-        sum += sample.still_error;
+    for (const Sample& sample : samples_) sum += sample.still_error;
     return samples_.empty() ? 0 : sum / double(samples_.size());
 }
 

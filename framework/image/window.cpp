@@ -8,7 +8,8 @@ namespace aftershade {
 namespace {
 
 template <typename T>
-void copy_overlap(std::span<const T> source, const Window& from, std::span<T> target, const Window& to, int channels) {
+void copy_overlap(std::span<const T> source, const Window& from, std::span<T> target, const Window& to,
+                  int channels) {
     const int min_x = std::max(from.min_x, to.min_x), max_x = std::min(from.max_x, to.max_x);
     const int min_y = std::max(from.min_y, to.min_y), max_y = std::min(from.max_y, to.max_y);
     if (min_x > max_x) return;

@@ -4,8 +4,8 @@
 
 namespace aftershade {
 
-void audit_values(std::span<const float> values, int width, int channels, bool infinity_allowed, const std::string& pass,
-                  const std::string& texture, std::vector<AuditFinding>& findings) {
+void audit_values(std::span<const float> values, int width, int channels, bool infinity_allowed,
+                  const std::string& pass, const std::string& texture, std::vector<AuditFinding>& findings) {
     AuditFinding finding{pass, texture};
     for (std::size_t i = 0; i < values.size(); ++i) {
         const bool is_nan = std::isnan(values[i]);
@@ -25,7 +25,8 @@ void audit_values(std::span<const float> values, int width, int channels, bool i
 std::string describe_finding(const AuditFinding& finding) {
     std::string counts;
     if (finding.nan_count > 0) counts = std::to_string(finding.nan_count) + " NaN";
-    if (finding.inf_count > 0) counts += (counts.empty() ? "" : " and ") + std::to_string(finding.inf_count) + " infinite";
+    if (finding.inf_count > 0)
+        counts += (counts.empty() ? "" : " and ") + std::to_string(finding.inf_count) + " infinite";
     return finding.pass + ": " + finding.texture + " has " + counts + " values, the first at (" +
            std::to_string(finding.x) + ", " + std::to_string(finding.y) + ")";
 }

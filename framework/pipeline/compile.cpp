@@ -26,7 +26,8 @@ std::vector<std::string> output_names(const EffectManifest& manifest) {
 /// Binds one step after the other; `pipeline_` holds those before.
 class Compiler {
 public:
-    Compiler(EffectRegistry& effects, Diagnostics& diagnostics) : effects_(effects), diagnostics_(diagnostics) {}
+    Compiler(EffectRegistry& effects, Diagnostics& diagnostics)
+        : effects_(effects), diagnostics_(diagnostics) {}
 
     void add(const LookStep& look_step) {
         const auto step = bind(look_step);
@@ -39,7 +40,9 @@ public:
         const std::size_t equals = text.find('=');
         const std::size_t dot = text.find('.');
         if (equals == std::string::npos || dot == std::string::npos || dot > equals) {
-            diagnostics_.error(place, "expected step.param=value: the name of a step, a parameter of its effect, and a value");
+            diagnostics_.error(
+                place,
+                "expected step.param=value: the name of a step, a parameter of its effect, and a value");
             return;
         }
         PipelineStep* step = find_step(text.substr(0, dot), place);
@@ -54,14 +57,15 @@ public:
             node->string = value;
         }
         clear_lines(*node, place);
-        set_value(*step, text.substr(dot + 1, equals - dot - 1), *node, place);
+        set_value(*step, text.substr(dot + 1, equals - dot - 1), *node, place, "--set");
     }
 
     void add_tap(const std::string& text) {
         const Place place{"--tap " + text};
         const std::size_t dot = text.find('.');
         if (dot == std::string::npos) {
-            diagnostics_.error(place, "expected step.texture: the name of a step and a texture of its effect");
+            diagnostics_.error(place,
+                               "expected step.texture: the name of a step and a texture of its effect");
             return;
         }
         const PipelineStep* step = find_step(text.substr(0, dot), place);
@@ -70,7 +74,8 @@ public:
         std::vector<std::string> known = output_names(*step->manifest);
         for (const TextureSpec& spec : step->manifest->textures) known.push_back(spec.name);
         if (std::find(known.begin(), known.end(), texture) == known.end()) {
-            diagnostics_.error(place, step->name + " has no texture '" + texture + "'" + did_you_mean(texture, known) +
+            diagnostics_.error(place, step->name + " has no texture '" + texture + "'" +
+                                          did_you_mean(texture, known) +
                                           " (known: " + list_of_names(known, "and") + ")");
             return;
         }
@@ -96,7 +101,8 @@ private:
         step.manifest = effects_.find(look_step.effect, diagnostics_);
         if (!step.manifest) return std::nullopt;
         apply_preset(look_step, step);
-        for (const Member& member : look_step.params) set_value(step, member.key, member.value, member.key_place);
+        for (const Member& member : look_step.params)
+            set_value(step, member.key, member.value, member.key_place, "the look");
         wire(look_step, step);
         return step;
     }
@@ -130,24 +136,29 @@ private:
         const PresetSpec* preset = step.manifest->find_preset(*look_step.preset);
         if (preset) {
             step.values = preset->values;
+            for (const auto& [name, value] : preset->values) step.origins[name] = "preset " + preset->name;
             return;
         }
         std::vector<std::string> names;
         for (const PresetSpec& known : step.manifest->presets) names.push_back(known.name);
-        diagnostics_.error(look_step.preset_place, step.manifest->id + " has no preset '" + *look_step.preset + "'" +
+        diagnostics_.error(look_step.preset_place, step.manifest->id + " has no preset '" +
+                                                       *look_step.preset + "'" +
                                                        did_you_mean(*look_step.preset, names));
     }
 
-    void set_value(PipelineStep& step, const std::string& name, const Node& value, const Place& key_place) {
+    void set_value(PipelineStep& step, const std::string& name, const Node& value, const Place& key_place,
+                   const std::string& origin) {
         const ParamSpec* spec = step.manifest->find_param(name);
         if (!spec) {
             const auto names = step.manifest->param_names();
-            diagnostics_.error(key_place,
-                               step.manifest->id + " has no parameter '" + name + "'" + did_you_mean(name, names));
+            diagnostics_.error(key_place, step.manifest->id + " has no parameter '" + name + "'" +
+                                              did_you_mean(name, names));
             return;
         }
-        if (auto parsed = parse_param_value(*spec, value, step.name + "." + name, diagnostics_))
-            step.values[name] = std::move(*parsed);
+        auto parsed = parse_param_value(*spec, value, step.name + "." + name, diagnostics_);
+        if (!parsed) return;
+        step.values[name] = std::move(*parsed);
+        step.origins[name] = origin;
     }
 
     void wire(const LookStep& look_step, PipelineStep& step) {
@@ -155,8 +166,9 @@ private:
         for (const InputSpec& input : step.manifest->inputs) {
             step.inputs.try_emplace(input.name, nearest_source(input.role));
             if (input.role == "color" && pipeline_.writes_role("display"))
-                diagnostics_.error(look_step.place, "step '" + step.name +
-                                                        "' reads color after a step has made display; put it before");
+                diagnostics_.error(
+                    look_step.place,
+                    "step '" + step.name + "' reads color after a step has made display; put it before");
         }
     }
 
@@ -183,8 +195,8 @@ private:
             const auto found = std::find(names.begin(), names.end(), wiring.source);
             if (found == names.end()) {
                 if (tell_of_absence(wiring.source, wiring.place)) return;
-                diagnostics_.error(wiring.place, "no step '" + wiring.source + "' before '" + step.name + "'" +
-                                                     did_you_mean(wiring.source, names));
+                diagnostics_.error(wiring.place, "no step '" + wiring.source + "' before '" + step.name +
+                                                     "'" + did_you_mean(wiring.source, names));
                 return;
             }
             source.step = int(found - names.begin());
@@ -198,13 +210,13 @@ private:
             }
             role = output->role;
         } else if (!find_role(wiring.output)) {
-            diagnostics_.error(wiring.place,
-                               "'" + wiring.output + "' is not a role" + did_you_mean(wiring.output, role_names()));
+            diagnostics_.error(wiring.place, "'" + wiring.output + "' is not a role" +
+                                                 did_you_mean(wiring.output, role_names()));
             return;
         }
         if (role != input->role) {
-            diagnostics_.error(wiring.place, "input '" + input->name + "' of " + step.manifest->id + " takes the role '" +
-                                                 input->role + "', not '" + role + "'");
+            diagnostics_.error(wiring.place, "input '" + input->name + "' of " + step.manifest->id +
+                                                 " takes the role '" + input->role + "', not '" + role + "'");
             return;
         }
         step.inputs[input->name] = source;

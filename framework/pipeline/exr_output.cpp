@@ -33,7 +33,8 @@ std::map<std::string, const Image*> changed_roles(const FrameResult& result) {
 
 void add_stored_channels(ExrContent& content, const FrameResult& result, const Capture& capture,
                          const CaptureReader& reader) {
-    for (StoredChannel& stored : reader.read_stored_channels(capture.header.source_frame, changed_roles(result))) {
+    for (StoredChannel& stored :
+         reader.read_stored_channels(capture.header.source_frame, changed_roles(result))) {
         content.images.push_back(std::move(stored.image));
         content.channels.push_back({stored.name, stored.type, &content.images.back(), 0});
     }
@@ -56,19 +57,23 @@ bool is_id_channel(const ExrOutputChannel& channel) {
 }
 
 /// Ids are names, not amounts: the next lower one is another object.
-void refuse_lossy_ids(const std::filesystem::path& path, const ExrContent& content, const std::string& compression) {
-    const bool lossy = compression.starts_with("b44") || compression.starts_with("dwa") || compression == "pxr24";
+void refuse_lossy_ids(const std::filesystem::path& path, const ExrContent& content,
+                      const std::string& compression) {
+    const bool lossy =
+        compression.starts_with("b44") || compression.starts_with("dwa") || compression == "pxr24";
     const auto id = std::find_if(content.channels.begin(), content.channels.end(), is_id_channel);
     if (lossy && id != content.channels.end())
-        throw Error(ExitCode::output, path.string() + ": the compression " + compression + " loses bits, and the channel '" +
-                                          id->name + "' holds ids (choose zip, zips, piz, rle or none)");
+        throw Error(ExitCode::output, path.string() + ": the compression " + compression +
+                                          " loses bits, and the channel '" + id->name +
+                                          "' holds ids (choose zip, zips, piz, rle or none)");
 }
 
 }  // namespace
 
 const Image* find_image(const std::string& role, const FrameResult& result, const Capture& capture) {
     if (const auto made = result.images.find(role); made != result.images.end()) return &made->second;
-    if (const auto captured = capture.images.find(role); captured != capture.images.end()) return &captured->second;
+    if (const auto captured = capture.images.find(role); captured != capture.images.end())
+        return &captured->second;
     return nullptr;
 }
 
@@ -85,12 +90,13 @@ ExrWriteOptions exr_write_options(const OutputOptions& options, const CaptureHea
     write.attributes["aftershade/frame"] = header.frame;
     // A file without the attribute is Rec. 709, so colours of other primaries must say so.
     if (!options.keep_channels && header.primaries != stored_primaries(header.metadata))
-        write.attributes["chromaticities"] = std::vector<float>(header.primaries.begin(), header.primaries.end());
+        write.attributes["chromaticities"] =
+            std::vector<float>(header.primaries.begin(), header.primaries.end());
     return write;
 }
 
-void write_exr_output(const std::filesystem::path& path, const OutputOptions& options, const FrameResult& result,
-                      const Capture& capture, const CaptureReader& reader) {
+void write_exr_output(const std::filesystem::path& path, const OutputOptions& options,
+                      const FrameResult& result, const Capture& capture, const CaptureReader& reader) {
     ExrContent content;
     const auto& source_channels = capture.header.role_channels;
     if (options.keep_channels) add_stored_channels(content, result, capture, reader);
@@ -98,8 +104,9 @@ void write_exr_output(const std::filesystem::path& path, const OutputOptions& op
         if (options.keep_channels && source_channels.contains(name)) continue;
         const Image* image = find_image(name, result, capture);
         if (!image)
-            throw Error(ExitCode::capture, capture.header.path.string() + ": the role '" + name +
-                                               "', asked for in the output, is in neither the capture nor the look");
+            throw Error(ExitCode::capture,
+                        capture.header.path.string() + ": the role '" + name +
+                            "', asked for in the output, is in neither the capture nor the look");
         add_role(content, *find_role(name), *image, options.color_type);
     }
     ExrWriteOptions write = exr_write_options(options, capture.header);

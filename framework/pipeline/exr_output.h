@@ -14,11 +14,11 @@ const Image* find_image(const std::string& role, const FrameResult& result, cons
 /// Windows and attributes of a frame's outputs.
 ExrWriteOptions exr_write_options(const OutputOptions& options, const CaptureHeader& header);
 
-/// The roles asked for, under native names. With `options.keep_channels`, all channels of the source under their own
-/// names instead, those of roles that a step changed re-encoded to the source's conventions, and beside them the roles
-/// asked for that the source does not have. Throws Error(ExitCode::capture) for a role that is nowhere,
-/// Error(ExitCode::output).
-void write_exr_output(const std::filesystem::path& path, const OutputOptions& options, const FrameResult& result,
-                      const Capture& capture, const CaptureReader& reader);
+/// The roles asked for, under native names. With `options.keep_channels`, all channels of the source under
+/// their own names instead, those of roles that a step changed re-encoded to the source's conventions, and
+/// beside them the roles asked for that the source does not have. Throws Error(ExitCode::capture) for a role
+/// that is nowhere, Error(ExitCode::output).
+void write_exr_output(const std::filesystem::path& path, const OutputOptions& options,
+                      const FrameResult& result, const Capture& capture, const CaptureReader& reader);
 
 }  // namespace aftershade

@@ -13,8 +13,8 @@ std::vector<WiringSpec> parse_wiring(const Node& node, Diagnostics& diagnostics)
     for (const Member& member : node.members) {
         const std::size_t dot = member.value.is_string() ? member.value.string.find('.') : std::string::npos;
         if (dot == std::string::npos) {
-            diagnostics.error(member.value.place, "'" + member.key +
-                                                      "' comes from \"capture.<role>\" or \"<step>.<output>\"");
+            diagnostics.error(member.value.place,
+                              "'" + member.key + "' comes from \"capture.<role>\" or \"<step>.<output>\"");
             continue;
         }
         const std::string& text = member.value.string;
@@ -49,15 +49,18 @@ void check_names(const Look& look, Diagnostics& diagnostics) {
     for (std::size_t i = 0; i < look.steps.size(); ++i) {
         const LookStep& step = look.steps[i];
         if (step.name.empty() && step.effect.empty()) continue;  // told of already
-        // Wiring, --set and --tap part a name from what follows at the first dot, and taps are files of that name.
+        // Wiring, --set and --tap part a name from what follows at the first dot, and taps are files of that
+        // name.
         if (step.name != step.effect && !is_snake_case(step.name))
-            diagnostics.error(step.place, "the name '" + step.name +
-                                              "' must be snake_case: a-z, 0-9 and _, beginning with a letter");
+            diagnostics.error(
+                step.place,
+                "the name '" + step.name + "' must be snake_case: a-z, 0-9 and _, beginning with a letter");
         if (step.name == "capture")
             diagnostics.error(step.place, "a step cannot be named 'capture': wiring means the input by it");
         const auto same = [&](const LookStep& other) { return other.name == step.name; };
         if (std::any_of(look.steps.begin(), look.steps.begin() + std::ptrdiff_t(i), same))
-            diagnostics.error(step.place, "a second step named '" + step.name + "'; give it a 'name' of its own");
+            diagnostics.error(step.place,
+                              "a second step named '" + step.name + "'; give it a 'name' of its own");
     }
 }
 
@@ -72,7 +75,8 @@ std::optional<Look> parse_look(const Node& node, Diagnostics& diagnostics) {
     reader.text("$schema");
     if (const Node* steps = reader.array("steps", Presence::required)) {
         for (const Node& step : steps->items) look.steps.push_back(parse_step(step, diagnostics));
-        if (steps->items.empty()) diagnostics.warning(steps->place, "the look has no steps: frames pass through");
+        if (steps->items.empty())
+            diagnostics.warning(steps->place, "the look has no steps: frames pass through");
     }
     reader.finish();
     check_names(look, diagnostics);

@@ -26,7 +26,7 @@ struct LookStep {
     std::optional<std::string> preset;
     std::vector<Member> params;  ///< values are read against the effect's manifest
     std::vector<WiringSpec> wiring;
-    Place place;         ///< of the step
+    Place place;  ///< of the step
     Place effect_place;
     Place preset_place;
 };

@@ -25,7 +25,8 @@ fs::path resolved(const fs::path& path) {
 
 std::string extension(const fs::path& path) {
     std::string text = path.extension().string();
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
     return text;
 }
 
@@ -44,7 +45,8 @@ Image display_of_color(Image color, const Chromaticities& primaries) {
     return display;
 }
 
-/// The pixels of the display window; 0 where the data window does not reach. An opaque picture loses its alpha.
+/// The pixels of the display window; 0 where the data window does not reach. An opaque picture loses its
+/// alpha.
 Image cropped_for_png(const Image& display, const Window& data, const Window& window) {
     bool opaque = data.contains(window.min_x, window.min_y) && data.contains(window.max_x, window.max_y);
     for (int y = window.min_y; opaque && y <= window.max_y; ++y)
@@ -56,7 +58,8 @@ Image cropped_for_png(const Image& display, const Window& data, const Window& wi
             const int source_x = x + window.min_x - data.min_x;
             const int source_y = y + window.min_y - data.min_y;
             if (!data.contains(x + window.min_x, y + window.min_y)) continue;
-            for (int c = 0; c < picture.channels(); ++c) picture.at(x, y, c) = display.at(source_x, source_y, c);
+            for (int c = 0; c < picture.channels(); ++c)
+                picture.at(x, y, c) = display.at(source_x, source_y, c);
         }
     return picture;
 }
@@ -64,8 +67,9 @@ Image cropped_for_png(const Image& display, const Window& data, const Window& wi
 void write_png_output(const fs::path& path, const FrameResult& result, const Capture& capture) {
     const auto made = result.images.find("display");
     const CaptureHeader& header = capture.header;
-    const Image display =
-        made != result.images.end() ? made->second : display_of_color(*find_image("color", result, capture), header.primaries);
+    const Image display = made != result.images.end()
+                              ? made->second
+                              : display_of_color(*find_image("color", result, capture), header.primaries);
     write_png(path, cropped_for_png(display, header.data_window, header.display_window));
 }
 
@@ -85,10 +89,12 @@ fs::path tap_path(const std::string& text, const std::string& tap, int frame) {
         if (before.empty()) after.erase(0, std::min(after.find_first_not_of(kJoints), after.size()));
         stem = before + after;
     }
-    return path.parent_path() / (stem + (stem.empty() ? "" : ".") + tap + "." + FramePattern("####").path(frame) + ".exr");
+    return path.parent_path() /
+           (stem + (stem.empty() ? "" : ".") + tap + "." + FramePattern("####").path(frame) + ".exr");
 }
 
-void write_tap(const fs::path& path, const Image& image, const OutputOptions& options, const CaptureHeader& header) {
+void write_tap(const fs::path& path, const Image& image, const OutputOptions& options,
+               const CaptureHeader& header) {
     constexpr std::string_view kNames = "RGBA";
     const bool is_uint = image.type() == ComponentType::uint32;
     std::vector<ExrOutputChannel> channels;
@@ -112,9 +118,11 @@ float encode_srgb(float linear) {
 
 void check_outputs(const OutputOptions& options, const Sequence& sequence, Diagnostics& diagnostics) {
     std::map<fs::path, fs::path> inputs;
-    for (const int frame : sequence.frames) inputs.emplace(resolved(sequence.path_of(frame)), sequence.path_of(frame));
+    for (const int frame : sequence.frames)
+        inputs.emplace(resolved(sequence.path_of(frame)), sequence.path_of(frame));
     std::set<fs::path> named;
-    if (options.patterns.empty()) diagnostics.error({"-o"}, "no output; name at least one file, such as -o out_####.exr");
+    if (options.patterns.empty())
+        diagnostics.error({"-o"}, "no output; name at least one file, such as -o out_####.exr");
     for (const std::string& text : options.patterns) {
         const Place place{"-o " + text};
         const FramePattern pattern(text);
@@ -148,7 +156,8 @@ std::vector<std::string> wanted_roles(const OutputOptions& options) {
     if (options.keep_channels) return role_names();
     std::vector<std::string> roles;
     for (const std::string& pattern : options.patterns) {
-        if (extension(pattern) == ".exr") roles.insert(roles.end(), options.roles.begin(), options.roles.end());
+        if (extension(pattern) == ".exr")
+            roles.insert(roles.end(), options.roles.begin(), options.roles.end());
         else roles.insert(roles.end(), {"display", "color"});
     }
     std::sort(roles.begin(), roles.end());
@@ -156,8 +165,8 @@ std::vector<std::string> wanted_roles(const OutputOptions& options) {
     return roles;
 }
 
-std::vector<fs::path> write_outputs(const OutputOptions& options, const FrameResult& result, const Capture& capture,
-                                    const CaptureReader& reader) {
+std::vector<fs::path> write_outputs(const OutputOptions& options, const FrameResult& result,
+                                    const Capture& capture, const CaptureReader& reader) {
     std::vector<fs::path> written;
     const int frame = capture.header.frame;
     for (const std::string& text : options.patterns) {

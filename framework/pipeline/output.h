@@ -13,24 +13,26 @@
 namespace aftershade {
 
 struct OutputOptions {
-    std::vector<std::string> patterns;         ///< "out.exr", "out_####.png": format by extension
-    std::vector<std::string> roles{"color"};   ///< in EXR files
-    PixelType color_type = PixelType::half;    ///< of roles that are half by default
-    bool keep_channels = false;                ///< EXR: every channel of the source too, under its own name
-    bool crop_to_display = false;              ///< EXR: the display window's pixels only; PNG always has just these
-    std::string compression = "zip";           ///< EXR
-    std::string look{};                        ///< written as attribute aftershade/look
-    std::string renderer{};                    ///< GL_RENDERER, written as attribute aftershade/renderer
+    std::vector<std::string> patterns;        ///< "out.exr", "out_####.png": format by extension
+    std::vector<std::string> roles{"color"};  ///< in EXR files
+    PixelType color_type = PixelType::half;   ///< of roles that are half by default
+    bool keep_channels = false;               ///< EXR: every channel of the source too, under its own name
+    bool crop_to_display = false;     ///< EXR: the display window's pixels only; PNG always has just these
+    std::string compression = "zip";  ///< EXR
+    std::string look{};               ///< written as attribute aftershade/look
+    std::string renderer{};           ///< GL_RENDERER, written as attribute aftershade/renderer
 };
 
-/// Faults that show before any work: an unknown extension, several frames for one file, an output that is an input.
+/// Faults that show before any work: an unknown extension, several frames for one file, an output that is an
+/// input.
 void check_outputs(const OutputOptions& options, const Sequence& sequence, Diagnostics& diagnostics);
 
 /// Roles that the options need from the pipeline: those of EXR, and display where a PNG is asked for.
 std::vector<std::string> wanted_roles(const OutputOptions& options);
 
-/// Writes one frame, each file by rename. A role that no step made is taken from the capture. PNG takes `display`, else
-/// color encoded as sRGB, over the display window. Returns the paths. Throws Error(ExitCode::output).
+/// Writes one frame, each file by rename. A role that no step made is taken from the capture. PNG takes
+/// `display`, else color encoded as sRGB, over the display window. Returns the paths. Throws
+/// Error(ExitCode::output).
 std::vector<std::filesystem::path> write_outputs(const OutputOptions& options, const FrameResult& result,
                                                  const Capture& capture, const CaptureReader& reader);
 

@@ -23,7 +23,8 @@ std::string list_channels(const std::vector<std::string>& channels) {
 }
 
 /// The capture's number for a parameter that has a "from", in the parameter's unit.
-std::optional<double> number_from_capture(const ParamSpec& spec, const std::string& field, const Camera& camera) {
+std::optional<double> number_from_capture(const ParamSpec& spec, const std::string& field,
+                                          const Camera& camera) {
     const auto value = camera.get(field);
     const std::string& unit = find_camera_field(field)->unit;
     if (!value || unit == spec.unit) return value;
@@ -76,7 +77,8 @@ void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header
     const auto missing = [&](const std::string& who, const std::string& role) {
         throw Error(ExitCode::capture, header.path.string() + ": " + who + " needs the role '" + role +
                                            "', which the profile '" + header.profile +
-                                           "' does not find among the channels " + list_channels(header.channels));
+                                           "' does not find among the channels " +
+                                           list_channels(header.channels));
     };
     for (const PipelineStep& step : pipeline.steps)
         for (const InputSpec& input : step.manifest->inputs) {
@@ -95,14 +97,40 @@ std::vector<std::string> present_inputs(const Pipeline& pipeline, int step,
     return present;
 }
 
+namespace {
+
+struct ResolvedValue {
+    ParamValue value;
+    std::string origin;
+};
+
+ResolvedValue resolve_param(const PipelineStep& step, const ParamSpec& spec, const CaptureHeader& header) {
+    if (const auto asked = step.values.find(spec.name); asked != step.values.end())
+        return {asked->second, step.origins.at(spec.name)};
+    if (auto captured = value_from_capture(step, spec, header))
+        return {std::move(*captured), header.camera.origin(spec.from.substr(spec.from.find('.') + 1))};
+    return {spec.default_value, "the manifest"};
+}
+
+}  // namespace
+
 ParamSet resolve_params(const PipelineStep& step, const CaptureHeader& header) {
     ParamSet params;
-    for (const ParamSpec& spec : step.manifest->params) {
-        const auto asked = step.values.find(spec.name);
-        if (asked != step.values.end()) params.set(spec.name, asked->second);
-        else params.set(spec.name, value_from_capture(step, spec, header).value_or(spec.default_value));
-    }
+    for (const ParamSpec& spec : step.manifest->params)
+        params.set(spec.name, resolve_param(step, spec, header).value);
     return params;
+}
+
+std::string explain_params(const Pipeline& pipeline, const CaptureHeader& header) {
+    std::string text;
+    for (const PipelineStep& step : pipeline.steps)
+        for (const ParamSpec& spec : step.manifest->params) {
+            const ResolvedValue resolved = resolve_param(step, spec, header);
+            const std::string unit = spec.unit.empty() ? "" : " " + spec.unit;
+            text += step.name + "." + spec.name + " = " + format_value(resolved.value) + unit + "   [" +
+                    resolved.origin + "]\n";
+        }
+    return text;
 }
 
 }  // namespace aftershade

@@ -21,12 +21,14 @@ struct InputSource {
     std::string output;  ///< that step's output; for the capture, the role
 };
 
-/// Sets of values, from the most to the least binding: --set, look, preset; below them come the capture and the manifest.
+/// Sets of values, from the most to the least binding: --set, look, preset; below them come the capture and
+/// the manifest.
 struct PipelineStep {
     std::string name;
     const EffectManifest* manifest = nullptr;
-    std::map<std::string, InputSource> inputs;  ///< by input name
-    std::map<std::string, ParamValue> values;   ///< asked for by the user
+    std::map<std::string, InputSource> inputs;   ///< by input name
+    std::map<std::string, ParamValue> values;    ///< asked for by the user
+    std::map<std::string, std::string> origins;  ///< of each of `values`: "--set", "the look", "preset fast"
 };
 
 /// "bokeh.coc": an intermediate to be written out.
@@ -51,20 +53,25 @@ struct PipelineOptions {
     std::vector<std::string> taps;
 };
 
-/// Binds a look. Each input takes its role from the nearest earlier step that outputs it, else from the capture, unless
-/// the step's "in" says otherwise. Faults go to `diagnostics`, all of them; the result is usable if there was none.
+/// Binds a look. Each input takes its role from the nearest earlier step that outputs it, else from the
+/// capture, unless the step's "in" says otherwise. Faults go to `diagnostics`, all of them; the result is
+/// usable if there was none.
 Pipeline compile_pipeline(const Look& look, EffectRegistry& effects, const PipelineOptions& options,
                           Diagnostics& diagnostics);
 
-/// Throws Error(ExitCode::capture) if the capture lacks a role that a step requires, naming the effect, the role, and
-/// the channels that the file does have.
+/// Throws Error(ExitCode::capture) if the capture lacks a role that a step requires, naming the effect, the
+/// role, and the channels that the file does have.
 void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header);
 
 /// Optional and required inputs of a step that have an image, given the capture's roles.
-std::vector<std::string> present_inputs(const Pipeline& pipeline, int step, const std::vector<std::string>& capture_roles);
+std::vector<std::string> present_inputs(const Pipeline& pipeline, int step,
+                                        const std::vector<std::string>& capture_roles);
 
-/// Every parameter of the step: the user's value, else the capture's (the manifest's "from"), else the default.
-/// Throws Error(ExitCode::capture) if the capture's value is out of the parameter's range.
+/// Every parameter of the step: the user's value, else the capture's (the manifest's "from"), else the
+/// default. Throws Error(ExitCode::capture) if the capture's value is out of the parameter's range.
 ParamSet resolve_params(const PipelineStep& step, const CaptureHeader& header);
+
+/// One line per parameter of every step: its value, its unit, and where the value is from.
+std::string explain_params(const Pipeline& pipeline, const CaptureHeader& header);
 
 }  // namespace aftershade

@@ -57,7 +57,8 @@ Image read_back(const gpu::Texture& texture, int channels) {
     const int stored = gpu::channel_count(desc.format);
     Image image(desc.width, desc.height, channels);
     for (std::size_t pixel = 0; pixel < values.size() / std::size_t(stored); ++pixel)
-        std::copy_n(&values[pixel * std::size_t(stored)], channels, &image.floats()[pixel * std::size_t(channels)]);
+        std::copy_n(&values[pixel * std::size_t(stored)], channels,
+                    &image.floats()[pixel * std::size_t(channels)]);
     return image;
 }
 
@@ -70,25 +71,30 @@ int scaled_side(int side, const TextureSpec& spec) {
 
 namespace {
 
-bool infinity_allowed(const std::string& role) { return std::isinf(find_role(role)->outside); }
+bool infinity_allowed(const std::string& role) {
+    return std::isinf(find_role(role)->outside);
+}
 
 void audit_input(const std::string& role, const Image& image, std::vector<AuditFinding>& findings) {
     if (image.type() != ComponentType::float32) return;
-    audit_values(image.floats(), image.width(), image.channels(), infinity_allowed(role), "capture", "capture." + role,
-                 findings);
+    audit_values(image.floats(), image.width(), image.channels(), infinity_allowed(role), "capture",
+                 "capture." + role, findings);
 }
 
 /// Integer textures hold ids and packed bits, of which no value is wrong.
 graph::Executor::PassObserver auditor(const Pipeline& pipeline, std::vector<AuditFinding>& findings) {
     std::map<std::string, std::string> role_of_output;
     for (const PipelineStep& step : pipeline.steps)
-        for (const OutputSpec& output : step.manifest->outputs) role_of_output[step.name + "." + output.name] = output.role;
-    return [role_of_output, &findings](const std::string& pass, const std::string& texture, const gpu::Texture& target) {
+        for (const OutputSpec& output : step.manifest->outputs)
+            role_of_output[step.name + "." + output.name] = output.role;
+    return [role_of_output, &findings](const std::string& pass, const std::string& texture,
+                                       const gpu::Texture& target) {
         const gpu::TextureDesc& desc = target.desc();
         if (gpu::is_integer(desc.format)) return;
         const auto role = role_of_output.find(texture);
         const bool infinity = role != role_of_output.end() && infinity_allowed(role->second);
-        audit_values(target.read_floats(), desc.width, gpu::channel_count(desc.format), infinity, pass, texture, findings);
+        audit_values(target.read_floats(), desc.width, gpu::channel_count(desc.format), infinity, pass,
+                     texture, findings);
     };
 }
 
@@ -102,9 +108,9 @@ struct PipelineRenderer::Built {
         bool has_params = false;
     };
     std::string key;
-    std::map<std::string, graph::TextureHandle> imports;                       // by role of the capture
-    std::vector<std::map<std::string, graph::TextureHandle>> names;            // per step: textures and outputs
-    std::map<std::string, graph::TextureHandle> results;                       // by role
+    std::map<std::string, graph::TextureHandle> imports;             // by role of the capture
+    std::vector<std::map<std::string, graph::TextureHandle>> names;  // per step: textures and outputs
+    std::map<std::string, graph::TextureHandle> results;             // by role
     std::vector<BoundPass> passes;
     std::unique_ptr<graph::Executor> executor;
 };
@@ -132,11 +138,13 @@ public:
         Names inputs, names;
         for (const std::string& name : present) {
             const InputSource& source = step.inputs.at(name);
-            inputs[name] = source.step < 0 ? import(source.output) : earlier[std::size_t(source.step)].at(source.output);
+            inputs[name] =
+                source.step < 0 ? import(source.output) : earlier[std::size_t(source.step)].at(source.output);
         }
         for (const TextureSpec& spec : manifest.textures)
-            names[spec.name] = graph.create_texture(
-                step.name + "." + spec.name, {scaled_side(width_, spec), scaled_side(height_, spec), spec.format});
+            names[spec.name] =
+                graph.create_texture(step.name + "." + spec.name,
+                                     {scaled_side(width_, spec), scaled_side(height_, spec), spec.format});
         for (const OutputSpec& spec : manifest.outputs)
             names[spec.name] = graph.create_texture(step.name + "." + spec.name,
                                                     {width_, height_, texture_format_of_role(spec.role)});
@@ -148,8 +156,8 @@ public:
         }
         for (const OutputSpec& spec : manifest.outputs)
             if (names.at(spec.name).version == 0)
-                throw Error(ExitCode::effect, "step '" + step.name + "': no pass writes the output '" + spec.name +
-                                                  "' with these parameters");
+                throw Error(ExitCode::effect, "step '" + step.name + "': no pass writes the output '" +
+                                                  spec.name + "' with these parameters");
         return names;
     }
 
@@ -160,7 +168,8 @@ private:
     graph::TextureHandle import(const std::string& role) {
         const auto known = imports.find(role);
         if (known != imports.end()) return known->second;
-        return imports[role] = graph.import_texture("capture." + role, {width_, height_, texture_format_of_role(role)});
+        return imports[role] =
+                   graph.import_texture("capture." + role, {width_, height_, texture_format_of_role(role)});
     }
 
     void add_pass(const PipelineStep& step, const ShaderContext& shader, const Names& inputs, Names& names) {
@@ -173,15 +182,17 @@ private:
             const auto input = inputs.find(read.name);
             const graph::TextureHandle handle = input != inputs.end() ? input->second : names.at(read.name);
             if (handle.version == 0)
-                throw Error(ExitCode::effect, "step '" + step.name + "': pass '" + shader.pass->name + "' reads '" +
-                                                  read.name + "', which no pass has written with these parameters");
+                throw Error(ExitCode::effect, "step '" + step.name + "': pass '" + shader.pass->name +
+                                                  "' reads '" + read.name +
+                                                  "', which no pass has written with these parameters");
             pass.reads.push_back({handle, int(pass.reads.size()), read.filter, read.wrap});
             const gpu::TextureDesc& desc = graph.textures()[std::size_t(handle.texture)].desc;
             const float size[4] = {float(desc.width), float(desc.height), 1.0f / float(desc.width),
                                    1.0f / float(desc.height)};
             sizes.add(std::span<const float>(size));
         }
-        if (has_param_block(manifest)) pass.uniforms.push_back({kParamBinding, param_block(manifest, *shader.params)});
+        if (has_param_block(manifest))
+            pass.uniforms.push_back({kParamBinding, param_block(manifest, *shader.params)});
         pass.uniforms.push_back({kFrameBinding, frame_block(capture_.header, hash_name(step.name))});
         if (!pass.reads.empty()) pass.uniforms.push_back({kSizeBinding, sizes.finish()});
         std::vector<graph::TextureHandle> targets;
@@ -218,7 +229,8 @@ std::string PipelineRenderer::graph_key(const Capture& capture, const std::vecto
             if (spec.bind == ParamBind::define) key += " " + format_value(params[i].get(spec.name));
         for (const PassSpec& pass : manifest.passes)
             for (const WhenSpec& condition : pass.when)
-                if (params[i].has(condition.subject)) key += " " + format_value(params[i].get(condition.subject));
+                if (params[i].has(condition.subject))
+                    key += " " + format_value(params[i].get(condition.subject));
     }
     return key;
 }
@@ -232,16 +244,19 @@ std::unique_ptr<PipelineRenderer::Built> PipelineRenderer::build(const Capture& 
         const EffectManifest& manifest = *pipeline_.steps[std::size_t(i)].manifest;
         const auto bound = [&](int pass) { built->passes.push_back({i, pass, has_param_block(manifest)}); };
         built->names.push_back(builder.add_step(i, params[std::size_t(i)], built->names, bound));
-        for (const OutputSpec& output : manifest.outputs) built->results[output.role] = built->names.back().at(output.name);
+        for (const OutputSpec& output : manifest.outputs)
+            built->results[output.role] = built->names.back().at(output.name);
     }
     for (const std::string& role : roles)
-        if (const auto result = built->results.find(role); result != built->results.end()) builder.graph.keep(result->second);
+        if (const auto result = built->results.find(role); result != built->results.end())
+            builder.graph.keep(result->second);
     for (const Tap& tap : pipeline_.taps) {
         for (std::size_t i = 0; i < pipeline_.steps.size(); ++i) {
             if (pipeline_.steps[i].name != tap.step) continue;
             const graph::TextureHandle handle = built->names[i].at(tap.texture);
             if (handle.version == 0)
-                throw Error(ExitCode::usage, "--tap " + tap.text() + ": no pass writes it with these parameters");
+                throw Error(ExitCode::usage,
+                            "--tap " + tap.text() + ": no pass writes it with these parameters");
             builder.graph.keep(handle);
         }
     }
@@ -250,7 +265,8 @@ std::unique_ptr<PipelineRenderer::Built> PipelineRenderer::build(const Capture& 
     return built;
 }
 
-FrameResult PipelineRenderer::render(const Capture& capture, const std::vector<std::string>& roles, bool timed) {
+FrameResult PipelineRenderer::render(const Capture& capture, const std::vector<std::string>& roles,
+                                     bool timed) {
     std::vector<ParamSet> params;
     for (const PipelineStep& step : pipeline_.steps) params.push_back(resolve_params(step, capture.header));
     const std::string key = graph_key(capture, params, roles);
@@ -276,17 +292,21 @@ FrameResult PipelineRenderer::render(const Capture& capture, const std::vector<s
         if (pass.has_params)
             built_->executor->set_uniforms(pass.pass, kParamBinding,
                                            param_block(*step.manifest, params[std::size_t(pass.step)]));
-        built_->executor->set_uniforms(pass.pass, kFrameBinding, frame_block(capture.header, hash_name(step.name)));
+        built_->executor->set_uniforms(pass.pass, kFrameBinding,
+                                       frame_block(capture.header, hash_name(step.name)));
     }
     const double upload_ms = timer.stop_ms();
     if (audit_)
-        for (const auto& [role, handle] : built_->imports) audit_input(role, capture.images.at(role), result.audit);
-    result.times = built_->executor->run(timed, audit_ ? auditor(pipeline_, result.audit) : graph::Executor::PassObserver{});
+        for (const auto& [role, handle] : built_->imports)
+            audit_input(role, capture.images.at(role), result.audit);
+    result.times = built_->executor->run(
+        timed, audit_ ? auditor(pipeline_, result.audit) : graph::Executor::PassObserver{});
 
     timer.start();
     for (const std::string& role : roles)
         if (const auto handle = built_->results.find(role); handle != built_->results.end())
-            result.images[role] = read_back(*built_->executor->texture(handle->second), find_role(role)->channels);
+            result.images[role] =
+                read_back(*built_->executor->texture(handle->second), find_role(role)->channels);
     for (const Tap& tap : pipeline_.taps)
         for (std::size_t i = 0; i < pipeline_.steps.size(); ++i)
             if (pipeline_.steps[i].name == tap.step) {

@@ -22,11 +22,12 @@ struct FrameResult {
     std::vector<AuditFinding> audit;      ///< in the order of the passes; empty unless audited
 };
 
-/// Builds the frame graph on the first frame and again only when the size, the roles present, or a value that chooses
-/// passes or programs changes. [the context's thread]
+/// Builds the frame graph on the first frame and again only when the size, the roles present, or a value that
+/// chooses passes or programs changes. [the context's thread]
 class PipelineRenderer {
 public:
-    PipelineRenderer(gpu::Context& context, const Pipeline& pipeline, const std::filesystem::path& data_folder);
+    PipelineRenderer(gpu::Context& context, const Pipeline& pipeline,
+                     const std::filesystem::path& data_folder);
     ~PipelineRenderer();
 
     /// `roles` are read back where a step makes them. Throws Error(ExitCode::effect).

@@ -18,8 +18,10 @@ double milliseconds_since(Clock::time_point start) {
 
 void add_times(std::vector<PassStatistics>& passes, const std::vector<graph::PassTime>& times) {
     for (const graph::PassTime& time : times) {
-        auto found = std::find_if(passes.begin(), passes.end(), [&](const auto& p) { return p.pass == time.pass; });
-        if (found == passes.end()) found = passes.insert(passes.end(), {time.pass, 0, time.milliseconds, 0, 0});
+        auto found =
+            std::find_if(passes.begin(), passes.end(), [&](const auto& p) { return p.pass == time.pass; });
+        if (found == passes.end())
+            found = passes.insert(passes.end(), {time.pass, 0, time.milliseconds, 0, 0});
         found->total_ms += time.milliseconds;
         found->min_ms = std::min(found->min_ms, time.milliseconds);
         found->max_ms = std::max(found->max_ms, time.milliseconds);
@@ -43,7 +45,8 @@ void finish_write(std::future<Written>& pending, RunReport& report, const RunObs
 /// Reads one frame ahead of the one that is being worked on.
 class FrameLoader {
 public:
-    FrameLoader(const CaptureReader& reader, const Pipeline& pipeline, const RunOptions& run, std::vector<std::string> roles)
+    FrameLoader(const CaptureReader& reader, const Pipeline& pipeline, const RunOptions& run,
+                std::vector<std::string> roles)
         : reader_(reader), pipeline_(pipeline), run_(run), roles_(std::move(roles)) {
         prefetch(0);
     }
@@ -101,8 +104,9 @@ ExitCode RunReport::exit_code() const {
 }
 
 RunReport run_frames(gpu::Context& context, const Pipeline& pipeline, const CaptureReader& reader,
-                     const RunOptions& run, const OutputOptions& outputs, const std::filesystem::path& data_folder,
-                     const RunObserver& observer, const std::atomic<bool>& stop) {
+                     const RunOptions& run, const OutputOptions& outputs,
+                     const std::filesystem::path& data_folder, const RunObserver& observer,
+                     const std::atomic<bool>& stop) {
     RunReport report;
     const auto start = Clock::now();
     const std::vector<std::string> result_roles = wanted_roles(outputs);
@@ -132,7 +136,7 @@ RunReport run_frames(gpu::Context& context, const Pipeline& pipeline, const Capt
         }
         report.read_ms += milliseconds_since(wait_start);
         if (!capture) continue;
-        if (observer.frame_started) observer.frame_started(capture->header);
+        if (observer.frame_started) observer.frame_started(*capture);
         auto result = std::make_shared<const FrameResult>(renderer.render(*capture, result_roles, true));
         if (run.audit && observer.frame_audited) observer.frame_audited(capture->header, result->audit);
         add_times(report.passes, result->times);

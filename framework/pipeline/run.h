@@ -37,11 +37,11 @@ struct RunOptions {
 
 struct RunReport {
     int frames_done = 0;
-    std::vector<std::string> failures;        ///< one message per frame that could not be read
-    int frames_skipped = 0;                   ///< missing, and MissingFrame::skip
-    std::vector<PassStatistics> passes;       ///< in the order of the passes
-    double read_ms = 0;                       ///< waiting for frames to be read and decoded
-    double write_ms = 0;                      ///< waiting for files to be written
+    std::vector<std::string> failures;   ///< one message per frame that could not be read
+    int frames_skipped = 0;              ///< missing, and MissingFrame::skip
+    std::vector<PassStatistics> passes;  ///< in the order of the passes
+    double read_ms = 0;                  ///< waiting for frames to be read and decoded
+    double write_ms = 0;                 ///< waiting for files to be written
     double wall_ms = 0;
     bool interrupted = false;
     ExitCode exit_code() const;
@@ -49,17 +49,19 @@ struct RunReport {
 
 /// Called on the caller's thread. Any may be empty.
 struct RunObserver {
-    std::function<void(const CaptureHeader&)> frame_started;
+    std::function<void(const Capture&)> frame_started;
     std::function<void(const std::filesystem::path&)> file_written;
     std::function<void(const std::string&)> frame_failed;
     std::function<void(const CaptureHeader&, const std::vector<AuditFinding>&)> frame_audited;
     std::function<void(int frame, const std::string& what)> frame_missing;  ///< skipped or held
 };
 
-/// Reads the next frame and writes the last one while the GPU works. A frame that cannot be read is reported and left
-/// out; an effect or an output that fails ends the run by its Error. `stop` is looked at between frames.
+/// Reads the next frame and writes the last one while the GPU works. A frame that cannot be read is reported
+/// and left out; an effect or an output that fails ends the run by its Error. `stop` is looked at between
+/// frames.
 RunReport run_frames(gpu::Context& context, const Pipeline& pipeline, const CaptureReader& reader,
-                     const RunOptions& run, const OutputOptions& outputs, const std::filesystem::path& data_folder,
-                     const RunObserver& observer, const std::atomic<bool>& stop);
+                     const RunOptions& run, const OutputOptions& outputs,
+                     const std::filesystem::path& data_folder, const RunObserver& observer,
+                     const std::atomic<bool>& stop);
 
 }  // namespace aftershade

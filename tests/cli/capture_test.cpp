@@ -27,7 +27,8 @@ const fs::path kSuzanne = AFTERSHADE_SOURCE_DIR "/scenes/suzanne/gbuffer_0004.ex
 /// An effect of the test's own that doubles the light, so that one role changes.
 void write_brighten(const TemporaryFolder& folder) {
     fs::create_directories(folder / "effects/brighten");
-    write_text(folder / "effects/brighten/effect.json", R"({"aftershade": 1, "id": "brighten", "version": "1", "summary": "x",
+    write_text(folder / "effects/brighten/effect.json",
+               R"({"aftershade": 1, "id": "brighten", "version": "1", "summary": "x",
         "inputs": {"color": {"role": "color"}, "depth": {"role": "depth"}},
         "outputs": {"color": {"role": "color"}, "depth": {"role": "depth"}},
         "passes": [{"name": "go", "shader": "go.frag", "reads": ["color", "depth"], "writes": ["color", "depth"]}]})");
@@ -74,7 +75,8 @@ TEST(KeepChannels, ThroughAnEmptyLookKeepsEveryBitAndEveryAttribute) {
         EXPECT_EQ(before.parts()[0].channels[i].type, after.parts()[0].channels[i].type);
     const ExrMetadata& old_metadata = before.parts()[0].metadata;
     const ExrMetadata& new_metadata = after.parts()[0].metadata;
-    for (const std::string& name : old_metadata.names()) EXPECT_EQ(old_metadata.value(name), new_metadata.value(name)) << name;
+    for (const std::string& name : old_metadata.names())
+        EXPECT_EQ(old_metadata.value(name), new_metadata.value(name)) << name;
     for (const std::string& name : new_metadata.names()) {
         const bool is_new = new_metadata.value(name) && !old_metadata.value(name);
         EXPECT_TRUE(!is_new || name.starts_with("aftershade/")) << name;
@@ -84,13 +86,14 @@ TEST(KeepChannels, ThroughAnEmptyLookKeepsEveryBitAndEveryAttribute) {
 TEST(KeepChannels, ReencodesTheRolesThatAStepChanged) {
     const TemporaryFolder folder;
     write_brighten(folder);
-    const CommandResult result = run(folder, kExposureLook, {kSuzanne.string(), "-o", (folder / "out.exr").string(),
-                                                             "--keep-channels", "--effect-path", (folder / "effects").string()});
+    const CommandResult result = run(folder, kExposureLook,
+                                     {kSuzanne.string(), "-o", (folder / "out.exr").string(),
+                                      "--keep-channels", "--effect-path", (folder / "effects").string()});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     const ExrFile before(kSuzanne), after(folder / "out.exr");
     const std::string layer = "ViewLayer.";
-    expect_same_channels(before, after,
-                         {layer + "Combined.R", layer + "Combined.G", layer + "Combined.B", layer + "Depth.Z"});
+    expect_same_channels(
+        before, after, {layer + "Combined.R", layer + "Combined.G", layer + "Combined.B", layer + "Depth.Z"});
     const Args depth{layer + "Depth.Z"}, red{layer + "Combined.R"};
     const Image z = before.read_floats(0, depth), halved = after.read_floats(0, depth);
     const Image light = before.read_floats(0, red), doubled = after.read_floats(0, red);
@@ -104,9 +107,9 @@ TEST(KeepChannels, ReencodesTheRolesThatAStepChanged) {
 TEST(Output, RefusesToStoreIdsWithLoss) {
     const TemporaryFolder folder;
     write_capture(make_capture({.width = 16, .height = 9}), folder / "in_0001.exr");
-    const CommandResult result =
-        run(folder, kEmptyLook, {(folder / "in_0001.exr").string(), "-o", (folder / "out.exr").string(), "--output-roles",
-                                 "color,object_id", "--compression", "dwaa"});
+    const CommandResult result = run(folder, kEmptyLook,
+                                     {(folder / "in_0001.exr").string(), "-o", (folder / "out.exr").string(),
+                                      "--output-roles", "color,object_id", "--compression", "dwaa"});
     EXPECT_EQ(result.exit_code, 6);
     EXPECT_NE(result.err.find("object_id.I"), std::string::npos) << result.err;
     EXPECT_FALSE(fs::exists(folder / "out.exr"));
@@ -123,7 +126,8 @@ TEST(Output, CropsToTheDisplayWindow) {
     options.data_window = {-2, -1, 5, 4};
     options.display_window = {0, 0, 6, 3};
     write_exr(folder / "in.exr", channels, options);
-    ASSERT_EQ(run(folder, kEmptyLook, {(folder / "in.exr").string(), "-o", (folder / "out.exr").string(), "--crop", "display"})
+    ASSERT_EQ(run(folder, kEmptyLook,
+                  {(folder / "in.exr").string(), "-o", (folder / "out.exr").string(), "--crop", "display"})
                   .exit_code,
               0);
     const ExrFile cropped(folder / "out.exr");
@@ -131,19 +135,23 @@ TEST(Output, CropsToTheDisplayWindow) {
     const Image red = cropped.read_floats(0, Args{"R"});
     EXPECT_EQ(red.at(0, 0, 0), 12);  // display (0, 0) is row 1, column 2 of the data
     EXPECT_EQ(red.at(5, 3, 0), 47);
-    EXPECT_EQ(red.at(6, 3, 0), 0);   // beyond the data
+    EXPECT_EQ(red.at(6, 3, 0), 0);  // beyond the data
 }
 
 /// Frames 1 and 3 of a sequence that declares 1 to 3.
 Args gappy_sequence(const TemporaryFolder& folder, const std::string& missing) {
     for (const int frame : {1, 3})
-        write_capture(make_capture({.width = 16, .height = 9, .background = {0.1f * float(frame), 0, 0}}, frame),
-                      folder / ("in_000" + std::to_string(frame) + ".exr"));
+        write_capture(
+            make_capture({.width = 16, .height = 9, .background = {0.1f * float(frame), 0, 0}}, frame),
+            folder / ("in_000" + std::to_string(frame) + ".exr"));
     write_text(folder / "capture.json", R"({"aftershade": 1, "frames": "in_####.exr", "range": "1-3"})");
-    return {(folder / "capture.json").string(), "-o", (folder / "out_####.exr").string(), "--missing", missing};
+    return {(folder / "capture.json").string(), "-o", (folder / "out_####.exr").string(), "--missing",
+            missing};
 }
 
-float red_of(const fs::path& file) { return ExrFile(file).read_floats(0, Args{"R"}).at(0, 0, 0); }
+float red_of(const fs::path& file) {
+    return ExrFile(file).read_floats(0, Args{"R"}).at(0, 0, 0);
+}
 
 TEST(MissingFrame, IsAFailureUnlessSkippedOrHeld) {
     const TemporaryFolder failed, skipped, held;
@@ -159,16 +167,23 @@ TEST(MissingFrame, IsAFailureUnlessSkippedOrHeld) {
 TEST(Capture, MayBeAFolderOrHaveItsDepthInFilesOfItsOwn) {
     const TemporaryFolder folder;
     write_brighten(folder);
-    const Capture whole = make_capture({.width = 16, .height = 9, .background = {1, 1, 1}, .background_depth_m = 8});
+    const Capture whole =
+        make_capture({.width = 16, .height = 9, .background = {1, 1, 1}, .background_depth_m = 8});
     std::vector<ExrOutputChannel> color, depth{{"Z", PixelType::float32, &whole.images.at("depth"), 0}};
-    for (int c = 0; c < 3; ++c) color.push_back({std::string(1, "RGB"[c]), PixelType::half, &whole.images.at("color"), c});
+    for (int c = 0; c < 3; ++c)
+        color.push_back({std::string(1, "RGB"[c]), PixelType::half, &whole.images.at("color"), c});
     ExrWriteOptions options;
     options.data_window = options.display_window = {0, 0, 15, 8};
     fs::create_directories(folder / "beauty");
     write_exr(folder / "beauty/rgb.0001.exr", color, options);
     write_exr(folder / "z.0001.exr", depth, options);
-    const Args common = {(folder / "beauty").string(), "-o", (folder / "out_####.exr").string(), "--output-roles", "color,depth",
-                         "--effect-path", (folder / "effects").string()};
+    const Args common = {(folder / "beauty").string(),
+                         "-o",
+                         (folder / "out_####.exr").string(),
+                         "--output-roles",
+                         "color,depth",
+                         "--effect-path",
+                         (folder / "effects").string()};
     EXPECT_EQ(run(folder, kExposureLook, common).exit_code, 3);
     Args with_depth = common;
     with_depth.insert(with_depth.end(), {"--role", "depth=" + (folder / "z.####.exr").string()});
@@ -184,8 +199,9 @@ TEST(Audit, NamesThePassThePixelAndTheCount) {
     capture.images["color"].at(5, 2, 1) = std::numeric_limits<float>::quiet_NaN();
     capture.images["color"].at(7, 2, 0) = std::numeric_limits<float>::infinity();
     write_capture(capture, folder / "in_0001.exr");
-    const CommandResult result = run(folder, kExposureLook, {(folder / "in_0001.exr").string(), "-o", (folder / "o.exr").string(),
-                                                             "--audit", "--effect-path", (folder / "effects").string()});
+    const CommandResult result = run(folder, kExposureLook,
+                                     {(folder / "in_0001.exr").string(), "-o", (folder / "o.exr").string(),
+                                      "--audit", "--effect-path", (folder / "effects").string()});
     EXPECT_EQ(result.exit_code, 0);
     const std::string expected = " has 1 NaN and 1 infinite values, the first at (5, 2)";
     EXPECT_NE(result.err.find("capture: capture.color" + expected), std::string::npos) << result.err;
@@ -200,7 +216,8 @@ void write_wrong_profile(const TemporaryFolder& folder, const std::string& veloc
     write_text(folder / "blender.json", R"({"aftershade": 1, "id": "blender", "summary": "wrong on purpose",
         "detect": {"attributes": ["BlenderMultiChannel"]},
         "roles": {"color": {"channels": ["{layer}.Combined.R", "{layer}.Combined.G", "{layer}.Combined.B", "{layer}.Combined.A?"]},
-                  "velocity": )" + velocity + "}}");
+                  "velocity": )" + velocity +
+                                            "}}");
 }
 
 struct WrongSetting {
@@ -216,10 +233,14 @@ TEST(CheckVelocity, AcceptsTheBlenderProfileAndNamesWhatIsWrongWithAnother) {
     EXPECT_EQ(right.exit_code, 0) << right.out;
 
     const WrongSetting kWrong[] = {
-        {R"({"channels": ["{layer}.Vector.X", "{layer}.Vector.Y"], "delta": "cur-prev", "y_axis": "up"})", "prev-cur"},
-        {R"({"channels": ["{layer}.Vector.X", "{layer}.Vector.Y"], "delta": "prev-cur", "y_axis": "down"})", "y_axis"},
-        {R"({"channels": ["{layer}.Vector.X", "{layer}.Vector.Y"], "delta": "prev-cur", "y_axis": "up", "scale": 2})", "scale"},
-        {R"({"channels": ["{layer}.Vector.Y", "{layer}.Vector.X"], "delta": "prev-cur", "y_axis": "up"})", "order"},
+        {R"({"channels": ["{layer}.Vector.X", "{layer}.Vector.Y"], "delta": "cur-prev", "y_axis": "up"})",
+         "prev-cur"},
+        {R"({"channels": ["{layer}.Vector.X", "{layer}.Vector.Y"], "delta": "prev-cur", "y_axis": "down"})",
+         "y_axis"},
+        {R"({"channels": ["{layer}.Vector.X", "{layer}.Vector.Y"], "delta": "prev-cur", "y_axis": "up", "scale": 2})",
+         "scale"},
+        {R"({"channels": ["{layer}.Vector.Y", "{layer}.Vector.X"], "delta": "prev-cur", "y_axis": "up"})",
+         "order"},
     };
     for (const WrongSetting& wrong : kWrong) {
         const TemporaryFolder folder;
@@ -244,8 +265,8 @@ TEST(CheckVelocity, FindsThatNoSettingFitsBeachball) {
     EXPECT_EQ(check.at("verdict"), "no_fit");
     EXPECT_EQ(check.at("suggested").at("delta"), "next-cur");
     EXPECT_EQ(check.at("suggested").at("y_axis"), "down");
-    // By hand the outline moves (105.2, -22.5) px where forward says (42.0, -18.0): 2.50 and 1.25. The pattern on the ball,
-    // which turns, moves (112, -25.5), and the warp sees the pattern.
+    // By hand the outline moves (105.2, -22.5) px where forward says (42.0, -18.0): 2.50 and 1.25. The
+    // pattern on the ball, which turns, moves (112, -25.5), and the warp sees the pattern.
     EXPECT_NEAR(std::abs(check.at("free_scale").at("x").get<double>()), 2.625, 0.125);
     EXPECT_NEAR(std::abs(check.at("free_scale").at("y").get<double>()), 1.35, 0.15);
 }

@@ -30,8 +30,7 @@ struct CommandResult {
 inline std::vector<std::string> lines_of_text(const std::string& text) {
     std::vector<std::string> lines;
     std::istringstream in(text);
-    for (std::string line; std::getline(in, line);)
-        lines.push_back(line);
+    for (std::string line; std::getline(in, line);) lines.push_back(line);
     return lines;
 }
 
@@ -42,12 +41,10 @@ public:
     Command(std::vector<std::string> words, const std::filesystem::path& folder,
             const Environment& environment = {}) {
         std::vector<char*> arguments, variables;
-        for (std::string& word : words)
-            arguments.push_back(word.data());
+        for (std::string& word : words) arguments.push_back(word.data());
         arguments.push_back(nullptr);
         std::vector<std::string> settings = merged(environment);
-        for (std::string& setting : settings)
-            variables.push_back(setting.data());
+        for (std::string& setting : settings) variables.push_back(setting.data());
         variables.push_back(nullptr);
 
         posix_spawn_file_actions_t actions;
@@ -102,8 +99,7 @@ private:
             const std::string name = text.substr(0, text.find('='));
             if (!above.contains(name) && !name.starts_with("AFTERSHADE_")) settings.push_back(text);
         }
-        for (const auto& [name, value] : above)
-            settings.push_back(name + "=" + value);
+        for (const auto& [name, value] : above) settings.push_back(name + "=" + value);
         return settings;
     }
 

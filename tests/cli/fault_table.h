@@ -85,8 +85,7 @@ protected:
             EXPECT_TRUE(std::regex_match(lines[i], std::regex(fault.messages[i])))
                 << "  told:     " << lines[i] << "\n  expected: " << fault.messages[i];
         const auto after = contents(work.path());
-        for (const auto& [name, bytes] : after)
-            EXPECT_TRUE(before.contains(name)) << name << " was written";
+        for (const auto& [name, bytes] : after) EXPECT_TRUE(before.contains(name)) << name << " was written";
         for (const auto& [name, bytes] : before)
             EXPECT_TRUE(after.contains(name) && after.at(name) == bytes) << name;
     }

@@ -29,8 +29,7 @@ void claim_size(const fs::path& file, std::int32_t max_x, std::int32_t max_y) {
 void write_rgb_only(const fs::path& file) {
     const Image color(4, 4, 3);
     std::vector<ExrOutputChannel> channels;
-    for (const int c : {0, 1, 2})
-        channels.push_back({std::string(1, "RGB"[c]), PixelType::half, &color, c});
+    for (const int c : {0, 1, 2}) channels.push_back({std::string(1, "RGB"[c]), PixelType::half, &color, c});
     ExrWriteOptions options;
     options.data_window = options.display_window = {0, 0, 3, 3};
     write_exr(file, channels, options);
@@ -124,8 +123,7 @@ std::vector<Fault> capture_faults() {
          {"aftershade: error: seq_0001\\.exr: .+", "aftershade: error: seq_0002\\.exr: .+",
           "aftershade: error: seq_0003\\.exr: .+"},
          [](const Workplace& work) {
-             for (const char* name : {"seq_0001.exr", "seq_0002.exr", "seq_0003.exr"})
-                 cut(work / name, 0.5);
+             for (const char* name : {"seq_0001.exr", "seq_0002.exr", "seq_0003.exr"}) cut(work / name, 0.5);
          }},
     };
 }

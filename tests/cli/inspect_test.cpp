@@ -21,8 +21,7 @@ const std::string kSuzanne = AFTERSHADE_SOURCE_DIR "/scenes/suzanne/capture.json
 
 std::set<std::string> keys_of(const Json& object) {
     std::set<std::string> keys;
-    for (const auto& [key, value] : object.items())
-        keys.insert(key);
+    for (const auto& [key, value] : object.items()) keys.insert(key);
     return keys;
 }
 

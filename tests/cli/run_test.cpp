@@ -77,8 +77,7 @@ TEST_F(Run, WritesAFileForEachFrameAndPatternAndPrintsTheirPaths) {
         run({"film.json", "in_####.exr", "-o", "out_%04d.exr", "-o", "out_####.png"});
     EXPECT_EQ(result.out,
               "out_0001.exr\nout_0001.png\nout_0002.exr\nout_0002.png\nout_0003.exr\nout_0003.png\n");
-    for (const std::string& path : lines_of_text(result.out))
-        EXPECT_TRUE(fs::exists(folder_ / path)) << path;
+    for (const std::string& path : lines_of_text(result.out)) EXPECT_TRUE(fs::exists(folder_ / path)) << path;
     EXPECT_NE(result.err.find("profile native (channel "), std::string::npos) << result.err;
     EXPECT_NE(result.err.find("3 of 3 frames"), std::string::npos) << result.err;
     for (const auto& entry : fs::directory_iterator(folder_.path()))
@@ -154,8 +153,7 @@ TEST_F(Run, CarriesAttributesAndWindowsOverAndAddsItsOwn) {
     const Capture capture = still();
     const Image& image = capture.images.at("color");
     std::vector<ExrOutputChannel> channels;
-    for (int c = 0; c < 4; ++c)
-        channels.push_back({kRgba[std::size_t(c)], PixelType::half, &image, c});
+    for (int c = 0; c < 4; ++c) channels.push_back({kRgba[std::size_t(c)], PixelType::half, &image, c});
     ExrWriteOptions options;
     options.data_window = {5, -3, 68, 32};
     options.display_window = {0, 0, 79, 44};
@@ -229,8 +227,7 @@ TEST_F(Run, EncodesPicturesAsTheSrgbFormulaSaysWithAndWithoutAViewTransform) {
 TEST_F(Run, DividesAlphaOutForPictures) {
     SyntheticScene scene{.width = 16, .height = 9, .background = {0.8f, 0.1f, 0.4f}, .alpha = 0.25f};
     Capture capture = make_capture(scene);
-    for (int c = 0; c < 4; ++c)
-        capture.images["color"].at(3, 2, c) = 0;
+    for (int c = 0; c < 4; ++c) capture.images["color"].at(3, 2, c) = 0;
     write_capture(capture, folder_ / "glass.exr");
     for (const char* look : {"nothing.json", "view.json"}) {
         run({look, "glass.exr", "-o", "out.png"});
@@ -317,10 +314,8 @@ TEST(Doctor, PrintsJson) {
     std::vector<std::string> names;
     for (const auto& row : report.at("backends")) {
         names.push_back(row.at("backend"));
-        if (row.at("usable").get<bool>())
-            EXPECT_FALSE(row.at("renderer").get<std::string>().empty());
-        else
-            EXPECT_FALSE(row.at("reason").get<std::string>().empty());
+        if (row.at("usable").get<bool>()) EXPECT_FALSE(row.at("renderer").get<std::string>().empty());
+        else EXPECT_FALSE(row.at("reason").get<std::string>().empty());
     }
     EXPECT_EQ(names, (std::vector<std::string>{"egl", "egl-software", "osmesa"}));
     EXPECT_TRUE(report.at("backends")[2].at("software").get<bool>());

@@ -133,8 +133,7 @@ TEST(Document, NestsUpToSixtyFourLevels) {
     EXPECT_EQ(faults(arrays(65)), too_deep);
     EXPECT_EQ(faults(std::string(1000000, '[')), too_deep);
     std::string objects;
-    for (int i = 0; i < 65; ++i)
-        objects += "{\"a\":";
+    for (int i = 0; i < 65; ++i) objects += "{\"a\":";
     const Lines too_deep_object = {"f:1:321: error: nested deeper than 64 levels"};  // 64 * 5 + 1
     EXPECT_EQ(faults(objects), too_deep_object);
 }

@@ -39,8 +39,7 @@ TEST(Units, ConvertToTheDoubleThatOneWouldWrite) {
 }
 
 TEST(Units, KeepAValueThatIsInTheUnitAlready) {
-    for (const std::string& unit : unit_names())
-        EXPECT_EQ(convert_unit(0.1, unit, unit), 0.1) << unit;
+    for (const std::string& unit : unit_names()) EXPECT_EQ(convert_unit(0.1, unit, unit), 0.1) << unit;
 }
 
 TEST(Units, DoNotConvertBetweenDimensions) {

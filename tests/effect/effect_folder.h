@@ -34,8 +34,7 @@ inline std::string demo_manifest(const Sections& replaced = {}) {
              "writes": ["color"]}])"},
         {kPresets, R"("presets": {"strong": {"gain": "2 m", "mode": "good"}})"},
     };
-    for (const auto& [section, text] : replaced)
-        sections[section] = text;
+    for (const auto& [section, text] : replaced) sections[section] = text;
     std::string text;
     for (auto& [section, part] : sections) {
         std::erase(part, '\n');

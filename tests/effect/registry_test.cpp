@@ -31,8 +31,7 @@ TEST(ShippedEffects, HaveNoFaults) {
         ASSERT_NE(manifest, nullptr) << id;
         EXPECT_EQ(manifest->id, id);
         ParamSet defaults;
-        for (const ParamSpec& spec : manifest->params)
-            defaults.set(spec.name, spec.default_value);
+        for (const ParamSpec& spec : manifest->params) defaults.set(spec.name, spec.default_value);
         for (const PassSpec& pass : manifest->passes)
             assemble_shader({manifest, &pass, &defaults, {}, kSource / "glsl"}, diagnostics);
         EXPECT_EQ(test::lines_of(diagnostics), Lines{}) << id;
@@ -41,8 +40,7 @@ TEST(ShippedEffects, HaveNoFaults) {
 
 TEST(Registry, ListsIdsSortedAndIgnoresOtherFolders) {
     const test::TemporaryFolder folder;
-    for (const char* id : {"zoom", "blur", "tint"})
-        write_effect(folder.path(), id, ".");
+    for (const char* id : {"zoom", "blur", "tint"}) write_effect(folder.path(), id, ".");
     fs::create_directories(folder / "notes");
     test::write_text(folder / "effect.json", "{}");
     const EffectRegistry effects({folder.path(), folder / "not_there"});

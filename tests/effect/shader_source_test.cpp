@@ -16,8 +16,7 @@ using test::Lines;
 Lines lines_of_text(const std::string& text) {
     std::istringstream in(text);
     Lines lines;
-    for (std::string line; std::getline(in, line);)
-        lines.push_back(line);
+    for (std::string line; std::getline(in, line);) lines.push_back(line);
     return lines;
 }
 
@@ -29,8 +28,7 @@ bool has_line(const ShaderSource& source, const std::string& line) {
 struct Assembly {
     explicit Assembly(const EffectFolder& effect, std::size_t pass = 0)
         : folder(effect), manifest(effect.sound_manifest()), pass_index(pass) {
-        for (const ParamSpec& spec : manifest.params)
-            params.set(spec.name, spec.default_value);
+        for (const ParamSpec& spec : manifest.params) params.set(spec.name, spec.default_value);
     }
     ShaderSource operator()(Diagnostics& diagnostics) const {
         return assemble_shader({&manifest, &manifest.passes.at(pass_index), &params, present, glsl.path()},
@@ -308,15 +306,12 @@ TEST(ParamBlock, LiesAsStd140Says) {
     EXPECT_EQ(value_at<float>(block, 0), 1.5f);
     EXPECT_EQ(value_at<float>(block, 8), 2.0f);
     EXPECT_EQ(value_at<float>(block, 12), 3.0f);
-    for (std::size_t i = 0; i < 3; ++i)
-        EXPECT_EQ(value_at<float>(block, 16 + 4 * i), float(4 + i));
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(value_at<float>(block, 16 + 4 * i), float(4 + i));
     EXPECT_EQ(value_at<std::int32_t>(block, 28), -7);
     EXPECT_EQ(value_at<std::int32_t>(block, 32), 1);
-    for (std::size_t i = 0; i < 4; ++i)
-        EXPECT_EQ(value_at<float>(block, 48 + 4 * i), float(8 + i));
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(value_at<float>(block, 48 + 4 * i), float(8 + i));
     EXPECT_EQ(value_at<float>(block, 64), 12.0f);  // mm, the declared unit
-    for (std::size_t i = 0; i < 3; ++i)
-        EXPECT_EQ(value_at<float>(block, 80 + 4 * i), float(13 + i));
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(value_at<float>(block, 80 + 4 * i), float(13 + i));
     EXPECT_EQ(value_at<float>(block, 92), 90.0f);  // degrees
     EXPECT_EQ(value_at<std::int32_t>(block, 96), 2);
 }

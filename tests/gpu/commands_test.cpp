@@ -299,8 +299,7 @@ std::vector<float> transcendental_picture(Backend backend) {
     Context context(backend);
     Texture source(context, {.width = 8, .height = 8, .format = TextureFormat::rgba8}, "source");
     std::vector<float> values(256);
-    for (std::size_t i = 0; i < values.size(); ++i)
-        values[i] = static_cast<float>((i * 37) % 256) / 255.0F;
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>((i * 37) % 256) / 255.0F;
     source.upload(values);
     const Program program = Program::draw(context, kFullScreen, R"(#version 450 core
 layout(binding = 0) uniform sampler2D source;

@@ -22,8 +22,7 @@ ON_SOFTWARE_BACKENDS(TextureOn);
 
 std::vector<TextureFormat> all_formats() {
     std::vector<TextureFormat> formats;
-    for (std::string_view name : texture_format_names())
-        formats.push_back(*parse_texture_format(name));
+    for (std::string_view name : texture_format_names()) formats.push_back(*parse_texture_format(name));
     return formats;
 }
 

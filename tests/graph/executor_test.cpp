@@ -37,8 +37,7 @@ void main() { result = texelFetch(source, ivec2(gl_FragCoord.xy), 0).r * 2.0 + a
 
     static Floats ramp(float step) {
         Floats values(kWidth * kHeight);
-        for (std::size_t i = 0; i < values.size(); ++i)
-            values[i] = step * float(i);
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = step * float(i);
         return values;
     }
 };
@@ -62,8 +61,7 @@ TEST_P(ExecutorOn, RunsAChainInSharedMemory) {
         executor.run(false);
         Floats expected = ramp(step);
         for (float& value : expected)
-            for (int i = 0; i < kPasses; ++i)
-                value = value * 2 + 1;
+            for (int i = 0; i < kPasses; ++i) value = value * 2 + 1;
         EXPECT_EQ(executor.texture(last)->read_floats(), expected);
     }
 }

@@ -21,8 +21,7 @@ struct Graph : FrameGraph {
                                     std::initializer_list<TextureHandle> targets) {
         Pass pass;
         pass.name = name;
-        for (const TextureHandle handle : reads)
-            pass.reads.push_back({handle, int(pass.reads.size())});
+        for (const TextureHandle handle : reads) pass.reads.push_back({handle, int(pass.reads.size())});
         return add_pass(std::move(pass), std::vector<TextureHandle>(targets));
     }
     TextureHandle draw(const std::string& name, std::initializer_list<TextureHandle> reads,

@@ -17,7 +17,8 @@ constexpr int kWidth = 64, kHeight = 36;
 const Window kWindow{0, 0, kWidth - 1, kHeight - 1};
 constexpr double kFocalMm = 50, kSensorMm = 36;
 
-/// A camera at (x, 0, z), turned by `yaw_rad` about +y, looking along -z; with a square-pixel pinhole projection.
+/// A camera at (x, 0, z), turned by `yaw_rad` about +y, looking along -z; with a square-pixel pinhole
+/// projection.
 Camera camera_at(double x, double z, double yaw_rad) {
     const double c = std::cos(yaw_rad), s = std::sin(yaw_rad);
     // camera_from_world = inverse of (translate * rotate_y).
@@ -27,7 +28,8 @@ Camera camera_at(double x, double z, double yaw_rad) {
     CameraMatrix both{};
     for (std::size_t row = 0; row < 4; ++row)
         for (std::size_t column = 0; column < 4; ++column)
-            for (std::size_t k = 0; k < 4; ++k) both[row * 4 + column] += projection[row * 4 + k] * view[k * 4 + column];
+            for (std::size_t k = 0; k < 4; ++k)
+                both[row * 4 + column] += projection[row * 4 + k] * view[k * 4 + column];
     Camera camera;
     camera.camera_from_world = view;
     camera.ndc_from_world = both;
@@ -80,8 +82,11 @@ TEST(CameraMetadata, ReadsUnrealsAttributesInTheirUnits) {
     ExrWriteOptions options;
     options.data_window = options.display_window = {0, 0, 1, 1};
     const std::string head = "unreal/camera/FinalImage/";
-    options.attributes = {{head + "focalDistance", 250.0f}, {head + "focalLength", 35.0f}, {head + "sensorWidth", 23.76f},
-                          {head + "fstop", std::string("2.8")}, {head + "dofDiaphragmBladeCount", 7}};
+    options.attributes = {{head + "focalDistance", 250.0f},
+                          {head + "focalLength", 35.0f},
+                          {head + "sensorWidth", 23.76f},
+                          {head + "fstop", std::string("2.8")},
+                          {head + "dofDiaphragmBladeCount", 7}};
     write_exr(folder / "unreal.0001.exr", channels, options);
     Sequence sequence;
     sequence.files = FramePattern((folder / "unreal.0001.exr").string());
@@ -104,7 +109,10 @@ TEST(CameraMetadata, ReadsOpenExrsStandardAttributesAndTurnsTheirMatrices) {
     options.data_window = options.display_window = {0, 0, 1, 1};
     std::vector<float> row_vector_matrix(16);
     for (std::size_t i = 0; i < 16; ++i) row_vector_matrix[i] = float(i);
-    options.attributes = {{"focus", 3.5f}, {"aperture", 1.4f}, {"worldToCamera", row_vector_matrix}, {"worldToNDC", row_vector_matrix}};
+    options.attributes = {{"focus", 3.5f},
+                          {"aperture", 1.4f},
+                          {"worldToCamera", row_vector_matrix},
+                          {"worldToNDC", row_vector_matrix}};
     write_exr(folder / "a.exr", channels, options);
     const ExrFile file(folder / "a.exr");
     const Camera camera = camera_of_metadata(file.parts()[0].metadata, Profile{});

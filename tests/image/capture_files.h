@@ -30,10 +30,8 @@ inline void write_channels(const std::filesystem::path& path, int width,
         Image& image =
             images.emplace_back(width, height, 1, is_uint ? ComponentType::uint32 : ComponentType::float32);
         for (std::size_t i = 0; i < channel.values.size(); ++i) {
-            if (is_uint)
-                image.uints()[i] = std::uint32_t(channel.values[i]);
-            else
-                image.floats()[i] = channel.values[i];
+            if (is_uint) image.uints()[i] = std::uint32_t(channel.values[i]);
+            else image.floats()[i] = channel.values[i];
         }
         stored.push_back({channel.name, channel.type, &image, 0});
     }

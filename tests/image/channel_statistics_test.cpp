@@ -73,8 +73,7 @@ TEST(ChannelStatistics, AreTheSameInPiecesOfALimitedSize) {
     const ExrFile file(folder / "a.exr", limits);
     const std::vector<InspectedChannel> channels = inspect_channels(file, 0, limits);
     ASSERT_EQ(channels.size(), 4);
-    for (const InspectedChannel& channel : channels)
-        ASSERT_TRUE(channel.statistics) << channel.reason;
+    for (const InspectedChannel& channel : channels) ASSERT_TRUE(channel.statistics) << channel.reason;
     EXPECT_EQ(channels[1].statistics->negative, 1600);
     EXPECT_EQ(channels[2].statistics->max, 70000);
     EXPECT_EQ(channels[3].statistics->infinite, 1600);
@@ -98,16 +97,14 @@ TEST(ChannelStatistics, SayWhyThereAreNone) {
 std::vector<double> numbers_after(const std::string& text, const std::string& label) {
     std::istringstream in(text.substr(text.find(label) + label.size()));
     std::vector<double> numbers;
-    for (double number; in >> number;)
-        numbers.push_back(number);
+    for (double number; in >> number;) numbers.push_back(number);
     return numbers;
 }
 
 std::string oiiotool_stats(const std::filesystem::path& file) {
     std::FILE* pipe = popen(("oiiotool -v --stats '" + file.string() + "'").c_str(), "r");
     std::string text;
-    for (int c; (c = std::fgetc(pipe)) != EOF;)
-        text.push_back(char(c));
+    for (int c; (c = std::fgetc(pipe)) != EOF;) text.push_back(char(c));
     pclose(pipe);
     return text;
 }

@@ -28,14 +28,15 @@ TEST(ColorSpace, Rec709ToRec2020IsThePublishedMatrix) {
 /// The AP0 to AP1 matrix of the ACES system (Academy S-2014-004 appendix): one white, no adaptation.
 TEST(ColorSpace, Ap0ToAcescgIsThePublishedMatrix) {
     expect_near(conversion_matrix(*color_space_primaries("ap0"), *color_space_primaries("acescg")),
-                {1.4514393161, -0.2365107469, -0.2149285693, -0.0765537734, 1.1762296998, -0.0996759264, 0.0083161484,
-                 -0.0060324498, 0.9977163014},
+                {1.4514393161, -0.2365107469, -0.2149285693, -0.0765537734, 1.1762296998, -0.0996759264,
+                 0.0083161484, -0.0060324498, 0.9977163014},
                 2e-5);
 }
 
 TEST(ColorSpace, KeepsWhiteWhereWhitesDiffer) {
     const ColorMatrix m = conversion_matrix(*color_space_primaries("acescg"), kRec709);
-    for (std::size_t row = 0; row < 3; ++row) EXPECT_NEAR(m[row * 3] + m[row * 3 + 1] + m[row * 3 + 2], 1, 1e-9);
+    for (std::size_t row = 0; row < 3; ++row)
+        EXPECT_NEAR(m[row * 3] + m[row * 3 + 1] + m[row * 3 + 2], 1, 1e-9);
 }
 
 TEST(ColorSpace, RefusesPrimariesOnOneLine) {

@@ -85,8 +85,7 @@ TEST(ContactSheet, HoldsEveryRoleWithItsLabelBelowWithoutOverlap) {
                                    layout.tile_y(tile) + layout.tile_height_px + 8 + y, 1) == 1;
         EXPECT_GT(bright, 50) << tile;
     }
-    for (const float value : sheet.floats())
-        ASSERT_TRUE(value >= 0 && value <= 1) << value;
+    for (const float value : sheet.floats()) ASSERT_TRUE(value >= 0 && value <= 1) << value;
 }
 
 TEST(ContactSheet, MarksAPixelOnlyWhereItIsFaulty) {
@@ -182,8 +181,7 @@ TEST(FalseColor, TellsDirectionsApartByHueAndStandsStillInBlack) {
 
 TEST(FalseColor, GivesNeighbouringIdsColorsThatDiffer) {
     Image ids(257, 1, 1, ComponentType::uint32);
-    for (int i = 0; i < 257; ++i)
-        ids.uint_at(i, 0, 0) = std::uint32_t(i);
+    for (int i = 0; i < 257; ++i) ids.uint_at(i, 0, 0) = std::uint32_t(i);
     const FalseColor picture("object_id", ids, {});
     EXPECT_EQ(picture.color(0, 0), (DisplayColor{0, 0, 0}));
     for (int i = 1; i < 257; ++i) {

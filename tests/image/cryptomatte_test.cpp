@@ -29,8 +29,8 @@ struct Coverage {
 };
 
 /// One pixel with up to four covering objects, under the names that Blender gives.
-std::filesystem::path write_matte(const TemporaryFolder& folder, const std::vector<Coverage>& objects, PixelType type,
-                                  const std::string& compression = "zip") {
+std::filesystem::path write_matte(const TemporaryFolder& folder, const std::vector<Coverage>& objects,
+                                  PixelType type, const std::string& compression = "zip") {
     Image image(2, 1, 8);
     for (std::size_t i = 0; i < objects.size(); ++i) {
         image.at(0, 0, int(2 * i)) = std::bit_cast<float>(cryptomatte_hash(objects[i].object));
@@ -40,12 +40,14 @@ std::filesystem::path write_matte(const TemporaryFolder& folder, const std::vect
     std::vector<ExrOutputChannel> channels;
     for (int c = 0; c < 3; ++c) channels.push_back({std::string(1, "RGB"[c]), PixelType::half, &color, c});
     for (int c = 0; c < 8; ++c)
-        channels.push_back({"ViewLayer.CryptoObject0" + std::to_string(c / 4) + "." + "RGBA"[c % 4], type, &image, c});
+        channels.push_back(
+            {"ViewLayer.CryptoObject0" + std::to_string(c / 4) + "." + "RGBA"[c % 4], type, &image, c});
     ExrWriteOptions options;
     options.data_window = options.display_window = {0, 0, 1, 0};
     options.compression = compression;
     options.attributes["cryptomatte/3ae39a5/name"] = "ViewLayer.CryptoObject";
-    options.attributes["cryptomatte/3ae39a5/manifest"] = R"({"Suzanne":"0","Cube":"0","Ball":"0","Pole":"0"})";
+    options.attributes["cryptomatte/3ae39a5/manifest"] =
+        R"({"Suzanne":"0","Cube":"0","Ball":"0","Pole":"0"})";
     const auto path = folder / "matte.exr";
     write_exr(path, channels, options);
     return path;
@@ -63,7 +65,8 @@ Capture read_with(const std::filesystem::path& path, std::vector<std::string> ma
 TEST(Cryptomatte, SumsTheCoverageOfNamedObjectsOverAllRanks) {
     const TemporaryFolder folder;
     const auto path =
-        write_matte(folder, {{"Cube", 0.5f}, {"Suzanne", 0.25f}, {"Ball", 0.125f}, {"Pole", 0.0625f}}, PixelType::float32);
+        write_matte(folder, {{"Cube", 0.5f}, {"Suzanne", 0.25f}, {"Ball", 0.125f}, {"Pole", 0.0625f}},
+                    PixelType::float32);
     EXPECT_FLOAT_EQ(read_with(path, {"Suzanne", "Pole"}).images.at("mask").at(0, 0, 0), 0.3125f);
     EXPECT_FLOAT_EQ(read_with(path, {"Cube"}).images.at("mask").at(1, 0, 0), 0);
     EXPECT_EQ(read_with(path, {"Cube"}).images.at("object_id").uint_at(0, 0, 0), cryptomatte_hash("Cube"));
@@ -78,7 +81,9 @@ TEST(Cryptomatte, KnowsTheObjectsOfItsManifest) {
 
 TEST(Cryptomatte, RefusesIdsThatStorageHasDestroyed) {
     const TemporaryFolder folder;
-    EXPECT_NE(capture_error([&] { read_with(write_matte(folder, {{"Cube", 1}}, PixelType::half), {"Cube"}); }).find("half"),
+    EXPECT_NE(capture_error([&] {
+                  read_with(write_matte(folder, {{"Cube", 1}}, PixelType::half), {"Cube"});
+              }).find("half"),
               std::string::npos);
     const auto lossy = write_matte(folder, {{"Cube", 1}}, PixelType::float32, "dwaa");
     EXPECT_NE(capture_error([&] { read_with(lossy, {"Cube"}); }).find("dwaa"), std::string::npos);

@@ -166,8 +166,7 @@ TEST_F(Damaged, RefusesMoreThan1024Channels) {
     ExrWriteOptions options;
     options.data_window = options.display_window = {0, 0, 0, 0};
     std::vector<ExrOutputChannel> channels;
-    for (int i = 0; i < 1024; ++i)
-        channels.push_back({"c" + std::to_string(i), PixelType::half, &image, 0});
+    for (int i = 0; i < 1024; ++i) channels.push_back({"c" + std::to_string(i), PixelType::half, &image, 0});
     write_exr(folder_ / "a.exr", channels, options);
     EXPECT_EQ(outcome(folder_ / "a.exr"), "pixels");
     channels.push_back({"more", PixelType::half, &image, 0});

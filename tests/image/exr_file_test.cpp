@@ -94,17 +94,14 @@ TEST_P(EveryCompression, KeepsFloatsThatPxr24DoesNotRound) {
         // 24 of 32 bits remain: 15 of the mantissa.
         const float tolerance =
             compression() == "pxr24" && std::isfinite(expected) ? expected / 32768.0f : 0.0f;
-        if (tolerance == 0.0f)
-            ASSERT_EQ(read.floats()[i], expected) << i;
-        else
-            ASSERT_NEAR(read.floats()[i], expected, tolerance) << i;
+        if (tolerance == 0.0f) ASSERT_EQ(read.floats()[i], expected) << i;
+        else ASSERT_NEAR(read.floats()[i], expected, tolerance) << i;
     }
 }
 
 TEST_P(EveryCompression, KeepsUnsignedIntegers) {
     Image image(45, 37, 1, ComponentType::uint32);
-    for (std::uint32_t i = 0; i < image.uints().size(); ++i)
-        image.uints()[i] = i * 2654435761u;
+    for (std::uint32_t i = 0; i < image.uints().size(); ++i) image.uints()[i] = i * 2654435761u;
     image.uint_at(0, 0, 0) = 0xffffffffu;
     write_one(folder_ / "a.exr", "object_id.I", PixelType::uint32, image, compression());
     const Image read = read_uints(folder_ / "a.exr", {"object_id.I"});
@@ -128,10 +125,8 @@ TEST_P(EveryCompression, KeepsSmoothHalfColorWithinOnePercent) {
     const Image read = file.read_floats(0, std::vector<std::string>{"R", "G", "B"});
     const bool lossy = is_b44() || compression().starts_with("dwa");
     for (std::size_t i = 0; i < image.floats().size(); ++i) {
-        if (lossy)
-            ASSERT_NEAR(read.floats()[i], image.floats()[i], 0.01f) << i;
-        else
-            ASSERT_EQ(read.floats()[i], float(half(image.floats()[i]))) << i;
+        if (lossy) ASSERT_NEAR(read.floats()[i], image.floats()[i], 0.01f) << i;
+        else ASSERT_EQ(read.floats()[i], float(half(image.floats()[i]))) << i;
     }
 }
 
@@ -168,8 +163,7 @@ TEST(ExrFile, GivesChannelsInTheOrderAskedForAndTwiceIfAskedTwice) {
     const int components[] = {1, 2, 0, 2};
     for (int y = 0; y < 4; ++y) {
         for (int x = 0; x < 5; ++x) {
-            for (int c = 0; c < 4; ++c)
-                ASSERT_EQ(read.at(x, y, c), pattern(x, y, components[c]));
+            for (int c = 0; c < 4; ++c) ASSERT_EQ(read.at(x, y, c), pattern(x, y, components[c]));
         }
     }
 }
@@ -382,8 +376,7 @@ TEST(ExrFile, ReadsSuzanneAsOiiotoolDoes) {
                                                 {"Depth.Z", "Vector.X", "IndexOB.X"}};
     for (std::vector<std::string> names : triples) {
         std::string list;
-        for (std::string& name : names)
-            list += (list.empty() ? "" : ",") + (name = layer + name);
+        for (std::string& name : names) list += (list.empty() ? "" : ",") + (name = layer + name);
         const fs::path raw = folder / "a.tif";
         const std::string command = "oiiotool '" + capture->string() + "' --ch " + list +
                                     " -d float --compression none -o '" + raw.string() + "' >/dev/null";

@@ -29,7 +29,8 @@ void write_parts(const std::filesystem::path& path, const std::vector<TestPart>&
         header.setName(part.name);
         header.setType(Imf::SCANLINEIMAGE);
         if (!part.view.empty()) header.setView(part.view);
-        for (const std::string& channel : part.channels) header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
+        for (const std::string& channel : part.channels)
+            header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
         headers.push_back(header);
     }
     Imf::MultiPartOutputFile file(path.c_str(), headers.data(), int(headers.size()));
@@ -49,14 +50,17 @@ void write_parts(const std::filesystem::path& path, const std::vector<TestPart>&
     }
 }
 
-std::vector<std::string> names_of(const FrameFile& file) { return channel_names(file.merged()); }
+std::vector<std::string> names_of(const FrameFile& file) {
+    return channel_names(file.merged());
+}
 
 const Imath::Box2i kWhole({0, 0}, {15, 7});
 const Window kGrid{0, 0, 15, 7};
 
 TEST(FrameFile, PutsTheChannelsOfAllPartsTogether) {
     const TemporaryFolder folder;
-    write_parts(folder / "a.exr", {{"beauty", "", {"R", "G", "B"}, kWhole, 1}, {"depth", "", {"Z"}, kWhole, 5}});
+    write_parts(folder / "a.exr",
+                {{"beauty", "", {"R", "G", "B"}, kWhole, 1}, {"depth", "", {"Z"}, kWhole, 5}});
     const FrameFile file(folder / "a.exr", {}, "");
     EXPECT_EQ(names_of(file), (std::vector<std::string>{"B", "G", "R", "Z"}));
     const Image image = file.read_floats(std::vector<std::string>{"R", "Z"}, kGrid, 0);
@@ -78,7 +82,9 @@ TEST(FrameFile, ReadsOneViewAndWhatBelongsToNone) {
                                    {"rgb_left", "left", {"R"}, kWhole, 2},
                                    {"matte", "", {"mask.V"}, kWhole, 3}});
     const auto first_red = [&](const std::string& view) {
-        return FrameFile(folder / "a.exr", {}, view).read_floats(std::vector<std::string>{"R"}, kGrid, 0).at(0, 0, 0);
+        return FrameFile(folder / "a.exr", {}, view)
+            .read_floats(std::vector<std::string>{"R"}, kGrid, 0)
+            .at(0, 0, 0);
     };
     EXPECT_FLOAT_EQ(first_red(""), 1);
     EXPECT_FLOAT_EQ(first_red("right"), 1);
@@ -88,7 +94,8 @@ TEST(FrameFile, ReadsOneViewAndWhatBelongsToNone) {
 
 TEST(FrameFile, PlacesAPartOfAnotherWindowAndFillsWhatItDoesNotCover) {
     const TemporaryFolder folder;
-    write_parts(folder / "a.exr", {{"rgb", "", {"R"}, kWhole, 1}, {"depth", "", {"Z"}, {{4, 2}, {20, 5}}, 7}});
+    write_parts(folder / "a.exr",
+                {{"rgb", "", {"R"}, kWhole, 1}, {"depth", "", {"Z"}, {{4, 2}, {20, 5}}, 7}});
     const FrameFile file(folder / "a.exr", {}, "");
     const Image depth = file.read_floats(std::vector<std::string>{"Z"}, kGrid, -1);
     EXPECT_EQ(depth.width(), 16);
@@ -109,7 +116,8 @@ TEST(FrameFile, TakesViewsInNamesForLayersWhereTheFileNamesNoViews) {
     write_exr(folder / "plain.exr", channels, options);
     // Without the attribute multiView these are layers called "left" and "motion.right".
     EXPECT_EQ(names_of(FrameFile(folder / "plain.exr", {}, "")).size(), 5u);
-    EXPECT_NE(capture_error([&] { FrameFile(folder / "plain.exr", {}, "left"); }).find("names no views"), std::string::npos);
+    EXPECT_NE(capture_error([&] { FrameFile(folder / "plain.exr", {}, "left"); }).find("names no views"),
+              std::string::npos);
 }
 
 }  // namespace

@@ -42,8 +42,7 @@ TEST(FrameRange, TakesEverySecondFrameAndOneMore) {
     const auto frames = parse_frame_range("1-100x2,120");
     ASSERT_TRUE(frames.has_value());
     ASSERT_EQ(frames->size(), 51U);
-    for (std::size_t i = 0; i < 50; ++i)
-        EXPECT_EQ((*frames)[i], int(i) * 2 + 1);
+    for (std::size_t i = 0; i < 50; ++i) EXPECT_EQ((*frames)[i], int(i) * 2 + 1);
     EXPECT_EQ(frames->back(), 120);
 }
 

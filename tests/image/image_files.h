@@ -26,8 +26,7 @@ inline Image pattern_image(int width, int height, int channels) {
     Image image(width, height, channels);
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
-            for (int c = 0; c < channels; ++c)
-                image.at(x, y, c) = pattern(x, y, c);
+            for (int c = 0; c < channels; ++c) image.at(x, y, c) = pattern(x, y, c);
         }
     }
     return image;
@@ -56,8 +55,7 @@ std::string capture_error(Work&& work) {
 
 inline std::vector<std::string> channel_names(const ExrPart& part) {
     std::vector<std::string> names;
-    for (const ExrChannel& channel : part.channels)
-        names.push_back(channel.name);
+    for (const ExrChannel& channel : part.channels) names.push_back(channel.name);
     return names;
 }
 

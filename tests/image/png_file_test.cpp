@@ -39,8 +39,7 @@ TEST(PngFile, RoundsAndClampsAndWritesNanAsZero) {
     std::ranges::copy(values, image.floats().begin());
     write_png(folder / "a.png", image);
     const Image read = read_png(folder / "a.png");
-    for (int x = 0; x < 8; ++x)
-        EXPECT_EQ(read.at(x, 0, 0) * 255, expected[x]) << x;
+    for (int x = 0; x < 8; ++x) EXPECT_EQ(read.at(x, 0, 0) * 255, expected[x]) << x;
 }
 
 TEST(PngFile, IsReadAsOiiotoolReadsIt) {
@@ -52,8 +51,7 @@ TEST(PngFile, IsReadAsOiiotoolReadsIt) {
     ASSERT_EQ(std::system(command.c_str()), 0);
     const Image read = read_png(folder / "a.png");
     std::string expected;
-    for (const float value : read.floats())
-        expected.push_back(static_cast<char>(std::lround(value * 255)));
+    for (const float value : read.floats()) expected.push_back(static_cast<char>(std::lround(value * 255)));
     // OpenImageIO ends a PPM file with its pixels.
     const std::string bytes = test::read_text(folder / "a.ppm");
     ASSERT_GT(bytes.size(), expected.size());

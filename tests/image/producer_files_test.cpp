@@ -41,7 +41,9 @@ std::vector<Extract> extracts_of(const ExrFile& file, const TemporaryFolder& fol
         const ExrPart& info = file.parts()[std::size_t(part)];
         const auto subsampled = [](const ExrChannel& c) { return c.x_sampling != 1 || c.y_sampling != 1; };
         // OpenImageIO refuses both.
-        if (info.type.starts_with("deep") || std::any_of(info.channels.begin(), info.channels.end(), subsampled)) continue;
+        if (info.type.starts_with("deep") ||
+            std::any_of(info.channels.begin(), info.channels.end(), subsampled))
+            continue;
         for (std::size_t i = 0; i < info.channels.size(); i += 3) {
             Extract extract{part, {}, folder / (std::to_string(extracts.size()) + ".tif")};
             for (std::size_t j = i; j < std::min(i + 3, info.channels.size()); ++j)
@@ -52,7 +54,8 @@ std::vector<Extract> extracts_of(const ExrFile& file, const TemporaryFolder& fol
     return extracts;
 }
 
-/// Uncompressed float TIFF, which OpenImageIO ends with the pixels where there are no attributes, in one run for the file.
+/// Uncompressed float TIFF, which OpenImageIO ends with the pixels where there are no attributes, in one run
+/// for the file.
 bool run_oiiotool(const fs::path& file, const std::vector<Extract>& extracts) {
     // Without --noautocrop it would fit the data window to the display window, which TIFF has alone.
     std::string command = "oiiotool --noautocrop";
@@ -60,7 +63,8 @@ bool run_oiiotool(const fs::path& file, const std::vector<Extract>& extracts) {
         std::string list;
         for (const std::string& name : extract.channels) list += (list.empty() ? "" : ",") + name;
         command += " '" + file.string() + "' --subimage " + std::to_string(extract.part) + " --ch '" + list +
-                   "' --eraseattrib '.*' -d float --scanline --compression none -o '" + extract.raw.string() + "'";
+                   "' --eraseattrib '.*' -d float --scanline --compression none -o '" + extract.raw.string() +
+                   "'";
     }
     return std::system((command + " >/dev/null").c_str()) == 0;
 }
@@ -112,7 +116,8 @@ Sequence bare_file(const fs::path& path, const std::string& profile = "native") 
 
 Capture read_capture(const Sequence& sequence, const std::vector<std::string>& roles, int frame = 1) {
     Diagnostics diagnostics;
-    return CaptureReader(sequence, read_profiles(AFTERSHADE_SOURCE_DIR "/profiles", diagnostics), {}).read(frame, roles);
+    return CaptureReader(sequence, read_profiles(AFTERSHADE_SOURCE_DIR "/profiles", diagnostics), {})
+        .read(frame, roles);
 }
 
 class LuminanceChroma : public testing::TestWithParam<const char*> {};
@@ -150,7 +155,8 @@ TEST(Chromaticities, OfXyzAreConvertedToRec709) {
     const Capture rec709 = read_capture(bare_file(*folder / "Chromaticities/Rec709.exr"), {"color"});
     double largest = 0;
     for (std::size_t i = 0; i < xyz.images.at("color").floats().size(); ++i)
-        largest = std::max(largest, std::abs(double(xyz.images.at("color").floats()[i]) - rec709.images.at("color").floats()[i]));
+        largest = std::max(largest, std::abs(double(xyz.images.at("color").floats()[i]) -
+                                             rec709.images.at("color").floats()[i]));
     RecordProperty("largest_difference", std::to_string(largest));
     EXPECT_LE(largest, 0.01);
     EXPECT_EQ(name_of_primaries(xyz.header.primaries), "rec709");
@@ -179,7 +185,8 @@ TEST(Beachball, IsTheSameInOnePartAndInMany) {
                 if (!first || !second) continue;
                 ++compared;
                 ASSERT_EQ(*first, *second) << view << " " << x << " " << y;
-                ASSERT_EQ(value_at(a, "velocity_next", x, y, 0), value_at(b, "velocity_next", x, y, 0)) << x << " " << y;
+                ASSERT_EQ(value_at(a, "velocity_next", x, y, 0), value_at(b, "velocity_next", x, y, 0))
+                    << x << " " << y;
             }
         EXPECT_GT(compared, 500000) << view;
     }
@@ -206,11 +213,13 @@ TEST(Beachball, PlacesPartsOfOtherWindowsInTheColorsGrid) {
     const auto part = std::find_if(file.parts().begin(), file.parts().end(),
                                    [](const ExrPart& p) { return p.name == "forward_left"; });
     ASSERT_NE(part, file.parts().end());
-    const Image stored = file.read_floats(int(part - file.parts().begin()), std::vector<std::string>{"forward.u"});
+    const Image stored =
+        file.read_floats(int(part - file.parts().begin()), std::vector<std::string>{"forward.u"});
     const Window grid = capture.header.data_window;
     for (int y = 0; y < stored.height(); y += 7)
         for (int x = 0; x < stored.width(); x += 7)
-            ASSERT_EQ(value_at(capture, "velocity_next", x + part->data_window.min_x, y + part->data_window.min_y, 0)
+            ASSERT_EQ(value_at(capture, "velocity_next", x + part->data_window.min_x,
+                               y + part->data_window.min_y, 0)
                           .value_or(stored.at(x, y, 0)),
                       stored.at(x, y, 0));
     EXPECT_EQ(grid.width(), 880);

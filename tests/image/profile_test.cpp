@@ -15,8 +15,7 @@ const std::string kHead = R"({"aftershade": 1, "id": "x", "summary": ".", "detec
 
 ExrPart part_with(const std::vector<std::string>& channels) {
     ExrPart part;
-    for (const std::string& name : channels)
-        part.channels.push_back({name, PixelType::half, 1, 1});
+    for (const std::string& name : channels) part.channels.push_back({name, PixelType::half, 1, 1});
     return part;
 }
 
@@ -24,8 +23,7 @@ ExrPart part_with(const std::vector<std::string>& channels) {
 ExrPart part_with_attribute(const std::vector<std::string>& channels, const std::string& attribute) {
     const test::TemporaryFolder folder;
     std::vector<test::StoredChannel> stored;
-    for (const std::string& name : channels)
-        stored.push_back({name, {0}});
+    for (const std::string& name : channels) stored.push_back({name, {0}});
     test::write_channels(folder / "f.exr", 1, stored, {{attribute, std::string("yes")}});
     return ExrFile(folder / "f.exr").parts().front();
 }

@@ -42,10 +42,8 @@ TEST(Role, TableIsThatOfTheConventions) {
         EXPECT_EQ(role->pixel_type, row.stored) << row.name;
         const bool is_id = row.name == "object_id";
         EXPECT_EQ(role->type, is_id ? ComponentType::uint32 : ComponentType::float32) << row.name;
-        if (row.name == "depth")
-            EXPECT_TRUE(std::isinf(role->outside) && role->outside > 0);
-        else
-            EXPECT_EQ(role->outside, 0.0f) << row.name;
+        if (row.name == "depth") EXPECT_TRUE(std::isinf(role->outside) && role->outside > 0);
+        else EXPECT_EQ(role->outside, 0.0f) << row.name;
     }
 }
 

@@ -26,8 +26,7 @@ Lines faults_of_capture(const std::string& text) {
     Diagnostics diagnostics;
     EXPECT_FALSE(open_sequence((folder / "capture.json").string(), diagnostics).has_value());
     Lines lines = test::lines_of(diagnostics);
-    for (std::string& line : lines)
-        line = line.substr(folder.path().string().size() + 1);
+    for (std::string& line : lines) line = line.substr(folder.path().string().size() + 1);
     return lines;
 }
 
@@ -73,8 +72,7 @@ TEST(Sequence, WithoutARangeIsTheFilesThatThereAre) {
 
 TEST(Sequence, OfABareFileIsNumberedByItsName) {
     const TemporaryFolder folder;
-    for (const char* name : {"v2_gbuffer_0004.exr", "still.exr"})
-        write_text(folder / name, "");
+    for (const char* name : {"v2_gbuffer_0004.exr", "still.exr"}) write_text(folder / name, "");
     const Sequence numbered = opened((folder / "v2_gbuffer_0004.exr").string());
     EXPECT_EQ(numbered.frames, Frames{4});
     EXPECT_EQ(numbered.path_of(4), folder / "v2_gbuffer_0004.exr");

@@ -268,8 +268,7 @@ TEST(VelocityCheck, ExposureDoesNotMatter) {
     for (const float gain : {1e-4f, 1e4f}) {
         Pair other = pair;
         for (Image* image : {&other.color_a, &other.color_b})
-            for (float& value : image->floats())
-                value *= gain;
+            for (float& value : image->floats()) value *= gain;
         EXPECT_NEAR(check_velocity(claim_velocity(other)).rival.score, score, 1e-3);
     }
 }

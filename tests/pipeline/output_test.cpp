@@ -52,8 +52,7 @@ TEST(CheckOutputs, RefusesTwoPatternsForOneFile) {
 
 TEST(CheckOutputs, RefusesAnInputOfAnyFrameAndByAnyPath) {
     const TemporaryFolder folder;
-    for (const char* name : {"in_1.exr", "in_2.exr"})
-        write_text(folder / name, "");
+    for (const char* name : {"in_1.exr", "in_2.exr"}) write_text(folder / name, "");
     fs::create_symlink("in_2.exr", folder / "link.exr");
     fs::create_directory(folder / "sub");
     const Sequence sequence = sequence_of((folder / "in_#.exr").string(), {1, 2});
@@ -92,8 +91,7 @@ protected:
     std::vector<std::string> write(const std::vector<std::string>& patterns,
                                    const std::vector<std::string>& roles = {"color"}) {
         OutputOptions options;
-        for (const std::string& pattern : patterns)
-            options.patterns.push_back((folder_ / pattern).string());
+        for (const std::string& pattern : patterns) options.patterns.push_back((folder_ / pattern).string());
         options.roles = roles;
         options.look = "look.json";
         std::vector<std::string> names;
@@ -143,8 +141,7 @@ TEST_F(Write, PrefersDisplayToColorForPictures) {
     write({"color.png"});
     EXPECT_EQ(read_png(folder_ / "color.png").channels(), 4) << "color without coverage";
     result_.images["display"] = Image(6, 4, 4);
-    for (float& value : result_.images["display"].floats())
-        value = 1;
+    for (float& value : result_.images["display"].floats()) value = 1;
     write({"display.png"});
     const Image picture = read_png(folder_ / "display.png");
     EXPECT_EQ(picture.channels(), 3);

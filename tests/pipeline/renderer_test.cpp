@@ -48,8 +48,7 @@ TEST_P(RendererOn, CopiesColorBitForBitThroughAnIdentity) {
         0x00000001, 0x807fffff, 0x7f7fffff, 0x3f800001,  // denormals, largest, 1 + ulp
         0xffc00001, 0x00800000};
     std::span<float> values = capture.images.at("color").floats();
-    for (std::size_t i = 0; i < std::size(bits); ++i)
-        std::memcpy(&values[i], &bits[i], sizeof bits[i]);
+    for (std::size_t i = 0; i < std::size(bits); ++i) std::memcpy(&values[i], &bits[i], sizeof bits[i]);
     std::uint32_t state = 7;
     for (std::size_t i = std::size(bits); i < values.size(); ++i)
         values[i] = float(std::int32_t(state = state * 1664525u + 1013904223u)) * 1e-7f;
@@ -84,8 +83,7 @@ TEST_P(RendererOn, CarriesEveryKindOfRole) {
             for (std::size_t i = 0; i < image.uints().size(); ++i)
                 image.uints()[i] = 0xfffffff0u - std::uint32_t(i);
         else
-            for (std::size_t i = 0; i < image.floats().size(); ++i)
-                image.floats()[i] = float(i) * 0.37f - 2;
+            for (std::size_t i = 0; i < image.floats().size(); ++i) image.floats()[i] = float(i) * 0.37f - 2;
     }
     const FrameResult result = Bench(effects, look_of(steps), {}, GetParam()).run(capture, roles);
     ASSERT_EQ(result.images.size(), roles.size());
@@ -93,10 +91,8 @@ TEST_P(RendererOn, CarriesEveryKindOfRole) {
         const Image& made = result.images.at(role);
         const Image& given = capture.images.at(role);
         ASSERT_EQ(made.channels(), given.channels()) << role;
-        if (role == "object_id")
-            EXPECT_TRUE(std::ranges::equal(made.uints(), given.uints()));
-        else
-            EXPECT_TRUE(std::ranges::equal(made.floats(), given.floats())) << role;
+        if (role == "object_id") EXPECT_TRUE(std::ranges::equal(made.uints(), given.uints()));
+        else EXPECT_TRUE(std::ranges::equal(made.floats(), given.floats())) << role;
     }
 }
 
