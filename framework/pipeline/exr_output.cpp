@@ -88,6 +88,10 @@ ExrWriteOptions exr_write_options(const OutputOptions& options, const CaptureHea
     write.attributes["aftershade/renderer"] = options.renderer;
     write.attributes["aftershade/profile"] = header.profile;
     write.attributes["aftershade/frame"] = header.frame;
+    for (const auto& [name, value] : header.camera.values())
+        write.attributes["aftershade/camera/" + name] = float(value);
+    if (!header.camera.lens_model.empty())
+        write.attributes["aftershade/camera/lens_model"] = header.camera.lens_model;
     // A file without the attribute is Rec. 709, so colours of other primaries must say so.
     if (!options.keep_channels && header.primaries != stored_primaries(header.metadata))
         write.attributes["chromaticities"] =

@@ -8,7 +8,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "framework/image/color_space.h"
 #include "framework/image/exr_file.h"
+#include "framework/image/png_file.h"
 #include "tests/cli/command.h"
 #include "tests/real_captures.h"
 #include "tests/synthetic_capture.h"
@@ -136,6 +138,86 @@ TEST(Output, CropsToTheDisplayWindow) {
     EXPECT_EQ(red.at(0, 0, 0), 12);  // display (0, 0) is row 1, column 2 of the data
     EXPECT_EQ(red.at(5, 3, 0), 47);
     EXPECT_EQ(red.at(6, 3, 0), 0);  // beyond the data
+}
+
+TEST(Output, CarriesTheCameraOfCaptureJson) {
+    const TemporaryFolder folder;
+    write_capture(make_capture({.width = 16, .height = 9}), folder / "in_0001.exr");
+    write_text(folder / "capture.json", R"({"aftershade": 1, "frames": "in_####.exr",
+        "camera": {"focal_length": "85 mm", "focus_distance": "120 cm", "lens_model": "pinhole"}})");
+    ASSERT_EQ(run(folder, kEmptyLook,
+                  {(folder / "capture.json").string(), "-o", (folder / "out_####.exr").string()})
+                  .exit_code,
+              0);
+    const ExrFile file(folder / "out_0001.exr");
+    EXPECT_EQ(file.parts()[0].metadata.number("aftershade/camera/focal_length"), 85);
+    EXPECT_FLOAT_EQ(float(*file.parts()[0].metadata.number("aftershade/camera/focus_distance")), 1.2f);
+    // And another run finds it there.
+    const CommandResult inspected =
+        run_aftershade({"inspect", "--json", (folder / "out_0001.exr").string()}, folder.path());
+    EXPECT_EQ(nlohmann::json::parse(inspected.out).at("camera").at("focal_length"), 85) << inspected.out;
+}
+
+TEST(Output, OfColoursInOtherPrimariesSaysSoAndShowsThemRight) {
+    const TemporaryFolder folder;
+    const Rgb acescg{0.4f, 0.2f, 0.1f};
+    write_capture(make_capture({.width = 8, .height = 8, .background = acescg}), folder / "in.0001.exr");
+    write_text(folder / "capture.json",
+               R"({"aftershade": 1, "frames": "in.####.exr", "color_space": "acescg"})");
+    const std::string view = R"({"aftershade": 1, "steps": [{"effect": "view_transform"}]})";
+    for (const auto& [look, png] : {std::pair(view, "view.png"), std::pair(kEmptyLook, "color.png")})
+        ASSERT_EQ(run(folder, look,
+                      {(folder / "capture.json").string(), "-o", (folder / png).string(), "-o",
+                       (folder / "out.exr").string()})
+                      .exit_code,
+                  0);
+    const Chromaticities ap1 = *color_space_primaries("acescg");
+    EXPECT_EQ(stored_primaries(ExrFile(folder / "out.exr").parts()[0].metadata), ap1);
+    const ColorMatrix m = conversion_matrix(ap1, kRec709);
+    for (const char* png : {"view.png", "color.png"}) {
+        const Image picture = read_png(folder / png);
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double linear = m[c * 3] * acescg.r + m[c * 3 + 1] * acescg.g + m[c * 3 + 2] * acescg.b;
+            EXPECT_NEAR(picture.at(3, 3, int(c)), 1.055 * std::pow(linear, 1 / 2.4) - 0.055, 0.51 / 255)
+                << png << c;
+        }
+    }
+}
+
+TEST(Overscan, IsSeenByEffectsBeyondTheDisplayWindow) {
+    const TemporaryFolder folder;
+    // A light four pixels left of the display window, far out of focus.
+    Capture capture = make_capture({.width = 64, .height = 32, .points = {{12, 16, 1000}}});
+    capture.header.display_window = {16, 0, 63, 31};
+    write_capture(capture, folder / "in.exr");
+    const std::string look =
+        R"({"aftershade": 1, "steps": [{"effect": "bokeh", "params": {"focus_distance": 2,
+        "focal_length": 200, "f_number": 1, "lens_model": "pinhole"}}]})";
+    ASSERT_EQ(run(folder, look,
+                  {(folder / "in.exr").string(), "-o", (folder / "out.exr").string(), "--crop", "display",
+                   "--pixel-type", "float"})
+                  .exit_code,
+              0);
+    EXPECT_GT(ExrFile(folder / "out.exr").read_floats(0, Args{"R"}).at(1, 16, 0), 0.5f);
+}
+
+TEST(Explain, NamesWhereEachValueIsFrom) {
+    const TemporaryFolder folder;
+    write_capture(make_capture({.width = 16, .height = 9}), folder / "in_0001.exr");
+    write_text(folder / "capture.json",
+               R"({"aftershade": 1, "frames": "in_####.exr", "camera": {"focal_length": "85 mm"}})");
+    const std::string look = R"({"aftershade": 1, "steps": [{"effect": "bokeh", "preset": "fast",
+        "params": {"f_number": 2}}]})";
+    const CommandResult result = run(folder, look,
+                                     {(folder / "capture.json").string(), "-o", (folder / "o_#.exr").string(),
+                                      "--explain", "--set", "bokeh.shape=octagon"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    for (const std::string line :
+         {"bokeh.f_number = 2   [the look]", "bokeh.taps = 17   [preset fast]",
+          "bokeh.focal_length = 85 mm   [capture.json]", "bokeh.shape = \"octagon\"   [--set]",
+          "bokeh.focus_distance = 3 m   [the manifest]"})
+        EXPECT_NE(result.out.find(line + "\n"), std::string::npos) << line << "\n" << result.out;
+    EXPECT_FALSE(fs::exists(folder / "o_1.exr"));
 }
 
 /// Frames 1 and 3 of a sequence that declares 1 to 3.
