@@ -1,4 +1,5 @@
-// The decodings of producers of whom no real file is here, against their documented formulas, and the way back.
+// The decodings of producers of whom no real file is here, against their documented formulas, and the way
+// back.
 #include <cmath>
 #include <limits>
 #include <string>
@@ -116,8 +117,8 @@ Image depth_of(std::initializer_list<float> values) {
 }
 
 /// Decodes, compares, and encodes back to what was stored.
-void expect_depth(const RoleDecoding& decoding, const DecodeContext& with, std::initializer_list<float> stored,
-                  std::initializer_list<float> expected_m) {
+void expect_depth(const RoleDecoding& decoding, const DecodeContext& with,
+                  std::initializer_list<float> stored, std::initializer_list<float> expected_m) {
     Image image = depth_of(stored);
     decode_depth(image, decoding, with);
     const Image expected = depth_of(expected_m);
