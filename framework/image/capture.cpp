@@ -138,7 +138,10 @@ void CaptureReader::find_roles(OpenFrame& open) const {
         if (!sequence_.cryptomatte->mask.empty()) open.roles["mask"] = source;
         if (!open.roles.contains("object_id")) open.roles["object_id"] = source;
     }
-    for (const auto& [role, source] : open.roles) open.header.roles.push_back(role);
+    for (const auto& [role, source] : open.roles) {
+        open.header.roles.push_back(role);
+        if (source.file != open.main.get() || source.channels.empty()) open.header.derived_roles.insert(role);
+    }
 }
 
 CaptureReader::OpenFrame CaptureReader::open(int frame) const {
@@ -175,7 +178,11 @@ CaptureReader::OpenFrame CaptureReader::open(int frame) const {
 
 bool CaptureReader::has_frame(int frame) const {
     std::error_code unreadable;
-    return std::filesystem::exists(sequence_.path_of(frame), unreadable);
+    const auto exists = [&](const auto& role_file) {
+        return std::filesystem::exists(role_file.second.path(frame), unreadable);
+    };
+    return std::filesystem::exists(sequence_.path_of(frame), unreadable) &&
+           std::all_of(sequence_.role_files.begin(), sequence_.role_files.end(), exists);
 }
 
 CaptureHeader CaptureReader::read_header(int frame) const {
@@ -190,10 +197,12 @@ void CaptureReader::read_motion(const OpenFrame& open, const std::string& role, 
                                 header.camera, color};
     const std::vector<std::size_t> missing = decode_velocity(velocity, source.decoding, context);
     if (role != "velocity" || missing.empty()) return;
+    const auto& cuts = sequence_.cuts;
+    const bool begins_shot = std::find(cuts.begin(), cuts.end(), header.frame) != cuts.end();
     capture.pixels_without_motion = missing.size();
     const std::filesystem::path before = sequence_.path_of(header.frame - 1);
     std::error_code unreadable;
-    if (!open.roles.contains("depth") || !sequence_.files.has_frame() ||
+    if (begins_shot || !open.roles.contains("depth") || !sequence_.files.has_frame() ||
         !std::filesystem::exists(before, unreadable))
         return;
     const FrameFile previous(before, limits_, sequence_.view);

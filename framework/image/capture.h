@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,9 +30,11 @@ struct CaptureHeader {
     float pixel_aspect = 1;
     std::vector<std::string> roles;                                 ///< that can be read, sorted
     std::map<std::string, std::vector<std::string>> role_channels;  ///< the stored channels of each
-    std::vector<std::string> channels;                              ///< of the file, in this view
-    Chromaticities primaries = kRec709;                             ///< of the colours as they are in memory
-    Camera camera;  ///< capture.json's, completed by the file's metadata
+    /// Roles that the main file does not store as they are: from files of their own, luminance, Cryptomatte.
+    std::set<std::string> derived_roles;
+    std::vector<std::string> channels;   ///< of the file, in this view
+    Chromaticities primaries = kRec709;  ///< of the colours as they are in memory
+    Camera camera;                       ///< capture.json's, completed by the file's metadata
     ExrMetadata metadata;
 };
 

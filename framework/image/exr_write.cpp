@@ -35,7 +35,7 @@ constexpr std::string_view kOwnAttributes[] = {"dataWindow",     "displayWindow"
                                                "channels",       "compression",   "type",
                                                "name",           "lineOrder",     "tiles",
                                                "chunkCount",     "version",       "maxSamplesPerPixel",
-                                               "deepImageState", "preview"};
+                                               "deepImageState", "preview",       "multiView"};
 
 bool is_own_attribute(std::string_view name) {
     return std::ranges::find(kOwnAttributes, name) != std::end(kOwnAttributes);

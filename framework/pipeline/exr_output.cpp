@@ -40,6 +40,14 @@ void add_stored_channels(ExrContent& content, const FrameResult& result, const C
     }
 }
 
+/// Makes room for a role's native names: what a step or another file says goes before what the main file
+/// stores.
+void drop_channels(ExrContent& content, const std::vector<std::string>& names) {
+    std::erase_if(content.channels, [&](const ExrOutputChannel& channel) {
+        return std::find(names.begin(), names.end(), channel.name) != names.end();
+    });
+}
+
 void crop(ExrContent& content, const Window& from, const Window& to) {
     std::map<const Image*, const Image*> cropped;
     for (ExrOutputChannel& channel : content.channels) {
@@ -52,16 +60,20 @@ void crop(ExrContent& content, const Window& from, const Window& to) {
     }
 }
 
-bool is_id_channel(const ExrOutputChannel& channel) {
-    return channel.type == PixelType::uint32 || channel.name.find("Crypto") != std::string::npos;
+bool is_id_channel(const ExrOutputChannel& channel, const CaptureHeader& header) {
+    const auto ids = header.role_channels.find("object_id");
+    const bool is_role = ids != header.role_channels.end() &&
+                         std::find(ids->second.begin(), ids->second.end(), channel.name) != ids->second.end();
+    return is_role || channel.type == PixelType::uint32 || channel.name.find("Crypto") != std::string::npos;
 }
 
 /// Ids are names, not amounts: the next lower one is another object.
 void refuse_lossy_ids(const std::filesystem::path& path, const ExrContent& content,
-                      const std::string& compression) {
+                      const CaptureHeader& header, const std::string& compression) {
     const bool lossy =
         compression.starts_with("b44") || compression.starts_with("dwa") || compression == "pxr24";
-    const auto id = std::find_if(content.channels.begin(), content.channels.end(), is_id_channel);
+    const auto id = std::find_if(content.channels.begin(), content.channels.end(),
+                                 [&](const ExrOutputChannel& c) { return is_id_channel(c, header); });
     if (lossy && id != content.channels.end())
         throw Error(ExitCode::output, path.string() + ": the compression " + compression +
                                           " loses bits, and the channel '" + id->name +
@@ -105,16 +117,18 @@ void write_exr_output(const std::filesystem::path& path, const OutputOptions& op
     const auto& source_channels = capture.header.role_channels;
     if (options.keep_channels) add_stored_channels(content, result, capture, reader);
     for (const std::string& name : options.roles) {
-        if (options.keep_channels && source_channels.contains(name)) continue;
+        const bool is_kept = source_channels.contains(name) && !capture.header.derived_roles.contains(name);
+        if (options.keep_channels && is_kept) continue;
         const Image* image = find_image(name, result, capture);
         if (!image)
             throw Error(ExitCode::capture,
                         capture.header.path.string() + ": the role '" + name +
                             "', asked for in the output, is in neither the capture nor the look");
+        drop_channels(content, find_role(name)->native_channels);
         add_role(content, *find_role(name), *image, options.color_type);
     }
     ExrWriteOptions write = exr_write_options(options, capture.header);
-    refuse_lossy_ids(path, content, write.compression);
+    refuse_lossy_ids(path, content, capture.header, write.compression);
     if (options.crop_to_display) {
         crop(content, write.data_window, write.display_window);
         write.data_window = write.display_window;

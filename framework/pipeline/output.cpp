@@ -19,7 +19,7 @@ namespace {
 /// With links followed, so that two ways to one file are one.
 fs::path resolved(const fs::path& path) {
     std::error_code failure;
-    const fs::path result = fs::weakly_canonical(fs::absolute(path), failure);
+    const fs::path result = fs::weakly_canonical(fs::absolute(path, failure), failure);
     return failure ? path : result;
 }
 
@@ -118,8 +118,11 @@ float encode_srgb(float linear) {
 
 void check_outputs(const OutputOptions& options, const Sequence& sequence, Diagnostics& diagnostics) {
     std::map<fs::path, fs::path> inputs;
-    for (const int frame : sequence.frames)
+    for (const int frame : sequence.frames) {
         inputs.emplace(resolved(sequence.path_of(frame)), sequence.path_of(frame));
+        for (const auto& [role, pattern] : sequence.role_files)
+            inputs.emplace(resolved(pattern.path(frame)), pattern.path(frame));
+    }
     std::set<fs::path> named;
     if (options.patterns.empty())
         diagnostics.error({"-o"}, "no output; name at least one file, such as -o out_####.exr");

@@ -53,6 +53,8 @@ public:
 
     bool is_missing(std::size_t index) const { return !reader_.has_frame(run_.frames[index]); }
 
+    bool can_hold() const { return last_ != nullptr; }
+
     /// Throws what reading threw.
     std::shared_ptr<const Capture> take(std::size_t index) {
         if (is_missing(index) && run_.missing == MissingFrame::hold && last_) {
@@ -118,7 +120,8 @@ RunReport run_frames(gpu::Context& context, const Pipeline& pipeline, const Capt
         report.interrupted = stop;
         if (report.interrupted) break;
         const bool missing = run.missing != MissingFrame::error && loader.is_missing(i);
-        if (missing && observer.frame_missing)
+        const bool is_told = run.missing == MissingFrame::skip || loader.can_hold();
+        if (missing && is_told && observer.frame_missing)
             observer.frame_missing(run.frames[i], run.missing == MissingFrame::skip ? "skipped" : "held");
         if (missing && run.missing == MissingFrame::skip) {
             ++report.frames_skipped;

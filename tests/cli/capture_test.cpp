@@ -106,6 +106,37 @@ TEST(KeepChannels, ReencodesTheRolesThatAStepChanged) {
     }
 }
 
+TEST(KeepChannels, WritesARoleFromAFileOfItsOwnAsTheStepsMadeIt) {
+    const TemporaryFolder folder;
+    write_brighten(folder);
+    write_capture(make_capture({.width = 8, .height = 8, .background = {9, 9, 9}, .background_depth_m = 4}),
+                  folder / "main.0001.exr");
+    write_capture(make_capture({.width = 8, .height = 8, .background = {1, 1, 1}}),
+                  folder / "color.0001.exr");
+    const CommandResult result =
+        run(folder, kExposureLook,
+            {(folder / "main.0001.exr").string(), "--role", "color=" + (folder / "color.0001.exr").string(),
+             "--keep-channels", "-o", (folder / "out.exr").string(), "--effect-path",
+             (folder / "effects").string()});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const ExrFile out(folder / "out.exr");
+    EXPECT_EQ(out.read_floats(0, Args{"R"}).at(3, 3, 0), 2);
+    EXPECT_EQ(out.read_floats(0, Args{"Z"}).at(3, 3, 0), 2);
+}
+
+TEST(Output, NeverReplacesTheFileOfARole) {
+    const TemporaryFolder folder;
+    for (const char* name : {"main.0001.exr", "z.0001.exr"})
+        write_capture(make_capture({.width = 8, .height = 8}), folder / name);
+    const std::string before = read_text(folder / "z.0001.exr");
+    const CommandResult result =
+        run(folder, kEmptyLook,
+            {(folder / "main.0001.exr").string(), "--role", "depth=" + (folder / "z.0001.exr").string(), "-o",
+             (folder / "z.0001.exr").string()});
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    EXPECT_EQ(read_text(folder / "z.0001.exr"), before);
+}
+
 TEST(Output, RefusesToStoreIdsWithLoss) {
     const TemporaryFolder folder;
     write_capture(make_capture({.width = 16, .height = 9}), folder / "in_0001.exr");
