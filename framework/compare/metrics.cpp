@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "framework/image/srgb.h"
+
 namespace aftershade {
 
 namespace {
@@ -47,7 +49,7 @@ ImageMetrics compare_images(const Image& reference, const Image& test, int chann
 double srgb_of_clamped(double linear) {
     if (!(linear > 0)) return 0;
     if (linear >= 1) return 1;
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+    return encode_srgb(linear);
 }
 
 double display_psnr_db(const Image& reference, const Image& test) {

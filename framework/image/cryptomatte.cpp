@@ -44,8 +44,7 @@ std::vector<std::string> rank_prefixes(const FrameFile& file, const std::string&
 Image read_ranks(const FrameFile& file, const std::string& prefix, const Window& grid) {
     const std::vector<std::string> channels = {prefix + ".R", prefix + ".G", prefix + ".B", prefix + ".A"};
     const std::string& compression = file.merged().compression;
-    const bool lossy =
-        compression.starts_with("b44") || compression.starts_with("dwa") || compression == "pxr24";
+    const bool lossy = is_lossy_compression(compression);
     if (lossy || file.type_of(channels[0]) != PixelType::float32)
         throw Error(ExitCode::capture,
                     file.path().string() + ": the Cryptomatte ids in " + channels[0] + " are " +

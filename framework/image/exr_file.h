@@ -125,6 +125,9 @@ void write_exr(const std::filesystem::path& path, std::span<const ExrOutputChann
 /// What ExrWriteOptions::compression may be.
 const std::vector<std::string>& exr_compression_names();
 
+/// Whether a compression may change values: b44, b44a, dwaa, dwab, and pxr24, which shortens floats.
+bool is_lossy_compression(std::string_view name);
+
 /// Threads that OpenEXR uses for compression, process-wide; 0 does the work on the caller's thread.
 void set_exr_threads(int count);
 

@@ -110,6 +110,10 @@ const std::vector<std::string>& exr_compression_names() {
     return names;
 }
 
+bool is_lossy_compression(std::string_view name) {
+    return name.starts_with("b44") || name.starts_with("dwa") || name == "pxr24";
+}
+
 ExrMetadata::ExrMetadata() = default;
 
 std::vector<std::string> ExrMetadata::names() const {

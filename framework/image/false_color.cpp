@@ -1,4 +1,5 @@
 #include "framework/image/false_color.h"
+#include "framework/image/srgb.h"
 
 #include <fmt/format.h>
 
@@ -58,7 +59,7 @@ std::optional<Range> finite_range(const Image& image, int channel) {
 
 float srgb_encoded(float linear) {
     const float clamped = std::clamp(linear, 0.0f, 1.0f);
-    return clamped <= 0.0031308f ? 12.92f * clamped : 1.055f * std::pow(clamped, 1 / 2.4f) - 0.055f;
+    return float(encode_srgb(clamped));
 }
 
 DisplayColor hue_color(float turns, float saturation, float value) {

@@ -15,10 +15,12 @@ namespace {
 /// Channels and, where they are not the result's or the capture's, the images behind them.
 struct ExrContent {
     std::vector<ExrOutputChannel> channels;
-    std::deque<Image> images;  // its elements stay where they are
+    std::deque<Image> images;               // its elements stay where they are
+    std::map<const Image*, float> outside;  // beyond the data window; 0 for those that are not here
 };
 
 void add_role(ExrContent& content, const ChannelRole& role, const Image& image, PixelType color_type) {
+    content.outside[&image] = role.outside;
     const PixelType type = role.pixel_type == PixelType::half ? color_type : role.pixel_type;
     for (int c = 0; c < role.channels; ++c)
         content.channels.push_back({role.native_channels[std::size_t(c)], type, &image, c});
@@ -53,7 +55,8 @@ void crop(ExrContent& content, const Window& from, const Window& to) {
     for (ExrOutputChannel& channel : content.channels) {
         const Image*& image = cropped[channel.image];
         if (!image) {
-            content.images.push_back(place_in_window(*channel.image, from, to, 0));
+            content.images.push_back(
+                place_in_window(*channel.image, from, to, content.outside[channel.image]));
             image = &content.images.back();
         }
         channel.image = image;
@@ -70,11 +73,9 @@ bool is_id_channel(const ExrOutputChannel& channel, const CaptureHeader& header)
 /// Ids are names, not amounts: the next lower one is another object.
 void refuse_lossy_ids(const std::filesystem::path& path, const ExrContent& content,
                       const CaptureHeader& header, const std::string& compression) {
-    const bool lossy =
-        compression.starts_with("b44") || compression.starts_with("dwa") || compression == "pxr24";
     const auto id = std::find_if(content.channels.begin(), content.channels.end(),
                                  [&](const ExrOutputChannel& c) { return is_id_channel(c, header); });
-    if (lossy && id != content.channels.end())
+    if (is_lossy_compression(compression) && id != content.channels.end())
         throw Error(ExitCode::output, path.string() + ": the compression " + compression +
                                           " loses bits, and the channel '" + id->name +
                                           "' holds ids (choose zip, zips, piz, rle or none)");

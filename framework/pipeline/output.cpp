@@ -8,6 +8,7 @@
 #include "framework/core/error.h"
 #include "framework/image/png_file.h"
 #include "framework/image/role.h"
+#include "framework/image/srgb.h"
 #include "framework/pipeline/exr_output.h"
 
 namespace aftershade {
@@ -38,7 +39,7 @@ Image display_of_color(Image color, const Chromaticities& primaries) {
         const float alpha = color.floats()[i + 3];
         for (std::size_t c = 0; c < 3; ++c) {
             const float premultiplied = color.floats()[i + c];
-            display.floats()[i + c] = encode_srgb(alpha > 0 ? premultiplied / alpha : premultiplied);
+            display.floats()[i + c] = float(encode_srgb(alpha > 0 ? premultiplied / alpha : premultiplied));
         }
         display.floats()[i + 3] = alpha;
     }
@@ -110,11 +111,6 @@ void write_tap(const fs::path& path, const Image& image, const OutputOptions& op
 }
 
 }  // namespace
-
-float encode_srgb(float linear) {
-    if (linear <= 0.0031308f) return 12.92f * linear;
-    return 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
-}
 
 void check_outputs(const OutputOptions& options, const Sequence& sequence, Diagnostics& diagnostics) {
     std::map<fs::path, fs::path> inputs;

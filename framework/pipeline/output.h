@@ -36,7 +36,4 @@ std::vector<std::string> wanted_roles(const OutputOptions& options);
 std::vector<std::filesystem::path> write_outputs(const OutputOptions& options, const FrameResult& result,
                                                  const Capture& capture, const CaptureReader& reader);
 
-/// The piecewise sRGB curve, IEC 61966-2-1.
-float encode_srgb(float linear);
-
 }  // namespace aftershade

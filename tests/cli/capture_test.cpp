@@ -155,12 +155,14 @@ TEST(Output, CropsToTheDisplayWindow) {
         for (int x = 0; x < 8; ++x) image.at(x, y, 0) = float(10 * y + x);
     std::vector<ExrOutputChannel> channels;
     for (int c = 0; c < 3; ++c) channels.push_back({std::string(1, "RGB"[c]), PixelType::float32, &image, c});
+    channels.push_back({"Z", PixelType::float32, &image, 0});
     ExrWriteOptions options;
     options.data_window = {-2, -1, 5, 4};
     options.display_window = {0, 0, 6, 3};
     write_exr(folder / "in.exr", channels, options);
     ASSERT_EQ(run(folder, kEmptyLook,
-                  {(folder / "in.exr").string(), "-o", (folder / "out.exr").string(), "--crop", "display"})
+                  {(folder / "in.exr").string(), "-o", (folder / "out.exr").string(), "--crop", "display",
+                   "--output-roles", "color,depth"})
                   .exit_code,
               0);
     const ExrFile cropped(folder / "out.exr");
@@ -169,6 +171,7 @@ TEST(Output, CropsToTheDisplayWindow) {
     EXPECT_EQ(red.at(0, 0, 0), 12);  // display (0, 0) is row 1, column 2 of the data
     EXPECT_EQ(red.at(5, 3, 0), 47);
     EXPECT_EQ(red.at(6, 3, 0), 0);  // beyond the data
+    EXPECT_TRUE(std::isinf(cropped.read_floats(0, Args{"Z"}).at(6, 3, 0))) << "nothing is hit there";
 }
 
 TEST(Output, CarriesTheCameraOfCaptureJson) {

@@ -1,4 +1,5 @@
 #include "framework/pipeline/output.h"
+#include "framework/image/srgb.h"
 
 #include <gtest/gtest.h>
 
