@@ -14,11 +14,50 @@
 
 namespace aftershade {
 
-enum class ParamType { float_, int_, bool_, enum_, angle, color, vec2, vec3, vec4 };
+enum class ParamType { float_, int_, bool_, enum_, angle, color, vec2, vec3, vec4, curve, file, table };
+
+/// A function of one variable through points, x rising; constant before the first and after the last.
+struct CurveValue {
+    enum class Interpolation { linear, smooth };  ///< smooth: monotone cubic (Fritsch and Carlson 1980)
+    std::vector<std::array<double, 2>> points;    ///< x in the curve's domain, y in the parameter's unit
+    Interpolation interpolation = Interpolation::linear;
+    double at(double x) const;
+    bool operator==(const CurveValue&) const = default;
+};
+
+/// Which objects a row of a table is for: ids first..last, or the object of that name (Cryptomatte).
+struct TableKey {
+    std::uint32_t first = 0;
+    std::uint32_t last = 0;
+    std::string name;  ///< "" for ids
+    bool operator==(const TableKey&) const = default;
+};
+
+/// Rows by object; an object that no row names has the default row.
+struct TableValue {
+    /// Per column, in the table's order, as numbers: the declared unit, 0 or 1, or the index of an enum's
+    /// value; as many as the column's type has components.
+    using Row = std::vector<std::vector<double>>;
+    Row default_row;
+    std::vector<std::pair<TableKey, Row>> rows;
+    bool operator==(const TableValue&) const = default;
+};
 
 /// float_ and angle hold a double, in the declared unit; color and vec2..4 hold that many doubles; enum_ a
-/// string.
-using ParamValue = std::variant<bool, std::int64_t, double, std::string, std::vector<double>>;
+/// string; file a path, "" for none.
+using ParamValue =
+    std::variant<bool, std::int64_t, double, std::string, std::vector<double>, CurveValue, TableValue>;
+
+/// What a file parameter names: a picture (EXR, PNG), or a colour table (.cube, Adobe Cube LUT 1.0).
+enum class FileKind { image, lut };
+
+/// "requires": ["> focal_length"]: how this value stands to another parameter's, units minded.
+struct ParamRelation {
+    enum class Order { less, less_equal, greater, greater_equal };
+    Order order = Order::less;
+    std::string other;  ///< a parameter of the same effect
+    Place place;
+};
 
 /// How a value reaches GLSL: as a member of the block `param`, or as a preprocessor define, which makes one
 /// program for every value that is used.
@@ -37,8 +76,15 @@ struct ParamSpec {
     ParamBind bind = ParamBind::uniform;
     std::string from;  ///< "camera.focus_distance": the default where the capture has that value
     std::optional<ParamValue> identity;  ///< the value that leaves the image as it is
+    std::vector<ParamRelation> relations;
+    FileKind file_kind = FileKind::image;      ///< file
+    std::array<double, 2> domain = {0.0, 1.0};  ///< curve: the range of x
+    std::vector<ParamSpec> columns;            ///< table: each a scalar or vector with its own default
     Place place;
 };
+
+/// float_ ... vec4: a value that a uniform block holds and a table's column may have.
+bool is_block_type(ParamType type);
 
 /// Components of a value of this type: 1 for scalars, 3 for color.
 int component_count(ParamType type);

@@ -21,6 +21,8 @@ struct InputSpec {
     std::string name;
     std::string role;
     bool optional = false;
+    bool history = false;  ///< last frame's image may be read too, as "<name>.prev"; zero where there is none
+    int frame = 0;         ///< -1, +1: the capture before or after, which must be optional: shots end
     std::string doc;
     Place place;
 };
@@ -34,21 +36,79 @@ struct OutputSpec {
     Place place;
 };
 
-/// A transient texture between passes; every one can be tapped.
+/// A count that a manifest gives as a number or as the name of an int parameter.
+struct CountSpec {
+    int number = 1;
+    std::string param;  ///< "" for the number
+    bool operator==(const CountSpec&) const = default;
+};
+
+/// Extent of a texture, and of what is counted per texel.
+struct GridSpec {
+    enum class Kind { scale, tile, size };
+    Kind kind = Kind::scale;
+    double scale = 1;        ///< of the working grid's sides, rounded up
+    CountSpec tile;          ///< one texel per tile of this many px a side, rounded up
+    int size[2] = {0, 0};    ///< fixed, in texels
+    bool operator==(const GridSpec&) const = default;
+};
+
+/// A texture between passes; every one can be tapped.
 struct TextureSpec {
     std::string name;
     gpu::TextureFormat format = gpu::TextureFormat::rgba32f;
-    double scale = 1;  ///< of the working grid's sides, rounded up
-    int tile = 0;      ///< one texel per tile of this many px a side, rounded up; 0: `scale` holds
-    std::string doc;   ///< one sentence with the unit
+    GridSpec grid;
+    int layers = 1;          ///< > 1: an array, sampler2DArray
+    int mips = 1;            ///< > 1: levels that passes write each; 0 with auto_mips: as many as fit
+    bool auto_mips = false;  ///< the host fills levels 1.. with a box filter after each pass that writes level 0
+    std::optional<std::vector<double>> clear;  ///< set to this at the beginning of each frame; 1 or 4 numbers
+    bool history = false;                      ///< survives into the next frame, where "<name>.prev" reads it
+    std::string doc;                           ///< one sentence with the unit
+    Place place;
+};
+
+/// An array in GPU memory: `<element> <name>[]` of a shader storage block.
+struct BufferSpec {
+    std::string name;
+    std::string element;  ///< float, int, uint, vec2, vec4, ivec2, ivec4, uvec2, uvec4
+    std::optional<GridSpec> grid;  ///< `count` elements per texel of this grid; without one, `count` in all
+    CountSpec count;
+    std::vector<double> clear;  ///< first elements at the beginning of each frame, the rest 0; empty: not cleared
+    bool history = false;
+    bool indirect = false;  ///< holds the arguments of an indirect draw or dispatch: uint, at least 4
+    std::string doc;
     Place place;
 };
 
 struct ReadSpec {
     std::string name;  ///< of an input or a texture
+    bool previous = false;  ///< "<name>.prev": as it was at the end of the last frame
     gpu::Filter filter = gpu::Filter::nearest;
     gpu::Wrap wrap = gpu::Wrap::clamp;
+    int level = -1;  ///< one level only, or kPassIndex + n; -1: all
     Place place;
+    /// The sampler's name in GLSL: "color", "color_prev".
+    std::string glsl_name() const { return previous ? name + "_prev" : name; }
+};
+
+/// A level or a layer that is "pass.index" of a repeated pass, plus this: kPassIndex + 1 is "pass.index + 1".
+inline constexpr int kPassIndex = 1000;
+
+struct WriteSpec {
+    std::string name;  ///< of a texture or an output
+    int level = 0;     ///< or kPassIndex + n
+    int layer = 0;     ///< or kPassIndex + n
+    Place place;
+};
+
+/// A texture bound as an image, or a buffer as a storage block.
+struct AccessSpec {
+    enum class Kind { read, write, atomic };
+    std::string name;
+    bool previous = false;  ///< buffers with history, read only
+    Kind kind = Kind::read;
+    Place place;
+    std::string glsl_name() const { return previous ? name + "_prev" : name; }
 };
 
 /// A condition on one parameter ("shape") or on an optional input ("has.velocity"): any of these values.
@@ -58,13 +118,64 @@ struct WhenSpec {
     Place place;
 };
 
+/// What a draw of instances draws, and how many.
+struct InstanceSpec {
+    enum class Primitive { quads, points };  ///< gl_VertexID 0..3 of a strip, or 0
+    Primitive primitive = Primitive::quads;
+    std::optional<GridSpec> grid;  ///< `count` per texel of this grid
+    CountSpec count;
+    std::string indirect;  ///< buffer of {vertices, instances, first, base}; "" for the count
+};
+
+/// How many work groups a compute pass has.
+struct DispatchSpec {
+    enum class Kind { tile, groups, indirect };
+    Kind kind = Kind::tile;
+    CountSpec tile{8, ""};        ///< one group per tile of this many texels a side ...
+    std::string over;             ///< ... of this texture; "" for the working grid
+    int groups[3] = {1, 1, 1};
+    std::string indirect;         ///< buffer of {x, y, z}
+};
+
+enum class PassKind { draw, compute, clear };
+
 struct PassSpec {
     std::string name;
-    std::string shader;  ///< file in the effect's folder
+    PassKind kind = PassKind::draw;
+    std::string shader;  ///< file in the effect's folder; "" for a clear
+    std::string vertex;  ///< draw of instances: its vertex shader; "" for the full screen
     std::vector<ReadSpec> reads;
-    std::vector<std::string> writes;  ///< textures and outputs, in the order of the attachments
+    std::vector<WriteSpec> writes;  ///< textures and outputs, in the order of the attachments; clear: what it sets
+    std::vector<AccessSpec> images;
+    std::vector<AccessSpec> buffers;
     std::map<std::string, std::string> defines;
     std::vector<WhenSpec> when;  ///< all must hold
+    std::optional<CountSpec> repeat;  ///< the shader knows its turn as pass.index, 0 .. pass.count - 1
+    std::optional<InstanceSpec> instances;
+    DispatchSpec dispatch;            ///< compute
+    gpu::Blend blend = gpu::Blend::none;
+    std::vector<double> clear_value;  ///< clear: 1 or 4 numbers
+    Place place;
+};
+
+/// A value or an array that the effect's native code fills before each frame.
+struct NativeUniformSpec {
+    std::string name;
+    std::string type;  ///< float, int, uint, vec2, vec3, vec4
+    std::string doc;
+    Place place;
+};
+struct NativeTableSpec {
+    std::string name;
+    std::string element;  ///< float, vec2, vec4, uint, uvec2, uvec4
+    int width = 0;        ///< most elements a row, up to 1024
+    int height = 1;       ///< rows, up to 1024; read by texelFetch from a 2-D sampler
+    std::string doc;
+    Place place;
+};
+struct NativeSpec {
+    std::vector<NativeUniformSpec> uniforms;
+    std::vector<NativeTableSpec> tables;
     Place place;
 };
 
@@ -82,7 +193,10 @@ struct EffectManifest {
     std::vector<OutputSpec> outputs;
     std::vector<ParamSpec> params;
     std::vector<TextureSpec> textures;
+    std::vector<BufferSpec> buffers;
     std::vector<PassSpec> passes;
+    std::optional<NativeSpec> native;
+    bool accumulates_subframes = false;  ///< "accumulates": "subframes": runs for each, emits at the last
     std::vector<PresetSpec> presets;
     std::filesystem::path folder;
 
@@ -90,6 +204,8 @@ struct EffectManifest {
     const OutputSpec* find_output(const std::string& name) const;
     const ParamSpec* find_param(const std::string& name) const;
     const TextureSpec* find_texture(const std::string& name) const;
+    const BufferSpec* find_buffer(const std::string& name) const;
+    bool has_history() const;  ///< of any texture, buffer or input
     const PresetSpec* find_preset(const std::string& name) const;
     std::vector<std::string> param_names() const;
 };

@@ -15,6 +15,8 @@ enum class Filter { nearest, linear };
 enum class Wrap { clamp, zero };
 enum class Access { read, write, read_write };
 enum class Blend { none, add, min, max };
+/// Of an instance: four vertices of a triangle strip, or one point.
+enum class Primitive { quads, points };
 
 struct SampledTexture {
     const Texture* texture = nullptr;

@@ -1,8 +1,10 @@
-// Passes and the textures between them, as data. Building and compiling need no GL.
+// Passes and the textures and buffers between them, as data. Building and compiling need no GL.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -19,6 +21,13 @@ struct TextureHandle {
     bool operator==(const TextureHandle&) const = default;
 };
 
+/// The same for a buffer.
+struct BufferHandle {
+    int buffer = -1;
+    int version = 0;
+    bool operator==(const BufferHandle&) const = default;
+};
+
 /// A graph that cannot be run: a bug of the code that built it.
 class GraphError : public std::logic_error {
 public:
@@ -30,6 +39,27 @@ struct Read {
     int binding = 0;  ///< of the sampler
     gpu::Filter filter = gpu::Filter::nearest;
     gpu::Wrap wrap = gpu::Wrap::clamp;
+    int level = -1;  ///< the only level that is seen, as level 0; -1: all
+};
+
+/// One level and layer that a draw renders to.
+struct Target {
+    TextureHandle texture;
+    int level = 0;
+    int layer = 0;
+};
+
+struct ImageUse {
+    TextureHandle texture;
+    int binding = 0;
+    gpu::Access access = gpu::Access::read;
+    int level = 0;
+};
+
+struct BufferUse {
+    BufferHandle buffer;
+    int binding = 0;  ///< of the storage block
+    gpu::Access access = gpu::Access::read;
 };
 
 struct UniformBlock {
@@ -37,11 +67,63 @@ struct UniformBlock {
     std::vector<std::byte> bytes;  ///< std140; contents may be replaced before each frame, the size may not
 };
 
+enum class PassKind { draw, instances, compute, clear };
+
+/// What `instances` draws: `count` times four vertices of a strip (quads) or one point; or as many as the
+/// buffer says (DrawArraysIndirectCommand).
+struct Instances {
+    gpu::Primitive primitive = gpu::Primitive::quads;
+    int count = 0;
+    std::optional<BufferHandle> indirect;
+};
+
+/// Work groups of a compute pass; or as many as the buffer says (DispatchIndirectCommand).
+struct Groups {
+    std::array<int, 3> count = {1, 1, 1};
+    std::optional<BufferHandle> indirect;
+};
+
 struct Pass {
     std::string name;  ///< "bokeh.coc"
-    const gpu::Program* program = nullptr;
+    PassKind kind = PassKind::draw;
+    const gpu::Program* program = nullptr;  ///< nullptr for a clear
     std::vector<Read> reads;
+    std::vector<Target> targets;   ///< draw, instances: of one size; clear: what is set to `clear_value`
+    std::vector<ImageUse> images;
+    std::vector<BufferUse> buffers;
     std::vector<UniformBlock> uniforms;
+    gpu::Blend blend = gpu::Blend::none;
+    Instances instances;
+    Groups groups;
+    std::array<double, 4> clear_value = {0, 0, 0, 0};
+};
+
+/// What a pass made: new versions of what it wrote, in the order of targets, written images, written buffers.
+struct Written {
+    std::vector<TextureHandle> targets;
+    std::vector<TextureHandle> images;  ///< one for each of Pass::images; as it was where that only reads
+    std::vector<BufferHandle> buffers;  ///< one for each of Pass::buffers; as it was where that only reads
+};
+
+struct TextureOptions {
+    bool auto_mips = false;  ///< levels 1.. are filled from level 0 after each pass that writes the texture
+    std::optional<std::array<double, 4>> clear;  ///< content before the first write of each frame
+};
+
+struct BufferDesc {
+    std::size_t bytes = 0;
+    bool operator==(const BufferDesc&) const = default;
+};
+
+/// What survives into the next frame: `current` is written, and becomes `previous` when the frame ends.
+/// Where no pass writes `current` in a frame, `previous` stays as it was.
+struct TextureHistory {
+    TextureHandle previous;  ///< readable from the beginning; zero where there was no frame before
+    TextureHandle current;
+};
+struct BufferHistory {
+    BufferHandle previous;
+    BufferHandle current;
 };
 
 /// A graph made ready to run: which passes, in which order, and which texture lies in which memory.
@@ -50,6 +132,8 @@ struct CompiledGraph {
     std::vector<int> slot_of_texture;  ///< per texture: index into slots, -1 for one that is not needed
     std::vector<gpu::TextureDesc>
         slots;  ///< memory; textures of one description whose lifetimes do not meet share a slot
+    std::vector<int> slot_of_buffer;
+    std::vector<BufferDesc> buffer_slots;
     std::uint64_t bytes = 0;            ///< of all slots
     std::uint64_t bytes_unaliased = 0;  ///< what one texture per handle would take
 };
@@ -58,40 +142,71 @@ class FrameGraph {
 public:
     /// A texture whose content is given from outside before every frame.
     TextureHandle import_texture(std::string name, const gpu::TextureDesc& desc);
-    /// A transient: lives from its first write to its last read. Reading it before any write is a GraphError.
-    TextureHandle create_texture(std::string name, const gpu::TextureDesc& desc);
+    /// A buffer whose content is given from outside, such as a table of parameters.
+    BufferHandle import_buffer(std::string name, const BufferDesc& desc);
+    /// A transient: lives from its first write to its last read. Reading one that is not cleared before any
+    /// write is a GraphError.
+    TextureHandle create_texture(std::string name, const gpu::TextureDesc& desc,
+                                 const TextureOptions& options = {});
+    /// `clear`: the first words at the beginning of each frame, the rest 0; nullopt: not cleared.
+    BufferHandle create_buffer(std::string name, const BufferDesc& desc,
+                               std::optional<std::vector<std::uint32_t>> clear = {});
+    TextureHistory create_history(std::string name, const gpu::TextureDesc& desc,
+                                  const TextureOptions& options = {});
+    BufferHistory create_history_buffer(std::string name, const BufferDesc& desc,
+                                        std::optional<std::vector<std::uint32_t>> clear = {});
 
-    /// Appends a draw over `targets`, which all have one size, and returns their new versions. Passes run in
-    /// the order of the calls.
-    [[nodiscard]] std::vector<TextureHandle> add_pass(Pass pass, std::span<const TextureHandle> targets);
+    /// Appends a pass and returns the new versions of what it writes. Passes run in the order of the calls.
+    /// A draw without blending that covers the only level and layer of its target needs nothing of what was
+    /// there; every other write (blending, images, buffers, one level of many) keeps it.
+    [[nodiscard]] Written add_pass(Pass pass);
 
     /// Marks a texture that is read after the frame: an output or a tap. Nothing may write it afterwards.
     void keep(TextureHandle handle);
+    void keep(BufferHandle handle);
 
+    /// Culls passes that nothing kept depends on. A history is written only where a pass that is not culled
+    /// reads what it was in the frame before.
     CompiledGraph compile() const;
 
     struct Texture {
         std::string name;
         gpu::TextureDesc desc;
+        TextureOptions options;
         bool imported = false;
         bool kept = false;
+        int previous_of = -1;  ///< of a history's `previous`: the texture that is its `current`
+        int version = 0;
+    };
+    struct Buffer {
+        std::string name;
+        BufferDesc desc;
+        std::optional<std::vector<std::uint32_t>> clear;
+        bool imported = false;
+        bool kept = false;
+        int previous_of = -1;
         int version = 0;
     };
     const std::vector<Texture>& textures() const { return textures_; }
+    const std::vector<Buffer>& buffers() const { return buffers_; }
     const Pass& pass(int index) const { return passes_[std::size_t(index)].pass; }
     Pass& pass(int index) { return passes_[std::size_t(index)].pass; }
-    const std::vector<TextureHandle>& targets(int index) const { return passes_[std::size_t(index)].targets; }
+    const Written& written(int index) const { return passes_[std::size_t(index)].written; }
     int pass_count() const { return int(passes_.size()); }
 
 private:
     struct Node {
         Pass pass;
-        std::vector<TextureHandle> targets;  // the versions that it writes
+        Written written;
     };
-    const Texture& live(TextureHandle handle, const std::string& user) const;
 
     std::vector<Texture> textures_;
+    std::vector<Buffer> buffers_;
     std::vector<Node> passes_;
 };
+
+/// The graph in Graphviz's language: passes as boxes, textures as ellipses with size, format and slot; what
+/// is culled in grey, history dashed.
+std::string to_dot(const FrameGraph& graph, const CompiledGraph& compiled);
 
 }  // namespace aftershade::graph
