@@ -57,7 +57,13 @@ public:
             node->string = value;
         }
         clear_lines(*node, place);
-        set_value(*step, text.substr(dot + 1, equals - dot - 1), *node, place, "--set");
+        const std::string name = text.substr(dot + 1, equals - dot - 1);
+        if (name == "mix" && !step->manifest->find_param(name)) {
+            set_mix(*step, *node);
+            find_before(*step, std::size_t(step - pipeline_.steps.data()), place);
+        } else {
+            set_value(*step, name, *node, place, "--set", {});
+        }
     }
 
     void add_tap(const std::string& text) {
@@ -72,7 +78,8 @@ public:
         if (!step) return;
         const std::string texture = text.substr(dot + 1);
         std::vector<std::string> known = output_names(*step->manifest);
-        for (const TextureSpec& spec : step->manifest->textures) known.push_back(spec.name);
+        for (const TextureSpec& spec : step->manifest->textures)
+            if (spec.layers == 1) known.push_back(spec.name);
         if (std::find(known.begin(), known.end(), texture) == known.end()) {
             diagnostics_.error(place, step->name + " has no texture '" + texture + "'" +
                                           did_you_mean(texture, known) +
@@ -80,6 +87,32 @@ public:
             return;
         }
         pipeline_.taps.push_back({step->name, texture});
+    }
+
+    /// Relations between parameters that the user's words alone decide.
+    void check_relations_of_literals() {
+        for (const PipelineStep& step : pipeline_.steps) {
+            ParamSet known;
+            std::vector<ParamSpec> specs;
+            for (const ParamSpec& spec : step.manifest->params) {
+                const auto asked = step.values.find(spec.name);
+                const auto* literal =
+                    asked == step.values.end() ? nullptr : std::get_if<ParamValue>(&asked->second);
+                if (asked != step.values.end() ? !literal : !spec.from.empty()) continue;
+                known.set(spec.name, literal ? *literal : spec.default_value);
+                specs.push_back(spec);
+            }
+            for (ParamSpec& spec : specs)
+                std::erase_if(spec.relations, [&](const ParamRelation& r) { return !known.has(r.other); });
+            for (const RelationFault& fault : check_relations(specs, known)) {
+                const auto place = step.places.find(fault.spec->name);
+                const auto other = step.places.find(fault.other->name);
+                diagnostics_.error(place != step.places.end()   ? place->second
+                                   : other != step.places.end() ? other->second
+                                                                : fault.spec->place,
+                                   relation_message(fault, step.name));
+            }
+        }
     }
 
     Pipeline take() { return std::move(pipeline_); }
@@ -102,9 +135,52 @@ private:
         if (!step.manifest) return std::nullopt;
         apply_preset(look_step, step);
         for (const Member& member : look_step.params)
-            set_value(step, member.key, member.value, member.key_place, "the look");
+            set_value(step, member.key, member.value, member.key_place, "the look", look_step.folder);
         wire(look_step, step);
+        if (look_step.mix) set_mix(step, *look_step.mix);
+        if (look_step.mask) set_mask(step, *look_step.mask);
+        if (look_step.mix || look_step.mask)
+            find_before(step, pipeline_.steps.size(), look_step.mix ? look_step.mix->place : look_step.mask->place);
         return step;
+    }
+
+    void set_mix(PipelineStep& step, const Node& value) {
+        if (auto parsed = parse_value_source(mix_spec(), value, step.name + ".mix", diagnostics_))
+            step.mix = std::move(*parsed);
+    }
+
+    void set_mask(PipelineStep& step, const MaskSpec& mask) {
+        const auto role = mask.role.empty() ? std::nullopt : find_role(mask.role);
+        if (!mask.role.empty() && !role)
+            diagnostics_.error(mask.place, "'" + mask.role + "' is not a role" +
+                                               did_you_mean(mask.role, role_names()));
+        else if (role && (role->type != ComponentType::float32 ||
+                          (role->channels != 1 && !mask.role.starts_with("aov:"))))
+            diagnostics_.error(mask.place, "a mask takes a role of one channel, such as mask or aov:hair; '" +
+                                               mask.role + "' is none");
+        std::error_code failure;
+        if (!mask.file.empty() && !std::filesystem::is_regular_file(mask.file, failure))
+            diagnostics_.error(mask.place, "no file '" + mask.file.string() + "'");
+        step.mask = mask;
+    }
+
+    /// What each output of a step is mixed with: the input of its role, else the image of that role before
+    /// the step, the `index`-th.
+    void find_before(PipelineStep& step, std::size_t index, const Place& place) {
+        for (const OutputSpec& output : step.manifest->outputs) {
+            if (find_role(output.role)->type != ComponentType::float32) {
+                diagnostics_.error(place, "step '" + step.name + "' makes " + output.role +
+                                              ", whose values cannot be mixed");
+                continue;
+            }
+            InputSource source = nearest_source(output.role, index);
+            for (const InputSpec& input : step.manifest->inputs)
+                if (input.role == output.role && input.frame == 0) source = step.inputs.at(input.name);
+            if (source.step < 0 && output.role == "display")
+                diagnostics_.error(place, "step '" + step.name +
+                                              "' makes display, of which there is none before it to mix with");
+            step.before[output.name] = source;
+        }
     }
 
     static void clear_lines(Node& node, const Place& place) {
@@ -135,8 +211,11 @@ private:
         if (!look_step.preset) return;
         const PresetSpec* preset = step.manifest->find_preset(*look_step.preset);
         if (preset) {
-            step.values = preset->values;
-            for (const auto& [name, value] : preset->values) step.origins[name] = "preset " + preset->name;
+            for (const auto& [name, value] : preset->values) {
+                step.values[name] = with_file(*step.manifest->find_param(name), value, step.manifest->folder);
+                step.origins[name] = "preset " + preset->name;
+                step.places[name] = look_step.preset_place;
+            }
             return;
         }
         std::vector<std::string> names;
@@ -146,8 +225,16 @@ private:
                                                        did_you_mean(*look_step.preset, names));
     }
 
+    /// A path is complete from here on; it was named from `folder`, or from the working directory.
+    static ParamValue with_file(const ParamSpec& spec, ParamValue value, const std::filesystem::path& folder) {
+        if (spec.type != ParamType::file) return value;
+        auto& path = std::get<std::string>(value);
+        if (!path.empty()) path = (folder / path).string();
+        return value;
+    }
+
     void set_value(PipelineStep& step, const std::string& name, const Node& value, const Place& key_place,
-                   const std::string& origin) {
+                   const std::string& origin, const std::filesystem::path& folder) {
         const ParamSpec* spec = step.manifest->find_param(name);
         if (!spec) {
             const auto names = step.manifest->param_names();
@@ -155,16 +242,26 @@ private:
                                               did_you_mean(name, names));
             return;
         }
-        auto parsed = parse_param_value(*spec, value, step.name + "." + name, diagnostics_);
+        auto parsed = parse_value_source(*spec, value, step.name + "." + name, diagnostics_);
         if (!parsed) return;
+        if (auto* literal = std::get_if<ParamValue>(&*parsed); literal && spec->type == ParamType::file) {
+            *literal = with_file(*spec, std::move(*literal), folder);
+            const auto& path = std::get<std::string>(*literal);
+            std::error_code failure;
+            if (!path.empty() && !std::filesystem::is_regular_file(path, failure))
+                diagnostics_.error(value.place, step.name + "." + name + ": no file '" + path + "'");
+        }
         step.values[name] = std::move(*parsed);
         step.origins[name] = origin;
+        step.places[name] = value.place;
     }
 
     void wire(const LookStep& look_step, PipelineStep& step) {
         for (const WiringSpec& wiring : look_step.wiring) wire_input(wiring, step);
         for (const InputSpec& input : step.manifest->inputs) {
-            step.inputs.try_emplace(input.name, nearest_source(input.role));
+            const InputSource source = input.frame == 0 ? nearest_source(input.role, pipeline_.steps.size())
+                                                        : InputSource{-1, input.role};
+            step.inputs.try_emplace(input.name, source);
             if (input.role == "color" && pipeline_.writes_role("display"))
                 diagnostics_.error(
                     look_step.place,
@@ -172,8 +269,9 @@ private:
         }
     }
 
-    InputSource nearest_source(const std::string& role) const {
-        for (int i = int(pipeline_.steps.size()) - 1; i >= 0; --i)
+    /// For the `index`-th step.
+    InputSource nearest_source(const std::string& role, std::size_t index) const {
+        for (int i = int(index) - 1; i >= 0; --i)
             for (const OutputSpec& output : pipeline_.steps[std::size_t(i)].manifest->outputs)
                 if (output.role == role) return {i, output.name};
         return {-1, role};
@@ -214,6 +312,11 @@ private:
                                                  did_you_mean(wiring.output, role_names()));
             return;
         }
+        if (input->frame != 0 && source.step >= 0) {
+            diagnostics_.error(wiring.place, "input '" + input->name + "' of " + step.manifest->id +
+                                                 " is of another frame, which only the capture has");
+            return;
+        }
         if (role != input->role) {
             diagnostics_.error(wiring.place, "input '" + input->name + "' of " + step.manifest->id +
                                                  " takes the role '" + input->role + "', not '" + role + "'");
@@ -236,6 +339,7 @@ Pipeline compile_pipeline(const Look& look, EffectRegistry& effects, const Pipel
     for (const LookStep& step : look.steps) compiler.add(step);
     for (const std::string& text : options.sets) compiler.apply_set(text);
     for (const std::string& text : options.taps) compiler.add_tap(text);
+    compiler.check_relations_of_literals();
     return compiler.take();
 }
 

@@ -1,122 +1,210 @@
 #include "framework/pipeline/graph_builder.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
 #include <utility>
 
 #include "framework/core/error.h"
-#include "framework/effect/std140.h"
+#include "framework/image/role.h"
+#include "framework/pipeline/frame_blocks.h"
+#include "framework/pipeline/step_build.h"
 
 namespace aftershade {
 
 namespace {
 
-/// FNV-1a: the seed of a step is its name's, so that a step inserted before it changes nothing.
-std::uint32_t hash_name(const std::string& name) {
-    std::uint32_t hash = 2166136261u;
-    for (const unsigned char c : name) hash = (hash ^ c) * 16777619u;
-    return hash;
+int divided_up(int value, int by) {
+    return (value + by - 1) / by;
 }
 
-int scaled_side(int side, const TextureSpec& spec) {
-    if (spec.tile > 0) return (side + spec.tile - 1) / spec.tile;
-    return std::max(1, int(std::ceil(side * spec.scale)));
+/// Bytes from one element of a std430 array to the next.
+std::size_t element_bytes(const std::string& element) {
+    return element.ends_with("4") ? 16 : element.ends_with("2") ? 8 : 4;
+}
+
+/// The first words of a cleared buffer, as its elements hold them.
+std::optional<std::vector<std::uint32_t>> clear_words(const BufferSpec& spec) {
+    if (spec.clear.empty()) return std::nullopt;
+    const bool is_integer = spec.element.starts_with("u") || spec.element.starts_with("i");
+    std::vector<std::uint32_t> words;
+    for (const double value : spec.clear)
+        words.push_back(is_integer ? std::uint32_t(std::int64_t(value)) : std::bit_cast<std::uint32_t>(float(value)));
+    return words;
 }
 
 }  // namespace
 
-std::vector<std::byte> frame_block(const CaptureHeader& header, const std::string& step) {
-    FrameBlock block;
-    block.display_size_px[0] = header.display_window.width();
-    block.display_size_px[1] = header.display_window.height();
-    block.origin_px[0] = header.data_window.min_x - header.display_window.min_x;
-    block.origin_px[1] = header.data_window.min_y - header.display_window.min_y;
-    block.number = header.frame;
-    block.step_seed = hash_name(step);
-    const ColorMatrix matrix = conversion_matrix(header.primaries, kRec709);
-    for (std::size_t row = 0; row < 3; ++row)
-        for (std::size_t column = 0; column < 3; ++column)
-            block.rec709_from_color[column][row] = float(matrix[row * 3 + column]);
-    std::vector<std::byte> bytes(sizeof block);
-    std::memcpy(bytes.data(), &block, sizeof block);
-    return bytes;
+std::array<double, 4> four_values(const std::vector<double>& values) {
+    if (values.empty()) return {0, 0, 0, 0};
+    if (values.size() == 1) return {values[0], values[0], values[0], values[0]};
+    std::array<double, 4> result = {0, 0, 0, 0};
+    std::copy_n(values.begin(), std::min<std::size_t>(4, values.size()), result.begin());
+    return result;
 }
 
-GraphBuilder::GraphBuilder(ProgramCache& programs, const Pipeline& pipeline, const Capture& capture)
-    : programs_(programs), pipeline_(pipeline), capture_(capture) {
-    width_ = capture.header.data_window.width();
-    height_ = capture.header.data_window.height();
-    for (const auto& [role, image] : capture.images) roles_.push_back(role);
+int count_value(const CountSpec& count, const ParamSet& params) {
+    return count.param.empty() ? count.number : int(std::get<std::int64_t>(params.get(count.param)));
 }
 
-GraphBuilder::Names GraphBuilder::add_step(int index, const ParamSet& params,
-                                           const std::vector<Names>& earlier,
-                                           const std::function<void(int pass)>& bound) {
+std::pair<int, int> grid_size(const GridSpec& grid, const ParamSet& params, int width, int height) {
+    switch (grid.kind) {
+        case GridSpec::Kind::size: return {grid.size[0], grid.size[1]};
+        case GridSpec::Kind::tile: {
+            const int tile = std::max(1, count_value(grid.tile, params));
+            return {divided_up(width, tile), divided_up(height, tile)};
+        }
+        case GridSpec::Kind::scale: break;
+    }
+    return {std::max(1, int(std::ceil(width * grid.scale))), std::max(1, int(std::ceil(height * grid.scale)))};
+}
+
+GraphBuilder::GraphBuilder(ProgramCache& programs, const Pipeline& pipeline, const FrameInputs& frame)
+    : programs_(programs), pipeline_(pipeline), frame_(frame) {
+    width_ = frame.capture->header.data_window.width();
+    height_ = frame.capture->header.data_window.height();
+}
+
+void GraphBuilder::add_step(int index, const ParamSet& params) {
     const PipelineStep& step = pipeline_.steps[std::size_t(index)];
-    const EffectManifest& manifest = *step.manifest;
-    const std::vector<std::string> present = present_inputs(pipeline_, index, roles_);
-    Names inputs, names;
-    for (const std::string& name : present) {
-        const InputSource& source = step.inputs.at(name);
-        inputs[name] =
-            source.step < 0 ? import(source.output) : earlier[std::size_t(source.step)].at(source.output);
-    }
-    for (const TextureSpec& spec : manifest.textures)
-        names[spec.name] =
-            graph.create_texture(step.name + "." + spec.name,
-                                 {scaled_side(width_, spec), scaled_side(height_, spec), spec.format});
-    for (const OutputSpec& spec : manifest.outputs)
-        names[spec.name] = graph.create_texture(step.name + "." + spec.name,
-                                                {width_, height_, texture_format_of_role(spec.role)});
-    for (const PassSpec& pass : manifest.passes) {
-        if (!pass_enabled(pass, params, present)) continue;
-        const ShaderContext shader{&manifest, &pass, &params, present, programs_.glsl_folder()};
-        add_pass(step, shader, inputs, names);
-        bound(graph.pass_count() - 1);
-    }
-    for (const OutputSpec& spec : manifest.outputs)
-        if (names.at(spec.name).version == 0)
+    StepBuild build{index, step, params, present_inputs(pipeline_, index, frame_), {}, {}, {}, {}, {}, {}, {}, {}, {}};
+    declare(build);
+    declare_params(build);
+    for (const PassSpec& pass : step.manifest->passes)
+        if (pass_enabled(pass, params, build.present)) add_pass(build, pass);
+    for (const OutputSpec& output : step.manifest->outputs)
+        if (build.textures.at(output.name).version == 0)
             throw Error(ExitCode::effect, "step '" + step.name + "': no pass writes the output '" +
-                                              spec.name + "' with these parameters");
-    return names;
+                                              output.name + "' with these parameters");
+    keep_histories(build);
+    if (!step.before.empty()) add_mix(build);
+    steps_.push_back(std::move(build.textures));
 }
 
-graph::TextureHandle GraphBuilder::import(const std::string& role) {
-    const auto known = imports.find(role);
-    if (known != imports.end()) return known->second;
-    return imports[role] =
-               graph.import_texture("capture." + role, {width_, height_, texture_format_of_role(role)});
-}
-
-void GraphBuilder::add_pass(const PipelineStep& step, const ShaderContext& shader, const Names& inputs,
-                            Names& names) {
-    const EffectManifest& manifest = *shader.manifest;
-    graph::Pass pass;
-    pass.name = step.name + "." + shader.pass->name;
-    pass.program = &programs_.get(shader);
-    Std140Writer sizes;
-    for (const ReadSpec& read : present_reads(manifest, *shader.pass, shader.present_inputs)) {
-        const auto input = inputs.find(read.name);
-        const graph::TextureHandle handle = input != inputs.end() ? input->second : names.at(read.name);
-        if (handle.version == 0)
-            throw Error(ExitCode::effect, "step '" + step.name + "': pass '" + shader.pass->name +
-                                              "' reads '" + read.name +
-                                              "', which no pass has written with these parameters");
-        pass.reads.push_back({handle, int(pass.reads.size()), read.filter, read.wrap});
-        const gpu::TextureDesc& desc = graph.textures()[std::size_t(handle.texture)].desc;
-        const float size[4] = {float(desc.width), float(desc.height), 1.0f / float(desc.width),
-                               1.0f / float(desc.height)};
-        sizes.add(std::span<const float>(size));
+void GraphBuilder::declare(StepBuild& build) {
+    const EffectManifest& manifest = build.manifest();
+    const std::string prefix = build.prefix();
+    for (const InputSpec& input : manifest.inputs) {
+        if (std::find(build.present.begin(), build.present.end(), input.name) == build.present.end()) continue;
+        const auto handle = resolve(build.step.inputs.at(input.name), input.frame);
+        build.inputs[input.name] = handle;
+        if (!input.history) continue;
+        const gpu::TextureDesc desc = graph.textures()[std::size_t(handle.texture)].desc;
+        const graph::TextureHistory history = graph.create_history(prefix + input.name + ".prev", desc);
+        build.previous[input.name] = history.previous;
+        build.history_current[input.name] = history.current;
     }
-    if (has_param_block(manifest))
-        pass.uniforms.push_back({kParamBinding, param_block(manifest, *shader.params)});
-    pass.uniforms.push_back({kFrameBinding, frame_block(capture_.header, step.name)});
-    if (!pass.reads.empty()) pass.uniforms.push_back({kSizeBinding, sizes.finish()});
-    std::vector<graph::TextureHandle> targets;
-    for (const std::string& name : shader.pass->writes) targets.push_back(names.at(name));
-    const auto written = graph.add_pass(std::move(pass), targets);
-    for (std::size_t i = 0; i < written.size(); ++i) names[shader.pass->writes[i]] = written[i];
+    for (const TextureSpec& spec : manifest.textures) declare_texture(build, spec);
+    for (const OutputSpec& spec : manifest.outputs)
+        build.textures[spec.name] = graph.create_texture(
+            prefix + spec.name, {width_, height_, texture_format_of_role(spec.role)});
+    for (const BufferSpec& spec : manifest.buffers) declare_buffer(build, spec);
+}
+
+void GraphBuilder::declare_texture(StepBuild& build, const TextureSpec& spec) {
+    const std::string name = build.prefix() + spec.name;
+    const auto [width, height] = grid_size(spec.grid, build.params, width_, height_);
+    const int most_mips = int(std::bit_width(unsigned(std::max(width, height))));
+    const int mips = spec.auto_mips ? most_mips : std::min(spec.mips, most_mips);
+    const gpu::TextureDesc desc{width, height, spec.format, spec.layers, mips};
+    graph::TextureOptions options;
+    options.auto_mips = spec.auto_mips;
+    if (spec.clear) options.clear = four_values(*spec.clear);
+    if (!spec.history) {
+        build.textures[spec.name] = graph.create_texture(name, desc, options);
+        return;
+    }
+    const graph::TextureHistory history = graph.create_history(name, desc, options);
+    build.previous[spec.name] = history.previous;
+    build.textures[spec.name] = build.history_current[spec.name] = history.current;
+}
+
+void GraphBuilder::declare_buffer(StepBuild& build, const BufferSpec& spec) {
+    const std::string name = build.prefix() + spec.name;
+    std::size_t count = std::size_t(count_value(spec.count, build.params));
+    if (spec.grid) {
+        const auto [width, height] = grid_size(*spec.grid, build.params, width_, height_);
+        count *= std::size_t(width) * std::size_t(height);
+    }
+    const graph::BufferDesc desc{std::max<std::size_t>(16, count * element_bytes(spec.element))};
+    if (!spec.history) {
+        build.buffers[spec.name] = graph.create_buffer(name, desc, clear_words(spec));
+        return;
+    }
+    const graph::BufferHistory history = graph.create_history_buffer(name, desc, clear_words(spec));
+    build.previous_buffers[spec.name] = history.previous;
+    build.buffers[spec.name] = history.current;
+}
+
+graph::TextureHandle GraphBuilder::import(const std::string& role, int offset) {
+    const ImportKey key{role, offset};
+    const auto known = imports.find(key);
+    if (known != imports.end()) return known->second;
+    const std::string where = offset < 0 ? "previous." : offset > 0 ? "next." : "capture.";
+    return imports[key] =
+               graph.import_texture(where + role, {width_, height_, texture_format_of_role(role)});
+}
+
+graph::TextureHandle GraphBuilder::resolve(const InputSource& source, int offset) {
+    return source.step < 0 ? import(source.output, offset)
+                           : steps_[std::size_t(source.step)].at(source.output);
+}
+
+void GraphBuilder::keep_histories(StepBuild& build) {
+    for (const auto& [name, current] : build.history_current) {
+        const auto input = build.inputs.find(name);
+        if (input != build.inputs.end()) {
+            add_copy(build, name, input->second, current);
+            continue;
+        }
+        // A texture that was read and written by one pass lies elsewhere now.
+        const graph::TextureHandle live = build.textures.at(name);
+        if (live.texture != current.texture) add_copy(build, name, live, current);
+    }
+}
+
+void GraphBuilder::add_copy(StepBuild& build, const std::string& name, graph::TextureHandle from,
+                            graph::TextureHandle to) {
+    const bool is_integer = gpu::is_integer(graph.textures()[std::size_t(from.texture)].desc.format);
+    graph::Pass pass;
+    pass.name = build.step.name + "." + name + ".keep";
+    pass.program = &programs_.host("copy.frag", is_integer ? std::vector<std::string>{"COPY_UINT"}
+                                                           : std::vector<std::string>{});
+    pass.reads.push_back({from, 0});
+    pass.targets.push_back({to});
+    (void)graph.add_pass(std::move(pass));
+    passes.push_back({build.index, graph.pass_count() - 1, false, true});
+}
+
+void GraphBuilder::add_mix(StepBuild& build) {
+    const PipelineStep& step = build.step;
+    for (const auto& [name, source] : step.before) {
+        graph::Pass pass;
+        pass.name = step.name + "." + name + ".mix";
+        std::vector<std::string> defines;
+        pass.reads = {{resolve(source), 0}, {build.textures.at(name), 1}};
+        if (step.mask && !step.mask->role.empty()) {
+            defines = {"MASK_IMAGE"};
+            pass.reads.push_back({import(step.mask->role), 2});
+        } else if (step.mask && !step.mask->objects.empty()) {
+            defines = {"MASK_OBJECTS"};
+            pass.reads.push_back({import("object_id"), 2});
+        } else if (step.mask) {
+            defines = {"MASK_FILE"};
+            if (!mask_files.contains(build.index)) {
+                const auto [width, height] = picture_size(step.mask->file);
+                mask_files[build.index] =
+                    graph.import_texture(step.name + ".mask", {width, height, gpu::TextureFormat::r32f});
+            }
+            pass.reads.push_back({mask_files.at(build.index), 2, gpu::Filter::linear});
+        }
+        pass.program = &programs_.host("mix.frag", defines);
+        pass.uniforms.push_back({0, mix_block(step, frame_)});
+        const gpu::TextureDesc desc = graph.textures()[std::size_t(build.textures.at(name).texture)].desc;
+        pass.targets.push_back({graph.create_texture(pass.name, desc)});
+        build.textures[name] = graph.add_pass(std::move(pass)).targets[0];
+        passes.push_back({build.index, graph.pass_count() - 1, true, false});
+    }
 }
 
 }  // namespace aftershade

@@ -1,48 +1,96 @@
 // From steps and their parameters to the passes of a frame graph.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "framework/effect/param_resources.h"
 #include "framework/effect/pass_program.h"
 #include "framework/graph/frame_graph.h"
-#include "framework/image/capture.h"
 #include "framework/pipeline/pipeline.h"
 
 namespace aftershade {
 
-/// The uniform block `frame` of one step.
-std::vector<std::byte> frame_block(const CaptureHeader& header, const std::string& step);
+/// Where the executor finds what changes from frame to frame.
+struct BoundPass {
+    int step = 0;
+    int pass = 0;          ///< in the graph
+    bool mixes = false;    ///< the host's own pass: its block is the mix's
+    bool is_host = false;  ///< a copy of the host's own: it has no blocks
+};
+
+/// A texture or a buffer that a parameter fills.
+struct BoundParam {
+    int step = 0;
+    const ParamSpec* spec = nullptr;
+    graph::TextureHandle texture;
+    graph::BufferHandle buffer;
+};
+
+/// One image of a capture that the graph imports.
+struct ImportKey {
+    std::string role;
+    int offset = 0;  ///< -1, 0, +1: of which capture
+    auto operator<=>(const ImportKey&) const = default;
+};
+
+struct StepBuild;
 
 /// Adds the passes of one step after the other to a graph.
 class GraphBuilder {
 public:
-    using Names = std::map<std::string, graph::TextureHandle>;
+    using Textures = std::map<std::string, graph::TextureHandle>;
 
-    GraphBuilder(ProgramCache& programs, const Pipeline& pipeline, const Capture& capture);
+    GraphBuilder(ProgramCache& programs, const Pipeline& pipeline, const FrameInputs& frame);
 
-    /// Calls `bound` with the index in the graph of each pass that runs; returns the step's textures and
-    /// outputs by name. Throws Error(ExitCode::effect) where a pass reads, or the step outputs, what no pass
-    /// has written with these parameters.
-    Names add_step(int index, const ParamSet& params, const std::vector<Names>& earlier,
-                   const std::function<void(int pass)>& bound);
+    /// Adds step `index`, after those before it. Throws Error(ExitCode::effect) where a pass reads, or the
+    /// step outputs, what no pass has written with these parameters.
+    void add_step(int index, const ParamSet& params);
+
+    /// Textures and outputs of a step that was added, by name, as they are after its last pass.
+    const Textures& textures_of(int step) const { return steps_.at(std::size_t(step)); }
 
     graph::FrameGraph graph;
-    Names imports;  ///< by role
+    std::map<ImportKey, graph::TextureHandle> imports;
+    std::map<int, graph::TextureHandle> mask_files;  ///< by step
+    std::vector<BoundPass> passes;
+    std::vector<BoundParam> params;
 
 private:
-    graph::TextureHandle import(const std::string& role);
-    void add_pass(const PipelineStep& step, const ShaderContext& shader, const Names& inputs, Names& names);
+    graph::TextureHandle import(const std::string& role, int offset = 0);
+    graph::TextureHandle resolve(const InputSource& source, int offset = 0);
+    void declare(StepBuild& build);
+    void declare_texture(StepBuild& build, const TextureSpec& spec);
+    void declare_buffer(StepBuild& build, const BufferSpec& spec);
+    void declare_params(StepBuild& build);
+    void add_pass(StepBuild& build, const PassSpec& spec);
+    void add_turn(StepBuild& build, const PassSpec& spec, int turn, int turns);
+    void add_clear(StepBuild& build, const PassSpec& spec);
+    void add_mix(StepBuild& build);
+    void add_copy(StepBuild& build, const std::string& name, graph::TextureHandle from,
+                  graph::TextureHandle to);
+    void keep_histories(StepBuild& build);
+    graph::TextureHandle write_target(const StepBuild& build, const PassSpec& spec, const std::string& name,
+                                      const std::string& pass);
+    void set_kind(const StepBuild& build, const PassSpec& spec, graph::Pass& pass) const;
 
     ProgramCache& programs_;
     const Pipeline& pipeline_;
-    const Capture& capture_;
-    std::vector<std::string> roles_;
+    FrameInputs frame_;
     int width_ = 0;
     int height_ = 0;
+    std::vector<Textures> steps_;
 };
+
+/// Extent of a grid over a working grid of width x height px.
+std::pair<int, int> grid_size(const GridSpec& grid, const ParamSet& params, int width, int height);
+/// One number for all four, or four.
+std::array<double, 4> four_values(const std::vector<double>& values);
+/// A count's number, or the value of the int parameter that it names.
+int count_value(const CountSpec& count, const ParamSet& params);
 
 }  // namespace aftershade

@@ -1,13 +1,15 @@
-// The user's JSON: ordered steps, no file paths inside.
+// The user's JSON: ordered steps, no paths of captures or outputs inside.
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "framework/core/diagnostics.h"
 #include "framework/core/document.h"
+#include "framework/core/param.h"
 
 namespace aftershade {
 
@@ -19,25 +21,45 @@ struct WiringSpec {
     Place place;
 };
 
+/// "mask": where a step works. One of role, objects and file is set.
+struct MaskSpec {
+    std::string role;                ///< of the capture, with one channel: "mask", "aov:hair"
+    std::vector<TableKey> objects;   ///< ids, ranges of ids, or Cryptomatte names; needs the role object_id
+    std::filesystem::path file;      ///< picture over the display window; its first channel, as stored
+    bool invert = false;
+    Place place;
+};
+
 struct LookStep {
     std::string name;  ///< the effect's id unless the look says otherwise
     std::string effect;
     bool enabled = true;
     std::optional<std::string> preset;
-    std::vector<Member> params;  ///< values are read against the effect's manifest
+    std::vector<Member> params;  ///< values are read against the effect's manifest; variables are put in
     std::vector<WiringSpec> wiring;
-    Place place;  ///< of the step
+    std::optional<Node> mix;  ///< 0: the image as it was before the step, 1: as the step made it
+    std::optional<MaskSpec> mask;
+    std::filesystem::path folder;  ///< of the look that the step stands in: its files are named from there
+    Place place;                   ///< of the step
     Place effect_place;
     Place preset_place;
 };
 
 struct Look {
     std::string file;
-    std::vector<LookStep> steps;
+    std::vector<LookStep> steps;  ///< those of looks that it uses, too
+    std::vector<std::filesystem::path> files;  ///< the look and every look that it uses
 };
 
-/// Reads the form of the document; whether its effects exist and its values fit is compile_pipeline's to say.
-std::optional<Look> read_look(const std::filesystem::path& path, Diagnostics& diagnostics);
-std::optional<Look> parse_look(const Node& node, Diagnostics& diagnostics);
+/// Values by name, above a look's own "vars".
+using LookVariables = std::map<std::string, Node>;
+
+/// Reads the form of the document and of every look that it uses ({"use": "lens.json"}); whether effects
+/// exist and values fit is compile_pipeline's to say.
+std::optional<Look> read_look(const std::filesystem::path& path, Diagnostics& diagnostics,
+                              const LookVariables& variables = {});
+/// The same for a document in memory; looks that it uses lie beside node.place.file.
+std::optional<Look> parse_look(const Node& node, Diagnostics& diagnostics,
+                               const LookVariables& variables = {});
 
 }  // namespace aftershade

@@ -1,7 +1,6 @@
 #include "framework/pipeline/pipeline.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "framework/core/error.h"
 #include "framework/core/units.h"
@@ -14,6 +13,10 @@ bool contains(const std::vector<std::string>& list, const std::string& item) {
     return std::find(list.begin(), list.end(), item) != list.end();
 }
 
+void add_once(std::vector<std::string>& list, const std::string& item) {
+    if (!contains(list, item)) list.push_back(item);
+}
+
 std::string list_channels(const std::vector<std::string>& channels) {
     constexpr std::size_t kShown = 40;
     std::string text;
@@ -22,47 +25,37 @@ std::string list_channels(const std::vector<std::string>& channels) {
     return text;
 }
 
-/// The capture's number for a parameter that has a "from", in the parameter's unit.
-std::optional<double> number_from_capture(const ParamSpec& spec, const std::string& field,
-                                          const Camera& camera) {
-    const auto value = camera.get(field);
-    const std::string& unit = find_camera_field(field)->unit;
-    if (!value || unit == spec.unit) return value;
-    return convert_unit(*value, unit, spec.unit);
-}
-
-[[noreturn]] void refuse_value(const PipelineStep& step, const ParamSpec& spec, const std::string& value,
-                               const CaptureHeader& header) {
-    throw Error(ExitCode::capture, header.path.string() + ": " + spec.from + " is " + value +
-                                       ", outside the range of " + step.name + "." + spec.name +
-                                       " (set the parameter in the look, or mend the capture's camera)");
-}
-
-std::optional<ParamValue> value_from_capture(const PipelineStep& step, const ParamSpec& spec,
-                                             const CaptureHeader& header) {
-    constexpr std::string_view kCamera = "camera.";
-    if (!spec.from.starts_with(kCamera)) return std::nullopt;
-    if (spec.type == ParamType::enum_) {
-        const std::string& name = header.camera.lens_model;
-        if (name.empty()) return std::nullopt;
-        if (!contains(spec.values, name)) refuse_value(step, spec, "'" + name + "'", header);
-        return name;
-    }
-    const auto number = number_from_capture(spec, spec.from.substr(kCamera.size()), header.camera);
-    if (!number) return std::nullopt;
-    if ((spec.min && *number < *spec.min) || (spec.max && *number > *spec.max))
-        refuse_value(step, spec, format_number(*number), header);
-    if (spec.type == ParamType::int_) return std::int64_t(std::llround(*number));
-    return *number;
+/// Roles that the step's values, mix and mask are taken from.
+std::vector<std::string> host_roles(const PipelineStep& step) {
+    std::vector<std::string> roles = roles_of(step.mix);
+    for (const auto& [name, value] : step.values)
+        for (const std::string& role : roles_of(value)) add_once(roles, role);
+    if (step.mask && !step.mask->role.empty()) add_once(roles, step.mask->role);
+    if (step.mask && !step.mask->objects.empty()) add_once(roles, "object_id");
+    return roles;
 }
 
 }  // namespace
 
 std::vector<std::string> Pipeline::capture_roles() const {
     std::vector<std::string> roles{"color"};
+    for (const PipelineStep& step : steps) {
+        for (const InputSpec& input : step.manifest->inputs) {
+            const InputSource& source = step.inputs.at(input.name);
+            if (source.step < 0 && input.frame == 0) add_once(roles, source.output);
+        }
+        for (const auto& [output, source] : step.before)
+            if (source.step < 0) add_once(roles, source.output);
+        for (const std::string& role : host_roles(step)) add_once(roles, role);
+    }
+    return roles;
+}
+
+std::vector<std::string> Pipeline::neighbour_roles(int offset) const {
+    std::vector<std::string> roles;
     for (const PipelineStep& step : steps)
-        for (const auto& [input, source] : step.inputs)
-            if (source.step < 0 && !contains(roles, source.output)) roles.push_back(source.output);
+        for (const InputSpec& input : step.manifest->inputs)
+            if (input.frame == offset) add_once(roles, step.inputs.at(input.name).output);
     return roles;
 }
 
@@ -73,6 +66,30 @@ bool Pipeline::writes_role(const std::string& role) const {
     return false;
 }
 
+bool Pipeline::has_history() const {
+    return std::any_of(steps.begin(), steps.end(),
+                       [](const PipelineStep& step) { return step.manifest->has_history(); });
+}
+
+int Pipeline::last_accumulating_step() const {
+    for (int i = int(steps.size()) - 1; i >= 0; --i)
+        if (steps[std::size_t(i)].manifest->accumulates_subframes) return i;
+    return -1;
+}
+
+const ParamSpec& mix_spec() {
+    static const ParamSpec spec = [] {
+        ParamSpec mix;
+        mix.name = "mix";
+        mix.doc = "0: the image as it was before the step, 1: as the step made it.";
+        mix.default_value = 1.0;
+        mix.min = 0;
+        mix.max = 1;
+        return mix;
+    }();
+    return spec;
+}
+
 void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header) {
     const auto missing = [&](const std::string& who, const std::string& role) {
         throw Error(ExitCode::capture, header.path.string() + ": " + who + " needs the role '" + role +
@@ -80,20 +97,30 @@ void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header
                                            "' does not find among the channels " +
                                            list_channels(header.channels));
     };
-    for (const PipelineStep& step : pipeline.steps)
+    for (const PipelineStep& step : pipeline.steps) {
         for (const InputSpec& input : step.manifest->inputs) {
             const InputSource& source = step.inputs.at(input.name);
             if (!input.optional && source.step < 0 && !contains(header.roles, source.output))
                 missing("step '" + step.name + "' (effect " + step.manifest->id + ")", source.output);
         }
+        for (const auto& [output, source] : step.before)
+            if (source.step < 0 && !contains(header.roles, source.output))
+                missing("the mix of step '" + step.name + "'", source.output);
+        for (const std::string& role : host_roles(step))
+            if (!contains(header.roles, role)) missing("a value or the mask of step '" + step.name + "'", role);
+    }
     if (!contains(header.roles, "color")) missing("the output", "color");
 }
 
-std::vector<std::string> present_inputs(const Pipeline& pipeline, int step,
-                                        const std::vector<std::string>& capture_roles) {
+std::vector<std::string> present_inputs(const Pipeline& pipeline, int index, const FrameInputs& frame) {
     std::vector<std::string> present;
-    for (const auto& [input, source] : pipeline.steps[std::size_t(step)].inputs)
-        if (source.step >= 0 || contains(capture_roles, source.output)) present.push_back(input);
+    const PipelineStep& step = pipeline.steps[std::size_t(index)];
+    for (const InputSpec& input : step.manifest->inputs) {
+        const InputSource& source = step.inputs.at(input.name);
+        const Capture* capture = frame.at(input.frame);
+        if (source.step >= 0 || (capture && capture->images.contains(source.output)))
+            present.push_back(input.name);
+    }
     return present;
 }
 
@@ -104,28 +131,53 @@ struct ResolvedValue {
     std::string origin;
 };
 
-ResolvedValue resolve_param(const PipelineStep& step, const ParamSpec& spec, const CaptureHeader& header) {
+std::string described(const ValueSource& source) {
+    if (std::holds_alternative<KeyedValue>(source)) return ", by keys";
+    if (const auto* camera = std::get_if<CameraValue>(&source)) return ", from camera." + camera->field;
+    if (std::holds_alternative<DepthValue>(source)) return ", from depth";
+    return "";
+}
+
+ResolvedValue resolve_param(const PipelineStep& step, const ParamSpec& spec, const FrameInputs& frame) {
+    const std::string label = step.name + "." + spec.name;
     if (const auto asked = step.values.find(spec.name); asked != step.values.end())
-        return {asked->second, step.origins.at(spec.name)};
-    if (auto captured = value_from_capture(step, spec, header))
-        return {std::move(*captured), header.camera.origin(spec.from.substr(spec.from.find('.') + 1))};
+        return {evaluate(asked->second, spec, label, *frame.capture),
+                step.origins.at(spec.name) + described(asked->second)};
+    constexpr std::string_view kCamera = "camera.";
+    if (spec.from.starts_with(kCamera)) {
+        const std::string field = spec.from.substr(kCamera.size());
+        if (auto captured = camera_value(spec, field, label, frame.capture->header))
+            return {std::move(*captured), frame.capture->header.camera.origin(field)};
+    }
     return {spec.default_value, "the manifest"};
+}
+
+/// A relation that the capture's or keyed values break; those of the look alone were checked before.
+void require_relations(const PipelineStep& step, const ParamSet& params, const FrameInputs& frame) {
+    for (const RelationFault& fault : check_relations(step.manifest->params, params))
+        throw Error(ExitCode::capture, frame.capture->header.path.string() + ": " +
+                                           relation_message(fault, step.name) +
+                                           " (set both in the look, or mend the capture's camera)");
 }
 
 }  // namespace
 
-ParamSet resolve_params(const PipelineStep& step, const CaptureHeader& header) {
+ParamSet resolve_params(const PipelineStep& step, const FrameInputs& frame) {
     ParamSet params;
     for (const ParamSpec& spec : step.manifest->params)
-        params.set(spec.name, resolve_param(step, spec, header).value);
+        params.set(spec.name, resolve_param(step, spec, frame).value);
+    require_relations(step, params, frame);
+    if (frame.scale != 1)
+        for (const ParamSpec& spec : step.manifest->params)
+            params.set(spec.name, scale_pixels(spec, params.get(spec.name), frame.scale));
     return params;
 }
 
-std::string explain_params(const Pipeline& pipeline, const CaptureHeader& header) {
+std::string explain_params(const Pipeline& pipeline, const FrameInputs& frame) {
     std::string text;
     for (const PipelineStep& step : pipeline.steps)
         for (const ParamSpec& spec : step.manifest->params) {
-            const ResolvedValue resolved = resolve_param(step, spec, header);
+            const ResolvedValue resolved = resolve_param(step, spec, frame);
             const std::string unit = spec.unit.empty() ? "" : " " + spec.unit;
             text += step.name + "." + spec.name + " = " + format_value(resolved.value) + unit + "   [" +
                     resolved.origin + "]\n";

@@ -12,6 +12,7 @@
 #include "framework/effect/registry.h"
 #include "framework/image/capture.h"
 #include "framework/pipeline/look.h"
+#include "framework/pipeline/value_source.h"
 
 namespace aftershade {
 
@@ -21,14 +22,20 @@ struct InputSource {
     std::string output;  ///< that step's output; for the capture, the role
 };
 
-/// Sets of values, from the most to the least binding: --set, look, preset; below them come the capture and
-/// the manifest.
+/// One use of an effect. Values are, from the most to the least binding: --set, look, preset; below them come
+/// the capture and the manifest.
 struct PipelineStep {
     std::string name;
     const EffectManifest* manifest = nullptr;
     std::map<std::string, InputSource> inputs;   ///< by input name
-    std::map<std::string, ParamValue> values;    ///< asked for by the user
+    std::map<std::string, ValueSource> values;   ///< asked for by the user; paths of files are complete
     std::map<std::string, std::string> origins;  ///< of each of `values`: "--set", "the look", "preset fast"
+    std::map<std::string, Place> places;         ///< of each of `values`
+    ValueSource mix = ParamValue(1.0);
+    std::optional<MaskSpec> mask;
+    /// By output: the image of that role before the step, which `mix` and `mask` let through. Empty where the
+    /// step has neither.
+    std::map<std::string, InputSource> before;
 };
 
 /// "bokeh.coc": an intermediate to be written out.
@@ -44,7 +51,27 @@ struct Pipeline {
 
     /// Roles that some step takes from the capture, required or not, and `color` for the outputs.
     std::vector<std::string> capture_roles() const;
+    /// Roles that some input takes from the capture before (-1) or after (+1).
+    std::vector<std::string> neighbour_roles(int offset) const;
     bool writes_role(const std::string& role) const;
+    bool has_history() const;
+    /// The last step whose effect accumulates sub-frames; -1: none does.
+    int last_accumulating_step() const;
+};
+
+/// The captures of one frame. [refers to what the caller keeps]
+struct FrameInputs {
+    const Capture* capture = nullptr;
+    const Capture* previous = nullptr;  ///< of the same shot, where some input wants it
+    const Capture* next = nullptr;
+    bool begins_shot = false;           ///< a cut: nothing before it counts
+    int subframe = 0;
+    int subframe_count = 1;
+    const Capture* centre = nullptr;  ///< of several sub-frames: the one at the middle of the exposure
+    double scale = 1;  ///< of the capture's pixels against those that values in px are meant for
+    double fps = 24;
+
+    const Capture* at(int offset) const { return offset < 0 ? previous : offset > 0 ? next : capture; }
 };
 
 /// One "--set step.param=value" or "--tap step.texture", as given.
@@ -59,19 +86,22 @@ struct PipelineOptions {
 Pipeline compile_pipeline(const Look& look, EffectRegistry& effects, const PipelineOptions& options,
                           Diagnostics& diagnostics);
 
+/// What every step takes from the host: "mix", 0 to 1.
+const ParamSpec& mix_spec();
+
 /// Throws Error(ExitCode::capture) if the capture lacks a role that a step requires, naming the effect, the
 /// role, and the channels that the file does have.
 void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header);
 
-/// Optional and required inputs of a step that have an image, given the capture's roles.
-std::vector<std::string> present_inputs(const Pipeline& pipeline, int step,
-                                        const std::vector<std::string>& capture_roles);
+/// Optional and required inputs of a step that have an image in this frame.
+std::vector<std::string> present_inputs(const Pipeline& pipeline, int step, const FrameInputs& frame);
 
 /// Every parameter of the step: the user's value, else the capture's (the manifest's "from"), else the
-/// default. Throws Error(ExitCode::capture) if the capture's value is out of the parameter's range.
-ParamSet resolve_params(const PipelineStep& step, const CaptureHeader& header);
+/// default; values in px times frame.scale. Throws Error(ExitCode::capture) where the capture's values do not
+/// fit.
+ParamSet resolve_params(const PipelineStep& step, const FrameInputs& frame);
 
 /// One line per parameter of every step: its value, its unit, and where the value is from.
-std::string explain_params(const Pipeline& pipeline, const CaptureHeader& header);
+std::string explain_params(const Pipeline& pipeline, const FrameInputs& frame);
 
 }  // namespace aftershade

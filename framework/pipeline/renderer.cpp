@@ -7,7 +7,10 @@
 #include "framework/core/error.h"
 #include "framework/gpu/timer.h"
 #include "framework/image/role.h"
-#include "framework/pipeline/graph_builder.h"
+#include "framework/pipeline/built_graph.h"
+#include "framework/pipeline/frame_blocks.h"
+#include "framework/pipeline/history_file.h"
+#include "framework/pipeline/mask_picture.h"
 
 namespace aftershade {
 
@@ -35,6 +38,12 @@ Image read_back(const gpu::Texture& texture, int channels) {
         std::copy_n(&values[pixel * std::size_t(stored)], channels,
                     &image.floats()[pixel * std::size_t(channels)]);
     return image;
+}
+
+void upload(const Image& image, gpu::Texture& texture) {
+    if (image.type() == ComponentType::uint32) texture.upload(image.uints());
+    else if (image.channels() == 3) texture.upload(widened(image.floats()));
+    else texture.upload(image.floats());
 }
 
 bool infinity_allowed(const std::string& role) {
@@ -66,127 +75,179 @@ graph::Executor::PassObserver auditor(const Pipeline& pipeline, std::vector<Audi
 
 }  // namespace
 
-/// A frame graph for one size and one choice of passes.
-struct PipelineRenderer::Built {
-    struct BoundPass {
-        int step = 0;
-        int pass = 0;  // in the graph
-        bool has_params = false;
-    };
-    std::string key;
-    std::map<std::string, graph::TextureHandle> imports;             // by role of the capture
-    std::vector<std::map<std::string, graph::TextureHandle>> names;  // per step: textures and outputs
-    std::map<std::string, graph::TextureHandle> results;             // by role
-    std::vector<BoundPass> passes;
-    std::unique_ptr<graph::Executor> executor;
-};
-
 PipelineRenderer::PipelineRenderer(gpu::Context& context, const Pipeline& pipeline,
                                    const std::filesystem::path& data_folder)
     : context_(context), pipeline_(pipeline), programs_(context, data_folder / "glsl") {}
 
 PipelineRenderer::~PipelineRenderer() = default;
 
-std::string PipelineRenderer::graph_key(const Capture& capture, const std::vector<ParamSet>& params,
-                                        const std::vector<std::string>& roles) const {
-    std::string key = std::to_string(capture.header.data_window.width()) + "x" +
-                      std::to_string(capture.header.data_window.height());
-    for (const auto& [role, image] : capture.images) key += " " + role;
-    for (const std::string& role : roles) key += " >" + role;
-    for (std::size_t i = 0; i < pipeline_.steps.size(); ++i) {
-        const EffectManifest& manifest = *pipeline_.steps[i].manifest;
-        for (const ParamSpec& spec : manifest.params)
-            if (spec.bind == ParamBind::define) key += " " + format_value(params[i].get(spec.name));
-        for (const PassSpec& pass : manifest.passes)
-            for (const WhenSpec& condition : pass.when)
-                if (params[i].has(condition.subject))
-                    key += " " + format_value(params[i].get(condition.subject));
-    }
-    return key;
+std::string PipelineRenderer::history_fault(const FrameInputs& frame) const {
+    const CaptureHeader& header = frame.capture->header;
+    if (!last_) return "the first frame";
+    if (frame.begins_shot) return "a cut";
+    if (!(last_->window == header.data_window)) return "another data window";
+    if (header.frame != last_->frame + 1)
+        return "it follows frame " + std::to_string(last_->frame) + ", not " + std::to_string(header.frame - 1);
+    return "";
 }
 
-std::unique_ptr<PipelineRenderer::Built> PipelineRenderer::build(const Capture& capture,
-                                                                 const std::vector<ParamSet>& params,
-                                                                 const std::vector<std::string>& roles) {
-    auto built = std::make_unique<Built>();
-    GraphBuilder builder(programs_, pipeline_, capture);
-    for (int i = 0; i < int(pipeline_.steps.size()); ++i) {
-        const EffectManifest& manifest = *pipeline_.steps[std::size_t(i)].manifest;
-        const auto bound = [&](int pass) { built->passes.push_back({i, pass, has_param_block(manifest)}); };
-        built->names.push_back(builder.add_step(i, params[std::size_t(i)], built->names, bound));
-        for (const OutputSpec& output : manifest.outputs)
-            built->results[output.role] = built->names.back().at(output.name);
-    }
-    for (const std::string& role : roles)
-        if (const auto result = built->results.find(role); result != built->results.end())
-            builder.graph.keep(result->second);
-    for (const Tap& tap : pipeline_.taps) {
-        for (std::size_t i = 0; i < pipeline_.steps.size(); ++i) {
-            if (pipeline_.steps[i].name != tap.step) continue;
-            const graph::TextureHandle handle = built->names[i].at(tap.texture);
-            if (handle.version == 0)
-                throw Error(ExitCode::usage,
-                            "--tap " + tap.text() + ": no pass writes it with these parameters");
-            builder.graph.keep(handle);
-        }
-    }
-    built->imports = std::move(builder.imports);
-    built->executor = std::make_unique<graph::Executor>(context_, std::move(builder.graph));
-    return built;
+void PipelineRenderer::resolve(const FrameInputs& frame) {
+    params_.clear();
+    for (const PipelineStep& step : pipeline_.steps) params_.push_back(resolve_params(step, frame));
 }
 
-FrameResult PipelineRenderer::render(const Capture& capture, const std::vector<std::string>& roles,
-                                     bool timed) {
-    std::vector<ParamSet> params;
-    for (const PipelineStep& step : pipeline_.steps) params.push_back(resolve_params(step, capture.header));
-    const std::string key = graph_key(capture, params, roles);
-    if (!built_ || built_->key != key) {
-        built_.reset();  // the old textures go before the new ones come
-        built_ = build(capture, params, roles);
-        built_->key = key;
-    }
+void PipelineRenderer::prepare(const FrameInputs& frame, const std::vector<std::string>& roles) {
+    resolve(frame);
+    const std::string key = graph_key(pipeline_, frame, params_, roles);
+    if (built_ && built_->key == key) return;
+    // The old textures go before the new ones come, unless what they hold lives on.
+    std::unique_ptr<BuiltGraph> old = std::move(built_);
+    if (!pipeline_.has_history()) old.reset();
+    built_ = build_graph(context_, programs_, pipeline_, frame, params_, roles);
+    built_->key = key;
+    if (old) built_->executor->take_history_from(*old->executor);
+}
 
-    FrameResult result;
+double PipelineRenderer::feed(const FrameInputs& frame, const FrameBefore& before, int first_pass) {
     gpu::Timer timer(context_);
     timer.start();
-    for (const auto& [role, handle] : built_->imports) {
-        gpu::Texture* texture = built_->executor->texture(handle);
-        if (!texture) continue;
-        const Image& image = capture.images.at(role);
-        if (image.type() == ComponentType::uint32) texture->upload(image.uints());
-        else if (image.channels() == 3) texture->upload(widened(image.floats()));
-        else texture->upload(image.floats());
-    }
-    for (const Built::BoundPass& pass : built_->passes) {
+    graph::Executor& executor = *built_->executor;
+    for (const auto& [key, handle] : built_->imports)
+        if (gpu::Texture* texture = executor.texture(handle))
+            upload(frame.at(key.offset)->images.at(key.role), *texture);
+    upload_masks(pipeline_, *built_);
+    upload_params(pipeline_, params_, *built_);
+    const std::vector<std::byte> camera = bytes_of(camera_block(frame, before));
+    for (const BoundPass& pass : built_->passes) {
+        if (pass.pass < first_pass || pass.is_host) continue;
         const PipelineStep& step = pipeline_.steps[std::size_t(pass.step)];
-        if (pass.has_params)
-            built_->executor->set_uniforms(pass.pass, kParamBinding,
-                                           param_block(*step.manifest, params[std::size_t(pass.step)]));
-        built_->executor->set_uniforms(pass.pass, kFrameBinding, frame_block(capture.header, step.name));
+        if (pass.mixes) {
+            executor.set_uniforms(pass.pass, 0, mix_block(step, frame));
+            continue;
+        }
+        if (has_param_block(*step.manifest))
+            executor.set_uniforms(pass.pass, kParamBinding,
+                                  param_block(*step.manifest, params_[std::size_t(pass.step)]));
+        executor.set_uniforms(pass.pass, kFrameBinding,
+                              bytes_of(frame_block(frame, step.name, before.history_valid)));
+        executor.set_uniforms(pass.pass, kCameraBinding, camera);
     }
-    const double upload_ms = timer.stop_ms();
-    if (audit_)
-        for (const auto& [role, handle] : built_->imports)
-            audit_input(role, capture.images.at(role), result.audit);
-    result.times = built_->executor->run(
-        timed, audit_ ? auditor(pipeline_, result.audit) : graph::Executor::PassObserver{});
+    return timer.stop_ms();
+}
 
+void PipelineRenderer::run_passes(bool timed, graph::PassRange range, FrameResult& result) {
+    const auto observer = audit_ ? auditor(pipeline_, result.audit) : graph::Executor::PassObserver{};
+    const auto times = built_->executor->run(timed, observer, range);
+    result.times.insert(result.times.end(), times.begin(), times.end());
+}
+
+FrameResult PipelineRenderer::render(const FrameInputs& frame, const std::vector<std::string>& roles,
+                                     bool timed) {
+    const bool is_first = frame.subframe == 0;
+    if (saved_) begin_from_saved(frame);
+    if (is_first) frame_fault_ = history_fault(frame);
+    prepare(frame, roles);
+    if (saved_) restore(*std::exchange(saved_, nullptr));
+    if (is_first && !frame_fault_.empty()) built_->executor->clear_history();
+    FrameResult result;
+    if (pipeline_.has_history() && is_first) result.history_reset = frame_fault_;
+
+    const bool accumulates = built_->first_single_pass > 0 && frame.subframe_count > 1;
+    double upload_ms = 0;
+    if (accumulates) {
+        const bool valid = !is_first || frame_fault_.empty();
+        upload_ms += feed(frame, {valid, valid && last_ ? std::optional(last_->camera) : std::nullopt}, 0);
+        run_passes(timed, {0, built_->first_single_pass}, result);
+    }
+    const CaptureHeader& header = frame.capture->header;
+    last_ = {header.frame, header.data_window, header.camera};
+    if (accumulates && frame.subframe + 1 < frame.subframe_count) return result;
+
+    FrameInputs once = frame;
+    if (accumulates && frame.centre) {
+        once.capture = frame.centre;
+        resolve(once);
+    }
+    const bool valid = frame_fault_.empty();
+    const int first_pass = accumulates ? built_->first_single_pass : 0;
+    upload_ms += feed(once, {valid, valid ? camera_before_ : std::nullopt}, first_pass);
+    camera_before_ = once.capture->header.camera;
+    if (audit_)
+        for (const auto& [key, handle] : built_->imports)
+            audit_input(key.role, once.at(key.offset)->images.at(key.role), result.audit);
+    run_passes(timed, {first_pass, -1}, result);
+    read_results(roles, timed, result);
+    if (timed) result.times.insert(result.times.begin(), {"upload", upload_ms});
+    return result;
+}
+
+void PipelineRenderer::read_results(const std::vector<std::string>& roles, bool timed, FrameResult& result) {
+    gpu::Timer timer(context_);
     timer.start();
+    graph::Executor& executor = *built_->executor;
     for (const std::string& role : roles)
         if (const auto handle = built_->results.find(role); handle != built_->results.end())
-            result.images[role] =
-                read_back(*built_->executor->texture(handle->second), find_role(role)->channels);
+            result.images[role] = read_back(*executor.texture(handle->second), find_role(role)->channels);
     for (const Tap& tap : pipeline_.taps)
         for (std::size_t i = 0; i < pipeline_.steps.size(); ++i)
             if (pipeline_.steps[i].name == tap.step) {
-                const gpu::Texture& texture = *built_->executor->texture(built_->names[i].at(tap.texture));
+                const gpu::Texture& texture = *executor.texture(built_->textures[i].at(tap.texture));
                 result.taps[tap.text()] = read_back(texture, gpu::channel_count(texture.desc().format));
             }
-    if (timed) {
-        result.times.insert(result.times.begin(), {"upload", upload_ms});
-        result.times.push_back({"readback", timer.stop_ms()});
+    if (timed) result.times.push_back({"readback", timer.stop_ms()});
+}
+
+void PipelineRenderer::save_history(const std::filesystem::path& path) {
+    SavedHistory saved;
+    saved.look = history_identity(pipeline_);
+    if (last_) {
+        saved.frame = last_->frame;
+        saved.window = last_->window;
+        saved.camera = last_->camera;
     }
-    return result;
+    if (built_) saved.take_from(built_->executor->history());
+    write_history(path, saved);
+}
+
+void PipelineRenderer::load_history(const std::filesystem::path& path) {
+    saved_ = std::make_unique<SavedHistory>(read_history(path));
+    const std::string identity = history_identity(pipeline_);
+    if (saved_->look == identity) return;
+    throw Error(ExitCode::usage, path.string() + ": this history is of another look or effect version\n" +
+                                     difference_of_identities(saved_->look, identity));
+}
+
+void PipelineRenderer::begin_from_saved(const FrameInputs& frame) {
+    const CaptureHeader& header = frame.capture->header;
+    const std::string file = saved_->path.string();
+    if (header.frame != saved_->frame + 1)
+        throw Error(ExitCode::usage, file + ": this history is of frame " + std::to_string(saved_->frame) +
+                                         "; it can go on with frame " + std::to_string(saved_->frame + 1) +
+                                         ", not with " + std::to_string(header.frame));
+    if (!(header.data_window == saved_->window))
+        throw Error(ExitCode::usage, file + ": this history is of another size: its window is " +
+                                         window_text(saved_->window) + ", that of frame " +
+                                         std::to_string(header.frame) + " is " +
+                                         window_text(header.data_window));
+    last_ = {saved_->frame, saved_->window, saved_->camera};
+    camera_before_ = saved_->camera;
+}
+
+void PipelineRenderer::restore(const SavedHistory& saved) {
+    const std::string missing = saved.give_to(built_->executor->history());
+    if (!missing.empty())
+        throw Error(ExitCode::usage, saved.path.string() + ": this history has no '" + missing +
+                                         "' of the size that this frame needs");
+}
+
+std::string PipelineRenderer::graph_dot() const {
+    return built_ ? graph::to_dot(built_->executor->graph(), built_->executor->compiled()) : "";
+}
+
+std::pair<std::uint64_t, std::uint64_t> PipelineRenderer::graph_bytes() const {
+    if (!built_) return {0, 0};
+    const graph::CompiledGraph& compiled = built_->executor->compiled();
+    return {compiled.bytes, compiled.bytes_unaliased};
 }
 
 }  // namespace aftershade

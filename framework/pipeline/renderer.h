@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "framework/effect/pass_program.h"
@@ -20,32 +22,66 @@ struct FrameResult {
     std::map<std::string, Image> taps;    ///< by "step.texture"
     std::vector<graph::PassTime> times;   ///< upload, each pass, readback; empty unless timed
     std::vector<AuditFinding> audit;      ///< in the order of the passes; empty unless audited
+    std::string history_reset;            ///< why history began anew: "a cut"; "" where it went on or is none
 };
 
+/// A frame graph for one size and one choice of passes (framework/pipeline/built_graph.h).
+struct BuiltGraph;
+struct FrameBefore;
+struct SavedHistory;
+
 /// Builds the frame graph on the first frame and again only when the size, the roles present, or a value that
-/// chooses passes or programs changes. [the context's thread]
+/// chooses passes, sizes or programs changes. [the context's thread]
 class PipelineRenderer {
 public:
     PipelineRenderer(gpu::Context& context, const Pipeline& pipeline,
                      const std::filesystem::path& data_folder);
     ~PipelineRenderer();
 
-    /// `roles` are read back where a step makes them. Throws Error(ExitCode::effect).
-    FrameResult render(const Capture& capture, const std::vector<std::string>& roles, bool timed);
+    /// Renders one frame; of sub-frames, give each in turn. Steps up to the last one that accumulates run for
+    /// each sub-frame; the others run once, with the last, over `frame.centre`. `roles` are read back where a
+    /// step makes them; of sub-frames before the last the result is empty. Frames follow each other in
+    /// `frame.capture->header.frame`; anything else begins history anew. Throws Error(ExitCode::effect).
+    FrameResult render(const FrameInputs& frame, const std::vector<std::string>& roles, bool timed);
     /// Reads every input and every float texture back after its pass and looks for NaN and infinities. Slow.
     void set_audit(bool audit) { audit_ = audit; }
 
+    /// What the next frame would read of this one (framework/pipeline/history_file.h). Throws
+    /// Error(ExitCode::output).
+    void save_history(const std::filesystem::path& path);
+    /// Takes up where a run over the frames before this one ended. Throws Error(ExitCode::usage) where the
+    /// file is damaged or of another look, effect version, size or last frame: at once, or by render().
+    void load_history(const std::filesystem::path& path);
+
+    /// The graph of the last frame in Graphviz's language; "" before the first.
+    std::string graph_dot() const;
+    /// Of the last frame: bytes of all textures and buffers, and what they would be without aliasing.
+    std::pair<std::uint64_t, std::uint64_t> graph_bytes() const;
+
 private:
-    struct Built;
-    std::string graph_key(const Capture& capture, const std::vector<ParamSet>& params,
-                          const std::vector<std::string>& roles) const;
-    std::unique_ptr<Built> build(const Capture& capture, const std::vector<ParamSet>& params,
-                                 const std::vector<std::string>& roles);
+    struct Last {
+        int frame = 0;
+        Window window;
+        Camera camera;
+    };
+    void resolve(const FrameInputs& frame);
+    void prepare(const FrameInputs& frame, const std::vector<std::string>& roles);
+    std::string history_fault(const FrameInputs& frame) const;
+    double feed(const FrameInputs& frame, const FrameBefore& before, int first_pass);
+    void run_passes(bool timed, graph::PassRange range, FrameResult& result);
+    void read_results(const std::vector<std::string>& roles, bool timed, FrameResult& result);
+    void begin_from_saved(const FrameInputs& frame);
+    void restore(const SavedHistory& saved);
 
     gpu::Context& context_;
     const Pipeline& pipeline_;
     ProgramCache programs_;
-    std::unique_ptr<Built> built_;
+    std::vector<ParamSet> params_;
+    std::unique_ptr<BuiltGraph> built_;
+    std::optional<Last> last_;              // capture, sub-frames too
+    std::optional<Camera> camera_before_;   // of the last whole frame
+    std::string frame_fault_;               // why this frame began history anew
+    std::unique_ptr<SavedHistory> saved_;   // loaded and not yet taken up
     bool audit_ = false;
 };
 

@@ -1,0 +1,38 @@
+// The uniform blocks that the host fills for a frame.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/effect/shader_source.h"
+#include "framework/pipeline/pipeline.h"
+
+namespace aftershade {
+
+/// What is known of the frame that was rendered before this one, and belongs to the same shot.
+struct FrameBefore {
+    bool history_valid = false;
+    std::optional<Camera> camera;
+};
+
+/// The block `frame` of one step.
+FrameBlock frame_block(const FrameInputs& frame, const std::string& step, bool history_valid);
+
+/// The block `camera`; `before` gives the prev_ matrices, unless the capture before is at hand.
+CameraBlock camera_block(const FrameInputs& frame, const FrameBefore& before);
+
+/// The block of a step's "mix" and "mask" (glsl/host/mix.frag). Throws Error(ExitCode::capture) where the mix
+/// comes from the capture and does not fit.
+std::vector<std::byte> mix_block(const PipelineStep& step, const FrameInputs& frame);
+/// Most ranges of objects that a mask holds.
+inline constexpr std::size_t kMaskObjects = 64;
+
+template <typename Block>
+std::vector<std::byte> bytes_of(const Block& block) {
+    const auto* first = reinterpret_cast<const std::byte*>(&block);
+    return {first, first + sizeof block};
+}
+
+}  // namespace aftershade

@@ -1,0 +1,180 @@
+// One pass of an effect as passes of the graph: the second half of GraphBuilder.
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "framework/core/error.h"
+#include "framework/effect/std140.h"
+#include "framework/pipeline/frame_blocks.h"
+#include "framework/pipeline/graph_builder.h"
+#include "framework/pipeline/step_build.h"
+
+namespace aftershade {
+
+namespace {
+
+gpu::Access gpu_access(AccessSpec::Kind kind) {
+    switch (kind) {
+        case AccessSpec::Kind::read: return gpu::Access::read;
+        case AccessSpec::Kind::write: return gpu::Access::write;
+        case AccessSpec::Kind::atomic: break;
+    }
+    return gpu::Access::read_write;
+}
+
+/// A level or layer of a manifest on this turn of a repeated pass.
+int on_turn(int number, int turn) {
+    return number > kPassIndex / 2 ? number - kPassIndex + turn : number;
+}
+
+std::array<float, 4> size_of(const gpu::TextureDesc& desc, int level) {
+    const int width = std::max(1, desc.width >> std::max(0, level));
+    const int height = std::max(1, desc.height >> std::max(0, level));
+    return {float(width), float(height), 1.0f / float(width), 1.0f / float(height)};
+}
+
+[[noreturn]] void unwritten(const StepBuild& build, const PassSpec& spec, const std::string& name) {
+    throw Error(ExitCode::effect, "step '" + build.step.name + "': pass '" + spec.name + "' reads '" + name +
+                                      "', which no pass has written with these parameters");
+}
+
+/// Samplers of a pass, and the block of their sizes.
+void bind_reads(const StepBuild& build, const PassSpec& spec, const PassBindings& bindings, int turn,
+                const graph::FrameGraph& graph, graph::Pass& pass) {
+    Std140Writer sizes;
+    for (const ReadSpec& read : bindings.reads) {
+        const graph::TextureHandle handle =
+            read.previous ? build.previous.at(read.name) : build.read_handle(read.name);
+        const auto& texture = graph.textures()[std::size_t(handle.texture)];
+        if (handle.version == 0 && !texture.options.clear) unwritten(build, spec, read.name);
+        const int level = read.level < 0 ? -1 : on_turn(read.level, turn);
+        pass.reads.push_back({handle, int(pass.reads.size()), read.filter, read.wrap, level});
+        const auto size = size_of(texture.desc, level);
+        sizes.add(std::span<const float>(size));
+    }
+    if (!pass.reads.empty()) pass.uniforms.push_back({kSizeBinding, sizes.finish()});
+    for (const ParamSpec* param : bindings.param_samplers)
+        pass.reads.push_back({build.param_textures.at(param->name), int(pass.reads.size())});
+    for (const NativeTableSpec* table : bindings.native_tables)
+        pass.reads.push_back({build.native_tables.at(table->name), int(pass.reads.size())});
+}
+
+void bind_memory(const StepBuild& build, const PassBindings& bindings, graph::Pass& pass) {
+    for (const AccessSpec& image : bindings.images)
+        pass.images.push_back({build.textures.at(image.name), int(pass.images.size()), gpu_access(image.kind), 0});
+    for (const AccessSpec& use : bindings.buffers) {
+        const auto& buffers = use.previous ? build.previous_buffers : build.buffers;
+        pass.buffers.push_back({buffers.at(use.name), int(pass.buffers.size()), gpu_access(use.kind)});
+    }
+    for (const ParamSpec* param : bindings.param_tables)
+        pass.buffers.push_back(
+            {build.param_buffers.at(param->name), int(pass.buffers.size()), gpu::Access::read});
+}
+
+struct PassTurn {
+    std::int32_t index = 0;
+    std::int32_t count = 1;
+    std::int32_t padding[2] = {0, 0};
+};
+
+}  // namespace
+
+void GraphBuilder::add_pass(StepBuild& build, const PassSpec& spec) {
+    if (spec.kind == PassKind::clear) return add_clear(build, spec);
+    const int turns = spec.repeat ? count_value(*spec.repeat, build.params) : 1;
+    for (int turn = 0; turn < turns; ++turn) add_turn(build, spec, turn, turns);
+}
+
+void GraphBuilder::add_clear(StepBuild& build, const PassSpec& spec) {
+    graph::Pass pass;
+    pass.name = build.step.name + "." + spec.name;
+    pass.kind = graph::PassKind::clear;
+    pass.clear_value = four_values(spec.clear_value);
+    for (const WriteSpec& write : spec.writes)
+        pass.targets.push_back({build.textures.at(write.name), write.level, write.layer});
+    const graph::Written written = graph.add_pass(std::move(pass));
+    for (std::size_t i = 0; i < spec.writes.size(); ++i)
+        build.textures[spec.writes[i].name] = written.targets[i];
+}
+
+void GraphBuilder::add_turn(StepBuild& build, const PassSpec& spec, int turn, int turns) {
+    const EffectManifest& manifest = build.manifest();
+    const ShaderContext shader{&manifest, &spec, &build.params, build.present, programs_.glsl_folder()};
+    const PassBindings bindings = pass_bindings(shader);
+    graph::Pass pass;
+    pass.name = build.prefix() + spec.name + (turns > 1 ? "[" + std::to_string(turn) + "]" : "");
+    pass.program = &programs_.get(shader);
+    pass.blend = spec.blend;
+    bind_reads(build, spec, bindings, turn, graph, pass);
+    bind_memory(build, bindings, pass);
+    if (has_param_block(manifest)) pass.uniforms.push_back({kParamBinding, param_block(manifest, build.params)});
+    pass.uniforms.push_back({kFrameBinding, std::vector<std::byte>(sizeof(FrameBlock))});
+    pass.uniforms.push_back({kCameraBinding, std::vector<std::byte>(sizeof(CameraBlock))});
+    if (spec.repeat) pass.uniforms.push_back({kPassBinding, bytes_of(PassTurn{turn, turns})});
+    for (const WriteSpec& write : spec.writes)
+        pass.targets.push_back({write_target(build, spec, write.name, pass.name), on_turn(write.level, turn),
+                                on_turn(write.layer, turn)});
+    set_kind(build, spec, pass);
+    const graph::Written written = graph.add_pass(std::move(pass));
+    for (std::size_t i = 0; i < spec.writes.size(); ++i)
+        build.textures[spec.writes[i].name] = written.targets[i];
+    for (std::size_t i = 0; i < bindings.images.size(); ++i)
+        build.textures[bindings.images[i].name] = written.images[i];
+    for (std::size_t i = 0; i < bindings.buffers.size(); ++i)
+        if (!bindings.buffers[i].previous) build.buffers[bindings.buffers[i].name] = written.buffers[i];
+    passes.push_back({build.index, graph.pass_count() - 1, false, false});
+}
+
+/// A draw that reads what it writes gets memory of its own to write to: the reads keep what was before.
+graph::TextureHandle GraphBuilder::write_target(const StepBuild& build, const PassSpec& spec,
+                                                const std::string& name, const std::string& pass) {
+    const graph::TextureHandle handle = build.textures.at(name);
+    const auto reads_it = [&](const ReadSpec& read) {
+        return read.name == name && !read.previous && read.level < 0 && !build.inputs.contains(name);
+    };
+    if (std::none_of(spec.reads.begin(), spec.reads.end(), reads_it)) return handle;
+    const auto& texture = graph.textures()[std::size_t(handle.texture)];
+    graph::TextureOptions options;
+    options.auto_mips = texture.options.auto_mips;
+    return graph.create_texture(build.prefix() + name + "@" + pass.substr(build.prefix().size()), texture.desc,
+                                options);
+}
+
+void GraphBuilder::set_kind(const StepBuild& build, const PassSpec& spec, graph::Pass& pass) const {
+    const auto cells = [&](const GridSpec& grid) {
+        const auto [width, height] = grid_size(grid, build.params, width_, height_);
+        return width * height;
+    };
+    if (spec.kind == PassKind::compute) {
+        pass.kind = graph::PassKind::compute;
+        const DispatchSpec& dispatch = spec.dispatch;
+        if (dispatch.kind == DispatchSpec::Kind::indirect) {
+            pass.groups.indirect = build.buffers.at(dispatch.indirect);
+        } else if (dispatch.kind == DispatchSpec::Kind::groups) {
+            std::copy_n(dispatch.groups, 3, pass.groups.count.begin());
+        } else {
+            int width = width_, height = height_;
+            if (!dispatch.over.empty()) {
+                const auto& desc =
+                    graph.textures()[std::size_t(build.read_handle(dispatch.over).texture)].desc;
+                width = desc.width;
+                height = desc.height;
+            }
+            const GridSpec tiles{GridSpec::Kind::tile, 1, dispatch.tile, {0, 0}};
+            std::tie(width, height) = grid_size(tiles, build.params, width, height);
+            pass.groups.count = {width, height, 1};
+        }
+    } else if (spec.instances) {
+        pass.kind = graph::PassKind::instances;
+        const InstanceSpec& instances = *spec.instances;
+        pass.instances.primitive = instances.primitive == InstanceSpec::Primitive::points
+                                       ? gpu::Primitive::points
+                                       : gpu::Primitive::quads;
+        if (!instances.indirect.empty()) pass.instances.indirect = build.buffers.at(instances.indirect);
+        else
+            pass.instances.count = count_value(instances.count, build.params) *
+                                   (instances.grid ? cells(*instances.grid) : 1);
+    }
+}
+
+}  // namespace aftershade

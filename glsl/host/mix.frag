@@ -1,0 +1,47 @@
+#version 450 core
+// A step's "mix" and "mask": the image before the step and the image that it made, by amount * mask. The host
+// defines MASK_IMAGE, MASK_FILE or MASK_OBJECTS.
+layout(binding = 0) uniform sampler2D before;
+layout(binding = 1) uniform sampler2D after;
+
+layout(std140, binding = 0) uniform MixBlock {
+    float amount;
+    int invert;
+    int object_count;
+    int unused;
+    ivec2 origin;        // display-window pixel of texel (0, 0)
+    ivec2 display_size;  // px
+    uvec4 objects[64];   // first and last id of a range
+} mixing;
+
+layout(location = 0) out vec4 result;
+
+#if defined(MASK_IMAGE)
+layout(binding = 2) uniform sampler2D mask_image;
+float mask(ivec2 pixel) { return texelFetch(mask_image, pixel, 0).r; }
+#elif defined(MASK_FILE)
+layout(binding = 2) uniform sampler2D mask_image;
+float mask(ivec2 pixel) {
+    return textureLod(mask_image, (vec2(pixel + mixing.origin) + 0.5) / vec2(mixing.display_size), 0.0).r;
+}
+#elif defined(MASK_OBJECTS)
+layout(binding = 2) uniform usampler2D object_id;
+float mask(ivec2 pixel) {
+    uint id = texelFetch(object_id, pixel, 0).r;
+    for (int i = 0; i < mixing.object_count; ++i)
+        if (id >= mixing.objects[i].x && id <= mixing.objects[i].y) return 1.0;
+    return 0.0;
+}
+#else
+float mask(ivec2 pixel) { return 1.0; }
+#endif
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    float weight = clamp(mask(pixel), 0.0, 1.0);
+    if (mixing.invert != 0) weight = 1.0 - weight;
+    weight *= mixing.amount;
+    vec4 a = texelFetch(before, pixel, 0), b = texelFetch(after, pixel, 0);
+    // The ends are exact, and infinite depth stays what it is: inf - inf would be NaN.
+    result = weight <= 0.0 ? a : weight >= 1.0 ? b : mix(a, b, weight);
+}
