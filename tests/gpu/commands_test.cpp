@@ -14,7 +14,9 @@ class DrawOn : public SoftwareTest {
 protected:
     void draw_to(const Program& program, std::vector<const Texture*> targets, const Bindings& bindings = {},
                  Blend blend = Blend::none) {
-        draw(context(), program, targets, bindings, blend);
+        std::vector<Target> whole;
+        for (const Texture* texture : targets) whole.push_back({.texture = texture});
+        draw(context(), program, whole, bindings, blend);
     }
 };
 ON_SOFTWARE_BACKENDS(DrawOn);
@@ -311,7 +313,7 @@ void main() {
 })",
                                           "transcendental");
     const Texture target(context, {.width = 64, .height = 64}, "target");
-    const Texture* const targets[] = {&target};
+    const Target targets[] = {{.texture = &target}};
     const SampledTexture textures[] = {{&source, 0, Filter::linear, Wrap::clamp}};
     draw(context, program, targets, {.textures = textures});
     return target.read_floats();
