@@ -34,6 +34,11 @@ struct Context::Impl {
     /// For destructors: false where make_current() throws.
     bool try_make_current() noexcept;
     void release() noexcept;
+    /// Call before GL touches a texture's or a buffer's memory from the CPU (read, write, clear): llvmpipe
+    /// 22.3.6 then waits for the draws to the last framebuffer only, not for earlier ones still in flight.
+    void wait_for_draws() const {
+        if (info.software) gl.Finish();
+    }
 
     std::unique_ptr<Platform> platform;
     GladGLContext gl{};

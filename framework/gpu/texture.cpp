@@ -125,6 +125,7 @@ std::vector<Value> read_values(Context& context, const Texture& texture, int lev
     const TextureDesc& desc = texture.desc();
     assert(level >= 0 && level < desc.mips && layer >= 0 && layer < desc.layers);
     context.make_current();
+    context.impl().wait_for_draws();
     std::vector<Value> values(value_count(desc, level));
     const int width = level_side(desc.width, level);
     const int height = level_side(desc.height, level);
@@ -189,6 +190,7 @@ void Texture::upload(std::span<const float> values, int layer) {
         return;
     }
     context_->make_current();
+    context_->impl().wait_for_draws();
     sub_image(context_->gl(), *this, layer, values.data());
     context_->check(fmt::format("uploading texture '{}'", label_));
 }
@@ -200,6 +202,7 @@ void Texture::upload(std::span<const std::uint32_t> values, int layer) {
         return;
     }
     context_->make_current();
+    context_->impl().wait_for_draws();
     sub_image(context_->gl(), *this, layer, values.data());
     context_->check(fmt::format("uploading texture '{}'", label_));
 }
@@ -236,6 +239,7 @@ void Texture::clear_to(const std::array<double, 4>& value) {
 void Texture::clear_to(const std::array<double, 4>& value, int level, int layer) {
     assert(level < desc_.mips && layer < desc_.layers);
     context_->make_current();
+    context_->impl().wait_for_draws();
     const GladGLContext& gl = context_->gl();
     const std::array<std::uint32_t, 4> texel = clear_texel(value, desc_.format);
     const GLenum pixel = gl_format(desc_.format).pixel;

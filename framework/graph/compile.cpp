@@ -74,8 +74,7 @@ public:
         assign(graph_.textures(), 0, compiled_.slots, compiled_.slot_of_texture, gpu::byte_size);
         assign(graph_.buffers(), buffers_, compiled_.buffer_slots, compiled_.slot_of_buffer, bytes_of_buffer);
         for (std::size_t i = 0; i < resources_.size(); ++i) {
-            auto& cleared =
-                i < buffers_ ? compiled_.texture_cleared_before : compiled_.buffer_cleared_before;
+            auto& cleared = i < buffers_ ? compiled_.texture_cleared_before : compiled_.buffer_cleared_before;
             const bool is_seen = resources_[i].cleared && lifetimes_[i] && needed_[i][0];
             cleared.push_back(is_seen ? first_use_[i] : -1);
         }
@@ -83,7 +82,9 @@ public:
     }
 
 private:
-    bool is_needed(const Version& v) const { return needed_[std::size_t(v.resource)][std::size_t(v.version)]; }
+    bool is_needed(const Version& v) const {
+        return needed_[std::size_t(v.resource)][std::size_t(v.version)];
+    }
     void need(const Version& v) { needed_[std::size_t(v.resource)][std::size_t(v.version)] = true; }
 
     /// Passes from the last to the first: one matters if a later one needs a version that it makes.

@@ -29,7 +29,8 @@ public:
         for (int i = 0; i < graph_.pass_count(); ++i) {
             runs_ = std::find(compiled_.passes.begin(), compiled_.passes.end(), i) != compiled_.passes.end();
             const char* const grey = runs_ ? "" : ", color=grey, fontcolor=grey";
-            text_ += fmt::format("  p{} [shape=box, label=\"{}\"{}];\n", i, quoted(graph_.pass(i).name), grey);
+            text_ +=
+                fmt::format("  p{} [shape=box, label=\"{}\"{}];\n", i, quoted(graph_.pass(i).name), grey);
             const PassUses uses = uses_of(graph_, i);
             for (const Version& version : uses.needs)
                 if (exists(version)) edge(node(version), fmt::format("p{}", i));
@@ -62,8 +63,8 @@ private:
         const int version = offset == 0 ? graph_.textures()[std::size_t(current)].version
                                         : graph_.buffers()[std::size_t(current)].version;
         if (version == 0) return;
-        text_ += fmt::format("  {} -> {} [style=dashed, constraint=false];\n", node({offset + current, version}),
-                             node({offset + previous, 1}));
+        text_ += fmt::format("  {} -> {} [style=dashed, constraint=false];\n",
+                             node({offset + current, version}), node({offset + previous, 1}));
     }
 
     /// The name of the node, which is described at its first mention.
@@ -96,10 +97,9 @@ private:
         }
         if (version.version > 1) label += fmt::format("\\nversion {}", version.version);
         if (slot >= 0) label += fmt::format("\\n{} {}", index < textures ? "slot" : "buffer slot", slot);
-        text_ += fmt::format("  {} [shape={}, label=\"{}\"{}{}];\n", name,
-                             index < textures ? "ellipse" : "cylinder", label,
-                             is_history ? ", style=dashed" : "",
-                             slot < 0 ? ", color=grey, fontcolor=grey" : "");
+        text_ += fmt::format(
+            "  {} [shape={}, label=\"{}\"{}{}];\n", name, index < textures ? "ellipse" : "cylinder", label,
+            is_history ? ", style=dashed" : "", slot < 0 ? ", color=grey, fontcolor=grey" : "");
     }
 
     template <typename Node>

@@ -93,8 +93,8 @@ struct Pass {
     std::vector<BufferUse> buffers{};
     std::vector<UniformBlock> uniforms{};
     gpu::Blend blend = gpu::Blend::none;
-    Instances instances;
-    Groups groups;
+    Instances instances{};
+    Groups groups{};
     std::array<double, 4> clear_value = {0, 0, 0, 0};
 };
 

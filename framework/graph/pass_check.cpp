@@ -82,7 +82,8 @@ private:
         for (const auto& indirect : {pass_.instances.indirect, pass_.groups.indirect}) {
             if (!indirect) continue;
             const FrameGraph::Buffer& buffer = live(graph_, *indirect, user_);
-            if (!buffer.is_filled()) fail(fmt::format("takes its count from '{}' before any write", buffer.name));
+            if (!buffer.is_filled())
+                fail(fmt::format("takes its count from '{}' before any write", buffer.name));
             const std::size_t least = pass_.kind == PassKind::compute ? 12 : 16;
             if (buffer.desc.bytes < least)
                 fail(fmt::format("takes its count from '{}' of {} bytes; the command takes {}", buffer.name,
@@ -104,25 +105,28 @@ private:
         check_distinct(pass_.buffers, "storage blocks");
         check_distinct(pass_.uniforms, "uniform blocks");
         for (const UniformBlock& block : pass_.uniforms)
-            if (block.bytes.empty()) fail(fmt::format("has an empty uniform block at binding {}", block.binding));
+            if (block.bytes.empty())
+                fail(fmt::format("has an empty uniform block at binding {}", block.binding));
     }
 
     void check_range(const Texture& texture, int level, int layer) const {
         if (level >= texture.desc.mips || level < -1)
             fail(fmt::format("uses level {} of '{}', which has {}", level, texture.name, texture.desc.mips));
         if (layer >= texture.desc.layers || layer < -1)
-            fail(fmt::format("uses layer {} of '{}', which has {}", layer, texture.name, texture.desc.layers));
+            fail(
+                fmt::format("uses layer {} of '{}', which has {}", layer, texture.name, texture.desc.layers));
     }
 
     /// `level`, `layer`: -1 for every one. `does` says what it does that needs content.
     void check_filled(const Texture& texture, int level, int layer, std::string_view does) const {
-        const bool any = std::find(texture.filled.begin(), texture.filled.end(), true) != texture.filled.end();
+        const bool any =
+            std::find(texture.filled.begin(), texture.filled.end(), true) != texture.filled.end();
         if (!any) fail(fmt::format("{} '{}' before any write", does, texture.name));
         for (int i = level < 0 ? 0 : level; i < (level < 0 ? texture.desc.mips : level + 1); ++i)
             for (int k = layer < 0 ? 0 : layer; k < (layer < 0 ? texture.desc.layers : layer + 1); ++k)
                 if (!texture.is_filled(i, k))
-                    fail(fmt::format("{} '{}' before any write to its level {}, layer {}", does, texture.name, i,
-                                     k));
+                    fail(fmt::format("{} '{}' before any write to its level {}, layer {}", does, texture.name,
+                                     i, k));
     }
 
     void check_writable(const Texture& texture) const {
@@ -201,8 +205,8 @@ private:
         for (const Target& target : pass_.targets)
             uses.push_back({Use::As::target, target.texture.texture, target.level, target.layer, true});
         for (const ImageUse& image : pass_.images)
-            uses.push_back({Use::As::image, image.texture.texture, image.level, -1,
-                            image.access != gpu::Access::read});
+            uses.push_back(
+                {Use::As::image, image.texture.texture, image.level, -1, image.access != gpu::Access::read});
         return uses;
     }
 
@@ -255,8 +259,8 @@ const Resource& live_of(const std::vector<Resource>& all, int index, int version
     const Resource& resource = all[std::size_t(index)];
     if (version != resource.version)
         throw GraphError(
-            fmt::format("{} uses version {} of '{}', which has been written since and is now version {}", user,
-                        version, resource.name, resource.version));
+            fmt::format("{} uses version {} of '{}', which has been written since and is now version {}",
+                        user, version, resource.name, resource.version));
     return resource;
 }
 

@@ -235,6 +235,27 @@ TEST_P(DrawOn, RefusesAProgramOfTheOtherKind) {
     EXPECT_EQ(error_of([&] { dispatch(context(), draws, 1, 1, 1, {}); }).find("draws: "), 0U);
 }
 
+TEST_P(DrawOn, IsDoneBeforeItsTargetIsReadThoughAnotherWasDrawnToSince) {
+    const Program slow = fragment(R"(layout(location = 0) out vec4 c;
+void main() {
+    float x = gl_FragCoord.x;
+    for (int i = 0; i < 500; ++i) x = sin(x) + 1.5;
+    c = vec4(x > 100.0 ? 0.0 : 1.0);
+})");
+    const Program quick = fragment(kOne);
+    for (int i = 0; i < 20; ++i) {
+        Texture first = texture(64, 64, TextureFormat::r32f), second = texture(64, 64, TextureFormat::r32f);
+        first.clear(0.0F);
+        draw_to(slow, {&first});
+        draw_to(quick, {&second});
+        ASSERT_EQ(first.read_floats(), std::vector<float>(64 * 64, 1.0F)) << i;
+        draw_to(slow, {&first});
+        draw_to(quick, {&second});
+        first.clear(5.0F);
+        ASSERT_EQ(first.read_floats(), std::vector<float>(64 * 64, 5.0F)) << i;
+    }
+}
+
 TEST_P(DrawOn, DropsTheFramebufferOfATextureThatDied) {
     const Program program = fragment(kOne);
     for (int i = 1; i < 20; ++i)

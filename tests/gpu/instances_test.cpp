@@ -49,7 +49,8 @@ void main() {
     static Floats expected_quads(int count) {
         Floats sum(kWidth * kHeight);
         for (int i = 0; i < count; ++i) {
-            for (int x = i; x < std::min(i + 2, kWidth); ++x) sum[std::size_t(i % 3 * kWidth + x)] += float(i + 1);
+            for (int x = i; x < std::min(i + 2, kWidth); ++x)
+                sum[std::size_t(i % 3 * kWidth + x)] += float(i + 1);
         }
         return sum;
     }
@@ -91,7 +92,8 @@ TEST_P(InstancesOn, TakesTheirNumberFromABuffer) {
     const Buffer five_quads = words({4, 5, 0, 0});
     EXPECT_EQ(added(quads(), {.primitive = Primitive::quads, .indirect = &five_quads}), expected_quads(5));
     const Buffer nine_points = words({1, 9, 0, 0});
-    EXPECT_EQ(added(points(), {.primitive = Primitive::points, .indirect = &nine_points}), expected_points(9));
+    EXPECT_EQ(added(points(), {.primitive = Primitive::points, .indirect = &nine_points}),
+              expected_points(9));
 }
 
 TEST_P(InstancesOn, TakesTheNumberThatAComputePassWroteJustBefore) {

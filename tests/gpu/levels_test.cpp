@@ -22,12 +22,12 @@ protected:
 ON_SOFTWARE_BACKENDS(LevelsOn);
 
 TEST_P(LevelsOn, DrawsToOneLevelOfOneLayerAndLeavesTheOthers) {
-    Texture array(context(),
-                  {.width = 5, .height = 4, .format = TextureFormat::r32f, .layers = 3, .mips = 3}, "array");
+    Texture array(context(), {.width = 5, .height = 4, .format = TextureFormat::r32f, .layers = 3, .mips = 3},
+                  "array");
     array.clear(-1.0F);
-    const Program program =
-        fragment("layout(location = 0) out vec4 c; void main() { c = vec4(gl_FragCoord.x + 100.0 * "
-                 "gl_FragCoord.y); }");
+    const Program program = fragment(
+        "layout(location = 0) out vec4 c; void main() { c = vec4(gl_FragCoord.x + 100.0 * "
+        "gl_FragCoord.y); }");
     draw_to(program, {&array, 1, 2});
     for (int level = 0; level < 3; ++level) {
         for (int layer = 0; layer < 3; ++layer) {
