@@ -35,7 +35,8 @@ struct Context::Impl {
     bool try_make_current() noexcept;
     void release() noexcept;
     /// Call before GL touches a texture's or a buffer's memory from the CPU (read, write, clear): llvmpipe
-    /// 22.3.6 then waits for the draws to the last framebuffer only, not for earlier ones still in flight.
+    /// (Mesa 22.3.6) gives back a target as it was before a draw still in flight, where another target was
+    /// drawn to since.
     void wait_for_draws() const {
         if (info.software) gl.Finish();
     }

@@ -95,7 +95,11 @@ void in_a_bare_loop(benchmark::State& state) {
 }
 
 // Wall time, since llvmpipe draws on threads of its own. At 16 x 16 what is left is the host's own work.
-BENCHMARK(through_the_executor)->Args({1920, 1080})->Args({16, 16})->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(through_the_executor)
+    ->Args({1920, 1080})
+    ->Args({16, 16})
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK(in_a_bare_loop)->Args({1920, 1080})->Args({16, 16})->UseRealTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace

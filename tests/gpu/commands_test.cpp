@@ -236,23 +236,29 @@ TEST_P(DrawOn, RefusesAProgramOfTheOtherKind) {
 }
 
 TEST_P(DrawOn, IsDoneBeforeItsTargetIsReadThoughAnotherWasDrawnToSince) {
-    const Program slow = fragment(R"(layout(location = 0) out vec4 c;
+    const Program sum = fragment(R"(layout(binding = 0) uniform sampler2D previous;
+layout(binding = 1) uniform sampler2D input_image;
+layout(location = 0) out float c;
 void main() {
-    float x = gl_FragCoord.x;
-    for (int i = 0; i < 500; ++i) x = sin(x) + 1.5;
-    c = vec4(x > 100.0 ? 0.0 : 1.0);
+    ivec2 p = ivec2(gl_FragCoord.xy);
+    c = texelFetch(previous, p, 0).r + texelFetch(input_image, p, 0).r;
 })");
-    const Program quick = fragment(kOne);
-    for (int i = 0; i < 20; ++i) {
-        Texture first = texture(64, 64, TextureFormat::r32f), second = texture(64, 64, TextureFormat::r32f);
-        first.clear(0.0F);
-        draw_to(slow, {&first});
-        draw_to(quick, {&second});
-        ASSERT_EQ(first.read_floats(), std::vector<float>(64 * 64, 1.0F)) << i;
-        draw_to(slow, {&first});
-        draw_to(quick, {&second});
-        first.clear(5.0F);
-        ASSERT_EQ(first.read_floats(), std::vector<float>(64 * 64, 5.0F)) << i;
+    const Program copy = fragment(R"(layout(binding = 0) uniform sampler2D previous;
+layout(location = 0) out float c;
+void main() { c = texelFetch(previous, ivec2(gl_FragCoord.xy), 0).r; })");
+    for (int repeat = 0; repeat < 50; ++repeat) {
+        Texture a = texture(5, 3, TextureFormat::r32f), b = texture(5, 3, TextureFormat::r32f);
+        Texture input = texture(5, 3, TextureFormat::r32f);
+        const Texture other = texture(5, 3, TextureFormat::r32f);
+        a.clear(0.0F);
+        for (int frame = 1; frame <= 3; ++frame) {
+            input.upload(std::vector<float>(15, 1.0F));
+            const SampledTexture textures[] = {{.texture = &a}, {.texture = &input, .binding = 1}};
+            draw_to(sum, {&b}, {.textures = textures});
+            draw_to(copy, {&other}, {.textures = std::span(textures).first(1)});
+            ASSERT_EQ(b.read_floats(), std::vector<float>(15, static_cast<float>(frame))) << repeat;
+            std::swap(a, b);
+        }
     }
 }
 

@@ -158,13 +158,14 @@ struct RandomGraph : Graph {
             const std::string name = "p" + std::to_string(i);
             Pass pass = pass_named(name, PassKind::draw);
             for (std::size_t k = below(4); k-- > 0;) {
-                const TextureHandle read = live[live.size() - 1 - below(std::min<std::size_t>(live.size(), 5))];
+                const TextureHandle read =
+                    live[live.size() - 1 - below(std::min<std::size_t>(live.size(), 5))];
                 pass.reads.push_back({.texture = read, .binding = int(pass.reads.size())});
             }
             const std::size_t over = below(live.size());
             const auto is_over = [&](const Read& read) { return read.texture == live[over]; };
-            const bool again = over > 0 && below(4) == 0 &&
-                               std::none_of(pass.reads.begin(), pass.reads.end(), is_over);
+            const bool again =
+                over > 0 && below(4) == 0 && std::none_of(pass.reads.begin(), pass.reads.end(), is_over);
             if (again && below(2) == 0) pass.blend = gpu::Blend::add;
             pass.targets = {{again ? live[over] : fresh(name)}};
             const TextureHandle made = add_pass(pass).targets[0];
@@ -219,7 +220,8 @@ std::vector<int> passes_that_matter(const FrameGraph& graph) {
         const auto [texture, version] = open.back();
         open.pop_back();
         for (int i = 0; i < graph.pass_count(); ++i) {
-            if (graph.written(i).targets[0] != TextureHandle{texture, version} || matters[std::size_t(i)]) continue;
+            if (graph.written(i).targets[0] != TextureHandle{texture, version} || matters[std::size_t(i)])
+                continue;
             matters[std::size_t(i)] = true;
             const Pass& pass = graph.pass(i);
             for (const Read& read : pass.reads) open.emplace_back(read.texture.texture, read.texture.version);

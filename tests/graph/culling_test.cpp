@@ -97,17 +97,25 @@ TEST(Culling, KeepsWhatAPartialWriteLeavesStanding) {
     EXPECT_EQ(running(draw, kPyramid), both);  // one level of three
     EXPECT_EQ(running(draw, kArray), both);    // one layer of two
     EXPECT_EQ(running(draw, kFull), second_only);
-    EXPECT_EQ(running([](Graph& g, TextureHandle a) { return g.clear("second", {a, 1, 0}); }, kPyramid), both);
-    EXPECT_EQ(running([](Graph& g, TextureHandle a) { return g.clear("second", {a, -1, -1}); }, kPyramid),
+    EXPECT_EQ(running(
+                  [](Graph& g, TextureHandle a) {
+                      return g.clear("second", {a, 1, 0});
+                  },
+                  kPyramid),
+              both);
+    EXPECT_EQ(running(
+                  [](Graph& g, TextureHandle a) {
+                      return g.clear("second", {a, -1, -1});
+                  },
+                  kPyramid),
               second_only);
 }
 
 TEST(Culling, FollowsBuffersAndCountsThatComeFromThem) {
     Graph graph;
     const BufferHandle table = graph.import_buffer("table", {64});
-    const BufferHandle count =
-        graph.compute("count", {table}, graph.create_buffer("count", {16}, {{4, 0, 0, 0}}),
-                      gpu::Access::read_write);
+    const BufferHandle count = graph.compute(
+        "count", {table}, graph.create_buffer("count", {16}, {{4, 0, 0, 0}}), gpu::Access::read_write);
     const BufferHandle unused = graph.compute("unused", {table}, graph.create_buffer("unused", {16}));
     Pass splats = pass_named("splats", PassKind::instances);
     splats.targets = {{graph.cleared("sum")}};
@@ -169,7 +177,9 @@ TEST(Culling, WritesAHistoryThatIsReadWithoutItsPastOnce) {
     const CompiledGraph compiled = graph.compile();
     EXPECT_EQ(slot(compiled, history.previous), -1);
     EXPECT_EQ(compiled.bytes, 2 * kFullBytes);
-    EXPECT_EQ(fault_of([&] { (void)graph.draw("early", {graph.create_history("b", kFull).current}, graph.fresh("c")); }),
+    EXPECT_EQ(fault_of([&] {
+                  (void)graph.draw("early", {graph.create_history("b", kFull).current}, graph.fresh("c"));
+              }),
               "pass 'early' reads 'b' before any write");
 }
 

@@ -18,9 +18,11 @@ std::string picture() {
     const TextureHistory history = graph.create_history("taa.accum", kFull);
     const BufferHistory exposure = graph.create_history_buffer("exposure.sum", {16});
     const BufferHandle sum = graph.compute("exposure.sum", {exposure.previous}, exposure.current);
-    const TextureHandle pyramid = graph.draw_at("bloom.base", {color}, {graph.cleared("bloom.pyramid", kPyramid)});
+    const TextureHandle pyramid =
+        graph.draw_at("bloom.base", {color}, {graph.cleared("bloom.pyramid", kPyramid)});
     (void)graph.draw("bloom\\unused", {color}, graph.fresh("bloom.unused", kArray));
-    const TextureHandle blended = graph.draw("taa.blend", {color, history.previous, pyramid}, history.current);
+    const TextureHandle blended =
+        graph.draw("taa.blend", {color, history.previous, pyramid}, history.current);
     graph.keep(graph.draw("out", {blended}, graph.fresh("out", kHalf)));
     graph.keep(sum);
     return to_dot(graph, graph.compile());
@@ -38,7 +40,8 @@ TEST(Dot, SaysSizeFormatAndSlotAndWhatIsCulledOrHistory) {
     EXPECT_TRUE(has(dot, R"re(label="bloom\.pyramid\\n64x36 r32f, 3 levels\\nslot \d+"\])re"));
     EXPECT_TRUE(has(dot, R"re(label="bloom\.unused\\n64x36 r32f, 2 layers", color=grey)re"));
     EXPECT_TRUE(has(dot, R"re(label="taa\.accum\.prev\\n64x36 rgba32f\\nslot \d+", style=dashed\])re"));
-    EXPECT_TRUE(has(dot, R"re(shape=cylinder, label="exposure\.sum\\n16 bytes\\nbuffer slot \d+", style=dashed\])re"));
+    EXPECT_TRUE(has(
+        dot, R"re(shape=cylinder, label="exposure\.sum\\n16 bytes\\nbuffer slot \d+", style=dashed\])re"));
     EXPECT_TRUE(has(dot, R"re(r\d+_1 -> r\d+_1 \[style=dashed, constraint=false\];)re"));
     EXPECT_TRUE(has(dot, R"re(label="capture\.\\"color\\")re"));
 }

@@ -13,8 +13,7 @@ namespace aftershade::graph {
 using Floats = std::vector<float>;
 
 constexpr int kWidth = 5, kHeight = 3;
-inline const gpu::TextureDesc kSmall{
-    .width = kWidth, .height = kHeight, .format = gpu::TextureFormat::r32f};
+inline const gpu::TextureDesc kSmall{.width = kWidth, .height = kHeight, .format = gpu::TextureFormat::r32f};
 
 inline std::vector<std::byte> block_of(float value) {
     std::vector<std::byte> bytes(16);  // std140 rounds a block up to 16 bytes
@@ -45,7 +44,8 @@ void main() {
 
     gpu::Program computes(const std::string& declarations, const std::string& body) {
         return gpu::Program::compute(
-            context(), "#version 450 core\n" + declarations + "\nvoid main() {\n" + body + "\n}\n", "compute");
+            context(), "#version 450 core\n" + declarations + "\nvoid main() {\n" + body + "\n}\n",
+            "compute");
     }
 
     /// out = source * 2 + add, texel by texel.

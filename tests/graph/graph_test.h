@@ -40,7 +40,8 @@ struct Graph : FrameGraph {
                        TextureHandle target) {
         return draws(name, reads, {target}).front();
     }
-    TextureHandle draw_at(const std::string& name, std::initializer_list<TextureHandle> reads, Target target) {
+    TextureHandle draw_at(const std::string& name, std::initializer_list<TextureHandle> reads,
+                          Target target) {
         Pass pass = pass_named(name, PassKind::draw, reads);
         pass.targets = {target};
         return add_pass(std::move(pass)).targets.front();

@@ -19,14 +19,16 @@ protected:
     };
 
     Accumulation accumulation(const gpu::TextureDesc& desc = kSmall, const std::string& name = "accum") {
-        if (!mix_) mix_.emplace(draws("result = 0.75 * texelFetch(other, p, 0).r + 0.25 * texelFetch(source, p, 0).r;"));
+        if (!mix_)
+            mix_.emplace(
+                draws("result = 0.75 * texelFetch(other, p, 0).r + 0.25 * texelFetch(source, p, 0).r;"));
         if (!copy_) copy_.emplace(draws("result = texelFetch(source, p, 0).r;"));
         Graph graph;
         Accumulation made;
         made.input = graph.import_texture("input", desc);
         const TextureHistory history = graph.create_history(name, desc);
-        made.accum =
-            graph.add_pass(draw_of("accum", *mix_, {made.input, history.previous}, history.current)).targets[0];
+        made.accum = graph.add_pass(draw_of("accum", *mix_, {made.input, history.previous}, history.current))
+                         .targets[0];
         made.out =
             graph.add_pass(draw_of("out", *copy_, {history.previous}, graph.fresh("out", desc))).targets[0];
         graph.keep(made.accum);

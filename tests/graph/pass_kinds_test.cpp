@@ -61,8 +61,9 @@ layout(r32i, binding = 0) uniform iimage2D tiles;)",
     TextureOptions high;
     high.clear = {1e9, 0, 0, 0};
     Pass pass = with(pass_named("tiles", PassKind::compute, {input}), tiles);
-    pass.images = {{graph.create_texture("tiles", {.width = 4, .height = 4, .format = gpu::TextureFormat::r32i}, high),
-                    0, gpu::Access::read_write, 0}};
+    pass.images = {
+        {graph.create_texture("tiles", {.width = 4, .height = 4, .format = gpu::TextureFormat::r32i}, high),
+         0, gpu::Access::read_write, 0}};
     pass.groups.count = {2, 2, 1};
     const TextureHandle out = graph.add_pass(pass).images[0];
     graph.keep(out);
@@ -77,7 +78,8 @@ layout(r32i, binding = 0) uniform iimage2D tiles;)",
             tile = std::min(tile, values[i]);
         }
         EXPECT_EQ(executor.texture(out)->read_floats(), expected) << frame;
-        for (float& value : values) value += 50;  // the second frame's least is larger: the first must be gone
+        for (float& value : values)
+            value += 50;  // the second frame's least is larger: the first must be gone
     }
 }
 
@@ -152,8 +154,9 @@ layout(r32ui, binding = 0) uniform writeonly uimage2D marks;)",
     deciding.buffers = {{graph.create_buffer("groups", {12}), 0, gpu::Access::write}};
     const BufferHandle groups = graph.add_pass(deciding).buffers[0];
     Pass marking = with(pass_named("mark", PassKind::compute), mark);
-    marking.images = {{graph.cleared("marks", {.width = kWidth, .height = kHeight, .format = gpu::TextureFormat::r32ui}),
-                       0, gpu::Access::write, 0}};
+    marking.images = {
+        {graph.cleared("marks", {.width = kWidth, .height = kHeight, .format = gpu::TextureFormat::r32ui}), 0,
+         gpu::Access::write, 0}};
     marking.groups.indirect = groups;
     const TextureHandle marks = graph.add_pass(marking).images[0];
     graph.keep(marks);
@@ -172,7 +175,8 @@ TEST_P(PassKindsOn, BuildsAPyramidByPassesThatReadOneLevelAndDrawTheNext) {
     const TextureHandle input = graph.import_texture("input", kTexels);
     gpu::TextureDesc desc = kTexels;
     desc.mips = 5;
-    TextureHandle pyramid = graph.add_pass(draw_of("base", base, {input}, graph.fresh("pyramid", desc))).targets[0];
+    TextureHandle pyramid =
+        graph.add_pass(draw_of("base", base, {input}, graph.fresh("pyramid", desc))).targets[0];
     for (int level = 1; level < desc.mips; ++level) {
         Pass pass = with(pass_named("down", PassKind::draw), largest);
         pass.reads = {{.texture = pyramid, .level = level - 1}};
@@ -206,7 +210,8 @@ TEST_P(PassKindsOn, FillsTheLevelsOfATextureThatAsksForItAfterEachWrite) {
     TextureOptions options;
     options.auto_mips = true;
     TextureHandle pyramid =
-        graph.add_pass(draw_of("copy", copy, {input}, graph.create_texture("pyramid", desc, options))).targets[0];
+        graph.add_pass(draw_of("copy", copy, {input}, graph.create_texture("pyramid", desc, options)))
+            .targets[0];
     const TextureHandle first =
         graph.add_pass(draw_of("mean", mean, {pyramid}, graph.fresh("mean", kSmall))).targets[0];
     Pass twice = draw_of("twice", copy, {input}, pyramid);
