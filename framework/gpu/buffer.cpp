@@ -59,6 +59,7 @@ void Buffer::write(std::span<const std::byte> values, std::size_t offset) {
     assert(offset <= bytes_ && values.size() <= bytes_ - offset);
     if (values.empty()) return;
     context_->make_current();
+    context_->impl().wait_for_draws();
     context_->gl().NamedBufferSubData(handle_, static_cast<GLintptr>(offset),
                                       static_cast<GLsizeiptr>(values.size()), values.data());
     context_->check(fmt::format("writing buffer '{}'", label_));
@@ -66,6 +67,7 @@ void Buffer::write(std::span<const std::byte> values, std::size_t offset) {
 
 std::vector<std::byte> Buffer::read() const {
     context_->make_current();
+    context_->impl().wait_for_draws();
     std::vector<std::byte> values(bytes_);
     context_->gl().GetNamedBufferSubData(handle_, 0, static_cast<GLsizeiptr>(bytes_), values.data());
     context_->check(fmt::format("reading buffer '{}'", label_));
@@ -74,6 +76,7 @@ std::vector<std::byte> Buffer::read() const {
 
 void Buffer::clear(std::uint32_t value) {
     context_->make_current();
+    context_->impl().wait_for_draws();
     context_->gl().ClearNamedBufferData(handle_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
     context_->check(fmt::format("clearing buffer '{}'", label_));
 }

@@ -77,6 +77,10 @@ private:
                      fmt::format("texture '{}' holds integers and cannot be read with a linear filter",
                                  sampled.texture->label()));
             }
+            if (sampled.level >= sampled.texture->desc().mips) {
+                fail(program_,
+                     fmt::format("texture '{}' has no level {}", sampled.texture->label(), sampled.level));
+            }
         }
         check_sizes(bindings_.uniforms, impl_.limits.uniform_block_bytes, "GL_MAX_UNIFORM_BLOCK_SIZE");
         check_sizes(bindings_.storage, impl_.limits.storage_block_bytes, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE");
@@ -94,9 +98,14 @@ private:
 
     void bind_textures() {
         for (const SampledTexture& sampled : bindings_.textures) {
-            const bool mips = sampled.texture->desc().mips > 1;
-            gl_.BindTextureUnit(unit(sampled.binding), sampled.texture->handle());
-            gl_.BindSampler(unit(sampled.binding), impl_.cache->sampler(sampled.filter, sampled.wrap, mips));
+            const bool one_level = sampled.texture->desc().mips == 1 || sampled.level >= 0;
+            // With one level there is nothing that a view would hide.
+            const GLuint handle = sampled.texture->desc().mips == 1 || sampled.level < 0
+                                      ? sampled.texture->handle()
+                                      : impl_.cache->level_view(*sampled.texture, sampled.level);
+            gl_.BindTextureUnit(unit(sampled.binding), handle);
+            gl_.BindSampler(unit(sampled.binding),
+                            impl_.cache->sampler(sampled.filter, sampled.wrap, !one_level));
         }
     }
 
@@ -131,23 +140,35 @@ private:
     bool enabled_;
 };
 
-void check_targets(const Limits& limits, const Program& program, std::span<const Texture* const> targets) {
+int side(int full, int level) {
+    return std::max(1, full >> level);
+}
+
+void check_targets(const Limits& limits, const Program& program, std::span<const Target> targets) {
     if (targets.empty()) fail(program, "there is no target to draw to");
     if (targets.size() > static_cast<std::size_t>(limits.colour_attachments)) {
         fail(program, fmt::format("{} targets; the limit is {} (GL_MAX_COLOR_ATTACHMENTS)", targets.size(),
                                   limits.colour_attachments));
     }
-    const TextureDesc& first = targets.front()->desc();
-    for (const Texture* target : targets) {
-        const TextureDesc& desc = target->desc();
-        if (desc.width == first.width && desc.height == first.height) continue;
-        fail(program,
-             fmt::format("targets differ in size: '{}' is {}x{}, '{}' is {}x{}", targets.front()->label(),
-                         first.width, first.height, target->label(), desc.width, desc.height));
+    const Target& first = targets.front();
+    for (const Target& target : targets) {
+        const TextureDesc& desc = target.texture->desc();
+        if (target.level < 0 || target.level >= desc.mips || target.layer < 0 ||
+            target.layer >= desc.layers) {
+            fail(program,
+                 fmt::format("texture '{}' has {} levels and {} layers; the target is level {} of layer {}",
+                             target.texture->label(), desc.mips, desc.layers, target.level, target.layer));
+        }
+        const int width = side(first.texture->desc().width, first.level);
+        const int height = side(first.texture->desc().height, first.level);
+        if (side(desc.width, target.level) == width && side(desc.height, target.level) == height) continue;
+        fail(program, fmt::format("targets differ in size: '{}' is {}x{}, '{}' is {}x{}",
+                                  first.texture->label(), width, height, target.texture->label(),
+                                  side(desc.width, target.level), side(desc.height, target.level)));
     }
 }
 
-GLuint framebuffer(Context& context, const Program& program, std::span<const Texture* const> targets) {
+GLuint framebuffer(Context& context, const Program& program, std::span<const Target> targets) {
     try {
         return context.impl().cache->framebuffer(targets);
     } catch (const Error& error) {
@@ -156,19 +177,28 @@ GLuint framebuffer(Context& context, const Program& program, std::span<const Tex
     }
 }
 
-void check_feedback(const Program& program, std::span<const Texture* const> targets,
-                    const Bindings& bindings) {
+void check_feedback(const Program& program, std::span<const Target> targets, const Bindings& bindings) {
     for (const SampledTexture& sampled : bindings.textures) {
-        if (std::find(targets.begin(), targets.end(), sampled.texture) == targets.end()) continue;
-        fail(program,
-             fmt::format("texture '{}' is read and drawn to by the same pass", sampled.texture->label()));
+        for (const Target& target : targets) {
+            if (sampled.texture != target.texture) continue;
+            if (sampled.level >= 0 && sampled.level != target.level) continue;
+            fail(program,
+                 fmt::format("texture '{}' is read and drawn to by the same pass", sampled.texture->label()));
+        }
     }
 }
 
-}  // namespace
+/// GL would read past the end of a buffer that is too short, or report an error that names no pass.
+void check_indirect(const Program& program, const Buffer& buffer, std::size_t bytes) {
+    if (buffer.size() >= bytes) return;
+    fail(program, fmt::format("the buffer that says how many has {} bytes; the command takes {}",
+                              buffer.size(), bytes));
+}
 
-void draw(Context& context, const Program& program, std::span<const Texture* const> targets,
-          const Bindings& bindings, Blend blend) {
+/// Everything of a draw but the command itself, which `submit` gives.
+template <typename Submit>
+void draw_with(Context& context, const Program& program, std::span<const Target> targets,
+               const Bindings& bindings, Blend blend, Submit submit) {
     context.make_current();
     const Context::Impl& impl = context.impl();
     const GladGLContext& gl = impl.gl;
@@ -180,10 +210,12 @@ void draw(Context& context, const Program& program, std::span<const Texture* con
     {
         const PassScope pass(context, program, bindings);
         const BlendScope blending(gl, blend);
+        const TextureDesc& desc = targets.front().texture->desc();
+        const int level = targets.front().level;
         gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
-        gl.Viewport(0, 0, targets.front()->desc().width, targets.front()->desc().height);
+        gl.Viewport(0, 0, side(desc.width, level), side(desc.height, level));
         gl.BindVertexArray(impl.vertex_array);
-        gl.DrawArrays(GL_TRIANGLES, 0, 3);
+        submit(gl);
         if (pass.writes_memory()) gl.MemoryBarrier(GL_ALL_BARRIER_BITS);
         gl.BindVertexArray(0);
         gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
@@ -191,17 +223,60 @@ void draw(Context& context, const Program& program, std::span<const Texture* con
     context.check(program.label());
 }
 
-void dispatch(Context& context, const Program& program, int groups_x, int groups_y, int groups_z,
-              const Bindings& bindings) {
+template <typename Submit>
+void dispatch_with(Context& context, const Program& program, const Bindings& bindings, Submit submit) {
     context.make_current();
     const GladGLContext& gl = context.gl();
     {
         const PassScope pass(context, program, bindings);
-        gl.DispatchCompute(static_cast<GLuint>(groups_x), static_cast<GLuint>(groups_y),
-                           static_cast<GLuint>(groups_z));
-        gl.MemoryBarrier(GL_ALL_BARRIER_BITS);
+        submit(gl);
+        if (pass.writes_memory()) gl.MemoryBarrier(GL_ALL_BARRIER_BITS);
     }
     context.check(program.label());
+}
+
+}  // namespace
+
+void draw(Context& context, const Program& program, std::span<const Target> targets, const Bindings& bindings,
+          Blend blend) {
+    draw_with(context, program, targets, bindings, blend,
+              [](const GladGLContext& gl) { gl.DrawArrays(GL_TRIANGLES, 0, 3); });
+}
+
+void draw_instances(Context& context, const Program& program, std::span<const Target> targets,
+                    const Bindings& bindings, const InstanceRange& instances, Blend blend) {
+    constexpr std::size_t kCommandBytes = 16;
+    if (instances.indirect) check_indirect(program, *instances.indirect, kCommandBytes);
+    const bool quads = instances.primitive == Primitive::quads;
+    const GLenum mode = quads ? GL_TRIANGLE_STRIP : GL_POINTS;
+    draw_with(context, program, targets, bindings, blend, [&](const GladGLContext& gl) {
+        if (!instances.indirect) {
+            gl.DrawArraysInstanced(mode, 0, quads ? 4 : 1, instances.count);
+            return;
+        }
+        gl.BindBuffer(GL_DRAW_INDIRECT_BUFFER, instances.indirect->handle());
+        gl.DrawArraysIndirect(mode, nullptr);
+        gl.BindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
+    });
+}
+
+void dispatch(Context& context, const Program& program, int groups_x, int groups_y, int groups_z,
+              const Bindings& bindings) {
+    dispatch_with(context, program, bindings, [&](const GladGLContext& gl) {
+        gl.DispatchCompute(static_cast<GLuint>(groups_x), static_cast<GLuint>(groups_y),
+                           static_cast<GLuint>(groups_z));
+    });
+}
+
+void dispatch_indirect(Context& context, const Program& program, const Buffer& groups,
+                       const Bindings& bindings) {
+    constexpr std::size_t kCommandBytes = 12;
+    check_indirect(program, groups, kCommandBytes);
+    dispatch_with(context, program, bindings, [&](const GladGLContext& gl) {
+        gl.BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, groups.handle());
+        gl.DispatchComputeIndirect(0);
+        gl.BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, 0);
+    });
 }
 
 }  // namespace aftershade::gpu

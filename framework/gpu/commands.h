@@ -1,4 +1,4 @@
-// The three things a pass can do: draw over the whole target, dispatch, clear.
+// What a pass can do: draw over the whole target, draw instances, dispatch. Clearing is the textures' own.
 #pragma once
 
 #include <span>
@@ -23,6 +23,14 @@ struct SampledTexture {
     int binding = 0;  ///< layout(binding = N) of the sampler
     Filter filter = Filter::nearest;
     Wrap wrap = Wrap::clamp;
+    int level = -1;  ///< the only level that is seen, as level 0; -1: all
+};
+
+/// One level and layer that a draw renders to.
+struct Target {
+    const Texture* texture = nullptr;
+    int level = 0;
+    int layer = 0;
 };
 
 struct ImageBinding {
@@ -46,14 +54,31 @@ struct Bindings {
 
 /// Draws one triangle over all targets, which share one size; gl_FragCoord (0.5, 0.5) is texel (0, 0), the
 /// top left, and NDC has +y at the top and z in [0, 1]. The vertex shader of `program` makes the triangle
-/// from gl_VertexID 0..2. Throws Error(ExitCode::effect) naming `program` if GL reports an error or the
-/// targets do not form a complete framebuffer.
-void draw(Context& context, const Program& program, std::span<const Texture* const> targets,
-          const Bindings& bindings, Blend blend = Blend::none);
+/// from gl_VertexID 0..2. A texture may be sampled while it is drawn to where the one level that is seen is
+/// not a target. Throws Error(ExitCode::effect) naming `program` if GL reports an error or the targets do not
+/// form a complete framebuffer. After a pass with images or storage blocks stands a barrier for everything
+/// that a later pass or a command from a buffer may read; the same holds for the functions below.
+void draw(Context& context, const Program& program, std::span<const Target> targets, const Bindings& bindings,
+          Blend blend = Blend::none);
 
-/// Dispatches groups_x * groups_y * groups_z work groups, then a barrier for everything that a later pass may
-/// read.
+/// The arguments of draw_instances: `count` of them, or what DrawArraysIndirectCommand at the beginning of
+/// `indirect` (16 bytes: vertices, instances, first vertex, first instance) says.
+struct InstanceRange {
+    Primitive primitive = Primitive::quads;
+    int count = 0;
+    const Buffer* indirect = nullptr;
+};
+
+/// As draw(), but with one strip of gl_VertexID 0..3, or one point of one texel, for each gl_InstanceID from
+/// 0.
+void draw_instances(Context& context, const Program& program, std::span<const Target> targets,
+                    const Bindings& bindings, const InstanceRange& instances, Blend blend = Blend::none);
+
+/// Dispatches groups_x * groups_y * groups_z work groups.
 void dispatch(Context& context, const Program& program, int groups_x, int groups_y, int groups_z,
               const Bindings& bindings);
+/// The same with the three numbers at the beginning of `groups` (DispatchIndirectCommand, 12 bytes).
+void dispatch_indirect(Context& context, const Program& program, const Buffer& groups,
+                       const Bindings& bindings);
 
 }  // namespace aftershade::gpu

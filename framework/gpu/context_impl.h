@@ -34,6 +34,12 @@ struct Context::Impl {
     /// For destructors: false where make_current() throws.
     bool try_make_current() noexcept;
     void release() noexcept;
+    /// Call before GL touches a texture's or a buffer's memory from the CPU (read, write, clear): llvmpipe
+    /// (Mesa 22.3.6) gives back a target as it was before a draw still in flight, where another target was
+    /// drawn to since.
+    void wait_for_draws() const {
+        if (info.software) gl.Finish();
+    }
 
     std::unique_ptr<Platform> platform;
     GladGLContext gl{};

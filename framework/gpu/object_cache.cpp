@@ -7,6 +7,7 @@
 #include <glad/gl.h>
 
 #include "framework/core/error.h"
+#include "framework/gpu/texture_format.h"
 
 namespace aftershade::gpu {
 namespace {
@@ -43,6 +44,7 @@ GLuint make_sampler(const GladGLContext& gl, Filter filter, Wrap wrap, bool mips
 
 ObjectCache::~ObjectCache() {
     for (const auto& [targets, framebuffer] : framebuffers_) gl_.DeleteFramebuffers(1, &framebuffer);
+    for (const auto& [level, view] : views_) gl_.DeleteTextures(1, &view);
     gl_.DeleteSamplers(static_cast<GLsizei>(samplers_.size()), samplers_.data());
 }
 
@@ -53,20 +55,35 @@ unsigned int ObjectCache::sampler(Filter filter, Wrap wrap, bool mips) {
     return samplers_[index];
 }
 
-unsigned int ObjectCache::framebuffer(std::span<const Texture* const> targets) {
-    std::vector<unsigned int> key;
-    for (const Texture* target : targets) key.push_back(target->handle());
-    if (const auto found = framebuffers_.find(key); found != framebuffers_.end()) return found->second;
+unsigned int ObjectCache::level_view(const Texture& texture, int level) {
+    unsigned int& view = views_[{texture.handle(), level}];
+    if (view != 0) return view;
+    const TextureDesc& desc = texture.desc();
+    // A view must be made of a name that was never bound, which CreateTextures does not give.
+    gl_.GenTextures(1, &view);
+    gl_.TextureView(view, desc.layers > 1 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D, texture.handle(),
+                    gl_format(desc.format).internal, static_cast<GLuint>(level), 1, 0,
+                    static_cast<GLuint>(desc.layers));
+    return view;
+}
+
+unsigned int ObjectCache::framebuffer(std::span<const Target> targets) {
+    key_.clear();
+    for (const Target& target : targets) {
+        key_.push_back({target.texture->handle(), target.level, target.layer});
+    }
+    if (const auto found = framebuffers_.find(key_); found != framebuffers_.end()) return found->second;
 
     GLuint framebuffer = 0;
     gl_.CreateFramebuffers(1, &framebuffer);
     std::vector<GLenum> buffers;
-    for (const Texture* target : targets) {
+    for (const Target& target : targets) {
         buffers.push_back(static_cast<GLenum>(GL_COLOR_ATTACHMENT0 + buffers.size()));
-        if (target->desc().layers > 1) {
-            gl_.NamedFramebufferTextureLayer(framebuffer, buffers.back(), target->handle(), 0, 0);
+        const GLuint handle = target.texture->handle();
+        if (target.texture->desc().layers > 1) {
+            gl_.NamedFramebufferTextureLayer(framebuffer, buffers.back(), handle, target.level, target.layer);
         } else {
-            gl_.NamedFramebufferTexture(framebuffer, buffers.back(), target->handle(), 0);
+            gl_.NamedFramebufferTexture(framebuffer, buffers.back(), handle, target.level);
         }
     }
     gl_.NamedFramebufferDrawBuffers(framebuffer, static_cast<GLsizei>(buffers.size()), buffers.data());
@@ -76,20 +93,23 @@ unsigned int ObjectCache::framebuffer(std::span<const Texture* const> targets) {
         throw Error(ExitCode::effect,
                     fmt::format("the targets form no framebuffer ({})", status_name(status)));
     }
-    framebuffers_.emplace(std::move(key), framebuffer);
+    framebuffers_.emplace(key_, framebuffer);
     return framebuffer;
 }
 
 void ObjectCache::forget_texture(unsigned int handle) {
-    for (auto entry = framebuffers_.begin(); entry != framebuffers_.end();) {
-        const auto& targets = entry->first;
-        if (std::find(targets.begin(), targets.end(), handle) == targets.end()) {
-            ++entry;
-        } else {
-            gl_.DeleteFramebuffers(1, &entry->second);
-            entry = framebuffers_.erase(entry);
-        }
-    }
+    std::erase_if(framebuffers_, [&](const auto& entry) {
+        const auto& targets = entry.first;
+        const auto is_it = [&](const Attachment& a) { return a.texture == handle; };
+        if (std::none_of(targets.begin(), targets.end(), is_it)) return false;
+        gl_.DeleteFramebuffers(1, &entry.second);
+        return true;
+    });
+    std::erase_if(views_, [&](const auto& entry) {
+        if (entry.first.first != handle) return false;
+        gl_.DeleteTextures(1, &entry.second);
+        return true;
+    });
 }
 
 }  // namespace aftershade::gpu

@@ -1,9 +1,11 @@
-// Samplers and framebuffers of one Context, made on first use. Internal to framework/gpu.
+// Samplers, views of one level and framebuffers of one Context, made on first use. Internal to framework/gpu.
 #pragma once
 
 #include <array>
+#include <compare>
 #include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "framework/gpu/commands.h"
@@ -21,16 +23,27 @@ public:
     ObjectCache& operator=(const ObjectCache&) = delete;
 
     unsigned int sampler(Filter filter, Wrap wrap, bool mips);
-    /// The framebuffer with level 0, layer 0 of each target as an attachment. Throws Error(ExitCode::effect)
-    /// with GL's status where it is incomplete.
-    unsigned int framebuffer(std::span<const Texture* const> targets);
+    /// A texture whose only level is `level` of `texture`, in the same memory.
+    unsigned int level_view(const Texture& texture, int level);
+    /// The framebuffer with these targets as attachments. Throws Error(ExitCode::effect) with GL's status
+    /// where it is incomplete.
+    unsigned int framebuffer(std::span<const Target> targets);
     /// Drops what refers to a texture that is about to die; GL may give its name to another.
     void forget_texture(unsigned int handle);
 
 private:
+    struct Attachment {
+        unsigned int texture = 0;
+        int level = 0;
+        int layer = 0;
+        auto operator<=>(const Attachment&) const = default;
+    };
+
     const GladGLContext& gl_;
     std::array<unsigned int, 8> samplers_{};
-    std::map<std::vector<unsigned int>, unsigned int> framebuffers_;
+    std::map<std::pair<unsigned int, int>, unsigned int> views_;  // by texture and level
+    std::map<std::vector<Attachment>, unsigned int> framebuffers_;
+    std::vector<Attachment> key_;  // of the last look-up; a member so that looking up allocates nothing
 };
 
 }  // namespace aftershade::gpu

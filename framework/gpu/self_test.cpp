@@ -33,7 +33,7 @@ void self_test(Context& context) {
     Buffer colour(context, sizeof(kColour), "self-test");
     colour.write(std::as_bytes(std::span(kColour)));
 
-    const Texture* const targets[] = {&target};
+    const Target targets[] = {{.texture = &target}};
     const BufferBinding uniforms[] = {{&colour, 0}};
     draw(context, program, targets, {.uniforms = uniforms});
     const std::vector<float> got = target.read_floats();

@@ -20,11 +20,26 @@ constexpr std::size_t kMaxReadBytes = std::size_t{1} << 30;
 
 /// The nearest integer that Integer holds; 0 for NaN.
 template <typename Integer>
-Integer to_integer(float value) {
+Integer to_integer(double value) {
     constexpr double kLow = std::numeric_limits<Integer>::min();
     constexpr double kHigh = std::numeric_limits<Integer>::max();
     if (std::isnan(value)) return 0;
-    return static_cast<Integer>(std::clamp(std::nearbyint(static_cast<double>(value)), kLow, kHigh));
+    return static_cast<Integer>(std::clamp(std::nearbyint(value), kLow, kHigh));
+}
+
+/// A clear value in client memory of value_type(): four channels of four bytes, whatever they mean.
+std::array<std::uint32_t, 4> clear_texel(const std::array<double, 4>& value, TextureFormat format) {
+    std::array<std::uint32_t, 4> texel{};
+    for (std::size_t i = 0; i < texel.size(); ++i) {
+        if (!is_integer(format)) {
+            texel[i] = std::bit_cast<std::uint32_t>(static_cast<float>(value[i]));
+        } else if (is_signed_integer(format)) {
+            texel[i] = static_cast<std::uint32_t>(to_integer<std::int32_t>(value[i]));
+        } else {
+            texel[i] = to_integer<std::uint32_t>(value[i]);
+        }
+    }
+    return texel;
 }
 
 template <typename To, typename From, typename Convert>
@@ -110,6 +125,7 @@ std::vector<Value> read_values(Context& context, const Texture& texture, int lev
     const TextureDesc& desc = texture.desc();
     assert(level >= 0 && level < desc.mips && layer >= 0 && layer < desc.layers);
     context.make_current();
+    context.impl().wait_for_draws();
     std::vector<Value> values(value_count(desc, level));
     const int width = level_side(desc.width, level);
     const int height = level_side(desc.height, level);
@@ -174,6 +190,7 @@ void Texture::upload(std::span<const float> values, int layer) {
         return;
     }
     context_->make_current();
+    context_->impl().wait_for_draws();
     sub_image(context_->gl(), *this, layer, values.data());
     context_->check(fmt::format("uploading texture '{}'", label_));
 }
@@ -185,6 +202,7 @@ void Texture::upload(std::span<const std::uint32_t> values, int layer) {
         return;
     }
     context_->make_current();
+    context_->impl().wait_for_draws();
     sub_image(context_->gl(), *this, layer, values.data());
     context_->check(fmt::format("uploading texture '{}'", label_));
 }
@@ -203,27 +221,37 @@ std::vector<std::uint32_t> Texture::read_uints(int level, int layer) const {
 }
 
 void Texture::clear(float value) {
-    if (is_integer(desc_.format)) {
-        clear_uint(to_bits(value, desc_.format));
-        return;
-    }
-    context_->make_current();
-    const float texel[4] = {value, value, value, value};
-    for (int level = 0; level < desc_.mips; ++level) {
-        context_->gl().ClearTexImage(handle_, level, gl_format(desc_.format).pixel, GL_FLOAT, texel);
-    }
-    context_->check(fmt::format("clearing texture '{}'", label_));
+    clear_to({value, value, value, value});
 }
 
 void Texture::clear_uint(std::uint32_t value) {
-    if (!is_integer(desc_.format)) {
-        clear(static_cast<float>(value));
-        return;
-    }
+    // Signed formats take the bits, as upload() does.
+    const double number = is_signed_integer(desc_.format)
+                              ? static_cast<double>(static_cast<std::int32_t>(value))
+                              : static_cast<double>(value);
+    clear_to({number, number, number, number});
+}
+
+void Texture::clear_to(const std::array<double, 4>& value) {
+    clear_to(value, -1, -1);
+}
+
+void Texture::clear_to(const std::array<double, 4>& value, int level, int layer) {
+    assert(level < desc_.mips && layer < desc_.layers);
     context_->make_current();
-    const std::uint32_t texel[4] = {value, value, value, value};
-    for (int level = 0; level < desc_.mips; ++level) {
-        context_->gl().ClearTexImage(handle_, level, gl_format(desc_.format).pixel, value_type(desc_), texel);
+    context_->impl().wait_for_draws();
+    const GladGLContext& gl = context_->gl();
+    const std::array<std::uint32_t, 4> texel = clear_texel(value, desc_.format);
+    const GLenum pixel = gl_format(desc_.format).pixel;
+    const int first = level < 0 ? 0 : level;
+    const int last = level < 0 ? desc_.mips - 1 : level;
+    for (int i = first; i <= last; ++i) {
+        if (layer < 0) {
+            gl.ClearTexImage(handle_, i, pixel, value_type(desc_), texel.data());
+        } else {
+            gl.ClearTexSubImage(handle_, i, 0, 0, layer, level_side(desc_.width, i),
+                                level_side(desc_.height, i), 1, pixel, value_type(desc_), texel.data());
+        }
     }
     context_->check(fmt::format("clearing texture '{}'", label_));
 }

@@ -1,6 +1,7 @@
 // Immutable-size textures with a debug label. Texel row 0 is the top row of the image.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -77,6 +78,10 @@ public:
     /// Every texel, every level and layer.
     void clear(float value);
     void clear_uint(std::uint32_t value);
+    /// A value for each channel, as a shader would write it: rounded and kept in range for integers.
+    void clear_to(const std::array<double, 4>& value);
+    /// One level, and one layer of it; -1: every one.
+    void clear_to(const std::array<double, 4>& value, int level, int layer);
     /// Fills levels 1.. from level 0 with GL's own box filter.
     void generate_mips();
 

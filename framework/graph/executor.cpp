@@ -1,41 +1,155 @@
 #include "framework/graph/executor.h"
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "framework/gpu/timer.h"
 
 namespace aftershade::graph {
+namespace {
+
+/// The names of all that lie in each slot: "a|b".
+template <typename Node>
+std::vector<std::string> slot_labels(const std::vector<Node>& nodes, const std::vector<int>& slot_of,
+                                     std::size_t slots) {
+    std::vector<std::string> labels(slots);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (slot_of[i] < 0) continue;
+        std::string& label = labels[std::size_t(slot_of[i])];
+        label += (label.empty() ? "" : "|") + nodes[i].name;
+    }
+    return labels;
+}
+
+template <typename Memory>
+Memory* in_slot(std::vector<Memory>& slots, const std::vector<int>& slot_of, int index) {
+    const int slot = slot_of.at(std::size_t(index));
+    return slot < 0 ? nullptr : &slots[std::size_t(slot)];
+}
+
+}  // namespace
 
 Executor::Executor(gpu::Context& context, FrameGraph graph)
-    : context_(context), graph_(std::move(graph)), compiled_(graph_.compile()) {
-    std::vector<std::string> labels(compiled_.slots.size());
-    for (std::size_t i = 0; i < graph_.textures().size(); ++i) {
-        const int slot = compiled_.slot_of_texture[i];
-        if (slot < 0) continue;
-        std::string& label = labels[std::size_t(slot)];
-        label += (label.empty() ? "" : "|") + graph_.textures()[i].name;
+    : context_(context), graph_(std::move(graph)), compiled_(graph_.compile()), timer_(context) {
+    for (const int index : compiled_.passes) {
+        const Pass& pass = graph_.pass(index);
+        if (pass.kind != PassKind::clear && !pass.program)
+            throw GraphError(fmt::format("pass '{}' has no program", pass.name));
     }
-    for (std::size_t i = 0; i < compiled_.slots.size(); ++i)
-        slots_.emplace_back(context, compiled_.slots[i], labels[i]);
+    allocate();
+    find_histories();
+    clear_history();
+    bind_clears();
+    for (const int index : compiled_.passes) bound_.push_back(bind(index));
+}
+
+void Executor::allocate() {
+    const auto labels = slot_labels(graph_.textures(), compiled_.slot_of_texture, compiled_.slots.size());
+    // Pointers to slots are kept: they must not move.
+    slots_.reserve(labels.size());
+    for (std::size_t i = 0; i < labels.size(); ++i)
+        slots_.emplace_back(context_, compiled_.slots[i], labels[i]);
+    const auto buffer_labels =
+        slot_labels(graph_.buffers(), compiled_.slot_of_buffer, compiled_.buffer_slots.size());
+    buffer_slots_.reserve(buffer_labels.size());
+    for (std::size_t i = 0; i < buffer_labels.size(); ++i)
+        buffer_slots_.emplace_back(context_, compiled_.buffer_slots[i].bytes, buffer_labels[i]);
     for (const int index : compiled_.passes) {
         for (const UniformBlock& block : graph_.pass(index).uniforms) {
-            gpu::Buffer buffer(context, block.bytes.size(), graph_.pass(index).name + ".uniforms");
+            gpu::Buffer buffer(context_, block.bytes.size(), graph_.pass(index).name + ".uniforms");
             buffer.write(block.bytes);
             uniforms_.emplace(std::pair(index, block.binding), std::move(buffer));
         }
     }
 }
 
+void Executor::find_histories() {
+    std::vector<bool> textures(graph_.textures().size()), buffers(graph_.buffers().size());
+    for (const int index : compiled_.passes) {
+        const Pass& pass = graph_.pass(index);
+        for (const Target& target : pass.targets) textures[std::size_t(target.texture.texture)] = true;
+        for (const ImageUse& use : pass.images)
+            if (use.access != gpu::Access::read) textures[std::size_t(use.texture.texture)] = true;
+        for (const BufferUse& use : pass.buffers)
+            if (use.access != gpu::Access::read) buffers[std::size_t(use.buffer.buffer)] = true;
+    }
+    const auto find = [](const auto& nodes, const auto& slot_of, auto& slots,
+                         const std::vector<bool>& written, auto& histories) {
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            const int current = nodes[i].previous_of;
+            if (current < 0 || slot_of[i] < 0) continue;
+            histories.push_back({&nodes[std::size_t(current)].name, in_slot(slots, slot_of, int(i)),
+                                 written[std::size_t(current)] ? in_slot(slots, slot_of, current) : nullptr});
+        }
+    };
+    find(graph_.textures(), compiled_.slot_of_texture, slots_, textures, texture_histories_);
+    find(graph_.buffers(), compiled_.slot_of_buffer, buffer_slots_, buffers, buffer_histories_);
+}
+
+void Executor::bind_clears() {
+    clears_.resize(compiled_.passes.size() + 1);
+    for (std::size_t i = 0; i < graph_.textures().size(); ++i) {
+        const int position = compiled_.texture_cleared_before[i];
+        if (position < 0) continue;
+        clears_[std::size_t(position)].textures.push_back(
+            {in_slot(slots_, compiled_.slot_of_texture, int(i)), *graph_.textures()[i].options.clear});
+    }
+    for (std::size_t i = 0; i < graph_.buffers().size(); ++i) {
+        const int position = compiled_.buffer_cleared_before[i];
+        if (position < 0) continue;
+        clears_[std::size_t(position)].buffers.push_back(
+            {in_slot(buffer_slots_, compiled_.slot_of_buffer, int(i)), *graph_.buffers()[i].clear});
+    }
+}
+
+Executor::BoundPass Executor::bind(int index) {
+    const Pass& pass = graph_.pass(index);
+    BoundPass bound;
+    bound.pass = &pass;
+    const auto writes = [&](TextureHandle handle) {
+        const FrameGraph::Texture& node = graph_.textures()[std::size_t(handle.texture)];
+        gpu::Texture* const written = texture(handle);
+        bound.observed.push_back({&node.name, written});
+        if (node.options.auto_mips && node.desc.mips > 1 &&
+            std::find(bound.mips.begin(), bound.mips.end(), written) == bound.mips.end())
+            bound.mips.push_back(written);
+    };
+    for (const Read& read : pass.reads)
+        bound.textures.push_back({texture(read.texture), read.binding, read.filter, read.wrap, read.level});
+    for (const Target& target : pass.targets) {
+        bound.targets.push_back({texture(target.texture), target.level, target.layer});
+        bound.clear_targets.push_back(texture(target.texture));
+        writes(target.texture);
+    }
+    for (const ImageUse& use : pass.images) {
+        bound.images.push_back({texture(use.texture), use.binding, use.level, use.access});
+        if (use.access != gpu::Access::read) writes(use.texture);
+    }
+    for (const BufferUse& use : pass.buffers) bound.storage.push_back({buffer(use.buffer), use.binding});
+    for (const UniformBlock& block : pass.uniforms)
+        bound.uniforms.push_back({&uniforms_.at({index, block.binding}), block.binding});
+    bound.instances = {pass.instances.primitive, pass.instances.count,
+                       pass.instances.indirect ? buffer(*pass.instances.indirect) : nullptr};
+    bound.groups = pass.groups.indirect ? buffer(*pass.groups.indirect) : nullptr;
+    return bound;
+}
+
 gpu::Texture* Executor::texture(TextureHandle handle) {
-    const int slot = compiled_.slot_of_texture.at(std::size_t(handle.texture));
-    return slot < 0 ? nullptr : &slots_[std::size_t(slot)];
+    return in_slot(slots_, compiled_.slot_of_texture, handle.texture);
+}
+
+gpu::Buffer* Executor::buffer(BufferHandle handle) {
+    return in_slot(buffer_slots_, compiled_.slot_of_buffer, handle.buffer);
 }
 
 void Executor::set_uniforms(int pass, int binding, std::vector<std::byte> bytes) {
     for (UniformBlock& block : graph_.pass(pass).uniforms) {
         if (block.binding != binding) continue;
         assert(block.bytes.size() == bytes.size());
+        if (block.bytes == bytes) return;
         block.bytes = std::move(bytes);
         // A culled pass has no buffer.
         if (const auto buffer = uniforms_.find({pass, binding}); buffer != uniforms_.end())
@@ -45,35 +159,103 @@ void Executor::set_uniforms(int pass, int binding, std::vector<std::byte> bytes)
     assert(false && "the pass has no such uniform block");
 }
 
-void Executor::run_pass(int index) {
-    const Pass& pass = graph_.pass(index);
-    std::vector<gpu::SampledTexture> textures;
-    for (const Read& read : pass.reads)
-        textures.push_back({texture(read.texture), read.binding, read.filter, read.wrap});
-    std::vector<gpu::BufferBinding> uniforms;
-    for (const UniformBlock& block : pass.uniforms)
-        uniforms.push_back({&uniforms_.at({index, block.binding}), block.binding});
-    std::vector<const gpu::Texture*> targets;
-    for (const TextureHandle target : graph_.targets(index)) targets.push_back(texture(target));
-    gpu::Bindings bindings;
-    bindings.textures = textures;
-    bindings.uniforms = uniforms;
-    gpu::draw(context_, *pass.program, targets, bindings);
+void Executor::run_clears(const Clears& clears) {
+    for (const auto& [texture, value] : clears.textures) texture->clear_to(value);
+    for (const auto& [buffer, words] : clears.buffers) {
+        const auto bytes = std::as_bytes(words);
+        if (bytes.size() < buffer->size()) buffer->clear(0);
+        buffer->write(bytes);
+    }
+}
+
+void Executor::run_pass(const BoundPass& bound) {
+    const Pass& pass = *bound.pass;
+    const gpu::Bindings bindings{.textures = bound.textures,
+                                 .images = bound.images,
+                                 .uniforms = bound.uniforms,
+                                 .storage = bound.storage};
+    switch (pass.kind) {
+        case PassKind::draw: gpu::draw(context_, *pass.program, bound.targets, bindings, pass.blend); break;
+        case PassKind::instances:
+            gpu::draw_instances(context_, *pass.program, bound.targets, bindings, bound.instances,
+                                pass.blend);
+            break;
+        case PassKind::compute:
+            if (bound.groups) {
+                gpu::dispatch_indirect(context_, *pass.program, *bound.groups, bindings);
+            } else {
+                const auto [x, y, z] = pass.groups.count;
+                gpu::dispatch(context_, *pass.program, x, y, z, bindings);
+            }
+            break;
+        case PassKind::clear:
+            for (std::size_t i = 0; i < bound.clear_targets.size(); ++i)
+                bound.clear_targets[i]->clear_to(pass.clear_value, bound.targets[i].level,
+                                                 bound.targets[i].layer);
+            break;
+    }
+    for (gpu::Texture* const texture : bound.mips) texture->generate_mips();
 }
 
 std::vector<PassTime> Executor::run(bool timed, const PassObserver& observer) {
+    for (auto& history : texture_histories_) history.advance();
+    for (auto& history : buffer_histories_) history.advance();
     std::vector<PassTime> times;
-    gpu::Timer timer(context_);
-    for (const int index : compiled_.passes) {
-        if (timed) timer.start();
-        run_pass(index);
-        if (timed) times.push_back({graph_.pass(index).name, timer.stop_ms()});
+    if (timed) times.reserve(bound_.size());
+    for (std::size_t i = 0; i < bound_.size(); ++i) {
+        if (timed) timer_.start();
+        run_clears(clears_[i]);
+        run_pass(bound_[i]);
+        if (timed) times.push_back({bound_[i].pass->name, timer_.stop_ms()});
         if (!observer) continue;
-        for (const TextureHandle target : graph_.targets(index))
-            observer(graph_.pass(index).name, graph_.textures()[std::size_t(target.texture)].name,
-                     *texture(target));
+        for (const BoundPass::Observed& written : bound_[i].observed)
+            observer(bound_[i].pass->name, *written.name, *written.texture);
     }
+    run_clears(clears_.back());
+    for (auto& history : texture_histories_) history.current_is_newer = history.current != nullptr;
+    for (auto& history : buffer_histories_) history.current_is_newer = history.current != nullptr;
     return times;
+}
+
+Executor::History Executor::history() {
+    History result;
+    for (const auto& history : texture_histories_) result.textures.emplace(*history.name, history.newest());
+    for (const auto& history : buffer_histories_) result.buffers.emplace(*history.name, history.newest());
+    return result;
+}
+
+void Executor::clear_history() {
+    for (auto& history : texture_histories_) {
+        history.current_is_newer = false;
+        history.previous->clear_to({0, 0, 0, 0});
+    }
+    for (auto& history : buffer_histories_) {
+        history.current_is_newer = false;
+        history.previous->clear(0);
+    }
+}
+
+std::vector<std::string> Executor::take_history_from(Executor& other) {
+    assert(&context_ == &other.context_ && this != &other);
+    std::vector<std::string> missing;
+    const auto take = [&](auto& mine, auto& theirs, const auto& same) {
+        for (auto& history : mine) {
+            const auto found = std::find_if(theirs.begin(), theirs.end(), [&](const auto& candidate) {
+                return *candidate.name == *history.name && same(*candidate.previous, *history.previous);
+            });
+            if (found == theirs.end()) {
+                missing.push_back(*history.name);
+                continue;
+            }
+            history.current_is_newer = false;
+            std::swap(*history.previous, *found->newest());
+        }
+    };
+    take(texture_histories_, other.texture_histories_,
+         [](const gpu::Texture& a, const gpu::Texture& b) { return a.desc() == b.desc(); });
+    take(buffer_histories_, other.buffer_histories_,
+         [](const gpu::Buffer& a, const gpu::Buffer& b) { return a.size() == b.size(); });
+    return missing;
 }
 
 }  // namespace aftershade::graph

@@ -1,14 +1,17 @@
 // Runs a compiled graph, frame after frame, in the same memory.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <map>
-#include <memory>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "framework/gpu/buffer.h"
 #include "framework/gpu/texture.h"
+#include "framework/gpu/timer.h"
 #include "framework/graph/frame_graph.h"
 
 namespace aftershade::graph {
@@ -21,18 +24,24 @@ struct PassTime {
 /// [the context's thread]
 class Executor {
 public:
-    /// Allocates every texture and uniform buffer. Throws Error(ExitCode::effect) when GL has no memory for
-    /// them.
+    /// Allocates every texture and buffer; histories begin as zero. Throws Error(ExitCode::effect) when GL
+    /// has no memory for them, GraphError if a pass that is not culled lacks its program.
     Executor(gpu::Context& context, FrameGraph graph);
+    Executor(const Executor&) = delete;
+    Executor& operator=(const Executor&) = delete;
 
+    const FrameGraph& graph() const { return graph_; }
     const CompiledGraph& compiled() const { return compiled_; }
-    /// The texture behind an imported or kept handle; nullptr for one that no pass needs.
+    /// The texture behind an imported or kept handle, the same in every frame; nullptr for one that no pass
+    /// needs. A history's holds what it held at the end of the last run() until the next.
     gpu::Texture* texture(TextureHandle handle);
     gpu::Buffer* buffer(BufferHandle handle);
     /// Replaces the content of a uniform block of a pass; `bytes` has the size that the pass was added with.
+    /// Without effect for a culled pass.
     void set_uniforms(int pass, int binding, std::vector<std::byte> bytes);
 
-    /// What a pass has just written: its name and its targets, by their names in the graph.
+    /// What a pass has just written: its name and its targets and written images, by their names in the
+    /// graph.
     using PassObserver =
         std::function<void(const std::string& pass, const std::string& texture, const gpu::Texture& target)>;
 
@@ -42,6 +51,7 @@ public:
     std::vector<PassTime> run(bool timed, const PassObserver& observer = {});
 
     /// What the next run will read as `previous`, by the history's name; only those that some pass reads.
+    /// The pointers hold until the next run.
     struct History {
         std::map<std::string, gpu::Texture*> textures;
         std::map<std::string, gpu::Buffer*> buffers;
@@ -50,17 +60,67 @@ public:
     /// Sets every `previous` to zero: a cut, a gap, the first frame.
     void clear_history();
     /// Takes the histories over whose name and description are those of `other`, for a graph that was built
-    /// anew between two frames; returns the names of those that found none.
+    /// anew between two frames; returns the names of those of this graph that found none and stay as they
+    /// were. `other`, of the same context, is left with this one's in exchange. Copies nothing.
     std::vector<std::string> take_history_from(Executor& other);
 
 private:
-    void run_pass(int index);
+    /// What a pass binds. The pointers go to slots, which never move; a history's two slots exchange what
+    /// they hold.
+    struct BoundPass {
+        const Pass* pass = nullptr;
+        std::vector<gpu::SampledTexture> textures;
+        std::vector<gpu::ImageBinding> images;
+        std::vector<gpu::BufferBinding> uniforms;
+        std::vector<gpu::BufferBinding> storage;
+        std::vector<gpu::Target> targets;
+        gpu::InstanceRange instances;
+        const gpu::Buffer* groups = nullptr;
+        std::vector<gpu::Texture*> clear_targets;  // of a clear pass, as Pass::targets
+        std::vector<gpu::Texture*> mips;           // filled after the pass
+        struct Observed {
+            const std::string* name = nullptr;
+            const gpu::Texture* texture = nullptr;
+        };
+        std::vector<Observed> observed;
+    };
+    /// What is set to its `clear` before a pass.
+    struct Clears {
+        std::vector<std::pair<gpu::Texture*, std::array<double, 4>>> textures;
+        std::vector<std::pair<gpu::Buffer*, std::span<const std::uint32_t>>> buffers;
+    };
+    template <typename Memory>
+    struct HistorySlots {
+        const std::string* name = nullptr;
+        Memory* previous = nullptr;
+        Memory* current = nullptr;      // nullptr where no pass writes it
+        bool current_is_newer = false;  // between a run and the next
+
+        Memory* newest() const { return current_is_newer ? current : previous; }
+        void advance() {
+            if (current_is_newer) std::swap(*previous, *current);
+            current_is_newer = false;
+        }
+    };
+
+    void allocate();
+    void find_histories();
+    void bind_clears();
+    BoundPass bind(int index);
+    void run_clears(const Clears& clears);
+    void run_pass(const BoundPass& bound);
 
     gpu::Context& context_;
     FrameGraph graph_;
     CompiledGraph compiled_;
     std::vector<gpu::Texture> slots_;
+    std::vector<gpu::Buffer> buffer_slots_;
     std::map<std::pair<int, int>, gpu::Buffer> uniforms_;  // by pass and binding
+    std::vector<HistorySlots<gpu::Texture>> texture_histories_;
+    std::vector<HistorySlots<gpu::Buffer>> buffer_histories_;
+    std::vector<BoundPass> bound_;  // as compiled_.passes
+    std::vector<Clears> clears_;    // one more than passes: what is cleared at the end
+    gpu::Timer timer_;
 };
 
 }  // namespace aftershade::graph

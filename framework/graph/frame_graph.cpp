@@ -3,125 +3,131 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "framework/graph/pass_check.h"
+
 namespace aftershade::graph {
 
-namespace {
+TextureHandle FrameGraph::add_texture(Texture texture) {
+    const gpu::TextureDesc& desc = texture.desc;
+    if (desc.width < 1 || desc.height < 1 || desc.layers < 1 || desc.mips < 1)
+        throw GraphError(fmt::format("texture '{}' has {}x{} texels, {} layers and {} levels", texture.name,
+                                     desc.width, desc.height, desc.layers, desc.mips));
+    if (texture.options.auto_mips && gpu::is_integer(desc.format))
+        throw GraphError(
+            fmt::format("texture '{}' holds integers, of which no mip levels can be made", texture.name));
+    texture.filled.assign(std::size_t(desc.mips) * std::size_t(desc.layers),
+                          texture.version > 0 || texture.options.clear);
+    textures_.push_back(std::move(texture));
+    return {int(textures_.size()) - 1, textures_.back().version};
+}
 
-/// First and last pass, by position in the compiled order, that touch a texture.
-struct Lifetime {
-    int first = -1;
-    int last = -1;
-    void touch(int position) {
-        if (first < 0) first = position;
-        last = position;
-    }
-};
-
-}  // namespace
+BufferHandle FrameGraph::add_buffer(Buffer buffer) {
+    if (buffer.desc.bytes == 0) throw GraphError(fmt::format("buffer '{}' has 0 bytes", buffer.name));
+    if (buffer.clear && buffer.clear->size() * sizeof(std::uint32_t) > buffer.desc.bytes)
+        throw GraphError(fmt::format("buffer '{}' of {} bytes is cleared to {} words", buffer.name,
+                                     buffer.desc.bytes, buffer.clear->size()));
+    buffers_.push_back(std::move(buffer));
+    return {int(buffers_.size()) - 1, buffers_.back().version};
+}
 
 TextureHandle FrameGraph::import_texture(std::string name, const gpu::TextureDesc& desc) {
-    textures_.push_back({std::move(name), desc, true, false, 1});
-    return {int(textures_.size()) - 1, 1};
+    return add_texture({.name = std::move(name), .desc = desc, .imported = true, .version = 1});
 }
 
-TextureHandle FrameGraph::create_texture(std::string name, const gpu::TextureDesc& desc) {
-    textures_.push_back({std::move(name), desc, false, false, 0});
-    return {int(textures_.size()) - 1, 0};
+BufferHandle FrameGraph::import_buffer(std::string name, const BufferDesc& desc) {
+    return add_buffer({.name = std::move(name), .desc = desc, .imported = true, .version = 1});
 }
 
-const FrameGraph::Texture& FrameGraph::live(TextureHandle handle, const std::string& user) const {
-    if (handle.texture < 0 || handle.texture >= int(textures_.size()))
-        throw GraphError(user + " uses a texture that the graph does not have");
-    const Texture& texture = textures_[std::size_t(handle.texture)];
-    if (handle.version != texture.version)
-        throw GraphError(user + " uses version " + std::to_string(handle.version) + " of '" + texture.name +
-                         "', which has been written since and is now version " +
-                         std::to_string(texture.version));
-    return texture;
+TextureHandle FrameGraph::create_texture(std::string name, const gpu::TextureDesc& desc,
+                                         const TextureOptions& options) {
+    return add_texture({.name = std::move(name), .desc = desc, .options = options});
 }
 
-std::vector<TextureHandle> FrameGraph::add_pass(Pass pass, std::span<const TextureHandle> targets) {
-    if (targets.empty()) throw GraphError("pass '" + pass.name + "' writes nothing");
-    for (const Read& read : pass.reads) {
-        const Texture& texture = live(read.texture, "pass '" + pass.name + "'");
-        if (texture.version == 0)
-            throw GraphError("pass '" + pass.name + "' reads '" + texture.name + "' before any write");
-        if (std::find(targets.begin(), targets.end(), read.texture) != targets.end())
-            throw GraphError("pass '" + pass.name + "' reads and writes '" + texture.name + "'");
-    }
-    const gpu::TextureDesc& size = live(targets[0], "pass '" + pass.name + "'").desc;
-    std::vector<TextureHandle> written;
-    for (const TextureHandle target : targets) {
-        const Texture& texture = live(target, "pass '" + pass.name + "'");
-        if (texture.imported || texture.kept)
-            throw GraphError("pass '" + pass.name + "' writes '" + texture.name +
-                             "', which is imported or kept");
-        if (texture.desc.width != size.width || texture.desc.height != size.height)
-            throw GraphError("pass '" + pass.name + "' writes targets of two sizes");
-        written.push_back({target.texture, ++textures_[std::size_t(target.texture)].version});
+BufferHandle FrameGraph::create_buffer(std::string name, const BufferDesc& desc,
+                                       std::optional<std::vector<std::uint32_t>> clear) {
+    return add_buffer({.name = std::move(name), .desc = desc, .clear = std::move(clear)});
+}
+
+TextureHistory FrameGraph::create_history(std::string name, const gpu::TextureDesc& desc,
+                                          const TextureOptions& options) {
+    const TextureHandle current = create_texture(name, desc, options);
+    const TextureHandle previous =
+        add_texture({.name = name + ".prev", .desc = desc, .previous_of = current.texture, .version = 1});
+    return {previous, current};
+}
+
+BufferHistory FrameGraph::create_history_buffer(std::string name, const BufferDesc& desc,
+                                                std::optional<std::vector<std::uint32_t>> clear) {
+    const BufferHandle current = create_buffer(name, desc, std::move(clear));
+    const BufferHandle previous =
+        add_buffer({.name = name + ".prev", .desc = desc, .previous_of = current.buffer, .version = 1});
+    return {previous, current};
+}
+
+bool FrameGraph::overwrites(const Pass& pass, const Target& target) const {
+    const Texture& texture = textures_[std::size_t(target.texture.texture)];
+    const bool all_levels = texture.desc.mips == 1 || texture.options.auto_mips || target.level < 0;
+    const bool all_layers = texture.desc.layers == 1 || target.layer < 0;
+    const bool all_texels =
+        pass.kind == PassKind::clear || (pass.kind == PassKind::draw && pass.blend == gpu::Blend::none);
+    return all_levels && all_layers && all_texels;
+}
+
+void FrameGraph::fill(const Pass& pass) {
+    const auto mark = [&](TextureHandle handle, int level, int layer) {
+        Texture& texture = textures_[std::size_t(handle.texture)];
+        if (texture.options.auto_mips) level = -1;
+        const int layers = texture.desc.layers;
+        for (int i = 0; i < int(texture.filled.size()); ++i)
+            if ((level < 0 || level == i / layers) && (layer < 0 || layer == i % layers))
+                texture.filled[std::size_t(i)] = true;
+    };
+    for (const Target& target : pass.targets) mark(target.texture, target.level, target.layer);
+    for (const ImageUse& image : pass.images)
+        if (image.access != gpu::Access::read) mark(image.texture, image.level, -1);
+}
+
+Written FrameGraph::add_pass(Pass pass) {
+    check_pass(*this, pass);
+    fill(pass);
+    // A texture that is written twice by one pass is one version further, not two.
+    const auto write_texture = [&](TextureHandle handle) {
+        textures_[std::size_t(handle.texture)].version = handle.version + 1;
+        return TextureHandle{handle.texture, handle.version + 1};
+    };
+    Written written;
+    for (const Target& target : pass.targets) written.targets.push_back(write_texture(target.texture));
+    for (const ImageUse& image : pass.images)
+        written.images.push_back(image.access == gpu::Access::read ? image.texture
+                                                                   : write_texture(image.texture));
+    // An image that is only read may be another level of a texture that the pass writes.
+    for (TextureHandle& handle : written.images)
+        handle.version = textures_[std::size_t(handle.texture)].version;
+    for (const BufferUse& use : pass.buffers) {
+        int& version = buffers_[std::size_t(use.buffer.buffer)].version;
+        if (use.access != gpu::Access::read) ++version;
+        written.buffers.push_back({use.buffer.buffer, version});
     }
     passes_.push_back({std::move(pass), written});
     return written;
 }
 
 void FrameGraph::keep(TextureHandle handle) {
-    if (live(handle, "keep()").version == 0) throw GraphError("keep() of a texture that nothing writes");
+    const Texture& texture = live(*this, handle, "keep()");
+    for (int layer = 0; layer < texture.desc.layers; ++layer)
+        if (!texture.is_filled(0, layer))
+            throw GraphError(fmt::format("keep() of '{}', of which nothing writes level 0, layer {}",
+                                         texture.name, layer));
     textures_[std::size_t(handle.texture)].kept = true;
 }
 
-CompiledGraph FrameGraph::compile() const {
-    std::vector<bool> needed(textures_.size());
-    for (std::size_t i = 0; i < textures_.size(); ++i) needed[i] = textures_[i].kept;
-    CompiledGraph compiled;
-    // A pass matters if a later one, or a reader after the frame, needs one of its targets.
-    for (int i = pass_count() - 1; i >= 0; --i) {
-        const auto& written = targets(i);
-        const auto is_needed = [&](TextureHandle t) { return needed[std::size_t(t.texture)]; };
-        if (std::none_of(written.begin(), written.end(), is_needed)) continue;
-        compiled.passes.push_back(i);
-        for (const TextureHandle target : written) needed[std::size_t(target.texture)] = true;
-        for (const Read& read : pass(i).reads) needed[std::size_t(read.texture.texture)] = true;
-    }
-    std::reverse(compiled.passes.begin(), compiled.passes.end());
-
-    const int end = int(compiled.passes.size());
-    std::vector<Lifetime> lifetimes(textures_.size());
-    for (int position = 0; position < end; ++position) {
-        for (const Read& read : pass(compiled.passes[std::size_t(position)]).reads)
-            lifetimes[std::size_t(read.texture.texture)].touch(position);
-        for (const TextureHandle target : targets(compiled.passes[std::size_t(position)]))
-            lifetimes[std::size_t(target.texture)].touch(position);
-    }
-    for (std::size_t i = 0; i < textures_.size(); ++i) {
-        if (textures_[i].imported && needed[i]) lifetimes[i] = {0, end};
-        if (textures_[i].kept) lifetimes[i].last = end;
-    }
-
-    compiled.slot_of_texture.assign(textures_.size(), -1);
-    std::vector<int> order(textures_.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = int(i);
-    std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-        return lifetimes[std::size_t(a)].first < lifetimes[std::size_t(b)].first;
-    });
-    std::vector<int> free_after;  // per slot: the last pass that uses it so far
-    for (const int index : order) {
-        const Lifetime life = lifetimes[std::size_t(index)];
-        if (life.first < 0) continue;
-        const gpu::TextureDesc& desc = textures_[std::size_t(index)].desc;
-        std::size_t slot = 0;
-        while (slot < compiled.slots.size() &&
-               !(compiled.slots[slot] == desc && free_after[slot] < life.first))
-            ++slot;
-        if (slot == compiled.slots.size()) {
-            compiled.slots.push_back(desc);
-            free_after.push_back(0);
-            compiled.bytes += gpu::byte_size(desc);
-        }
-        free_after[slot] = life.last;
-        compiled.slot_of_texture[std::size_t(index)] = int(slot);
-        compiled.bytes_unaliased += gpu::byte_size(desc);
-    }
-    return compiled;
+void FrameGraph::keep(BufferHandle handle) {
+    const Buffer& buffer = live(*this, handle, "keep()");
+    if (!buffer.is_filled())
+        throw GraphError(fmt::format("keep() of '{}', which nothing writes", buffer.name));
+    buffers_[std::size_t(handle.buffer)].kept = true;
 }
 
 }  // namespace aftershade::graph

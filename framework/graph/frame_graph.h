@@ -42,7 +42,7 @@ struct Read {
     int level = -1;  ///< the only level that is seen, as level 0; -1: all
 };
 
-/// One level and layer that a draw renders to.
+/// One level and layer that a draw renders to or a clear sets; -1 in a clear: every one.
 struct Target {
     TextureHandle texture;
     int level = 0;
@@ -74,40 +74,41 @@ enum class PassKind { draw, instances, compute, clear };
 struct Instances {
     gpu::Primitive primitive = gpu::Primitive::quads;
     int count = 0;
-    std::optional<BufferHandle> indirect;
+    std::optional<BufferHandle> indirect{};
 };
 
 /// Work groups of a compute pass; or as many as the buffer says (DispatchIndirectCommand).
 struct Groups {
     std::array<int, 3> count = {1, 1, 1};
-    std::optional<BufferHandle> indirect;
+    std::optional<BufferHandle> indirect{};
 };
 
 struct Pass {
     std::string name;  ///< "bokeh.coc"
     PassKind kind = PassKind::draw;
     const gpu::Program* program = nullptr;  ///< nullptr for a clear
-    std::vector<Read> reads;
-    std::vector<Target> targets;   ///< draw, instances: of one size; clear: what is set to `clear_value`
-    std::vector<ImageUse> images;
-    std::vector<BufferUse> buffers;
-    std::vector<UniformBlock> uniforms;
+    std::vector<Read> reads{};
+    std::vector<Target> targets{};  ///< draw, instances: of one size; clear: what is set to `clear_value`
+    std::vector<ImageUse> images{};
+    std::vector<BufferUse> buffers{};
+    std::vector<UniformBlock> uniforms{};
     gpu::Blend blend = gpu::Blend::none;
-    Instances instances;
-    Groups groups;
+    Instances instances{};
+    Groups groups{};
     std::array<double, 4> clear_value = {0, 0, 0, 0};
 };
 
-/// What a pass made: new versions of what it wrote, in the order of targets, written images, written buffers.
+/// What a pass made: new versions of what it wrote. A texture that a pass writes in several places (two
+/// layers, say) becomes one new version.
 struct Written {
-    std::vector<TextureHandle> targets;
-    std::vector<TextureHandle> images;  ///< one for each of Pass::images; as it was where that only reads
-    std::vector<BufferHandle> buffers;  ///< one for each of Pass::buffers; as it was where that only reads
+    std::vector<TextureHandle> targets{};  ///< one for each of Pass::targets
+    std::vector<TextureHandle> images{};   ///< one for each of Pass::images; as it was where that only reads
+    std::vector<BufferHandle> buffers{};   ///< one for each of Pass::buffers; as it was where that only reads
 };
 
 struct TextureOptions {
     bool auto_mips = false;  ///< levels 1.. are filled from level 0 after each pass that writes the texture
-    std::optional<std::array<double, 4>> clear;  ///< content before the first write of each frame
+    std::optional<std::array<double, 4>> clear{};  ///< content before the first write of each frame
 };
 
 struct BufferDesc {
@@ -134,6 +135,10 @@ struct CompiledGraph {
         slots;  ///< memory; textures of one description whose lifetimes do not meet share a slot
     std::vector<int> slot_of_buffer;
     std::vector<BufferDesc> buffer_slots;
+    /// Per texture and per buffer: position in `passes` of the pass before which it is set to its `clear`,
+    /// passes.size() for the end of the frame; -1 where nothing would see it.
+    std::vector<int> texture_cleared_before;
+    std::vector<int> buffer_cleared_before;
     std::uint64_t bytes = 0;            ///< of all slots
     std::uint64_t bytes_unaliased = 0;  ///< what one texture per handle would take
 };
@@ -151,6 +156,7 @@ public:
     /// `clear`: the first words at the beginning of each frame, the rest 0; nullopt: not cleared.
     BufferHandle create_buffer(std::string name, const BufferDesc& desc,
                                std::optional<std::vector<std::uint32_t>> clear = {});
+    /// The texture to write takes `name`, what it was in the frame before is called `<name>.prev`.
     TextureHistory create_history(std::string name, const gpu::TextureDesc& desc,
                                   const TextureOptions& options = {});
     BufferHistory create_history_buffer(std::string name, const BufferDesc& desc,
@@ -158,8 +164,12 @@ public:
 
     /// Appends a pass and returns the new versions of what it writes. Passes run in the order of the calls.
     /// A draw without blending that covers the only level and layer of its target needs nothing of what was
-    /// there; every other write (blending, images, buffers, one level of many) keeps it.
+    /// there; every other write (blending, instances, images, buffers, one level of many) keeps it.
+    /// A pass may read a texture that it writes only where the levels differ: one level sampled, another
+    /// drawn to or stored to. Throws GraphError, and then the graph is as it was.
     [[nodiscard]] Written add_pass(Pass pass);
+    /// Whether `target` of `pass` leaves nothing of what its texture held.
+    bool overwrites(const Pass& pass, const Target& target) const;
 
     /// Marks a texture that is read after the frame: an output or a tap. Nothing may write it afterwards.
     void keep(TextureHandle handle);
@@ -172,20 +182,27 @@ public:
     struct Texture {
         std::string name;
         gpu::TextureDesc desc;
-        TextureOptions options;
+        TextureOptions options{};
         bool imported = false;
         bool kept = false;
         int previous_of = -1;  ///< of a history's `previous`: the texture that is its `current`
         int version = 0;
+        std::vector<bool> filled{};  ///< by level * layers + layer: holds something at this version
+
+        bool is_filled(int level, int layer) const {
+            return filled[std::size_t(level * desc.layers + layer)];
+        }
     };
     struct Buffer {
         std::string name;
         BufferDesc desc;
-        std::optional<std::vector<std::uint32_t>> clear;
+        std::optional<std::vector<std::uint32_t>> clear{};
         bool imported = false;
         bool kept = false;
         int previous_of = -1;
         int version = 0;
+
+        bool is_filled() const { return version > 0 || clear; }
     };
     const std::vector<Texture>& textures() const { return textures_; }
     const std::vector<Buffer>& buffers() const { return buffers_; }
@@ -199,6 +216,10 @@ private:
         Pass pass;
         Written written;
     };
+
+    TextureHandle add_texture(Texture texture);
+    BufferHandle add_buffer(Buffer buffer);
+    void fill(const Pass& pass);
 
     std::vector<Texture> textures_;
     std::vector<Buffer> buffers_;

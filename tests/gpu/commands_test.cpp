@@ -14,7 +14,9 @@ class DrawOn : public SoftwareTest {
 protected:
     void draw_to(const Program& program, std::vector<const Texture*> targets, const Bindings& bindings = {},
                  Blend blend = Blend::none) {
-        draw(context(), program, targets, bindings, blend);
+        std::vector<Target> whole;
+        for (const Texture* texture : targets) whole.push_back({.texture = texture});
+        draw(context(), program, whole, bindings, blend);
     }
 };
 ON_SOFTWARE_BACKENDS(DrawOn);
@@ -233,6 +235,33 @@ TEST_P(DrawOn, RefusesAProgramOfTheOtherKind) {
     EXPECT_EQ(error_of([&] { dispatch(context(), draws, 1, 1, 1, {}); }).find("draws: "), 0U);
 }
 
+TEST_P(DrawOn, IsDoneBeforeItsTargetIsReadThoughAnotherWasDrawnToSince) {
+    const Program sum = fragment(R"(layout(binding = 0) uniform sampler2D previous;
+layout(binding = 1) uniform sampler2D input_image;
+layout(location = 0) out float c;
+void main() {
+    ivec2 p = ivec2(gl_FragCoord.xy);
+    c = texelFetch(previous, p, 0).r + texelFetch(input_image, p, 0).r;
+})");
+    const Program copy = fragment(R"(layout(binding = 0) uniform sampler2D previous;
+layout(location = 0) out float c;
+void main() { c = texelFetch(previous, ivec2(gl_FragCoord.xy), 0).r; })");
+    for (int repeat = 0; repeat < 50; ++repeat) {
+        Texture a = texture(5, 3, TextureFormat::r32f), b = texture(5, 3, TextureFormat::r32f);
+        Texture input = texture(5, 3, TextureFormat::r32f);
+        const Texture other = texture(5, 3, TextureFormat::r32f);
+        a.clear(0.0F);
+        for (int frame = 1; frame <= 3; ++frame) {
+            input.upload(std::vector<float>(15, 1.0F));
+            const SampledTexture textures[] = {{.texture = &a}, {.texture = &input, .binding = 1}};
+            draw_to(sum, {&b}, {.textures = textures});
+            draw_to(copy, {&other}, {.textures = std::span(textures).first(1)});
+            ASSERT_EQ(b.read_floats(), std::vector<float>(15, static_cast<float>(frame))) << repeat;
+            std::swap(a, b);
+        }
+    }
+}
+
 TEST_P(DrawOn, DropsTheFramebufferOfATextureThatDied) {
     const Program program = fragment(kOne);
     for (int i = 1; i < 20; ++i)
@@ -311,7 +340,7 @@ void main() {
 })",
                                           "transcendental");
     const Texture target(context, {.width = 64, .height = 64}, "target");
-    const Texture* const targets[] = {&target};
+    const Target targets[] = {{.texture = &target}};
     const SampledTexture textures[] = {{&source, 0, Filter::linear, Wrap::clamp}};
     draw(context, program, targets, {.textures = textures});
     return target.read_floats();

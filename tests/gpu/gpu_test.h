@@ -47,7 +47,7 @@ protected:
     /// Draws `program` into a new float texture and reads it back.
     std::vector<float> drawn(const Program& program, int width, int height, const Bindings& bindings = {}) {
         const Texture target = texture(width, height);
-        const Texture* const targets[] = {&target};
+        const Target targets[] = {{.texture = &target}};
         draw(context(), program, targets, bindings);
         return target.read_floats();
     }

@@ -1,58 +1,23 @@
+// Frames of draws: memory, uniforms, timing, observers.
 #include "framework/graph/executor.h"
 
-#include <cstring>
-#include <utility>
-
-#include "tests/gpu/gpu_test.h"
+#include "tests/graph/executor_test.h"
 
 namespace aftershade::graph {
 namespace {
 
-using gpu::TextureFormat;
-using Floats = std::vector<float>;
-
-constexpr int kWidth = 5, kHeight = 3;
-const gpu::TextureDesc kDesc{.width = kWidth, .height = kHeight, .format = TextureFormat::r32f};
-
-std::vector<std::byte> block_of(float value) {
-    std::vector<std::byte> bytes(16);  // std140 rounds a block up to 16 bytes
-    std::memcpy(bytes.data(), &value, sizeof value);
-    return bytes;
-}
-
-class ExecutorOn : public gpu::SoftwareTest {
-protected:
-    /// out = source * 2 + add, texel by texel.
-    gpu::Program twice_plus() {
-        return fragment(R"(
-layout(binding = 0) uniform sampler2D source;
-layout(std140, binding = 1) uniform Block { float add; };
-layout(location = 0) out float result;
-void main() { result = texelFetch(source, ivec2(gl_FragCoord.xy), 0).r * 2.0 + add; })");
-    }
-
-    static Pass pass(const std::string& name, const gpu::Program& program, TextureHandle source, float add) {
-        return {name, &program, {{source, 0}}, {{1, block_of(add)}}};
-    }
-
-    static Floats ramp(float step) {
-        Floats values(kWidth * kHeight);
-        for (std::size_t i = 0; i < values.size(); ++i) values[i] = step * float(i);
-        return values;
-    }
-};
+class ExecutorOn : public GraphOn {};
 ON_SOFTWARE_BACKENDS(ExecutorOn);
 
 TEST_P(ExecutorOn, RunsAChainInSharedMemory) {
     const gpu::Program program = twice_plus();
-    FrameGraph graph;
-    const TextureHandle input = graph.import_texture("input", kDesc);
+    Graph graph;
+    const TextureHandle input = graph.import_texture("input", kSmall);
     TextureHandle last = input;
     constexpr int kPasses = 6;
-    for (int i = 0; i < kPasses; ++i) {
-        const TextureHandle target = graph.create_texture("t" + std::to_string(i), kDesc);
-        last = graph.add_pass(pass("p" + std::to_string(i), program, last, 1), std::span(&target, 1)).front();
-    }
+    for (int i = 0; i < kPasses; ++i)
+        last = graph.add_pass(adding("p", program, last, graph.fresh("t" + std::to_string(i), kSmall), 1))
+                   .targets[0];
     graph.keep(last);
     Executor executor(context(), std::move(graph));
     EXPECT_EQ(executor.compiled().slots.size(), 3u);
@@ -68,13 +33,12 @@ TEST_P(ExecutorOn, RunsAChainInSharedMemory) {
 
 TEST_P(ExecutorOn, KeepsATapWholeWhileLaterPassesRun) {
     const gpu::Program program = twice_plus();
-    FrameGraph graph;
-    const TextureHandle input = graph.import_texture("input", kDesc);
+    Graph graph;
+    const TextureHandle input = graph.import_texture("input", kSmall);
     std::vector<TextureHandle> made{input};
-    for (int i = 0; i < 5; ++i) {
-        const TextureHandle target = graph.create_texture("t" + std::to_string(i), kDesc);
-        made.push_back(graph.add_pass(pass("p", program, made.back(), 0), std::span(&target, 1)).front());
-    }
+    for (int i = 0; i < 5; ++i)
+        made.push_back(
+            graph.add_pass(adding("p", program, made.back(), graph.fresh("t", kSmall), 0)).targets[0]);
     graph.keep(made[1]);
     graph.keep(made[5]);
     Executor executor(context(), std::move(graph));
@@ -86,14 +50,14 @@ TEST_P(ExecutorOn, KeepsATapWholeWhileLaterPassesRun) {
 
 TEST_P(ExecutorOn, ReplacesAUniformBlockBetweenFrames) {
     const gpu::Program program = twice_plus();
-    FrameGraph graph;
-    const TextureHandle input = graph.import_texture("input", kDesc);
-    const TextureHandle target = graph.create_texture("out", kDesc);
-    const TextureHandle out = graph.add_pass(pass("out", program, input, 0), std::span(&target, 1)).front();
+    Graph graph;
+    const TextureHandle input = graph.import_texture("input", kSmall);
+    const TextureHandle out =
+        graph.add_pass(adding("out", program, input, graph.fresh("out", kSmall), 0)).targets[0];
     graph.keep(out);
     Executor executor(context(), std::move(graph));
     executor.texture(input)->upload(Floats(kWidth * kHeight, 1));
-    for (const float add : {0.25f, 100.0f}) {
+    for (const float add : {0.25f, 100.0f, 100.0f, 0.25f}) {
         executor.set_uniforms(0, 1, block_of(add));
         executor.run(false);
         EXPECT_EQ(executor.texture(out)->read_floats(), Floats(kWidth * kHeight, 2 + add));
@@ -102,13 +66,12 @@ TEST_P(ExecutorOn, ReplacesAUniformBlockBetweenFrames) {
 
 TEST_P(ExecutorOn, LeavesCulledPassesOutAndTakesTheirUniformsAllTheSame) {
     const gpu::Program program = twice_plus();
-    FrameGraph graph;
-    const TextureHandle input = graph.import_texture("input", kDesc);
-    const TextureHandle unused = graph.create_texture("unused", kDesc),
-                        target = graph.create_texture("out", kDesc);
+    Graph graph;
+    const TextureHandle input = graph.import_texture("input", kSmall);
     const TextureHandle culled =
-        graph.add_pass(pass("culled", program, input, 0), std::span(&unused, 1)).front();
-    const TextureHandle out = graph.add_pass(pass("out", program, input, 0), std::span(&target, 1)).front();
+        graph.add_pass(adding("culled", program, input, graph.fresh("culled", kSmall), 0)).targets[0];
+    const TextureHandle out =
+        graph.add_pass(adding("out", program, input, graph.fresh("out", kSmall), 0)).targets[0];
     graph.keep(out);
     Executor executor(context(), std::move(graph));
     executor.set_uniforms(0, 1, block_of(5));
@@ -117,36 +80,71 @@ TEST_P(ExecutorOn, LeavesCulledPassesOutAndTakesTheirUniformsAllTheSame) {
     ASSERT_EQ(times.size(), 1u);
     EXPECT_EQ(times[0].pass, "out");
     EXPECT_GE(times[0].milliseconds, 0);
-}
-
-TEST_P(ExecutorOn, TimesPassesOnlyWhenAsked) {
-    const gpu::Program program = twice_plus();
-    FrameGraph graph;
-    const TextureHandle input = graph.import_texture("input", kDesc),
-                        target = graph.create_texture("out", kDesc);
-    graph.keep(graph.add_pass(pass("out", program, input, 0), std::span(&target, 1)).front());
-    Executor executor(context(), std::move(graph));
     EXPECT_TRUE(executor.run(false).empty());
-    EXPECT_EQ(executor.run(true).size(), 1u);
 }
 
-TEST_P(ExecutorOn, WritesTwoTargetsInOnePass) {
+TEST_P(ExecutorOn, RefusesAPassWithoutAProgramUnlessItIsCulled) {
+    Graph graph;
+    (void)graph.draw("culled", {}, graph.fresh("culled", kSmall));
+    EXPECT_EQ(fault_of([&] { Executor(context(), graph); }), "");
+    graph.keep(graph.draw("bare", {}, graph.fresh("out", kSmall)));
+    EXPECT_EQ(fault_of([&] { Executor(context(), graph); }), "pass 'bare' has no program");
+}
+
+TEST_P(ExecutorOn, RefusesAProgramOfTheOtherKind) {
+    const gpu::Program compute = computes("layout(local_size_x = 1) in;", "");
+    Graph graph;
+    EXPECT_EQ(fault_of([&] { (void)graph.add_pass(draw_of("odd", compute, {}, graph.fresh("a", kSmall))); }),
+              "pass 'odd' draws, but its program 'compute' does the other");
+}
+
+TEST_P(ExecutorOn, WritesTwoTargetsInOnePassAndShowsThemToTheObserver) {
     const gpu::Program program = fragment(R"(
 layout(location = 0) out float left;
 layout(location = 1) out vec4 right;
 void main() { left = gl_FragCoord.x; right = vec4(gl_FragCoord.y); })");
-    FrameGraph graph;
-    const gpu::TextureDesc rgba{.width = kWidth, .height = kHeight, .format = TextureFormat::rgba32f};
-    const TextureHandle targets[] = {graph.create_texture("left", kDesc),
-                                     graph.create_texture("right", rgba)};
-    const auto written = graph.add_pass({"both", &program, {}, {}}, targets);
+    Graph graph;
+    const gpu::TextureDesc rgba{.width = kWidth, .height = kHeight};
+    Pass both = draw_of("both", program, {}, graph.fresh("left", kSmall));
+    both.targets.push_back({graph.fresh("right", rgba)});
+    const auto written = graph.add_pass(both).targets;
     graph.keep(written[1]);
     Executor executor(context(), std::move(graph));
-    executor.run(false);
+    Names seen;
+    executor.run(false, [&](const std::string& pass, const std::string& name, const gpu::Texture& texture) {
+        seen.push_back(pass + "/" + name + "=" + std::to_string(texture.read_floats().back()));
+    });
+    EXPECT_EQ(seen, (Names{"both/left=4.500000", "both/right=2.500000"}));
     const Floats right = executor.texture(written[1])->read_floats();
     EXPECT_EQ(right.front(), 0.5f);
     EXPECT_EQ(right.back(), float(kHeight) - 0.5f);
     EXPECT_EQ(executor.texture(written[0])->read_floats().back(), float(kWidth) - 0.5f);
+}
+
+TEST_P(ExecutorOn, ClearsSharedMemoryBeforeEachUseInEachFrame) {
+    const gpu::Program one = draws("result = 1.0;");
+    const gpu::Program copy = draws("result = texelFetch(source, p, 0).r;");
+    Graph graph;
+    TextureOptions ten, hundred;
+    ten.clear = {10, 0, 0, 0};
+    hundred.clear = {100, 0, 0, 0};
+    const auto add_one = [&](const std::string& name, TextureHandle target) {
+        Pass pass = draw_of(name, one, {}, target);
+        pass.blend = gpu::Blend::add;
+        return graph.add_pass(pass).targets[0];
+    };
+    const TextureHandle a = add_one("a", graph.create_texture("a", kSmall, ten));
+    const TextureHandle b = graph.add_pass(draw_of("b", copy, {a}, graph.fresh("b", kSmall))).targets[0];
+    const TextureHandle c = add_one("c", add_one("c", graph.create_texture("c", kSmall, hundred)));
+    graph.keep(b);
+    graph.keep(c);
+    Executor executor(context(), std::move(graph));
+    EXPECT_EQ(executor.texture(a), executor.texture(c));
+    for (int frame = 0; frame < 3; ++frame) {
+        executor.run(false);
+        EXPECT_EQ(executor.texture(b)->read_floats(), Floats(kWidth * kHeight, 11)) << frame;
+        EXPECT_EQ(executor.texture(c)->read_floats(), Floats(kWidth * kHeight, 102)) << frame;
+    }
 }
 
 }  // namespace

@@ -1,0 +1,191 @@
+// Culling by version, and sharing of memory between lifetimes that do not meet.
+#include <algorithm>
+#include <optional>
+#include <span>
+
+#include "framework/graph/frame_graph.h"
+#include "framework/graph/pass_uses.h"
+
+namespace aftershade::graph {
+
+PassUses uses_of(const FrameGraph& graph, int pass_index) {
+    const Pass& pass = graph.pass(pass_index);
+    const Written& written = graph.written(pass_index);
+    const int buffers = int(graph.textures().size());
+    PassUses uses;
+    const auto need = [&](TextureHandle h) { uses.needs.push_back({h.texture, h.version}); };
+    const auto need_buffer = [&](BufferHandle h) { uses.needs.push_back({buffers + h.buffer, h.version}); };
+    for (const Read& read : pass.reads) need(read.texture);
+    for (std::size_t i = 0; i < pass.targets.size(); ++i) {
+        if (!graph.overwrites(pass, pass.targets[i])) need(pass.targets[i].texture);
+        uses.makes.push_back({written.targets[i].texture, written.targets[i].version});
+    }
+    for (std::size_t i = 0; i < pass.images.size(); ++i) {
+        need(pass.images[i].texture);
+        if (pass.images[i].access == gpu::Access::read) continue;
+        uses.makes.push_back({written.images[i].texture, written.images[i].version});
+    }
+    for (std::size_t i = 0; i < pass.buffers.size(); ++i) {
+        need_buffer(pass.buffers[i].buffer);
+        if (pass.buffers[i].access == gpu::Access::read) continue;
+        uses.makes.push_back({buffers + written.buffers[i].buffer, written.buffers[i].version});
+    }
+    for (const auto& indirect : {pass.instances.indirect, pass.groups.indirect})
+        if (indirect) need_buffer(*indirect);
+    return uses;
+}
+
+namespace {
+
+/// What a texture and a buffer have in common here.
+struct Resource {
+    bool kept = false;
+    bool alone = false;  ///< imports and histories share their memory with nothing
+    bool cleared = false;
+    int previous_of = -1;  ///< a resource
+    int version = 0;       ///< the last one
+};
+
+/// Positions of the first and the last pass that touch a resource.
+struct Lifetime {
+    int first = 0;
+    int last = 0;
+};
+
+class Compiler {
+public:
+    explicit Compiler(const FrameGraph& graph) : graph_(graph), buffers_(graph.textures().size()) {
+        for (const FrameGraph::Texture& t : graph.textures())
+            resources_.push_back({t.kept, t.imported, t.options.clear.has_value(), t.previous_of, t.version});
+        for (const FrameGraph::Buffer& b : graph.buffers())
+            resources_.push_back({b.kept, b.imported, b.clear.has_value(),
+                                  b.previous_of < 0 ? -1 : b.previous_of + int(buffers_), b.version});
+        for (Resource& resource : resources_) {
+            if (resource.previous_of < 0) continue;
+            resource.alone = resources_[std::size_t(resource.previous_of)].alone = true;
+        }
+        for (int i = 0; i < graph.pass_count(); ++i) uses_.push_back(uses_of(graph, i));
+    }
+
+    CompiledGraph run() {
+        cull();
+        find_lifetimes();
+        const auto bytes_of_buffer = [](const BufferDesc& desc) { return std::uint64_t(desc.bytes); };
+        assign(graph_.textures(), 0, compiled_.slots, compiled_.slot_of_texture, gpu::byte_size);
+        assign(graph_.buffers(), buffers_, compiled_.buffer_slots, compiled_.slot_of_buffer, bytes_of_buffer);
+        for (std::size_t i = 0; i < resources_.size(); ++i) {
+            auto& cleared = i < buffers_ ? compiled_.texture_cleared_before : compiled_.buffer_cleared_before;
+            const bool is_seen = resources_[i].cleared && lifetimes_[i] && needed_[i][0];
+            cleared.push_back(is_seen ? first_use_[i] : -1);
+        }
+        return std::move(compiled_);
+    }
+
+private:
+    bool is_needed(const Version& v) const {
+        return needed_[std::size_t(v.resource)][std::size_t(v.version)];
+    }
+    void need(const Version& v) { needed_[std::size_t(v.resource)][std::size_t(v.version)] = true; }
+
+    /// Passes from the last to the first: one matters if a later one needs a version that it makes.
+    void sweep() {
+        for (std::size_t i = uses_.size(); i-- > 0;) {
+            const auto& makes = uses_[i].makes;
+            if (std::none_of(makes.begin(), makes.end(), [&](const Version& v) { return is_needed(v); }))
+                continue;
+            runs_[i] = true;
+            for (const Version& version : uses_[i].needs) need(version);
+        }
+    }
+
+    void cull() {
+        runs_.assign(uses_.size(), false);
+        for (const Resource& resource : resources_) {
+            needed_.emplace_back(std::size_t(resource.version) + 1);
+            if (resource.kept) needed_.back().back() = true;
+        }
+        // Reading a history's `previous` makes its `current` matter, whose passes may read other histories.
+        for (bool again = true; again;) {
+            again = false;
+            sweep();
+            for (const Resource& previous : resources_) {
+                const auto index = std::size_t(&previous - resources_.data());
+                if (previous.previous_of < 0 || !needed_[index][1]) continue;
+                const Version current{previous.previous_of,
+                                      resources_[std::size_t(previous.previous_of)].version};
+                if (is_needed(current)) continue;
+                need(current);
+                again = true;
+            }
+        }
+        for (std::size_t i = 0; i < runs_.size(); ++i)
+            if (runs_[i]) compiled_.passes.push_back(int(i));
+    }
+
+    void find_lifetimes() {
+        lifetimes_.resize(resources_.size());
+        const int end = int(compiled_.passes.size());
+        for (int position = 0; position < end; ++position) {
+            const PassUses& uses = uses_[std::size_t(compiled_.passes[std::size_t(position)])];
+            for (const auto* versions : {&uses.needs, &uses.makes})
+                for (const Version& version : *versions) {
+                    std::optional<Lifetime>& life = lifetimes_[std::size_t(version.resource)];
+                    if (!life) life = {position, position};
+                    life->last = position;
+                }
+        }
+        for (std::size_t i = 0; i < resources_.size(); ++i) {
+            std::optional<Lifetime>& life = lifetimes_[i];
+            if (resources_[i].kept) life = {life ? life->first : end, end};
+            first_use_.push_back(life ? life->first : -1);
+            if (life && resources_[i].alone) life = {-1, end};
+        }
+    }
+
+    /// By first use, each into the first slot of its description that is free by then: as many slots as live
+    /// at once, since the lifetimes are intervals.
+    template <typename Node, typename Desc, typename ByteSize>
+    void assign(const std::vector<Node>& nodes, std::size_t offset, std::vector<Desc>& slots,
+                std::vector<int>& slot_of, ByteSize byte_size) {
+        slot_of.assign(nodes.size(), -1);
+        std::vector<std::size_t> order;
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+            if (lifetimes_[offset + i]) order.push_back(i);
+        std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+            return lifetimes_[offset + a]->first < lifetimes_[offset + b]->first;
+        });
+        std::vector<int> busy_until;
+        for (const std::size_t i : order) {
+            const Lifetime life = *lifetimes_[offset + i];
+            const Desc& desc = nodes[i].desc;
+            std::size_t slot = 0;
+            while (slot < slots.size() && !(slots[slot] == desc && busy_until[slot] < life.first)) ++slot;
+            if (slot == slots.size()) {
+                slots.push_back(desc);
+                busy_until.push_back(0);
+                compiled_.bytes += byte_size(desc);
+            }
+            busy_until[slot] = life.last;
+            slot_of[i] = int(slot);
+            compiled_.bytes_unaliased += byte_size(desc);
+        }
+    }
+
+    const FrameGraph& graph_;
+    std::size_t buffers_;  // where they begin among the resources
+    std::vector<Resource> resources_;
+    std::vector<PassUses> uses_;
+    std::vector<std::vector<bool>> needed_;  // by resource and version
+    std::vector<bool> runs_;
+    std::vector<std::optional<Lifetime>> lifetimes_;
+    std::vector<int> first_use_;
+    CompiledGraph compiled_;
+};
+
+}  // namespace
+
+CompiledGraph FrameGraph::compile() const {
+    return Compiler(*this).run();
+}
+
+}  // namespace aftershade::graph

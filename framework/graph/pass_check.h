@@ -1,0 +1,16 @@
+// What FrameGraph refuses. Internal to framework/graph.
+#pragma once
+
+#include "framework/graph/frame_graph.h"
+
+namespace aftershade::graph {
+
+/// Throws GraphError naming the pass and the texture or buffer if `pass` cannot be the next one of `graph`.
+void check_pass(const FrameGraph& graph, const Pass& pass);
+
+/// The texture of a handle. Throws GraphError, which begins with `user`, for a handle that the graph never
+/// gave or that a later write made stale.
+const FrameGraph::Texture& live(const FrameGraph& graph, TextureHandle handle, const std::string& user);
+const FrameGraph::Buffer& live(const FrameGraph& graph, BufferHandle handle, const std::string& user);
+
+}  // namespace aftershade::graph
