@@ -11,9 +11,9 @@ namespace {
 
 using Points = std::vector<std::array<double, 2>>;
 
-/// dy/dx at each point, so that the Hermite cubics between them are monotone where the points are: Fritsch and
-/// Carlson 1980, "Monotone Piecewise Cubic Interpolation", doi:10.1137/0717021, with the circle of radius 3 as
-/// the region of monotonicity.
+/// dy/dx at each point, so that the Hermite cubics between them are monotone where the points are: Fritsch
+/// and Carlson 1980, "Monotone Piecewise Cubic Interpolation", doi:10.1137/0717021, with the circle of radius
+/// 3 as the region of monotonicity.
 std::vector<double> monotone_slopes(const Points& points) {
     const std::size_t last = points.size() - 1;
     std::vector<double> secants(last);
@@ -44,8 +44,8 @@ double hermite(const std::array<double, 2>& a, const std::array<double, 2>& b, d
     const double width = b[0] - a[0];
     const double t = (x - a[0]) / width;
     const double s = 1 - t;
-    const double y = s * s * (1 + 2 * t) * a[1] + t * t * (1 + 2 * s) * b[1] +
-                     width * s * t * (s * slope_a - t * slope_b);
+    const double y =
+        s * s * (1 + 2 * t) * a[1] + t * t * (1 + 2 * s) * b[1] + width * s * t * (s * slope_a - t * slope_b);
     // Rounding alone can leave the range of the two points.
     return std::clamp(y, std::min(a[1], b[1]), std::max(a[1], b[1]));
 }
@@ -104,8 +104,8 @@ std::optional<ParamValue> ValueReader::curve(const Node& node) const {
     const std::size_t count = points->items.size();
     if (count < 1 || count > kMaxCurvePoints)
         return ValueReader{spec, points_label, diagnostics}.fault(
-            *points, std::to_string(count) + " points; a curve has from 1 to " +
-                         std::to_string(kMaxCurvePoints));
+            *points,
+            std::to_string(count) + " points; a curve has from 1 to " + std::to_string(kMaxCurvePoints));
     for (std::size_t i = 0; i < count; ++i) {
         const ValueReader reader{spec, points_label + "[" + std::to_string(i) + "]", diagnostics};
         const auto point = read_point(reader, points->items[i]);

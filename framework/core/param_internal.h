@@ -36,8 +36,8 @@ std::string with_unit(double value, const std::string& unit);
 /// The declaration of a table's columns, into spec.columns.
 void read_columns(const Node& node, ParamSpec& spec, Diagnostics& diagnostics);
 
-/// parse_param_spec for what messages call `thing` ("parameter 'taps'") and `label` ("taps"). A column is of a
-/// block type, a uniform, and has no relation to anything else.
+/// parse_param_spec for what messages call `thing` ("parameter 'taps'") and `label` ("taps"). A column is of
+/// a block type, a uniform, and has no relation to anything else.
 enum class SpecOwner { manifest, table };
 std::optional<ParamSpec> parse_spec(const std::string& name, const std::string& thing,
                                     const std::string& label, SpecOwner owner, const Node& node,

@@ -25,9 +25,9 @@ constexpr std::uintmax_t kMaxFileBytes = 1024u * 1024 * 1024;
 constexpr int kMaxSize1d = 65536;
 constexpr int kMaxSize3d = 256;
 
-const std::vector<std::string> kKeywords = {"TITLE",      "LUT_1D_SIZE", "LUT_3D_SIZE",
-                                            "DOMAIN_MIN", "DOMAIN_MAX",  "LUT_1D_INPUT_RANGE",
-                                            "LUT_3D_INPUT_RANGE"};
+const std::vector<std::string> kKeywords = {
+    "TITLE",      "LUT_1D_SIZE",        "LUT_3D_SIZE",       "DOMAIN_MIN",
+    "DOMAIN_MAX", "LUT_1D_INPUT_RANGE", "LUT_3D_INPUT_RANGE"};
 
 bool is_space(char c) {
     return c == ' ' || c == '\t' || c == '\r';
@@ -109,11 +109,12 @@ private:
         const std::string_view word = next_word(rest);
         const auto size = parse_number(word);
         if (!next_word(rest).empty() || !size || *size != std::floor(*size) || *size < 2 || *size > limit)
-            return fault(fmt::format("LUT_{}D_SIZE '{}' is not a whole number from 2 to {}", dimensions, word,
-                                     limit));
+            return fault(
+                fmt::format("LUT_{}D_SIZE '{}' is not a whole number from 2 to {}", dimensions, word, limit));
         if (lut_.size != 0)
-            return fault("both LUT_1D_SIZE and LUT_3D_SIZE: a curve in front of a cube is not supported, bake "
-                         "it into one table");
+            return fault(
+                "both LUT_1D_SIZE and LUT_3D_SIZE: a curve in front of a cube is not supported, bake "
+                "it into one table");
         lut_.dimensions = dimensions;
         lut_.size = int(*size);
     }
@@ -161,11 +162,13 @@ private:
     void check_complete() {
         if (lut_.size == 0) return fault("has no LUT_1D_SIZE or LUT_3D_SIZE");
         if (lut_.values.size() != triples() * 3)
-            return fault(fmt::format("the table ends after {} of {} lines", lut_.values.size() / 3, triples()));
+            return fault(
+                fmt::format("the table ends after {} of {} lines", lut_.values.size() / 3, triples()));
         for (std::size_t c = 0; c < 3; ++c)
             if (!(lut_.domain_min[c] < lut_.domain_max[c]))
                 return fault(fmt::format("the domain of {} does not rise, it is {} to {}", "rgb"[c],
-                                         format_number(lut_.domain_min[c]), format_number(lut_.domain_max[c])));
+                                         format_number(lut_.domain_min[c]),
+                                         format_number(lut_.domain_max[c])));
         const std::string other_range = lut_.dimensions == 1 ? "LUT_3D_INPUT_RANGE" : "LUT_1D_INPUT_RANGE";
         if (seen_.contains(other_range))
             fault(fmt::format("{} does not belong to a table of {} dimension{}", other_range, lut_.dimensions,

@@ -23,9 +23,9 @@ struct Lut {
 };
 
 /// Reads the text of a .cube file: both sizes' tables, TITLE, DOMAIN_MIN and DOMAIN_MAX, comments, and the
-/// LUT_1D_INPUT_RANGE and LUT_3D_INPUT_RANGE that DaVinci Resolve writes for the domain. nullopt after faults,
-/// each at a line of `file`; after 20 of them reading ends. A file with both a 1-D and a 3-D table, which Resolve
-/// writes too, is refused.
+/// LUT_1D_INPUT_RANGE and LUT_3D_INPUT_RANGE that DaVinci Resolve writes for the domain. nullopt after
+/// faults, each at a line of `file`; after 20 of them reading ends. A file with both a 1-D and a 3-D table,
+/// which Resolve writes too, is refused.
 std::optional<Lut> parse_lut(std::string_view text, const std::string& file, Diagnostics& diagnostics);
 
 /// The same from a regular file of at most 1 GiB.

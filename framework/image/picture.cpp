@@ -42,7 +42,8 @@ Image read_exr_picture(const fs::path& path) {
     if (present.empty() || present[0] == "A") {
         std::vector<std::string> names;
         for (const ExrChannel& channel : part.channels) names.push_back(channel.name);
-        throw Error(ExitCode::capture, path.string() + ": the first part has no channel R, G, B or Y; it has " +
+        throw Error(ExitCode::capture, path.string() +
+                                           ": the first part has no channel R, G, B or Y; it has " +
                                            list_of_names(names, "and"));
     }
     const Image stored = file.read_floats(0, present);

@@ -18,16 +18,17 @@ TEST(FileParam, TakesAPathOrNone) {
     EXPECT_EQ(value_faults(lut, "1"),
               Lines{"doc.json:1:1: error: p: expected the path of a file, or \"\" for none, not an integer"});
     EXPECT_EQ(value_faults(lut, "\"a\\u0000b\""), Lines{"doc.json:1:1: error: p: a path holds no zero byte"});
-    const ParamSpec data =
-        spec_of(R"({"type": "file", "kind": "image", "space": "data", "default": "a/../mask.png", "doc": "."})");
+    const ParamSpec data = spec_of(
+        R"({"type": "file", "kind": "image", "space": "data", "default": "a/../mask.png", "doc": "."})");
     EXPECT_EQ(data.file_kind, FileKind::image);
     EXPECT_TRUE(data.file_is_data);
 }
 
 TEST(FileParam, OfAManifestStaysInItsFolder) {
     for (const std::string path : {"/etc/passwd", "../a.png", "a/../../b.png", ".."})
-        EXPECT_EQ(test::spec_faults(R"({"type": "file", "kind": "image", "doc": ".", "default": ")" + path + "\"}"),
-                  Lines{"doc.json:1:58: error: p.default: '" + path + "' must lie in the effect's folder"});
+        EXPECT_EQ(
+            test::spec_faults(R"({"type": "file", "kind": "image", "doc": ".", "default": ")" + path + "\"}"),
+            Lines{"doc.json:1:58: error: p.default: '" + path + "' must lie in the effect's folder"});
     spec_of(R"({"type": "file", "kind": "image", "doc": ".", "default": "..mask.png"})");
 }
 
@@ -66,7 +67,8 @@ TEST(ParamInterpolation, HoldsEverythingElseUntilTheNextKey) {
 }
 
 TEST(PixelScale, MultipliesWhatIsInPixels) {
-    const ParamSpec radius = spec_of(R"({"type": "float", "unit": "px", "default": 64, "min": 1, "doc": "."})");
+    const ParamSpec radius =
+        spec_of(R"({"type": "float", "unit": "px", "default": 64, "min": 1, "doc": "."})");
     EXPECT_EQ(scale_pixels(radius, 64.0, 0.25), ParamValue(16.0));
     const ParamSpec offset = spec_of(R"({"type": "vec2", "unit": "px", "default": [0, 0], "doc": "."})");
     EXPECT_EQ(scale_pixels(offset, Vector{-4, 3}, 0.5), ParamValue(Vector{-2, 1.5}));

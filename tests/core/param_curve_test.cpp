@@ -12,7 +12,8 @@ using test::spec_of;
 using test::value_faults;
 using test::value_of;
 
-const std::string kFalloff = R"({"type": "curve", "unit": "px", "domain": [-1, 2], "default": [[0, 0], [1, 8]],
+const std::string kFalloff =
+    R"({"type": "curve", "unit": "px", "domain": [-1, 2], "default": [[0, 0], [1, 8]],
     "min": 0, "max": 10, "doc": "."})";
 
 CurveValue curve_of(const std::string& text) {
@@ -113,14 +114,14 @@ TEST(Curve, SaysWhichPointIsWrongAndWhy) {
                   "doc.json:1:49: error: a.p[5]: expected a point, [x, y]",
                   "doc.json:1:52: error: a.p[6]: expected a point, [x, y]",
               }));
-    EXPECT_EQ(value_faults(spec, "[]"),
-              Lines{"doc.json:1:1: error: p: 0 points; a curve has from 1 to 64"});
+    EXPECT_EQ(value_faults(spec, "[]"), Lines{"doc.json:1:1: error: p: 0 points; a curve has from 1 to 64"});
     std::string many;
     for (int i = 0; i < 65; ++i) many += (i ? ", [" : "[") + std::to_string(i / 64.0) + ", 0]";
     EXPECT_EQ(value_faults(spec, "[" + many + "]"),
               Lines{"doc.json:1:1: error: p: 65 points; a curve has from 1 to 64"});
-    EXPECT_EQ(value_faults(spec, "0.5"), Lines{"doc.json:1:1: error: p: expected points, [[x, y], ...], or an "
-                                               "object with 'points' and 'interpolation', not a number"});
+    EXPECT_EQ(value_faults(spec, "0.5"),
+              Lines{"doc.json:1:1: error: p: expected points, [[x, y], ...], or an "
+                    "object with 'points' and 'interpolation', not a number"});
     EXPECT_EQ(value_faults(spec, R"({"points": [[0, -1]], "interpolaton": "smooth"})"),
               (Lines{"doc.json:1:23: error: p has no key 'interpolaton'; did you mean 'interpolation'?",
                      "doc.json:1:17: error: p.points[0]: -1 px is below the minimum 0 px"}));

@@ -103,8 +103,9 @@ TEST(ParamRelation, OfAManifestNamesScalarsThatCanBeCompared) {
     EXPECT_EQ(declaration_faults(specs), Lines{where + "parameter 'focus_distance': 'other' is in deg, which "
                                                        "cannot be compared with m"});
     specs.back() = spec_of(R"({"type": "int", "default": 0, "doc": "."})", "other");
-    EXPECT_EQ(declaration_faults(specs), Lines{where + "parameter 'focus_distance': 'other' is a pure number, "
-                                                       "which cannot be compared with m"});
+    EXPECT_EQ(declaration_faults(specs),
+              Lines{where + "parameter 'focus_distance': 'other' is a pure number, "
+                            "which cannot be compared with m"});
     specs.back() = spec_of(R"({"type": "color", "default": [0, 0, 0], "doc": "."})", "other");
     EXPECT_EQ(declaration_faults(specs),
               Lines{where + "parameter 'focus_distance': 'other' is of type color, which has no order"});

@@ -47,21 +47,22 @@ TEST(Table, FillsRowsFromItsDefaultRow) {
 
 TEST(Table, SaysWhatIsWrongWithEachCell) {
     const ParamSpec spec = spec_of(kScales);
-    EXPECT_EQ(value_faults(spec, R"({"default": {"scael": 1}, "rows": [
+    EXPECT_EQ(
+        value_faults(spec, R"({"default": {"scael": 1}, "rows": [
 {"object": 1, "scale": 10}, {"object": 2, "mode": "softer"},
 {"name": "a", "scale": "1 mm", "size": 1}, 4], "row": []})",
-                           "bokeh.scales"),
-              (Lines{
-                  "doc.json:1:14: error: bokeh.scales.default has no key 'scael'; did you mean 'scale'?",
-                  "doc.json:2:24: error: bokeh.scales.rows[0].scale: 10 px is above the maximum 9 px",
-                  "doc.json:2:51: error: bokeh.scales.rows[1].mode: 'softer' is not one of 'soft' or 'hard'; did "
-                  "you mean 'soft'?",
-                  "doc.json:3:24: error: bokeh.scales.rows[2].scale: '1 mm' cannot be converted to px; write "
-                  "'px'",
-                  "doc.json:3:32: error: bokeh.scales.rows[2] has no key 'size'",
-                  "doc.json:3:44: error: bokeh.scales.rows[3] must be an object, not an integer",
-                  "doc.json:3:48: error: bokeh.scales has no key 'row'; did you mean 'rows'?",
-              }));
+                     "bokeh.scales"),
+        (Lines{
+            "doc.json:1:14: error: bokeh.scales.default has no key 'scael'; did you mean 'scale'?",
+            "doc.json:2:24: error: bokeh.scales.rows[0].scale: 10 px is above the maximum 9 px",
+            "doc.json:2:51: error: bokeh.scales.rows[1].mode: 'softer' is not one of 'soft' or 'hard'; did "
+            "you mean 'soft'?",
+            "doc.json:3:24: error: bokeh.scales.rows[2].scale: '1 mm' cannot be converted to px; write "
+            "'px'",
+            "doc.json:3:32: error: bokeh.scales.rows[2] has no key 'size'",
+            "doc.json:3:44: error: bokeh.scales.rows[3] must be an object, not an integer",
+            "doc.json:3:48: error: bokeh.scales has no key 'row'; did you mean 'rows'?",
+        }));
     EXPECT_EQ(value_faults(spec, "3"),
               Lines{"doc.json:1:1: error: p: expected an object with 'default' and 'rows', not an integer"});
 }
@@ -75,8 +76,9 @@ TEST(Table, TakesOneKeyARow) {
     EXPECT_EQ(row_faults("{}"), Lines{where + "a row has one of 'object', 'objects' and 'name', not 0"});
     EXPECT_EQ(row_faults(R"({"object": 1, "name": "a"})"),
               Lines{where + "a row has one of 'object', 'objects' and 'name', not 2"});
-    EXPECT_EQ(row_faults(R"({"object": -1})"),
-              Lines{"doc.json:1:22: error: p.rows[0]: -1 is not an object's id, a number from 0 to 4294967295"});
+    EXPECT_EQ(
+        row_faults(R"({"object": -1})"),
+        Lines{"doc.json:1:22: error: p.rows[0]: -1 is not an object's id, a number from 0 to 4294967295"});
     EXPECT_EQ(row_faults(R"({"object": 4294967296})"),
               Lines{"doc.json:1:22: error: p.rows[0]: 4294967296 is not an object's id, a number from 0 to "
                     "4294967295"});
@@ -91,19 +93,20 @@ TEST(Table, TakesOneKeyARow) {
 
 TEST(Table, RefusesTwoRowsForOneObjectAndNamesBoth) {
     const ParamSpec spec = spec_of(kScales);
-    EXPECT_EQ(value_faults(spec, R"({"rows": [{"objects": "3-7,20"},
+    EXPECT_EQ(
+        value_faults(spec, R"({"rows": [{"objects": "3-7,20"},
  {"object": 5},
  {"name": "a"}, {"name": "b"},
  {"name": "a"}, {"objects": "1-100"}]})"),
-              (Lines{
-                  "doc.json:4:2: error: p.rows[4]: 'a' is taken already by 'a' of p.rows[2], doc.json:3:2",
-                  "doc.json:4:17: error: p.rows[5]: objects 1-100 is taken already by objects 3-7 of p.rows[0], "
-                  "doc.json:1:11",
-                  "doc.json:4:17: error: p.rows[5]: objects 1-100 is taken already by object 5 of p.rows[1], "
-                  "doc.json:2:2",
-                  "doc.json:4:17: error: p.rows[5]: objects 1-100 is taken already by object 20 of p.rows[0], "
-                  "doc.json:1:11",
-              }));
+        (Lines{
+            "doc.json:4:2: error: p.rows[4]: 'a' is taken already by 'a' of p.rows[2], doc.json:3:2",
+            "doc.json:4:17: error: p.rows[5]: objects 1-100 is taken already by objects 3-7 of p.rows[0], "
+            "doc.json:1:11",
+            "doc.json:4:17: error: p.rows[5]: objects 1-100 is taken already by object 5 of p.rows[1], "
+            "doc.json:2:2",
+            "doc.json:4:17: error: p.rows[5]: objects 1-100 is taken already by object 20 of p.rows[0], "
+            "doc.json:1:11",
+        }));
     EXPECT_EQ(value_faults(spec, R"({"rows": [{"objects": "3-7,7"}]})"),
               Lines{"doc.json:1:11: error: p.rows[0]: object 7 is taken already by objects 3-7 of p.rows[0], "
                     "doc.json:1:11"});
@@ -111,23 +114,24 @@ TEST(Table, RefusesTwoRowsForOneObjectAndNamesBoth) {
 }
 
 TEST(Table, HasOnlyColumnsThatABlockCouldHold) {
-    EXPECT_EQ(spec_faults(R"({"type": "table", "columns": {
+    EXPECT_EQ(
+        spec_faults(R"({"type": "table", "columns": {
 "a": {"type": "curve", "default": [[0, 0]], "doc": "."},
 "b": {"type": "float", "default": 1, "bind": "define", "from": "camera.x", "requires": ["> a"], "doc": "."},
 "name": {"type": "float", "default": 1, "doc": "."},
 "C": {"type": "float", "default": 2, "max": 1, "doc": "."}}, "doc": "."})"),
-              (Lines{
-                  "doc.json:2:15: error: 'type' is 'curve' but must be 'float', 'int', 'bool', 'enum', 'angle', "
-                  "'color', 'vec2', 'vec3' or 'vec4'",
-                  "doc.json:3:38: error: column 'b' of parameter 'p' has no key 'bind'; did you mean 'min'?",
-                  "doc.json:3:56: error: column 'b' of parameter 'p' has no key 'from'",
-                  "doc.json:3:76: error: column 'b' of parameter 'p' has no key 'requires'",
-                  "doc.json:4:1: error: column 'name' of parameter 'p': a row says by this key which object it "
-                  "is for",
-                  "doc.json:5:1: error: column 'C' of parameter 'p' must be snake_case: a-z, 0-9 and _, "
-                  "beginning with a letter",
-                  "doc.json:5:35: error: p.columns.C.default: 2 is above the maximum 1",
-              }));
+        (Lines{
+            "doc.json:2:15: error: 'type' is 'curve' but must be 'float', 'int', 'bool', 'enum', 'angle', "
+            "'color', 'vec2', 'vec3' or 'vec4'",
+            "doc.json:3:38: error: column 'b' of parameter 'p' has no key 'bind'; did you mean 'min'?",
+            "doc.json:3:56: error: column 'b' of parameter 'p' has no key 'from'",
+            "doc.json:3:76: error: column 'b' of parameter 'p' has no key 'requires'",
+            "doc.json:4:1: error: column 'name' of parameter 'p': a row says by this key which object it "
+            "is for",
+            "doc.json:5:1: error: column 'C' of parameter 'p' must be snake_case: a-z, 0-9 and _, "
+            "beginning with a letter",
+            "doc.json:5:35: error: p.columns.C.default: 2 is above the maximum 1",
+        }));
     EXPECT_EQ(spec_faults(R"({"type": "table", "columns": {}, "min": 0, "doc": "."})"),
               (Lines{"doc.json:1:41: error: a table has no 'min'",
                      "doc.json:1:30: error: table parameter 'p' has no columns"}));

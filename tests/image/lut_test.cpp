@@ -48,9 +48,10 @@ TEST(Lut, OfThreeDimensionsHasRedFastest) {
 
 // The first example of the specification, with the white space, comments and line ends that files have.
 TEST(Lut, OfOneDimensionKeepsItsDomainAndTitle) {
-    const Lut lut = lut_of("#comment\r\nTITLE \"1-D \"demo\"\"\r\n\r\n\tDOMAIN_MIN -0.5 0 0\r\n"
-                           "DOMAIN_MAX 255.0 2.55e2 +1\r\nLUT_1D_SIZE 3\r\n# another\r\n"
-                           " 0 0 0\r\n0.25\t.5  1e-1 \r\n1 1 -1");
+    const Lut lut = lut_of(
+        "#comment\r\nTITLE \"1-D \"demo\"\"\r\n\r\n\tDOMAIN_MIN -0.5 0 0\r\n"
+        "DOMAIN_MAX 255.0 2.55e2 +1\r\nLUT_1D_SIZE 3\r\n# another\r\n"
+        " 0 0 0\r\n0.25\t.5  1e-1 \r\n1 1 -1");
     EXPECT_EQ(lut.dimensions, 1);
     EXPECT_EQ(lut.size, 3);
     EXPECT_EQ(lut.title, "1-D \"demo\"");
@@ -65,9 +66,10 @@ TEST(Lut, TakesResolvesInputRangeForItsDomain) {
     EXPECT_EQ(lut.domain_max, (std::array<double, 3>{4, 4, 4}));
     EXPECT_EQ(faults_of("LUT_1D_SIZE 2\nLUT_3D_INPUT_RANGE 0 1\n0 0 0\n1 1 1\n"),
               Lines{"a.cube:4:1: error: LUT_3D_INPUT_RANGE does not belong to a table of 1 dimension"});
-    EXPECT_EQ(faults_of("LUT_1D_SIZE 2\nDOMAIN_MIN 0 0 0\nLUT_1D_INPUT_RANGE 0 1\n0 0 0\n1 1 1\n"),
-              Lines{"a.cube:3:1: error: LUT_1D_INPUT_RANGE and DOMAIN_MIN or DOMAIN_MAX are two ways to say the "
-                    "same, use one"});
+    EXPECT_EQ(
+        faults_of("LUT_1D_SIZE 2\nDOMAIN_MIN 0 0 0\nLUT_1D_INPUT_RANGE 0 1\n0 0 0\n1 1 1\n"),
+        Lines{"a.cube:3:1: error: LUT_1D_INPUT_RANGE and DOMAIN_MIN or DOMAIN_MAX are two ways to say the "
+              "same, use one"});
 }
 
 TEST(Lut, SaysOnWhichLineAFileIsDamaged) {
@@ -142,8 +144,9 @@ TEST(Lut, OfAFileNamesIt) {
     EXPECT_EQ(read(folder / "a.cube"), Lines{(folder / "a.cube").string() + ": error: no such file"});
     EXPECT_EQ(read(folder.path()), Lines{folder.path().string() + ": error: is not a regular file"});
     test::write_text(folder / "b.cube", "LUT_3D_SIZE 1\n");
-    EXPECT_EQ(read(folder / "b.cube"), Lines{(folder / "b.cube").string() +
-                                             ":1:1: error: LUT_3D_SIZE '1' is not a whole number from 2 to 256"});
+    EXPECT_EQ(read(folder / "b.cube"),
+              Lines{(folder / "b.cube").string() +
+                    ":1:1: error: LUT_3D_SIZE '1' is not a whole number from 2 to 256"});
     test::write_text(folder / "c.cube", identity_cube(3));
     Diagnostics diagnostics;
     const auto lut = read_lut(folder / "c.cube", diagnostics);

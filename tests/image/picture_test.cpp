@@ -26,7 +26,8 @@ TEST(Picture, OfAnExrHasWhatTheFileHas) {
     const TemporaryFolder folder;
     const Image image = test::pattern_image(5, 3, 4);
     write(folder / "a.exr", image, {"R", "G", "B", "A"});
-    EXPECT_TRUE(std::ranges::equal(read_picture(folder / "a.exr", PictureSpace::srgb).floats(), image.floats()));
+    EXPECT_TRUE(
+        std::ranges::equal(read_picture(folder / "a.exr", PictureSpace::srgb).floats(), image.floats()));
     write(folder / "b.exr", image, {"R", "B"});
     const Image two = read_picture(folder / "b.exr", PictureSpace::data);
     ASSERT_EQ(two.channels(), 4);
@@ -38,9 +39,9 @@ TEST(Picture, OfAnExrHasWhatTheFileHas) {
     const Image grey = read_picture(folder / "y.exr", PictureSpace::data);
     for (int c = 0; c < 3; ++c) EXPECT_EQ(grey.at(2, 1, c), image.at(2, 1, 0));
     write(folder / "z.exr", image, {"Z", "A"});
-    EXPECT_EQ(test::capture_error([&] { read_picture(folder / "z.exr", PictureSpace::data); }),
-              (folder / "z.exr").string() +
-                  ": the first part has no channel R, G, B or Y; it has 'A' and 'Z'");
+    EXPECT_EQ(
+        test::capture_error([&] { read_picture(folder / "z.exr", PictureSpace::data); }),
+        (folder / "z.exr").string() + ": the first part has no channel R, G, B or Y; it has 'A' and 'Z'");
 }
 
 TEST(Picture, OfAPngIsDecodedAndPremultiplied) {
@@ -67,8 +68,9 @@ TEST(Picture, OfAGreyPngHasThreeEqualChannels) {
     const Image read = read_picture(folder / "a.png", PictureSpace::data);
     for (int c = 0; c < 3; ++c) EXPECT_EQ(read.at(2, 0, c), 256 / 65535.0f);
     EXPECT_EQ(read.at(2, 0, 3), 1);
-    EXPECT_NE(test::capture_error([&] { read_picture(folder / "none.png", PictureSpace::data); })
-                  .find("none.png: cannot be opened"),
+    EXPECT_NE(test::capture_error([&] {
+                  read_picture(folder / "none.png", PictureSpace::data);
+              }).find("none.png: cannot be opened"),
               std::string::npos);
 }
 
