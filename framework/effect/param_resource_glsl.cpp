@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -32,14 +31,14 @@ std::string type_name(const std::string& name) {
 }
 
 /// `text` with each "$name" replaced by what `values` has for it.
-std::string filled(std::string_view text, const std::map<std::string, std::string, std::less<>>& values) {
+std::string filled(std::string_view text, const std::map<std::string, std::string>& values) {
     std::string result;
     for (std::size_t mark = text.find('$'); mark != text.npos; mark = text.find('$')) {
         const auto is_name = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; };
         const auto* end = std::find_if_not(text.begin() + mark + 1, text.end(), is_name);
         const std::size_t past = std::size_t(end - text.begin());
-        result +=
-            std::string(text.substr(0, mark)) + values.find(text.substr(mark + 1, past - mark - 1))->second;
+        const std::string name(text.substr(mark + 1, past - mark - 1));
+        result += std::string(text.substr(0, mark)) + values.at(name);
         text.remove_prefix(past);
     }
     return result + std::string(text);

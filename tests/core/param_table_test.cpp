@@ -143,7 +143,8 @@ TEST(Table, IsFormattedAsADocumentWritesIt) {
     const ParamSpec spec = spec_of(kScales);
     const std::string text =
         R"({"default": {"scale": 2, "tint": [1, 0.5, 0.25], "mode": "hard", "on": false}, "rows": )"
-        R"([{"object": 4}, {"objects": "6-9", "mode": "soft", "on": true}, {"name": "A \"b\"", "scale": 1}]})";
+        R"([{"object": 4}, {"objects": "6-9", "mode": "soft", "on": true}, )"
+        R"({"name": "A \"b\"", "scale": 1}]})";
     EXPECT_EQ(format_value(spec, value_of(spec, text)), text);
     EXPECT_EQ(format_value(value_of(spec, R"({"rows": [{"object": 4, "scale": 0}]})")),
               R"({"default": {"cells": [1, [1, 0.5, 0.25], 1, 1]}, "rows": [{"object": 4, )"

@@ -297,7 +297,8 @@ TEST_P(ParamResourcesOn, FindATablesRowByObject) {
     const auto table = std::get<TableValue>(value_of(spec, R"({"default": {"scale": -1}, "rows": [
         {"objects": "100-200,300,400-499", "scale": 1, "offset": [1, 2]},
         {"name": "b", "scale": 2, "on": false},
-        {"name": "a", "scale": 3, "mode": "soft"}, {"name": "c", "scale": 4}, {"name": "same as a", "scale": 5},
+        {"name": "a", "scale": 3, "mode": "soft"}, {"name": "c", "scale": 4},
+        {"name": "same as a", "scale": 5},
         {"name": "low end", "scale": 6}, {"name": "high end", "scale": 7},
         {"objects": "4294967000-4294967295", "scale": 8}, {"object": 0, "scale": 9}]})"));
     const std::map<std::string, std::uint32_t> names = {
