@@ -5,7 +5,10 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -21,6 +24,7 @@ struct CurveValue {
     enum class Interpolation { linear, smooth };  ///< smooth: monotone cubic (Fritsch and Carlson 1980)
     std::vector<std::array<double, 2>> points;    ///< x in the curve's domain, y in the parameter's unit
     Interpolation interpolation = Interpolation::linear;
+    /// There must be a point. A smooth curve never leaves the range of two neighbouring points' y.
     double at(double x) const;
     bool operator==(const CurveValue&) const = default;
 };
@@ -39,7 +43,7 @@ struct TableValue {
     /// value; as many as the column's type has components.
     using Row = std::vector<std::vector<double>>;
     Row default_row;
-    std::vector<std::pair<TableKey, Row>> rows;
+    std::vector<std::pair<TableKey, Row>> rows;  ///< no id and no name twice
     bool operator==(const TableValue&) const = default;
 };
 
@@ -77,9 +81,10 @@ struct ParamSpec {
     std::string from;  ///< "camera.focus_distance": the default where the capture has that value
     std::optional<ParamValue> identity;  ///< the value that leaves the image as it is
     std::vector<ParamRelation> relations;
-    FileKind file_kind = FileKind::image;      ///< file
+    FileKind file_kind = FileKind::image;  ///< file
+    bool file_is_data = false;             ///< image, "space": "data": a PNG's numbers as they are stored
     std::array<double, 2> domain = {0.0, 1.0};  ///< curve: the range of x
-    std::vector<ParamSpec> columns;            ///< table: each a scalar or vector with its own default
+    std::vector<ParamSpec> columns;             ///< table: each a scalar or vector with its own default
     Place place;
 };
 
@@ -91,7 +96,14 @@ int component_count(ParamType type);
 /// "float", "int", ...: as manifests spell them.
 std::string_view param_type_name(ParamType type);
 
-/// Reads one entry of a manifest's "params". nullopt after a fault that leaves nothing usable.
+inline constexpr std::size_t kMaxCurvePoints = 64;
+
+/// A value of a block type as numbers, which is what a cell of a table holds: one per component, in the
+/// declared unit; a bool is 0 or 1, an enum the index of its name in `spec.values`.
+std::vector<double> numbers_of(const ParamSpec& spec, const ParamValue& value);
+
+/// Reads one entry of a manifest's "params". nullopt after a fault that leaves nothing usable. What
+/// `requires` names is checked by check_relation_declarations, once all parameters are known.
 std::optional<ParamSpec> parse_param_spec(const std::string& name, const Node& node,
                                           Diagnostics& diagnostics);
 
@@ -100,8 +112,11 @@ std::optional<ParamSpec> parse_param_spec(const std::string& name, const Node& n
 std::optional<ParamValue> parse_param_value(const ParamSpec& spec, const Node& node, const std::string& label,
                                             Diagnostics& diagnostics);
 
-/// The value as a document would write it, without unit.
+/// The value as a document would write it, without unit; one line. Of a table, a row's cells stand in the
+/// order of its columns under "cells": the value does not know their names.
 std::string format_value(const ParamValue& value);
+/// The same with the columns' names, as a document would write a table too.
+std::string format_value(const ParamSpec& spec, const ParamValue& value);
 
 /// The values of one effect instance, complete: every parameter of its manifest has one.
 class ParamSet {
@@ -113,5 +128,33 @@ public:
 private:
     std::map<std::string, ParamValue> values_;
 };
+
+/// A relation of "requires" that two values do not hold. The pointers are into the specs that were checked.
+struct RelationFault {
+    const ParamSpec* spec = nullptr;
+    const ParamSpec* other = nullptr;
+    ParamRelation::Order order = ParamRelation::Order::less;
+    double value = 0;        ///< in spec's unit
+    double other_value = 0;  ///< in other's unit
+};
+
+/// Every relation of `specs` that `values`, which must have a value for each of them, does not hold. Values
+/// are compared in one unit; two that are equal in either's unit are equal. Relations to parameters that are
+/// not among `specs` hold.
+std::vector<RelationFault> check_relations(std::span<const ParamSpec> specs, const ParamSet& values);
+/// "bokeh.focus_distance: 0.04 m must be above focal_length, 50 mm"; `step` is "bokeh".
+std::string relation_message(const std::string& step, const RelationFault& fault);
+/// For a manifest: relations to parameters that do not exist, are no scalars or measure something else, and
+/// defaults that do not hold.
+void check_relation_declarations(std::span<const ParamSpec> specs, Diagnostics& diagnostics);
+
+/// The value at `t` of the way from `a` (0) to `b` (1): linear for float, angle, vec and color; everything
+/// else is `a` until t is 1.
+ParamValue interpolate(const ParamSpec& spec, const ParamValue& a, const ParamValue& b, double t);
+
+/// The value for images whose sides are `factor` of what it was chosen for: what is in px (the cells of such
+/// columns and the y of such curves too) is multiplied. Ints are rounded, but not to below their `min`: a
+/// tile of 0 px would have no meaning. Everything else is unchanged.
+ParamValue scale_pixels(const ParamSpec& spec, const ParamValue& value, double factor);
 
 }  // namespace aftershade

@@ -16,6 +16,7 @@
 #include <fstream>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 // Internal linkage, so that another copy of stb in the program cannot be linked instead of this one.
@@ -124,16 +125,19 @@ Image read_png(const fs::path& path) {
     if (width > kMaxSidePx || height > kMaxSidePx) {
         fail(path, fmt::format("{} x {} px, the limit is {} px a side", width, height, kMaxSidePx));
     }
-    if (stbi_is_16_bit_from_memory(bytes.data(), size) != 0)
-        fail(path, "has 16 bits a channel, 8 are supported");
-    const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
-        stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 0), &stbi_image_free);
-    if (!pixels) fail(path, fmt::format("damaged: {}", stbi_failure_reason()));
-    Image image(width, height, channels);
-    const std::span<float> values = image.floats();
-    std::transform(pixels.get(), pixels.get() + values.size(), values.begin(),
-                   [](stbi_uc value) { return static_cast<float>(value) / 255.0f; });
-    return image;
+    const bool is_wide = stbi_is_16_bit_from_memory(bytes.data(), size) != 0;
+    const auto load = [&](auto* from_memory, float maximum) {
+        const auto loaded = from_memory(bytes.data(), size, &width, &height, &channels, 0);
+        const std::unique_ptr<std::remove_pointer_t<decltype(loaded)>, decltype(&stbi_image_free)> pixels(
+            loaded, &stbi_image_free);
+        if (!pixels) fail(path, fmt::format("damaged: {}", stbi_failure_reason()));
+        Image image(width, height, channels);
+        const std::span<float> values = image.floats();
+        std::transform(pixels.get(), pixels.get() + values.size(), values.begin(),
+                       [&](auto value) { return static_cast<float>(value) / maximum; });
+        return image;
+    };
+    return is_wide ? load(&stbi_load_16_from_memory, 65535.0f) : load(&stbi_load_from_memory, 255.0f);
 }
 
 }  // namespace aftershade

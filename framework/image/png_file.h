@@ -1,4 +1,4 @@
-// PNG output, 8 bits a channel, through stb_image_write.
+// PNG through stb: output of 8 bits a channel, input of 8 or 16.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@ namespace aftershade {
 /// the same folder. Throws Error(ExitCode::output).
 void write_png(const std::filesystem::path& path, const Image& display);
 
-/// Reads 8-bit PNG into [0, 1] floats, 1 to 4 channels as stored. Throws Error(ExitCode::capture).
+/// Reads PNG of 8 or 16 bits into [0, 1] floats, 1 to 4 channels as stored. Throws Error(ExitCode::capture).
 Image read_png(const std::filesystem::path& path);
 
 }  // namespace aftershade

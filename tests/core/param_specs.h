@@ -1,0 +1,38 @@
+// Parameters from text, for the tests that read them.
+#pragma once
+
+#include <string>
+
+#include "framework/core/param.h"
+#include "tests/documents.h"
+
+namespace aftershade::test {
+
+/// The parameter "p"; the test fails where the declaration has faults.
+inline ParamSpec spec_of(const std::string& declaration, const std::string& name = "p") {
+    Diagnostics diagnostics;
+    const auto spec = parse_param_spec(name, parsed(declaration), diagnostics);
+    EXPECT_EQ(lines_of(diagnostics), Lines{}) << declaration;
+    return spec.value_or(ParamSpec{});
+}
+
+inline Lines spec_faults(const std::string& declaration) {
+    return faults_of(declaration, [](const Node& node, Diagnostics& diagnostics) {
+        EXPECT_FALSE(parse_param_spec("p", node, diagnostics).has_value());
+    });
+}
+
+inline ParamValue value_of(const ParamSpec& spec, const std::string& value) {
+    Diagnostics diagnostics;
+    const auto read = parse_param_value(spec, parsed(value), "p", diagnostics);
+    EXPECT_EQ(lines_of(diagnostics), Lines{}) << value;
+    return read.value_or(ParamValue{});
+}
+
+inline Lines value_faults(const ParamSpec& spec, const std::string& value, const std::string& label = "p") {
+    return faults_of(value, [&](const Node& node, Diagnostics& diagnostics) {
+        EXPECT_FALSE(parse_param_value(spec, node, label, diagnostics).has_value());
+    });
+}
+
+}  // namespace aftershade::test
