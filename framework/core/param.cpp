@@ -91,6 +91,10 @@ void read_ui_range(ObjectReader& reader, ParamSpec& spec, Diagnostics& diagnosti
 
 }  // namespace
 
+bool is_block_type(ParamType type) {
+    return type != ParamType::curve && type != ParamType::file && type != ParamType::table;
+}
+
 int component_count(ParamType type) {
     switch (type) {
         case ParamType::vec2: return 2;

@@ -103,6 +103,9 @@ std::optional<ParamValue> parse_param_value(const ParamSpec& spec, const Node& n
         case ParamType::vec2:
         case ParamType::vec3:
         case ParamType::vec4: return reader.vector(node);
+        case ParamType::curve:
+        case ParamType::file:
+        case ParamType::table: break;
     }
     return std::nullopt;
 }
@@ -118,6 +121,8 @@ std::string format_value(const ParamValue& value) {
             for (std::size_t i = 0; i < v.size(); ++i) text += (i ? ", " : "") + format_number(v[i]);
             return text + "]";
         }
+        std::string operator()(const CurveValue&) const { return "curve"; }
+        std::string operator()(const TableValue&) const { return "table"; }
     };
     return std::visit(Visitor{}, value);
 }
