@@ -140,8 +140,16 @@ private:
 
     bool pass_has(const PassSpec& pass, const std::string& word) const {
         const auto files = files_of(pass);
-        return std::any_of(files.begin(), files.end(),
-                           [&](const std::string& file) { return shaders_.at(file).words.contains(word); });
+        const auto in_text = [&](const std::string& name) {
+            return std::any_of(files.begin(), files.end(), [&](const std::string& file) {
+                return shaders_.at(file).words.contains(name);
+            });
+        };
+        // A pass may hand a shared shader its own name for a thing: "defines": {"LIST": "bright_list"}.
+        return in_text(word) ||
+               std::any_of(pass.defines.begin(), pass.defines.end(), [&](const auto& define) {
+                   return define.second == word && in_text(define.first);
+               });
     }
     bool any_has(const std::string& word) const {
         return std::any_of(shaders_.begin(), shaders_.end(),
