@@ -236,6 +236,7 @@ private:
     }
 
     void check_write(const WriteSpec& write) {
+        if (write.name.empty()) return;
         const TextureSpec* texture = manifest_.find_texture(write.name);
         const OutputSpec* output = manifest_.find_output(write.name);
         if (!output && !texture) {

@@ -44,7 +44,10 @@ void ManifestParser::passes(const Node& section) {
 }
 
 void ManifestParser::pass(const Node& node) {
-    ObjectReader reader(node, "the pass", diagnostics_);
+    // What the pass is belongs into what is said of a key that only another kind has.
+    const Node* kind = node.find("kind");
+    const bool special = kind && (kind->string == "compute" || kind->string == "clear");
+    ObjectReader reader(node, special ? "the " + kind->string + " pass" : "the pass", diagnostics_);
     if (!reader.is_object()) return;
     PassSpec pass;
     pass.place = node.place;
