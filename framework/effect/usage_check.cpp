@@ -222,17 +222,21 @@ private:
         const std::set<std::string> counted = named_by_manifest();
         for (const ParamSpec& spec : manifest_.params) {
             if (counted.contains(spec.name)) continue;
-            const bool in_block = is_block_type(spec.type) && spec.bind == ParamBind::uniform;
-            const std::string word = in_block                   ? "param." + spec.name
-                                     : is_block_type(spec.type) ? upper_case(spec.name)
-                                                                : spec.name;
-            const bool used =
-                in_block                   ? std::any_of(shaders_.begin(), shaders_.end(),
-                                                         [&](const auto& s) { return s.second.params.contains(spec.name); })
-                : is_block_type(spec.type) ? any_has(word)
-                                           : any_begins(word);
-            if (!used) diagnostics_.error(spec.place, "no shader uses '" + word + "'");
+            if (!is_block_type(spec.type)) {
+                if (!any_begins(spec.name)) unused_param(spec, spec.name);
+            } else if (spec.bind == ParamBind::define) {
+                if (!any_has(upper_case(spec.name))) unused_param(spec, upper_case(spec.name));
+            } else if (!any_uses(&ShaderUses::params, spec.name)) {
+                unused_param(spec, "param." + spec.name);
+            }
         }
+    }
+    void unused_param(const ParamSpec& spec, const std::string& word) {
+        diagnostics_.error(spec.place, "no shader uses '" + word + "'");
+    }
+    bool any_uses(Uses ShaderUses::*members, const std::string& name) const {
+        return std::any_of(shaders_.begin(), shaders_.end(),
+                           [&](const auto& shader) { return (shader.second.*members).contains(name); });
     }
     /// A curve, file or table is used by its own name or by functions that begin with it.
     bool any_begins(const std::string& name) const {
@@ -263,12 +267,9 @@ private:
     }
 
     void check_native(const NativeSpec& native) {
-        for (const NativeUniformSpec& uniform : native.uniforms) {
-            const bool used = std::any_of(shaders_.begin(), shaders_.end(), [&](const auto& shader) {
-                return shader.second.natives.contains(uniform.name);
-            });
-            if (!used) diagnostics_.error(uniform.place, "no shader uses 'native." + uniform.name + "'");
-        }
+        for (const NativeUniformSpec& uniform : native.uniforms)
+            if (!any_uses(&ShaderUses::natives, uniform.name))
+                diagnostics_.error(uniform.place, "no shader uses 'native." + uniform.name + "'");
         for (const NativeTableSpec& table : native.tables)
             if (!any_has(table.name))
                 diagnostics_.error(table.place, "no shader uses the native table '" + table.name + "'");
