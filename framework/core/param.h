@@ -77,9 +77,9 @@ struct ParamSpec {
     std::string from;  ///< "camera.focus_distance": the default where the capture has that value
     std::optional<ParamValue> identity;  ///< the value that leaves the image as it is
     std::vector<ParamRelation> relations;
-    FileKind file_kind = FileKind::image;       ///< file
+    FileKind file_kind = FileKind::image;      ///< file
     std::array<double, 2> domain = {0.0, 1.0};  ///< curve: the range of x
-    std::vector<ParamSpec> columns;             ///< table: each a scalar or vector with its own default
+    std::vector<ParamSpec> columns;            ///< table: each a scalar or vector with its own default
     Place place;
 };
 

@@ -88,7 +88,7 @@ struct Pass {
     PassKind kind = PassKind::draw;
     const gpu::Program* program = nullptr;  ///< nullptr for a clear
     std::vector<Read> reads;
-    std::vector<Target> targets;  ///< draw, instances: of one size; clear: what is set to `clear_value`
+    std::vector<Target> targets;   ///< draw, instances: of one size; clear: what is set to `clear_value`
     std::vector<ImageUse> images;
     std::vector<BufferUse> buffers;
     std::vector<UniformBlock> uniforms;
