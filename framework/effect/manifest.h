@@ -47,9 +47,9 @@ struct CountSpec {
 struct GridSpec {
     enum class Kind { scale, tile, size };
     Kind kind = Kind::scale;
-    double scale = 1;        ///< of the working grid's sides, rounded up
-    CountSpec tile;          ///< one texel per tile of this many px a side, rounded up
-    int size[2] = {0, 0};    ///< fixed, in texels
+    double scale = 1;      ///< of the working grid's sides, rounded up
+    CountSpec tile;        ///< one texel per tile of this many px a side, rounded up
+    int size[2] = {0, 0};  ///< fixed, in texels
     bool operator==(const GridSpec&) const = default;
 };
 
@@ -58,9 +58,10 @@ struct TextureSpec {
     std::string name;
     gpu::TextureFormat format = gpu::TextureFormat::rgba32f;
     GridSpec grid;
-    int layers = 1;          ///< > 1: an array, sampler2DArray
-    int mips = 1;            ///< > 1: levels that passes write each; 0 with auto_mips: as many as fit
-    bool auto_mips = false;  ///< the host fills levels 1.. with a box filter after each pass that writes level 0
+    int layers = 1;  ///< > 1: an array, sampler2DArray
+    int mips = 1;    ///< > 1: levels that passes write each; 0 with auto_mips: as many as fit
+    bool auto_mips =
+        false;  ///< the host fills levels 1.. with a box filter after each pass that writes level 0
     std::optional<std::vector<double>> clear;  ///< set to this at the beginning of each frame; 1 or 4 numbers
     bool history = false;                      ///< survives into the next frame, where "<name>.prev" reads it
     std::string doc;                           ///< one sentence with the unit
@@ -70,10 +71,11 @@ struct TextureSpec {
 /// An array in GPU memory: `<element> <name>[]` of a shader storage block.
 struct BufferSpec {
     std::string name;
-    std::string element;  ///< float, int, uint, vec2, vec4, ivec2, ivec4, uvec2, uvec4
+    std::string element;           ///< float, int, uint, vec2, vec4, ivec2, ivec4, uvec2, uvec4
     std::optional<GridSpec> grid;  ///< `count` elements per texel of this grid; without one, `count` in all
     CountSpec count;
-    std::vector<double> clear;  ///< first elements at the beginning of each frame, the rest 0; empty: not cleared
+    std::vector<double>
+        clear;  ///< first words at the beginning of each frame, the rest 0; empty: not cleared
     bool history = false;
     bool indirect = false;  ///< holds the arguments of an indirect draw or dispatch: uint, at least 4
     std::string doc;
@@ -81,7 +83,7 @@ struct BufferSpec {
 };
 
 struct ReadSpec {
-    std::string name;  ///< of an input or a texture
+    std::string name;       ///< of an input or a texture
     bool previous = false;  ///< "<name>.prev": as it was at the end of the last frame
     gpu::Filter filter = gpu::Filter::nearest;
     gpu::Wrap wrap = gpu::Wrap::clamp;
@@ -92,7 +94,17 @@ struct ReadSpec {
 };
 
 /// A level or a layer that is "pass.index" of a repeated pass, plus this: kPassIndex + 1 is "pass.index + 1".
+/// Greater than every layer by more than any such number.
 inline constexpr int kPassIndex = 1000;
+/// Most that may be added to or taken from "pass.index".
+inline constexpr int kMaxPassOffset = 99;
+inline constexpr bool is_pass_index(int level) {
+    return level >= kPassIndex - kMaxPassOffset;
+}
+/// The level or layer in turn `index` of a repeated pass; as it is where it does not depend on the turn.
+inline constexpr int level_in_turn(int level, int index) {
+    return is_pass_index(level) ? level - kPassIndex + index : level;
+}
 
 struct WriteSpec {
     std::string name;  ///< of a texture or an output
@@ -118,6 +130,17 @@ struct WhenSpec {
     Place place;
 };
 
+/// Limits that hold on every machine, so that an effect means the same everywhere (OpenGL 4.5 core, table 23.
+/// 53 and following; GL_MAX_TEXTURE_SIZE is llvmpipe's).
+inline constexpr int kMaxTargets = 8;
+inline constexpr int kMaxSamplers = 32;
+inline constexpr int kMaxImages = 8;
+inline constexpr int kMaxStorageBlocks = 8;
+inline constexpr int kMaxSide = 16384;
+inline constexpr int kMaxLayers = 256;
+inline constexpr int kMaxRepeat = 4096;
+inline constexpr int kMaxIterations = 60000;  ///< llvmpipe silently ends loops after 65,535
+
 /// What a draw of instances draws, and how many.
 struct InstanceSpec {
     enum class Primitive { quads, points };  ///< gl_VertexID 0..3 of a strip, or 0
@@ -131,10 +154,10 @@ struct InstanceSpec {
 struct DispatchSpec {
     enum class Kind { tile, groups, indirect };
     Kind kind = Kind::tile;
-    CountSpec tile{8, ""};        ///< one group per tile of this many texels a side ...
-    std::string over;             ///< ... of this texture; "" for the working grid
+    CountSpec tile{8, ""};  ///< one group per tile of this many texels a side ...
+    std::string over;       ///< ... of this texture; "" for the working grid
     int groups[3] = {1, 1, 1};
-    std::string indirect;         ///< buffer of {x, y, z}
+    std::string indirect;  ///< buffer of {x, y, z}
 };
 
 enum class PassKind { draw, compute, clear };
@@ -145,22 +168,24 @@ struct PassSpec {
     std::string shader;  ///< file in the effect's folder; "" for a clear
     std::string vertex;  ///< draw of instances: its vertex shader; "" for the full screen
     std::vector<ReadSpec> reads;
-    std::vector<WriteSpec> writes;  ///< textures and outputs, in the order of the attachments; clear: what it sets
+    std::vector<WriteSpec>
+        writes;  ///< textures and outputs, in the order of the attachments; clear: what it sets
     std::vector<AccessSpec> images;
     std::vector<AccessSpec> buffers;
     std::map<std::string, std::string> defines;
-    std::vector<WhenSpec> when;  ///< all must hold
+    std::vector<WhenSpec> when;       ///< all must hold
     std::optional<CountSpec> repeat;  ///< the shader knows its turn as pass.index, 0 .. pass.count - 1
     std::optional<InstanceSpec> instances;
-    DispatchSpec dispatch;            ///< compute
+    DispatchSpec dispatch;  ///< compute
     gpu::Blend blend = gpu::Blend::none;
     std::vector<double> clear_value;  ///< clear: 1 or 4 numbers
+    int max_iterations = 0;  ///< upper bound of the loop iterations of one invocation; 0: not declared
     Place place;
 };
 
 /// A value or an array that the effect's native code fills before each frame.
 struct NativeUniformSpec {
-    std::string name;
+    std::string name;  ///< "native.<name>" in GLSL
     std::string type;  ///< float, int, uint, vec2, vec3, vec4
     std::string doc;
     Place place;
@@ -208,11 +233,14 @@ struct EffectManifest {
     bool has_history() const;  ///< of any texture, buffer or input
     const PresetSpec* find_preset(const std::string& name) const;
     std::vector<std::string> param_names() const;
+    /// The greatest value of a count: its number, or its parameter's `max`.
+    int most_of(const CountSpec& count) const;
 };
 
 /// Parses and checks everything that can be known without GL: names, roles, ranges, that each pass reads only
 /// what an earlier one may have written, that every output and texture is written, that shader files exist.
-/// Every fault is reported; nullopt if there was one.
+/// Every fault is reported; nullopt if there was one. What the shaders' text must agree with is
+/// check_declared_used's (usage_check.h).
 std::optional<EffectManifest> parse_manifest(const Node& node, const std::filesystem::path& folder,
                                              Diagnostics& diagnostics);
 

@@ -1,169 +1,160 @@
 #include "framework/effect/manifest_check.h"
 
 #include <algorithm>
+#include <array>
+#include <map>
+#include <regex>
 #include <set>
 #include <utility>
 
-#include "framework/image/role.h"
+#include "framework/effect/glsl_names.h"
 
 namespace aftershade {
 
 namespace {
 
-/// Follows the passes in order and remembers what has been written.
-class PassChecker {
+/// Lower-case keywords and reserved words of GLSL 4.50, section 3.6; vectors and matrices are is_word's.
+const std::set<std::string> kWords = {
+    "active",     "asm",      "atomic_uint", "attribute", "bool",          "break",
+    "buffer",     "case",     "cast",        "centroid",  "class",         "coherent",
+    "common",     "const",    "continue",    "default",   "discard",       "do",
+    "double",     "else",     "enum",        "extern",    "external",      "false",
+    "filter",     "fixed",    "flat",        "float",     "for",           "goto",
+    "half",       "highp",    "if",          "in",        "inline",        "inout",
+    "input",      "int",      "interface",   "invariant", "layout",        "long",
+    "lowp",       "mediump",  "namespace",   "noinline",  "noperspective", "out",
+    "output",     "packed",   "partition",   "patch",     "precise",       "precision",
+    "public",     "readonly", "resource",    "restrict",  "return",        "sample",
+    "shared",     "short",    "sizeof",      "smooth",    "static",        "struct",
+    "subroutine", "superp",   "switch",      "template",  "this",          "true",
+    "typedef",    "uint",     "uniform",     "union",     "unsigned",      "using",
+    "varying",    "void",     "volatile",    "while",     "writeonly"};
+
+/// Functions that a global name would hide, and the host's own blocks. GLSL 4.50, chapter 8.
+const std::set<std::string> kTaken = {
+    "param",       "frame",      "camera",      "pass",      "native",      "main",    "radians", "degrees",
+    "sin",         "cos",        "tan",         "asin",      "acos",        "atan",    "sinh",    "cosh",
+    "tanh",        "asinh",      "acosh",       "atanh",     "pow",         "exp",     "log",     "exp2",
+    "log2",        "sqrt",       "inversesqrt", "abs",       "sign",        "floor",   "trunc",   "round",
+    "ceil",        "fract",      "mod",         "modf",      "min",         "max",     "clamp",   "mix",
+    "step",        "smoothstep", "isnan",       "isinf",     "fma",         "frexp",   "ldexp",   "length",
+    "distance",    "dot",        "cross",       "normalize", "faceforward", "reflect", "refract", "transpose",
+    "determinant", "inverse",    "equal",       "any",       "all",         "not",     "texture", "barrier",
+    "fwidth",      "noise1"};
+
+bool is_word(const std::string& name) {
+    static const std::regex types("[bdiuhf]?vec[234]|d?mat[234](x[234])?");
+    return kWords.contains(name) || std::regex_match(name, types);
+}
+
+class NameChecker {
 public:
-    PassChecker(const EffectManifest& manifest, Diagnostics& diagnostics)
-        : manifest_(manifest), diagnostics_(diagnostics) {
-        for (const InputSpec& input : manifest.inputs) readable_.push_back(input.name);
-        for (const TextureSpec& texture : manifest.textures) readable_.push_back(texture.name);
-        for (const OutputSpec& output : manifest.outputs) writable_.push_back(output.name);
-        for (const TextureSpec& texture : manifest.textures) writable_.push_back(texture.name);
-    }
+    NameChecker(const EffectManifest& manifest, Diagnostics& diagnostics)
+        : manifest_(manifest), diagnostics_(diagnostics) {}
 
-    void check(const PassSpec& pass) {
-        if (!names_.insert(pass.name).second) fault(pass.place, pass, "another pass has this name");
-        if (pass.writes.empty()) fault(pass.place, pass, "writes nothing");
-        check_shader_file(pass);
-        std::set<std::string> reads, writes;
-        for (const ReadSpec& read : pass.reads)
-            if (!read.name.empty() && !reads.insert(read.name).second)
-                fault(read.place, pass, "reads '" + read.name + "' twice");
-        for (const std::string& name : pass.writes)
-            if (!writes.insert(name).second) fault(pass.place, pass, "writes '" + name + "' twice");
-        check_sizes(pass);
-        for (const ReadSpec& read : pass.reads) check_read(pass, read);
-        for (const std::string& name : pass.writes) check_write(pass, name);
-        for (const WhenSpec& condition : pass.when) check_when(pass, condition);
-    }
-
-    void check_all_used() {
-        for (const TextureSpec& texture : manifest_.textures)
-            if (!written_.contains(texture.name))
-                diagnostics_.error(texture.place, "no pass writes the texture '" + texture.name + "'");
-        for (const OutputSpec& output : manifest_.outputs)
-            if (!written_.contains(output.name))
-                diagnostics_.error(output.place, "no pass writes the output '" + output.name + "'");
-        for (const InputSpec& input : manifest_.inputs)
-            if (!read_.contains(input.name))
-                diagnostics_.error(input.place, "no pass reads the input '" + input.name + "'");
+    void check() {
+        for (const InputSpec& input : manifest_.inputs) {
+            sampled("input", input);
+            if (input.optional)
+                claim("HAS_" + upper_case(input.name), "input '" + input.name + "'", input.place);
+        }
+        for (const OutputSpec& output : manifest_.outputs) {
+            word("output", output.name, output.place);
+            claim("out_" + output.name, "output '" + output.name + "'", output.place);
+        }
+        for (const TextureSpec& texture : manifest_.textures) {
+            sampled("texture", texture);
+            claim("out_" + texture.name, "texture '" + texture.name + "'", texture.place);
+        }
+        for (const BufferSpec& buffer : manifest_.buffers) stored(buffer);
+        for (const ParamSpec& param : manifest_.params) parameter(param);
+        if (manifest_.native) native(*manifest_.native);
+        for (const PassSpec& pass : manifest_.passes) passes(pass);
     }
 
 private:
-    void fault(const Place& place, const PassSpec& pass, const std::string& text) {
-        diagnostics_.error(place, "pass '" + pass.name + "': " + text);
+    /// A name that no GLSL identifier may be.
+    void word(const std::string& thing, const std::string& name, const Place& place) {
+        if (is_word(name)) diagnostics_.error(place, thing + " '" + name + "' is a word of GLSL");
+        else if (name.starts_with("gl_") || name.find("__") != std::string::npos)
+            diagnostics_.error(place, thing + " '" + name + "' has gl_ or __, which GLSL keeps for itself");
+    }
+    /// A name that stands alone in a shader.
+    void global(const std::string& thing, const std::string& name, const Place& place) {
+        word(thing, name, place);
+        if (kTaken.contains(name))
+            diagnostics_.error(place, thing + " '" + name + "' would hide GLSL's or the host's own '" + name +
+                                          "' in its shaders");
+        claim(name, thing + " '" + name + "'", place);
+    }
+    void claim(const std::string& identifier, const std::string& owner, const Place& place) {
+        const auto [known, is_new] = owners_.emplace(identifier, owner);
+        if (is_new || known->second == owner) return;
+        if (told_.emplace(known->second, owner).second)
+            diagnostics_.error(place, owner + " needs the GLSL name '" + identifier + "', which the " +
+                                          known->second + " has");
     }
 
-    void check_shader_file(const PassSpec& pass) {
-        if (pass.shader.empty()) return;
-        // A shader is part of its effect: nothing from elsewhere on the disk is read.
-        if (pass.shader.find('/') != std::string::npos)
-            fault(pass.place, pass, "'shader' is a file name without folders");
-        else if (!std::filesystem::is_regular_file(manifest_.folder / pass.shader))
-            fault(pass.place, pass, "no file '" + pass.shader + "' in " + manifest_.folder.string());
+    template <typename Spec>
+    void sampled(const std::string& thing, const Spec& spec) {
+        const std::string owner = thing + " '" + spec.name + "'";
+        global(thing, spec.name, spec.place);
+        claim(spec.name + "_size", owner, spec.place);
+        if (!spec.history) return;
+        claim(spec.name + "_prev", owner, spec.place);
+        claim(spec.name + "_prev_size", owner, spec.place);
     }
-
-    void check_read(const PassSpec& pass, const ReadSpec& read) {
-        if (read.name.empty()) return;
-        read_.insert(read.name);
-        const InputSpec* input = manifest_.find_input(read.name);
-        const TextureSpec* texture = manifest_.find_texture(read.name);
-        if (!input && !texture) {
-            fault(read.place, pass,
-                  "reads '" + read.name + "', which is no input and no texture" +
-                      did_you_mean(read.name, readable_));
-            return;
+    void stored(const BufferSpec& buffer) {
+        const std::string owner = "buffer '" + buffer.name + "'";
+        global("buffer", buffer.name, buffer.place);
+        claim(storage_block_name(buffer.name), owner, buffer.place);
+        if (!buffer.history) return;
+        claim(buffer.name + "_prev", owner, buffer.place);
+        claim(storage_block_name(buffer.name + "_prev"), owner, buffer.place);
+    }
+    void parameter(const ParamSpec& param) {
+        const std::string owner = "parameter '" + param.name + "'";
+        if (is_block_type(param.type)) word("parameter", param.name, param.place);
+        else global("parameter", param.name, param.place);
+        if (param.bind == ParamBind::define) claim(upper_case(param.name), owner, param.place);
+        for (const std::string& value : param.values)
+            claim(upper_case(param.name) + "_" + upper_case(value), owner, param.place);
+    }
+    void native(const NativeSpec& native) {
+        for (const NativeUniformSpec& uniform : native.uniforms)
+            word("native uniform", uniform.name, uniform.place);
+        for (const NativeTableSpec& table : native.tables) global("native table", table.name, table.place);
+    }
+    void passes(const PassSpec& pass) {
+        word("pass", pass.name, pass.place);
+        for (const auto& [name, value] : pass.defines) {
+            const auto known = owners_.find(name);
+            if (known != owners_.end())
+                diagnostics_.error(pass.place, "pass '" + pass.name + "' defines '" + name + "', which the " +
+                                                   known->second + " has as its GLSL name");
+            else if (is_word(name) || kTaken.contains(name))
+                diagnostics_.error(pass.place, "pass '" + pass.name + "' defines '" + name +
+                                                   "', a word of GLSL or the host");
         }
-        if (texture && !written_.contains(read.name))
-            fault(read.place, pass, "reads '" + read.name + "' before any pass has written it");
-        const auto role = input ? find_role(input->role) : std::nullopt;
-        const bool filterable = input ? !role || role->filterable : !gpu::is_integer(texture->format);
-        if (read.filter == gpu::Filter::linear && !filterable)
-            fault(read.place, pass,
-                  "'" + read.name + "' cannot be filtered linearly: " +
-                      (input ? "its role is " + input->role : "its format is integer"));
-    }
-
-    /// One draw has targets of one size.
-    void check_sizes(const PassSpec& pass) {
-        const auto size = [&](const std::string& name) {
-            const TextureSpec* texture = manifest_.find_texture(name);
-            if (!texture) return std::pair(1.0, 0);
-            return texture->tile > 0 ? std::pair(1.0, texture->tile) : std::pair(texture->scale, 0);
-        };
-        for (const std::string& name : pass.writes)
-            if (size(name) != size(pass.writes.front()))
-                fault(pass.place, pass,
-                      "writes '" + pass.writes.front() + "' and '" + name + "', which differ in size");
-    }
-
-    void check_write(const PassSpec& pass, const std::string& name) {
-        if (!manifest_.find_output(name) && !manifest_.find_texture(name)) {
-            fault(pass.place, pass,
-                  "writes '" + name + "', which is no output and no texture" + did_you_mean(name, writable_));
-            return;
-        }
-        const auto reads_it = [&](const ReadSpec& read) {
-            return read.name == name && !manifest_.find_input(name);
-        };
-        if (std::any_of(pass.reads.begin(), pass.reads.end(), reads_it))
-            fault(pass.place, pass, "reads and writes '" + name + "'");
-        written_.insert(name);
-    }
-
-    void check_when(const PassSpec& pass, const WhenSpec& condition) {
-        constexpr std::string_view kHas = "has.";
-        if (condition.subject.starts_with(kHas)) {
-            const InputSpec* input = manifest_.find_input(condition.subject.substr(kHas.size()));
-            if (!input || !input->optional)
-                fault(condition.place, pass, "'" + condition.subject + "' does not name an optional input");
-            for (const ParamValue& value : condition.values)
-                if (!std::holds_alternative<bool>(value))
-                    fault(condition.place, pass,
-                          "'" + condition.subject + "' is true or false, not " + format_value(value));
-            return;
-        }
-        const ParamSpec* spec = manifest_.find_param(condition.subject);
-        if (!spec) {
-            fault(condition.place, pass,
-                  "the condition '" + condition.subject + "' is not a parameter" +
-                      did_you_mean(condition.subject, manifest_.param_names()));
-            return;
-        }
-        for (const ParamValue& value : condition.values)
-            if (!may_equal(*spec, value))
-                fault(condition.place, pass, format_value(value) + " is not a value of '" + spec->name + "'");
-    }
-
-    /// A condition that could never hold is a mistake.
-    static bool may_equal(const ParamSpec& spec, const ParamValue& value) {
-        if (spec.type == ParamType::bool_) return std::holds_alternative<bool>(value);
-        if (spec.type == ParamType::int_) return std::holds_alternative<std::int64_t>(value);
-        const auto* name = std::get_if<std::string>(&value);
-        return name && std::find(spec.values.begin(), spec.values.end(), *name) != spec.values.end();
     }
 
     const EffectManifest& manifest_;
     Diagnostics& diagnostics_;
-    std::vector<std::string> readable_;
-    std::vector<std::string> writable_;
-    std::set<std::string> names_;
-    std::set<std::string> read_;
-    std::set<std::string> written_;
+    std::map<std::string, std::string> owners_;  // by GLSL identifier
+    std::set<std::pair<std::string, std::string>> told_;
 };
 
 }  // namespace
 
+void check_names(const EffectManifest& manifest, Diagnostics& diagnostics) {
+    NameChecker(manifest, diagnostics).check();
+}
+
 void check_manifest(const EffectManifest& manifest, const Node& node, Diagnostics& diagnostics) {
     if (manifest.passes.empty()) diagnostics.error(node.place, "the effect has no passes");
     if (manifest.outputs.empty()) diagnostics.error(node.place, "the effect has no outputs");
-    for (const TextureSpec& texture : manifest.textures)
-        if (manifest.find_input(texture.name) || manifest.find_output(texture.name))
-            diagnostics.error(texture.place,
-                              "the texture '" + texture.name + "' has the name of an input or an output");
-    PassChecker checker(manifest, diagnostics);
-    for (const PassSpec& pass : manifest.passes) checker.check(pass);
-    checker.check_all_used();
+    check_names(manifest, diagnostics);
+    check_passes(manifest, diagnostics);
 }
 
 }  // namespace aftershade

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cassert>
 
 #include "framework/effect/shader_source.h"
 #include "framework/effect/std140.h"
@@ -36,6 +37,36 @@ bool pass_enabled(const PassSpec& pass, const ParamSet& params,
     return std::all_of(pass.when.begin(), pass.when.end(), holds);
 }
 
+const ParamFile& ShaderContext::file_of(const std::string& param) const {
+    static const ParamFile none;
+    if (!files) return none;
+    const auto found = files->find(param);
+    return found == files->end() ? none : found->second;
+}
+
+PassBindings pass_bindings(const ShaderContext& context) {
+    const EffectManifest& manifest = *context.manifest;
+    PassBindings bindings;
+    bindings.reads = present_reads(manifest, *context.pass, context.present_inputs);
+    bindings.images = context.pass->images;
+    bindings.buffers = context.pass->buffers;
+    for (const ParamSpec& spec : manifest.params) {
+        const bool has_file =
+            spec.type == ParamType::file && !std::holds_alternative<std::monostate>(context.file_of(spec.name));
+        if (spec.type == ParamType::curve || has_file) bindings.param_samplers.push_back(&spec);
+        if (spec.type == ParamType::table) bindings.param_buffers.push_back(&spec);
+    }
+    if (manifest.native)
+        for (const NativeTableSpec& table : manifest.native->tables) bindings.native_tables.push_back(&table);
+    bindings.first_param_sampler = int(bindings.reads.size());
+    bindings.first_native_sampler = bindings.first_param_sampler + int(bindings.param_samplers.size());
+    bindings.first_param_buffer = int(bindings.buffers.size());
+    bindings.has_param_block = has_param_block(manifest);
+    bindings.has_pass_block = context.pass->repeat.has_value();
+    bindings.has_native_block = has_native_block(manifest);
+    return bindings;
+}
+
 gpu::TextureFormat texture_format_of_role(const std::string& role_name) {
     const auto role = find_role(role_name);
     if (role->type == ComponentType::uint32) return gpu::TextureFormat::r32ui;
@@ -44,37 +75,82 @@ gpu::TextureFormat texture_format_of_role(const std::string& role_name) {
     return gpu::TextureFormat::rgba32f;
 }
 
+gpu::TextureFormat format_of_read(const EffectManifest& manifest, const std::string& name) {
+    const TextureSpec* texture = manifest.find_texture(name);
+    return texture ? texture->format : texture_format_of_role(manifest.find_input(name)->role);
+}
+
+gpu::TextureFormat format_of_write(const EffectManifest& manifest, const std::string& name) {
+    const TextureSpec* texture = manifest.find_texture(name);
+    return texture ? texture->format : texture_format_of_role(manifest.find_output(name)->role);
+}
+
+namespace {
+
+bool is_in_block(const ParamSpec& spec) {
+    return spec.bind == ParamBind::uniform && is_block_type(spec.type);
+}
+
+void add_param(Std140Writer& block, const ParamSpec& spec, const ParamValue& value) {
+    switch (spec.type) {
+        case ParamType::bool_: block.add(std::int32_t(std::get<bool>(value))); break;
+        case ParamType::int_: block.add(std::int32_t(std::get<std::int64_t>(value))); break;
+        case ParamType::enum_: {
+            const auto found =
+                std::find(spec.values.begin(), spec.values.end(), std::get<std::string>(value));
+            block.add(std::int32_t(found - spec.values.begin()));
+            break;
+        }
+        case ParamType::float_:
+        case ParamType::angle: block.add(float(std::get<double>(value))); break;
+        case ParamType::color:
+        case ParamType::vec2:
+        case ParamType::vec3:
+        case ParamType::vec4: {
+            const auto& components = std::get<std::vector<double>>(value);
+            const std::vector<float> vector(components.begin(), components.end());
+            block.add(std::span<const float>(vector));
+            break;
+        }
+        case ParamType::curve:
+        case ParamType::file:
+        case ParamType::table: break;  // samplers and storage blocks
+    }
+}
+
+}  // namespace
+
 bool has_param_block(const EffectManifest& manifest) {
-    return std::any_of(manifest.params.begin(), manifest.params.end(),
-                       [](const ParamSpec& spec) { return spec.bind == ParamBind::uniform; });
+    return std::any_of(manifest.params.begin(), manifest.params.end(), is_in_block);
 }
 
 std::vector<std::byte> param_block(const EffectManifest& manifest, const ParamSet& params) {
     Std140Writer block;
-    for (const ParamSpec& spec : manifest.params) {
-        if (spec.bind != ParamBind::uniform) continue;
-        const ParamValue& value = params.get(spec.name);
-        switch (spec.type) {
-            case ParamType::bool_: block.add(std::int32_t(std::get<bool>(value))); break;
-            case ParamType::int_: block.add(std::int32_t(std::get<std::int64_t>(value))); break;
-            case ParamType::enum_: {
-                const auto found =
-                    std::find(spec.values.begin(), spec.values.end(), std::get<std::string>(value));
-                block.add(std::int32_t(found - spec.values.begin()));
-                break;
-            }
-            case ParamType::float_:
-            case ParamType::angle: block.add(float(std::get<double>(value))); break;
-            case ParamType::color:
-            case ParamType::vec2:
-            case ParamType::vec3:
-            case ParamType::vec4: {
-                std::vector<float> vector;
-                for (const double component : std::get<std::vector<double>>(value))
-                    vector.push_back(float(component));
-                block.add(std::span<const float>(vector));
-                break;
-            }
+    for (const ParamSpec& spec : manifest.params)
+        if (is_in_block(spec)) add_param(block, spec, params.get(spec.name));
+    return block.finish();
+}
+
+bool has_native_block(const EffectManifest& manifest) {
+    return manifest.native && !manifest.native->uniforms.empty();
+}
+
+std::vector<std::byte> native_block(const EffectManifest& manifest, const NativeValues& values) {
+    Std140Writer block;
+    if (!manifest.native) return block.finish();
+    for (const NativeUniformSpec& uniform : manifest.native->uniforms) {
+        const bool is_vector = uniform.type.starts_with("vec");
+        std::vector<double> given(is_vector ? std::size_t(uniform.type.back() - '0') : 1, 0.0);
+        if (const auto found = values.find(uniform.name); found != values.end()) {
+            assert(found->second.size() == given.size());
+            given = found->second;
+        }
+        if (uniform.type == "int") block.add(std::int32_t(given[0]));
+        else if (uniform.type == "uint") block.add(std::uint32_t(given[0]));
+        else if (!is_vector) block.add(float(given[0]));
+        else {
+            const std::vector<float> vector(given.begin(), given.end());
+            block.add(std::span<const float>(vector));
         }
     }
     return block.finish();
@@ -86,8 +162,38 @@ std::string_view frame_block_glsl() {
            "    ivec2 origin;\n"
            "    int number;\n"
            "    uint step_seed;\n"
+           "    float fps;\n"
+           "    bool history_valid;\n"
            "    mat3 rec709_from_color;\n"
+           "    ivec2 size;\n"
+           "    ivec2 full_display_size;\n"
+           "    float scale;\n"
+           "    int subframe;\n"
+           "    int subframe_count;\n"
+           "    float subframe_time;\n"
            "} frame;\n";
+}
+
+std::string_view camera_block_glsl() {
+    return "layout(std140, binding = 3) uniform CameraBlock {\n"
+           "    mat4 view_from_world;\n"
+           "    mat4 world_from_view;\n"
+           "    mat4 clip_from_view;\n"
+           "    mat4 view_from_clip;\n"
+           "    mat4 clip_from_world;\n"
+           "    mat4 world_from_clip;\n"
+           "    mat4 prev_clip_from_world;\n"
+           "    mat4 prev_view_from_world;\n"
+           "    vec3 position_m;\n"
+           "    vec2 jitter_px;\n"
+           "    vec2 prev_jitter_px;\n"
+           "    float focal_length;\n"
+           "    float sensor_width;\n"
+           "    float focus_distance;\n"
+           "    float f_number;\n"
+           "    bool has_matrices;\n"
+           "    bool has_prev_matrices;\n"
+           "} camera;\n";
 }
 
 }  // namespace aftershade

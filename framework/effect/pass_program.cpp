@@ -32,28 +32,77 @@ std::string trimmed(std::ostringstream& text) {
 
 }  // namespace
 
-ProgramCache::ProgramCache(gpu::Context& context, std::filesystem::path glsl_folder)
+/// The texts of one program.
+struct ProgramCache::Sources {
+    bool is_compute = false;
+    std::string vertex;         // of a draw
+    ShaderSource vertex_lines;  // without lines for the host's own
+    ShaderSource main;
+    const ShaderSource& of_stage(const std::string& stage) const {
+        return stage == "vertex" ? vertex_lines : main;
+    }
+};
+
+ProgramCache::ProgramCache(gpu::Context& context, std::filesystem::path glsl_folder, ProgramStore store)
     : context_(context),
       glsl_folder_(std::move(glsl_folder)),
-      vertex_(read_text(glsl_folder_ / "fullscreen.vert")) {}
+      store_(std::move(store)),
+      full_screen_(read_text(glsl_folder_ / "fullscreen.vert")) {}
+
+ProgramCache::Sources ProgramCache::assemble(const ShaderContext& context, Diagnostics& faults) const {
+    Sources sources;
+    sources.is_compute = context.pass->kind == PassKind::compute;
+    sources.main = assemble_shader(context, faults);
+    if (sources.is_compute) return sources;
+    if (!context.pass->vertex.empty())
+        sources.vertex_lines = assemble_shader(context, faults, ShaderFile::vertex);
+    sources.vertex = context.pass->vertex.empty() ? full_screen_ : sources.vertex_lines.text;
+    return sources;
+}
+
+std::string ProgramCache::key_of(const Sources& sources) const {
+    const gpu::ContextInfo& gl = context_.info();
+    std::string key = "aftershade " AFTERSHADE_VERSION "\n" + gl.vendor + "\n" + gl.renderer + "\n" +
+                      gl.version + "\n" + (sources.is_compute ? "compute" : "draw") + "\n";
+    // The length keeps the two texts apart.
+    key += std::to_string(sources.vertex.size()) + "\n" + sources.vertex + sources.main.text;
+    return key;
+}
+
+gpu::Program ProgramCache::make(const Sources& sources, const std::string& label) {
+    const std::string key = key_of(sources);
+    if (const auto binary = store_.load(key))
+        if (auto program = gpu::Program::from_binary(context_, *binary, sources.is_compute, label)) {
+            ++loaded_;
+            return std::move(*program);
+        }
+    gpu::Program program = sources.is_compute
+                               ? gpu::Program::compute(context_, sources.main.text, label)
+                               : gpu::Program::draw(context_, sources.vertex, sources.main.text, label);
+    ++compiled_;
+    if (store_.is_on())
+        if (const auto binary = program.binary()) store_.save(key, *binary);
+    return program;
+}
 
 const gpu::Program& ProgramCache::get(const ShaderContext& context) {
-    const std::string where = "pass " + context.pass->name + ", " + context_.info().renderer;
+    const PassSpec& pass = *context.pass;
+    const std::string where = "pass " + pass.name + ", " + context_.info().renderer;
     Diagnostics faults;
-    const ShaderSource source = assemble_shader(context, faults);
+    const Sources sources = assemble(context, faults);
     if (!faults.has_errors()) {
-        const auto known = programs_.find(source.text);
-        if (known != programs_.end()) return known->second;
+        const std::string key = key_of(sources);
+        if (const auto known = programs_.find(key); known != programs_.end()) return known->second;
         try {
-            const std::string label = context.manifest->id + "." + context.pass->name;
-            auto program = gpu::Program::draw(context_, vertex_, source.text, label);
-            return programs_.emplace(source.text, std::move(program)).first->second;
+            auto program = make(sources, context.manifest->id + "." + pass.name);
+            return programs_.emplace(key, std::move(program)).first->second;
         } catch (const gpu::ShaderError& error) {
+            const ShaderSource& source = sources.of_stage(error.stage());
             for (const gpu::ShaderMessage& message : error.messages())
                 if (message.error)
                     faults.error(author_place(source, message), message.text + "   [" + where + "]");
             if (!faults.has_errors())
-                faults.error({(context.manifest->folder / context.pass->shader).string()}, error.what());
+                faults.error({(context.manifest->folder / pass.shader).string()}, error.what());
         }
     }
     std::ostringstream text;

@@ -1,30 +1,43 @@
-// Compiles the shader of a pass and speaks of its faults in the author's files and lines.
+// Compiles the shaders of a pass and speaks of their faults in the author's files and lines.
 #pragma once
 
 #include <map>
 #include <memory>
 #include <string>
 
+#include "framework/effect/program_store.h"
 #include "framework/effect/shader_source.h"
 #include "framework/gpu/program.h"
 
 namespace aftershade {
 
-/// Programs by their full text, so that equal shaders compile once. [the context's thread]
+/// Programs by their full text, so that equal shaders compile once; those of earlier runs come from `store`.
+/// [the context's thread]
 class ProgramCache {
 public:
-    ProgramCache(gpu::Context& context, std::filesystem::path glsl_folder);
+    ProgramCache(gpu::Context& context, std::filesystem::path glsl_folder,
+                 ProgramStore store = ProgramStore::from_environment());
 
-    /// Throws Error(ExitCode::effect) with one line per fault:
+    /// The program of a draw or a compute pass. Throws Error(ExitCode::effect) with one line per fault:
     /// "effects/bokeh/coc.frag:6:17: error: 'parm' undeclared   [pass coc, llvmpipe ...]".
     const gpu::Program& get(const ShaderContext& context);
     const std::filesystem::path& glsl_folder() const { return glsl_folder_; }
+    int compiled_count() const { return compiled_; }  ///< programs made from text
+    int loaded_count() const { return loaded_; }      ///< programs taken from the store
 
 private:
+    struct Sources;
+    Sources assemble(const ShaderContext& context, Diagnostics& faults) const;
+    gpu::Program make(const Sources& sources, const std::string& label);
+    std::string key_of(const Sources& sources) const;
+
     gpu::Context& context_;
     std::filesystem::path glsl_folder_;
-    std::string vertex_;
+    ProgramStore store_;
+    std::string full_screen_;  // the vertex shader of a draw that has none
     std::map<std::string, gpu::Program> programs_;
+    int compiled_ = 0;
+    int loaded_ = 0;
 };
 
 }  // namespace aftershade

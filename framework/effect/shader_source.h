@@ -1,28 +1,34 @@
 // From an effect's shader file to the text that GL compiles, with a table back to the author's lines.
 //
-// A shader begins `#version 450 core` and `#include <pass>`. The host generates what <pass> stands for: a
-// sampler and
-// `<name>_size` = vec4(w, h, 1/w, 1/h) per read, `out_<name>` per write, and the blocks `param` and `frame`
+// A shader begins `#version 450 core` and `#include <pass>`. The host generates what <pass> stands for:
+// samplers, images, storage blocks, outputs and the blocks `param`, `frame`, `camera`, `pass` and `native`
 // (docs/shaders.md). `#include <x.glsl>` takes a module of glsl/, `#include "x.glsl"` one of the effect's
 // folder; each is included once.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "framework/core/diagnostics.h"
 #include "framework/core/param.h"
 #include "framework/effect/manifest.h"
+#include "framework/effect/param_resources.h"
 
 namespace aftershade {
 
 /// Bindings of the generated uniform blocks.
 inline constexpr int kParamBinding = 0;
 inline constexpr int kFrameBinding = 1;
-inline constexpr int kSizeBinding = 2;
+inline constexpr int kSizeBinding = 2;  ///< a vec4 (w, h, 1/w, 1/h) for each of PassBindings::reads
+inline constexpr int kCameraBinding = 3;
+inline constexpr int kPassBinding = 4;  ///< only in passes with `repeat`
+inline constexpr int kNativeBinding = 5;
 
 /// What one pass sees, resolved for one set of parameters and inputs.
 struct ShaderContext {
@@ -31,7 +37,33 @@ struct ShaderContext {
     const ParamSet* params = nullptr;         ///< define-bound values become preprocessor symbols
     std::vector<std::string> present_inputs;  ///< optional inputs that the frame has
     std::filesystem::path glsl_folder;
+    /// What the paths of file parameters hold, by parameter; nullptr or no entry: none has a file.
+    const std::map<std::string, ParamFile>* files = nullptr;
+
+    const ParamFile& file_of(const std::string& param) const;
 };
+
+/// Where everything of a pass is bound. The GLSL is written from this and the host binds by it.
+struct PassBindings {
+    std::vector<ReadSpec> reads;  ///< sampler i is reads[i]
+    int first_param_sampler = 0;  ///< then one for each curve and each file that there is ...
+    std::vector<const ParamSpec*> param_samplers;
+    int first_native_sampler = 0;  ///< ... and one for each native table
+    std::vector<const NativeTableSpec*> native_tables;
+    std::vector<AccessSpec> images;   ///< image unit i is images[i]
+    std::vector<AccessSpec> buffers;  ///< storage block i is buffers[i]
+    int first_param_buffer = 0;       ///< then one for each table parameter
+    std::vector<const ParamSpec*> param_buffers;
+    bool has_param_block = false;
+    bool has_pass_block = false;
+    bool has_native_block = false;
+};
+
+/// Pointers are into the context's manifest.
+PassBindings pass_bindings(const ShaderContext& context);
+
+/// Of a draw of instances there are two shaders, of every other pass one.
+enum class ShaderFile { main, vertex };
 
 struct SourceLine {
     std::string file;  ///< "<generated>" for the host's own lines
@@ -44,7 +76,11 @@ struct ShaderSource {
 };
 
 /// Faults (a missing include, a shader that does not begin as it must) go to `diagnostics`.
-ShaderSource assemble_shader(const ShaderContext& context, Diagnostics& diagnostics);
+ShaderSource assemble_shader(const ShaderContext& context, Diagnostics& diagnostics,
+                             ShaderFile file = ShaderFile::main);
+
+/// What `#include <pass>` stands for; a vertex shader's has no outputs.
+std::string interface_glsl(const ShaderContext& context, ShaderFile file = ShaderFile::main);
 
 /// The reads of a pass that are there: inputs that are present, and textures. Their order gives the sampler
 /// bindings.
@@ -58,19 +94,84 @@ bool pass_enabled(const PassSpec& pass, const ParamSet& params,
 /// Format of an input's or output's texture: its role's channels as floats, or unsigned integers.
 gpu::TextureFormat texture_format_of_role(const std::string& role);
 
-/// The block `param` in std140, in the manifest's order: every parameter that is bound as a uniform.
+/// Format of a read's, a write's or an image's texture.
+gpu::TextureFormat format_of_read(const EffectManifest& manifest, const std::string& name);
+gpu::TextureFormat format_of_write(const EffectManifest& manifest, const std::string& name);
+
+/// The block `param` in std140, in the manifest's order: every parameter of a block type that is bound as a
+/// uniform.
 std::vector<std::byte> param_block(const EffectManifest& manifest, const ParamSet& params);
 bool has_param_block(const EffectManifest& manifest);
 
+/// Values of native uniforms by name, as many as the type has components.
+using NativeValues = std::map<std::string, std::vector<double>>;
+/// The block `native` in std140, in the manifest's order; what has no value is 0.
+std::vector<std::byte> native_block(const EffectManifest& manifest, const NativeValues& values);
+bool has_native_block(const EffectManifest& manifest);
+
+/// The block `pass` of a repeated pass.
+struct PassBlock {
+    std::int32_t index = 0;  ///< 0 .. count - 1
+    std::int32_t count = 1;
+    std::int32_t padding[2] = {0, 0};
+};
+
 /// The block `frame`; the same for every pass of a frame but for `step_seed`.
 struct FrameBlock {
-    std::int32_t display_size_px[2] = {0, 0};  ///< of the display window
-    std::int32_t origin_px[2] = {0, 0};        ///< display-window pixel of texel (0, 0)
-    std::int32_t number = 0;                   ///< of the frame
-    std::uint32_t step_seed = 0;               ///< differs between the steps of a look
-    std::int32_t padding[2] = {0, 0};          ///< std140 begins a matrix at 16 bytes
+    std::int32_t display_size_px[2] = {0, 0};  ///< of the display window, at the rendered scale
+    std::int32_t origin_px[2] = {0, 0};  ///< display-window pixel of texel (0, 0), at the rendered scale
+    std::int32_t number = 0;             ///< of the frame
+    std::uint32_t step_seed = 0;         ///< differs between the steps of a look
+    float fps = 0;                       ///< frames per second; 0 where unknown
+    std::int32_t history_valid = 0;      ///< 0 on the first frame and after a cut, a gap or a change of size
     float rec709_from_color[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};  ///< by columns, each a vec4
+    std::int32_t size_px[2] = {0, 0};                                            ///< of the working grid
+    std::int32_t full_display_size_px[2] = {0, 0};  ///< of the display window at full scale
+    float scale = 1;            ///< rendered over full scale; parameters in px are already scaled
+    std::int32_t subframe = 0;  ///< 0 .. subframe_count - 1
+    std::int32_t subframe_count = 1;
+    float subframe_time = 0;  ///< within the frame, -1/2 .. 1/2
 };
 std::string_view frame_block_glsl();
+
+/// A mat4 as GLSL lays it out: 16 floats by columns.
+using ColumnMatrix = std::array<float, 16>;
+inline constexpr ColumnMatrix kIdentityMatrix = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+
+/// The block `camera`: DESIGN.md section 3 (view looks along -z, NDC z in [0, 1], +y up). Lens values are 0
+/// where unknown.
+struct CameraBlock {
+    ColumnMatrix view_from_world = kIdentityMatrix;
+    ColumnMatrix world_from_view = kIdentityMatrix;
+    ColumnMatrix clip_from_view = kIdentityMatrix;
+    ColumnMatrix view_from_clip = kIdentityMatrix;
+    ColumnMatrix clip_from_world = kIdentityMatrix;
+    ColumnMatrix world_from_clip = kIdentityMatrix;
+    ColumnMatrix prev_clip_from_world = kIdentityMatrix;
+    ColumnMatrix prev_view_from_world = kIdentityMatrix;
+    float position_m[3] = {0, 0, 0};  ///< in the world
+    float padding = 0;
+    float jitter_px[2] = {0, 0};  ///< offset of the sample from the pixel's centre, +y down
+    float prev_jitter_px[2] = {0, 0};
+    float focal_length_mm = 0;
+    float sensor_width_mm = 0;
+    float focus_distance_m = 0;
+    float f_number = 0;
+    std::int32_t has_matrices = 0;       ///< the matrices of this frame are known
+    std::int32_t has_prev_matrices = 0;  ///< those of the frame before are known
+    std::int32_t end_padding[2] = {0, 0};
+};
+std::string_view camera_block_glsl();
+
+// std140 (OpenGL 4.5 core, section 7.6.2.2): scalars align to 4 bytes, vec2 to 8, vec3, vec4 and matrices to
+// 16, and a scalar may fill the fourth place of a vec3, which jitter_px cannot.
+static_assert(offsetof(FrameBlock, origin_px) == 8 && offsetof(FrameBlock, number) == 16);
+static_assert(offsetof(FrameBlock, fps) == 24 && offsetof(FrameBlock, history_valid) == 28);
+static_assert(offsetof(FrameBlock, rec709_from_color) == 32 && offsetof(FrameBlock, size_px) == 80);
+static_assert(offsetof(FrameBlock, scale) == 96 && sizeof(FrameBlock) == 112);
+static_assert(offsetof(CameraBlock, clip_from_world) == 256 && offsetof(CameraBlock, position_m) == 512);
+static_assert(offsetof(CameraBlock, jitter_px) == 528 && offsetof(CameraBlock, focal_length_mm) == 544);
+static_assert(offsetof(CameraBlock, has_matrices) == 560 && sizeof(CameraBlock) == 576);
+static_assert(sizeof(PassBlock) == 16);
 
 }  // namespace aftershade

@@ -13,6 +13,7 @@ class Std140Writer {
 public:
     void add(float value) { add_scalar(value); }
     void add(std::int32_t value) { add_scalar(value); }
+    void add(std::uint32_t value) { add_scalar(value); }
     /// vec2 aligns to 8 bytes, vec3 and vec4 to 16.
     void add(std::span<const float> vector) {
         align(vector.size() == 2 ? 8 : 16);

@@ -101,6 +101,7 @@ std::string program_log(const GladGLContext& gl, GLuint program) {
 
 GLuint link(const GladGLContext& gl, std::initializer_list<const Stage*> stages, const std::string& label) {
     const GLuint program = gl.CreateProgram();
+    gl.ProgramParameteri(program, GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
     for (const Stage* stage : stages) gl.AttachShader(program, stage->handle());
     gl.LinkProgram(program);
     for (const Stage* stage : stages) gl.DetachShader(program, stage->handle());
@@ -113,6 +114,15 @@ GLuint link(const GladGLContext& gl, std::initializer_list<const Stage*> stages,
     }
     set_label(gl, GL_PROGRAM, program, label);
     return program;
+}
+
+/// glProgramBinary reports an error for a format that it does not know, and only then.
+bool knows_format(const GladGLContext& gl, GLenum format) {
+    GLint count = 0;
+    gl.GetIntegerv(GL_NUM_PROGRAM_BINARY_FORMATS, &count);
+    std::vector<GLint> formats(static_cast<std::size_t>(std::max(count, 0)));
+    if (!formats.empty()) gl.GetIntegerv(GL_PROGRAM_BINARY_FORMATS, formats.data());
+    return std::find(formats.begin(), formats.end(), static_cast<GLint>(format)) != formats.end();
 }
 
 }  // namespace
@@ -138,6 +148,41 @@ Program Program::compute(Context& context, const std::string& source, std::strin
     Program program(context, link(gl, {&stage}, label), true, std::move(label));
     context.check(fmt::format("program '{}'", program.label()));
     return program;
+}
+
+std::optional<Program> Program::from_binary(Context& context, const ProgramBinary& binary, bool is_compute,
+                                            std::string label) {
+    context.make_current();
+    const GladGLContext& gl = context.gl();
+    if (!knows_format(gl, binary.format)) return std::nullopt;
+    const GLuint handle = gl.CreateProgram();
+    gl.ProgramParameteri(handle, GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
+    gl.ProgramBinary(handle, binary.format, binary.bytes.data(), static_cast<GLsizei>(binary.bytes.size()));
+    GLint linked = 0;
+    gl.GetProgramiv(handle, GL_LINK_STATUS, &linked);
+    Program program(context, handle, is_compute, std::move(label));
+    context.check(fmt::format("program '{}' from its binary", program.label()));
+    if (!linked) return std::nullopt;
+    set_label(gl, GL_PROGRAM, handle, program.label());
+    return program;
+}
+
+std::optional<ProgramBinary> Program::binary() const {
+    context_->make_current();
+    const GladGLContext& gl = context_->gl();
+    GLint size = 0;
+    gl.GetProgramiv(handle_, GL_PROGRAM_BINARY_LENGTH, &size);
+    if (size <= 0) return std::nullopt;
+    ProgramBinary binary;
+    binary.bytes.resize(static_cast<std::size_t>(size));
+    GLsizei written = 0;
+    GLenum format = 0;
+    gl.GetProgramBinary(handle_, size, &written, &format, binary.bytes.data());
+    context_->check(fmt::format("the binary of program '{}'", label_));
+    binary.bytes.resize(static_cast<std::size_t>(std::max(written, 0)));
+    binary.format = format;
+    if (binary.bytes.empty()) return std::nullopt;
+    return binary;
 }
 
 Program::Program(Context& context, unsigned int handle, bool is_compute, std::string label)

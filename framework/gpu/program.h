@@ -1,6 +1,8 @@
 // Compiled GLSL: a vertex and a fragment shader, or one compute shader.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +34,12 @@ private:
 /// Splits a driver's log into messages; public because its tests need no GL.
 std::vector<ShaderMessage> parse_shader_log(const std::string& log);
 
+/// A linked program as its driver writes it: of use to this driver in this version alone.
+struct ProgramBinary {
+    unsigned int format = 0;  ///< the driver's
+    std::vector<std::byte> bytes;
+};
+
 /// Bindings are fixed in the text by layout(binding = N); there is no lookup by name at draw time.
 /// [the context's thread]
 class Program {
@@ -40,6 +48,10 @@ public:
     static Program draw(Context& context, const std::string& vertex, const std::string& fragment,
                         std::string label);
     static Program compute(Context& context, const std::string& source, std::string label);
+    /// nullopt where the driver refuses it, as it may at any time (an update, other hardware): compile
+    /// instead. The bytes must be as binary() gave them; drivers do not defend themselves against others.
+    static std::optional<Program> from_binary(Context& context, const ProgramBinary& binary, bool is_compute,
+                                              std::string label);
     ~Program();
     Program(Program&& other) noexcept;
     Program& operator=(Program&& other) noexcept;
@@ -48,6 +60,8 @@ public:
 
     const std::string& label() const { return label_; }
     bool is_compute() const { return is_compute_; }
+    /// nullopt where the driver gives none.
+    std::optional<ProgramBinary> binary() const;
     unsigned int handle() const { return handle_; }  ///< for framework/gpu
 
 private:

@@ -30,7 +30,7 @@ const fs::path kSuzanne = AFTERSHADE_SOURCE_DIR "/scenes/suzanne/gbuffer_0004.ex
 void write_brighten(const TemporaryFolder& folder) {
     fs::create_directories(folder / "effects/brighten");
     write_text(folder / "effects/brighten/effect.json",
-               R"({"aftershade": 1, "id": "brighten", "version": "1", "summary": "x",
+               R"({"aftershade": 1, "id": "brighten", "version": "1.0.0", "summary": "x",
         "inputs": {"color": {"role": "color"}, "depth": {"role": "depth"}},
         "outputs": {"color": {"role": "color"}, "depth": {"role": "depth"}},
         "passes": [{"name": "go", "shader": "go.frag", "reads": ["color", "depth"], "writes": ["color", "depth"]}]})");

@@ -11,7 +11,7 @@
 namespace aftershade::test {
 
 /// The sections of a manifest, one a line in this order, so that the section is the line of a fault.
-enum Section { kHead = 1, kInputs, kOutputs, kParams, kTextures, kPasses, kPresets };
+enum Section { kHead = 1, kInputs, kOutputs, kParams, kTextures, kPasses, kPresets, kMore };
 
 using Sections = std::map<int, std::string>;
 
@@ -27,10 +27,10 @@ inline std::string demo_manifest(const Sections& replaced = {}) {
                      "doc": "."},
             "flag": {"type": "bool", "default": false, "doc": "."},
             "taps": {"type": "int", "default": 3, "doc": "."}})"},
-        {kTextures, R"("textures": {"half": {"format": "rgba16f", "scale": 0.5, "doc": "."}})"},
+        {kTextures, R"("textures": {"small": {"format": "rgba16f", "scale": 0.5, "doc": "."}})"},
         {kPasses, R"("passes": [
-            {"name": "one", "shader": "a.frag", "reads": ["color", "depth"], "writes": ["half"]},
-            {"name": "two", "shader": "b.frag", "reads": [{"color": "linear"}, "half"],
+            {"name": "one", "shader": "a.frag", "reads": ["color", "depth"], "writes": ["small"]},
+            {"name": "two", "shader": "b.frag", "reads": [{"color": "linear"}, "small"],
              "writes": ["color"]}])"},
         {kPresets, R"("presets": {"strong": {"gain": "2 m", "mode": "good"}})"},
     };
@@ -49,7 +49,7 @@ public:
     explicit EffectFolder(const std::string& manifest = demo_manifest()) {
         std::filesystem::create_directories(path());
         write("effect.json", manifest);
-        for (const char* shader : {"a.frag", "b.frag"})
+        for (const char* shader : {"a.frag", "b.frag", "c.comp", "d.vert"})
             write(shader, "#version 450 core\n#include <pass>\nvoid main() {}\n");
     }
     std::filesystem::path path() const { return folder_ / "demo"; }

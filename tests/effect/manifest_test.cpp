@@ -25,15 +25,16 @@ TEST(Manifest, KeepsAllThatItSays) {
     EXPECT_EQ(manifest.find_output("color")->role, "color");
     EXPECT_EQ(manifest.find_output("depth"), nullptr);
     EXPECT_EQ(manifest.param_names(), (std::vector<std::string>{"gain", "mode", "flag", "taps"}));
-    EXPECT_EQ(manifest.find_texture("half")->format, gpu::TextureFormat::rgba16f);
-    EXPECT_EQ(manifest.find_texture("half")->scale, 0.5);
+    EXPECT_EQ(manifest.find_texture("small")->format, gpu::TextureFormat::rgba16f);
+    EXPECT_EQ(manifest.find_texture("small")->grid.scale, 0.5);
     ASSERT_EQ(manifest.passes.size(), 2U);
     EXPECT_EQ(manifest.passes[1].shader, "b.frag");
     EXPECT_EQ(manifest.passes[1].reads[0].name, "color");
     EXPECT_EQ(manifest.passes[1].reads[0].filter, gpu::Filter::linear);
     EXPECT_EQ(manifest.passes[1].reads[1].filter, gpu::Filter::nearest);
     EXPECT_EQ(manifest.passes[1].reads[1].wrap, gpu::Wrap::clamp);
-    EXPECT_EQ(manifest.passes[1].writes, std::vector<std::string>{"color"});
+    ASSERT_EQ(manifest.passes[1].writes.size(), 1U);
+    EXPECT_EQ(manifest.passes[1].writes[0].name, "color");
     const PresetSpec* preset = manifest.find_preset("strong");
     ASSERT_NE(preset, nullptr);
     EXPECT_EQ(preset->values.at("gain"), ParamValue(2.0));
@@ -42,10 +43,10 @@ TEST(Manifest, KeepsAllThatItSays) {
 
 TEST(Manifest, ReadsFiltersDefinesAndConditions) {
     const EffectFolder folder(demo_manifest({{test::kPasses, R"("passes": [
-        {"name": "one", "shader": "a.frag", "reads": [{"color": {"filter": "linear", "outside": "zero"}},
-         "depth"], "writes": ["half"], "defines": {"STEPS": 4, "SIDE": "left"},
+        {"name": "one", "shader": "a.frag", "reads": [{"color": {"filter": "linear", "outside": "weight_zero"}},
+         "depth"], "writes": ["small"], "defines": {"STEPS": 4, "SIDE": "left"},
          "when": {"mode": ["fast", "good"], "flag": true, "taps": 3, "has.depth": false}},
-        {"name": "two", "shader": "b.frag", "reads": [{"half": "nearest"}], "writes": ["color"]}])"}}));
+        {"name": "two", "shader": "b.frag", "reads": [{"small": "nearest"}], "writes": ["color"]}])"}}));
     const EffectManifest manifest = folder.sound_manifest();
     const PassSpec& pass = manifest.passes.at(0);
     EXPECT_EQ(pass.reads[0].filter, gpu::Filter::linear);
@@ -66,13 +67,13 @@ struct Broken {
 
 const std::vector<Broken> kBrokenSections = {
     {test::kHead,
-     R"("aftershade": 2, "id": "demo", "version": "1", "summary": ".")",
+     R"("aftershade": 2, "id": "demo", "version": "1.0.0", "summary": ".")",
      {"1: document version 2 is not known; this program reads version 1"}},
     {test::kHead,
-     R"("aftershade": 1, "id": "dem", "version": "1", "summary": ".")",
+     R"("aftershade": 1, "id": "dem", "version": "1.0.0", "summary": ".")",
      {"1: the id 'dem' is not the name of its folder, 'demo'"}},
     {test::kHead,
-     R"("aftershade": 1, "id": "Demo.1", "version": "1", "summary": ".")",
+     R"("aftershade": 1, "id": "Demo.1", "version": "1.0.0", "summary": ".")",
      {"1: the id 'Demo.1' is not the name of its folder, 'demo'",
       "1: the id 'Demo.1' must be snake_case: a-z, 0-9 and _, beginning with a letter"}},
     {test::kHead,
@@ -99,36 +100,31 @@ const std::vector<Broken> kBrokenSections = {
      R"("outputs": {"color": {"role": "color"}, "display": {"role": "display"}})",
      {"3: no pass writes the output 'display'"}},
     {test::kTextures,
-     R"("textures": {"half": {"format": "rgba61f", "doc": "."}})",
+     R"("textures": {"small": {"format": "rgba61f", "doc": "."}})",
      {"5: 'format' is 'rgba61f' but must be 'r8', 'rg8', 'rgba8', 'r16f', 'rg16f', 'rgba16f', 'r32f', "
       "'rg32f', "
       "'rgba32f', 'r32ui', 'rg32ui', 'rgba32ui' or 'r32i'; did you mean 'rgba16f'?"}},
-    {test::kTextures, R"("textures": {"half": {"format": "r8"}})", {"5: texture 'half' has no 'doc'"}},
+    {test::kTextures, R"("textures": {"small": {"format": "r8"}})", {"5: texture 'small' has no 'doc'"}},
     {test::kTextures,
-     R"("textures": {"half": {"format": "r8", "scale": 0, "doc": "."}})",
-     {"5: 'scale' must be above 0 and at most 4"}},
+     R"("textures": {"small": {"format": "r8", "scale": 0, "doc": "."}})",
+     {"5: 'scale' must be a number above 0 and at most 4"}},
     {test::kTextures,
-     R"("textures": {"half": {"format": "r8", "tile": 1, "doc": "."}})",
-     {"5: 'tile' must be from 2 to 4096 px"}},
+     R"("textures": {"small": {"format": "r8", "tile": 1, "doc": "."}})",
+     {"5: 'tile' must be from 2 to 4096, not 1"}},
     {test::kTextures,
-     R"("textures": {"half": {"format": "r8", "tile": 8, "scale": 1, "doc": "."}})",
-     {"5: a texture has 'scale' or 'tile', not both"}},
+     R"("textures": {"small": {"format": "r8", "tile": 8, "scale": 1, "doc": "."}})",
+     {"5: only one of 'scale', 'tile' and 'size' may be given"}},
     {test::kTextures,
-     R"("textures": {"half": {"format": "r8", "doc": "."}, "spare": {"format": "r8", "doc": "."}})",
+     R"("textures": {"small": {"format": "r8", "doc": "."}, "spare": {"format": "r8", "doc": "."}})",
      {"5: no pass writes the texture 'spare'"}},
     {test::kTextures,
-     R"("textures": {"half": {"format": "r8", "doc": "."}, "color": {"format": "r8", "doc": "."}})",
-     {"5: the texture 'color' has the name of an input or an output",
-      "6: pass 'one': reads 'color' before any pass has written it",
-      "6: pass 'two': reads 'color' before any pass has written it"}},
-    {test::kTextures,
-     R"("textures": {"half": {"format": "r8", "history": true, "doc": "."}})",
-     {"5: texture 'half' has no key 'history'"}},
+     R"("textures": {"small": {"format": "r8", "doc": "."}, "color": {"format": "r8", "doc": "."}})",
+     {"5: texture 'color' needs the GLSL name 'color', which the input 'color' has",
+      "5: texture 'color' needs the GLSL name 'out_color', which the output 'color' has"}},
     {test::kParams,
      R"("params": {"gain": {"type": "float", "default": 1, "doc": "."},
       "mode": {"type": "int", "default": 0.5, "doc": "."}})",
      {"4: mode.default: 0.5 is not a whole number",
-      "7: preset 'strong' sets 'mode', which is not a parameter",
       "7: preset strong, gain: '2 m' has a unit, but this is a pure number"}},
     {test::kParams,
      R"("params": {"gain": {"type": "float", "unit": "m", "default": 1,
@@ -167,10 +163,10 @@ TEST(Manifest, SaysWhatIsWrongInASectionAtItsLine) {
     }
 }
 
-/// What the second of two passes says; the first writes "half" out of color and depth.
+/// What the second of two passes says; the first writes "small" out of color and depth.
 Lines faults_of_second_pass(const std::string& pass) {
     return faults_of_manifest(demo_manifest({{test::kPasses, R"("passes": [
-        {"name": "one", "shader": "a.frag", "reads": ["color", "depth"], "writes": ["half"]}, )" +
+        {"name": "one", "shader": "a.frag", "reads": ["color", "depth"], "writes": ["small"]}, )" +
                                                                  pass + "]"}}));
 }
 
@@ -179,7 +175,8 @@ struct BrokenPass {
     Lines messages;
 };
 
-const std::string kGoodPass = R"({"name": "two", "shader": "b.frag", "reads": ["half"], "writes": ["color"])";
+const std::string kGoodPass =
+    R"({"name": "two", "shader": "b.frag", "reads": ["small"], "writes": ["color"])";
 
 const std::vector<BrokenPass> kBrokenPasses = {
     {kGoodPass + "}", {}},
@@ -190,7 +187,7 @@ const std::vector<BrokenPass> kBrokenPasses = {
     {R"({"name": "two", "shader": "../demo/a.frag", "writes": ["color"]})",
      {"6: pass 'two': 'shader' is a file name without folders"}},
     {R"({"shader": "b.frag", "writes": ["color"]})", {"6: the pass has no 'name'"}},
-    {R"({"name": "two", "shader": "b.frag", "reads": ["half"]})",
+    {R"({"name": "two", "shader": "b.frag", "reads": ["small"]})",
      {"6: pass 'two': writes nothing", "3: no pass writes the output 'color'"}},
     {R"({"name": "two", "shader": "b.frag", "reads": ["dept"], "writes": ["color"]})",
      {"6: pass 'two': reads 'dept', which is no input and no texture; did you mean 'depth'?"}},
@@ -198,18 +195,18 @@ const std::vector<BrokenPass> kBrokenPasses = {
      {"6: pass 'two': writes 'colour', which is no output and no texture; did you mean 'color'?"}},
     {R"({"name": "two", "shader": "b.frag", "reads": [{"depth": "linear"}], "writes": ["color"]})",
      {"6: pass 'two': 'depth' cannot be filtered linearly: its role is depth"}},
-    {R"({"name": "two", "shader": "b.frag", "reads": [{"half": "cubic"}], "writes": ["color"]})",
+    {R"({"name": "two", "shader": "b.frag", "reads": [{"small": "cubic"}], "writes": ["color"]})",
      {"6: the filter of a read is 'nearest' or 'linear'"}},
-    {R"({"name": "two", "shader": "b.frag", "reads": [{"half": {"outside": "no"}}], "writes": ["color"]})",
-     {"6: 'outside' is 'no' but must be 'clamp' or 'zero'"}},
-    {R"({"name": "two", "shader": "b.frag", "reads": [["half"]], "writes": ["color"]})",
+    {R"({"name": "two", "shader": "b.frag", "reads": [{"small": {"outside": "no"}}], "writes": ["color"]})",
+     {"6: 'outside' is 'no' but must be 'clamp' or 'weight_zero'"}},
+    {R"({"name": "two", "shader": "b.frag", "reads": [["small"]], "writes": ["color"]})",
      {"6: a read is a name, or an object of one name with its filter: {\"color\": \"linear\"}"}},
-    {R"({"name": "two", "shader": "b.frag", "reads": ["half", {"half": "linear"}], "writes": ["color"]})",
-     {"6: pass 'two': reads 'half' twice"}},
+    {R"({"name": "two", "shader": "b.frag", "reads": ["small", {"small": "linear"}], "writes": ["color"]})",
+     {"6: pass 'two': reads 'small' twice"}},
     {R"({"name": "two", "shader": "b.frag", "writes": ["color", "color"]})",
      {"6: pass 'two': writes 'color' twice"}},
-    {R"({"name": "two", "shader": "b.frag", "writes": ["color", "half"]})",
-     {"6: pass 'two': writes 'color' and 'half', which differ in size"}},
+    {R"({"name": "two", "shader": "b.frag", "writes": ["color", "small"]})",
+     {"6: pass 'two': writes 'color' and 'small', which differ in size"}},
     {kGoodPass + R"(, "when": {"mode": "god"}})", {"6: pass 'two': \"god\" is not a value of 'mode'"}},
     {kGoodPass + R"(, "when": {"mode": ["fast", true]}})", {"6: pass 'two': true is not a value of 'mode'"}},
     {kGoodPass + R"(, "when": {"flag": "yes"}})", {"6: pass 'two': \"yes\" is not a value of 'flag'"}},
@@ -237,35 +234,34 @@ TEST(Manifest, SaysWhatIsWrongWithAPass) {
 
 TEST(Manifest, RefusesToReadWhatNoEarlierPassHasWritten) {
     const Lines swapped = faults_of_manifest(demo_manifest({{test::kPasses, R"("passes": [
-        {"name": "two", "shader": "b.frag", "reads": ["half"], "writes": ["color"]},
-        {"name": "one", "shader": "a.frag", "reads": ["color", "depth"], "writes": ["half"]}])"}}));
-    EXPECT_EQ(swapped, Lines{"6: pass 'two': reads 'half' before any pass has written it"});
+        {"name": "two", "shader": "b.frag", "reads": ["small"], "writes": ["color"]},
+        {"name": "one", "shader": "a.frag", "reads": ["color", "depth"], "writes": ["small"]}])"}}));
+    EXPECT_EQ(swapped, Lines{"6: pass 'two': reads 'small' before any pass has written it"});
     const Lines itself = faults_of_manifest(demo_manifest({{test::kPasses, R"("passes": [
-        {"name": "one", "shader": "a.frag", "reads": ["color", "depth"], "writes": ["half"]},
-        {"name": "again", "shader": "a.frag", "reads": ["half"], "writes": ["half"]},
-        {"name": "two", "shader": "b.frag", "reads": ["half"], "writes": ["color"]}])"}}));
-    EXPECT_EQ(itself, Lines{"6: pass 'again': reads and writes 'half'"});
+        {"name": "one", "shader": "a.frag", "reads": ["color", "depth", "small"], "writes": ["small"]},
+        {"name": "two", "shader": "b.frag", "reads": ["small"], "writes": ["color"]}])"}}));
+    EXPECT_EQ(itself, Lines{"6: pass 'one': reads 'small' before any pass has written it"});
 }
 
 TEST(Manifest, RefusesToFilterIntegers) {
     const Lines lines = faults_of_manifest(
-        demo_manifest({{test::kTextures, R"("textures": {"half": {"format": "r32ui", "doc": "."}})"},
+        demo_manifest({{test::kTextures, R"("textures": {"small": {"format": "r32ui", "doc": "."}})"},
                        {test::kPasses, R"("passes": [
-        {"name": "one", "shader": "a.frag", "reads": ["color", "depth"], "writes": ["half"]},
-        {"name": "two", "shader": "b.frag", "reads": [{"half": "linear"}], "writes": ["color"]}])"}}));
-    EXPECT_EQ(lines, Lines{"6: pass 'two': 'half' cannot be filtered linearly: its format is integer"});
+        {"name": "one", "shader": "a.frag", "reads": ["color", "depth"], "writes": ["small"]},
+        {"name": "two", "shader": "b.frag", "reads": [{"small": "linear"}], "writes": ["color"]}])"}}));
+    EXPECT_EQ(lines, Lines{"6: pass 'two': 'small' cannot be filtered linearly: its format is integer"});
 }
 
 TEST(Manifest, ListsTheFaultsOfAllSectionsAtOnce) {
     const Lines lines = faults_of_manifest(demo_manifest(
-        {{test::kHead, R"("aftershade": 1, "id": "demo", "version": "1")"},
+        {{test::kHead, R"("aftershade": 1, "id": "demo", "version": "1.0.0")"},
          {test::kInputs, R"("inputs": {"color": {"role": "color"}, "depth": {"role": "dpth"}})"},
-         {test::kTextures, R"("textures": {"half": {"format": "rgba16f"}})"},
+         {test::kTextures, R"("textures": {"small": {"format": "rgba16f"}})"},
          {test::kPresets, R"("presets": {"strong": {"gain": -1}})"}}));
     EXPECT_EQ(
         lines,
         (Lines{"1: the manifest has no 'summary'", "2: 'dpth' is not a role; did you mean 'depth'?",
-               "5: texture 'half' has no 'doc'", "7: preset strong, gain: -1 m is below the minimum 0 m"}));
+               "5: texture 'small' has no 'doc'", "7: preset strong, gain: -1 m is below the minimum 0 m"}));
 }
 
 TEST(Manifest, IsAnObject) {

@@ -4,60 +4,17 @@
 #include <cstddef>
 #include <cstring>
 
-#include "tests/effect/effect_folder.h"
+#include "tests/effect/assembly.h"
 
 namespace aftershade {
 namespace {
 
+using test::Assembly;
 using test::demo_manifest;
 using test::EffectFolder;
+using test::has_line;
 using test::Lines;
-
-Lines lines_of_text(const std::string& text) {
-    std::istringstream in(text);
-    Lines lines;
-    for (std::string line; std::getline(in, line);) lines.push_back(line);
-    return lines;
-}
-
-bool has_line(const ShaderSource& source, const std::string& line) {
-    return source.text.find("\n" + line + "\n") != std::string::npos;
-}
-
-/// A pass of an effect with the values that a look might give.
-struct Assembly {
-    explicit Assembly(const EffectFolder& effect, std::size_t pass = 0)
-        : folder(effect), manifest(effect.sound_manifest()), pass_index(pass) {
-        for (const ParamSpec& spec : manifest.params) params.set(spec.name, spec.default_value);
-    }
-    ShaderSource operator()(Diagnostics& diagnostics) const {
-        return assemble_shader({&manifest, &manifest.passes.at(pass_index), &params, present, glsl.path()},
-                               diagnostics);
-    }
-    ShaderSource sound() const {
-        Diagnostics diagnostics;
-        ShaderSource source = (*this)(diagnostics);
-        EXPECT_EQ(test::lines_of(diagnostics), Lines{});
-        return source;
-    }
-    /// As "file:line:column: error: message", without the effect's folder.
-    Lines faults() const {
-        Diagnostics diagnostics;
-        (*this)(diagnostics);
-        Lines lines = test::lines_of(diagnostics);
-        for (std::string& line : lines)
-            if (line.starts_with(folder.path().string()))
-                line = line.substr(folder.path().string().size() + 1);
-        return lines;
-    }
-
-    const EffectFolder& folder;
-    EffectManifest manifest;
-    std::size_t pass_index;
-    ParamSet params;
-    std::vector<std::string> present;
-    test::TemporaryFolder glsl;
-};
+using test::lines_of_text;
 
 TEST(ShaderInterface, DeclaresWhatThePassSees) {
     const EffectFolder folder;
@@ -79,15 +36,42 @@ TEST(ShaderInterface, DeclaresWhatThePassSees) {
         "    ivec2 origin;",
         "    int number;",
         "    uint step_seed;",
+        "    float fps;",
+        "    bool history_valid;",
         "    mat3 rec709_from_color;",
+        "    ivec2 size;",
+        "    ivec2 full_display_size;",
+        "    float scale;",
+        "    int subframe;",
+        "    int subframe_count;",
+        "    float subframe_time;",
         "} frame;",
+        "layout(std140, binding = 3) uniform CameraBlock {",
+        "    mat4 view_from_world;",
+        "    mat4 world_from_view;",
+        "    mat4 clip_from_view;",
+        "    mat4 view_from_clip;",
+        "    mat4 clip_from_world;",
+        "    mat4 world_from_clip;",
+        "    mat4 prev_clip_from_world;",
+        "    mat4 prev_view_from_world;",
+        "    vec3 position_m;",
+        "    vec2 jitter_px;",
+        "    vec2 prev_jitter_px;",
+        "    float focal_length;",
+        "    float sensor_width;",
+        "    float focus_distance;",
+        "    float f_number;",
+        "    bool has_matrices;",
+        "    bool has_prev_matrices;",
+        "} camera;",
         "layout(binding = 0) uniform sampler2D color;",
         "layout(binding = 1) uniform sampler2D depth;",
         "layout(std140, binding = 2) uniform SizeBlock {",
         "    vec4 color_size;",
         "    vec4 depth_size;",
         "};",
-        "layout(location = 0) out vec4 out_half;",
+        "layout(location = 0) out vec4 out_small;",
         "void main() {}",
     };
     EXPECT_EQ(lines_of_text(assembly.sound().text), expected);
@@ -113,15 +97,15 @@ TEST(ShaderInterface, HasTypesForEveryFormat) {
     };
     for (const auto& format : formats) {
         const EffectFolder folder(demo_manifest(
-            {{test::kTextures, R"("textures": {"half": {"format": ")" + format[0] + R"(", "doc": "."}})"},
+            {{test::kTextures, R"("textures": {"small": {"format": ")" + format[0] + R"(", "doc": "."}})"},
              {test::kPasses,
               R"("passes": [
-            {"name": "one", "shader": "a.frag", "reads": ["color", "depth"], "writes": ["half"]},
-            {"name": "two", "shader": "b.frag", "reads": ["color", "half"], "writes": ["color"]}])"}}));
+            {"name": "one", "shader": "a.frag", "reads": ["color", "depth"], "writes": ["small"]},
+            {"name": "two", "shader": "b.frag", "reads": ["color", "small"], "writes": ["color"]}])"}}));
         EXPECT_TRUE(
-            has_line(Assembly(folder, 0).sound(), "layout(location = 0) out " + format[2] + " out_half;"));
+            has_line(Assembly(folder, 0).sound(), "layout(location = 0) out " + format[2] + " out_small;"));
         EXPECT_TRUE(
-            has_line(Assembly(folder, 1).sound(), "layout(binding = 1) uniform " + format[1] + " half;"));
+            has_line(Assembly(folder, 1).sound(), "layout(binding = 1) uniform " + format[1] + " small;"));
     }
 }
 
@@ -155,9 +139,9 @@ TEST(ShaderInterface, WritesDefinesThatMeanTheirValueInGlsl) {
 
 TEST(ShaderInterface, HasThePassesOwnDefines) {
     const EffectFolder folder(demo_manifest({{test::kPasses, R"("passes": [
-        {"name": "one", "shader": "a.frag", "reads": ["color", "depth"], "writes": ["half"],
+        {"name": "one", "shader": "a.frag", "reads": ["color", "depth"], "writes": ["small"],
          "defines": {"STEPS": 4}},
-        {"name": "two", "shader": "b.frag", "reads": ["half"], "writes": ["color"]}])"}}));
+        {"name": "two", "shader": "b.frag", "reads": ["small"], "writes": ["color"]}])"}}));
     EXPECT_TRUE(has_line(Assembly(folder, 0).sound(), "#define STEPS 4"));
     EXPECT_FALSE(has_line(Assembly(folder, 1).sound(), "#define STEPS 4"));
 }
@@ -258,9 +242,9 @@ TEST(ShaderSource, ListsAllMissingIncludes) {
 
 TEST(PassEnabled, WhenEveryConditionHolds) {
     const EffectFolder folder(demo_manifest({{test::kPasses, R"("passes": [
-        {"name": "one", "shader": "a.frag", "reads": ["color", "depth"], "writes": ["half"],
+        {"name": "one", "shader": "a.frag", "reads": ["color", "depth"], "writes": ["small"],
          "when": {"mode": ["fast", "good"], "taps": [3, 5], "has.depth": true}},
-        {"name": "two", "shader": "b.frag", "reads": ["half"], "writes": ["color"]}])"}}));
+        {"name": "two", "shader": "b.frag", "reads": ["small"], "writes": ["color"]}])"}}));
     Assembly assembly(folder);
     const PassSpec& pass = assembly.manifest.passes[0];
     EXPECT_TRUE(pass_enabled(pass, assembly.params, {"depth"}));
@@ -326,11 +310,6 @@ TEST(ParamBlock, IsAbsentWithoutUniforms) {
     EXPECT_TRUE(param_block(assembly.manifest, assembly.params).empty());
     EXPECT_EQ(assembly.sound().text.find("ParamBlock"), std::string::npos);
 }
-
-// The same rules for ivec2, ivec2, int, uint: 0, 8, 16, 20; and a mat3 of three vec4 at 24 rounded up to 32.
-static_assert(offsetof(FrameBlock, display_size_px) == 0 && offsetof(FrameBlock, origin_px) == 8);
-static_assert(offsetof(FrameBlock, number) == 16 && offsetof(FrameBlock, step_seed) == 20);
-static_assert(offsetof(FrameBlock, rec709_from_color) == 32 && sizeof(FrameBlock) == 80);
 
 }  // namespace
 }  // namespace aftershade

@@ -1,0 +1,200 @@
+// What `#include <pass>` stands for.
+#include <sstream>
+#include <utility>
+
+#include "framework/core/units.h"
+#include "framework/effect/glsl_names.h"
+#include "framework/effect/shader_source.h"
+
+namespace aftershade {
+
+namespace {
+
+std::string_view glsl_type(const ParamSpec& spec) {
+    switch (spec.type) {
+        case ParamType::bool_: return "bool";
+        case ParamType::int_:
+        case ParamType::enum_: return "int";
+        case ParamType::float_:
+        case ParamType::angle: return "float";
+        case ParamType::vec2: return "vec2";
+        case ParamType::color:
+        case ParamType::vec3: return "vec3";
+        case ParamType::vec4: return "vec4";
+        case ParamType::curve:
+        case ParamType::file:
+        case ParamType::table: break;
+    }
+    return "float";
+}
+
+/// A float literal: "3" would divide as an integer, and without brackets "x -SKEW" might become "x --3".
+std::string float_literal(double value) {
+    std::string text = format_number(value);
+    if (text.find_first_of(".e") == std::string::npos) text += ".0";
+    return value < 0 ? "(" + text + ")" : text;
+}
+
+std::string define_value(const ParamSpec& spec, const ParamValue& value) {
+    if (spec.type == ParamType::enum_)
+        return upper_case(spec.name) + "_" + upper_case(std::get<std::string>(value));
+    if (spec.type == ParamType::bool_) return std::get<bool>(value) ? "1" : "0";
+    if (const auto* number = std::get_if<double>(&value)) return float_literal(*number);
+    if (const auto* integer = std::get_if<std::int64_t>(&value))
+        return *integer < 0 ? "(" + std::to_string(*integer) + ")" : std::to_string(*integer);
+    std::string components;
+    for (const double component : std::get<std::vector<double>>(value))
+        components += (components.empty() ? "" : ", ") + float_literal(component);
+    return std::string(glsl_type(spec)) + "(" + components + ")";
+}
+
+/// "u" for unsigned, "i" for signed integers, "" for floats: the beginning of usampler2D, uimage2D and uvec4.
+std::string type_prefix(gpu::TextureFormat format) {
+    if (!gpu::is_integer(format)) return "";
+    return gpu::is_signed_integer(format) ? "i" : "u";
+}
+
+std::string texel_type(gpu::TextureFormat format) {
+    const int channels = gpu::channel_count(format);
+    const std::string prefix = type_prefix(format);
+    if (channels == 1) return prefix == "u" ? "uint" : prefix == "i" ? "int" : "float";
+    return prefix + "vec" + std::to_string(channels);
+}
+
+std::string_view qualifier(AccessSpec::Kind kind) {
+    switch (kind) {
+        case AccessSpec::Kind::read: return "readonly ";
+        case AccessSpec::Kind::write: return "writeonly ";
+        case AccessSpec::Kind::atomic: break;
+    }
+    return "";
+}
+
+class InterfaceWriter {
+public:
+    explicit InterfaceWriter(const ShaderContext& context)
+        : context_(context), manifest_(*context.manifest), bindings_(pass_bindings(context)) {}
+
+    std::string write(ShaderFile file) {
+        defines();
+        if (bindings_.has_param_block) params();
+        text_ << frame_block_glsl() << camera_block_glsl();
+        if (bindings_.has_pass_block)
+            text_ << "layout(std140, binding = " << kPassBinding << ") uniform PassBlock {\n"
+                  << "    int index;\n    int count;\n} pass;\n";
+        if (bindings_.has_native_block) native_uniforms();
+        reads();
+        param_resources();
+        native_tables();
+        images();
+        buffers();
+        if (file == ShaderFile::main) writes();
+        return text_.str();
+    }
+
+private:
+    void defines() {
+        for (const std::string& name : context_.present_inputs)
+            if (manifest_.find_input(name)->optional) text_ << "#define HAS_" << upper_case(name) << " 1\n";
+        for (const auto& [name, value] : context_.pass->defines)
+            text_ << "#define " << name << " " << value << "\n";
+        for (const ParamSpec& spec : manifest_.params) {
+            const std::string name = upper_case(spec.name);
+            for (std::size_t i = 0; i < spec.values.size(); ++i)
+                text_ << "#define " << name << "_" << upper_case(spec.values[i]) << " " << i << "\n";
+            if (spec.bind == ParamBind::define)
+                text_ << "#define " << name << " " << define_value(spec, context_.params->get(spec.name))
+                      << "\n";
+        }
+    }
+
+    void params() {
+        text_ << "layout(std140, binding = " << kParamBinding << ") uniform ParamBlock {\n";
+        for (const ParamSpec& spec : manifest_.params)
+            if (spec.bind == ParamBind::uniform && is_block_type(spec.type))
+                text_ << "    " << glsl_type(spec) << " " << spec.name << ";\n";
+        text_ << "} param;\n";
+    }
+
+    void native_uniforms() {
+        text_ << "layout(std140, binding = " << kNativeBinding << ") uniform NativeBlock {\n";
+        for (const NativeUniformSpec& uniform : manifest_.native->uniforms)
+            text_ << "    " << uniform.type << " " << uniform.name << ";\n";
+        text_ << "} native;\n";
+    }
+
+    bool is_array(const std::string& name) const {
+        const TextureSpec* texture = manifest_.find_texture(name);
+        return texture && texture->layers > 1;
+    }
+
+    void reads() {
+        const auto& reads = bindings_.reads;
+        for (std::size_t i = 0; i < reads.size(); ++i)
+            text_ << "layout(binding = " << i << ") uniform "
+                  << type_prefix(format_of_read(manifest_, reads[i].name))
+                  << (is_array(reads[i].name) ? "sampler2DArray " : "sampler2D ") << reads[i].glsl_name()
+                  << ";\n";
+        if (reads.empty()) return;
+        text_ << "layout(std140, binding = " << kSizeBinding << ") uniform SizeBlock {\n";
+        for (const ReadSpec& read : reads) text_ << "    vec4 " << read.glsl_name() << "_size;\n";
+        text_ << "};\n";
+    }
+
+    void param_resources() {
+        int binding = bindings_.first_param_sampler;
+        for (const ParamSpec* spec : bindings_.param_samplers) 
+            text_ << param_resource_glsl(*spec, context_.file_of(spec->name), binding++);
+        binding = bindings_.first_param_buffer;
+        for (const ParamSpec* spec : bindings_.param_buffers) 
+            text_ << param_resource_glsl(*spec, {}, binding++);
+    }
+
+    void native_tables() {
+        int binding = bindings_.first_native_sampler;
+        for (const NativeTableSpec* table : bindings_.native_tables)
+            text_ << "layout(binding = " << binding++ << ") uniform "
+                  << (table->element.starts_with('u') ? "usampler2D " : "sampler2D ") << table->name << ";\n";
+    }
+
+    void images() {
+        const auto& images = bindings_.images;
+        for (std::size_t i = 0; i < images.size(); ++i) {
+            const gpu::TextureFormat format = format_of_write(manifest_, images[i].name);
+            text_ << "layout(binding = " << i << ", " << gpu::texture_format_name(format) << ") "
+                  << qualifier(images[i].kind) << "uniform " << type_prefix(format)
+                  << (is_array(images[i].name) ? "image2DArray " : "image2D ") << images[i].name << ";\n";
+        }
+    }
+
+    void buffers() {
+        const auto& buffers = bindings_.buffers;
+        for (std::size_t i = 0; i < buffers.size(); ++i) {
+            const std::string name = buffers[i].glsl_name();
+            text_ << "layout(std430, binding = " << i << ") " << qualifier(buffers[i].kind) << "buffer "
+                  << storage_block_name(name) << " { " << manifest_.find_buffer(buffers[i].name)->element
+                  << " " << name << "[]; };\n";
+        }
+    }
+
+    void writes() {
+        const auto& writes = context_.pass->writes;
+        for (std::size_t i = 0; i < writes.size(); ++i)
+            text_ << "layout(location = " << i << ") out "
+                  << texel_type(format_of_write(manifest_, writes[i].name)) << " out_" << writes[i].name
+                  << ";\n";
+    }
+
+    const ShaderContext& context_;
+    const EffectManifest& manifest_;
+    const PassBindings bindings_;
+    std::ostringstream text_;
+};
+
+}  // namespace
+
+std::string interface_glsl(const ShaderContext& context, ShaderFile file) {
+    return InterfaceWriter(context).write(file);
+}
+
+}  // namespace aftershade

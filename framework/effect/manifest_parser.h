@@ -1,0 +1,77 @@
+// Reads the sections of effect.json. Internal to framework/effect.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "framework/effect/manifest.h"
+
+namespace aftershade {
+
+/// Why a value for every channel, or four of them, cannot stand in a texture of this format; "" where it can.
+std::string why_not_in_format(const std::vector<double>& texel, gpu::TextureFormat format);
+
+class ManifestParser {
+public:
+    ManifestParser(EffectManifest& manifest, Diagnostics& diagnostics)
+        : manifest_(manifest), diagnostics_(diagnostics) {}
+
+    void identity(ObjectReader& reader, const Node& node);
+    void inputs(const Node& section);
+    void outputs(const Node& section);
+    void params(const Node& section);  ///< before everything that may count by one
+    void textures(const Node& section);
+    void buffers(const Node& section);
+    void passes(const Node& section);
+    void native(const Node& section);
+    void presets(const Node& section);
+
+private:
+    /// Limits of a count: of a number, and the least `min` that a parameter may have.
+    struct CountLimits {
+        int least = 1;
+        int most = 1;
+        int least_of_param = 1;
+    };
+
+    void fault(const Place& place, std::string text) { diagnostics_.error(place, std::move(text)); }
+    void identifier(const std::string& name, const Place& place, const std::string& thing);
+    std::string role(ObjectReader& reader, const Node& node);
+    void check_from(const ParamSpec& spec, const Place& place);
+    void preset(const Member& member);
+
+    CountSpec count(const Node& node, const std::string& key, const CountLimits& limits);
+    void count_by_param(const Node& node, const std::string& key, const CountLimits& limits);
+    std::int64_t integer_in(const Node& node, const std::string& key, std::int64_t least, std::int64_t most);
+    std::vector<int> integers_in(const Node& node, const std::string& key, std::size_t size, int least,
+                                 int most);
+    GridSpec grid(ObjectReader& reader, bool may_be_fixed);
+    std::optional<GridSpec> per(ObjectReader& reader);
+    void mips(ObjectReader& reader, TextureSpec& texture);
+    std::vector<double> numbers(const Node& node, const std::string& key);
+    std::vector<double> texel(const Node& node, const std::string& key);
+    void texture(const Member& member);
+    void buffer(const Member& member);
+    void check_words(const BufferSpec& buffer, const Node& node);
+    void native_uniform(const Member& member);
+    void native_table(const Member& member);
+
+    void pass(const Node& node);
+    void shaders(ObjectReader& reader, const Node& node, PassSpec& pass);
+    ReadSpec read(const Node& node);
+    void read_options(const Member& member, ReadSpec& read);
+    WriteSpec write(const Node& node);
+    int level(const Node& node, const std::string& key, int most);
+    std::vector<AccessSpec> accesses(const Node& section, const std::string& thing);
+    WhenSpec when(const Member& member);
+    void define(PassSpec& pass, const Member& member);
+    InstanceSpec instances(const Node& node);
+    DispatchSpec dispatch(const Node& node);
+
+    EffectManifest& manifest_;
+    Diagnostics& diagnostics_;
+    std::set<std::string> faulty_params_;  // declared, but with faults that are already told
+};
+
+}  // namespace aftershade

@@ -1,0 +1,133 @@
+#include "framework/effect/program_store.h"
+
+#include <charconv>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "framework/core/atomic_file.h"
+#include "framework/core/error.h"
+
+namespace aftershade {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view kMagic = "aftershade program 1\n";
+/// More than any program of ours; what is larger is no program.
+constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t(64) << 20;
+
+/// FNV-1a, Fowler, Noll and Vo 1991. It names files and finds damage; it does not resist an attacker, who
+/// could write the folder anyway.
+std::uint64_t hash_of(std::string_view bytes) {
+    std::uint64_t hash = 14695981039346656037U;
+    for (const char byte : bytes) {
+        hash ^= static_cast<unsigned char>(byte);
+        hash *= 1099511628211U;
+    }
+    return hash;
+}
+
+void append(std::string& bytes, std::uint64_t value) {
+    char raw[sizeof value];
+    std::memcpy(raw, &value, sizeof value);
+    bytes.append(raw, sizeof raw);
+}
+
+/// Takes values off the front; `sound` turns false where too little is left.
+struct Taker {
+    std::string_view rest;
+    bool sound = true;
+
+    std::string_view bytes(std::uint64_t count) {
+        if (count > rest.size()) sound = false;
+        if (!sound) return {};
+        const std::string_view taken = rest.substr(0, std::size_t(count));
+        rest.remove_prefix(std::size_t(count));
+        return taken;
+    }
+    std::uint64_t number() {
+        std::uint64_t value = 0;
+        const std::string_view raw = bytes(sizeof value);
+        if (sound) std::memcpy(&value, raw.data(), sizeof value);
+        return value;
+    }
+};
+
+std::string file_text(const std::string& key, const gpu::ProgramBinary& binary) {
+    std::string text(kMagic);
+    append(text, key.size());
+    text += key;
+    append(text, binary.format);
+    append(text, binary.bytes.size());
+    text.append(reinterpret_cast<const char*>(binary.bytes.data()), binary.bytes.size());
+    append(text, hash_of(text));
+    return text;
+}
+
+const char* environment(const char* name) {
+    const char* value = std::getenv(name);
+    return value && *value ? value : nullptr;
+}
+
+}  // namespace
+
+ProgramStore ProgramStore::from_environment() {
+    if (const char* folder = environment("AFTERSHADE_CACHE"))
+        return std::strcmp(folder, "off") == 0 ? ProgramStore() : ProgramStore(fs::path(folder));
+    // The XDG base directory specification has relative paths ignored.
+    if (const char* cache = environment("XDG_CACHE_HOME"); cache && fs::path(cache).is_absolute())
+        return ProgramStore(fs::path(cache) / "aftershade");
+    if (const char* home = environment("HOME")) return ProgramStore(fs::path(home) / ".cache" / "aftershade");
+    return {};
+}
+
+fs::path ProgramStore::file_of(const std::string& key) const {
+    std::string name(16, '\0');
+    name.resize(std::size_t(std::to_chars(name.data(), name.data() + name.size(), hash_of(key), 16).ptr -
+                            name.data()));
+    return folder_ / (name + ".program");
+}
+
+std::optional<gpu::ProgramBinary> ProgramStore::load(const std::string& key) const {
+    if (!is_on()) return std::nullopt;
+    const fs::path file = file_of(key);
+    std::error_code failure;
+    if (!fs::is_regular_file(file, failure) || fs::file_size(file, failure) > kMaxFileBytes || failure)
+        return std::nullopt;
+    std::ifstream in(file, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    Taker taker{text};
+    if (taker.bytes(kMagic.size()) != kMagic || taker.bytes(taker.number()) != key) return std::nullopt;
+    gpu::ProgramBinary binary;
+    binary.format = static_cast<unsigned int>(taker.number());
+    const std::string_view bytes = taker.bytes(taker.number());
+    const std::string_view hashed = std::string_view(text).substr(0, text.size() - taker.rest.size());
+    const std::uint64_t hash = hash_of(hashed);
+    if (taker.number() != hash || !taker.sound || !taker.rest.empty()) return std::nullopt;
+    binary.bytes.resize(bytes.size());
+    std::memcpy(binary.bytes.data(), bytes.data(), bytes.size());
+    return binary;
+}
+
+void ProgramStore::save(const std::string& key, const gpu::ProgramBinary& binary) const {
+    if (!is_on()) return;
+    std::error_code failure;
+    fs::create_directories(folder_, failure);
+    try {
+        AtomicFile file(file_of(key));
+        const std::string text = file_text(key, binary);
+        std::ofstream out(file.temporary_path(), std::ios::binary);
+        out.write(text.data(), static_cast<std::streamsize>(text.size()));
+        out.close();
+        if (out) file.commit();
+    } catch (const Error&) {
+        // A full disk or a folder of somebody else's costs time only: the program is compiled again.
+    }
+}
+
+}  // namespace aftershade

@@ -1,0 +1,36 @@
+// Compiled programs on disk, so that the next run need not compile them.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "framework/gpu/program.h"
+
+namespace aftershade {
+
+/// A folder with one file for each program, named by a hash of its key; the file holds the whole key, so two
+/// keys of one hash are only a miss. Files appear by rename: any number of processes may share the folder.
+/// A file that is cut short, damaged or of another layout counts as absent and is replaced. Nothing here
+/// fails: a folder that cannot be written keeps nothing. [any thread]
+class ProgramStore {
+public:
+    /// Keeps nothing.
+    ProgramStore() = default;
+    /// Makes the folder with the first program that it keeps.
+    explicit ProgramStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
+    /// $AFTERSHADE_CACHE, which may be "off"; else $XDG_CACHE_HOME/aftershade; else ~/.cache/aftershade.
+    static ProgramStore from_environment();
+
+    bool is_on() const { return !folder_.empty(); }
+    const std::filesystem::path& folder() const { return folder_; }
+    /// The key is all that the program depends on: sources, renderer, versions.
+    std::optional<gpu::ProgramBinary> load(const std::string& key) const;
+    void save(const std::string& key, const gpu::ProgramBinary& binary) const;
+    std::filesystem::path file_of(const std::string& key) const;
+
+private:
+    std::filesystem::path folder_;  // empty: off
+};
+
+}  // namespace aftershade

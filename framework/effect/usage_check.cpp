@@ -1,0 +1,294 @@
+#include "framework/effect/usage_check.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "framework/effect/glsl_names.h"
+#include "framework/effect/shader_source.h"
+
+namespace aftershade {
+
+namespace {
+
+constexpr std::string_view kOut = "out_";
+
+/// A word of a shader, or one character of anything else.
+struct Token {
+    std::string text;
+    Place place;
+    bool is_word() const { return std::isalpha(static_cast<unsigned char>(text[0])) || text[0] == '_'; }
+};
+
+/// What the author wrote, without comments and without the host's own lines.
+class Tokens {
+public:
+    explicit Tokens(const ShaderSource& source) {
+        std::size_t begin = 0;
+        for (const SourceLine& line : source.lines) {
+            const std::size_t end = source.text.find('\n', begin);
+            if (line.file != "<generated>")
+                add_line(std::string_view(source.text).substr(begin, end - begin), line);
+            begin = end + 1;
+        }
+    }
+    std::vector<Token> take() { return std::move(tokens_); }
+
+private:
+    void add_line(std::string_view text, const SourceLine& line) {
+        for (std::size_t at = 0; at < text.size();) {
+            if (in_comment_) {
+                const std::size_t end = text.find("*/", at);
+                if (end == std::string_view::npos) return;
+                in_comment_ = false;
+                at = end + 2;
+            } else if (text.substr(at, 2) == "//") {
+                return;
+            } else if (text.substr(at, 2) == "/*") {
+                in_comment_ = true;
+                at += 2;
+            } else {
+                at = add_token(text, at, {line.file, line.line, int(at) + 1});
+            }
+        }
+    }
+
+    std::size_t add_token(std::string_view text, std::size_t at, Place place) {
+        const auto is_part = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+        std::size_t end = at + 1;
+        // A number takes its letters along: 1e5, 0xff, 2u.
+        while (is_part(text[at]) && end < text.size() && is_part(text[end])) ++end;
+        if (!std::isspace(static_cast<unsigned char>(text[at])))
+            tokens_.push_back({std::string(text.substr(at, end - at)), std::move(place)});
+        return end;
+    }
+
+    std::vector<Token> tokens_;
+    bool in_comment_ = false;
+};
+
+using Uses = std::map<std::string, Place>;  // by name, with its first place
+
+/// What one shader uses.
+struct ShaderUses {
+    std::set<std::string> words;
+    Uses params;   // x of param.x
+    Uses natives;  // x of native.x
+    Uses outputs;  // x of out_x, but for names that the shader declares itself
+
+    explicit ShaderUses(const std::vector<Token>& tokens) {
+        std::set<std::string> own;
+        for (std::size_t i = 0; i < tokens.size(); ++i) {
+            const Token& token = tokens[i];
+            if (!token.is_word()) continue;
+            words.insert(token.text);
+            const bool is_member = i > 0 && tokens[i - 1].text == ".";
+            if (is_member) continue;
+            if (i + 2 < tokens.size() && tokens[i + 1].text == ".") {
+                if (token.text == "param") params.emplace(tokens[i + 2].text, token.place);
+                if (token.text == "native") natives.emplace(tokens[i + 2].text, token.place);
+            }
+            if (!token.text.starts_with(kOut)) continue;
+            // "vec3 out_direction": a type before it makes it the shader's own.
+            const bool declares = i > 0 && tokens[i - 1].is_word() && tokens[i - 1].text != "return" &&
+                                  tokens[i - 1].text != "else";
+            if (declares) own.insert(token.text.substr(kOut.size()));
+            else outputs.emplace(token.text.substr(kOut.size()), token.place);
+        }
+        for (const std::string& name : own) outputs.erase(name);
+    }
+};
+
+class UsageChecker {
+public:
+    UsageChecker(const EffectManifest& manifest, const std::filesystem::path& glsl_folder,
+                 Diagnostics& diagnostics)
+        : manifest_(manifest), glsl_folder_(glsl_folder), diagnostics_(diagnostics) {
+        for (const ParamSpec& spec : manifest.params) defaults_.set(spec.name, spec.default_value);
+        for (const InputSpec& input : manifest.inputs) inputs_.push_back(input.name);
+    }
+
+    void check() {
+        const int errors_before = diagnostics_.error_count();
+        for (const PassSpec& pass : manifest_.passes)
+            for (const std::string& file : files_of(pass)) read_shader(pass, file);
+        // Without its text nothing can be said of a shader.
+        if (diagnostics_.error_count() > errors_before) return;
+        for (const PassSpec& pass : manifest_.passes) check_pass(pass);
+        for (const auto& [file, uses] : shaders_) check_shader(file, uses);
+        check_params();
+        if (manifest_.native) check_native(*manifest_.native);
+    }
+
+private:
+    static std::vector<std::string> files_of(const PassSpec& pass) {
+        std::vector<std::string> files;
+        for (const std::string& file : {pass.shader, pass.vertex})
+            if (!file.empty()) files.push_back(file);
+        return files;
+    }
+
+    void read_shader(const PassSpec& pass, const std::string& file) {
+        if (shaders_.contains(file)) return;
+        const ShaderContext context{&manifest_, &pass, &defaults_, inputs_, glsl_folder_};
+        const auto which = file == pass.shader ? ShaderFile::main : ShaderFile::vertex;
+        const ShaderSource source = assemble_shader(context, diagnostics_, which);
+        shaders_.emplace(file, ShaderUses(Tokens(source).take()));
+    }
+
+    bool pass_has(const PassSpec& pass, const std::string& word) const {
+        const auto files = files_of(pass);
+        const auto in_text = [&](const std::string& name) {
+            return std::any_of(files.begin(), files.end(), [&](const std::string& file) {
+                return shaders_.at(file).words.contains(name);
+            });
+        };
+        // A pass may hand a shared shader its own name for a thing: "defines": {"LIST": "bright_list"}.
+        return in_text(word) ||
+               std::any_of(pass.defines.begin(), pass.defines.end(), [&](const auto& define) {
+                   return define.second == word && in_text(define.first);
+               });
+    }
+    bool any_has(const std::string& word) const {
+        return std::any_of(shaders_.begin(), shaders_.end(),
+                           [&](const auto& shader) { return shader.second.words.contains(word); });
+    }
+
+    void check_pass(const PassSpec& pass) {
+        const auto unused = [&](const Place& place, const std::string& what) {
+            diagnostics_.error(place, "pass '" + pass.name + "': " + list_of_names(files_of(pass), "and") +
+                                          " " + (files_of(pass).size() > 1 ? "do" : "does") + " not use " +
+                                          what);
+        };
+        for (const ReadSpec& read : pass.reads)
+            if (!pass_has(pass, read.glsl_name()) && !pass_has(pass, read.glsl_name() + "_size"))
+                unused(read.place, "its read '" + read.glsl_name() + "'");
+        for (const AccessSpec& image : pass.images)
+            if (!pass_has(pass, image.name)) unused(image.place, "its image '" + image.name + "'");
+        for (const AccessSpec& buffer : pass.buffers)
+            if (!pass_has(pass, buffer.glsl_name()))
+                unused(buffer.place, "its buffer '" + buffer.glsl_name() + "'");
+        if (pass.kind == PassKind::clear) return;
+        for (const WriteSpec& write : pass.writes)
+            if (!pass_has(pass, std::string(kOut) + write.name))
+                unused(write.place, "its target 'out_" + write.name + "'");
+    }
+
+    /// Passes may share a shader, whose #if branches then use what only one of them declares.
+    void check_shader(const std::string& file, const ShaderUses& uses) {
+        std::vector<std::string> targets;
+        for (const PassSpec& pass : manifest_.passes)
+            if (pass.shader == file)
+                for (const WriteSpec& write : pass.writes) targets.push_back(std::string(kOut) + write.name);
+        for (const auto& [name, place] : uses.outputs) {
+            const std::string word = std::string(kOut) + name;
+            if (std::find(targets.begin(), targets.end(), word) == targets.end())
+                once(place,
+                     "'" + word + "' is no target of a pass with this shader" + did_you_mean(word, targets));
+        }
+        for (const auto& [name, place] : uses.params) check_member(name, place);
+        for (const auto& [name, place] : uses.natives) check_native_member(name, place);
+    }
+
+    void check_member(const std::string& name, const Place& place) {
+        const ParamSpec* spec = manifest_.find_param(name);
+        const std::string word = "'param." + name + "' ";
+        if (!spec)
+            once(place,
+                 word + "is not a parameter of the effect" + did_you_mean(name, manifest_.param_names()));
+        else if (!is_block_type(spec->type))
+            once(place, word + "is a " + std::string(param_type_name(spec->type)) + ": write '" + name + "'");
+        else if (spec->bind == ParamBind::define)
+            once(place, word + "is bound as a define: write '" + upper_case(name) + "'");
+    }
+
+    void check_native_member(const std::string& name, const Place& place) {
+        std::vector<std::string> known;
+        if (manifest_.native)
+            for (const NativeUniformSpec& uniform : manifest_.native->uniforms) known.push_back(uniform.name);
+        if (std::find(known.begin(), known.end(), name) == known.end())
+            once(place, "'native." + name + "' is not declared in 'native'" + did_you_mean(name, known));
+    }
+
+    /// A module that many shaders include has its fault once.
+    void once(const Place& place, const std::string& text) {
+        if (told_.insert(to_string(place) + text).second) diagnostics_.error(place, text);
+    }
+
+    void check_params() {
+        if (manifest_.native) return;  // its library may be all that uses a parameter
+        const std::set<std::string> counted = named_by_manifest();
+        for (const ParamSpec& spec : manifest_.params) {
+            if (counted.contains(spec.name)) continue;
+            if (!is_block_type(spec.type)) {
+                if (!any_begins(spec.name)) unused_param(spec, spec.name);
+            } else if (spec.bind == ParamBind::define) {
+                if (!any_has(upper_case(spec.name))) unused_param(spec, upper_case(spec.name));
+            } else if (!any_uses(&ShaderUses::params, spec.name)) {
+                unused_param(spec, "param." + spec.name);
+            }
+        }
+    }
+    void unused_param(const ParamSpec& spec, const std::string& word) {
+        diagnostics_.error(spec.place, "no shader uses '" + word + "'");
+    }
+    bool any_uses(Uses ShaderUses::*members, const std::string& name) const {
+        return std::any_of(shaders_.begin(), shaders_.end(),
+                           [&](const auto& shader) { return (shader.second.*members).contains(name); });
+    }
+    /// A curve, file or table is used by its own name or by functions that begin with it.
+    bool any_begins(const std::string& name) const {
+        for (const auto& [file, uses] : shaders_)
+            for (const std::string& word : uses.words)
+                if (word == name || word.starts_with(name + "_")) return true;
+        return false;
+    }
+
+    /// Parameters that conditions, sizes and counts take.
+    std::set<std::string> named_by_manifest() const {
+        std::set<std::string> names;
+        const auto add = [&](const CountSpec& count) { names.insert(count.param); };
+        for (const TextureSpec& texture : manifest_.textures) add(texture.grid.tile);
+        for (const BufferSpec& buffer : manifest_.buffers) {
+            add(buffer.count);
+            if (buffer.grid) add(buffer.grid->tile);
+        }
+        for (const PassSpec& pass : manifest_.passes) {
+            for (const WhenSpec& condition : pass.when) names.insert(condition.subject);
+            if (pass.repeat) add(*pass.repeat);
+            if (pass.kind == PassKind::compute) add(pass.dispatch.tile);
+            if (!pass.instances) continue;
+            add(pass.instances->count);
+            if (pass.instances->grid) add(pass.instances->grid->tile);
+        }
+        return names;
+    }
+
+    void check_native(const NativeSpec& native) {
+        for (const NativeUniformSpec& uniform : native.uniforms)
+            if (!any_uses(&ShaderUses::natives, uniform.name))
+                diagnostics_.error(uniform.place, "no shader uses 'native." + uniform.name + "'");
+        for (const NativeTableSpec& table : native.tables)
+            if (!any_has(table.name))
+                diagnostics_.error(table.place, "no shader uses the native table '" + table.name + "'");
+    }
+
+    const EffectManifest& manifest_;
+    const std::filesystem::path& glsl_folder_;
+    Diagnostics& diagnostics_;
+    ParamSet defaults_;
+    std::vector<std::string> inputs_;
+    std::map<std::string, ShaderUses> shaders_;  // by file
+    std::set<std::string> told_;
+};
+
+}  // namespace
+
+void check_declared_used(const EffectManifest& manifest, const std::filesystem::path& glsl_folder,
+                         Diagnostics& diagnostics) {
+    UsageChecker(manifest, glsl_folder, diagnostics).check();
+}
+
+}  // namespace aftershade
