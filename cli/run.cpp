@@ -10,6 +10,7 @@
 #include "cli/capture_options.h"
 #include "cli/gl_options.h"
 #include "cli/interrupt.h"
+#include "cli/render_options.h"
 #include "cli/run_report.h"
 #include "cli/verbs.h"
 #include "framework/core/data_path.h"
@@ -36,6 +37,7 @@ struct RunArguments {
     bool explain = false;
     PipelineOptions pipeline;
     CaptureOptions capture;
+    RenderOptions render;
 };
 
 void add_options(CLI::App& app, RunArguments& options) {
@@ -74,6 +76,7 @@ void add_options(CLI::App& app, RunArguments& options) {
                    "Folder of effects, searched before the shipped ones; repeatable")
         ->allow_extra_args(false);
     app.add_option("--progress", options.progress, "auto, none or plain")->capture_default_str();
+    add_render_options(app, options.render);
     add_backend_option(app, options.backend);
 }
 
@@ -104,24 +107,32 @@ ExitCode run(const RunArguments& options) {
     const gpu::Backend backend = chosen_backend(options.backend);
     const ProgressStyle progress = parse_progress(options.progress);
     EffectRegistry effects(effect_folders);
-    const auto look = read_look(options.look, diagnostics);
+    const auto look = read_look(options.look, diagnostics, parse_variables(options.render, diagnostics));
     Pipeline pipeline;
     if (look) pipeline = compile_pipeline(*look, effects, options.pipeline, diagnostics);
     std::vector<Profile> profiles = load_profiles(options.capture, diagnostics);
     const std::optional<Sequence> sequence = find_sequence(options.capture, profiles, diagnostics);
     OutputOptions outputs = output_options(options);
     check_outputs(outputs, sequence.value_or(Sequence{}), diagnostics);
+    RunOptions run_options;
+    apply_render_options(options.render, run_options, diagnostics);
+    if (options.keep_channels && changes_window(options.render))
+        diagnostics.error({"--keep-channels"}, "keeps the source's channels, which --scale and --region change");
     stop_at_errors(diagnostics);
     diagnostics.print(std::cerr);
 
     const CaptureReader reader(*sequence, std::move(profiles), options.capture.limits);
     if (options.explain) {
-        std::cout << explain_params(pipeline, reader.read_header(sequence->frames.front()));
+        const int file = sequence->file_number(sequence->frames.front());
+        const Capture capture = reader.read(file, pipeline.capture_roles());
+        FrameInputs frame;
+        frame.capture = &capture;
+        std::cout << explain_params(pipeline, frame);
         return ExitCode::done;
     }
     // A lone frame that cannot be read is told of before a context is made.
     if (sequence->frames.size() == 1)
-        require_capture_roles(pipeline, reader.read_header(sequence->frames.front()));
+        require_capture_roles(pipeline, reader.read_header(sequence->file_number(sequence->frames.front())));
 
     set_exr_threads(int(std::thread::hardware_concurrency()));
     gpu::Context context(backend);
@@ -130,8 +141,12 @@ ExitCode run(const RunArguments& options) {
     const MissingFrame missing = options.missing == "skip"   ? MissingFrame::skip
                                  : options.missing == "hold" ? MissingFrame::hold
                                                              : MissingFrame::error;
-    const RunReport report = run_frames(context, pipeline, reader, {sequence->frames, missing, options.audit},
-                                        outputs, data, reporter.observer(), stop);
+    run_options.frames = sequence->frames;
+    run_options.missing = missing;
+    run_options.audit = options.audit;
+    const RunReport report = run_frames(context, pipeline, *sequence, reader, run_options, outputs, data,
+                                        reporter.observer(), stop);
+    if (!options.render.graph.empty()) write_graph(options.render.graph, report.graph_dot);
     if (progress != ProgressStyle::none)
         std::cerr << gpu::backend_name(context.info().backend) << ": " << context.info().renderer << ", "
                   << context.info().version << "\n";

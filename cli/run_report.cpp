@@ -59,6 +59,10 @@ RunObserver RunReporter::observer() {
         clear_line();
         fmt::print(stderr, "frame {} is missing: {}\n", frame, what);
     };
+    observer.history_reset = [this](int frame, const std::string& reason) {
+        clear_line();
+        fmt::print(stderr, "frame {}: history begins anew: {}\n", frame, reason);
+    };
     observer.frame_audited = [this](const CaptureHeader& header, const std::vector<AuditFinding>& findings) {
         clear_line();
         if (findings.empty()) fmt::print(stderr, "audit: frame {}: every value is finite\n", header.frame);
@@ -80,6 +84,9 @@ void RunReporter::print_summary(const RunReport& report, const std::string& cloc
                "{} of {} frames in {:.2f} s; waited {:.2f} s for files to be read, {:.2f} s to be written\n",
                report.frames_done, frame_count_, report.wall_ms / 1000, report.read_ms / 1000,
                report.write_ms / 1000);
+    constexpr double kMiB = 1024 * 1024;
+    fmt::print(stderr, "textures and buffers: {:.1f} MiB ({:.1f} MiB without sharing memory)\n",
+               double(report.bytes) / kMiB, double(report.bytes_unaliased) / kMiB);
 }
 
 }  // namespace aftershade::cli

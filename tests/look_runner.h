@@ -31,7 +31,9 @@ public:
     }
 
     FrameResult run(const Capture& capture) {
-        return renderer_->render(capture, {"color", "display"}, false);
+        FrameInputs frame;
+        frame.capture = &capture;
+        return renderer_->render(frame, {"color", "display"}, false);
     }
     Image color(const Capture& capture) { return run(capture).images.at("color"); }
 

@@ -85,6 +85,18 @@ gpu::Program ProgramCache::make(const Sources& sources, const std::string& label
     return program;
 }
 
+const gpu::Program& ProgramCache::host(const std::string& file, const std::vector<std::string>& defines) {
+    Sources sources;
+    sources.vertex = full_screen_;
+    sources.main.text = read_text(glsl_folder_ / "host" / file);
+    std::string symbols;
+    for (const std::string& define : defines) symbols += "#define " + define + " 1\n";
+    sources.main.text.insert(sources.main.text.find('\n') + 1, symbols);
+    const std::string key = key_of(sources);
+    if (const auto known = programs_.find(key); known != programs_.end()) return known->second;
+    return programs_.emplace(key, make(sources, "host." + file)).first->second;
+}
+
 const gpu::Program& ProgramCache::get(const ShaderContext& context) {
     const PassSpec& pass = *context.pass;
     const std::string where = "pass " + pass.name + ", " + context_.info().renderer;

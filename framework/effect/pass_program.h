@@ -21,6 +21,8 @@ public:
     /// The program of a draw or a compute pass. Throws Error(ExitCode::effect) with one line per fault:
     /// "effects/bokeh/coc.frag:6:17: error: 'parm' undeclared   [pass coc, llvmpipe ...]".
     const gpu::Program& get(const ShaderContext& context);
+    /// A full-screen shader of the host's own, glsl/host/<file>, with symbols defined after its first line.
+    const gpu::Program& host(const std::string& file, const std::vector<std::string>& defines);
     const std::filesystem::path& glsl_folder() const { return glsl_folder_; }
     int compiled_count() const { return compiled_; }  ///< programs made from text
     int loaded_count() const { return loaded_; }      ///< programs taken from the store

@@ -108,15 +108,15 @@ GLuint make_texture(const GladGLContext& gl, const TextureDesc& desc, const std:
     return handle;
 }
 
-void sub_image(const GladGLContext& gl, const Texture& texture, int layer, const void* values) {
+void sub_image(const GladGLContext& gl, const Texture& texture, int layer, int level, const void* values) {
     const TextureDesc& desc = texture.desc();
+    const int width = level_side(desc.width, level), height = level_side(desc.height, level);
     const GLenum pixel = gl_format(desc.format).pixel;
     const GLenum type = value_type(desc);
     if (desc.layers > 1) {
-        gl.TextureSubImage3D(texture.handle(), 0, 0, 0, layer, desc.width, desc.height, 1, pixel, type,
-                             values);
+        gl.TextureSubImage3D(texture.handle(), level, 0, 0, layer, width, height, 1, pixel, type, values);
     } else {
-        gl.TextureSubImage2D(texture.handle(), 0, 0, 0, desc.width, desc.height, pixel, type, values);
+        gl.TextureSubImage2D(texture.handle(), level, 0, 0, width, height, pixel, type, values);
     }
 }
 
@@ -182,28 +182,31 @@ Texture& Texture::operator=(Texture&& other) noexcept {
     return *this;
 }
 
-void Texture::upload(std::span<const float> values, int layer) {
-    assert(values.size() == value_count(desc_) && layer >= 0 && layer < desc_.layers);
+void Texture::upload(std::span<const float> values, int layer, int level) {
+    assert(values.size() == value_count(desc_, level) && layer >= 0 && layer < desc_.layers);
+    assert(level >= 0 && level < desc_.mips);
     if (is_integer(desc_.format)) {
         const TextureFormat format = desc_.format;
-        upload(converted<std::uint32_t>(values, [format](float v) { return to_bits(v, format); }), layer);
+        upload(converted<std::uint32_t>(values, [format](float v) { return to_bits(v, format); }), layer,
+               level);
         return;
     }
     context_->make_current();
     context_->impl().wait_for_draws();
-    sub_image(context_->gl(), *this, layer, values.data());
+    sub_image(context_->gl(), *this, layer, level, values.data());
     context_->check(fmt::format("uploading texture '{}'", label_));
 }
 
-void Texture::upload(std::span<const std::uint32_t> values, int layer) {
-    assert(values.size() == value_count(desc_) && layer >= 0 && layer < desc_.layers);
+void Texture::upload(std::span<const std::uint32_t> values, int layer, int level) {
+    assert(values.size() == value_count(desc_, level) && layer >= 0 && layer < desc_.layers);
+    assert(level >= 0 && level < desc_.mips);
     if (!is_integer(desc_.format)) {
-        upload(converted<float>(values, [](std::uint32_t v) { return static_cast<float>(v); }), layer);
+        upload(converted<float>(values, [](std::uint32_t v) { return static_cast<float>(v); }), layer, level);
         return;
     }
     context_->make_current();
     context_->impl().wait_for_draws();
-    sub_image(context_->gl(), *this, layer, values.data());
+    sub_image(context_->gl(), *this, layer, level, values.data());
     context_->check(fmt::format("uploading texture '{}'", label_));
 }
 

@@ -65,13 +65,13 @@ public:
     const TextureDesc& desc() const { return desc_; }
     const std::string& label() const { return label_; }
 
-    /// width * height * channel_count(format) values of level 0, layer `layer`, rows from the top, channels
+    /// width * height * channel_count(format) values of one level and layer, rows from the top, channels
     /// interleaved.
     /// Values are numbers as a shader fetches them, whatever the format: floats that go into integers are
     /// rounded and kept in range, integers that go into floats keep their value. r32i as std::uint32_t is
     /// two's complement.
-    void upload(std::span<const float> values, int layer = 0);
-    void upload(std::span<const std::uint32_t> values, int layer = 0);
+    void upload(std::span<const float> values, int layer = 0, int level = 0);
+    void upload(std::span<const std::uint32_t> values, int layer = 0, int level = 0);
     std::vector<float> read_floats(int level = 0, int layer = 0) const;
     std::vector<std::uint32_t> read_uints(int level = 0, int layer = 0) const;
 

@@ -67,22 +67,23 @@ void Executor::allocate() {
 }
 
 void Executor::find_histories() {
-    std::vector<bool> textures(graph_.textures().size()), buffers(graph_.buffers().size());
+    std::vector<int> textures(graph_.textures().size(), -1), buffers(graph_.buffers().size(), -1);
     for (const int index : compiled_.passes) {
         const Pass& pass = graph_.pass(index);
-        for (const Target& target : pass.targets) textures[std::size_t(target.texture.texture)] = true;
+        for (const Target& target : pass.targets) textures[std::size_t(target.texture.texture)] = index;
         for (const ImageUse& use : pass.images)
-            if (use.access != gpu::Access::read) textures[std::size_t(use.texture.texture)] = true;
+            if (use.access != gpu::Access::read) textures[std::size_t(use.texture.texture)] = index;
         for (const BufferUse& use : pass.buffers)
-            if (use.access != gpu::Access::read) buffers[std::size_t(use.buffer.buffer)] = true;
+            if (use.access != gpu::Access::read) buffers[std::size_t(use.buffer.buffer)] = index;
     }
     const auto find = [](const auto& nodes, const auto& slot_of, auto& slots,
-                         const std::vector<bool>& written, auto& histories) {
+                         const std::vector<int>& written, auto& histories) {
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             const int current = nodes[i].previous_of;
             if (current < 0 || slot_of[i] < 0) continue;
             histories.push_back({&nodes[std::size_t(current)].name, in_slot(slots, slot_of, int(i)),
-                                 written[std::size_t(current)] ? in_slot(slots, slot_of, current) : nullptr});
+                                 written[std::size_t(current)] >= 0 ? in_slot(slots, slot_of, current) : nullptr,
+                                 written[std::size_t(current)]});
         }
     };
     find(graph_.textures(), compiled_.slot_of_texture, slots_, textures, texture_histories_);
@@ -197,12 +198,18 @@ void Executor::run_pass(const BoundPass& bound) {
     for (gpu::Texture* const texture : bound.mips) texture->generate_mips();
 }
 
-std::vector<PassTime> Executor::run(bool timed, const PassObserver& observer) {
-    for (auto& history : texture_histories_) history.advance();
-    for (auto& history : buffer_histories_) history.advance();
+std::vector<PassTime> Executor::run(bool timed, const PassObserver& observer, PassRange range) {
+    const auto for_written = [&](const auto& act) {
+        for (auto& history : texture_histories_)
+            if (range.contains(history.written_by)) act(history);
+        for (auto& history : buffer_histories_)
+            if (range.contains(history.written_by)) act(history);
+    };
+    for_written([](auto& history) { history.advance(); });
     std::vector<PassTime> times;
     if (timed) times.reserve(bound_.size());
     for (std::size_t i = 0; i < bound_.size(); ++i) {
+        if (!range.contains(compiled_.passes[i])) continue;
         if (timed) timer_.start();
         run_clears(clears_[i]);
         run_pass(bound_[i]);
@@ -211,9 +218,8 @@ std::vector<PassTime> Executor::run(bool timed, const PassObserver& observer) {
         for (const BoundPass::Observed& written : bound_[i].observed)
             observer(bound_[i].pass->name, *written.name, *written.texture);
     }
-    run_clears(clears_.back());
-    for (auto& history : texture_histories_) history.current_is_newer = history.current != nullptr;
-    for (auto& history : buffer_histories_) history.current_is_newer = history.current != nullptr;
+    if (range.end < 0) run_clears(clears_.back());
+    for_written([](auto& history) { history.current_is_newer = history.current != nullptr; });
     return times;
 }
 

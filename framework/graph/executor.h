@@ -21,6 +21,13 @@ struct PassTime {
     double milliseconds = 0;
 };
 
+/// Passes begin .. end - 1 by their index in the graph; end -1: to the last.
+struct PassRange {
+    int begin = 0;
+    int end = -1;
+    bool contains(int pass) const { return pass >= begin && (end < 0 || pass < end); }
+};
+
 /// [the context's thread]
 class Executor {
 public:
@@ -47,8 +54,9 @@ public:
 
     /// Runs every pass. With `timed`, waits for each and returns its milliseconds (see gpu::Timer); else
     /// returns {}. `observer`, if any, sees each target right after its pass; its time is nobody's.
-    /// At the end, each history that was written becomes what the next run reads as its `previous`.
-    std::vector<PassTime> run(bool timed, const PassObserver& observer = {});
+    /// At the end, each history that was written becomes what the next run reads as its `previous`. `range`:
+    /// only these, so that some passes may run several times in a frame; what was written before stays.
+    std::vector<PassTime> run(bool timed, const PassObserver& observer = {}, PassRange range = {});
 
     /// What the next run will read as `previous`, by the history's name; only those that some pass reads.
     /// The pointers hold until the next run.
@@ -94,6 +102,7 @@ private:
         const std::string* name = nullptr;
         Memory* previous = nullptr;
         Memory* current = nullptr;      // nullptr where no pass writes it
+        int written_by = -1;            // the last pass that writes it, by its index in the graph
         bool current_is_newer = false;  // between a run and the next
 
         Memory* newest() const { return current_is_newer ? current : previous; }

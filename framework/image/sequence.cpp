@@ -101,6 +101,11 @@ std::optional<Sequence> read_capture_document(const fs::path& path, Diagnostics&
     if (const Node* matte = reader.object("cryptomatte"))
         sequence.cryptomatte = read_cryptomatte(*matte, diagnostics);
     sequence.cuts = read_cuts(reader, diagnostics);
+    if (const auto subframes = reader.integer("subframes")) {
+        if (*subframes < 1 || *subframes > 1024)
+            diagnostics.error(node->find("subframes")->place, "'subframes' must be from 1 to 1024");
+        else sequence.subframes = int(*subframes);
+    }
     reader.finish();
     if (diagnostics.error_count() > errors_before) return std::nullopt;
     return sequence;
@@ -132,13 +137,28 @@ FramePattern pattern_of_folder(const fs::path& folder) {
     return FramePattern((folder / most->first).string());
 }
 
+/// Frames all of whose sub-frames are among `files`, which are sorted.
+std::vector<int> whole_frames(const std::vector<int>& files, int subframes) {
+    if (subframes == 1) return files;
+    std::map<int, int> counts;
+    for (const int file : files) ++counts[(file < 0 ? file - subframes + 1 : file) / subframes];
+    std::vector<int> frames;
+    for (const auto& [frame, count] : counts)
+        if (count == subframes) frames.push_back(frame);
+    return frames;
+}
+
 void find_missing_range(Sequence& sequence, const std::string& argument) {
     sequence.frames_declared = !sequence.frames.empty() || !sequence.files.has_frame();
     if (!sequence.frames.empty()) return;
     if (sequence.files.has_frame()) {
-        sequence.frames = find_frames(sequence.files);
+        sequence.frames = whole_frames(find_frames(sequence.files), sequence.subframes);
         if (sequence.frames.empty())
-            throw Error(ExitCode::capture, argument + ": no file fits the pattern " + sequence.files.text());
+            throw Error(ExitCode::capture, argument + ": no file fits the pattern " + sequence.files.text() +
+                                               (sequence.subframes > 1 ? ", or no frame has all its " +
+                                                                             std::to_string(sequence.subframes) +
+                                                                             " sub-frames"
+                                                                       : ""));
         return;
     }
     const fs::path file = sequence.files.text();

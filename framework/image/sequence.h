@@ -31,11 +31,14 @@ struct Sequence {
     std::string color_space = "auto";  ///< of the stored colours; auto: the profile's
     std::string view;                  ///< of multi-view files; "" for the default
     double fps = 24;
+    int subframes = 1;  ///< a frame is this many captures: the files subframes * frame + 0 .. subframes - 1
     Camera camera;          ///< of capture.json
     std::vector<int> cuts;  ///< frames that begin a shot
     std::optional<CryptomatteChoice> cryptomatte;
 
-    std::filesystem::path path_of(int frame) const { return files.path(frame); }
+    /// The number in the name of a frame's file, by which a CaptureReader reads it.
+    int file_number(int frame, int subframe = 0) const { return frame * subframes + subframe; }
+    std::filesystem::path path_of(int file) const { return files.path(file); }
 };
 
 /// `argument` is CAPTURE of the command line. Faults of capture.json go to `diagnostics`; a file, pattern or

@@ -67,12 +67,12 @@ std::string graph_key(const Pipeline& pipeline, const FrameInputs& frame, const 
     return key;
 }
 
-std::unique_ptr<BuiltGraph> build_graph(gpu::Context& context, ProgramCache& programs,
+std::unique_ptr<BuiltGraph> build_graph(gpu::Context& context, ProgramCache& programs, StepFiles& files,
                                         const Pipeline& pipeline, const FrameInputs& frame,
                                         const std::vector<ParamSet>& params,
                                         const std::vector<std::string>& roles) {
     auto built = std::make_unique<BuiltGraph>();
-    GraphBuilder builder(programs, pipeline, frame);
+    GraphBuilder builder(programs, files, pipeline, frame);
     const int accumulating = pipeline.last_accumulating_step();
     for (int i = 0; i < int(pipeline.steps.size()); ++i) {
         builder.add_step(i, params[std::size_t(i)]);
@@ -88,7 +88,7 @@ std::unique_ptr<BuiltGraph> build_graph(gpu::Context& context, ProgramCache& pro
     built->imports = std::move(builder.imports);
     built->mask_files = std::move(builder.mask_files);
     built->passes = std::move(builder.passes);
-    built->params = std::move(builder.params);
+    built->params = std::move(builder.bound_params);
     built->uploaded.resize(built->params.size());
     built->executor = std::make_unique<graph::Executor>(context, std::move(builder.graph));
     return built;

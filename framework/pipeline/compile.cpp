@@ -110,7 +110,7 @@ public:
                 diagnostics_.error(place != step.places.end()   ? place->second
                                    : other != step.places.end() ? other->second
                                                                 : fault.spec->place,
-                                   relation_message(fault, step.name));
+                                   relation_message(step.name, fault));
             }
         }
     }

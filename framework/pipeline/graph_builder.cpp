@@ -59,8 +59,9 @@ std::pair<int, int> grid_size(const GridSpec& grid, const ParamSet& params, int 
     return {std::max(1, int(std::ceil(width * grid.scale))), std::max(1, int(std::ceil(height * grid.scale)))};
 }
 
-GraphBuilder::GraphBuilder(ProgramCache& programs, const Pipeline& pipeline, const FrameInputs& frame)
-    : programs_(programs), pipeline_(pipeline), frame_(frame) {
+GraphBuilder::GraphBuilder(ProgramCache& programs, StepFiles& files, const Pipeline& pipeline,
+                           const FrameInputs& frame)
+    : programs_(programs), files_(files), pipeline_(pipeline), frame_(frame) {
     width_ = frame.capture->header.data_window.width();
     height_ = frame.capture->header.data_window.height();
 }
@@ -90,7 +91,7 @@ void GraphBuilder::declare(StepBuild& build) {
         build.inputs[input.name] = handle;
         if (!input.history) continue;
         const gpu::TextureDesc desc = graph.textures()[std::size_t(handle.texture)].desc;
-        const graph::TextureHistory history = graph.create_history(prefix + input.name + ".prev", desc);
+        const graph::TextureHistory history = graph.create_history(prefix + "in." + input.name, desc);
         build.previous[input.name] = history.previous;
         build.history_current[input.name] = history.current;
     }
@@ -150,6 +151,31 @@ graph::TextureHandle GraphBuilder::resolve(const InputSource& source, int offset
                            : steps_[std::size_t(source.step)].at(source.output);
 }
 
+void GraphBuilder::declare_params(StepBuild& build) {
+    const auto& files = files_.of_step(build.index, build.step, build.params);
+    for (const ParamSpec& spec : build.manifest().params) {
+        const std::string name = build.prefix() + spec.name;
+        BoundParam bound{build.index, &spec, {}, {}};
+        if (spec.type == ParamType::table) {
+            const auto& table = std::get<TableValue>(build.params.get(spec.name));
+            const auto no_names = [](const std::string&) { return std::optional<std::uint32_t>(0); };
+            bound.buffer = build.param_buffers[spec.name] =
+                graph.import_buffer(name, {table_buffer(spec, table, no_names).size()});
+        } else if (spec.type == ParamType::curve) {
+            bound.texture = build.param_textures[spec.name] =
+                graph.import_texture(name, {kCurveSamples, 1, gpu::TextureFormat::r32f});
+        } else if (spec.type == ParamType::file &&
+                   !std::holds_alternative<std::monostate>(files.at(spec.name))) {
+            const ParamTexture texture = file_texture(files.at(spec.name));
+            bound.texture = build.param_textures[spec.name] = graph.import_texture(
+                name, {texture.width, texture.height, texture.format, texture.layers});
+        } else {
+            continue;
+        }
+        bound_params.push_back(bound);
+    }
+}
+
 void GraphBuilder::keep_histories(StepBuild& build) {
     for (const auto& [name, current] : build.history_current) {
         const auto input = build.inputs.find(name);
@@ -192,9 +218,9 @@ void GraphBuilder::add_mix(StepBuild& build) {
         } else if (step.mask) {
             defines = {"MASK_FILE"};
             if (!mask_files.contains(build.index)) {
-                const auto [width, height] = picture_size(step.mask->file);
-                mask_files[build.index] =
-                    graph.import_texture(step.name + ".mask", {width, height, gpu::TextureFormat::r32f});
+                const Image& mask = files_.mask_of(step.mask->file);
+                mask_files[build.index] = graph.import_texture(
+                    step.name + ".mask", {mask.width(), mask.height(), gpu::TextureFormat::r32f});
             }
             pass.reads.push_back({mask_files.at(build.index), 2, gpu::Filter::linear});
         }

@@ -11,6 +11,7 @@
 #include "framework/effect/param_resources.h"
 #include "framework/effect/pass_program.h"
 #include "framework/graph/frame_graph.h"
+#include "framework/pipeline/param_upload.h"
 #include "framework/pipeline/pipeline.h"
 
 namespace aftershade {
@@ -45,7 +46,7 @@ class GraphBuilder {
 public:
     using Textures = std::map<std::string, graph::TextureHandle>;
 
-    GraphBuilder(ProgramCache& programs, const Pipeline& pipeline, const FrameInputs& frame);
+    GraphBuilder(ProgramCache& programs, StepFiles& files, const Pipeline& pipeline, const FrameInputs& frame);
 
     /// Adds step `index`, after those before it. Throws Error(ExitCode::effect) where a pass reads, or the
     /// step outputs, what no pass has written with these parameters.
@@ -58,7 +59,7 @@ public:
     std::map<ImportKey, graph::TextureHandle> imports;
     std::map<int, graph::TextureHandle> mask_files;  ///< by step
     std::vector<BoundPass> passes;
-    std::vector<BoundParam> params;
+    std::vector<BoundParam> bound_params;
 
 private:
     graph::TextureHandle import(const std::string& role, int offset = 0);
@@ -79,6 +80,7 @@ private:
     void set_kind(const StepBuild& build, const PassSpec& spec, graph::Pass& pass) const;
 
     ProgramCache& programs_;
+    StepFiles& files_;
     const Pipeline& pipeline_;
     FrameInputs frame_;
     int width_ = 0;

@@ -71,7 +71,7 @@ void write_png_output(const fs::path& path, const FrameResult& result, const Cap
     const Image display = made != result.images.end()
                               ? made->second
                               : display_of_color(*find_image("color", result, capture), header.primaries);
-    write_png(path, cropped_for_png(display, header.data_window, header.display_window));
+    write_png(path, cropped_for_png(display, header.data_window, result.region.value_or(header.display_window)));
 }
 
 fs::path tap_path(const std::string& text, const std::string& tap, int frame) {
@@ -114,11 +114,13 @@ void write_tap(const fs::path& path, const Image& image, const OutputOptions& op
 
 void check_outputs(const OutputOptions& options, const Sequence& sequence, Diagnostics& diagnostics) {
     std::map<fs::path, fs::path> inputs;
-    for (const int frame : sequence.frames) {
-        inputs.emplace(resolved(sequence.path_of(frame)), sequence.path_of(frame));
-        for (const auto& [role, pattern] : sequence.role_files)
-            inputs.emplace(resolved(pattern.path(frame)), pattern.path(frame));
-    }
+    for (const int frame : sequence.frames)
+        for (int subframe = 0; subframe < sequence.subframes; ++subframe) {
+            const int file = sequence.file_number(frame, subframe);
+            inputs.emplace(resolved(sequence.path_of(file)), sequence.path_of(file));
+            for (const auto& [role, pattern] : sequence.role_files)
+                inputs.emplace(resolved(pattern.path(file)), pattern.path(file));
+        }
     std::set<fs::path> named;
     if (options.patterns.empty())
         diagnostics.error({"-o"}, "no output; name at least one file, such as -o out_####.exr");

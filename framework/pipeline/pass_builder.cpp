@@ -22,11 +22,6 @@ gpu::Access gpu_access(AccessSpec::Kind kind) {
     return gpu::Access::read_write;
 }
 
-/// A level or layer of a manifest on this turn of a repeated pass.
-int on_turn(int number, int turn) {
-    return number > kPassIndex / 2 ? number - kPassIndex + turn : number;
-}
-
 std::array<float, 4> size_of(const gpu::TextureDesc& desc, int level) {
     const int width = std::max(1, desc.width >> std::max(0, level));
     const int height = std::max(1, desc.height >> std::max(0, level));
@@ -47,7 +42,7 @@ void bind_reads(const StepBuild& build, const PassSpec& spec, const PassBindings
             read.previous ? build.previous.at(read.name) : build.read_handle(read.name);
         const auto& texture = graph.textures()[std::size_t(handle.texture)];
         if (handle.version == 0 && !texture.options.clear) unwritten(build, spec, read.name);
-        const int level = read.level < 0 ? -1 : on_turn(read.level, turn);
+        const int level = read.level < 0 ? -1 : level_in_turn(read.level, turn);
         pass.reads.push_back({handle, int(pass.reads.size()), read.filter, read.wrap, level});
         const auto size = size_of(texture.desc, level);
         sizes.add(std::span<const float>(size));
@@ -66,16 +61,10 @@ void bind_memory(const StepBuild& build, const PassBindings& bindings, graph::Pa
         const auto& buffers = use.previous ? build.previous_buffers : build.buffers;
         pass.buffers.push_back({buffers.at(use.name), int(pass.buffers.size()), gpu_access(use.kind)});
     }
-    for (const ParamSpec* param : bindings.param_tables)
+    for (const ParamSpec* param : bindings.param_buffers)
         pass.buffers.push_back(
             {build.param_buffers.at(param->name), int(pass.buffers.size()), gpu::Access::read});
 }
-
-struct PassTurn {
-    std::int32_t index = 0;
-    std::int32_t count = 1;
-    std::int32_t padding[2] = {0, 0};
-};
 
 }  // namespace
 
@@ -99,7 +88,8 @@ void GraphBuilder::add_clear(StepBuild& build, const PassSpec& spec) {
 
 void GraphBuilder::add_turn(StepBuild& build, const PassSpec& spec, int turn, int turns) {
     const EffectManifest& manifest = build.manifest();
-    const ShaderContext shader{&manifest, &spec, &build.params, build.present, programs_.glsl_folder()};
+    const ShaderContext shader{&manifest, &spec, &build.params, build.present, programs_.glsl_folder(),
+                               &files_.of_step(build.index, build.step, build.params)};
     const PassBindings bindings = pass_bindings(shader);
     graph::Pass pass;
     pass.name = build.prefix() + spec.name + (turns > 1 ? "[" + std::to_string(turn) + "]" : "");
@@ -110,10 +100,10 @@ void GraphBuilder::add_turn(StepBuild& build, const PassSpec& spec, int turn, in
     if (has_param_block(manifest)) pass.uniforms.push_back({kParamBinding, param_block(manifest, build.params)});
     pass.uniforms.push_back({kFrameBinding, std::vector<std::byte>(sizeof(FrameBlock))});
     pass.uniforms.push_back({kCameraBinding, std::vector<std::byte>(sizeof(CameraBlock))});
-    if (spec.repeat) pass.uniforms.push_back({kPassBinding, bytes_of(PassTurn{turn, turns})});
+    if (spec.repeat) pass.uniforms.push_back({kPassBinding, bytes_of(PassBlock{turn, turns})});
     for (const WriteSpec& write : spec.writes)
-        pass.targets.push_back({write_target(build, spec, write.name, pass.name), on_turn(write.level, turn),
-                                on_turn(write.layer, turn)});
+        pass.targets.push_back({write_target(build, spec, write.name, pass.name), level_in_turn(write.level, turn),
+                                level_in_turn(write.layer, turn)});
     set_kind(build, spec, pass);
     const graph::Written written = graph.add_pass(std::move(pass));
     for (std::size_t i = 0; i < spec.writes.size(); ++i)

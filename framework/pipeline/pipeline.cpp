@@ -156,7 +156,7 @@ ResolvedValue resolve_param(const PipelineStep& step, const ParamSpec& spec, con
 void require_relations(const PipelineStep& step, const ParamSet& params, const FrameInputs& frame) {
     for (const RelationFault& fault : check_relations(step.manifest->params, params))
         throw Error(ExitCode::capture, frame.capture->header.path.string() + ": " +
-                                           relation_message(fault, step.name) +
+                                           relation_message(step.name, fault) +
                                            " (set both in the look, or mend the capture's camera)");
 }
 

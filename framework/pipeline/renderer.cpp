@@ -10,7 +10,6 @@
 #include "framework/pipeline/built_graph.h"
 #include "framework/pipeline/frame_blocks.h"
 #include "framework/pipeline/history_file.h"
-#include "framework/pipeline/mask_picture.h"
 
 namespace aftershade {
 
@@ -103,7 +102,7 @@ void PipelineRenderer::prepare(const FrameInputs& frame, const std::vector<std::
     // The old textures go before the new ones come, unless what they hold lives on.
     std::unique_ptr<BuiltGraph> old = std::move(built_);
     if (!pipeline_.has_history()) old.reset();
-    built_ = build_graph(context_, programs_, pipeline_, frame, params_, roles);
+    built_ = build_graph(context_, programs_, files_, pipeline_, frame, params_, roles);
     built_->key = key;
     if (old) built_->executor->take_history_from(*old->executor);
 }
@@ -115,8 +114,7 @@ double PipelineRenderer::feed(const FrameInputs& frame, const FrameBefore& befor
     for (const auto& [key, handle] : built_->imports)
         if (gpu::Texture* texture = executor.texture(handle))
             upload(frame.at(key.offset)->images.at(key.role), *texture);
-    upload_masks(pipeline_, *built_);
-    upload_params(pipeline_, params_, *built_);
+    upload_params(pipeline_, params_, files_, *built_);
     const std::vector<std::byte> camera = bytes_of(camera_block(frame, before));
     for (const BoundPass& pass : built_->passes) {
         if (pass.pass < first_pass || pass.is_host) continue;

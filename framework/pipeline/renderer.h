@@ -13,6 +13,7 @@
 #include "framework/graph/executor.h"
 #include "framework/image/capture.h"
 #include "framework/pipeline/audit.h"
+#include "framework/pipeline/param_upload.h"
 #include "framework/pipeline/pipeline.h"
 
 namespace aftershade {
@@ -22,6 +23,7 @@ struct FrameResult {
     std::map<std::string, Image> taps;    ///< by "step.texture"
     std::vector<graph::PassTime> times;   ///< upload, each pass, readback; empty unless timed
     std::vector<AuditFinding> audit;      ///< in the order of the passes; empty unless audited
+    std::optional<Window> region;         ///< the part of the display window that was asked for
     std::string history_reset;            ///< why history began anew: "a cut"; "" where it went on or is none
 };
 
@@ -76,6 +78,7 @@ private:
     gpu::Context& context_;
     const Pipeline& pipeline_;
     ProgramCache programs_;
+    StepFiles files_;
     std::vector<ParamSet> params_;
     std::unique_ptr<BuiltGraph> built_;
     std::optional<Last> last_;              // capture, sub-frames too

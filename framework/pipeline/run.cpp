@@ -4,7 +4,11 @@
 #include <chrono>
 #include <future>
 #include <memory>
+#include <tuple>
 #include <utility>
+
+#include "framework/image/capture_window.h"
+#include "framework/pipeline/frame_loader.h"
 
 namespace aftershade {
 
@@ -42,54 +46,6 @@ void finish_write(std::future<Written>& pending, RunReport& report, const RunObs
         for (const auto& path : written) observer.file_written(path);
 }
 
-/// Reads one frame ahead of the one that is being worked on.
-class FrameLoader {
-public:
-    FrameLoader(const CaptureReader& reader, const Pipeline& pipeline, const RunOptions& run,
-                std::vector<std::string> roles)
-        : reader_(reader), pipeline_(pipeline), run_(run), roles_(std::move(roles)) {
-        prefetch(0);
-    }
-
-    bool is_missing(std::size_t index) const { return !reader_.has_frame(run_.frames[index]); }
-
-    bool can_hold() const { return last_ != nullptr; }
-
-    /// Throws what reading threw.
-    std::shared_ptr<const Capture> take(std::size_t index) {
-        if (is_missing(index) && run_.missing == MissingFrame::hold && last_) {
-            auto held = std::make_shared<Capture>(*last_);
-            held->header.frame = run_.frames[index];
-            prefetch(index + 1);
-            return held;
-        }
-        std::future<Capture> current = std::move(next_);
-        current.wait();
-        prefetch(index + 1);
-        last_ = std::make_shared<const Capture>(current.get());
-        return last_;
-    }
-
-    void skip(std::size_t index) { prefetch(index + 1); }
-
-private:
-    void prefetch(std::size_t index) {
-        if (index >= run_.frames.size()) return;
-        next_ = std::async(std::launch::async, [this, frame = run_.frames[index]] {
-            Capture capture = reader_.read(frame, roles_);
-            require_capture_roles(pipeline_, capture.header);
-            return capture;
-        });
-    }
-
-    const CaptureReader& reader_;
-    const Pipeline& pipeline_;
-    const RunOptions& run_;
-    std::vector<std::string> roles_;
-    std::shared_ptr<const Capture> last_;
-    std::future<Capture> next_;
-};
-
 std::vector<std::string> roles_to_read(const Pipeline& pipeline, const OutputOptions& outputs) {
     std::vector<std::string> roles = pipeline.capture_roles();
     for (const std::string& role : outputs.roles)
@@ -105,8 +61,107 @@ ExitCode RunReport::exit_code() const {
     return frames_done > 0 ? ExitCode::partial : ExitCode::capture;
 }
 
-RunReport run_frames(gpu::Context& context, const Pipeline& pipeline, const CaptureReader& reader,
-                     const RunOptions& run, const OutputOptions& outputs,
+namespace {
+
+/// One frame from its first sub-frame to its results.
+class FrameRun {
+public:
+    FrameRun(PipelineRenderer& renderer, FrameLoader& loader, const Sequence& sequence, const RunOptions& run)
+        : renderer_(renderer), loader_(loader), sequence_(sequence), run_(run) {}
+
+    struct Rendered {
+        std::shared_ptr<const Capture> capture;
+        std::shared_ptr<const FrameResult> result;
+    };
+
+    /// Reading's faults come as Error(ExitCode::capture).
+    Rendered render(std::size_t index, const std::vector<std::string>& roles, RunReport& report,
+                    const RunObserver& observer) {
+        FrameInputs inputs;
+        inputs.subframe_count = loader_.subframe_count();
+        inputs.scale = 1.0 / run_.scale_divisor;
+        inputs.fps = sequence_.fps;
+        inputs.begins_shot = loader_.begins_shot(index);
+        const auto previous = timed_read(report, [&] { return loader_.neighbour(index, -1); });
+        const auto next = timed_read(report, [&] { return loader_.neighbour(index, 1); });
+        inputs.previous = previous.get();
+        inputs.next = next.get();
+        std::shared_ptr<const Capture> current, centre;
+        FrameResult result;
+        std::vector<graph::PassTime> times;
+        std::string history_reset;
+        for (int subframe = 0; subframe < inputs.subframe_count; ++subframe) {
+            current = timed_read(report, [&] { return loader_.take(index, subframe); });
+            if (subframe == inputs.subframe_count / 2) centre = current;
+            if (subframe == 0 && observer.frame_started) observer.frame_started(*current);
+            inputs.capture = current.get();
+            inputs.centre = centre.get();
+            inputs.subframe = subframe;
+            result = renderer_.render(inputs, roles, true);
+            times.insert(times.end(), result.times.begin(), result.times.end());
+            if (subframe == 0) history_reset = result.history_reset;
+        }
+        result.times = std::move(times);
+        result.history_reset = std::move(history_reset);
+        return finished(std::move(centre), std::move(result));
+    }
+
+private:
+    template <typename Read>
+    static std::shared_ptr<const Capture> timed_read(RunReport& report, const Read& read) {
+        const auto start = Clock::now();
+        auto capture = read();
+        report.read_ms += milliseconds_since(start);
+        return capture;
+    }
+
+    /// The frame without the margin of its region.
+    Rendered finished(std::shared_ptr<const Capture> capture, FrameResult result) const {
+        if (run_.region) {
+            auto part = std::make_shared<Capture>(*capture);
+            const Window& display = capture->header.display_window;
+            const Window& r = *run_.region;
+            const Window full{display.min_x + r.min_x, display.min_y + r.min_y, display.min_x + r.max_x,
+                              display.min_y + r.max_y};
+            const Window region = scaled_window(full, display, run_.scale_divisor);
+            crop_capture(*part, region);
+            for (auto* images : {&result.images, &result.taps})
+                for (auto& [name, image] : *images)
+                    if (image.width() == capture->header.data_window.width() &&
+                        image.height() == capture->header.data_window.height())
+                        image = cropped(image, capture->header.data_window, part->header.data_window);
+            result.region = region;
+            capture = std::move(part);
+        }
+        return {std::move(capture), std::make_shared<const FrameResult>(std::move(result))};
+    }
+
+    PipelineRenderer& renderer_;
+    FrameLoader& loader_;
+    const Sequence& sequence_;
+    const RunOptions& run_;
+};
+
+/// Whether the frame is left out, after it was told of.
+bool skips(const FrameLoader& loader, const RunOptions& run, std::size_t index, const RunObserver& observer) {
+    if (run.missing == MissingFrame::error || !loader.is_missing(index)) return false;
+    const bool skip = run.missing == MissingFrame::skip;
+    if ((skip || loader.can_hold()) && observer.frame_missing)
+        observer.frame_missing(run.frames[index], skip ? "skipped" : "held");
+    return skip;
+}
+
+void tell(const CaptureHeader& header, const FrameResult& result, bool is_first, const RunOptions& run,
+          const RunObserver& observer) {
+    if (run.audit && observer.frame_audited) observer.frame_audited(header, result.audit);
+    if (!is_first && !result.history_reset.empty() && observer.history_reset)
+        observer.history_reset(header.frame, result.history_reset);
+}
+
+}  // namespace
+
+RunReport run_frames(gpu::Context& context, const Pipeline& pipeline, const Sequence& sequence,
+                     const CaptureReader& reader, const RunOptions& run, const OutputOptions& outputs,
                      const std::filesystem::path& data_folder, const RunObserver& observer,
                      const std::atomic<bool>& stop) {
     RunReport report;
@@ -114,41 +169,39 @@ RunReport run_frames(gpu::Context& context, const Pipeline& pipeline, const Capt
     const std::vector<std::string> result_roles = wanted_roles(outputs);
     PipelineRenderer renderer(context, pipeline, data_folder);
     renderer.set_audit(run.audit);
-    FrameLoader loader(reader, pipeline, run, roles_to_read(pipeline, outputs));
+    if (!run.history_in.empty()) renderer.load_history(run.history_in);
+    FrameLoader loader(sequence, reader, pipeline, run, roles_to_read(pipeline, outputs));
+    FrameRun frame_run(renderer, loader, sequence, run);
     std::future<Written> pending_write;
+    bool any_rendered = false;
     for (std::size_t i = 0; i < run.frames.size(); ++i) {
         report.interrupted = stop;
         if (report.interrupted) break;
-        const bool missing = run.missing != MissingFrame::error && loader.is_missing(i);
-        const bool is_told = run.missing == MissingFrame::skip || loader.can_hold();
-        if (missing && is_told && observer.frame_missing)
-            observer.frame_missing(run.frames[i], run.missing == MissingFrame::skip ? "skipped" : "held");
-        if (missing && run.missing == MissingFrame::skip) {
+        if (skips(loader, run, i, observer)) {
             ++report.frames_skipped;
-            loader.skip(i);
             continue;
         }
-        const auto wait_start = Clock::now();
-        std::shared_ptr<const Capture> capture;
+        FrameRun::Rendered frame;
         try {
-            capture = loader.take(i);
+            frame = frame_run.render(i, result_roles, report, observer);
         } catch (const Error& error) {
             if (error.exit_code() != ExitCode::capture) throw;
             report.failures.emplace_back(error.what());
             if (observer.frame_failed) observer.frame_failed(error.what());
+            continue;
         }
-        report.read_ms += milliseconds_since(wait_start);
-        if (!capture) continue;
-        if (observer.frame_started) observer.frame_started(*capture);
-        auto result = std::make_shared<const FrameResult>(renderer.render(*capture, result_roles, true));
-        if (run.audit && observer.frame_audited) observer.frame_audited(capture->header, result->audit);
-        add_times(report.passes, result->times);
+        tell(frame.capture->header, *frame.result, !any_rendered, run, observer);
+        any_rendered = true;
+        add_times(report.passes, frame.result->times);
         finish_write(pending_write, report, observer);
-        pending_write = std::async(std::launch::async, [capture, result, &outputs, &reader] {
-            return write_outputs(outputs, *result, *capture, reader);
+        pending_write = std::async(std::launch::async, [frame, &outputs, &reader] {
+            return write_outputs(outputs, *frame.result, *frame.capture, reader);
         });
     }
     finish_write(pending_write, report, observer);
+    if (!run.history_out.empty() && any_rendered) renderer.save_history(run.history_out);
+    report.graph_dot = renderer.graph_dot();
+    std::tie(report.bytes, report.bytes_unaliased) = renderer.graph_bytes();
     report.wall_ms = milliseconds_since(start);
     return report;
 }

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +35,11 @@ struct RunOptions {
     std::vector<int> frames;
     MissingFrame missing = MissingFrame::error;
     bool audit = false;
+    int scale_divisor = 1;                      ///< frames are rendered at 1/this of their size
+    std::optional<Window> region;               ///< px of the display window at full scale, from its top left
+    int region_margin_px = 64;                  ///< rendered around the region, and not written
+    std::filesystem::path history_in;           ///< "" for none
+    std::filesystem::path history_out;          ///< "" for none
 };
 
 struct RunReport {
@@ -44,6 +51,9 @@ struct RunReport {
     double write_ms = 0;                 ///< waiting for files to be written
     double wall_ms = 0;
     bool interrupted = false;
+    std::string graph_dot;               ///< of the last frame, in Graphviz's language
+    std::uint64_t bytes = 0;             ///< of its textures and buffers
+    std::uint64_t bytes_unaliased = 0;   ///< what these would take if none shared memory
     ExitCode exit_code() const;
 };
 
@@ -54,13 +64,15 @@ struct RunObserver {
     std::function<void(const std::string&)> frame_failed;
     std::function<void(const CaptureHeader&, const std::vector<AuditFinding>&)> frame_audited;
     std::function<void(int frame, const std::string& what)> frame_missing;  ///< skipped or held
+    /// Frames but the first that begin history anew, where some step has history.
+    std::function<void(int frame, const std::string& reason)> history_reset;
 };
 
 /// Reads the next frame and writes the last one while the GPU works. A frame that cannot be read is reported
 /// and left out; an effect or an output that fails ends the run by its Error. `stop` is looked at between
 /// frames.
-RunReport run_frames(gpu::Context& context, const Pipeline& pipeline, const CaptureReader& reader,
-                     const RunOptions& run, const OutputOptions& outputs,
+RunReport run_frames(gpu::Context& context, const Pipeline& pipeline, const Sequence& sequence,
+                     const CaptureReader& reader, const RunOptions& run, const OutputOptions& outputs,
                      const std::filesystem::path& data_folder, const RunObserver& observer,
                      const std::atomic<bool>& stop);
 

@@ -89,8 +89,14 @@ public:
         EXPECT_EQ(bound_.faults().find("error"), std::string::npos) << bound_.faults();
     }
     FrameResult run(const Capture& capture, const std::vector<std::string>& roles = {"color", "display"}) {
-        return renderer_.render(capture, roles, false);
+        FrameInputs frame;
+        frame.capture = &capture;
+        return run(frame, roles);
     }
+    FrameResult run(const FrameInputs& frame, const std::vector<std::string>& roles = {"color", "display"}) {
+        return renderer_.render(frame, roles, false);
+    }
+    PipelineRenderer& renderer() { return renderer_; }
     Image color(const Capture& capture) { return run(capture).images.at("color"); }
 
 private:

@@ -1,0 +1,116 @@
+#include "framework/image/capture_window.h"
+
+#include <algorithm>
+
+#include "framework/core/error.h"
+#include "framework/image/role.h"
+
+namespace aftershade {
+
+namespace {
+
+int floor_divided(int value, int by) {
+    return value >= 0 ? value / by : -((-value + by - 1) / by);
+}
+
+/// The pixels of one block, as a window of the full image.
+Window block_of(int x, int y, const Window& display, int divisor) {
+    const int left = display.min_x + (x - display.min_x) * divisor;
+    const int top = display.min_y + (y - display.min_y) * divisor;
+    return {left, top, left + divisor - 1, top + divisor - 1};
+}
+
+void average(const Image& image, const Window& data, const Window& block, float* result) {
+    const int channels = image.channels();
+    for (int c = 0; c < channels; ++c) {
+        double sum = 0;
+        for (int y = block.min_y; y <= block.max_y; ++y)
+            for (int x = block.min_x; x <= block.max_x; ++x)
+                sum += double(image.at(x - data.min_x, y - data.min_y, c));
+        result[c] = float(sum / (double(block.width()) * block.height()));
+    }
+}
+
+Image scaled(const Image& image, const ChannelRole& role, const CaptureHeader& header, const Window& window,
+             int divisor) {
+    Image result(window.width(), window.height(), image.channels(), image.type());
+    const Window& data = header.data_window;
+    const bool is_velocity = role.name == "velocity" || role.name == "velocity_next";
+    for (int y = window.min_y; y <= window.max_y; ++y)
+        for (int x = window.min_x; x <= window.max_x; ++x) {
+            const Window whole = block_of(x, y, header.display_window, divisor);
+            const Window block = intersection(whole, data);
+            const int to_x = x - window.min_x, to_y = y - window.min_y;
+            if (role.filterable && image.type() == ComponentType::float32) {
+                average(image, data, block, &result.at(to_x, to_y, 0));
+                continue;
+            }
+            const int from_x =
+                std::clamp(whole.min_x + divisor / 2, block.min_x, block.max_x) - data.min_x;
+            const int from_y =
+                std::clamp(whole.min_y + divisor / 2, block.min_y, block.max_y) - data.min_y;
+            for (int c = 0; c < image.channels(); ++c) {
+                if (image.type() == ComponentType::uint32)
+                    result.uint_at(to_x, to_y, c) = image.uint_at(from_x, from_y, c);
+                else
+                    result.at(to_x, to_y, c) =
+                        image.at(from_x, from_y, c) / (is_velocity ? float(divisor) : 1.0f);
+            }
+        }
+    return result;
+}
+
+}  // namespace
+
+Window intersection(const Window& a, const Window& b) {
+    return {std::max(a.min_x, b.min_x), std::max(a.min_y, b.min_y), std::min(a.max_x, b.max_x),
+            std::min(a.max_y, b.max_y)};
+}
+
+Window scaled_window(const Window& window, const Window& display, int divisor) {
+    const auto side = [&](int value, int origin) {
+        return origin + floor_divided(value - origin, divisor);
+    };
+    return {side(window.min_x, display.min_x), side(window.min_y, display.min_y),
+            side(window.max_x, display.min_x), side(window.max_y, display.min_y)};
+}
+
+void scale_capture(Capture& capture, int divisor) {
+    if (divisor == 1) return;
+    CaptureHeader& header = capture.header;
+    const Window data = scaled_window(header.data_window, header.display_window, divisor);
+    for (auto& [name, image] : capture.images)
+        image = scaled(image, *find_role(name), header, data, divisor);
+    header.display_window = scaled_window(header.display_window, header.display_window, divisor);
+    header.data_window = data;
+}
+
+Image cropped(const Image& image, const Window& from, const Window& to) {
+    Image result(to.width(), to.height(), image.channels(), image.type());
+    const auto row = std::size_t(to.width()) * std::size_t(image.channels());
+    for (int y = 0; y < to.height(); ++y) {
+        const auto first = (std::size_t(y + to.min_y - from.min_y) * std::size_t(from.width()) +
+                            std::size_t(to.min_x - from.min_x)) *
+                           std::size_t(image.channels());
+        const auto target = std::size_t(y) * row;
+        if (image.type() == ComponentType::uint32)
+            std::copy_n(image.uints().begin() + std::ptrdiff_t(first), row,
+                        result.uints().begin() + std::ptrdiff_t(target));
+        else
+            std::copy_n(image.floats().begin() + std::ptrdiff_t(first), row,
+                        result.floats().begin() + std::ptrdiff_t(target));
+    }
+    return result;
+}
+
+void crop_capture(Capture& capture, const Window& window) {
+    CaptureHeader& header = capture.header;
+    const Window common = intersection(window, header.data_window);
+    if (common.width() < 1 || common.height() < 1)
+        throw Error(ExitCode::capture, header.path.string() + ": the region has no pixel of the data window");
+    if (common == header.data_window) return;
+    for (auto& [name, image] : capture.images) image = cropped(image, header.data_window, common);
+    header.data_window = common;
+}
+
+}  // namespace aftershade

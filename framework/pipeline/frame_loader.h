@@ -1,0 +1,58 @@
+// Reads frames, their sub-frames and their neighbours ahead of the one that is being worked on.
+#pragma once
+
+#include <future>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/image/capture.h"
+#include "framework/pipeline/pipeline.h"
+#include "framework/pipeline/run.h"
+
+namespace aftershade {
+
+/// [one thread at a time; reads on threads of its own]
+class FrameLoader {
+public:
+    using CapturePointer = std::shared_ptr<const Capture>;
+
+    FrameLoader(const Sequence& sequence, const CaptureReader& reader, const Pipeline& pipeline,
+                const RunOptions& run, std::vector<std::string> roles);
+    ~FrameLoader();
+
+    /// Whether a file of the `index`-th frame of the run is not there.
+    bool is_missing(std::size_t index) const;
+    bool can_hold() const { return last_ != nullptr; }
+    /// 1, or as many as the sequence has where some effect accumulates them.
+    int subframe_count() const { return subframes_; }
+
+    /// One sub-frame with its neighbours; its number is the frame's. Throws what reading threw.
+    CapturePointer take(std::size_t index, int subframe);
+    /// Of the same shot, where some input wants it and its file is there; nullptr otherwise.
+    CapturePointer neighbour(std::size_t index, int offset);
+    bool begins_shot(std::size_t index) const;
+
+private:
+    int file_of(int frame, int subframe) const;
+    bool is_cut(int frame) const;
+    bool has_neighbour(int frame, int offset) const;
+    std::vector<int> files_of(std::size_t index) const;
+    void request(int file);
+    CapturePointer get(int file);
+    Capture read(int file) const;
+    CapturePointer held(std::size_t index) const;
+
+    const Sequence& sequence_;
+    const CaptureReader& reader_;
+    const Pipeline& pipeline_;
+    const RunOptions& run_;
+    std::vector<std::string> roles_;
+    int subframes_ = 1;
+    std::map<int, std::shared_future<CapturePointer>> reads_;  // by file
+    CapturePointer last_;
+};
+
+}  // namespace aftershade
