@@ -31,9 +31,9 @@ protected:
             "void main() { out_color = texelFetch(color, ivec2(gl_FragCoord.xy), 0); }\n");
         effects_.add(
             "flatten",
-            R"("inputs": { "depth": { "role": "depth" } }, "outputs": { "flat": { "role": "depth" } },
-            "passes": [ { "name": "main", "shader": "main.frag", "reads": ["depth"], "writes": ["flat"] } ])",
-            "void main() { out_flat = 1.0; }\n");
+            R"("inputs": { "depth": { "role": "depth" } }, "outputs": { "flattened": { "role": "depth" } },
+            "passes": [ { "name": "main", "shader": "main.frag", "reads": ["depth"], "writes": ["flattened"] } ])",
+            "void main() { out_flattened = 1.0; }\n");
         effects_.add_color("tint", "source");
     }
 
@@ -56,7 +56,7 @@ TEST_F(Compile, TakesARoleFromTheNearestEarlierStepElseFromTheCapture) {
     EXPECT_EQ(source(bound, 1, "depth"), "capture.depth");
     EXPECT_EQ(source(bound, 2, "color"), "tint.color");
     EXPECT_EQ(source(bound, 3, "color"), "tint_b.color");
-    EXPECT_EQ(source(bound, 3, "depth"), "flatten.flat");
+    EXPECT_EQ(source(bound, 3, "depth"), "flatten.flattened");
 }
 
 TEST_F(Compile, PutsInAboveTheNearestStep) {
@@ -118,7 +118,14 @@ TEST_F(Compile, RefusesATapOfAnInputOrOfNothing) {
 class Values : public Compile {
 protected:
     static double value(const Bound& bound, const std::string& name, const CaptureHeader& header = {}) {
-        return std::get<double>(resolve_params(bound.pipeline().steps.at(0), header).get(name));
+        return std::get<double>(resolved(bound, header).get(name));
+    }
+    static ParamSet resolved(const Bound& bound, const CaptureHeader& header) {
+        Capture capture;
+        capture.header = header;
+        FrameInputs frame;
+        frame.capture = &capture;
+        return resolve_params(bound.pipeline().steps.at(0), frame);
     }
     static CaptureHeader focused_at(double distance_m) {
         CaptureHeader header;
@@ -151,7 +158,7 @@ TEST_F(Values, AreReadFromSetAsJsonOrAsABareWord) {
 TEST_F(Values, OfTheCaptureThatAreOutOfRangeAreRefusedUnlessTheLookGivesOne) {
     const Bound bound(effects_, look_of(R"({ "effect": "fog" })"));
     try {
-        resolve_params(bound.pipeline().steps[0], focused_at(500));
+        resolved(bound, focused_at(500));
         FAIL() << "no error";
     } catch (const Error& error) {
         EXPECT_EQ(error.exit_code(), ExitCode::capture);

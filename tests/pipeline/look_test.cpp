@@ -82,7 +82,7 @@ TEST(Look, ReportsTwoStepsOfOneNameBesideOtherFaults) {
         "{ \"aftershade\": 1, \"steps\": [\n{ \"effect\": \"a\", \"parms\": 1 },\n{ \"effect\": \"a\" } ] }");
     EXPECT_EQ(parsed.faults,
               "look:2:18: error: the step has no key 'parms'; did you mean 'params'?\n"
-              "look:3:1: error: a second step named 'a'; give it a 'name' of its own\n");
+              "look:3:1: error: a second step named 'a'; give it a 'name' of its own (the first is at look:2:1)\n");
 }
 
 TEST(Look, DoesNotTakeTwoStepsWithoutEffectForTwoOfOneName) {
