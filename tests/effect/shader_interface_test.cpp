@@ -118,8 +118,9 @@ TEST(ShaderBindings, NumberParametersAndTablesAfterThePassesOwn) {
          {std::pair("falloff", ParamType::curve), std::pair("objects", ParamType::table),
           std::pair("lens", ParamType::file)})
         assembly.manifest.params.push_back(param_of(name, type));
-    const ShaderContext shader{
-        &assembly.manifest, &assembly.manifest.passes[0], &assembly.params, {}, assembly.glsl.path()};
+    const std::map<std::string, ParamFile> files = {{"lens", Image(4, 2, 4)}};
+    ShaderContext shader{
+        &assembly.manifest, &assembly.manifest.passes[0], &assembly.params, {}, assembly.glsl.path(), &files};
     const PassBindings bindings = pass_bindings(shader);
     EXPECT_EQ(bindings.reads.size(), 2U);
     EXPECT_EQ(bindings.first_param_sampler, 2);
@@ -140,6 +141,10 @@ TEST(ShaderBindings, NumberParametersAndTablesAfterThePassesOwn) {
     EXPECT_NE(text.find("layout(binding = 5) uniform usampler2D seeds;"), std::string::npos) << text;
     EXPECT_NE(text.find("layout(std430, binding = 3) readonly buffer"), std::string::npos) << text;
     EXPECT_EQ(text.find("sampler2D objects"), std::string::npos);
+
+    shader.files = nullptr;
+    EXPECT_EQ(pass_bindings(shader).param_samplers.size(), 1U) << "no file, no sampler";
+    EXPECT_EQ(pass_bindings(shader).first_native_sampler, 3);
 }
 
 template <typename T>
