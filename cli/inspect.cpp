@@ -96,8 +96,8 @@ ExitCode inspect(const InspectOptions& options) {
 
     set_exr_threads(int(std::thread::hardware_concurrency()));
     const CaptureReader reader(*sequence, std::move(profiles), options.capture.limits);
-    const Inspection inspection =
-        inspect_frame(*sequence, sequence->frames.front(), reader, options.capture.limits);
+    const Inspection inspection = inspect_frame(*sequence, sequence->file_number(sequence->frames.front()),
+                                                reader, options.capture.limits);
     std::cout << (options.json ? json_of(inspection) + "\n" : text_of(inspection)) << std::flush;
     const std::string file = inspection.file.string() + ": ";
     if (const InspectedChannel* channel = inspection.first_unreadable())

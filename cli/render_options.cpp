@@ -49,8 +49,9 @@ void run_dot(const std::string& dot_file, const std::string& svg_file) {
     int status = 0;
     if (posix_spawnp(&child, "dot", nullptr, nullptr, arguments, environ) != 0 ||
         waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
-        throw Error(ExitCode::output, "--graph: an .svg needs Graphviz's 'dot' (Debian package graphviz); write "
-                                      "a .dot instead");
+        throw Error(ExitCode::output,
+                    "--graph: an .svg needs Graphviz's 'dot' (Debian package graphviz); write "
+                    "a .dot instead");
 }
 
 }  // namespace

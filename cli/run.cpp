@@ -117,7 +117,8 @@ ExitCode run(const RunArguments& options) {
     RunOptions run_options;
     apply_render_options(options.render, run_options, diagnostics);
     if (options.keep_channels && changes_window(options.render))
-        diagnostics.error({"--keep-channels"}, "keeps the source's channels, which --scale and --region change");
+        diagnostics.error({"--keep-channels"},
+                          "keeps the source's channels, which --scale and --region change");
     stop_at_errors(diagnostics);
     diagnostics.print(std::cerr);
 

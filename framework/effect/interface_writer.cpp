@@ -143,10 +143,10 @@ private:
 
     void param_resources() {
         int binding = bindings_.first_param_sampler;
-        for (const ParamSpec* spec : bindings_.param_samplers) 
+        for (const ParamSpec* spec : bindings_.param_samplers)
             text_ << param_resource_glsl(*spec, context_.file_of(spec->name), binding++);
         binding = bindings_.first_param_buffer;
-        for (const ParamSpec* spec : bindings_.param_buffers) 
+        for (const ParamSpec* spec : bindings_.param_buffers)
             text_ << param_resource_glsl(*spec, {}, binding++);
     }
 

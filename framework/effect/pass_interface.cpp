@@ -51,8 +51,8 @@ PassBindings pass_bindings(const ShaderContext& context) {
     bindings.images = context.pass->images;
     bindings.buffers = context.pass->buffers;
     for (const ParamSpec& spec : manifest.params) {
-        const bool has_file =
-            spec.type == ParamType::file && !std::holds_alternative<std::monostate>(context.file_of(spec.name));
+        const bool has_file = spec.type == ParamType::file &&
+                              !std::holds_alternative<std::monostate>(context.file_of(spec.name));
         if (spec.type == ParamType::curve || has_file) bindings.param_samplers.push_back(&spec);
         if (spec.type == ParamType::table) bindings.param_buffers.push_back(&spec);
     }

@@ -76,14 +76,15 @@ void Executor::find_histories() {
         for (const BufferUse& use : pass.buffers)
             if (use.access != gpu::Access::read) buffers[std::size_t(use.buffer.buffer)] = index;
     }
-    const auto find = [](const auto& nodes, const auto& slot_of, auto& slots,
-                         const std::vector<int>& written, auto& histories) {
+    const auto find = [](const auto& nodes, const auto& slot_of, auto& slots, const std::vector<int>& written,
+                         auto& histories) {
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             const int current = nodes[i].previous_of;
             if (current < 0 || slot_of[i] < 0) continue;
-            histories.push_back({&nodes[std::size_t(current)].name, in_slot(slots, slot_of, int(i)),
-                                 written[std::size_t(current)] >= 0 ? in_slot(slots, slot_of, current) : nullptr,
-                                 written[std::size_t(current)]});
+            histories.push_back(
+                {&nodes[std::size_t(current)].name, in_slot(slots, slot_of, int(i)),
+                 written[std::size_t(current)] >= 0 ? in_slot(slots, slot_of, current) : nullptr,
+                 written[std::size_t(current)]});
         }
     };
     find(graph_.textures(), compiled_.slot_of_texture, slots_, textures, texture_histories_);

@@ -198,8 +198,9 @@ void CaptureReader::read_motion(const OpenFrame& open, const std::string& role, 
     const std::vector<std::size_t> missing = decode_velocity(velocity, source.decoding, context);
     if (role != "velocity" || missing.empty()) return;
     const auto& cuts = sequence_.cuts;
-    const bool begins_shot = header.frame % sequence_.subframes == 0 &&
-                             std::find(cuts.begin(), cuts.end(), header.frame / sequence_.subframes) != cuts.end();
+    const bool begins_shot =
+        header.frame % sequence_.subframes == 0 &&
+        std::find(cuts.begin(), cuts.end(), header.frame / sequence_.subframes) != cuts.end();
     capture.pixels_without_motion = missing.size();
     const std::filesystem::path before = sequence_.path_of(header.frame - sequence_.subframes);
     std::error_code unreadable;

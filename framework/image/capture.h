@@ -54,7 +54,8 @@ struct StoredChannel {
     Image image;  ///< over the working grid
 };
 
-/// Opens frames of a sequence, by the number in the file's name: Sequence::file_number(). [read() and read_header() may be called from several threads]
+/// Opens frames of a sequence, by the number in the file's name: Sequence::file_number(). [read() and
+/// read_header() may be called from several threads]
 class CaptureReader {
 public:
     /// `sequence` must outlive the reader.

@@ -45,10 +45,8 @@ Image scaled(const Image& image, const ChannelRole& role, const CaptureHeader& h
                 average(image, data, block, &result.at(to_x, to_y, 0));
                 continue;
             }
-            const int from_x =
-                std::clamp(whole.min_x + divisor / 2, block.min_x, block.max_x) - data.min_x;
-            const int from_y =
-                std::clamp(whole.min_y + divisor / 2, block.min_y, block.max_y) - data.min_y;
+            const int from_x = std::clamp(whole.min_x + divisor / 2, block.min_x, block.max_x) - data.min_x;
+            const int from_y = std::clamp(whole.min_y + divisor / 2, block.min_y, block.max_y) - data.min_y;
             for (int c = 0; c < image.channels(); ++c) {
                 if (image.type() == ComponentType::uint32)
                     result.uint_at(to_x, to_y, c) = image.uint_at(from_x, from_y, c);
@@ -68,9 +66,7 @@ Window intersection(const Window& a, const Window& b) {
 }
 
 Window scaled_window(const Window& window, const Window& display, int divisor) {
-    const auto side = [&](int value, int origin) {
-        return origin + floor_divided(value - origin, divisor);
-    };
+    const auto side = [&](int value, int origin) { return origin + floor_divided(value - origin, divisor); };
     return {side(window.min_x, display.min_x), side(window.min_y, display.min_y),
             side(window.max_x, display.min_x), side(window.max_y, display.min_y)};
 }
@@ -79,8 +75,7 @@ void scale_capture(Capture& capture, int divisor) {
     if (divisor == 1) return;
     CaptureHeader& header = capture.header;
     const Window data = scaled_window(header.data_window, header.display_window, divisor);
-    for (auto& [name, image] : capture.images)
-        image = scaled(image, *find_role(name), header, data, divisor);
+    for (auto& [name, image] : capture.images) image = scaled(image, *find_role(name), header, data, divisor);
     header.display_window = scaled_window(header.display_window, header.display_window, divisor);
     header.data_window = data;
 }

@@ -5,10 +5,10 @@
 
 namespace aftershade {
 
-/// The capture at 1/divisor of its size. Pixels of the display window are taken in blocks of divisor x divisor
-/// from its top left: roles that may be filtered are the mean over the block's pixels inside the data window,
-/// of the others (depth, ids, vectors) one pixel stands for its block: the one nearest its middle. Velocities
-/// are in pixels and shrink along.
+/// The capture at 1/divisor of its size. Pixels of the display window are taken in blocks of divisor x
+/// divisor from its top left: roles that may be filtered are the mean over the block's pixels inside the data
+/// window, of the others (depth, ids, vectors) one pixel stands for its block: the one nearest its middle.
+/// Velocities are in pixels and shrink along.
 void scale_capture(Capture& capture, int divisor);
 
 /// `window` at 1/divisor, as scale_capture scales it.

@@ -154,11 +154,11 @@ void find_missing_range(Sequence& sequence, const std::string& argument) {
     if (sequence.files.has_frame()) {
         sequence.frames = whole_frames(find_frames(sequence.files), sequence.subframes);
         if (sequence.frames.empty())
-            throw Error(ExitCode::capture, argument + ": no file fits the pattern " + sequence.files.text() +
-                                               (sequence.subframes > 1 ? ", or no frame has all its " +
-                                                                             std::to_string(sequence.subframes) +
-                                                                             " sub-frames"
-                                                                       : ""));
+            throw Error(ExitCode::capture,
+                        argument + ": no file fits the pattern " + sequence.files.text() +
+                            (sequence.subframes > 1 ? ", or no frame has all its " +
+                                                          std::to_string(sequence.subframes) + " sub-frames"
+                                                    : ""));
         return;
     }
     const fs::path file = sequence.files.text();

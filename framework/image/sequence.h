@@ -32,7 +32,7 @@ struct Sequence {
     std::string view;                  ///< of multi-view files; "" for the default
     double fps = 24;
     int subframes = 1;  ///< a frame is this many captures: the files subframes * frame + 0 .. subframes - 1
-    Camera camera;          ///< of capture.json
+    Camera camera;      ///< of capture.json
     std::vector<int> cuts;  ///< frames that begin a shot
     std::optional<CryptomatteChoice> cryptomatte;
 

@@ -30,7 +30,8 @@ void add_step_key(std::string& key, const EffectManifest& manifest, const ParamS
     for (const ParamSpec& spec : manifest.params) {
         const ParamValue& value = params.get(spec.name);
         if (spec.bind == ParamBind::define || spec.type == ParamType::file) key += " " + format_value(value);
-        if (const auto* table = std::get_if<TableValue>(&value)) key += " " + std::to_string(table->rows.size());
+        if (const auto* table = std::get_if<TableValue>(&value))
+            key += " " + std::to_string(table->rows.size());
     }
     for (const TextureSpec& texture : manifest.textures) add_grid(key, texture.grid, params);
     for (const BufferSpec& buffer : manifest.buffers) {

@@ -14,8 +14,8 @@ namespace aftershade {
 struct BuiltGraph {
     std::string key;
     std::map<ImportKey, graph::TextureHandle> imports;
-    std::map<int, graph::TextureHandle> mask_files;      ///< by step
-    std::vector<GraphBuilder::Textures> textures;        ///< per step: textures and outputs, by name
+    std::map<int, graph::TextureHandle> mask_files;       ///< by step
+    std::vector<GraphBuilder::Textures> textures;         ///< per step: textures and outputs, by name
     std::map<std::string, graph::TextureHandle> results;  ///< by role
     std::vector<BoundPass> passes;
     std::vector<BoundParam> params;

@@ -140,7 +140,8 @@ private:
         if (look_step.mix) set_mix(step, *look_step.mix);
         if (look_step.mask) set_mask(step, *look_step.mask);
         if (look_step.mix || look_step.mask)
-            find_before(step, pipeline_.steps.size(), look_step.mix ? look_step.mix->place : look_step.mask->place);
+            find_before(step, pipeline_.steps.size(),
+                        look_step.mix ? look_step.mix->place : look_step.mask->place);
         return step;
     }
 
@@ -152,8 +153,8 @@ private:
     void set_mask(PipelineStep& step, const MaskSpec& mask) {
         const auto role = mask.role.empty() ? std::nullopt : find_role(mask.role);
         if (!mask.role.empty() && !role)
-            diagnostics_.error(mask.place, "'" + mask.role + "' is not a role" +
-                                               did_you_mean(mask.role, role_names()));
+            diagnostics_.error(mask.place,
+                               "'" + mask.role + "' is not a role" + did_you_mean(mask.role, role_names()));
         else if (role && (role->type != ComponentType::float32 ||
                           (role->channels != 1 && !mask.role.starts_with("aov:"))))
             diagnostics_.error(mask.place, "a mask takes a role of one channel, such as mask or aov:hair; '" +
@@ -177,8 +178,9 @@ private:
             for (const InputSpec& input : step.manifest->inputs)
                 if (input.role == output.role && input.frame == 0) source = step.inputs.at(input.name);
             if (source.step < 0 && output.role == "display")
-                diagnostics_.error(place, "step '" + step.name +
-                                              "' makes display, of which there is none before it to mix with");
+                diagnostics_.error(
+                    place,
+                    "step '" + step.name + "' makes display, of which there is none before it to mix with");
             step.before[output.name] = source;
         }
     }
@@ -226,7 +228,8 @@ private:
     }
 
     /// A path is complete from here on; it was named from `folder`, or from the working directory.
-    static ParamValue with_file(const ParamSpec& spec, ParamValue value, const std::filesystem::path& folder) {
+    static ParamValue with_file(const ParamSpec& spec, ParamValue value,
+                                const std::filesystem::path& folder) {
         if (spec.type != ParamType::file) return value;
         auto& path = std::get<std::string>(value);
         if (!path.empty()) path = (folder / path).string();

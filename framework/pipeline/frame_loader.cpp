@@ -83,10 +83,9 @@ Capture FrameLoader::read(int file) const {
 
 void FrameLoader::request(int file) {
     if (reads_.contains(file)) return;
-    reads_[file] =
-        std::async(std::launch::async, [this, file]() -> CapturePointer {
-            return std::make_shared<const Capture>(read(file));
-        }).share();
+    reads_[file] = std::async(std::launch::async, [this, file]() -> CapturePointer {
+                       return std::make_shared<const Capture>(read(file));
+                   }).share();
 }
 
 FrameLoader::CapturePointer FrameLoader::get(int file) {

@@ -29,7 +29,8 @@ std::optional<std::vector<std::uint32_t>> clear_words(const BufferSpec& spec) {
     const bool is_integer = spec.element.starts_with("u") || spec.element.starts_with("i");
     std::vector<std::uint32_t> words;
     for (const double value : spec.clear)
-        words.push_back(is_integer ? std::uint32_t(std::int64_t(value)) : std::bit_cast<std::uint32_t>(float(value)));
+        words.push_back(is_integer ? std::uint32_t(std::int64_t(value))
+                                   : std::bit_cast<std::uint32_t>(float(value)));
     return words;
 }
 
@@ -56,7 +57,8 @@ std::pair<int, int> grid_size(const GridSpec& grid, const ParamSet& params, int 
         }
         case GridSpec::Kind::scale: break;
     }
-    return {std::max(1, int(std::ceil(width * grid.scale))), std::max(1, int(std::ceil(height * grid.scale)))};
+    return {std::max(1, int(std::ceil(width * grid.scale))),
+            std::max(1, int(std::ceil(height * grid.scale)))};
 }
 
 GraphBuilder::GraphBuilder(ProgramCache& programs, StepFiles& files, const Pipeline& pipeline,
@@ -68,7 +70,8 @@ GraphBuilder::GraphBuilder(ProgramCache& programs, StepFiles& files, const Pipel
 
 void GraphBuilder::add_step(int index, const ParamSet& params) {
     const PipelineStep& step = pipeline_.steps[std::size_t(index)];
-    StepBuild build{index, step, params, present_inputs(pipeline_, index, frame_), {}, {}, {}, {}, {}, {}, {}, {}, {}};
+    StepBuild build{index, step, params, present_inputs(pipeline_, index, frame_), {}, {}, {}, {}, {}, {},
+                    {},    {},   {}};
     declare(build);
     declare_params(build);
     for (const PassSpec& pass : step.manifest->passes)
@@ -86,7 +89,8 @@ void GraphBuilder::declare(StepBuild& build) {
     const EffectManifest& manifest = build.manifest();
     const std::string prefix = build.prefix();
     for (const InputSpec& input : manifest.inputs) {
-        if (std::find(build.present.begin(), build.present.end(), input.name) == build.present.end()) continue;
+        if (std::find(build.present.begin(), build.present.end(), input.name) == build.present.end())
+            continue;
         const auto handle = resolve(build.step.inputs.at(input.name), input.frame);
         build.inputs[input.name] = handle;
         if (!input.history) continue;
@@ -97,8 +101,8 @@ void GraphBuilder::declare(StepBuild& build) {
     }
     for (const TextureSpec& spec : manifest.textures) declare_texture(build, spec);
     for (const OutputSpec& spec : manifest.outputs)
-        build.textures[spec.name] = graph.create_texture(
-            prefix + spec.name, {width_, height_, texture_format_of_role(spec.role)});
+        build.textures[spec.name] =
+            graph.create_texture(prefix + spec.name, {width_, height_, texture_format_of_role(spec.role)});
     for (const BufferSpec& spec : manifest.buffers) declare_buffer(build, spec);
 }
 
@@ -142,8 +146,7 @@ graph::TextureHandle GraphBuilder::import(const std::string& role, int offset) {
     const auto known = imports.find(key);
     if (known != imports.end()) return known->second;
     const std::string where = offset < 0 ? "previous." : offset > 0 ? "next." : "capture.";
-    return imports[key] =
-               graph.import_texture(where + role, {width_, height_, texture_format_of_role(role)});
+    return imports[key] = graph.import_texture(where + role, {width_, height_, texture_format_of_role(role)});
 }
 
 graph::TextureHandle GraphBuilder::resolve(const InputSource& source, int offset) {
@@ -167,8 +170,8 @@ void GraphBuilder::declare_params(StepBuild& build) {
         } else if (spec.type == ParamType::file &&
                    !std::holds_alternative<std::monostate>(files.at(spec.name))) {
             const ParamTexture texture = file_texture(files.at(spec.name));
-            bound.texture = build.param_textures[spec.name] = graph.import_texture(
-                name, {texture.width, texture.height, texture.format, texture.layers});
+            bound.texture = build.param_textures[spec.name] =
+                graph.import_texture(name, {texture.width, texture.height, texture.format, texture.layers});
         } else {
             continue;
         }
@@ -194,8 +197,8 @@ void GraphBuilder::add_copy(StepBuild& build, const std::string& name, graph::Te
     const bool is_integer = gpu::is_integer(graph.textures()[std::size_t(from.texture)].desc.format);
     graph::Pass pass;
     pass.name = build.step.name + "." + name + ".keep";
-    pass.program = &programs_.host("copy.frag", is_integer ? std::vector<std::string>{"COPY_UINT"}
-                                                           : std::vector<std::string>{});
+    pass.program = &programs_.host(
+        "copy.frag", is_integer ? std::vector<std::string>{"COPY_UINT"} : std::vector<std::string>{});
     pass.reads.push_back({from, 0});
     pass.targets.push_back({to});
     (void)graph.add_pass(std::move(pass));

@@ -46,7 +46,8 @@ class GraphBuilder {
 public:
     using Textures = std::map<std::string, graph::TextureHandle>;
 
-    GraphBuilder(ProgramCache& programs, StepFiles& files, const Pipeline& pipeline, const FrameInputs& frame);
+    GraphBuilder(ProgramCache& programs, StepFiles& files, const Pipeline& pipeline,
+                 const FrameInputs& frame);
 
     /// Adds step `index`, after those before it. Throws Error(ExitCode::effect) where a pass reads, or the
     /// step outputs, what no pass has written with these parameters.

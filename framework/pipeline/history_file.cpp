@@ -92,8 +92,11 @@ json describe(const SavedHistory& history) {
         const gpu::TextureDesc& desc = saved.desc;
         json entry = {{"name", name}, {"bytes", saved.bytes.size()}};
         if (desc.width > 0)
-            entry["texture"] = {{"width", desc.width},   {"height", desc.height}, {"layers", desc.layers},
-                                {"mips", desc.mips},     {"format", gpu::texture_format_name(desc.format)}};
+            entry["texture"] = {{"width", desc.width},
+                                {"height", desc.height},
+                                {"layers", desc.layers},
+                                {"mips", desc.mips},
+                                {"format", gpu::texture_format_name(desc.format)}};
         resources.push_back(entry);
     }
     return {{"look", history.look},

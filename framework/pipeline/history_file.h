@@ -22,8 +22,8 @@ struct SavedResource {
     std::vector<std::byte> bytes;
 };
 
-/// The file is one line "aftershade-history 1", one line of JSON that describes what follows, and the bytes of
-/// the resources, little-endian, in the order of that description; a checksum guards against damage.
+/// The file is one line "aftershade-history 1", one line of JSON that describes what follows, and the bytes
+/// of the resources, little-endian, in the order of that description; a checksum guards against damage.
 struct SavedHistory {
     std::filesystem::path path;  ///< that it was read from
     std::string look;            ///< history_identity() of its pipeline

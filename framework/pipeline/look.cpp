@@ -4,7 +4,6 @@
 #include <set>
 #include <utility>
 
-
 namespace aftershade {
 
 namespace fs = std::filesystem;
@@ -125,7 +124,8 @@ private:
         for (const auto& [name, value] : overrides) {
             const Place& place = value.place.file.empty() ? user : value.place;
             if (!scope.variables.contains(name))
-                diagnostics_.error(place, "the look has no variable '" + name + "'" + did_you_mean(name, known));
+                diagnostics_.error(place,
+                                   "the look has no variable '" + name + "'" + did_you_mean(name, known));
             scope.variables[name] = value;
         }
     }
@@ -141,10 +141,9 @@ private:
             }
             std::vector<std::string> known;
             for (const auto& [variable, value] : scope.variables) known.push_back(variable);
-            diagnostics_.error(name.place, !name.is_string()
-                                               ? std::string("'var' is the name of a variable")
-                                               : "the look has no variable '" + name.string + "'" +
-                                                     did_you_mean(name.string, known));
+            diagnostics_.error(name.place, !name.is_string() ? std::string("'var' is the name of a variable")
+                                                             : "the look has no variable '" + name.string +
+                                                                   "'" + did_you_mean(name.string, known));
         }
         Node copy = node;
         for (Node& item : copy.items) item = with_variables(item, scope);
@@ -163,8 +162,9 @@ private:
         // Wiring, --set and --tap part a name from what follows at the first dot, and taps are files of that
         // name.
         if (name && !is_snake_case(*name))
-            diagnostics_.error(node.place, "the name '" + *name +
-                                               "' must be snake_case: a-z, 0-9 and _, beginning with a letter");
+            diagnostics_.error(
+                node.place,
+                "the name '" + *name + "' must be snake_case: a-z, 0-9 and _, beginning with a letter");
         step.name = scope.prefix + name.value_or(step.effect);
         step.enabled = reader.boolean("enabled").value_or(true) && scope.enabled;
         step.preset = reader.text("preset");
@@ -196,8 +196,9 @@ private:
                 variables[member.key] = with_variables(member.value, scope);
         reader.finish();
         if (name && !is_snake_case(*name))
-            diagnostics_.error(node.place, "the name '" + *name +
-                                               "' must be snake_case: a-z, 0-9 and _, beginning with a letter");
+            diagnostics_.error(
+                node.place,
+                "the name '" + *name + "' must be snake_case: a-z, 0-9 and _, beginning with a letter");
         if (!file) return;
         const Place& place = node.find("use")->place;
         const fs::path path = scope.folder / *file;
@@ -255,7 +256,8 @@ std::optional<Look> parse_look(const Node& node, Diagnostics& diagnostics, const
     return look;
 }
 
-std::optional<Look> read_look(const fs::path& path, Diagnostics& diagnostics, const LookVariables& variables) {
+std::optional<Look> read_look(const fs::path& path, Diagnostics& diagnostics,
+                              const LookVariables& variables) {
     const auto node = read_document(path, diagnostics);
     return node ? parse_look(*node, diagnostics, variables) : std::nullopt;
 }

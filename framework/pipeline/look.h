@@ -23,9 +23,9 @@ struct WiringSpec {
 
 /// "mask": where a step works. One of role, objects and file is set.
 struct MaskSpec {
-    std::string role;                ///< of the capture, with one channel: "mask", "aov:hair"
-    std::vector<TableKey> objects;   ///< ids, ranges of ids, or Cryptomatte names; needs the role object_id
-    std::filesystem::path file;      ///< picture over the display window; its first channel, as stored
+    std::string role;               ///< of the capture, with one channel: "mask", "aov:hair"
+    std::vector<TableKey> objects;  ///< ids, ranges of ids, or Cryptomatte names; needs the role object_id
+    std::filesystem::path file;     ///< picture over the display window; its first channel, as stored
     bool invert = false;
     Place place;
 };
@@ -47,7 +47,7 @@ struct LookStep {
 
 struct Look {
     std::string file;
-    std::vector<LookStep> steps;  ///< those of looks that it uses, too
+    std::vector<LookStep> steps;               ///< those of looks that it uses, too
     std::vector<std::filesystem::path> files;  ///< the look and every look that it uses
 };
 

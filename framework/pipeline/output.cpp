@@ -71,7 +71,8 @@ void write_png_output(const fs::path& path, const FrameResult& result, const Cap
     const Image display = made != result.images.end()
                               ? made->second
                               : display_of_color(*find_image("color", result, capture), header.primaries);
-    write_png(path, cropped_for_png(display, header.data_window, result.region.value_or(header.display_window)));
+    write_png(path,
+              cropped_for_png(display, header.data_window, result.region.value_or(header.display_window)));
 }
 
 fs::path tap_path(const std::string& text, const std::string& tap, int frame) {

@@ -19,11 +19,12 @@ std::optional<std::uint32_t> object_id_of_name(const std::string& name) {
 void upload_texture(const ParamTexture& source, gpu::Texture& texture) {
     const std::size_t layer_values = source.texels.size() / std::size_t(source.layers);
     for (int layer = 0; layer < source.layers; ++layer)
-        texture.upload(std::span(source.texels).subspan(std::size_t(layer) * layer_values, layer_values), layer);
+        texture.upload(std::span(source.texels).subspan(std::size_t(layer) * layer_values, layer_values),
+                       layer);
 }
 
-void upload_param(const BoundParam& bound, const ParamValue& value, StepFiles& files, const PipelineStep& step,
-                  const ParamSet& params, graph::Executor& executor) {
+void upload_param(const BoundParam& bound, const ParamValue& value, StepFiles& files,
+                  const PipelineStep& step, const ParamSet& params, graph::Executor& executor) {
     if (bound.spec->type == ParamType::table) {
         const auto bytes = table_buffer(*bound.spec, std::get<TableValue>(value), object_id_of_name);
         if (gpu::Buffer* buffer = executor.buffer(bound.buffer)) buffer->write(bytes);

@@ -15,7 +15,8 @@ struct BuiltGraph;
 class StepFiles {
 public:
     /// What the file parameters of a step hold. Throws Error(ExitCode::usage) with every fault of the files.
-    const std::map<std::string, ParamFile>& of_step(int index, const PipelineStep& step, const ParamSet& params);
+    const std::map<std::string, ParamFile>& of_step(int index, const PipelineStep& step,
+                                                    const ParamSet& params);
     /// The mask of a step: one channel, r32f. Throws Error(ExitCode::usage).
     const Image& mask_of(const std::filesystem::path& path);
 

@@ -56,7 +56,8 @@ void bind_reads(const StepBuild& build, const PassSpec& spec, const PassBindings
 
 void bind_memory(const StepBuild& build, const PassBindings& bindings, graph::Pass& pass) {
     for (const AccessSpec& image : bindings.images)
-        pass.images.push_back({build.textures.at(image.name), int(pass.images.size()), gpu_access(image.kind), 0});
+        pass.images.push_back(
+            {build.textures.at(image.name), int(pass.images.size()), gpu_access(image.kind), 0});
     for (const AccessSpec& use : bindings.buffers) {
         const auto& buffers = use.previous ? build.previous_buffers : build.buffers;
         pass.buffers.push_back({buffers.at(use.name), int(pass.buffers.size()), gpu_access(use.kind)});
@@ -88,7 +89,11 @@ void GraphBuilder::add_clear(StepBuild& build, const PassSpec& spec) {
 
 void GraphBuilder::add_turn(StepBuild& build, const PassSpec& spec, int turn, int turns) {
     const EffectManifest& manifest = build.manifest();
-    const ShaderContext shader{&manifest, &spec, &build.params, build.present, programs_.glsl_folder(),
+    const ShaderContext shader{&manifest,
+                               &spec,
+                               &build.params,
+                               build.present,
+                               programs_.glsl_folder(),
                                &files_.of_step(build.index, build.step, build.params)};
     const PassBindings bindings = pass_bindings(shader);
     graph::Pass pass;
@@ -97,13 +102,14 @@ void GraphBuilder::add_turn(StepBuild& build, const PassSpec& spec, int turn, in
     pass.blend = spec.blend;
     bind_reads(build, spec, bindings, turn, graph, pass);
     bind_memory(build, bindings, pass);
-    if (has_param_block(manifest)) pass.uniforms.push_back({kParamBinding, param_block(manifest, build.params)});
+    if (has_param_block(manifest))
+        pass.uniforms.push_back({kParamBinding, param_block(manifest, build.params)});
     pass.uniforms.push_back({kFrameBinding, std::vector<std::byte>(sizeof(FrameBlock))});
     pass.uniforms.push_back({kCameraBinding, std::vector<std::byte>(sizeof(CameraBlock))});
     if (spec.repeat) pass.uniforms.push_back({kPassBinding, bytes_of(PassBlock{turn, turns})});
     for (const WriteSpec& write : spec.writes)
-        pass.targets.push_back({write_target(build, spec, write.name, pass.name), level_in_turn(write.level, turn),
-                                level_in_turn(write.layer, turn)});
+        pass.targets.push_back({write_target(build, spec, write.name, pass.name),
+                                level_in_turn(write.level, turn), level_in_turn(write.layer, turn)});
     set_kind(build, spec, pass);
     const graph::Written written = graph.add_pass(std::move(pass));
     for (std::size_t i = 0; i < spec.writes.size(); ++i)
@@ -126,8 +132,8 @@ graph::TextureHandle GraphBuilder::write_target(const StepBuild& build, const Pa
     const auto& texture = graph.textures()[std::size_t(handle.texture)];
     graph::TextureOptions options;
     options.auto_mips = texture.options.auto_mips;
-    return graph.create_texture(build.prefix() + name + "@" + pass.substr(build.prefix().size()), texture.desc,
-                                options);
+    return graph.create_texture(build.prefix() + name + "@" + pass.substr(build.prefix().size()),
+                                texture.desc, options);
 }
 
 void GraphBuilder::set_kind(const StepBuild& build, const PassSpec& spec, graph::Pass& pass) const {
@@ -162,8 +168,8 @@ void GraphBuilder::set_kind(const StepBuild& build, const PassSpec& spec, graph:
                                        : gpu::Primitive::quads;
         if (!instances.indirect.empty()) pass.instances.indirect = build.buffers.at(instances.indirect);
         else
-            pass.instances.count = count_value(instances.count, build.params) *
-                                   (instances.grid ? cells(*instances.grid) : 1);
+            pass.instances.count =
+                count_value(instances.count, build.params) * (instances.grid ? cells(*instances.grid) : 1);
     }
 }
 

@@ -107,7 +107,8 @@ void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header
             if (source.step < 0 && !contains(header.roles, source.output))
                 missing("the mix of step '" + step.name + "'", source.output);
         for (const std::string& role : host_roles(step))
-            if (!contains(header.roles, role)) missing("a value or the mask of step '" + step.name + "'", role);
+            if (!contains(header.roles, role))
+                missing("a value or the mask of step '" + step.name + "'", role);
     }
     if (!contains(header.roles, "color")) missing("the output", "color");
 }

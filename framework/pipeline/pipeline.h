@@ -64,7 +64,7 @@ struct FrameInputs {
     const Capture* capture = nullptr;
     const Capture* previous = nullptr;  ///< of the same shot, where some input wants it
     const Capture* next = nullptr;
-    bool begins_shot = false;           ///< a cut: nothing before it counts
+    bool begins_shot = false;  ///< a cut: nothing before it counts
     int subframe = 0;
     int subframe_count = 1;
     const Capture* centre = nullptr;  ///< of several sub-frames: the one at the middle of the exposure

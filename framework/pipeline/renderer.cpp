@@ -86,7 +86,8 @@ std::string PipelineRenderer::history_fault(const FrameInputs& frame) const {
     if (frame.begins_shot) return "a cut";
     if (!(last_->window == header.data_window)) return "another data window";
     if (header.frame != last_->frame + 1)
-        return "it follows frame " + std::to_string(last_->frame) + ", not " + std::to_string(header.frame - 1);
+        return "it follows frame " + std::to_string(last_->frame) + ", not " +
+               std::to_string(header.frame - 1);
     return "";
 }
 

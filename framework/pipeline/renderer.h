@@ -81,10 +81,10 @@ private:
     StepFiles files_;
     std::vector<ParamSet> params_;
     std::unique_ptr<BuiltGraph> built_;
-    std::optional<Last> last_;              // capture, sub-frames too
-    std::optional<Camera> camera_before_;   // of the last whole frame
-    std::string frame_fault_;               // why this frame began history anew
-    std::unique_ptr<SavedHistory> saved_;   // loaded and not yet taken up
+    std::optional<Last> last_;             // capture, sub-frames too
+    std::optional<Camera> camera_before_;  // of the last whole frame
+    std::string frame_fault_;              // why this frame began history anew
+    std::unique_ptr<SavedHistory> saved_;  // loaded and not yet taken up
     bool audit_ = false;
 };
 

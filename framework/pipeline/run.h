@@ -35,11 +35,11 @@ struct RunOptions {
     std::vector<int> frames;
     MissingFrame missing = MissingFrame::error;
     bool audit = false;
-    int scale_divisor = 1;                      ///< frames are rendered at 1/this of their size
-    std::optional<Window> region;               ///< px of the display window at full scale, from its top left
-    int region_margin_px = 64;                  ///< rendered around the region, and not written
-    std::filesystem::path history_in;           ///< "" for none
-    std::filesystem::path history_out;          ///< "" for none
+    int scale_divisor = 1;              ///< frames are rendered at 1/this of their size
+    std::optional<Window> region;       ///< px of the display window at full scale, from its top left
+    int region_margin_px = 64;          ///< rendered around the region, and not written
+    std::filesystem::path history_in;   ///< "" for none
+    std::filesystem::path history_out;  ///< "" for none
 };
 
 struct RunReport {
@@ -51,9 +51,9 @@ struct RunReport {
     double write_ms = 0;                 ///< waiting for files to be written
     double wall_ms = 0;
     bool interrupted = false;
-    std::string graph_dot;               ///< of the last frame, in Graphviz's language
-    std::uint64_t bytes = 0;             ///< of its textures and buffers
-    std::uint64_t bytes_unaliased = 0;   ///< what these would take if none shared memory
+    std::string graph_dot;              ///< of the last frame, in Graphviz's language
+    std::uint64_t bytes = 0;            ///< of its textures and buffers
+    std::uint64_t bytes_unaliased = 0;  ///< what these would take if none shared memory
     ExitCode exit_code() const;
 };
 

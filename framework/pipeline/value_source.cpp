@@ -124,8 +124,8 @@ struct SourceReader {
     }
 
     bool is_scalar(const Place& place) {
-        const bool scalar = spec.type == ParamType::float_ || spec.type == ParamType::angle ||
-                            spec.type == ParamType::int_;
+        const bool scalar =
+            spec.type == ParamType::float_ || spec.type == ParamType::angle || spec.type == ParamType::int_;
         if (!scalar)
             diagnostics.error(place, label + " is a " + std::string(param_type_name(spec.type)) +
                                          ", which a single number of the capture cannot fill");
@@ -199,12 +199,13 @@ std::optional<ValueSource> parse_value_source(const ParamSpec& spec, const Node&
 
 std::string format_source(const ValueSource& source) {
     if (const auto* value = std::get_if<ParamValue>(&source)) return format_value(*value);
-    if (const auto* camera = std::get_if<CameraValue>(&source)) return "{\"from\": \"camera." + camera->field + "\"}";
+    if (const auto* camera = std::get_if<CameraValue>(&source))
+        return "{\"from\": \"camera." + camera->field + "\"}";
     if (const auto* depth = std::get_if<DepthValue>(&source)) {
         const std::string begin = "{\"from\": \"depth\", ";
         if (depth->uv)
-            return begin + "\"uv\": [" + format_number((*depth->uv)[0]) + ", " + format_number((*depth->uv)[1]) +
-                   "]}";
+            return begin + "\"uv\": [" + format_number((*depth->uv)[0]) + ", " +
+                   format_number((*depth->uv)[1]) + "]}";
         const TableKey& object = *depth->object;
         return begin + "\"object\": " +
                (object.name.empty() ? std::to_string(object.first) : "\"" + object.name + "\"") + "}";
@@ -214,7 +215,8 @@ std::string format_source(const ValueSource& source) {
     for (const auto& [frame, value] : keyed.keys)
         text += (text.empty() ? "" : ", ") + ("\"" + std::to_string(frame) + "\": ") + format_value(value);
     const std::array<std::string, 3> names = {"linear", "smooth", "step"};
-    return "{\"keys\": {" + text + "}, \"interpolation\": \"" + names[std::size_t(keyed.interpolation)] + "\"}";
+    return "{\"keys\": {" + text + "}, \"interpolation\": \"" + names[std::size_t(keyed.interpolation)] +
+           "\"}";
 }
 
 std::vector<std::string> roles_of(const ValueSource& source) {
@@ -230,9 +232,10 @@ std::optional<ParamValue> camera_value(const ParamSpec& spec, const std::string&
         const std::string& name = header.camera.lens_model;
         if (name.empty()) return std::nullopt;
         if (std::find(spec.values.begin(), spec.values.end(), name) == spec.values.end())
-            throw Error(ExitCode::capture, header.path.string() + ": camera." + field + " is '" + name +
-                                               "', outside the range of " + label +
-                                               " (set the parameter in the look, or mend the capture's camera)");
+            throw Error(ExitCode::capture,
+                        header.path.string() + ": camera." + field + " is '" + name +
+                            "', outside the range of " + label +
+                            " (set the parameter in the look, or mend the capture's camera)");
         return name;
     }
     auto number = header.camera.get(field);
@@ -258,8 +261,8 @@ ParamValue evaluate(const ValueSource& source, const ParamSpec& spec, const std:
     const auto& depth = std::get<DepthValue>(source);
     for (const std::string& role : roles_of(source))
         if (!capture.images.contains(role)) refuse(label, capture.header, "the capture has no " + role);
-    const double depth_m = depth.uv ? depth_at_m(*depth.uv, label, capture)
-                                    : median_depth_m(*depth.object, label, capture);
+    const double depth_m =
+        depth.uv ? depth_at_m(*depth.uv, label, capture) : median_depth_m(*depth.object, label, capture);
     return fitted(*convert_unit(depth_m, "m", spec.unit), spec, label, "depth", capture.header);
 }
 

@@ -93,6 +93,8 @@ private:
         // caught signal 11") beside the threads of Mesa and OpenEXR. Leaks are for the tests that stay in one
         // process.
         above.emplace("LSAN_OPTIONS", "detect_leaks=0:print_suppressions=0");
+        // Nothing of the user's, and nothing of another test's.
+        above.emplace("AFTERSHADE_CACHE", "off");
         std::vector<std::string> settings;
         for (char** entry = environ; *entry; ++entry) {
             const std::string text = *entry;

@@ -76,7 +76,8 @@ std::vector<Fault> look_faults() {
         steps("ADuplicateKey", R"({ "effect": "bokeh", "effect": "bokeh" })",
               {"look\\.json:2:22: error: the key 'effect' stands twice in one object; first at line 2"}),
         steps("TwoStepsOfOneName", R"({ "effect": "bokeh" }, { "effect": "bokeh" })",
-              {"look\\.json:2:24: error: a second step named 'bokeh'; give it a 'name' of its own \\(the first is at look\\.json:.*\\)"}),
+              {"look\\.json:2:24: error: a second step named 'bokeh'; give it a 'name' of its own \\(the "
+               "first is at look\\.json:.*\\)"}),
         steps("AStepNamedAsAPath", R"({ "effect": "bokeh", "name": "../bokeh" })",
               {"look\\.json:2:1: error: the name '\\.\\./bokeh' must be snake_case.*"}),
         steps("AnUnknownPreset", R"({ "effect": "bokeh", "preset": "fats" })",

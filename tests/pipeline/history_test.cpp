@@ -154,8 +154,8 @@ TEST_F(SavedHistories, GoOnBitForBitInThreeChunks) {
         bench.renderer().save_history(file_);
     }
     for (std::size_t i = 0; i < 12; ++i)
-        EXPECT_TRUE(std::equal(whole[i].floats().begin(), whole[i].floats().end(),
-                               chunked[i].floats().begin()))
+        EXPECT_TRUE(
+            std::equal(whole[i].floats().begin(), whole[i].floats().end(), chunked[i].floats().begin()))
             << "frame " << i + 1;
 }
 
@@ -163,8 +163,9 @@ TEST_F(SavedHistories, AreRefusedForAnotherFrameSizeLookOrVersion) {
     save_after(4);
     {
         Bench bench(effects_, look_);
-        EXPECT_NE(refusal(bench, grey(7, 1)).find("this history is of frame 4; it can go on with frame 5, not "
-                                                  "with 7"),
+        EXPECT_NE(refusal(bench, grey(7, 1))
+                      .find("this history is of frame 4; it can go on with frame 5, not "
+                            "with 7"),
                   std::string::npos);
     }
     {
@@ -179,8 +180,9 @@ TEST_F(SavedHistories, AreRefusedForAnotherFrameSizeLookOrVersion) {
     }
     std::string manifest = kBlendManifest;
     std::filesystem::remove_all(effects_.path() / "blend" / "effect.json");
-    write_text(effects_.path() / "blend" / "effect.json",
-               R"({ "aftershade": 1, "version": "2.0.0", "summary": "A test.", "id": "blend",)" + manifest + "}");
+    write_text(
+        effects_.path() / "blend" / "effect.json",
+        R"({ "aftershade": 1, "version": "2.0.0", "summary": "A test.", "id": "blend",)" + manifest + "}");
     Bench newer(effects_, look_);
     EXPECT_NE(refusal(newer, grey(5, 1)).find("effect blend 1.0.0; now: step blend: effect blend 2.0.0"),
               std::string::npos);
@@ -218,8 +220,9 @@ void main() {
     out_total = texelFetch(color, p, 0) + (frame.subframe > 0 ? texelFetch(total_prev, p, 0) : vec4(0.0));
 })");
     write_text(effects.path() / "average" / "show.frag",
-               std::string(kShaderHead) + "void main() { out_color = texelFetch(total, ivec2(gl_FragCoord.xy), 0) "
-                                          "/ float(frame.subframe_count); }\n");
+               std::string(kShaderHead) +
+                   "void main() { out_color = texelFetch(total, ivec2(gl_FragCoord.xy), 0) "
+                   "/ float(frame.subframe_count); }\n");
     // Counts the frames that it has seen, in alpha; the depth is the centre's.
     effects.add("count", R"(
         "inputs": { "color": { "role": "color" }, "depth": { "role": "depth" } },

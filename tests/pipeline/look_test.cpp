@@ -80,9 +80,10 @@ TEST(Look, RefusesANameThatASetOrATapCouldNotSpell) {
 TEST(Look, ReportsTwoStepsOfOneNameBesideOtherFaults) {
     const Parsed parsed = parse(
         "{ \"aftershade\": 1, \"steps\": [\n{ \"effect\": \"a\", \"parms\": 1 },\n{ \"effect\": \"a\" } ] }");
-    EXPECT_EQ(parsed.faults,
-              "look:2:18: error: the step has no key 'parms'; did you mean 'params'?\n"
-              "look:3:1: error: a second step named 'a'; give it a 'name' of its own (the first is at look:2:1)\n");
+    EXPECT_EQ(
+        parsed.faults,
+        "look:2:18: error: the step has no key 'parms'; did you mean 'params'?\n"
+        "look:3:1: error: a second step named 'a'; give it a 'name' of its own (the first is at look:2:1)\n");
 }
 
 TEST(Look, DoesNotTakeTwoStepsWithoutEffectForTwoOfOneName) {

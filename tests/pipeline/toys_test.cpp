@@ -65,7 +65,8 @@ TEST_P(Toys, SplatForwardWithTheNearestWinning) {
     const Image& depth = capture.images.at("depth");
     // The same by hand, pixel after pixel: the nearest that lands on a place keeps it.
     Image expected = color;
-    std::vector<float> nearest(std::size_t(scene.width * scene.height), std::numeric_limits<float>::infinity());
+    std::vector<float> nearest(std::size_t(scene.width * scene.height),
+                               std::numeric_limits<float>::infinity());
     for (int y = 0; y < scene.height; ++y)
         for (int x = 0; x < scene.width; ++x) {
             const int to_x = x + int(velocity.at(x, y, 0)), to_y = y + int(velocity.at(x, y, 1));

@@ -31,7 +31,8 @@ protected:
     }
     double reach(const std::string& value, const Capture& capture, const std::string& vars = "") {
         const std::string look = R"({ "aftershade": 1, )" + vars +
-                                 R"("steps": [ { "effect": "shown", "params": { "reach": )" + value + " } } ] }";
+                                 R"("steps": [ { "effect": "shown", "params": { "reach": )" + value +
+                                 " } } ] }";
         const Bound bound(effects_, look);
         EXPECT_EQ(bound.faults(), "");
         FrameInputs frame;
@@ -39,7 +40,8 @@ protected:
         return std::get<double>(resolve_params(bound.pipeline().steps.at(0), frame).get("reach"));
     }
     std::string faults(const std::string& value) {
-        return Bound(effects_, look_of(R"({ "effect": "shown", "params": { "reach": )" + value + " } }")).faults();
+        return Bound(effects_, look_of(R"({ "effect": "shown", "params": { "reach": )" + value + " } }"))
+            .faults();
     }
     EffectFolder effects_;
 };
@@ -57,7 +59,8 @@ TEST_F(ValueForms, KeysAreLinearBetweenFramesAndConstantBeyond) {
 
 TEST_F(ValueForms, VariablesStandForAnyValue) {
     EXPECT_EQ(reach(R"({ "var": "far" })", scene(1), R"("vars": { "far": "700 cm" }, )"), 7);
-    EXPECT_EQ(reach(R"({ "keys": { "1": { "var": "far" }, "3": 1 } })", scene(2), R"("vars": { "far": 7 }, )"), 4);
+    EXPECT_EQ(
+        reach(R"({ "keys": { "1": { "var": "far" }, "3": 1 } })", scene(2), R"("vars": { "far": 7 }, )"), 4);
 }
 
 TEST_F(ValueForms, DepthIsTakenAtAPointOrAsTheMedianOfAnObject) {
@@ -98,11 +101,15 @@ TEST_F(ValueForms, ThatMakeNoSenseAreErrorsWithTheirPlace) {
               "look:1:85: error: shown.reach: 'x' is not a frame number\n"
               "look:1:98: error: shown.reach: 500 m is above the maximum 100 m\n");
     EXPECT_NE(faults(R"({ "keys": {} })").find("shown.reach: 'keys' has no frame"), std::string::npos);
-    EXPECT_NE(faults(R"({ "from": "camera.focus" })").find("did you mean 'camera.focus_distance'?"), std::string::npos);
-    EXPECT_NE(faults(R"({ "from": "camera.f_number" })").find("which cannot be converted to m"), std::string::npos);
+    EXPECT_NE(faults(R"({ "from": "camera.focus" })").find("did you mean 'camera.focus_distance'?"),
+              std::string::npos);
+    EXPECT_NE(faults(R"({ "from": "camera.f_number" })").find("which cannot be converted to m"),
+              std::string::npos);
     EXPECT_NE(faults(R"({ "from": "depth" })").find("has one of 'uv' and 'object'"), std::string::npos);
-    EXPECT_NE(faults(R"({ "from": "depth", "uv": [2, 0] })").find("two numbers from 0 to 1"), std::string::npos);
-    EXPECT_NE(faults(R"({ "var": "nothing" })").find("the look has no variable 'nothing'"), std::string::npos);
+    EXPECT_NE(faults(R"({ "from": "depth", "uv": [2, 0] })").find("two numbers from 0 to 1"),
+              std::string::npos);
+    EXPECT_NE(faults(R"({ "var": "nothing" })").find("the look has no variable 'nothing'"),
+              std::string::npos);
 }
 
 TEST_F(ValueForms, InPixelsShrinkWithTheScale) {
@@ -142,7 +149,8 @@ TEST_F(MixAndMask, MixGoesFromTheImageBeforeToTheImageMade) {
     EXPECT_EQ(run(R"({ "effect": "white", "mix": 0 })").at(1, 1, 0), 0.25f);
     EXPECT_EQ(run(R"({ "effect": "white", "mix": 1 })").at(1, 1, 0), 1.0f);
     EXPECT_FLOAT_EQ(run(R"({ "effect": "white", "mix": 0.5 })").at(1, 1, 0), 0.625f);
-    EXPECT_FLOAT_EQ(run(R"({ "effect": "white", "mix": { "keys": { "-10": 0, "10": 1 } } })").at(1, 1, 0), 0.625f);
+    EXPECT_FLOAT_EQ(run(R"({ "effect": "white", "mix": { "keys": { "-10": 0, "10": 1 } } })").at(1, 1, 0),
+                    0.625f);
     Bench set(effects_, look_of(R"({ "effect": "white" })"), {{"white.mix=0.25"}, {}});
     EXPECT_FLOAT_EQ(set.color(scene()).at(1, 1, 0), 0.4375f);
 }
@@ -160,23 +168,30 @@ TEST_F(MixAndMask, AMaskIsARoleAnObjectOrAFile) {
         for (int x = 10; x < 20; ++x)
             for (int c = 0; c < 3; ++c) half.at(x, y, c) = 1;
     write_png(folder / "right.png", half);
-    const Image image = run(R"({ "effect": "white", "mask": { "file": ")" + (folder / "right.png").string() + "\" } }");
+    const Image image =
+        run(R"({ "effect": "white", "mask": { "file": ")" + (folder / "right.png").string() + "\" } }");
     EXPECT_EQ(image.at(1, 1, 0), 0.25f);
     EXPECT_EQ(image.at(18, 8, 0), 1.0f);
 }
 
 TEST_F(MixAndMask, ThatHaveNothingToWorkOnAreErrors) {
     const auto faults = [&](const std::string& step) { return Bound(effects_, look_of(step)).faults(); };
-    EXPECT_NE(faults(R"({ "effect": "view_transform", "mix": 0.5 })").find("there is none before it"), std::string::npos);
-    EXPECT_NE(faults(R"({ "effect": "white", "mix": 2 })").find("white.mix: 2 is above the maximum 1"), std::string::npos);
-    EXPECT_NE(faults(R"({ "effect": "white", "mask": { "role": "velocity" } })").find("one channel"), std::string::npos);
-    EXPECT_NE(faults(R"({ "effect": "white", "mask": {} })").find("one of 'role', 'object' and 'file'"), std::string::npos);
-    EXPECT_NE(faults(R"({ "effect": "white", "mask": { "file": "no.png" } })").find("no file 'no.png'"), std::string::npos);
+    EXPECT_NE(faults(R"({ "effect": "view_transform", "mix": 0.5 })").find("there is none before it"),
+              std::string::npos);
+    EXPECT_NE(faults(R"({ "effect": "white", "mix": 2 })").find("white.mix: 2 is above the maximum 1"),
+              std::string::npos);
+    EXPECT_NE(faults(R"({ "effect": "white", "mask": { "role": "velocity" } })").find("one channel"),
+              std::string::npos);
+    EXPECT_NE(faults(R"({ "effect": "white", "mask": {} })").find("one of 'role', 'object' and 'file'"),
+              std::string::npos);
+    EXPECT_NE(faults(R"({ "effect": "white", "mask": { "file": "no.png" } })").find("no file 'no.png'"),
+              std::string::npos);
 }
 
 TEST_F(MixAndMask, TablesCurvesAndFilesReachTheShader) {
     const TemporaryFolder folder;
-    write_text(folder / "swap.cube", "LUT_3D_SIZE 2\n0 0 0\n0 0 1\n0 1 0\n0 1 1\n1 0 0\n1 0 1\n1 1 0\n1 1 1\n");
+    write_text(folder / "swap.cube",
+               "LUT_3D_SIZE 2\n0 0 0\n0 0 1\n0 1 0\n0 1 1\n1 0 0\n1 0 1\n1 1 0\n1 1 1\n");
     effects_.add("rich", R"(
         "inputs": { "color": { "role": "color" }, "object_id": { "role": "object_id" } },
         "outputs": { "color": { "role": "color" } },
@@ -200,7 +215,8 @@ void main() {
     const Image image = run(R"({ "effect": "rich", "params": {
         "gains": { "rows": [ { "object": 2, "gain": 0.5 } ] },
         "tone": [[0, 0], [0.5, 1], [1, 1]],
-        "grade": ")" + (folder / "swap.cube").string() + R"(" } })");
+        "grade": ")" + (folder / "swap.cube").string() +
+                            R"(" } })");
     // Red and blue change places; green goes through the curve; object 2 is halved first.
     EXPECT_NEAR(image.at(1, 1, 2), 0.25f, 1e-6);
     EXPECT_NEAR(image.at(1, 1, 1), 1.0f, 1e-3);

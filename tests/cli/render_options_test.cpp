@@ -1,0 +1,197 @@
+// --scale, --region, --history-in and --history-out, --graph, --var, looks that use looks, and sub-frames.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "framework/image/png_file.h"
+#include "tests/cli/command.h"
+#include "tests/synthetic_capture.h"
+
+namespace aftershade::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> kRgba{"R", "G", "B", "A"};
+
+class RenderOptions : public testing::Test {
+protected:
+    RenderOptions() {
+        SyntheticScene scene{
+            .width = 64, .height = 36, .background = {0.1f, 0.2f, 0.4f}, .background_depth_m = 8};
+        scene.box = SyntheticBox{4, 6, 16, 12, 5, 2};
+        scene.points = {{50, 20, 9}};
+        for (int frame = 1; frame <= 6; ++frame)
+            write_capture(make_capture(scene, frame), folder_ / ("in_000" + std::to_string(frame) + ".exr"));
+        write_text(folder_ / "nothing.json", R"({ "aftershade": 1, "steps": [] })");
+        // Each frame holds half of those before it; a box of 5 px reaches 2 px.
+        write_effect("trail", R"(
+            "textures": { "kept": { "format": "rgba16f", "history": true, "doc": "Light so far." } },
+            "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color", "kept.prev"],
+                          "writes": ["kept"] },
+                        { "name": "show", "shader": "show.frag", "reads": ["kept"], "writes": ["color"] } ])",
+                     "void main() { ivec2 p = ivec2(gl_FragCoord.xy); vec4 now = texelFetch(color, p, 0);\n"
+                     "out_kept = frame.history_valid ? mix(now, texelFetch(kept_prev, p, 0), 0.5) : now; }\n");
+        write_text(folder_ / "effects/trail/show.frag",
+                   kHead + "void main() { out_color = texelFetch(kept, ivec2(gl_FragCoord.xy), 0); }\n");
+        write_effect("spread", R"(
+            "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color"], "writes": ["color"] } ])",
+                     "void main() { vec4 sum = vec4(0.0); for (int y = -2; y <= 2; ++y) for (int x = -2; x <= 2; ++x)\n"
+                     "sum += texelFetch(color, clamp(ivec2(gl_FragCoord.xy) + ivec2(x, y), ivec2(0),\n"
+                     "frame.size - 1), 0); out_color = sum / 25.0; }\n");
+        write_text(folder_ / "trail.json", R"({ "aftershade": 1, "steps": [ { "effect": "trail" } ] })");
+        write_text(folder_ / "spread.json", R"({ "aftershade": 1, "steps": [ { "effect": "spread" } ] })");
+    }
+
+    void write_effect(const std::string& id, const std::string& sections, const std::string& shader) {
+        fs::create_directories(folder_ / "effects" / id);
+        write_text(folder_ / "effects" / id / "effect.json",
+                   R"({ "aftershade": 1, "version": "1.0.0", "summary": "A test.", "id": ")" + id +
+                       R"(", "inputs": { "color": { "role": "color" } },
+                           "outputs": { "color": { "role": "color" } }, )" + sections + "}");
+        write_text(folder_ / "effects" / id / "main.frag", kHead + shader);
+    }
+
+    CommandResult run(std::vector<std::string> arguments, int exit_code = 0) {
+        arguments.insert(arguments.begin(), "run");
+        for (const char* word : {"--effect-path", "effects", "--backend", "osmesa", "--pixel-type", "float"})
+            arguments.push_back(word);
+        CommandResult result = run_aftershade(arguments, folder_.path());
+        EXPECT_EQ(result.exit_code, exit_code) << result.err;
+        return result;
+    }
+    Image color(const std::string& name) { return ExrFile(folder_ / name).read_floats(0, kRgba); }
+    static bool same(const Image& a, const Image& b) {
+        return a.width() == b.width() && a.height() == b.height() &&
+               std::equal(a.floats().begin(), a.floats().end(), b.floats().begin());
+    }
+
+    const std::string kHead = "#version 450 core\n#include <pass>\n";
+    TemporaryFolder folder_;
+};
+
+TEST_F(RenderOptions, ScaleAveragesLightAndPicksDepth) {
+    run({"nothing.json", "in_0001.exr", "--scale", "1/4", "--output-roles", "color,depth,velocity", "-o", "small.exr"});
+    const Image full = color("in_0001.exr"), small = color("small.exr");
+    ASSERT_EQ(small.width(), 16);
+    ASSERT_EQ(small.height(), 9);
+    double sum = 0;
+    for (int y = 4; y < 8; ++y)
+        for (int x = 8; x < 12; ++x) sum += double(full.at(x, y, 0));
+    EXPECT_FLOAT_EQ(small.at(2, 1, 0), float(sum / 16));
+    const ExrFile file(folder_ / "small.exr");
+    const std::vector<std::string> depth_name{"Z"}, velocity_name{"velocity.X"};
+    const Image depth = file.read_floats(0, depth_name), velocity = file.read_floats(0, velocity_name);
+    EXPECT_EQ(depth.at(3, 3, 0), 1.0f) << "the box";
+    EXPECT_EQ(depth.at(15, 8, 0), 8.0f) << "never between two surfaces";
+    EXPECT_EQ(velocity.at(3, 3, 0), 1.25f) << "5 px a frame at full scale";
+}
+
+TEST_F(RenderOptions, RegionIsThatPartOfTheWholePicture) {
+    run({"spread.json", "in_0002.exr", "-o", "whole.exr"});
+    run({"spread.json", "in_0002.exr", "--region", "10,8,30,20", "--region-margin", "4", "-o", "part.exr", "-o",
+         "part.png"});
+    const Image whole = color("whole.exr"), part = color("part.exr");
+    const ExrFile file(folder_ / "part.exr");
+    EXPECT_EQ(file.parts()[0].data_window, (Window{10, 8, 39, 27}));
+    EXPECT_EQ(file.parts()[0].display_window, (Window{0, 0, 63, 35}));
+    for (int y = 0; y < 20; ++y)
+        for (int x = 0; x < 30; ++x)
+            for (int c = 0; c < 4; ++c) ASSERT_EQ(part.at(x, y, c), whole.at(x + 10, y + 8, c)) << x << " " << y;
+    const Image png = read_png(folder_ / "part.png");
+    EXPECT_EQ(png.width(), 30);
+    EXPECT_EQ(png.height(), 20);
+}
+
+TEST_F(RenderOptions, HistoryGoesFromChunkToChunkBitForBit) {
+    run({"trail.json", "in_####.exr", "-o", "whole_####.exr"});
+    run({"trail.json", "in_####.exr", "--frames", "1-2", "--history-out", "h", "-o", "part_####.exr"});
+    run({"trail.json", "in_####.exr", "--frames", "3-4", "--history-in", "h", "--history-out", "h", "-o", "part_####.exr"});
+    run({"trail.json", "in_####.exr", "--frames", "5-6", "--history-in", "h", "-o", "part_####.exr"});
+    for (const char* frame : {"1", "2", "3", "4", "5", "6"})
+        EXPECT_TRUE(same(color("whole_000" + std::string(frame) + ".exr"), color("part_000" + std::string(frame) + ".exr")))
+            << frame;
+    const CommandResult refused =
+        run({"trail.json", "in_####.exr", "--frames", "2", "--history-in", "h", "-o", "no.exr"}, 2);
+    EXPECT_NE(refused.err.find("this history is of frame 4; it can go on with frame 5, not with 2"), std::string::npos);
+    EXPECT_FALSE(fs::exists(folder_ / "no.exr"));
+}
+
+TEST_F(RenderOptions, HistoryBeginsAnewAtACutAndAfterAMissingFrameAndSaysSo) {
+    write_text(folder_ / "capture.json",
+               R"({ "aftershade": 1, "frames": "in_####.exr", "range": "1-6", "cuts": [3] })");
+    fs::remove(folder_ / "in_0005.exr");
+    const CommandResult result = run({"trail.json", "capture.json", "--missing", "skip", "-o", "out_####.exr"});
+    EXPECT_NE(result.err.find("frame 3: history begins anew: a cut"), std::string::npos);
+    EXPECT_NE(result.err.find("frame 6: history begins anew: it follows frame 4, not 5"), std::string::npos);
+    for (const char* frame : {"1", "3", "6"}) {
+        // Half precision in the texture: the source is exact in it but for 0.1 and 0.2.
+        const Image out = color("out_000" + std::string(frame) + ".exr"), in = color("in_000" + std::string(frame) + ".exr");
+        for (std::size_t i = 0; i < out.floats().size(); ++i)
+            ASSERT_NEAR(out.floats()[i], in.floats()[i], 1e-3f * std::abs(in.floats()[i]) + 1e-6f) << frame;
+    }
+}
+
+TEST_F(RenderOptions, GraphIsDrawn) {
+    const CommandResult result = run({"trail.json", "in_0001.exr", "-o", "a.exr", "--graph", "g.dot"});
+    const std::string dot = read_text(folder_ / "g.dot");
+    EXPECT_EQ(dot.find("digraph"), 0u);
+    EXPECT_NE(dot.find("trail.main"), std::string::npos);
+    EXPECT_NE(result.err.find("MiB without sharing memory"), std::string::npos);
+    run({"trail.json", "in_0001.exr", "-o", "a.exr", "--graph", "g.txt"}, 2);
+}
+
+TEST_F(RenderOptions, ALookUsesAnotherWithVariablesAndAPrefix) {
+    fs::create_directories(folder_ / "looks");
+    write_text(folder_ / "looks/light.json", R"({ "aftershade": 1, "vars": { "stops": 0 }, "steps": [
+        { "effect": "view_transform", "params": { "exposure": { "var": "stops" } } } ] })");
+    write_text(folder_ / "film.json", R"({ "aftershade": 1, "vars": { "push": 1 }, "steps": [
+        { "effect": "spread" }, { "use": "looks/light.json", "name": "final", "vars": { "stops": { "var": "push" } } } ] })");
+    const CommandResult plain = run({"film.json", "in_0001.exr", "-o", "a.png", "--explain"});
+    EXPECT_NE(plain.out.find("final_view_transform.exposure = 1 ev   [the look]"), std::string::npos) << plain.out;
+    const CommandResult pushed = run({"film.json", "in_0001.exr", "-o", "a.png", "--explain", "--var", "push=2.5"});
+    EXPECT_NE(pushed.out.find("exposure = 2.5 ev"), std::string::npos);
+    const CommandResult unknown = run({"film.json", "in_0001.exr", "-o", "a.png", "--var", "puhs=2"}, 2);
+    EXPECT_NE(unknown.err.find("the look has no variable 'puhs'; did you mean 'push'?"), std::string::npos);
+}
+
+TEST_F(RenderOptions, LooksThatUseEachOtherAreRefused) {
+    write_text(folder_ / "a.json", R"({ "aftershade": 1, "steps": [ { "use": "b.json" } ] })");
+    write_text(folder_ / "b.json", R"({ "aftershade": 1, "steps": [ { "use": "a.json" } ] })");
+    const CommandResult result = run({"a.json", "in_0001.exr", "-o", "a.png"}, 2);
+    EXPECT_NE(result.err.find("b.json:1:40: error: 'a.json' uses itself: a.json uses b.json uses a.json"), std::string::npos)
+        << result.err;
+}
+
+TEST_F(RenderOptions, SubframesOfACaptureMakeOneFrame) {
+    write_effect("average", R"("accumulates": "subframes",
+        "textures": { "total": { "format": "rgba32f", "history": true, "doc": "Sum." } },
+        "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color", "total.prev"], "writes": ["total"] },
+                    { "name": "show", "shader": "show.frag", "reads": ["total"], "writes": ["color"] } ])",
+                 "void main() { ivec2 p = ivec2(gl_FragCoord.xy); out_total = texelFetch(color, p, 0) +\n"
+                 "(frame.subframe > 0 ? texelFetch(total_prev, p, 0) : vec4(0.0)); }\n");
+    write_text(folder_ / "effects/average/show.frag",
+               kHead + "void main() { out_color = texelFetch(total, ivec2(gl_FragCoord.xy), 0) / "
+                       "float(frame.subframe_count); }\n");
+    write_text(folder_ / "average.json", R"({ "aftershade": 1, "steps": [ { "effect": "average" } ] })");
+    write_text(folder_ / "capture.json", R"({ "aftershade": 1, "frames": "in_####.exr", "subframes": 2 })");
+    // Files 2 and 3 are frame 1, 4 and 5 frame 2; 1 and 6 are halves of frames that are not whole.
+    const CommandResult result = run({"average.json", "capture.json", "-o", "out_####.exr"});
+    EXPECT_EQ(result.out, "out_0001.exr\nout_0002.exr\n");
+    const Image first = color("in_0004.exr"), second = color("in_0005.exr"), made = color("out_0002.exr");
+    for (std::size_t i = 0; i < made.floats().size(); ++i)
+        ASSERT_EQ(made.floats()[i], (first.floats()[i] + second.floats()[i]) / 2.0f) << i;
+    run({"nothing.json", "capture.json", "--frames", "2", "-o", "centre.exr"});
+    EXPECT_TRUE(same(color("centre.exr"), second)) << "without accumulation the middle stands for the frame";
+}
+
+TEST_F(RenderOptions, WordsThatMakeNoSenseAreAllListed) {
+    const CommandResult result = run({"nothing.json", "in_0001.exr", "-o", "a.exr", "--scale", "0.3", "--region", "1,2,3",
+                                      "--graph", "g.png", "--var", "x", "--keep-channels"}, 2);
+    for (const char* fault : {"--scale 0.3: error: must be 1, 1/2, 1/3", "--region 1,2,3: error: must be x,y,w,h",
+                              "--graph g.png: error: must end in .dot or .svg", "--var x: error: expected name=value"})
+        EXPECT_NE(result.err.find(fault), std::string::npos) << fault << "\n" << result.err;
+}
+
+}  // namespace
+}  // namespace aftershade::test
