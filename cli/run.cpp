@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/capture_options.h"
+#include "cli/effect_options.h"
 #include "cli/gl_options.h"
 #include "cli/interrupt.h"
 #include "cli/render_options.h"
@@ -72,9 +73,7 @@ void add_options(CLI::App& app, RunArguments& options) {
                  "Print every parameter's value and where it is from, and run nothing");
     app.add_flag("--audit", options.audit,
                  "Tell which pass first writes NaN or infinite values, where and how many; slow");
-    app.add_option("--effect-path", options.effect_paths,
-                   "Folder of effects, searched before the shipped ones; repeatable")
-        ->allow_extra_args(false);
+    add_effect_path_option(app, options.effect_paths);
     app.add_option("--progress", options.progress, "auto, none or plain")->capture_default_str();
     add_render_options(app, options.render);
     add_backend_option(app, options.backend);
@@ -95,18 +94,12 @@ OutputOptions output_options(const RunArguments& options) {
 ExitCode run(const RunArguments& options) {
     const std::atomic<bool>& stop = watch_for_interrupt();
     const std::filesystem::path data = data_path();
-    std::vector<std::filesystem::path> effect_folders(options.effect_paths.begin(),
-                                                      options.effect_paths.end());
-    effect_folders.push_back(data / "effects");
 
     // Everything that the user wrote is checked, and every fault listed, before any work starts.
     Diagnostics diagnostics;
-    for (const std::string& folder : options.effect_paths)
-        if (std::error_code failure; !std::filesystem::is_directory(folder, failure))
-            diagnostics.error({"--effect-path " + folder}, "no such folder");
+    EffectRegistry effects = find_effects(options.effect_paths, diagnostics);
     const gpu::Backend backend = chosen_backend(options.backend);
     const ProgressStyle progress = parse_progress(options.progress);
-    EffectRegistry effects(effect_folders);
     const auto look = read_look(options.look, diagnostics, parse_variables(options.render, diagnostics));
     Pipeline pipeline;
     if (look) pipeline = compile_pipeline(*look, effects, options.pipeline, diagnostics);

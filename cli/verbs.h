@@ -11,6 +11,11 @@ namespace aftershade::cli {
 using Verb = std::function<ExitCode()>;
 
 Verb add_run(CLI::App& app);
+Verb add_check(CLI::App& app);
+Verb add_describe(CLI::App& app);
+Verb add_docs(CLI::App& app);
+Verb add_list(CLI::App& app);
+Verb add_new(CLI::App& app);
 Verb add_inspect(CLI::App& app);
 Verb add_doctor(CLI::App& app);
 

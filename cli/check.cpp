@@ -1,0 +1,94 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "cli/capture_options.h"
+#include "cli/effect_options.h"
+#include "cli/gl_options.h"
+#include "cli/verbs.h"
+#include "framework/core/error.h"
+#include "framework/effect/lint.h"
+#include "framework/effect/usage_check.h"
+#include "framework/pipeline/effect_check.h"
+#include "framework/pipeline/look.h"
+#include "framework/pipeline/pipeline.h"
+
+namespace aftershade::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CheckOptions {
+    std::string subject;
+    std::vector<std::string> effect_paths;
+    std::string backend;
+    bool no_gl = false;
+    bool strict = false;
+};
+
+void check_one_effect(const EffectManifest& manifest, const CheckOptions& options, Diagnostics& diagnostics) {
+    const fs::path data = data_path();
+    check_declared_used(manifest, data / "glsl", diagnostics);
+    lint_effect(manifest, data / "glsl", diagnostics);
+    if (options.no_gl) return;
+    gpu::Context context(chosen_backend(options.backend));
+    check_effect(context, manifest, data, diagnostics);
+}
+
+/// Exit 1 is the verdict; exit 2 is for words that name nothing.
+ExitCode verdict(const Diagnostics& diagnostics, const CheckOptions& options) {
+    diagnostics.print(std::cerr);
+    const int warnings = int(diagnostics.all().size()) - diagnostics.error_count();
+    fmt::print("{}: {} errors, {} warnings\n", options.subject, diagnostics.error_count(), warnings);
+    const bool sound = !diagnostics.has_errors() && (warnings == 0 || !options.strict);
+    return sound ? ExitCode::done : ExitCode::partial;
+}
+
+ExitCode check(const CheckOptions& options) {
+    Diagnostics words, diagnostics;
+    chosen_backend(options.backend);
+    std::vector<std::string> paths = options.effect_paths;
+    const fs::path subject = options.subject;
+    std::error_code failure;
+    const bool is_folder = fs::is_regular_file(subject / "effect.json", failure);
+    EffectRegistry effects = find_effects(paths, words);
+    if (is_folder) {
+        stop_at_errors(words);
+        const fs::path folder = fs::weakly_canonical(subject, failure);
+        const auto node = read_document(folder / "effect.json", diagnostics);
+        if (const auto manifest = node ? parse_manifest(*node, folder, diagnostics) : std::nullopt)
+            check_one_effect(*manifest, options, diagnostics);
+        return verdict(diagnostics, options);
+    }
+    if (effects.contains(options.subject)) {
+        stop_at_errors(words);
+        if (const EffectManifest* manifest = effects.find(options.subject, diagnostics))
+            check_one_effect(*manifest, options, diagnostics);
+        return verdict(diagnostics, options);
+    }
+    if (!fs::is_regular_file(subject, failure)) {
+        const auto ids = effects.ids();
+        words.error({"EFFECT|LOOK"}, "'" + options.subject + "' is no folder of an effect, no effect and no look" +
+                                         did_you_mean(options.subject, ids));
+    }
+    stop_at_errors(words);
+    if (const auto look = read_look(subject, diagnostics)) compile_pipeline(*look, effects, {}, diagnostics);
+    return verdict(diagnostics, options);
+}
+
+}  // namespace
+
+Verb add_check(CLI::App& app) {
+    auto options = std::make_shared<CheckOptions>();
+    app.add_option("subject", options->subject, "Folder of an effect, id of an effect, or a look")->required();
+    app.add_flag("--no-gl", options->no_gl, "Only what the texts tell: compile no shader, render nothing");
+    app.add_flag("--strict", options->strict, "Warnings are a failure too");
+    add_effect_path_option(app, options->effect_paths);
+    add_backend_option(app, options->backend);
+    return [options] { return check(*options); };
+}
+
+}  // namespace aftershade::cli

@@ -1,0 +1,98 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <sstream>
+
+#include "cli/capture_options.h"
+#include "cli/effect_options.h"
+#include "cli/verbs.h"
+#include "framework/core/atomic_file.h"
+#include "framework/effect/describe.h"
+
+namespace aftershade::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DocsOptions {
+    std::vector<std::string> effects;
+    std::vector<std::string> effect_paths;
+    std::string folder = "docs/effects";
+    bool check = false;
+};
+
+/// File name and text of every page.
+std::map<std::string, std::string> pages(const DocsOptions& options, EffectRegistry& effects,
+                                         Diagnostics& diagnostics) {
+    std::map<std::string, std::string> pages;
+    const std::vector<std::string> known = effects.ids();
+    std::vector<const EffectManifest*> manifests;
+    for (const std::string& id : options.effects.empty() ? known : options.effects) {
+        if (!effects.contains(id)) diagnostics.error({"EFFECT"}, "no effect '" + id + "'" + did_you_mean(id, known));
+        const EffectManifest* manifest = effects.find(id, diagnostics);
+        if (!manifest) continue;
+        manifests.push_back(manifest);
+        pages[id + ".md"] = describe_markdown(*manifest);
+    }
+    if (options.effects.empty()) pages["README.md"] = index_markdown(manifests);
+    return pages;
+}
+
+std::string text_of(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+}
+
+void write(const fs::path& file, const std::string& text) {
+    AtomicFile atomic(file);
+    std::ofstream out(atomic.temporary_path(), std::ios::binary);
+    out << text;
+    out.close();
+    if (!out) throw Error(ExitCode::output, file.string() + ": cannot be written");
+    atomic.commit();
+}
+
+ExitCode docs(const DocsOptions& options) {
+    Diagnostics diagnostics;
+    EffectRegistry effects = find_effects(options.effect_paths, diagnostics);
+    const auto made = pages(options, effects, diagnostics);
+    stop_at_errors(diagnostics);
+    std::error_code failure;
+    if (!options.check) fs::create_directories(options.folder, failure);
+    bool same = true;
+    for (const auto& [name, text] : made) {
+        const fs::path file = fs::path(options.folder) / name;
+        if (text_of(file) == text) continue;
+        same = false;
+        if (!options.check) write(file, text);
+        fmt::print("{}{}\n", file.string(), options.check ? ": is not what the manifest says; run aftershade docs" : "");
+    }
+    // A page of an effect that is gone.
+    if (options.effects.empty() && fs::is_directory(options.folder, failure))
+        for (const auto& entry : fs::directory_iterator(options.folder))
+            if (entry.path().extension() == ".md" && !made.contains(entry.path().filename().string())) {
+                same = false;
+                fmt::print("{}: no effect has this page; delete it\n", entry.path().string());
+            }
+    return options.check && !same ? ExitCode::partial : ExitCode::done;
+}
+
+}  // namespace
+
+Verb add_docs(CLI::App& app) {
+    auto options = std::make_shared<DocsOptions>();
+    app.add_option("effects", options->effects, "Ids of effects (default: all, and their index)");
+    app.add_option("-o,--output", options->folder, "Folder of the pages")->capture_default_str();
+    app.add_flag("--check", options->check, "Write nothing; exit 1 where a page is not what the manifests say");
+    add_effect_path_option(app, options->effect_paths);
+    return [options] { return docs(*options); };
+}
+
+}  // namespace aftershade::cli

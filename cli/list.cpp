@@ -1,0 +1,48 @@
+#include <fmt/format.h>
+
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/capture_options.h"
+#include "cli/effect_options.h"
+#include "cli/verbs.h"
+
+namespace aftershade::cli {
+
+namespace {
+
+struct ListOptions {
+    std::vector<std::string> effect_paths;
+    bool json = false;
+};
+
+ExitCode list(const ListOptions& options) {
+    Diagnostics diagnostics;
+    EffectRegistry effects = find_effects(options.effect_paths, diagnostics);
+    stop_at_errors(diagnostics);
+    nlohmann::ordered_json document = nlohmann::ordered_json::array();
+    for (const std::string& id : effects.ids()) {
+        const EffectManifest* manifest = effects.find(id, diagnostics);
+        if (!manifest) continue;
+        if (!options.json) fmt::print("{:<22} {:<8} {}\n", id, manifest->version, manifest->summary);
+        document.push_back({{"id", id},
+                            {"version", manifest->version},
+                            {"summary", manifest->summary},
+                            {"folder", manifest->folder.string()}});
+    }
+    if (options.json) fmt::print("{}\n", document.dump(2));
+    diagnostics.print(std::cerr);
+    return diagnostics.has_errors() ? ExitCode::usage : ExitCode::done;
+}
+
+}  // namespace
+
+Verb add_list(CLI::App& app) {
+    auto options = std::make_shared<ListOptions>();
+    add_effect_path_option(app, options->effect_paths);
+    app.add_flag("--json", options->json, "Machine-readable output");
+    return [options] { return list(*options); };
+}
+
+}  // namespace aftershade::cli

@@ -1,0 +1,187 @@
+#include "framework/effect/describe.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "framework/core/units.h"
+
+namespace aftershade {
+
+namespace {
+
+/// A table whose columns are as wide as their widest cell.
+class TextTable {
+public:
+    explicit TextTable(std::string indent) : indent_(std::move(indent)) {}
+    void add(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
+    void print(std::ostream& out) const {
+        std::vector<std::size_t> widths;
+        for (const auto& row : rows_) {
+            widths.resize(std::max(widths.size(), row.size()));
+            for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+        }
+        for (const auto& row : rows_) {
+            std::string line = indent_;
+            for (std::size_t i = 0; i < row.size(); ++i) {
+                line += row[i];
+                if (i + 1 < row.size()) line += std::string(widths[i] - row[i].size() + 2, ' ');
+            }
+            line.erase(line.find_last_not_of(' ') + 1);
+            out << line << "\n";
+        }
+    }
+
+private:
+    std::string indent_;
+    std::vector<std::vector<std::string>> rows_;
+};
+
+std::string input_flags(const InputSpec& input) {
+    std::string flags = input.optional ? ", optional" : "";
+    if (input.history) flags += ", with the frame before";
+    if (input.frame != 0) flags += input.frame < 0 ? ", of the frame before" : ", of the next frame";
+    return flags;
+}
+
+std::string texture_text(const TextureSpec& texture) {
+    std::string text{gpu::texture_format_name(texture.format)};
+    const GridSpec& grid = texture.grid;
+    const std::string tile = grid.tile.param.empty() ? std::to_string(grid.tile.number) : grid.tile.param;
+    if (grid.kind == GridSpec::Kind::tile) text += ", one texel per " + tile + " px";
+    if (grid.kind == GridSpec::Kind::size)
+        text += ", " + std::to_string(grid.size[0]) + " x " + std::to_string(grid.size[1]);
+    if (grid.kind == GridSpec::Kind::scale && grid.scale != 1) text += ", scale " + format_number(grid.scale);
+    if (texture.layers > 1) text += ", " + std::to_string(texture.layers) + " layers";
+    if (texture.auto_mips) text += ", mips";
+    if (texture.history) text += ", history";
+    return text;
+}
+
+/// A cell of a Markdown table.
+std::string cell(std::string text) {
+    for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
+    return text;
+}
+
+std::string preset_text(const EffectManifest& manifest, const PresetSpec& preset) {
+    std::string text;
+    for (const auto& [name, value] : preset.values) {
+        const ParamSpec& spec = *manifest.find_param(name);
+        text += (text.empty() ? "" : ", ") + name + " " + format_value(spec, value) +
+                (spec.unit.empty() ? "" : " " + spec.unit);
+    }
+    return text.empty() ? "the defaults" : text;
+}
+
+void markdown_params(const EffectManifest& manifest, std::ostream& out) {
+    if (manifest.params.empty()) return;
+    out << "\n## Parameters\n\n| name | type | default | range | |\n|---|---|---|---|---|\n";
+    for (const ParamSpec& spec : manifest.params) {
+        out << "| `" << spec.name << "` | " << cell(type_text(spec)) << " | " << cell(default_text(spec))
+            << " | " << range_text(spec) << " | " << cell(spec.doc) << " |\n";
+        for (const ParamSpec& column : spec.columns)
+            out << "| `" << spec.name << "` &rarr; `" << column.name << "` | " << cell(type_text(column)) << " | "
+                << cell(default_text(column)) << " | " << range_text(column) << " | " << cell(column.doc) << " |\n";
+    }
+}
+
+}  // namespace
+
+std::string type_text(const ParamSpec& spec) {
+    std::string text{param_type_name(spec.type)};
+    if (spec.type == ParamType::enum_) {
+        text += ":";
+        for (std::size_t i = 0; i < spec.values.size(); ++i) text += (i ? ", " : " ") + spec.values[i];
+    }
+    if (spec.type == ParamType::table) text += " by object";
+    if (spec.type == ParamType::file) text += spec.file_kind == FileKind::lut ? ": .cube" : ": EXR or PNG";
+    return text + (spec.unit.empty() ? "" : ", " + spec.unit);
+}
+
+std::string range_text(const ParamSpec& spec) {
+    if (spec.min && spec.max) return format_number(*spec.min) + " to " + format_number(*spec.max);
+    if (spec.min) return "at least " + format_number(*spec.min);
+    return spec.max ? "at most " + format_number(*spec.max) : "";
+}
+
+std::string default_text(const ParamSpec& spec) {
+    if (spec.type == ParamType::table) return "its columns'";
+    if (spec.type == ParamType::file && std::get<std::string>(spec.default_value).empty()) return "none";
+    const std::string value =
+        spec.type == ParamType::enum_ ? std::get<std::string>(spec.default_value)
+                                      : format_value(spec, spec.default_value);
+    return value + (spec.unit.empty() ? "" : " " + spec.unit) +
+           (spec.from.empty() ? "" : "; before it " + spec.from);
+}
+
+std::string describe_text(const EffectManifest& manifest) {
+    std::ostringstream out;
+    out << manifest.id << " " << manifest.version << "\n" << manifest.summary << "\n";
+    for (const std::string& source : manifest.sources) out << "  source: " << source << "\n";
+    out << "\ninputs\n";
+    TextTable inputs("  ");
+    for (const InputSpec& input : manifest.inputs)
+        inputs.add({input.name, input.role + input_flags(input), input.doc});
+    inputs.print(out);
+    out << "\noutputs\n";
+    TextTable outputs("  ");
+    for (const OutputSpec& output : manifest.outputs) outputs.add({output.name, output.role, output.doc});
+    outputs.print(out);
+    if (!manifest.params.empty()) out << "\nparameters\n";
+    TextTable params("  ");
+    for (const ParamSpec& spec : manifest.params) {
+        params.add({spec.name, type_text(spec), default_text(spec), range_text(spec), spec.doc});
+        for (const ParamSpec& column : spec.columns)
+            params.add({"  " + column.name, type_text(column), default_text(column), range_text(column), column.doc});
+    }
+    params.print(out);
+    if (!manifest.presets.empty()) out << "\npresets\n";
+    TextTable presets("  ");
+    for (const PresetSpec& preset : manifest.presets) presets.add({preset.name, preset_text(manifest, preset)});
+    presets.print(out);
+    if (!manifest.textures.empty()) out << "\ntextures (--tap " << manifest.id << ".<name>)\n";
+    TextTable textures("  ");
+    for (const TextureSpec& texture : manifest.textures)
+        textures.add({texture.name, texture_text(texture), texture.doc});
+    textures.print(out);
+    return out.str();
+}
+
+std::string describe_markdown(const EffectManifest& manifest) {
+    std::ostringstream out;
+    out << "<!-- Made by `aftershade docs` from effects/" << manifest.id << "/effect.json; do not edit. -->\n"
+        << "# " << manifest.id << "\n\n" << manifest.summary << " Version " << manifest.version << ".\n";
+    out << "\n## Images\n\n| | name | role | |\n|---|---|---|---|\n";
+    for (const InputSpec& input : manifest.inputs)
+        out << "| in | `" << input.name << "` | " << input.role << input_flags(input) << " | " << cell(input.doc)
+            << " |\n";
+    for (const OutputSpec& output : manifest.outputs)
+        out << "| out | `" << output.name << "` | " << output.role << " | " << cell(output.doc) << " |\n";
+    markdown_params(manifest, out);
+    if (!manifest.presets.empty()) out << "\n## Presets\n\n| name | values |\n|---|---|\n";
+    for (const PresetSpec& preset : manifest.presets)
+        out << "| `" << preset.name << "` | " << cell(preset_text(manifest, preset)) << " |\n";
+    if (!manifest.textures.empty())
+        out << "\n## Textures\n\nWritten out by `--tap " << manifest.id << ".<name>`.\n\n| name | format | |\n|---|---|---|\n";
+    for (const TextureSpec& texture : manifest.textures)
+        out << "| `" << texture.name << "` | " << texture_text(texture) << " | " << cell(texture.doc) << " |\n";
+    if (!manifest.sources.empty()) out << "\n## Sources\n\n";
+    for (const std::string& source : manifest.sources) out << "- " << source << "\n";
+    return out.str();
+}
+
+std::string index_markdown(const std::vector<const EffectManifest*>& manifests) {
+    std::ostringstream out;
+    out << "<!-- Made by `aftershade docs`; do not edit. -->\n# Effects\n\n| effect | from | to | |\n|---|---|---|---|\n";
+    const auto roles = [](const auto& list) {
+        std::string text;
+        for (const auto& item : list) text += (text.empty() ? "" : ", ") + item.role;
+        return text;
+    };
+    for (const EffectManifest* manifest : manifests)
+        out << "| [`" << manifest->id << "`](" << manifest->id << ".md) | " << roles(manifest->inputs) << " | "
+            << roles(manifest->outputs) << " | " << cell(manifest->summary) << " |\n";
+    return out.str();
+}
+
+}  // namespace aftershade

@@ -1,0 +1,27 @@
+// An effect's declaration, said for people and for programs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/effect/manifest.h"
+
+namespace aftershade {
+
+/// "float, m", "int", "enum: square, hexagon", "table by object".
+std::string type_text(const ParamSpec& spec);
+/// "0.05 to 1000", "at least 0", "" where nothing bounds it.
+std::string range_text(const ParamSpec& spec);
+/// The default with its unit, and where it comes from before that: "3 m, else camera.focus_distance".
+std::string default_text(const ParamSpec& spec);
+
+/// What `describe` prints: a table of inputs, outputs, parameters, presets, textures.
+std::string describe_text(const EffectManifest& manifest);
+/// The same as one JSON object; its keys are the manifest's, with every default filled in.
+std::string describe_json(const EffectManifest& manifest);
+/// The page of the documentation: docs/effects/<id>.md.
+std::string describe_markdown(const EffectManifest& manifest);
+/// docs/effects/README.md: one line for each effect.
+std::string index_markdown(const std::vector<const EffectManifest*>& manifests);
+
+}  // namespace aftershade

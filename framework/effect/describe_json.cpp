@@ -1,0 +1,63 @@
+#include <nlohmann/json.hpp>
+
+#include "framework/effect/describe.h"
+
+namespace aftershade {
+
+using json = nlohmann::ordered_json;
+
+namespace {
+
+json value_json(const ParamSpec& spec, const ParamValue& value) {
+    return json::parse(format_value(spec, value));
+}
+
+json param_json(const ParamSpec& spec) {
+    json entry = {{"type", param_type_name(spec.type)}, {"doc", spec.doc}};
+    if (!spec.unit.empty()) entry["unit"] = spec.unit;
+    if (!spec.values.empty()) entry["values"] = spec.values;
+    if (spec.type != ParamType::table) entry["default"] = value_json(spec, spec.default_value);
+    if (spec.min) entry["min"] = *spec.min;
+    if (spec.max) entry["max"] = *spec.max;
+    if (spec.ui_range) entry["ui"] = *spec.ui_range;
+    if (spec.identity) entry["identity"] = value_json(spec, *spec.identity);
+    if (!spec.from.empty()) entry["from"] = spec.from;
+    if (is_block_type(spec.type)) entry["bind"] = spec.bind == ParamBind::define ? "define" : "uniform";
+    if (spec.type == ParamType::file) entry["kind"] = spec.file_kind == FileKind::lut ? "lut" : "image";
+    if (spec.type == ParamType::curve) entry["domain"] = spec.domain;
+    for (const ParamSpec& column : spec.columns) entry["columns"][column.name] = param_json(column);
+    return entry;
+}
+
+}  // namespace
+
+std::string describe_json(const EffectManifest& manifest) {
+    json result = {{"id", manifest.id},           {"version", manifest.version},
+                   {"summary", manifest.summary}, {"sources", manifest.sources},
+                   {"inputs", json::object()},    {"outputs", json::object()},
+                   {"params", json::object()},    {"textures", json::object()},
+                   {"passes", json::array()},     {"presets", json::object()}};
+    for (const InputSpec& input : manifest.inputs) {
+        json entry = {{"role", input.role}, {"optional", input.optional}, {"doc", input.doc}};
+        if (input.history) entry["history"] = true;
+        if (input.frame != 0) entry["frame"] = input.frame;
+        result["inputs"][input.name] = entry;
+    }
+    for (const OutputSpec& output : manifest.outputs)
+        result["outputs"][output.name] = {{"role", output.role}, {"doc", output.doc}};
+    for (const ParamSpec& spec : manifest.params) result["params"][spec.name] = param_json(spec);
+    for (const TextureSpec& texture : manifest.textures)
+        result["textures"][texture.name] = {{"format", gpu::texture_format_name(texture.format)},
+                                            {"history", texture.history},
+                                            {"doc", texture.doc}};
+    for (const PassSpec& pass : manifest.passes)
+        result["passes"].push_back({{"name", pass.name}, {"shader", pass.shader}});
+    for (const PresetSpec& preset : manifest.presets) {
+        json& values = result["presets"][preset.name] = json::object();
+        for (const auto& [name, value] : preset.values)
+            values[name] = value_json(*manifest.find_param(name), value);
+    }
+    return result.dump(2);
+}
+
+}  // namespace aftershade

@@ -1,0 +1,22 @@
+// The words of a shader, as far as checks by text need them.
+#pragma once
+
+#include <cctype>
+#include <string>
+#include <vector>
+
+#include "framework/effect/shader_source.h"
+
+namespace aftershade {
+
+/// A word of a shader, or one character of anything else.
+struct Token {
+    std::string text;
+    Place place;
+    bool is_word() const { return std::isalpha(static_cast<unsigned char>(text[0])) || text[0] == '_'; }
+};
+
+/// What the author wrote, without comments and without the host's own lines.
+std::vector<Token> glsl_tokens(const ShaderSource& source);
+
+}  // namespace aftershade

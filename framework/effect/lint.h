@@ -1,0 +1,18 @@
+// What a manifest and its shaders may do and seldom should.
+#pragma once
+
+#include <filesystem>
+
+#include "framework/core/diagnostics.h"
+#include "framework/effect/manifest.h"
+
+namespace aftershade {
+
+/// Warnings with their places: a texture that no output depends on, half or 8-bit formats for what is written
+/// from depth, velocity, positions or ids alone, history whose shaders never ask frame.history_valid, an sRGB
+/// encoding in an effect that makes no display, loops bounded by a parameter in a pass without
+/// "max_iterations".
+void lint_effect(const EffectManifest& manifest, const std::filesystem::path& glsl_folder,
+                 Diagnostics& diagnostics);
+
+}  // namespace aftershade

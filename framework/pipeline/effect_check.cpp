@@ -1,0 +1,158 @@
+#include "framework/pipeline/effect_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "framework/core/error.h"
+#include "framework/image/role.h"
+#include "framework/pipeline/renderer.h"
+
+namespace aftershade {
+
+namespace {
+
+/// One way to use the effect: its name for messages, values above the defaults, inputs left out.
+struct Setting {
+    std::string name;
+    std::map<std::string, ParamValue> values;
+    std::set<std::string> absent;
+};
+
+void add_numbers(const ParamSpec& spec, std::vector<Setting>& settings) {
+    for (const auto& [end, limit] : {std::pair("min", spec.min), {"max", spec.max}}) {
+        if (!limit) continue;
+        ParamValue value = *limit;
+        if (spec.type == ParamType::int_) value = std::int64_t(std::llround(*limit));
+        else if (component_count(spec.type) > 1)
+            value = std::vector<double>(std::size_t(component_count(spec.type)), *limit);
+        settings.push_back({spec.name + " at its " + end + ", " + format_value(spec, value), {{spec.name, value}}, {}});
+    }
+}
+
+std::vector<Setting> settings_of(const EffectManifest& manifest) {
+    std::vector<Setting> settings{{"the defaults", {}, {}}};
+    for (const ParamSpec& spec : manifest.params) {
+        if (spec.type == ParamType::bool_)
+            settings.push_back({spec.name + " " + format_value(!std::get<bool>(spec.default_value)),
+                                {{spec.name, !std::get<bool>(spec.default_value)}},
+                                {}});
+        else if (spec.type == ParamType::enum_)
+            for (const std::string& value : spec.values) settings.push_back({spec.name + " " + value, {{spec.name, value}}, {}});
+        else if (is_block_type(spec.type)) add_numbers(spec, settings);
+    }
+    for (const PresetSpec& preset : manifest.presets) settings.push_back({"preset " + preset.name, preset.values, {}});
+    for (const InputSpec& input : manifest.inputs)
+        if (input.optional) settings.push_back({"no " + input.name, {}, {input.name}});
+    return settings;
+}
+
+Pipeline pipeline_of(const EffectManifest& manifest, const Setting& setting) {
+    PipelineStep step;
+    step.name = manifest.id;
+    step.manifest = &manifest;
+    for (const InputSpec& input : manifest.inputs)
+        // A role that the test capture never has: the input is not there.
+        step.inputs[input.name] = {-1, setting.absent.contains(input.name) ? "aov:absent" : input.role};
+    for (const auto& [name, value] : setting.values) {
+        step.values[name] = value;
+        step.origins[name] = "the check";
+    }
+    Pipeline pipeline;
+    pipeline.steps.push_back(std::move(step));
+    return pipeline;
+}
+
+std::string first_bad_value(const FrameResult& result) {
+    for (const auto& [role, image] : result.images) {
+        if (image.type() != ComponentType::float32) continue;
+        std::vector<AuditFinding> findings;
+        audit_values(image.floats(), image.width(), image.channels(), std::isinf(find_role(role)->outside), "the step",
+                     role, findings);
+        if (!findings.empty()) return describe_finding(findings.front());
+    }
+    return "";
+}
+
+/// "" where all is well.
+std::string fault_of(gpu::Context& context, const EffectManifest& manifest, const Setting& setting,
+                     const std::filesystem::path& data_folder) {
+    const Pipeline pipeline = pipeline_of(manifest, setting);
+    std::vector<std::string> roles;
+    for (const OutputSpec& output : manifest.outputs) roles.push_back(output.role);
+    PipelineRenderer renderer(context, pipeline, data_folder);
+    // Two frames, so that history is read.
+    for (const int number : {1, 2}) {
+        const Capture previous = make_test_capture(64, 36, number - 1), capture = make_test_capture(64, 36, number),
+                      next = make_test_capture(64, 36, number + 1);
+        FrameInputs frame;
+        frame.capture = &capture;
+        frame.previous = &previous;
+        frame.next = &next;
+        try {
+            const std::string bad = first_bad_value(renderer.render(frame, roles, false));
+            if (!bad.empty()) return bad;
+        } catch (const Error& error) {
+            return error.what();
+        }
+    }
+    return "";
+}
+
+}  // namespace
+
+Capture make_test_capture(int width, int height, int frame) {
+    Capture capture;
+    CaptureHeader& header = capture.header;
+    header.frame = header.source_frame = frame;
+    header.path = "test capture";
+    header.profile = "native";
+    header.data_window = header.display_window = {0, 0, width - 1, height - 1};
+    for (const ChannelRole& role : channel_roles()) {
+        if (role.name == "display") continue;
+        capture.images[role.name] = Image(width, height, role.channels, role.type);
+        header.roles.push_back(role.name);
+    }
+    const auto set = [&](const char* role, int x, int y, std::initializer_list<float> values) {
+        int channel = 0;
+        for (const float value : values) capture.images.at(role).at(x, y, channel++) = value;
+    };
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const int left = width / 4 + 3 * frame;
+            const bool box = x >= left && x < left + width / 4 && y >= height / 4 && y < height * 3 / 4;
+            const bool sky = !box && y < height / 3;
+            const bool lamp = !box && x % 17 == 5 && y % 11 == 4;
+            const float u = float(x) / float(width), light = lamp ? 500.0f : 0.2f + u;
+            const float depth = box ? 2.0f : sky ? std::numeric_limits<float>::infinity() : 4.0f + 8.0f * u;
+            set("color", x, y, {light * 0.8f, light * 0.5f, light * 0.3f, sky ? 0.5f : 1.0f});
+            set("depth", x, y, {depth});
+            set("albedo", x, y, {0.8f, 0.5f, 0.3f});
+            set("irradiance", x, y, {light, light, light});
+            set("normal", x, y, {0, 0, 1});
+            set("position", x, y, {u, float(y), sky ? 0 : -depth});
+            set("velocity", x, y, {box ? 3.0f : 0.0f, 0});
+            set("velocity_next", x, y, {box ? 3.0f : 0.0f, 0});
+            set("mask", x, y, {box ? 1.0f : 0.0f});
+            capture.images.at("object_id").uint_at(x, y, 0) = box ? 2 : sky ? 0 : 1;
+        }
+    return capture;
+}
+
+void check_effect(gpu::Context& context, const EffectManifest& manifest, const std::filesystem::path& data_folder,
+                  Diagnostics& diagnostics) {
+    std::set<std::string> told;
+    for (const Setting& setting : settings_of(manifest)) {
+        const std::string fault = fault_of(context, manifest, setting, data_folder);
+        if (fault.empty() || !told.insert(fault).second) continue;
+        // A shader's fault brings its own place and all its lines.
+        const bool has_place = fault.find(": error: ") != std::string::npos;
+        diagnostics.error({(manifest.folder / "effect.json").string()},
+                          "with " + setting.name + ":" + (has_place ? "\n" : " ") + fault);
+    }
+}
+
+}  // namespace aftershade
