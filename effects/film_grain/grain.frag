@@ -19,19 +19,19 @@ vec3 grain_at(ivec2 cell) {
 #endif
 }
 
-// Weighted by the nearest four grains and divided by the root of the sum of squared weights, so that every pixel has a
-// variance of 1 wherever it lies between them.
+// The nine nearest grains, weighted by a round bell that ends at 1.5 grains and divided by the root of the sum of squared
+// weights, so that every pixel has a variance of 1 wherever it lies between them.
 vec3 grain(vec2 display_px) {
     vec2 place = display_px / max(param.size, 1.0);
-    ivec2 cell = ivec2(floor(place));
-    vec2 t = place - floor(place);
-    t = t * t * (3.0 - 2.0 * t);
+    ivec2 nearest = ivec2(floor(place + 0.5));
     vec3 sum = vec3(0.0);
     float squares = 0.0;
-    for (int i = 0; i < 4; ++i) {
-        ivec2 corner = ivec2(i & 1, i >> 1);
-        float weight = (corner.x == 1 ? t.x : 1.0 - t.x) * (corner.y == 1 ? t.y : 1.0 - t.y);
-        if (weight > 0.0) sum += weight * grain_at(cell + corner);
+    for (int i = 0; i < 9; ++i) {
+        ivec2 cell = nearest + ivec2(i % 3, i / 3) - 1;
+        vec2 away = place - vec2(cell);
+        float bell = max(1.0 - dot(away, away) / (1.5 * 1.5), 0.0);
+        float weight = bell * bell * bell * bell;
+        if (weight > 0.0) sum += weight * grain_at(cell);
         squares += weight * weight;
     }
     return sum * inversesqrt(squares);
