@@ -1,4 +1,5 @@
-// The cases of effects, effects/<id>/cases/<case>.json: a few steps over a capture, and the images that they shall give.
+// The cases of effects, effects/<id>/cases/<case>.json: a few steps over a capture, and the images that they
+// shall give.
 #pragma once
 
 #include <algorithm>
@@ -52,7 +53,8 @@ inline std::string to_json(const Node& node) {
         case Node::Kind::integer: return std::to_string(node.integer);
         case Node::Kind::number: return format_number(node.number);
         case Node::Kind::string:
-            for (const char c : node.string) text += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
+            for (const char c : node.string)
+                text += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
             return '"' + text + '"';
         case Node::Kind::array:
             for (const Node& item : node.items) text += (text.empty() ? "" : ", ") + to_json(item);

@@ -1,5 +1,6 @@
-// What holds for every effect, found by its folder: it compiles in every variant, its output is finite over the
-// range of every parameter, its identity is one, both software backends agree, and its cases give their goldens.
+// What holds for every effect, found by its folder: it compiles in every variant, its output is finite over
+// the range of every parameter, its identity is one, both software backends agree, and its cases give their
+// goldens.
 //
 // AFTERSHADE_MAKE_GOLDENS=1 (scripts/make-case-goldens) writes the goldens of the cases instead of comparing.
 #include <cmath>
@@ -14,12 +15,12 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/compare/metrics.h"
 #include "framework/core/units.h"
 #include "framework/image/capture.h"
 #include "framework/image/png_file.h"
 #include "framework/image/profile.h"
 #include "framework/image/role.h"
-#include "framework/compare/metrics.h"
 #include "tests/effect_case.h"
 #include "tests/look_runner.h"
 #include "tests/synthetic_capture.h"
@@ -162,7 +163,8 @@ TEST_P(EveryEffect, SaysWhatItAndItsParametersDo) {
     EXPECT_FALSE(manifest().version.empty());
     for (const ParamSpec& spec : manifest().params) {
         EXPECT_TRUE(spec.doc.ends_with('.')) << spec.name << ": the doc is a sentence";
-        const bool number = spec.type != aftershade::ParamType::bool_ && spec.type != aftershade::ParamType::enum_;
+        const bool number =
+            spec.type != aftershade::ParamType::bool_ && spec.type != aftershade::ParamType::enum_;
         EXPECT_EQ(number, spec.ui_range.has_value()) << spec.name << ": a number has a slider's ends";
         EXPECT_EQ(number, spec.min.has_value()) << spec.name << ": a number has a least value";
     }
@@ -223,7 +225,8 @@ TEST_P(EveryEffect, GivesTheSameBitsOnBothSoftwareBackends) {
     const Capture capture = small_capture();
     const FrameResult first = run({}, backends()[0], capture), second = run({}, backends()[1], capture);
     ASSERT_EQ(first.images.size(), second.images.size());
-    for (const auto& [role, image] : first.images) EXPECT_TRUE(same_bits(image, second.images.at(role))) << role;
+    for (const auto& [role, image] : first.images)
+        EXPECT_TRUE(same_bits(image, second.images.at(role))) << role;
 }
 
 // ---- cases ----
@@ -288,7 +291,8 @@ void run_case(const EffectCase& test, gpu::Backend backend) {
         const FrameResult result = runner.run(reader.read(frame, role_names()));
         for (const std::string& role : test.outputs) {
             ASSERT_TRUE(result.images.contains(role)) << test.file << ": no step makes '" << role << "'";
-            if (making_goldens()) write_golden(test.golden(role, frame), role, result.images.at(role), backend);
+            if (making_goldens())
+                write_golden(test.golden(role, frame), role, result.images.at(role), backend);
             else compare_golden(test, role, frame, result.images.at(role));
         }
     }
@@ -306,13 +310,15 @@ TEST_P(EveryEffect, GivesTheGoldensOfItsCases) {
 
 TEST(EffectCase, TellsEveryFaultOfADocument) {
     Diagnostics diagnostics;
-    const auto node = parse_document(R"({"aftershade": 1, "capture": "nowhere.json", "frames": "a-b", "steps": [],
+    const auto node =
+        parse_document(R"({"aftershade": 1, "capture": "nowhere.json", "frames": "a-b", "steps": [],
         "outputs": ["color"], "tolerance": {"fail": 0.1, "fail_percent": 101, "hard_fail": 0.01}, "tgas": []})",
-                                     "case.json", diagnostics);
+                       "case.json", diagnostics);
     ASSERT_TRUE(node);
     EXPECT_FALSE(parse_case(*node, "case.json", kRoot, diagnostics));
     const std::string faults = faults_of(diagnostics);
-    for (const char* part : {"nowhere.json", "'a-b' is no range", "fail_percent", "'hard_fail' at least", "tgas"})
+    for (const char* part :
+         {"nowhere.json", "'a-b' is no range", "fail_percent", "'hard_fail' at least", "tgas"})
         EXPECT_NE(faults.find(part), std::string::npos) << part << " in\n" << faults;
     EXPECT_EQ(diagnostics.error_count(), 5) << faults;
 }

@@ -26,13 +26,15 @@ void main() {
     vec2 half_size_px = 0.5 * vec2(frame.display_size);
     vec2 from_centre_px = gl_FragCoord.xy + vec2(frame.origin) - half_size_px;
     float distance_ = length(from_centre_px) / length(half_size_px);
-    // Of red against green. Light that lies further out was taken from further in.
-    vec2 shift_px = from_centre_px / length(half_size_px) * pow(distance_, param.falloff - 1.0) * param.amount * spread();
+    // How much larger than green's the picture of the spectrum's place 1 is.
+    float magnified = param.amount * spread() / length(half_size_px) * pow(distance_, param.falloff - 1.0);
     vec4 sum = vec4(0.0), weights = vec4(0.0);
     for (int i = 0; i < param.taps; ++i) {
         float place = spectral_place(i);
         vec4 weight = vec4(spectrum(place), 1.0);
-        sum += weight * textureLod(color, (gl_FragCoord.xy - place * shift_px) * color_size.zw, 0.0);
+        // What a lens magnifies was nearer to the centre. The bound holds off the pole of absurd amounts.
+        vec2 source_px = from_centre_px / max(1.0 + place * magnified, 0.1);
+        sum += weight * textureLod(color, (gl_FragCoord.xy + source_px - from_centre_px) * color_size.zw, 0.0);
         weights += weight;
     }
     out_color = sum / weights;
