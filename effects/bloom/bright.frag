@@ -3,9 +3,9 @@
 #include <luminance.glsl>
 #include "bright.glsl"
 
-// A texel lies over exactly two by two of the finer level, counted from the top left: the glow stays round and centred
-// whatever the size. The 13 bilinear taps of Jimenez 2014 are five boxes of 4 x 4 texels; here each texel is fetched alone,
-// because a bilinear tap would spread a NaN.
+// A texel lies over exactly two by two of the finer level, counted from the top left: the glow stays round and
+// centred whatever the size. The 13 bilinear taps of Jimenez 2014 are five boxes of 4 x 4 texels; here each texel is
+// fetched alone, because a bilinear tap would spread a NaN.
 vec4 quads[5][5];
 
 float quad_weight(vec4 quad) {
@@ -34,7 +34,8 @@ void main() {
         for (int x = 0; x < 5; ++x) quads[y][x] = vec4(0.0);
     for (int y = 0; y < 6; ++y)
         for (int x = 0; x < 6; ++x) {
-            vec4 light = 0.25 * bright_part(texelFetch(color, clamp(corner + ivec2(x, y), ivec2(0), last), 0));
+            ivec2 p = clamp(corner + ivec2(x, y), ivec2(0), last);
+            vec4 light = 0.25 * bright_part(texelFetch(color, p, 0));
             for (int i = 0; i < 4; ++i) {
                 ivec2 quad = ivec2(x - (i & 1), y - (i >> 1));
                 if (quad.x >= 0 && quad.y >= 0 && quad.x < 5 && quad.y < 5) quads[quad.y][quad.x] += light;

@@ -1,4 +1,4 @@
-// The part of a pixel's light that blooms. Alpha is part of it: in premultiplied colour it is scaled like the rest.
+// The part of a pixel's light that blooms, and of its alpha: premultiplied colour is scaled as a whole.
 vec4 bright_part(vec4 texel) {
     if (any(isnan(texel)) || any(isinf(texel))) return vec4(0.0);
     if (param.threshold == 0.0) return texel;
