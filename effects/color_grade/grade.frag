@@ -1,0 +1,48 @@
+#version 450 core
+#include <pass>
+#include <luminance.glsl>
+#include "white_balance.glsl"
+
+// Of the size of the value, so that light below 0, which wide gamuts have, keeps its sign.
+vec3 power_of(vec3 v, vec3 exponent) { return sign(v) * pow(abs(v), exponent); }
+
+vec3 cdl(vec3 v) {
+    v = v * param.slope + param.offset;
+#if RANGE == RANGE_CDL
+    v = clamp(v, 0.0, 1.0);
+#endif
+    // Exponents of 1 are left out: pow() is not exact.
+    bvec3 raised = bvec3(v.x > 0.0 && param.power.x != 1.0, v.y > 0.0 && param.power.y != 1.0,
+                         v.z > 0.0 && param.power.z != 1.0);
+    v = mix(v, pow(max(v, 1e-38), param.power), raised);
+    if (param.saturation != 1.0) v = mix(vec3(luminance(v)), v, param.saturation);
+#if RANGE == RANGE_CDL
+    v = clamp(v, 0.0, 1.0);
+#endif
+    return v;
+}
+
+vec3 graded(vec3 light) {
+    light *= exp2(param.exposure);
+    if (param.temperature != kNeutralKelvin || param.tint != 0.0) {
+        vec3 rec709 = frame.rec709_from_color * light;
+        light = inverse(frame.rec709_from_color) * balanced(rec709, param.temperature, param.tint);
+    }
+    if (param.contrast != 1.0) light = param.pivot * power_of(light / param.pivot, vec3(param.contrast));
+    return cdl(light);
+}
+
+// Then not even the division by alpha may touch a bit.
+bool is_identity() {
+    return param.exposure == 0.0 && param.temperature == kNeutralKelvin && param.tint == 0.0 && param.contrast == 1.0 &&
+           param.slope == vec3(1.0) && param.offset == vec3(0.0) && param.power == vec3(1.0) && param.saturation == 1.0 &&
+           RANGE == RANGE_SCENE;
+}
+
+void main() {
+    vec4 texel = texelFetch(color, ivec2(gl_FragCoord.xy), 0);
+    if (is_identity()) out_color = texel;
+    else if (texel.a > 0.0) out_color = vec4(graded(texel.rgb / texel.a) * texel.a, texel.a);
+    // Light without coverage (glows, flames) is graded, but offset must not light up the empty background.
+    else out_color = vec4(graded(texel.rgb) - graded(vec3(0.0)), texel.a);
+}
