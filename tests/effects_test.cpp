@@ -107,6 +107,13 @@ Capture small_capture() {
                                     .sphere = sphere,
                                     .box = box,
                                     .points = {{5, 4, 1e4f}, {20, 18, 30}, {57, 30, 500}}});
+    // Soft shading too: where all edges are hard, what sharpens within its neighbours' range has nothing to
+    // do.
+    Image& color = capture.images.at("color");
+    for (int y = 0; y < color.height(); ++y)
+        for (int x = 0; x < color.width(); ++x)
+            for (int c = 0; c < 3; ++c)
+                color.at(x, y, c) *= 1 + 0.3f * std::sin(0.6f * float(x) + 0.4f * float(y));
     // Something in every role that a formula leaves black.
     for (const char* role : {"specular", "emission"})
         for (float& value : capture.images.at(role).floats()) value = 0.1f;
