@@ -15,6 +15,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/effect/usage_check.h"
 #include "framework/compare/metrics.h"
 #include "framework/core/units.h"
 #include "framework/image/capture.h"
@@ -170,8 +171,8 @@ TEST_P(EveryEffect, SaysWhatItAndItsParametersDo) {
     EXPECT_FALSE(manifest().version.empty());
     for (const ParamSpec& spec : manifest().params) {
         EXPECT_TRUE(spec.doc.ends_with('.')) << spec.name << ": the doc is a sentence";
-        const bool number =
-            spec.type != aftershade::ParamType::bool_ && spec.type != aftershade::ParamType::enum_;
+        const bool number = is_block_type(spec.type) && spec.type != aftershade::ParamType::bool_ &&
+                            spec.type != aftershade::ParamType::enum_;
         EXPECT_EQ(number, spec.ui_range.has_value()) << spec.name << ": a number has a slider's ends";
         EXPECT_EQ(number, spec.min.has_value()) << spec.name << ": a number has a least value";
     }
@@ -235,6 +236,43 @@ TEST_P(EveryEffect, LeavesColorAloneBitForBitWhereItsParametersSaySo) {
         }
     }
     EXPECT_TRUE(changes);
+}
+
+TEST_P(EveryEffect, DeclaresWhatItsShadersUseAndUsesWhatItDeclares) {
+    Diagnostics faults;
+    check_declared_used(manifest(), std::filesystem::path(AFTERSHADE_SOURCE_DIR) / "glsl", faults);
+    std::ostringstream text;
+    faults.print(text);
+    EXPECT_EQ(text.str(), "");
+}
+
+/// What came before a cut, a gap or another size must leave no trace.
+TEST_P(EveryEffect, BeginsAnewAtACutAGapAndAnotherSize) {
+    const auto frame_of = [](int number, int width) {
+        return make_capture({.width = width, .height = 20, .background = {0.1f * float(number), 0.5f, 0.2f},
+                             .background_depth_m = 5,
+                             .box = SyntheticBox{4, 4, 8, 6, 2, 0, 2}},
+                            number);
+    };
+    const auto run_one = [](LookRunner& runner, const Capture& capture, bool cut) {
+        FrameInputs frame;
+        frame.capture = &capture;
+        frame.begins_shot = cut;
+        return runner.run(frame);
+    };
+    struct After {
+        int number;
+        int width;
+        bool cut;
+    };
+    for (const After after : {After{3, 32, true}, After{9, 32, false}, After{3, 40, false}}) {
+        LookRunner used(look_of(GetParam(), {}), backends().front());
+        for (const int number : {1, 2}) run_one(used, frame_of(number, 32), false);
+        LookRunner fresh(look_of(GetParam(), {}), backends().front());
+        const Capture capture = frame_of(after.number, after.width);
+        const FrameResult a = run_one(used, capture, after.cut), b = run_one(fresh, capture, false);
+        for (const auto& [role, image] : a.images) EXPECT_TRUE(same_bits(image, b.images.at(role))) << role;
+    }
 }
 
 TEST_P(EveryEffect, GivesTheSameBitsOnBothSoftwareBackends) {

@@ -33,8 +33,9 @@ public:
     FrameResult run(const Capture& capture) {
         FrameInputs frame;
         frame.capture = &capture;
-        return renderer_->render(frame, {"color", "display"}, false);
+        return run(frame);
     }
+    FrameResult run(const FrameInputs& frame) { return renderer_->render(frame, {"color", "display"}, false); }
     Image color(const Capture& capture) { return run(capture).images.at("color"); }
 
 private:

@@ -8,6 +8,7 @@
 
 #include "tests/look_runner.h"
 #include "tests/synthetic_capture.h"
+#include "tests/temporary_folder.h"
 
 namespace aftershade::test {
 namespace {
@@ -50,6 +51,23 @@ TEST(ColorGrade, FollowsTheAscCdl) {
             EXPECT_NEAR(clamped[c], cdl(in, true)[c], 1e-4) << light.g;
         }
     }
+}
+
+/// Swaps red and blue, whatever curve lies around it; of two points a channel.
+TEST(ColorGrade, GoesThroughACubeTableInItsOwnCurve) {
+    const TemporaryFolder folder;
+    write_text(folder / "swap.cube",
+               "LUT_3D_SIZE 2\n0 0 0\n0 0 1\n0 1 0\n0 1 1\n1 0 0\n1 0 1\n1 1 0\n1 1 1\n");
+    const std::string lut = R"("lut": ")" + (folder / "swap.cube").string() + '"';
+    for (const char* space : {"srgb", "linear", "acescct"}) {
+        const Vec out = graded({0.7f, 0.2f, 0.05f}, lut + R"(, "lut_space": ")" + space + '"');
+        EXPECT_NEAR(out[0], 0.05, 2e-6) << space;
+        EXPECT_NEAR(out[1], 0.2, 2e-6) << space;
+        EXPECT_NEAR(out[2], 0.7, 4e-6) << space;
+    }
+    EXPECT_NEAR(graded({40, 1, 2}, lut + R"(, "lut_space": "acescct")")[2], 40, 4e-4) << "light above 1 is kept";
+    EXPECT_NEAR(graded({40, 1, 2}, lut)[2], 1, 1e-5) << "srgb ends at 1";
+    EXPECT_NEAR(graded({0.7f, 0.2f, 0.1f}, lut + R"(, "lut_amount": 0.25)")[0], 0.75 * 0.7 + 0.25 * 0.1, 4e-6);
 }
 
 TEST(ColorGrade, ContrastIsAPowerAboutThePivot) {

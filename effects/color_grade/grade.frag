@@ -1,6 +1,8 @@
 #version 450 core
 #include <pass>
 #include <luminance.glsl>
+#include <srgb.glsl>
+#include "table.glsl"
 #include "white_balance.glsl"
 
 // Of the size of the value, so that light below 0, which wide gamuts have, keeps its sign.
@@ -29,14 +31,16 @@ vec3 graded(vec3 light) {
         light = inverse(frame.rec709_from_color) * balanced(rec709, param.temperature, param.tint);
     }
     if (param.contrast != 1.0) light = param.pivot * power_of(light / param.pivot, vec3(param.contrast));
-    return cdl(light);
+    light = cdl(light);
+    if (param.lut_amount > 0.0) light = mix(light, through_table(light), param.lut_amount);
+    return light;
 }
 
 // Then not even the division by alpha may touch a bit.
 bool is_identity() {
     return param.exposure == 0.0 && param.temperature == kNeutralKelvin && param.tint == 0.0 && param.contrast == 1.0 &&
            param.slope == vec3(1.0) && param.offset == vec3(0.0) && param.power == vec3(1.0) && param.saturation == 1.0 &&
-           RANGE == RANGE_SCENE;
+           RANGE == RANGE_SCENE && !has_table();
 }
 
 void main() {

@@ -13,7 +13,7 @@ namespace {
 class Linter {
 public:
     Linter(const EffectManifest& manifest, const std::filesystem::path& glsl_folder, Diagnostics& diagnostics)
-        : manifest_(manifest), diagnostics_(diagnostics) {
+        : manifest_(manifest), glsl_folder_(glsl_folder), diagnostics_(diagnostics) {
         ParamSet defaults;
         for (const ParamSpec& spec : manifest.params) defaults.set(spec.name, spec.default_value);
         std::vector<std::string> inputs;
@@ -100,8 +100,10 @@ private:
         for (const auto& [pass, tokens] : tokens_)
             for (std::size_t i = 0; i < tokens.size(); ++i) {
                 const Token& token = tokens[i];
+                // A shared module may hold the curve; using it is what counts.
+                if (std::filesystem::path(token.place.file).parent_path() == glsl_folder_) continue;
                 if (token.text == "encode_srgb" && i + 1 < tokens.size() && tokens[i + 1].text == "(" &&
-                    told.insert(to_string(token.place)).second && (i == 0 || !tokens[i - 1].is_word()))
+                    told.insert(to_string(token.place)).second)
                     diagnostics_.warning(token.place, "sRGB is encoded, but no output is display: effects "
                                                       "work in scene-linear light");
                 if (token.text == "pow" && encodes(tokens, i, exponents) && told.insert(to_string(token.place)).second)
@@ -146,6 +148,7 @@ private:
     }
 
     const EffectManifest& manifest_;
+    const std::filesystem::path& glsl_folder_;
     Diagnostics& diagnostics_;
     std::map<std::string, std::vector<Token>> tokens_;  // by pass
 };
