@@ -106,27 +106,30 @@ public:
 
     void look(const Child& child) {
         const auto now = Clock::now();
-        if (!reason_ && interrupt_ && *interrupt_) {
+        if (!ours_ && interrupt_ && *interrupt_) {
+            ours_ = true;
             reason_ = WorkerEnd::interrupted;
             kill_at_ = now + command_.grace;
             child.signal_group(SIGTERM);
         }
         const auto& wall_time = command_.limits.wall_time;
-        if (!reason_ && wall_time && now >= start_ + *wall_time) {
+        if (!ours_ && wall_time && now >= start_ + *wall_time) {
+            ours_ = true;
             reason_ = WorkerEnd::timed_out;
             kill_at_ = now;
         }
-        if (kill_at_ && now >= *kill_at_) child.signal_group(SIGKILL);
+        if (now >= kill_at_) child.signal_group(SIGKILL);
     }
-    std::optional<WorkerEnd> reason() const { return reason_; }
+    WorkerEnd reason_or(WorkerEnd otherwise) const { return ours_ ? reason_ : otherwise; }
     double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
 private:
     const WorkerCommand& command_;
     const std::atomic<bool>* interrupt_;
     Clock::time_point start_ = Clock::now();
-    std::optional<WorkerEnd> reason_;
-    std::optional<Clock::time_point> kill_at_;
+    bool ours_ = false;
+    WorkerEnd reason_ = WorkerEnd::exited;
+    Clock::time_point kill_at_ = Clock::time_point::max();
 };
 
 void wait_for_news(const std::array<LineReader*, 3>& readers) {
@@ -164,7 +167,7 @@ WorkerResult run_worker(const WorkerCommand& command, const WorkerListener& list
     result.seconds = ending.seconds();
     if (WIFEXITED(how)) result.exit_code = WEXITSTATUS(how);
     if (WIFSIGNALED(how)) result.signal_number = WTERMSIG(how);
-    result.end = ending.reason().value_or(WIFSIGNALED(how) ? WorkerEnd::signalled : WorkerEnd::exited);
+    result.end = ending.reason_or(WIFSIGNALED(how) ? WorkerEnd::signalled : WorkerEnd::exited);
     return result;
 }
 
