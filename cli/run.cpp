@@ -1,5 +1,6 @@
 #include "framework/pipeline/run.h"
 
+#include <chrono>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "cli/render_options.h"
 #include "cli/run_report.h"
 #include "cli/verbs.h"
+#include "cli/watch.h"
 #include "framework/core/data_path.h"
 #include "framework/gpu/timer.h"
 #include "framework/pipeline/look.h"
@@ -36,6 +38,7 @@ struct RunArguments {
     bool keep_channels = false;
     bool audit = false;
     bool explain = false;
+    bool watch = false;
     PipelineOptions pipeline;
     CaptureOptions capture;
     RenderOptions render;
@@ -75,6 +78,8 @@ void add_options(CLI::App& app, RunArguments& options) {
                  "Tell which pass first writes NaN or infinite values, where and how many; slow");
     add_effect_path_option(app, options.effect_paths);
     app.add_option("--progress", options.progress, "auto, none or plain")->capture_default_str();
+    app.add_flag("--watch", options.watch,
+                 "Stay, and render again whenever the look, a manifest or a shader changes");
     add_render_options(app, options.render);
     add_backend_option(app, options.backend);
 }
@@ -91,18 +96,99 @@ OutputOptions output_options(const RunArguments& options) {
     return outputs;
 }
 
+/// The look and its effects as they are on disk now; a pipeline refers to the effects.
+struct BoundLook {
+    explicit BoundLook(EffectRegistry found) : effects(std::move(found)) {}
+    EffectRegistry effects;
+    std::optional<Look> look;
+    Pipeline pipeline;
+};
+
+std::unique_ptr<BoundLook> bind_look(const RunArguments& options, Diagnostics& diagnostics) {
+    auto bound = std::make_unique<BoundLook>(find_effects(options.effect_paths, diagnostics));
+    bound->look = read_look(options.look, diagnostics, parse_variables(options.render, diagnostics));
+    if (bound->look)
+        bound->pipeline = compile_pipeline(*bound->look, bound->effects, options.pipeline, diagnostics);
+    return bound;
+}
+
+/// What stays as it is while a look is being worked on.
+struct Job {
+    const RunArguments& arguments;
+    const Sequence& sequence;
+    const CaptureReader& reader;
+    gpu::Context& context;
+    RunOptions run;
+    OutputOptions outputs;
+    ProgressStyle progress;
+};
+
+ExitCode render(const Job& job, const Pipeline& pipeline, const std::atomic<bool>& stop) {
+    RunReporter reporter(job.progress, int(job.run.frames.size()));
+    const RunReport report = run_frames(job.context, pipeline, job.sequence, job.reader, job.run, job.outputs,
+                                        data_path(), reporter.observer(), stop);
+    if (!job.arguments.render.graph.empty()) write_graph(job.arguments.render.graph, report.graph_dot);
+    const gpu::ContextInfo& gl = job.context.info();
+    if (job.progress != ProgressStyle::none)
+        std::cerr << gpu::backend_name(gl.backend) << ": " << gl.renderer << ", " << gl.version << "\n";
+    reporter.print_summary(report, gpu::Timer::clock_name(job.context));
+    return report.exit_code();
+}
+
+/// Renders again whenever a file of the look changes, until it is interrupted. Faults are told, and waited out.
+ExitCode watch(const Job& job, std::unique_ptr<BoundLook> bound, const std::atomic<bool>& stop) {
+    using namespace std::chrono_literals;
+    const std::filesystem::path data = data_path();
+    FileWatch files(paths_to_watch(*bound->look, bound->pipeline, data));
+    std::cerr << "watching; interrupt to end\n";
+    while (!stop) {
+        std::this_thread::sleep_for(20ms);
+        if (!files.changed()) continue;
+        const auto start = std::chrono::steady_clock::now();
+        try {
+            Diagnostics diagnostics;
+            auto now = bind_look(job.arguments, diagnostics);
+            diagnostics.print(std::cerr);
+            if (diagnostics.has_errors()) continue;
+            bound = std::move(now);
+            files = FileWatch(paths_to_watch(*bound->look, bound->pipeline, data));
+            render(job, bound->pipeline, stop);
+        } catch (const Error& error) {
+            std::cerr << error.what() << "\n";
+            continue;
+        }
+        const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - start;
+        std::cerr << "made anew in " << int(taken.count()) << " ms\n";
+    }
+    return ExitCode::interrupted;
+}
+
+void require_first_frame(const Sequence& sequence, const CaptureReader& reader, const Pipeline& pipeline) {
+    if (sequence.frames.size() == 1)
+        require_capture_roles(pipeline, reader.read_header(sequence.file_number(sequence.frames.front())));
+}
+
+ExitCode explain(const Sequence& sequence, const CaptureReader& reader, const Pipeline& pipeline) {
+    const Capture capture =
+        reader.read(sequence.file_number(sequence.frames.front()), pipeline.capture_roles());
+    FrameInputs frame;
+    frame.capture = &capture;
+    std::cout << explain_params(pipeline, frame);
+    return ExitCode::done;
+}
+
+MissingFrame missing_frame(const std::string& word) {
+    return word == "skip" ? MissingFrame::skip : word == "hold" ? MissingFrame::hold : MissingFrame::error;
+}
+
 ExitCode run(const RunArguments& options) {
     const std::atomic<bool>& stop = watch_for_interrupt();
-    const std::filesystem::path data = data_path();
 
     // Everything that the user wrote is checked, and every fault listed, before any work starts.
     Diagnostics diagnostics;
-    EffectRegistry effects = find_effects(options.effect_paths, diagnostics);
     const gpu::Backend backend = chosen_backend(options.backend);
     const ProgressStyle progress = parse_progress(options.progress);
-    const auto look = read_look(options.look, diagnostics, parse_variables(options.render, diagnostics));
-    Pipeline pipeline;
-    if (look) pipeline = compile_pipeline(*look, effects, options.pipeline, diagnostics);
+    auto bound = bind_look(options, diagnostics);
     std::vector<Profile> profiles = load_profiles(options.capture, diagnostics);
     const std::optional<Sequence> sequence = find_sequence(options.capture, profiles, diagnostics);
     OutputOptions outputs = output_options(options);
@@ -116,36 +202,19 @@ ExitCode run(const RunArguments& options) {
     diagnostics.print(std::cerr);
 
     const CaptureReader reader(*sequence, std::move(profiles), options.capture.limits);
-    if (options.explain) {
-        const int file = sequence->file_number(sequence->frames.front());
-        const Capture capture = reader.read(file, pipeline.capture_roles());
-        FrameInputs frame;
-        frame.capture = &capture;
-        std::cout << explain_params(pipeline, frame);
-        return ExitCode::done;
-    }
+    if (options.explain) return explain(*sequence, reader, bound->pipeline);
     // A lone frame that cannot be read is told of before a context is made.
-    if (sequence->frames.size() == 1)
-        require_capture_roles(pipeline, reader.read_header(sequence->file_number(sequence->frames.front())));
+    require_first_frame(*sequence, reader, bound->pipeline);
 
     set_exr_threads(int(std::thread::hardware_concurrency()));
     gpu::Context context(backend);
     outputs.renderer = context.info().renderer;
-    RunReporter reporter(progress, int(sequence->frames.size()));
-    const MissingFrame missing = options.missing == "skip"   ? MissingFrame::skip
-                                 : options.missing == "hold" ? MissingFrame::hold
-                                                             : MissingFrame::error;
     run_options.frames = sequence->frames;
-    run_options.missing = missing;
+    run_options.missing = missing_frame(options.missing);
     run_options.audit = options.audit;
-    const RunReport report = run_frames(context, pipeline, *sequence, reader, run_options, outputs, data,
-                                        reporter.observer(), stop);
-    if (!options.render.graph.empty()) write_graph(options.render.graph, report.graph_dot);
-    if (progress != ProgressStyle::none)
-        std::cerr << gpu::backend_name(context.info().backend) << ": " << context.info().renderer << ", "
-                  << context.info().version << "\n";
-    reporter.print_summary(report, gpu::Timer::clock_name(context));
-    return report.exit_code();
+    const Job job{options, *sequence, reader, context, run_options, outputs, progress};
+    const ExitCode code = render(job, bound->pipeline, stop);
+    return options.watch ? watch(job, std::move(bound), stop) : code;
 }
 
 }  // namespace

@@ -1,0 +1,40 @@
+// Whether files that a picture is made of have changed: for `run --watch`.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <vector>
+
+#include "framework/pipeline/look.h"
+#include "framework/pipeline/pipeline.h"
+
+namespace aftershade::cli {
+
+/// Looks at times and sizes: editors replace files in more ways than notifications tell of alike, and a few
+/// dozen files cost microseconds.
+class FileWatch {
+public:
+    /// `paths` are files, and folders whose files count.
+    explicit FileWatch(std::vector<std::filesystem::path> paths) : paths_(std::move(paths)), seen_(look()) {}
+
+    /// Whether anything is other than at the last call.
+    bool changed();
+
+private:
+    struct State {
+        std::filesystem::file_time_type time{};
+        std::uintmax_t bytes = 0;
+        bool operator==(const State&) const = default;
+    };
+    using States = std::map<std::filesystem::path, State>;
+    States look() const;
+
+    std::vector<std::filesystem::path> paths_;
+    States seen_;
+};
+
+/// The look, the looks that it uses, and the folders of its effects and of shared shaders.
+std::vector<std::filesystem::path> paths_to_watch(const Look& look, const Pipeline& pipeline,
+                                                  const std::filesystem::path& data_folder);
+
+}  // namespace aftershade::cli

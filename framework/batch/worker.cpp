@@ -1,0 +1,174 @@
+#include "framework/batch/worker.h"
+
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+
+#include "framework/batch/spawn.h"
+
+namespace aftershade {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// How late a timeout, an interrupt or a silent end may be noticed.
+constexpr int kPollInterval_ms = 20;
+constexpr std::size_t kMaxLine = 64 * 1024;
+
+/// Cuts what a pipe brings into lines.
+class LineReader {
+public:
+    LineReader(Descriptor descriptor, std::function<void(std::string_view)> on_line)
+        : descriptor_(std::move(descriptor)), on_line_(std::move(on_line)) {}
+
+    int descriptor() const { return descriptor_.get(); }  ///< -1 once the pipe has ended
+
+    /// One piece of what is there, without waiting: a worker that never stops talking must not keep this
+    /// process from looking at the clock. False when there is no more for now.
+    bool read_some() {
+        std::array<char, 16384> buffer;
+        if (descriptor_.get() < 0) return false;
+        const ssize_t got = read(descriptor_.get(), buffer.data(), buffer.size());
+        if (got > 0) take({buffer.data(), std::size_t(got)});
+        if (got == 0 || (got < 0 && errno != EINTR && errno != EAGAIN)) descriptor_.reset();
+        return got > 0;
+    }
+
+    /// All that is left after the end of the worker.
+    void finish() {
+        while (read_some()) {
+        }
+        if (!pending_.empty()) deliver();
+    }
+
+private:
+    void take(std::string_view bytes) {
+        while (!bytes.empty()) {
+            const std::size_t end = bytes.find('\n');
+            pending_.append(bytes.substr(0, end));
+            if (end == std::string_view::npos && pending_.size() < kMaxLine) return;
+            deliver();
+            bytes.remove_prefix(end == std::string_view::npos ? bytes.size() : end + 1);
+        }
+    }
+    void deliver() {
+        if (on_line_) on_line_(pending_);
+        pending_.clear();
+    }
+
+    Descriptor descriptor_;
+    std::function<void(std::string_view)> on_line_;
+    std::string pending_;
+};
+
+/// The child from its start to its end. Leaves no process behind, whatever throws.
+class Child {
+public:
+    explicit Child(pid_t process) : process_(process) {}
+    ~Child() {
+        if (process_ > 0) finish();
+    }
+    Child(const Child&) = delete;
+    Child& operator=(const Child&) = delete;
+
+    bool has_ended() const {
+        siginfo_t info{};
+        return waitid(P_PID, id_t(process_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+               info.si_pid == process_;
+    }
+    void signal_group(int number) const { kill(-process_, number); }
+
+    /// Kills what is left of the group before the child is reaped: until then its id, which is the group's,
+    /// cannot be given to another process.
+    int finish() {
+        signal_group(SIGKILL);
+        int status = 0;
+        while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+        }
+        process_ = -1;
+        return status;
+    }
+
+private:
+    pid_t process_;
+};
+
+/// Whether and why the child is being ended by us.
+class Ending {
+public:
+    Ending(const WorkerCommand& command, const std::atomic<bool>* interrupt)
+        : command_(command), interrupt_(interrupt) {}
+
+    void look(const Child& child) {
+        const auto now = Clock::now();
+        if (!ours_ && interrupt_ && *interrupt_) {
+            ours_ = true;
+            reason_ = WorkerEnd::interrupted;
+            kill_at_ = now + command_.grace;
+            child.signal_group(SIGTERM);
+        }
+        const auto& wall_time = command_.limits.wall_time;
+        if (!ours_ && wall_time && now >= start_ + *wall_time) {
+            ours_ = true;
+            reason_ = WorkerEnd::timed_out;
+            kill_at_ = now;
+        }
+        if (now >= kill_at_) child.signal_group(SIGKILL);
+    }
+    WorkerEnd reason_or(WorkerEnd otherwise) const { return ours_ ? reason_ : otherwise; }
+    double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+private:
+    const WorkerCommand& command_;
+    const std::atomic<bool>* interrupt_;
+    Clock::time_point start_ = Clock::now();
+    bool ours_ = false;
+    WorkerEnd reason_ = WorkerEnd::exited;
+    Clock::time_point kill_at_ = Clock::time_point::max();
+};
+
+void wait_for_news(const std::array<LineReader*, 3>& readers) {
+    std::array<pollfd, 3> wanted;
+    for (std::size_t index = 0; index < readers.size(); ++index)
+        wanted[index] = {readers[index]->descriptor(), POLLIN, 0};  // poll passes over -1
+    poll(wanted.data(), wanted.size(), kPollInterval_ms);
+    for (LineReader* reader : readers) reader->read_some();
+}
+
+}  // namespace
+
+WorkerResult run_worker(const WorkerCommand& command, const WorkerListener& listener,
+                        const std::atomic<bool>* interrupt) {
+    WorkerResult result;
+    result.limits = command.limits;
+    Ending ending(command, interrupt);
+    SpawnedWorker spawned = spawn_worker(command);
+    Child child(spawned.process);
+    LineReader out(std::move(spawned.out), listener.on_stdout);
+    LineReader error(std::move(spawned.error), listener.on_stderr);
+    LineReader status(std::move(spawned.status), [&](std::string_view line) {
+        const auto parsed = parse_status(line);
+        if (!parsed) return;
+        result.status = *parsed;
+        if (listener.on_status) listener.on_status(*parsed);
+    });
+    const std::array<LineReader*, 3> readers = {&out, &error, &status};
+    while (!child.has_ended()) {
+        wait_for_news(readers);
+        ending.look(child);
+    }
+    const int how = child.finish();
+    for (LineReader* reader : readers) reader->finish();
+    result.seconds = ending.seconds();
+    if (WIFEXITED(how)) result.exit_code = WEXITSTATUS(how);
+    if (WIFSIGNALED(how)) result.signal_number = WTERMSIG(how);
+    result.end = ending.reason_or(WIFSIGNALED(how) ? WorkerEnd::signalled : WorkerEnd::exited);
+    return result;
+}
+
+}  // namespace aftershade

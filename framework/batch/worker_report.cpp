@@ -1,0 +1,75 @@
+// How a worker ended, in words.
+#include <csignal>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "framework/batch/worker.h"
+#include "framework/core/units.h"
+
+namespace aftershade {
+
+namespace {
+
+/// " in prepare of step 'grade', frame 12"; "" where nothing is known.
+std::string where(const WorkStatus& status) {
+    std::string text;
+    if (!status.phase.empty()) text += " in " + status.phase;
+    if (!status.step.empty())
+        text += (status.phase.empty() ? " in step '" : " of step '") + status.step + "'";
+    if (status.frame) text += (text.empty() ? " in frame " : ", frame ") + std::to_string(*status.frame);
+    return text;
+}
+
+std::string signalled(const WorkerResult& result) {
+    const int number = result.signal_number;
+    const char* name = sigabbrev_np(number);
+    const std::string text =
+        "(signal " + std::to_string(number) + (name ? ", SIG" + std::string(name) : "") + ")";
+    if (number == SIGXCPU && result.limits.cpu_seconds)
+        return " used up its " + std::to_string(*result.limits.cpu_seconds) + " s of processor time " + text;
+    if (number == SIGKILL) return " was killed " + text + ", perhaps because memory ran out,";
+    if (number == SIGTERM || number == SIGINT) return " was ended " + text;
+    return " crashed " + text;
+}
+
+}  // namespace
+
+std::string describe(const WorkerResult& result) {
+    const bool in_plugin = !result.status.plugin.empty();
+    const std::string who = in_plugin ? "plug-in " + result.status.plugin : "the worker";
+    switch (result.end) {
+        case WorkerEnd::exited:
+            return who + (in_plugin ? " ended the process with code " : " ended with code ") +
+                   std::to_string(result.exit_code) + where(result.status);
+        case WorkerEnd::signalled: return who + signalled(result) + where(result.status);
+        case WorkerEnd::timed_out: {
+            const double limit =
+                result.limits.wall_time ? double(result.limits.wall_time->count()) / 1000 : 0;
+            return who + " did not finish within " + format_number(limit) + " s and was killed" +
+                   where(result.status);
+        }
+        case WorkerEnd::interrupted: return who + " was interrupted" + where(result.status);
+    }
+    return who;
+}
+
+std::optional<WorkStatus> parse_status(std::string_view line) {
+    const auto json = nlohmann::json::parse(line, nullptr, false);
+    if (!json.is_object()) return std::nullopt;
+    WorkStatus status;
+    const auto text = [&](const char* key, std::string& value) {
+        const auto found = json.find(key);
+        if (found == json.end()) return true;
+        if (found->is_string()) value = found->get<std::string>();
+        return found->is_string();
+    };
+    if (!text("step", status.step) || !text("plugin", status.plugin) || !text("phase", status.phase))
+        return std::nullopt;
+    if (const auto frame = json.find("frame"); frame != json.end()) {
+        if (!frame->is_number_integer()) return std::nullopt;
+        status.frame = frame->get<int>();
+    }
+    return status;
+}
+
+}  // namespace aftershade

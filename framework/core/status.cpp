@@ -1,0 +1,76 @@
+#include "framework/core/status.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cstdlib>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+namespace aftershade {
+
+namespace {
+
+// Escaping makes a byte six at most ("\u0001"), and PIPE_BUF is 4096 on Linux.
+constexpr std::size_t kMaxField = 220;
+
+std::string shortened(const std::string& text) {
+    return text.size() <= kMaxField ? text : "..." + text.substr(text.size() - kMaxField + 3);
+}
+
+}  // namespace
+
+std::string status_line(const WorkStatus& status) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::object();
+    if (!status.step.empty()) json["step"] = shortened(status.step);
+    if (!status.plugin.empty()) json["plugin"] = shortened(status.plugin);
+    if (!status.phase.empty()) json["phase"] = shortened(status.phase);
+    if (status.frame) json["frame"] = *status.frame;
+    return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+StatusWriter::StatusWriter() {
+    const char* text = std::getenv(kStatusFdVariable);
+    if (!text) return;
+    int descriptor = -1;
+    const char* end = text + std::strlen(text);
+    const auto parsed = std::from_chars(text, end, descriptor);
+    struct stat status;
+    if (parsed.ec != std::errc() || parsed.ptr != end || descriptor < 0) return;
+    if (fstat(descriptor, &status) != 0 || !S_ISFIFO(status.st_mode)) return;
+    // What this process starts must not hold the pipe open, nor speak in its name.
+    fcntl(descriptor, F_SETFD, FD_CLOEXEC);
+    descriptor_ = descriptor;
+}
+
+void StatusWriter::write(const WorkStatus& status) {
+    const std::lock_guard lock(mutex_);
+    if (status == current_) return;
+    current_ = status;
+    if (descriptor_ < 0) return;
+    const std::string line = status_line(status);
+    ssize_t written = -1;
+    do written = ::write(descriptor_, line.data(), line.size());
+    while (written < 0 && errno == EINTR);
+    if (written < 0) descriptor_ = -1;  // nobody listens any more; the work itself goes on
+}
+
+WorkStatus StatusWriter::current() const {
+    const std::lock_guard lock(mutex_);
+    return current_;
+}
+
+StatusScope::StatusScope(StatusWriter* writer, const WorkStatus& status) : writer_(writer) {
+    if (!writer_) return;
+    before_ = writer_->current();
+    writer_->write(status);
+}
+
+StatusScope::~StatusScope() {
+    if (writer_) writer_->write(before_);
+}
+
+}  // namespace aftershade

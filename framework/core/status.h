@@ -1,0 +1,59 @@
+// What this process is doing, told to the process that started it, so that a crash can be blamed on
+// something.
+#pragma once
+
+#include <mutex>
+#include <optional>
+#include <string>
+
+namespace aftershade {
+
+/// The environment variable with the number of the pipe's file descriptor.
+inline constexpr const char* kStatusFdVariable = "AFTERSHADE_STATUS_FD";
+
+/// Where a process is. Empty fields are not known, or do not apply.
+struct WorkStatus {
+    std::string step;    ///< of the look
+    std::string plugin;  ///< the library whose code runs; empty while none does
+    std::string phase;   ///< "load", "create", "prepare", "draw", ...
+    std::optional<int> frame;
+
+    bool operator==(const WorkStatus&) const = default;
+};
+
+/// One line of JSON with its line end: {"step":"grade","plugin":"/x/libfoo.so","phase":"prepare","frame":12}.
+/// Never longer than PIPE_BUF, so that a write is whole: long names lose their beginnings.
+std::string status_line(const WorkStatus& status);
+
+/// Writes to the pipe that AFTERSHADE_STATUS_FD names; does nothing where the variable is absent or names no
+/// pipe. [thread-safe; scopes nest on one thread]
+class StatusWriter {
+public:
+    StatusWriter();
+    StatusWriter(const StatusWriter&) = delete;
+    StatusWriter& operator=(const StatusWriter&) = delete;
+
+    bool active() const { return descriptor_ >= 0; }
+    void write(const WorkStatus& status);
+    WorkStatus current() const;
+
+private:
+    int descriptor_ = -1;
+    mutable std::mutex mutex_;
+    WorkStatus current_;
+};
+
+/// Says `status` while it lives, and again what was said before when it goes. A null writer is allowed.
+class StatusScope {
+public:
+    StatusScope(StatusWriter* writer, const WorkStatus& status);
+    ~StatusScope();
+    StatusScope(const StatusScope&) = delete;
+    StatusScope& operator=(const StatusScope&) = delete;
+
+private:
+    StatusWriter* writer_;
+    WorkStatus before_;
+};
+
+}  // namespace aftershade
