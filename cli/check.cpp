@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 struct CheckOptions {
     std::string subject;
     std::vector<std::string> effect_paths;
+    std::vector<std::string> plugin_paths;
     std::string backend;
     bool no_gl = false;
     bool strict = false;
@@ -35,7 +36,8 @@ void check_one_effect(const EffectManifest& manifest, const CheckOptions& option
     lint_effect(manifest, data / "glsl", diagnostics);
     if (options.no_gl) return;
     gpu::Context context(chosen_backend(options.backend));
-    check_effect(context, manifest, data, diagnostics);
+    NativeRegistry natives(native_search_path({options.plugin_paths.begin(), options.plugin_paths.end()}));
+    check_effect(context, manifest, data, {&natives, nullptr}, diagnostics);
 }
 
 /// Exit 1 is the verdict; exit 2 is for words that name nothing.
@@ -71,7 +73,8 @@ ExitCode check(const CheckOptions& options) {
     }
     if (!fs::is_regular_file(subject, failure)) {
         const auto ids = effects.ids();
-        words.error({"EFFECT|LOOK"}, "'" + options.subject + "' is no folder of an effect, no effect and no look" +
+        words.error({"EFFECT|LOOK"}, "'" + options.subject +
+                                         "' is no folder of an effect, no effect and no look" +
                                          did_you_mean(options.subject, ids));
     }
     stop_at_errors(words);
@@ -83,10 +86,13 @@ ExitCode check(const CheckOptions& options) {
 
 Verb add_check(CLI::App& app) {
     auto options = std::make_shared<CheckOptions>();
-    app.add_option("subject", options->subject, "Folder of an effect, id of an effect, or a look")->required();
+    app.add_option("subject", options->subject, "Folder of an effect, id of an effect, or a look")
+        ->required();
     app.add_flag("--no-gl", options->no_gl, "Only what the texts tell: compile no shader, render nothing");
     app.add_flag("--strict", options->strict, "Warnings are a failure too");
     add_effect_path_option(app, options->effect_paths);
+    app.add_option("--plugin-path", options->plugin_paths, "Folder of native plug-ins; repeatable")
+        ->allow_extra_args(false);
     add_backend_option(app, options->backend);
     return [options] { return check(*options); };
 }

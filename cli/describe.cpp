@@ -25,11 +25,13 @@ ExitCode describe(const DescribeOptions& options) {
     EffectRegistry effects = find_effects(options.effect_paths, diagnostics);
     if (!effects.contains(options.effect)) {
         const auto ids = effects.ids();
-        diagnostics.error({"EFFECT"}, "no effect '" + options.effect + "'" + did_you_mean(options.effect, ids));
+        diagnostics.error({"EFFECT"},
+                          "no effect '" + options.effect + "'" + did_you_mean(options.effect, ids));
     }
     const EffectManifest* manifest = effects.find(options.effect, diagnostics);
     stop_at_errors(diagnostics);
-    fmt::print("{}{}", options.json ? describe_json(*manifest) : describe_text(*manifest), options.json ? "\n" : "");
+    fmt::print("{}{}", options.json ? describe_json(*manifest) : describe_text(*manifest),
+               options.json ? "\n" : "");
     return ExitCode::done;
 }
 

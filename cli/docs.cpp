@@ -33,7 +33,8 @@ std::map<std::string, std::string> pages(const DocsOptions& options, EffectRegis
     const std::vector<std::string> known = effects.ids();
     std::vector<const EffectManifest*> manifests;
     for (const std::string& id : options.effects.empty() ? known : options.effects) {
-        if (!effects.contains(id)) diagnostics.error({"EFFECT"}, "no effect '" + id + "'" + did_you_mean(id, known));
+        if (!effects.contains(id))
+            diagnostics.error({"EFFECT"}, "no effect '" + id + "'" + did_you_mean(id, known));
         const EffectManifest* manifest = effects.find(id, diagnostics);
         if (!manifest) continue;
         manifests.push_back(manifest);
@@ -72,7 +73,8 @@ ExitCode docs(const DocsOptions& options) {
         if (text_of(file) == text) continue;
         same = false;
         if (!options.check) write(file, text);
-        fmt::print("{}{}\n", file.string(), options.check ? ": is not what the manifest says; run aftershade docs" : "");
+        fmt::print("{}{}\n", file.string(),
+                   options.check ? ": is not what the manifest says; run aftershade docs" : "");
     }
     // A page of an effect that is gone.
     if (options.effects.empty() && fs::is_directory(options.folder, failure))
@@ -90,7 +92,8 @@ Verb add_docs(CLI::App& app) {
     auto options = std::make_shared<DocsOptions>();
     app.add_option("effects", options->effects, "Ids of effects (default: all, and their index)");
     app.add_option("-o,--output", options->folder, "Folder of the pages")->capture_default_str();
-    app.add_flag("--check", options->check, "Write nothing; exit 1 where a page is not what the manifests say");
+    app.add_flag("--check", options->check,
+                 "Write nothing; exit 1 where a page is not what the manifests say");
     add_effect_path_option(app, options->effect_paths);
     return [options] { return docs(*options); };
 }

@@ -40,7 +40,8 @@ int main(int argc, char** argv) {
     add("list", "List the effects that there are", aftershade::cli::add_list);
     add("describe", "Tell what an effect takes, makes and can be told", aftershade::cli::add_describe);
     add("new", "Make the folder of a new effect, which runs at once", aftershade::cli::add_new);
-    add("check", "Check an effect or a look: documents, shaders, values; exit 1: no", aftershade::cli::add_check);
+    add("check", "Check an effect or a look: documents, shaders, values; exit 1: no",
+        aftershade::cli::add_check);
     add("docs", "Write the page of each effect from its manifest", aftershade::cli::add_docs);
     add("doctor", "Tell which GL backends work on this machine, and why others do not",
         aftershade::cli::add_doctor);

@@ -74,11 +74,11 @@ ExitCode make(const NewOptions& options) {
     const fs::path folder = fs::path(options.folder) / options.id;
     std::error_code failure;
     if (!is_snake_case(options.id))
-        diagnostics.error({"ID"}, "'" + options.id + "' must be snake_case: a-z, 0-9 and _, beginning with a letter");
+        diagnostics.error({"ID"},
+                          "'" + options.id + "' must be snake_case: a-z, 0-9 and _, beginning with a letter");
     else if (shipped.contains(options.id))
         diagnostics.error({"ID"}, "an effect that comes with Aftershade is called '" + options.id + "'");
-    else if (fs::exists(folder, failure))
-        diagnostics.error({"ID"}, folder.string() + " is there already");
+    else if (fs::exists(folder, failure)) diagnostics.error({"ID"}, folder.string() + " is there already");
     stop_at_errors(diagnostics);
     fs::create_directories(folder, failure);
     if (failure) throw Error(ExitCode::output, folder.string() + ": cannot be made: " + failure.message());
@@ -87,8 +87,8 @@ ExitCode make(const NewOptions& options) {
     const int look = write(folder / "look.json", fmt::format(kLook, options.id));
     fmt::print("{}: {} lines\n{}: {} lines\n{}: {} lines\n", (folder / "effect.json").string(), manifest,
                (folder / (options.id + ".frag")).string(), shader, (folder / "look.json").string(), look);
-    fmt::print("Run it:   aftershade run {} CAPTURE --effect-path {} -o out.png\n", (folder / "look.json").string(),
-               options.folder);
+    fmt::print("Run it:   aftershade run {} CAPTURE --effect-path {} -o out.png\n",
+               (folder / "look.json").string(), options.folder);
     fmt::print("Check it: aftershade check {}\n", folder.string());
     return ExitCode::done;
 }

@@ -12,6 +12,7 @@
 #include "cli/effect_options.h"
 #include "cli/gl_options.h"
 #include "cli/interrupt.h"
+#include "cli/plugin_options.h"
 #include "cli/render_options.h"
 #include "cli/run_report.h"
 #include "cli/verbs.h"
@@ -42,6 +43,7 @@ struct RunArguments {
     PipelineOptions pipeline;
     CaptureOptions capture;
     RenderOptions render;
+    PluginOptions plugins;
 };
 
 void add_options(CLI::App& app, RunArguments& options) {
@@ -80,6 +82,7 @@ void add_options(CLI::App& app, RunArguments& options) {
     app.add_option("--progress", options.progress, "auto, none or plain")->capture_default_str();
     app.add_flag("--watch", options.watch,
                  "Stay, and render again whenever the look, a manifest or a shader changes");
+    add_plugin_options(app, options.plugins);
     add_render_options(app, options.render);
     add_backend_option(app, options.backend);
 }
@@ -135,7 +138,8 @@ ExitCode render(const Job& job, const Pipeline& pipeline, const std::atomic<bool
     return report.exit_code();
 }
 
-/// Renders again whenever a file of the look changes, until it is interrupted. Faults are told, and waited out.
+/// Renders again whenever a file of the look changes, until it is interrupted. Faults are told, and waited
+/// out.
 ExitCode watch(const Job& job, std::unique_ptr<BoundLook> bound, const std::atomic<bool>& stop) {
     using namespace std::chrono_literals;
     const std::filesystem::path data = data_path();
@@ -206,12 +210,18 @@ ExitCode run(const RunArguments& options) {
     // A lone frame that cannot be read is told of before a context is made.
     require_first_frame(*sequence, reader, bound->pipeline);
 
+    if (const auto code = run_in_worker(options.plugins, bound->pipeline, stop)) return *code;
+
     set_exr_threads(int(std::thread::hardware_concurrency()));
+    StatusWriter status;
+    NativeRegistry natives(native_search_path({options.plugins.paths.begin(), options.plugins.paths.end()}),
+                           shipped_native_libraries(), &status);
     gpu::Context context(backend);
     outputs.renderer = context.info().renderer;
     run_options.frames = sequence->frames;
     run_options.missing = missing_frame(options.missing);
     run_options.audit = options.audit;
+    run_options.natives = {&natives, &status};
     const Job job{options, *sequence, reader, context, run_options, outputs, progress};
     const ExitCode code = render(job, bound->pipeline, stop);
     return options.watch ? watch(job, std::move(bound), stop) : code;

@@ -63,6 +63,11 @@ RunObserver RunReporter::observer() {
         clear_line();
         fmt::print(stderr, "frame {}: history begins anew: {}\n", frame, reason);
     };
+    observer.native_message = [this](int frame, const std::string& line) {
+        if (style_ == ProgressStyle::none) return;
+        clear_line();
+        fmt::print(stderr, "frame {}: {}\n", frame, line);
+    };
     observer.frame_audited = [this](const CaptureHeader& header, const std::vector<AuditFinding>& findings) {
         clear_line();
         if (findings.empty()) fmt::print(stderr, "audit: frame {}: every value is finite\n", header.frame);

@@ -28,7 +28,8 @@ bool FileWatch::changed() {
     return differs;
 }
 
-std::vector<fs::path> paths_to_watch(const Look& look, const Pipeline& pipeline, const fs::path& data_folder) {
+std::vector<fs::path> paths_to_watch(const Look& look, const Pipeline& pipeline,
+                                     const fs::path& data_folder) {
     std::vector<fs::path> paths = look.files;
     for (const PipelineStep& step : pipeline.steps) paths.push_back(step.manifest->folder);
     paths.push_back(data_folder / "glsl");

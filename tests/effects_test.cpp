@@ -15,9 +15,9 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/effect/usage_check.h"
 #include "framework/compare/metrics.h"
 #include "framework/core/units.h"
+#include "framework/effect/usage_check.h"
 #include "framework/image/capture.h"
 #include "framework/image/png_file.h"
 #include "framework/image/profile.h"
@@ -249,7 +249,9 @@ TEST_P(EveryEffect, DeclaresWhatItsShadersUseAndUsesWhatItDeclares) {
 /// What came before a cut, a gap or another size must leave no trace.
 TEST_P(EveryEffect, BeginsAnewAtACutAGapAndAnotherSize) {
     const auto frame_of = [](int number, int width) {
-        return make_capture({.width = width, .height = 20, .background = {0.1f * float(number), 0.5f, 0.2f},
+        return make_capture({.width = width,
+                             .height = 20,
+                             .background = {0.1f * float(number), 0.5f, 0.2f},
                              .background_depth_m = 5,
                              .box = SyntheticBox{4, 4, 8, 6, 2, 0, 2}},
                             number);

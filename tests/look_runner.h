@@ -35,7 +35,9 @@ public:
         frame.capture = &capture;
         return run(frame);
     }
-    FrameResult run(const FrameInputs& frame) { return renderer_->render(frame, {"color", "display"}, false); }
+    FrameResult run(const FrameInputs& frame) {
+        return renderer_->render(frame, {"color", "display"}, false);
+    }
     Image color(const Capture& capture) { return run(capture).images.at("color"); }
 
 private:

@@ -65,9 +65,11 @@ TEST(ColorGrade, GoesThroughACubeTableInItsOwnCurve) {
         EXPECT_NEAR(out[1], 0.2, 2e-6) << space;
         EXPECT_NEAR(out[2], 0.7, 4e-6) << space;
     }
-    EXPECT_NEAR(graded({40, 1, 2}, lut + R"(, "lut_space": "acescct")")[2], 40, 4e-4) << "light above 1 is kept";
+    EXPECT_NEAR(graded({40, 1, 2}, lut + R"(, "lut_space": "acescct")")[2], 40, 4e-4)
+        << "light above 1 is kept";
     EXPECT_NEAR(graded({40, 1, 2}, lut)[2], 1, 1e-5) << "srgb ends at 1";
-    EXPECT_NEAR(graded({0.7f, 0.2f, 0.1f}, lut + R"(, "lut_amount": 0.25)")[0], 0.75 * 0.7 + 0.25 * 0.1, 4e-6);
+    EXPECT_NEAR(graded({0.7f, 0.2f, 0.1f}, lut + R"(, "lut_amount": 0.25)")[0], 0.75 * 0.7 + 0.25 * 0.1,
+                4e-6);
 }
 
 TEST(ColorGrade, ContrastIsAPowerAboutThePivot) {

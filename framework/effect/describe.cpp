@@ -80,8 +80,9 @@ void markdown_params(const EffectManifest& manifest, std::ostream& out) {
         out << "| `" << spec.name << "` | " << cell(type_text(spec)) << " | " << cell(default_text(spec))
             << " | " << range_text(spec) << " | " << cell(spec.doc) << " |\n";
         for (const ParamSpec& column : spec.columns)
-            out << "| `" << spec.name << "` &rarr; `" << column.name << "` | " << cell(type_text(column)) << " | "
-                << cell(default_text(column)) << " | " << range_text(column) << " | " << cell(column.doc) << " |\n";
+            out << "| `" << spec.name << "` &rarr; `" << column.name << "` | " << cell(type_text(column))
+                << " | " << cell(default_text(column)) << " | " << range_text(column) << " | "
+                << cell(column.doc) << " |\n";
     }
 }
 
@@ -107,9 +108,8 @@ std::string range_text(const ParamSpec& spec) {
 std::string default_text(const ParamSpec& spec) {
     if (spec.type == ParamType::table) return "its columns'";
     if (spec.type == ParamType::file && std::get<std::string>(spec.default_value).empty()) return "none";
-    const std::string value =
-        spec.type == ParamType::enum_ ? std::get<std::string>(spec.default_value)
-                                      : format_value(spec, spec.default_value);
+    const std::string value = spec.type == ParamType::enum_ ? std::get<std::string>(spec.default_value)
+                                                            : format_value(spec, spec.default_value);
     return value + (spec.unit.empty() ? "" : " " + spec.unit) +
            (spec.from.empty() ? "" : "; before it " + spec.from);
 }
@@ -132,12 +132,14 @@ std::string describe_text(const EffectManifest& manifest) {
     for (const ParamSpec& spec : manifest.params) {
         params.add({spec.name, type_text(spec), default_text(spec), range_text(spec), spec.doc});
         for (const ParamSpec& column : spec.columns)
-            params.add({"  " + column.name, type_text(column), default_text(column), range_text(column), column.doc});
+            params.add({"  " + column.name, type_text(column), default_text(column), range_text(column),
+                        column.doc});
     }
     params.print(out);
     if (!manifest.presets.empty()) out << "\npresets\n";
     TextTable presets("  ");
-    for (const PresetSpec& preset : manifest.presets) presets.add({preset.name, preset_text(manifest, preset)});
+    for (const PresetSpec& preset : manifest.presets)
+        presets.add({preset.name, preset_text(manifest, preset)});
     presets.print(out);
     if (!manifest.textures.empty()) out << "\ntextures (--tap " << manifest.id << ".<name>)\n";
     TextTable textures("  ");
@@ -150,11 +152,12 @@ std::string describe_text(const EffectManifest& manifest) {
 std::string describe_markdown(const EffectManifest& manifest) {
     std::ostringstream out;
     out << "<!-- Made by `aftershade docs` from effects/" << manifest.id << "/effect.json; do not edit. -->\n"
-        << "# " << manifest.id << "\n\n" << manifest.summary << " Version " << manifest.version << ".\n";
+        << "# " << manifest.id << "\n\n"
+        << manifest.summary << " Version " << manifest.version << ".\n";
     out << "\n## Images\n\n| | name | role | |\n|---|---|---|---|\n";
     for (const InputSpec& input : manifest.inputs)
-        out << "| in | `" << input.name << "` | " << input.role << input_flags(input) << " | " << cell(input.doc)
-            << " |\n";
+        out << "| in | `" << input.name << "` | " << input.role << input_flags(input) << " | "
+            << cell(input.doc) << " |\n";
     for (const OutputSpec& output : manifest.outputs)
         out << "| out | `" << output.name << "` | " << output.role << " | " << cell(output.doc) << " |\n";
     markdown_params(manifest, out);
@@ -162,9 +165,11 @@ std::string describe_markdown(const EffectManifest& manifest) {
     for (const PresetSpec& preset : manifest.presets)
         out << "| `" << preset.name << "` | " << cell(preset_text(manifest, preset)) << " |\n";
     if (!manifest.textures.empty())
-        out << "\n## Textures\n\nWritten out by `--tap " << manifest.id << ".<name>`.\n\n| name | format | |\n|---|---|---|\n";
+        out << "\n## Textures\n\nWritten out by `--tap " << manifest.id
+            << ".<name>`.\n\n| name | format | |\n|---|---|---|\n";
     for (const TextureSpec& texture : manifest.textures)
-        out << "| `" << texture.name << "` | " << texture_text(texture) << " | " << cell(texture.doc) << " |\n";
+        out << "| `" << texture.name << "` | " << texture_text(texture) << " | " << cell(texture.doc)
+            << " |\n";
     if (!manifest.sources.empty()) out << "\n## Sources\n\n";
     for (const std::string& source : manifest.sources) out << "- " << source << "\n";
     return out.str();
@@ -172,15 +177,16 @@ std::string describe_markdown(const EffectManifest& manifest) {
 
 std::string index_markdown(const std::vector<const EffectManifest*>& manifests) {
     std::ostringstream out;
-    out << "<!-- Made by `aftershade docs`; do not edit. -->\n# Effects\n\n| effect | from | to | |\n|---|---|---|---|\n";
+    out << "<!-- Made by `aftershade docs`; do not edit. -->\n# Effects\n\n| effect | from | to | "
+           "|\n|---|---|---|---|\n";
     const auto roles = [](const auto& list) {
         std::string text;
         for (const auto& item : list) text += (text.empty() ? "" : ", ") + item.role;
         return text;
     };
     for (const EffectManifest* manifest : manifests)
-        out << "| [`" << manifest->id << "`](" << manifest->id << ".md) | " << roles(manifest->inputs) << " | "
-            << roles(manifest->outputs) << " | " << cell(manifest->summary) << " |\n";
+        out << "| [`" << manifest->id << "`](" << manifest->id << ".md) | " << roles(manifest->inputs)
+            << " | " << roles(manifest->outputs) << " | " << cell(manifest->summary) << " |\n";
     return out.str();
 }
 

@@ -52,7 +52,8 @@ private:
     }
 
     static bool is_exact_role(const std::string& role) {
-        static const std::set<std::string> roles{"depth", "velocity", "velocity_next", "position", "object_id"};
+        static const std::set<std::string> roles{"depth", "velocity", "velocity_next", "position",
+                                                 "object_id"};
         return roles.contains(role);
     }
 
@@ -69,10 +70,11 @@ private:
                 if (!texture) continue;
                 const std::string format{gpu::texture_format_name(texture->format)};
                 if (format.ends_with("16f") || format.ends_with("8"))
-                    diagnostics_.warning(texture->place,
-                                         "the texture '" + texture->name + "' is made of " + pass.reads[0].name +
-                                             " but has the format " + format +
-                                             ", which keeps 11 bits or fewer; r32f or rg32f keeps what it holds");
+                    diagnostics_.warning(
+                        texture->place,
+                        "the texture '" + texture->name + "' is made of " + pass.reads[0].name +
+                            " but has the format " + format +
+                            ", which keeps 11 bits or fewer; r32f or rg32f keeps what it holds");
             }
         }
     }
@@ -85,9 +87,11 @@ private:
                              "would blend with nothing");
     }
 
-    static bool has_member(const std::vector<Token>& tokens, const std::string& block, const std::string& name) {
+    static bool has_member(const std::vector<Token>& tokens, const std::string& block,
+                           const std::string& name) {
         for (std::size_t i = 2; i < tokens.size(); ++i)
-            if (tokens[i - 2].text == block && tokens[i - 1].text == "." && tokens[i].text == name) return true;
+            if (tokens[i - 2].text == block && tokens[i - 1].text == "." && tokens[i].text == name)
+                return true;
         return false;
     }
 
@@ -95,7 +99,8 @@ private:
         const auto is_display = [](const OutputSpec& output) { return output.role == "display"; };
         if (std::any_of(manifest_.outputs.begin(), manifest_.outputs.end(), is_display)) return;
         // Kinds of ways to write 1 / 2.2 and 1 / 2.4.
-        static const std::set<std::string> exponents{"0.4545", "0.45454545", "0.416666", "0.41666", "2.2", "2.4"};
+        static const std::set<std::string> exponents{"0.4545",  "0.45454545", "0.416666",
+                                                     "0.41666", "2.2",        "2.4"};
         std::set<std::string> told;
         for (const auto& [pass, tokens] : tokens_)
             for (std::size_t i = 0; i < tokens.size(); ++i) {
@@ -104,16 +109,20 @@ private:
                 if (std::filesystem::path(token.place.file).parent_path() == glsl_folder_) continue;
                 if (token.text == "encode_srgb" && i + 1 < tokens.size() && tokens[i + 1].text == "(" &&
                     told.insert(to_string(token.place)).second)
-                    diagnostics_.warning(token.place, "sRGB is encoded, but no output is display: effects "
-                                                      "work in scene-linear light");
-                if (token.text == "pow" && encodes(tokens, i, exponents) && told.insert(to_string(token.place)).second)
-                    diagnostics_.warning(token.place, "this looks like a gamma of 2.2 or 2.4, but no output is "
-                                                      "display: effects work in scene-linear light");
+                    diagnostics_.warning(token.place,
+                                         "sRGB is encoded, but no output is display: effects "
+                                         "work in scene-linear light");
+                if (token.text == "pow" && encodes(tokens, i, exponents) &&
+                    told.insert(to_string(token.place)).second)
+                    diagnostics_.warning(token.place,
+                                         "this looks like a gamma of 2.2 or 2.4, but no output is "
+                                         "display: effects work in scene-linear light");
             }
     }
 
     /// Whether one of the exponents stands among the arguments of the call at `i`.
-    static bool encodes(const std::vector<Token>& tokens, std::size_t i, const std::set<std::string>& exponents) {
+    static bool encodes(const std::vector<Token>& tokens, std::size_t i,
+                        const std::set<std::string>& exponents) {
         int depth = 0;
         for (std::size_t at = i + 1; at < tokens.size(); ++at) {
             if (tokens[at].text == "(") ++depth;
@@ -139,8 +148,8 @@ private:
                     if (tokens[at].text == ")" && --depth == 0) break;
                     if (tokens[at].text != "param") continue;
                     diagnostics_.warning(tokens[i].place,
-                                         "a parameter bounds this loop; say \"max_iterations\" in pass '" + pass.name +
-                                             "': llvmpipe silently ends loops after 65,535");
+                                         "a parameter bounds this loop; say \"max_iterations\" in pass '" +
+                                             pass.name + "': llvmpipe silently ends loops after 65,535");
                     return;
                 }
             }

@@ -69,11 +69,11 @@ std::string graph_key(const Pipeline& pipeline, const FrameInputs& frame, const 
 }
 
 std::unique_ptr<BuiltGraph> build_graph(gpu::Context& context, ProgramCache& programs, StepFiles& files,
-                                        const Pipeline& pipeline, const FrameInputs& frame,
-                                        const std::vector<ParamSet>& params,
+                                        const NativeSteps& natives, const Pipeline& pipeline,
+                                        const FrameInputs& frame, const std::vector<ParamSet>& params,
                                         const std::vector<std::string>& roles) {
     auto built = std::make_unique<BuiltGraph>();
-    GraphBuilder builder(programs, files, pipeline, frame);
+    GraphBuilder builder(programs, files, natives, pipeline, frame);
     const int accumulating = pipeline.last_accumulating_step();
     for (int i = 0; i < int(pipeline.steps.size()); ++i) {
         builder.add_step(i, params[std::size_t(i)]);
@@ -90,6 +90,7 @@ std::unique_ptr<BuiltGraph> build_graph(gpu::Context& context, ProgramCache& pro
     built->mask_files = std::move(builder.mask_files);
     built->passes = std::move(builder.passes);
     built->params = std::move(builder.bound_params);
+    built->native_tables = std::move(builder.native_tables);
     built->uploaded.resize(built->params.size());
     built->executor = std::make_unique<graph::Executor>(context, std::move(builder.graph));
     return built;

@@ -21,6 +21,7 @@ struct BuiltGraph {
     std::vector<BoundParam> params;
     std::vector<ParamValue> uploaded;  ///< of each of `params`
     bool masks_uploaded = false;
+    std::map<int, std::map<std::string, graph::TextureHandle>> native_tables;  ///< by step and name
     int first_single_pass = 0;  ///< passes before it run for every sub-frame, the others once a frame
     std::unique_ptr<graph::Executor> executor;
 };
@@ -32,8 +33,8 @@ std::string graph_key(const Pipeline& pipeline, const FrameInputs& frame, const 
 
 /// Throws Error(ExitCode::effect); Error(ExitCode::usage) for a tap that no pass writes.
 std::unique_ptr<BuiltGraph> build_graph(gpu::Context& context, ProgramCache& programs, StepFiles& files,
-                                        const Pipeline& pipeline, const FrameInputs& frame,
-                                        const std::vector<ParamSet>& params,
+                                        const NativeSteps& natives, const Pipeline& pipeline,
+                                        const FrameInputs& frame, const std::vector<ParamSet>& params,
                                         const std::vector<std::string>& roles);
 
 }  // namespace aftershade

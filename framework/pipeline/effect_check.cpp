@@ -29,7 +29,8 @@ void add_numbers(const ParamSpec& spec, std::vector<Setting>& settings) {
         if (spec.type == ParamType::int_) value = std::int64_t(std::llround(*limit));
         else if (component_count(spec.type) > 1)
             value = std::vector<double>(std::size_t(component_count(spec.type)), *limit);
-        settings.push_back({spec.name + " at its " + end + ", " + format_value(spec, value), {{spec.name, value}}, {}});
+        settings.push_back(
+            {spec.name + " at its " + end + ", " + format_value(spec, value), {{spec.name, value}}, {}});
     }
 }
 
@@ -41,10 +42,12 @@ std::vector<Setting> settings_of(const EffectManifest& manifest) {
                                 {{spec.name, !std::get<bool>(spec.default_value)}},
                                 {}});
         else if (spec.type == ParamType::enum_)
-            for (const std::string& value : spec.values) settings.push_back({spec.name + " " + value, {{spec.name, value}}, {}});
+            for (const std::string& value : spec.values)
+                settings.push_back({spec.name + " " + value, {{spec.name, value}}, {}});
         else if (is_block_type(spec.type)) add_numbers(spec, settings);
     }
-    for (const PresetSpec& preset : manifest.presets) settings.push_back({"preset " + preset.name, preset.values, {}});
+    for (const PresetSpec& preset : manifest.presets)
+        settings.push_back({"preset " + preset.name, preset.values, {}});
     for (const InputSpec& input : manifest.inputs)
         if (input.optional) settings.push_back({"no " + input.name, {}, {input.name}});
     return settings;
@@ -70,8 +73,8 @@ std::string first_bad_value(const FrameResult& result) {
     for (const auto& [role, image] : result.images) {
         if (image.type() != ComponentType::float32) continue;
         std::vector<AuditFinding> findings;
-        audit_values(image.floats(), image.width(), image.channels(), std::isinf(find_role(role)->outside), "the step",
-                     role, findings);
+        audit_values(image.floats(), image.width(), image.channels(), std::isinf(find_role(role)->outside),
+                     "the step", role, findings);
         if (!findings.empty()) return describe_finding(findings.front());
     }
     return "";
@@ -79,14 +82,15 @@ std::string first_bad_value(const FrameResult& result) {
 
 /// "" where all is well.
 std::string fault_of(gpu::Context& context, const EffectManifest& manifest, const Setting& setting,
-                     const std::filesystem::path& data_folder) {
+                     const std::filesystem::path& data_folder, NativeSources natives) {
     const Pipeline pipeline = pipeline_of(manifest, setting);
     std::vector<std::string> roles;
     for (const OutputSpec& output : manifest.outputs) roles.push_back(output.role);
-    PipelineRenderer renderer(context, pipeline, data_folder);
+    PipelineRenderer renderer(context, pipeline, data_folder, natives);
     // Two frames, so that history is read.
     for (const int number : {1, 2}) {
-        const Capture previous = make_test_capture(64, 36, number - 1), capture = make_test_capture(64, 36, number),
+        const Capture previous = make_test_capture(64, 36, number - 1),
+                      capture = make_test_capture(64, 36, number),
                       next = make_test_capture(64, 36, number + 1);
         FrameInputs frame;
         frame.capture = &capture;
@@ -142,11 +146,11 @@ Capture make_test_capture(int width, int height, int frame) {
     return capture;
 }
 
-void check_effect(gpu::Context& context, const EffectManifest& manifest, const std::filesystem::path& data_folder,
-                  Diagnostics& diagnostics) {
+void check_effect(gpu::Context& context, const EffectManifest& manifest,
+                  const std::filesystem::path& data_folder, NativeSources natives, Diagnostics& diagnostics) {
     std::set<std::string> told;
     for (const Setting& setting : settings_of(manifest)) {
-        const std::string fault = fault_of(context, manifest, setting, data_folder);
+        const std::string fault = fault_of(context, manifest, setting, data_folder, natives);
         if (fault.empty() || !told.insert(fault).second) continue;
         // A shader's fault brings its own place and all its lines.
         const bool has_place = fault.find(": error: ") != std::string::npos;

@@ -7,6 +7,7 @@
 #include "framework/effect/manifest.h"
 #include "framework/gpu/context.h"
 #include "framework/image/capture.h"
+#include "framework/pipeline/native_steps.h"
 
 namespace aftershade {
 
@@ -14,11 +15,11 @@ namespace aftershade {
 /// sky without depth.
 Capture make_test_capture(int width, int height, int frame);
 
-/// Renders the effect over the test capture with every value of its bools, enums and define-bound ints, one at
-/// a time from the defaults; with numbers at min and max; with and without each optional input. Shaders that
-/// do not compile and values that are not finite (but infinite depth) are errors, each with the setting that
-/// brought it. [the context's thread]
-void check_effect(gpu::Context& context, const EffectManifest& manifest, const std::filesystem::path& data_folder,
-                  Diagnostics& diagnostics);
+/// Renders the effect over the test capture with every value of its bools, enums and define-bound ints, one
+/// at a time from the defaults; with numbers at min and max; with and without each optional input. Shaders
+/// that do not compile and values that are not finite (but infinite depth) are errors, each with the setting
+/// that brought it. [the context's thread]
+void check_effect(gpu::Context& context, const EffectManifest& manifest,
+                  const std::filesystem::path& data_folder, NativeSources natives, Diagnostics& diagnostics);
 
 }  // namespace aftershade

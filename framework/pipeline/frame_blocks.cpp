@@ -12,13 +12,6 @@ namespace aftershade {
 
 namespace {
 
-/// FNV-1a: the seed of a step is its name's, so that a step inserted before it changes nothing.
-std::uint32_t hash_name(const std::string& name) {
-    std::uint32_t hash = 2166136261u;
-    for (const unsigned char c : name) hash = (hash ^ c) * 16777619u;
-    return hash;
-}
-
 glm::dmat4 matrix_of(const CameraMatrix& rows) {
     glm::dmat4 matrix;
     for (int row = 0; row < 4; ++row)
@@ -89,12 +82,19 @@ void set_origin(const CaptureHeader& header, std::int32_t (&origin_px)[2], std::
 
 }  // namespace
 
+/// FNV-1a: the seed of a step is its name's, so that a step inserted before it changes nothing.
+std::uint32_t step_seed(const std::string& name) {
+    std::uint32_t hash = 2166136261u;
+    for (const unsigned char c : name) hash = (hash ^ c) * 16777619u;
+    return hash;
+}
+
 FrameBlock frame_block(const FrameInputs& frame, const std::string& step, bool history_valid) {
     const CaptureHeader& header = frame.capture->header;
     FrameBlock block;
     set_origin(header, block.origin_px, block.display_size_px);
     block.number = header.frame;
-    block.step_seed = hash_name(step);
+    block.step_seed = aftershade::step_seed(step);
     block.fps = float(frame.fps);
     block.history_valid = history_valid ? 1 : 0;
     const ColorMatrix matrix = conversion_matrix(header.primaries, kRec709);

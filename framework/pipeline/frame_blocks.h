@@ -17,6 +17,9 @@ struct FrameBefore {
     std::optional<Camera> camera;
 };
 
+/// Differs between the steps of a look, by their names.
+std::uint32_t step_seed(const std::string& step);
+
 /// The block `frame` of one step.
 FrameBlock frame_block(const FrameInputs& frame, const std::string& step, bool history_valid);
 

@@ -61,9 +61,9 @@ std::pair<int, int> grid_size(const GridSpec& grid, const ParamSet& params, int 
             std::max(1, int(std::ceil(height * grid.scale)))};
 }
 
-GraphBuilder::GraphBuilder(ProgramCache& programs, StepFiles& files, const Pipeline& pipeline,
-                           const FrameInputs& frame)
-    : programs_(programs), files_(files), pipeline_(pipeline), frame_(frame) {
+GraphBuilder::GraphBuilder(ProgramCache& programs, StepFiles& files, const NativeSteps& natives,
+                           const Pipeline& pipeline, const FrameInputs& frame)
+    : programs_(programs), files_(files), natives_(natives), pipeline_(pipeline), frame_(frame) {
     width_ = frame.capture->header.data_window.width();
     height_ = frame.capture->header.data_window.height();
 }
@@ -74,6 +74,10 @@ void GraphBuilder::add_step(int index, const ParamSet& params) {
                     {},    {},   {}};
     declare(build);
     declare_params(build);
+    if (const NativeResult* native = natives_.result(index))
+        for (const auto& [name, table] : native->tables)
+            build.native_tables[name] = native_tables[index][name] =
+                graph.import_texture(build.prefix() + name, table_desc(table));
     for (const PassSpec& pass : step.manifest->passes)
         if (pass_enabled(pass, params, build.present)) add_pass(build, pass);
     for (const OutputSpec& output : step.manifest->outputs)

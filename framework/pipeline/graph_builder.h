@@ -11,6 +11,7 @@
 #include "framework/effect/param_resources.h"
 #include "framework/effect/pass_program.h"
 #include "framework/graph/frame_graph.h"
+#include "framework/pipeline/native_steps.h"
 #include "framework/pipeline/param_upload.h"
 #include "framework/pipeline/pipeline.h"
 
@@ -46,8 +47,8 @@ class GraphBuilder {
 public:
     using Textures = std::map<std::string, graph::TextureHandle>;
 
-    GraphBuilder(ProgramCache& programs, StepFiles& files, const Pipeline& pipeline,
-                 const FrameInputs& frame);
+    GraphBuilder(ProgramCache& programs, StepFiles& files, const NativeSteps& natives,
+                 const Pipeline& pipeline, const FrameInputs& frame);
 
     /// Adds step `index`, after those before it. Throws Error(ExitCode::effect) where a pass reads, or the
     /// step outputs, what no pass has written with these parameters.
@@ -61,6 +62,7 @@ public:
     std::map<int, graph::TextureHandle> mask_files;  ///< by step
     std::vector<BoundPass> passes;
     std::vector<BoundParam> bound_params;
+    std::map<int, std::map<std::string, graph::TextureHandle>> native_tables;  ///< by step and name
 
 private:
     graph::TextureHandle import(const std::string& role, int offset = 0);
@@ -82,6 +84,7 @@ private:
 
     ProgramCache& programs_;
     StepFiles& files_;
+    const NativeSteps& natives_;
     const Pipeline& pipeline_;
     FrameInputs frame_;
     int width_ = 0;

@@ -70,8 +70,11 @@ void bind_memory(const StepBuild& build, const PassBindings& bindings, graph::Pa
 }  // namespace
 
 void GraphBuilder::add_pass(StepBuild& build, const PassSpec& spec) {
+    const NativeResult* native = natives_.result(build.index);
+    if (native && native->enabled.contains(spec.name) && !native->enabled.at(spec.name)) return;
     if (spec.kind == PassKind::clear) return add_clear(build, spec);
-    const int turns = spec.repeat ? count_value(*spec.repeat, build.params) : 1;
+    int turns = spec.repeat ? count_value(*spec.repeat, build.params) : 1;
+    if (native && native->repeats.contains(spec.name)) turns = native->repeats.at(spec.name);
     for (int turn = 0; turn < turns; ++turn) add_turn(build, spec, turn, turns);
 }
 
@@ -106,6 +109,8 @@ void GraphBuilder::add_turn(StepBuild& build, const PassSpec& spec, int turn, in
         pass.uniforms.push_back({kParamBinding, param_block(manifest, build.params)});
     pass.uniforms.push_back({kFrameBinding, std::vector<std::byte>(sizeof(FrameBlock))});
     pass.uniforms.push_back({kCameraBinding, std::vector<std::byte>(sizeof(CameraBlock))});
+    if (const NativeResult* native = natives_.result(build.index); native && has_native_block(manifest))
+        pass.uniforms.push_back({kNativeBinding, native_block(manifest, native_values(*native))});
     if (spec.repeat) pass.uniforms.push_back({kPassBinding, bytes_of(PassBlock{turn, turns})});
     for (const WriteSpec& write : spec.writes)
         pass.targets.push_back({write_target(build, spec, write.name, pass.name),

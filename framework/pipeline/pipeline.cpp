@@ -71,6 +71,11 @@ bool Pipeline::has_history() const {
                        [](const PipelineStep& step) { return step.manifest->has_history(); });
 }
 
+bool Pipeline::has_native() const {
+    return std::any_of(steps.begin(), steps.end(),
+                       [](const PipelineStep& step) { return step.manifest->native.has_value(); });
+}
+
 int Pipeline::last_accumulating_step() const {
     for (int i = int(steps.size()) - 1; i >= 0; --i)
         if (steps[std::size_t(i)].manifest->accumulates_subframes) return i;

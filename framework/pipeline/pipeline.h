@@ -55,6 +55,7 @@ struct Pipeline {
     std::vector<std::string> neighbour_roles(int offset) const;
     bool writes_role(const std::string& role) const;
     bool has_history() const;
+    bool has_native() const;
     /// The last step whose effect accumulates sub-frames; -1: none does.
     int last_accumulating_step() const;
 };

@@ -75,8 +75,8 @@ graph::Executor::PassObserver auditor(const Pipeline& pipeline, std::vector<Audi
 }  // namespace
 
 PipelineRenderer::PipelineRenderer(gpu::Context& context, const Pipeline& pipeline,
-                                   const std::filesystem::path& data_folder)
-    : context_(context), pipeline_(pipeline), programs_(context, data_folder / "glsl") {}
+                                   const std::filesystem::path& data_folder, NativeSources natives)
+    : context_(context), pipeline_(pipeline), programs_(context, data_folder / "glsl"), natives_(natives) {}
 
 PipelineRenderer::~PipelineRenderer() = default;
 
@@ -98,12 +98,15 @@ void PipelineRenderer::resolve(const FrameInputs& frame) {
 
 void PipelineRenderer::prepare(const FrameInputs& frame, const std::vector<std::string>& roles) {
     resolve(frame);
-    const std::string key = graph_key(pipeline_, frame, params_, roles);
+    const bool valid = frame.subframe > 0 || frame_fault_.empty();
+    if (!valid) natives_.reset();
+    natives_.prepare(pipeline_, frame, params_, valid);
+    const std::string key = graph_key(pipeline_, frame, params_, roles) + natives_.key();
     if (built_ && built_->key == key) return;
     // The old textures go before the new ones come, unless what they hold lives on.
     std::unique_ptr<BuiltGraph> old = std::move(built_);
     if (!pipeline_.has_history()) old.reset();
-    built_ = build_graph(context_, programs_, files_, pipeline_, frame, params_, roles);
+    built_ = build_graph(context_, programs_, files_, natives_, pipeline_, frame, params_, roles);
     built_->key = key;
     if (old) built_->executor->take_history_from(*old->executor);
 }
@@ -116,6 +119,10 @@ double PipelineRenderer::feed(const FrameInputs& frame, const FrameBefore& befor
         if (gpu::Texture* texture = executor.texture(handle))
             upload(frame.at(key.offset)->images.at(key.role), *texture);
     upload_params(pipeline_, params_, files_, *built_);
+    for (const auto& [step, tables] : built_->native_tables)
+        for (const auto& [name, handle] : tables)
+            if (gpu::Texture* texture = executor.texture(handle))
+                upload_table(natives_.result(step)->tables.at(name), *texture);
     const std::vector<std::byte> camera = bytes_of(camera_block(frame, before));
     for (const BoundPass& pass : built_->passes) {
         if (pass.pass < first_pass || pass.is_host) continue;
@@ -130,6 +137,10 @@ double PipelineRenderer::feed(const FrameInputs& frame, const FrameBefore& befor
         executor.set_uniforms(pass.pass, kFrameBinding,
                               bytes_of(frame_block(frame, step.name, before.history_valid)));
         executor.set_uniforms(pass.pass, kCameraBinding, camera);
+        if (const NativeResult* native = natives_.result(pass.step);
+            native && has_native_block(*step.manifest))
+            executor.set_uniforms(pass.pass, kNativeBinding,
+                                  native_block(*step.manifest, native_values(*native)));
     }
     return timer.stop_ms();
 }
@@ -149,6 +160,7 @@ FrameResult PipelineRenderer::render(const FrameInputs& frame, const std::vector
     if (saved_) restore(*std::exchange(saved_, nullptr));
     if (is_first && !frame_fault_.empty()) built_->executor->clear_history();
     FrameResult result;
+    result.messages = natives_.take_messages();
     if (pipeline_.has_history() && is_first) result.history_reset = frame_fault_;
 
     const bool accumulates = built_->first_single_pass > 0 && frame.subframe_count > 1;

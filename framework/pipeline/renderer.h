@@ -13,6 +13,7 @@
 #include "framework/graph/executor.h"
 #include "framework/image/capture.h"
 #include "framework/pipeline/audit.h"
+#include "framework/pipeline/native_steps.h"
 #include "framework/pipeline/param_upload.h"
 #include "framework/pipeline/pipeline.h"
 
@@ -24,6 +25,7 @@ struct FrameResult {
     std::vector<graph::PassTime> times;   ///< upload, each pass, readback; empty unless timed
     std::vector<AuditFinding> audit;      ///< in the order of the passes; empty unless audited
     std::optional<Window> region;         ///< the part of the display window that was asked for
+    std::vector<std::string> messages;    ///< what native code logged
     std::string history_reset;            ///< why history began anew: "a cut"; "" where it went on or is none
 };
 
@@ -37,7 +39,7 @@ struct SavedHistory;
 class PipelineRenderer {
 public:
     PipelineRenderer(gpu::Context& context, const Pipeline& pipeline,
-                     const std::filesystem::path& data_folder);
+                     const std::filesystem::path& data_folder, NativeSources natives = {});
     ~PipelineRenderer();
 
     /// Renders one frame; of sub-frames, give each in turn. Steps up to the last one that accumulates run for
@@ -79,6 +81,7 @@ private:
     const Pipeline& pipeline_;
     ProgramCache programs_;
     StepFiles files_;
+    NativeSteps natives_;
     std::vector<ParamSet> params_;
     std::unique_ptr<BuiltGraph> built_;
     std::optional<Last> last_;             // capture, sub-frames too

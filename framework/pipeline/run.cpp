@@ -90,6 +90,7 @@ public:
         FrameResult result;
         std::vector<graph::PassTime> times;
         std::string history_reset;
+        std::vector<std::string> messages;
         for (int subframe = 0; subframe < inputs.subframe_count; ++subframe) {
             current = timed_read(report, [&] { return loader_.take(index, subframe); });
             if (subframe == inputs.subframe_count / 2) centre = current;
@@ -100,8 +101,10 @@ public:
             result = renderer_.render(inputs, roles, true);
             times.insert(times.end(), result.times.begin(), result.times.end());
             if (subframe == 0) history_reset = result.history_reset;
+            messages.insert(messages.end(), result.messages.begin(), result.messages.end());
         }
         result.times = std::move(times);
+        result.messages = std::move(messages);
         result.history_reset = std::move(history_reset);
         return finished(std::move(centre), std::move(result));
     }
@@ -154,6 +157,8 @@ bool skips(const FrameLoader& loader, const RunOptions& run, std::size_t index, 
 void tell(const CaptureHeader& header, const FrameResult& result, bool is_first, const RunOptions& run,
           const RunObserver& observer) {
     if (run.audit && observer.frame_audited) observer.frame_audited(header, result.audit);
+    for (const std::string& line : result.messages)
+        if (observer.native_message) observer.native_message(header.frame, line);
     if (!is_first && !result.history_reset.empty() && observer.history_reset)
         observer.history_reset(header.frame, result.history_reset);
 }
@@ -167,13 +172,14 @@ RunReport run_frames(gpu::Context& context, const Pipeline& pipeline, const Sequ
     RunReport report;
     const auto start = Clock::now();
     const std::vector<std::string> result_roles = wanted_roles(outputs);
-    PipelineRenderer renderer(context, pipeline, data_folder);
+    PipelineRenderer renderer(context, pipeline, data_folder, run.natives);
     renderer.set_audit(run.audit);
     if (!run.history_in.empty()) renderer.load_history(run.history_in);
     FrameLoader loader(sequence, reader, pipeline, run, roles_to_read(pipeline, outputs));
     FrameRun frame_run(renderer, loader, sequence, run);
     std::future<Written> pending_write;
     bool any_rendered = false;
+    const bool is_native = pipeline.has_native();
     for (std::size_t i = 0; i < run.frames.size(); ++i) {
         report.interrupted = stop;
         if (report.interrupted) break;
@@ -181,6 +187,8 @@ RunReport run_frames(gpu::Context& context, const Pipeline& pipeline, const Sequ
             ++report.frames_skipped;
             continue;
         }
+        // A plug-in may end this process: what is done must be on disk before its code runs.
+        if (is_native) finish_write(pending_write, report, observer);
         FrameRun::Rendered frame;
         try {
             frame = frame_run.render(i, result_roles, report, observer);

@@ -40,6 +40,7 @@ struct RunOptions {
     int region_margin_px = 64;          ///< rendered around the region, and not written
     std::filesystem::path history_in;   ///< "" for none
     std::filesystem::path history_out;  ///< "" for none
+    NativeSources natives{};
 };
 
 struct RunReport {
@@ -66,6 +67,7 @@ struct RunObserver {
     std::function<void(int frame, const std::string& what)> frame_missing;  ///< skipped or held
     /// Frames but the first that begin history anew, where some step has history.
     std::function<void(int frame, const std::string& reason)> history_reset;
+    std::function<void(int frame, const std::string& line)> native_message;
 };
 
 /// Reads the next frame and writes the last one while the GPU works. A frame that cannot be read is reported

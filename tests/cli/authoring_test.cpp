@@ -30,15 +30,18 @@ protected:
 
 TEST_F(Authoring, NewMakesAnEffectThatRunsAtOnceAndPassesItsCheck) {
     const CommandResult made = command({"new", "vignette2"});
-    write_capture(make_capture({.width = 64, .height = 36, .background = {0.5f, 0.5f, 0.5f}}), folder_ / "in_0001.exr");
-    command({"run", "vignette2/look.json", "in_0001.exr", "--effect-path", ".", "-o", "out.exr", "--backend", "osmesa"});
+    write_capture(make_capture({.width = 64, .height = 36, .background = {0.5f, 0.5f, 0.5f}}),
+                  folder_ / "in_0001.exr");
+    command({"run", "vignette2/look.json", "in_0001.exr", "--effect-path", ".", "-o", "out.exr", "--backend",
+             "osmesa"});
     const std::vector<std::string> channels{"R"};
     const Image out = ExrFile(folder_ / "out.exr").read_floats(0, channels);
     EXPECT_NEAR(out.at(32, 18, 0), 0.5f, 1e-3f);
     EXPECT_LT(out.at(0, 0, 0), 0.12f);
     const CommandResult checked = command({"check", "vignette2", "--strict", "--backend", "osmesa"});
     EXPECT_EQ(checked.out, "vignette2: 0 errors, 0 warnings\n");
-    EXPECT_NE(made.out.find("aftershade run ./vignette2/look.json CAPTURE --effect-path . -o out.png"), std::string::npos);
+    EXPECT_NE(made.out.find("aftershade run ./vignette2/look.json CAPTURE --effect-path . -o out.png"),
+              std::string::npos);
 }
 
 TEST_F(Authoring, TheDocsSayHowManyFilesAndLinesNewMakes) {
@@ -49,13 +52,15 @@ TEST_F(Authoring, TheDocsSayHowManyFilesAndLinesNewMakes) {
         lines += int(lines_of_text(read_text(entry.path())).size());
     }
     const std::string docs = read_text(fs::path(AFTERSHADE_SOURCE_DIR) / "docs/authoring.md");
-    EXPECT_NE(docs.find(std::to_string(files) + " files, " + std::to_string(lines) + " lines"), std::string::npos)
+    EXPECT_NE(docs.find(std::to_string(files) + " files, " + std::to_string(lines) + " lines"),
+              std::string::npos)
         << files << " files, " << lines << " lines";
 }
 
 TEST_F(Authoring, NewRefusesBadIdsAndReplacesNothing) {
     EXPECT_NE(command({"new", "Bad-Name"}, 2).err.find("must be snake_case"), std::string::npos);
-    EXPECT_NE(command({"new", "sanitize"}, 2).err.find("an effect that comes with Aftershade"), std::string::npos);
+    EXPECT_NE(command({"new", "sanitize"}, 2).err.find("an effect that comes with Aftershade"),
+              std::string::npos);
     command({"new", "mine"});
     const std::string before = read_text(folder_ / "mine/effect.json");
     EXPECT_NE(command({"new", "mine"}, 2).err.find("is there already"), std::string::npos);
@@ -64,7 +69,8 @@ TEST_F(Authoring, NewRefusesBadIdsAndReplacesNothing) {
 
 TEST_F(Authoring, CheckTellsOfEveryKindOfFaultWithItsPlace) {
     command({"new", "mine"});
-    const std::string shader = read_text(folder_ / "mine/mine.frag"), manifest = read_text(folder_ / "mine/effect.json");
+    const std::string shader = read_text(folder_ / "mine/mine.frag"),
+                      manifest = read_text(folder_ / "mine/effect.json");
     const auto fault = [&](const std::string& file, const std::string& before, const std::string& after) {
         write_text(folder_ / "mine/mine.frag", shader);
         write_text(folder_ / "mine/effect.json", manifest);
@@ -73,17 +79,20 @@ TEST_F(Authoring, CheckTellsOfEveryKindOfFaultWithItsPlace) {
     };
     EXPECT_TRUE(std::regex_search(fault("mine/mine.frag", "param.strength", "param.strenth"),
                                   std::regex("mine\\.frag:7:\\d+: error: .*strenth")));
-    EXPECT_NE(fault("mine/mine.frag", "param.strength *", "").find("strength"), std::string::npos) << "declared, not used";
+    EXPECT_NE(fault("mine/mine.frag", "param.strength *", "").find("strength"), std::string::npos)
+        << "declared, not used";
     EXPECT_TRUE(std::regex_search(fault("mine/mine.frag", "light.a)", "ligth.a)"),
                                   std::regex("mine\\.frag:9:\\d+: error: .*ligth")));
     const std::string bad = fault("mine/mine.frag", "1.0 - darkness", "1.0 / (param.strength - 1.0)");
     EXPECT_NE(bad.find("with strength at its max, 1: "), std::string::npos) << bad;
-    EXPECT_NE(fault("mine/effect.json", "\"default\": 0.6", "\"default\": 6").find("above the maximum 1"), std::string::npos);
+    EXPECT_NE(fault("mine/effect.json", "\"default\": 0.6", "\"default\": 6").find("above the maximum 1"),
+              std::string::npos);
 }
 
 TEST_F(Authoring, CheckWarnsOfWhatIsSeldomMeant) {
     fs::create_directories(folder_ / "odd");
-    write_text(folder_ / "odd/effect.json", R"({ "aftershade": 1, "id": "odd", "version": "1.0.0", "summary": "Odd.",
+    write_text(folder_ / "odd/effect.json",
+               R"({ "aftershade": 1, "id": "odd", "version": "1.0.0", "summary": "Odd.",
         "inputs": { "color": { "role": "color" }, "depth": { "role": "depth" } },
         "outputs": { "color": { "role": "color" } },
         "params": { "taps": { "type": "int", "default": 3, "min": 1, "max": 9, "doc": "." } },
@@ -93,7 +102,10 @@ TEST_F(Authoring, CheckWarnsOfWhatIsSeldomMeant) {
           { "name": "near", "shader": "near.frag", "reads": ["depth"], "writes": ["near", "spare"] },
           { "name": "main", "shader": "main.frag", "reads": ["color", "near", "kept.prev"], "writes": ["color", "kept"] } ] })");
     const std::string head = "#version 450 core\n#include <pass>\n";
-    write_text(folder_ / "odd/near.frag", head + "void main() { out_near = texelFetch(depth, ivec2(gl_FragCoord.xy), 0).r; out_spare = 0.0; }\n");
+    write_text(
+        folder_ / "odd/near.frag",
+        head +
+            "void main() { out_near = texelFetch(depth, ivec2(gl_FragCoord.xy), 0).r; out_spare = 0.0; }\n");
     write_text(folder_ / "odd/main.frag", head + R"(void main() {
     vec4 sum = vec4(0.0);
     for (int i = 0; i < param.taps; ++i) sum += texelFetch(color, ivec2(gl_FragCoord.xy), 0) * min(texelFetch(near, ivec2(0), 0).r, 1.0);
@@ -104,8 +116,8 @@ TEST_F(Authoring, CheckWarnsOfWhatIsSeldomMeant) {
     const std::string warnings = command({"check", "odd", "--no-gl"}).err;
     for (const char* expected :
          {"no pass reads the texture 'spare'", "the texture 'near' is made of depth but has the format r16f",
-          "main.frag:5:5: warning: a parameter bounds this loop", "main.frag:6:17: warning: this looks like a gamma",
-          "no shader asks frame.history_valid"})
+          "main.frag:5:5: warning: a parameter bounds this loop",
+          "main.frag:6:17: warning: this looks like a gamma", "no shader asks frame.history_valid"})
         EXPECT_NE(warnings.find(expected), std::string::npos) << expected << "\n" << warnings;
     command({"check", "odd", "--no-gl", "--strict"}, 1);
 }
@@ -114,8 +126,10 @@ TEST_F(Authoring, CheckOfALookFindsItsFaultsAndRefusesWhatItDoesNotKnow) {
     write_text(folder_ / "good.json", R"({ "aftershade": 1, "steps": [ { "effect": "view_transform" } ] })");
     write_text(folder_ / "bad.json", R"({ "aftershade": 1, "steps": [ { "effect": "view_transfrom" } ] })");
     command({"check", "good.json"});
-    EXPECT_NE(command({"check", "bad.json"}, 1).err.find("did you mean 'view_transform'?"), std::string::npos);
-    EXPECT_NE(command({"check", "nothing"}, 2).err.find("is no folder of an effect, no effect and no look"), std::string::npos);
+    EXPECT_NE(command({"check", "bad.json"}, 1).err.find("did you mean 'view_transform'?"),
+              std::string::npos);
+    EXPECT_NE(command({"check", "nothing"}, 2).err.find("is no folder of an effect, no effect and no look"),
+              std::string::npos);
 }
 
 TEST_F(Authoring, ListAndDescribeTellWhatThereIs) {
@@ -124,11 +138,13 @@ TEST_F(Authoring, ListAndDescribeTellWhatThereIs) {
     bool found = false;
     for (const auto& effect : listed) found |= effect.at("id") == "mine" && effect.at("version") == "1.0.0";
     EXPECT_TRUE(found);
-    const auto described = nlohmann::json::parse(command({"describe", "mine", "--effect-path", ".", "--json"}).out);
+    const auto described =
+        nlohmann::json::parse(command({"describe", "mine", "--effect-path", ".", "--json"}).out);
     EXPECT_EQ(described.at("params").at("strength").at("default"), 0.6);
     EXPECT_EQ(described.at("params").at("strength").at("identity"), 0.0);
     EXPECT_NE(command({"describe", "mine", "--effect-path", "."}).out.find("0 to 1"), std::string::npos);
-    EXPECT_NE(command({"describe", "mime", "--effect-path", "."}, 2).err.find("did you mean 'mine'?"), std::string::npos);
+    EXPECT_NE(command({"describe", "mime", "--effect-path", "."}, 2).err.find("did you mean 'mine'?"),
+              std::string::npos);
 }
 
 TEST_F(Authoring, DocsAreWrittenOnceAndTheirDriftIsFound) {

@@ -25,18 +25,20 @@ protected:
             write_capture(make_capture(scene, frame), folder_ / ("in_000" + std::to_string(frame) + ".exr"));
         write_text(folder_ / "nothing.json", R"({ "aftershade": 1, "steps": [] })");
         // Each frame holds half of those before it; a box of 5 px reaches 2 px.
-        write_effect("trail", R"(
+        write_effect(
+            "trail", R"(
             "textures": { "kept": { "format": "rgba16f", "history": true, "doc": "Light so far." } },
             "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color", "kept.prev"],
                           "writes": ["kept"] },
                         { "name": "show", "shader": "show.frag", "reads": ["kept"], "writes": ["color"] } ])",
-                     "void main() { ivec2 p = ivec2(gl_FragCoord.xy); vec4 now = texelFetch(color, p, 0);\n"
-                     "out_kept = frame.history_valid ? mix(now, texelFetch(kept_prev, p, 0), 0.5) : now; }\n");
+            "void main() { ivec2 p = ivec2(gl_FragCoord.xy); vec4 now = texelFetch(color, p, 0);\n"
+            "out_kept = frame.history_valid ? mix(now, texelFetch(kept_prev, p, 0), 0.5) : now; }\n");
         write_text(folder_ / "effects/trail/show.frag",
                    kHead + "void main() { out_color = texelFetch(kept, ivec2(gl_FragCoord.xy), 0); }\n");
         write_effect("spread", R"(
             "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color"], "writes": ["color"] } ])",
-                     "void main() { vec4 sum = vec4(0.0); for (int y = -2; y <= 2; ++y) for (int x = -2; x <= 2; ++x)\n"
+                     "void main() { vec4 sum = vec4(0.0); for (int y = -2; y <= 2; ++y) for (int x = -2; x "
+                     "<= 2; ++x)\n"
                      "sum += texelFetch(color, clamp(ivec2(gl_FragCoord.xy) + ivec2(x, y), ivec2(0),\n"
                      "frame.size - 1), 0); out_color = sum / 25.0; }\n");
         write_text(folder_ / "trail.json", R"({ "aftershade": 1, "steps": [ { "effect": "trail" } ] })");
@@ -48,7 +50,8 @@ protected:
         write_text(folder_ / "effects" / id / "effect.json",
                    R"({ "aftershade": 1, "version": "1.0.0", "summary": "A test.", "id": ")" + id +
                        R"(", "inputs": { "color": { "role": "color" } },
-                           "outputs": { "color": { "role": "color" } }, )" + sections + "}");
+                           "outputs": { "color": { "role": "color" } }, )" +
+                       sections + "}");
         write_text(folder_ / "effects" / id / "main.frag", kHead + shader);
     }
 
@@ -71,7 +74,8 @@ protected:
 };
 
 TEST_F(RenderOptions, ScaleAveragesLightAndPicksDepth) {
-    run({"nothing.json", "in_0001.exr", "--scale", "1/4", "--output-roles", "color,depth,velocity", "-o", "small.exr"});
+    run({"nothing.json", "in_0001.exr", "--scale", "1/4", "--output-roles", "color,depth,velocity", "-o",
+         "small.exr"});
     const Image full = color("in_0001.exr"), small = color("small.exr");
     ASSERT_EQ(small.width(), 16);
     ASSERT_EQ(small.height(), 9);
@@ -89,15 +93,16 @@ TEST_F(RenderOptions, ScaleAveragesLightAndPicksDepth) {
 
 TEST_F(RenderOptions, RegionIsThatPartOfTheWholePicture) {
     run({"spread.json", "in_0002.exr", "-o", "whole.exr"});
-    run({"spread.json", "in_0002.exr", "--region", "10,8,30,20", "--region-margin", "4", "-o", "part.exr", "-o",
-         "part.png"});
+    run({"spread.json", "in_0002.exr", "--region", "10,8,30,20", "--region-margin", "4", "-o", "part.exr",
+         "-o", "part.png"});
     const Image whole = color("whole.exr"), part = color("part.exr");
     const ExrFile file(folder_ / "part.exr");
     EXPECT_EQ(file.parts()[0].data_window, (Window{10, 8, 39, 27}));
     EXPECT_EQ(file.parts()[0].display_window, (Window{0, 0, 63, 35}));
     for (int y = 0; y < 20; ++y)
         for (int x = 0; x < 30; ++x)
-            for (int c = 0; c < 4; ++c) ASSERT_EQ(part.at(x, y, c), whole.at(x + 10, y + 8, c)) << x << " " << y;
+            for (int c = 0; c < 4; ++c)
+                ASSERT_EQ(part.at(x, y, c), whole.at(x + 10, y + 8, c)) << x << " " << y;
     const Image png = read_png(folder_ / "part.png");
     EXPECT_EQ(png.width(), 30);
     EXPECT_EQ(png.height(), 20);
@@ -106,14 +111,17 @@ TEST_F(RenderOptions, RegionIsThatPartOfTheWholePicture) {
 TEST_F(RenderOptions, HistoryGoesFromChunkToChunkBitForBit) {
     run({"trail.json", "in_####.exr", "-o", "whole_####.exr"});
     run({"trail.json", "in_####.exr", "--frames", "1-2", "--history-out", "h", "-o", "part_####.exr"});
-    run({"trail.json", "in_####.exr", "--frames", "3-4", "--history-in", "h", "--history-out", "h", "-o", "part_####.exr"});
+    run({"trail.json", "in_####.exr", "--frames", "3-4", "--history-in", "h", "--history-out", "h", "-o",
+         "part_####.exr"});
     run({"trail.json", "in_####.exr", "--frames", "5-6", "--history-in", "h", "-o", "part_####.exr"});
     for (const char* frame : {"1", "2", "3", "4", "5", "6"})
-        EXPECT_TRUE(same(color("whole_000" + std::string(frame) + ".exr"), color("part_000" + std::string(frame) + ".exr")))
+        EXPECT_TRUE(same(color("whole_000" + std::string(frame) + ".exr"),
+                         color("part_000" + std::string(frame) + ".exr")))
             << frame;
     const CommandResult refused =
         run({"trail.json", "in_####.exr", "--frames", "2", "--history-in", "h", "-o", "no.exr"}, 2);
-    EXPECT_NE(refused.err.find("this history is of frame 4; it can go on with frame 5, not with 2"), std::string::npos);
+    EXPECT_NE(refused.err.find("this history is of frame 4; it can go on with frame 5, not with 2"),
+              std::string::npos);
     EXPECT_FALSE(fs::exists(folder_ / "no.exr"));
 }
 
@@ -121,12 +129,14 @@ TEST_F(RenderOptions, HistoryBeginsAnewAtACutAndAfterAMissingFrameAndSaysSo) {
     write_text(folder_ / "capture.json",
                R"({ "aftershade": 1, "frames": "in_####.exr", "range": "1-6", "cuts": [3] })");
     fs::remove(folder_ / "in_0005.exr");
-    const CommandResult result = run({"trail.json", "capture.json", "--missing", "skip", "-o", "out_####.exr"});
+    const CommandResult result =
+        run({"trail.json", "capture.json", "--missing", "skip", "-o", "out_####.exr"});
     EXPECT_NE(result.err.find("frame 3: history begins anew: a cut"), std::string::npos);
     EXPECT_NE(result.err.find("frame 6: history begins anew: it follows frame 4, not 5"), std::string::npos);
     for (const char* frame : {"1", "3", "6"}) {
         // Half precision in the texture: the source is exact in it but for 0.1 and 0.2.
-        const Image out = color("out_000" + std::string(frame) + ".exr"), in = color("in_000" + std::string(frame) + ".exr");
+        const Image out = color("out_000" + std::string(frame) + ".exr"),
+                    in = color("in_000" + std::string(frame) + ".exr");
         for (std::size_t i = 0; i < out.floats().size(); ++i)
             ASSERT_NEAR(out.floats()[i], in.floats()[i], 1e-3f * std::abs(in.floats()[i]) + 1e-6f) << frame;
     }
@@ -148,8 +158,10 @@ TEST_F(RenderOptions, ALookUsesAnotherWithVariablesAndAPrefix) {
     write_text(folder_ / "film.json", R"({ "aftershade": 1, "vars": { "push": 1 }, "steps": [
         { "effect": "spread" }, { "use": "looks/light.json", "name": "final", "vars": { "stops": { "var": "push" } } } ] })");
     const CommandResult plain = run({"film.json", "in_0001.exr", "-o", "a.png", "--explain"});
-    EXPECT_NE(plain.out.find("final_view_transform.exposure = 1 ev   [the look]"), std::string::npos) << plain.out;
-    const CommandResult pushed = run({"film.json", "in_0001.exr", "-o", "a.png", "--explain", "--var", "push=2.5"});
+    EXPECT_NE(plain.out.find("final_view_transform.exposure = 1 ev   [the look]"), std::string::npos)
+        << plain.out;
+    const CommandResult pushed =
+        run({"film.json", "in_0001.exr", "-o", "a.png", "--explain", "--var", "push=2.5"});
     EXPECT_NE(pushed.out.find("exposure = 2.5 ev"), std::string::npos);
     const CommandResult unknown = run({"film.json", "in_0001.exr", "-o", "a.png", "--var", "puhs=2"}, 2);
     EXPECT_NE(unknown.err.find("the look has no variable 'puhs'; did you mean 'push'?"), std::string::npos);
@@ -159,7 +171,8 @@ TEST_F(RenderOptions, LooksThatUseEachOtherAreRefused) {
     write_text(folder_ / "a.json", R"({ "aftershade": 1, "steps": [ { "use": "b.json" } ] })");
     write_text(folder_ / "b.json", R"({ "aftershade": 1, "steps": [ { "use": "a.json" } ] })");
     const CommandResult result = run({"a.json", "in_0001.exr", "-o", "a.png"}, 2);
-    EXPECT_NE(result.err.find("b.json:1:40: error: 'a.json' uses itself: a.json uses b.json uses a.json"), std::string::npos)
+    EXPECT_NE(result.err.find("b.json:1:40: error: 'a.json' uses itself: a.json uses b.json uses a.json"),
+              std::string::npos)
         << result.err;
 }
 
@@ -171,8 +184,9 @@ TEST_F(RenderOptions, SubframesOfACaptureMakeOneFrame) {
                  "void main() { ivec2 p = ivec2(gl_FragCoord.xy); out_total = texelFetch(color, p, 0) +\n"
                  "(frame.subframe > 0 ? texelFetch(total_prev, p, 0) : vec4(0.0)); }\n");
     write_text(folder_ / "effects/average/show.frag",
-               kHead + "void main() { out_color = texelFetch(total, ivec2(gl_FragCoord.xy), 0) / "
-                       "float(frame.subframe_count); }\n");
+               kHead +
+                   "void main() { out_color = texelFetch(total, ivec2(gl_FragCoord.xy), 0) / "
+                   "float(frame.subframe_count); }\n");
     write_text(folder_ / "average.json", R"({ "aftershade": 1, "steps": [ { "effect": "average" } ] })");
     write_text(folder_ / "capture.json", R"({ "aftershade": 1, "frames": "in_####.exr", "subframes": 2 })");
     // Files 2 and 3 are frame 1, 4 and 5 frame 2; 1 and 6 are halves of frames that are not whole.
@@ -186,10 +200,13 @@ TEST_F(RenderOptions, SubframesOfACaptureMakeOneFrame) {
 }
 
 TEST_F(RenderOptions, WordsThatMakeNoSenseAreAllListed) {
-    const CommandResult result = run({"nothing.json", "in_0001.exr", "-o", "a.exr", "--scale", "0.3", "--region", "1,2,3",
-                                      "--graph", "g.png", "--var", "x", "--keep-channels"}, 2);
-    for (const char* fault : {"--scale 0.3: error: must be 1, 1/2, 1/3", "--region 1,2,3: error: must be x,y,w,h",
-                              "--graph g.png: error: must end in .dot or .svg", "--var x: error: expected name=value"})
+    const CommandResult result =
+        run({"nothing.json", "in_0001.exr", "-o", "a.exr", "--scale", "0.3", "--region", "1,2,3", "--graph",
+             "g.png", "--var", "x", "--keep-channels"},
+            2);
+    for (const char* fault :
+         {"--scale 0.3: error: must be 1, 1/2, 1/3", "--region 1,2,3: error: must be x,y,w,h",
+          "--graph g.png: error: must end in .dot or .svg", "--var x: error: expected name=value"})
         EXPECT_NE(result.err.find(fault), std::string::npos) << fault << "\n" << result.err;
 }
 

@@ -1,0 +1,117 @@
+// Native plug-ins through the command: what they compute is drawn, and what goes wrong in them is told.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "framework/image/png_file.h"
+#include "tests/cli/command.h"
+#include "tests/synthetic_capture.h"
+
+namespace aftershade::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kCases = AFTERSHADE_CASES;
+const std::string kExamples = AFTERSHADE_EXAMPLES;
+const std::vector<std::string> kRed{"R"};
+
+class Plugins : public testing::Test {
+protected:
+    Plugins() {
+        for (int frame = 1; frame <= 4; ++frame) {
+            SyntheticScene scene{.width = 48, .height = 32, .background = {0.25f, 0.25f, 0.25f}};
+            scene.points = {{24, 16, 64}};
+            write_capture(make_capture(scene, frame), folder_ / ("in_000" + std::to_string(frame) + ".exr"));
+        }
+    }
+
+    /// An effect that multiplies by the uniform `gain` of the library with that id.
+    void write_effect(const std::string& id) {
+        fs::create_directories(folder_ / "effects" / id);
+        write_text(folder_ / "effects" / id / "effect.json",
+                   R"({ "aftershade": 1, "version": "1.0.0", "summary": "A test.", "id": ")" + id + R"(",
+            "inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
+            "params": { "gain": { "type": "float", "default": 0.5, "doc": "." } },
+            "native": { "uniforms": { "gain": { "type": "float", "doc": "Gain times the frame's number." } } },
+            "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color"], "writes": ["color"] } ] })");
+        write_text(folder_ / "effects" / id / "main.frag",
+                   "#version 450 core\n#include <pass>\nvoid main() { out_color = texelFetch(color, "
+                   "ivec2(gl_FragCoord.xy), 0) * native.gain; }\n");
+        write_text(folder_ / "look.json", R"({ "aftershade": 1, "steps": [ { "effect": ")" + id + R"(", "name": "graded" } ] })");
+    }
+
+    CommandResult run(std::vector<std::string> more, int exit_code) {
+        std::vector<std::string> arguments{"run",    "look.json", "in_####.exr", "-o",       "out_####.exr",
+                                           "--backend", "osmesa", "--pixel-type", "float"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        CommandResult result = run_aftershade(arguments, folder_.path());
+        EXPECT_EQ(result.exit_code, exit_code) << result.err;
+        return result;
+    }
+    Image red(const std::string& name) { return ExrFile(folder_ / name).read_floats(0, kRed); }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(Plugins, FillUniformsEveryFrame) {
+    write_effect("older");
+    run({"--effect-path", "effects", "--plugin-path", kCases}, 0);
+    for (int frame = 1; frame <= 4; ++frame)
+        EXPECT_FLOAT_EQ(red("out_000" + std::to_string(frame) + ".exr").at(3, 3, 0), 0.25f * 0.5f * float(frame));
+}
+
+TEST_F(Plugins, FillTablesThatShadersRead) {
+    write_text(folder_ / "look.json", R"({ "aftershade": 1, "steps": [ { "effect": "gauss_table", "params": { "sigma": 2 } } ] })");
+    run({"--effect-path", std::string(AFTERSHADE_SOURCE_DIR) + "/examples/plugins/kernel_c", "--plugin-path", kExamples,
+         "--frames", "1"}, 0);
+    const Image out = red("out_0001.exr");
+    double sum = 0;
+    for (int i = -6; i <= 6; ++i) sum += std::exp(-0.5 * i * i / 4);
+    for (int dx = 0; dx <= 4; ++dx) {
+        const double weight = std::exp(-0.5 * dx * dx / 4) / (sum * sum);
+        EXPECT_NEAR(out.at(24 + dx, 16, 0), 0.25 + 64 * weight, 2e-3 * 64 * weight + 1e-4) << dx;
+    }
+}
+
+TEST_F(Plugins, ThatCrashEndTheRunWithTheirNameAndLeaveEarlierFramesWhole) {
+    write_effect("crashes_late");
+    const CommandResult result = run({"--effect-path", "effects", "--plugin-path", kCases}, 5);
+    EXPECT_NE(result.err.find("plug-in " + kCases + "/crashes_late.so crashed (signal 11, SIGSEGV) in prepare of step "
+                                                    "'graded', frame 3"),
+              std::string::npos)
+        << result.err;
+    EXPECT_FLOAT_EQ(red("out_0001.exr").at(3, 3, 0), 0.125f);
+    EXPECT_FLOAT_EQ(red("out_0002.exr").at(3, 3, 0), 0.25f);
+    EXPECT_FALSE(fs::exists(folder_ / "out_0003.exr"));
+    for (const auto& entry : fs::directory_iterator(folder_.path()))
+        EXPECT_EQ(entry.path().filename().string().find("tmp"), std::string::npos) << entry.path();
+}
+
+TEST_F(Plugins, ThatHangAreStopped) {
+    write_effect("hangs");
+    const CommandResult result = run({"--effect-path", "effects", "--plugin-path", kCases, "--plugin-timeout", "1"}, 5);
+    EXPECT_NE(result.err.find("hangs.so"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("step 'graded', frame 1"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("--plugin-timeout"), std::string::npos) << result.err;
+}
+
+TEST_F(Plugins, ThatExitOrThrowAreErrorsOfTheStep) {
+    for (const char* id : {"exits", "throws"}) {
+        write_effect(id);
+        const CommandResult result = run({"--effect-path", "effects", "--plugin-path", kCases}, 5);
+        EXPECT_NE(result.err.find("graded"), std::string::npos) << result.err;
+        EXPECT_NE(result.err.find(std::string(id) + ".so"), std::string::npos) << result.err;
+    }
+}
+
+TEST_F(Plugins, AreNeverTakenFromBesideALook) {
+    write_effect("older");
+    fs::copy_file(kCases + "/older.so", folder_ / "older.so");
+    fs::copy_file(kCases + "/older.so", folder_ / "effects/older/older.so");
+    const CommandResult result = run({"--effect-path", "effects"}, 5);
+    EXPECT_NE(result.err.find("no library offers native code for the effect 'older'"), std::string::npos) << result.err;
+}
+
+}  // namespace
+}  // namespace aftershade::test
