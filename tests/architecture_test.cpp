@@ -82,7 +82,7 @@ TEST(Architecture, NothingOutsideAnEffectsFolderNamesIt) {
     for (const auto& entry : fs::directory_iterator(kRoot / "effects"))
         if (entry.is_directory()) ids.push_back(entry.path().filename().string());
     ASSERT_FALSE(ids.empty());
-    for (const char* folder : {"framework", "glsl"})
+    for (const char* folder : {"framework", "cli", "glsl"})
         for (const Line& line : code_lines(kRoot / folder, {".h", ".cpp", ".glsl", ".vert", ".json"}))
             for (const std::string& id : ids)
                 EXPECT_FALSE(std::regex_search(line.text, std::regex("\\b" + id + "\\b")))

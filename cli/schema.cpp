@@ -1,0 +1,46 @@
+#include "framework/pipeline/schema.h"
+
+#include <cstdio>
+#include <memory>
+
+#include "cli/capture_options.h"
+#include "cli/effect_options.h"
+#include "cli/verbs.h"
+
+namespace aftershade::cli {
+
+namespace {
+
+struct SchemaOptions {
+    std::string document = "look";
+    std::vector<std::string> effect_paths;
+};
+
+std::string schema_of(const SchemaOptions& options) {
+    if (options.document == "capture") return capture_schema();
+    if (options.document == "effect") return effect_schema();
+    Diagnostics diagnostics;
+    EffectRegistry effects = find_effects(options.effect_paths, diagnostics);
+    std::vector<const EffectManifest*> manifests;
+    for (const std::string& id : effects.ids())
+        if (const EffectManifest* manifest = effects.find(id, diagnostics)) manifests.push_back(manifest);
+    stop_at_errors(diagnostics);
+    return look_schema(manifests);
+}
+
+}  // namespace
+
+Verb add_schema(CLI::App& app) {
+    auto options = std::make_shared<SchemaOptions>();
+    app.add_option("document", options->document, "look, capture or effect")
+        ->check(CLI::IsMember({"look", "capture", "effect"}))
+        ->capture_default_str();
+    add_effect_path_option(app, options->effect_paths);
+    return [options] {
+        const std::string text = schema_of(*options);
+        std::fwrite(text.data(), 1, text.size(), stdout);
+        return ExitCode::done;
+    };
+}
+
+}  // namespace aftershade::cli

@@ -1,0 +1,99 @@
+#include <cctype>
+
+#include "framework/image/camera.h"
+#include "framework/image/color_space.h"
+#include "framework/image/role.h"
+#include "framework/pipeline/schema.h"
+#include "framework/pipeline/schema_common.h"
+
+namespace aftershade {
+
+using schema::json;
+
+namespace {
+
+const json kNumber = {{"type", "number"}};
+const json kFlag = {{"type", "boolean"}};
+
+json length_m() {
+    ParamSpec spec;
+    spec.unit = "m";
+    spec.min = 0;
+    return schema::quantity(spec);
+}
+
+/// As profile_parse.cpp reads them.
+json decoding_of(const ChannelRole& role) {
+    const json names = schema::array_of(schema::text(), role.channels, role.channels);
+    json keys = {{"channels", names}, {"sum", schema::array_of(names)}};
+    for (const std::string& native : role.native_channels)
+        keys[std::string(1, char(std::tolower(static_cast<unsigned char>(native.back()))))] = schema::text();
+    if (role.name == "color") keys["luminance"] = schema::text();
+    if (role.name == "depth") {
+        for (const char* key : {"scale", "no_hit", "no_hit_stored"}) keys[key] = kNumber;
+        keys["zero_is_no_hit"] = keys["reversed"] = kFlag;
+        keys["encoding"] = schema::one_of({"linear", "inverse", "z_buffer", "normalized"});
+        keys["kind"] = schema::one_of({"planar", "radial"});
+        keys["near"] = keys["far"] = length_m();
+    }
+    if (role.name == "velocity" || role.name == "velocity_next") {
+        const bool next = role.name == "velocity_next";
+        keys["delta"] = schema::one_of(next ? std::vector<std::string>{"next-cur", "cur-next"}
+                                            : std::vector<std::string>{"cur-prev", "prev-cur"});
+        keys["y_axis"] = schema::one_of({"up", "down"});
+        keys["unit"] = schema::one_of({"px", "uv", "ndc"});
+        keys["scale"] = {{"anyOf", {kNumber, schema::array_of(kNumber, 2, 2)}}};
+        keys["bias"] = keys["no_motion_above"] = kNumber;
+        keys["premultiplied"] = kFlag;
+        keys["shutter_frames"] = {{"type", "number"}, {"exclusiveMinimum", 0}};
+    }
+    json decoding = schema::object(keys);
+    decoding["description"] = role.meaning;
+    return decoding;
+}
+
+json camera() {
+    json fields = {{"lens_model", schema::one_of({"thin", "pinhole"})}};
+    for (const CameraField& field : camera_fields()) {
+        ParamSpec spec;
+        spec.unit = field.unit;
+        spec.min = field.min;
+        fields[field.name] = schema::quantity(spec);
+    }
+    return schema::object(fields);
+}
+
+}  // namespace
+
+std::string capture_schema() {
+    json decodings = json::object(), files = json::object();
+    for (const ChannelRole& role : channel_roles()) {
+        decodings[role.name] = decoding_of(role);
+        files[role.name] = schema::text();
+    }
+    json by_role = schema::object(decodings), file_by_role = schema::object(files);
+    by_role["patternProperties"] = {{"^aov:.+$", {{"type", "object"}}}};
+    file_by_role["patternProperties"] = {{"^aov:.+$", schema::text()}};
+    std::vector<std::string> spaces = color_space_names();
+    spaces.insert(spaces.begin(), "auto");
+    json document = schema::document(
+        "Aftershade capture",
+        {{"frames", {{"type", "string"}, {"description", "The main files: \"gbuffer_####.exr\"."}}},
+         {"files", file_by_role},
+         {"range", {{"type", "string"}, {"description", "Frames that there are: \"1-100x2,120\"."}}},
+         {"fps", {{"type", "number"}, {"exclusiveMinimum", 0}}},
+         {"profile", {{"type", "string"}, {"description", "Conventions of the producer; default auto."}}},
+         {"view", schema::text()},
+         {"color_space", schema::one_of(spaces)},
+         {"channels", by_role},
+         {"camera", camera()},
+         {"cryptomatte", schema::object({{"layer", schema::text()}, {"mask", schema::array_of(schema::text())}})},
+         {"cuts", schema::array_of({{"type", "integer"}})},
+         {"subframes", {{"type", "integer"}, {"minimum", 1}, {"maximum", 1024}}}},
+        {});
+    document["anyOf"] = {{{"required", {"frames"}}},
+                         {{"required", {"files"}}, {"properties", {{"files", {{"required", {"color"}}}}}}}};
+    return document.dump(2) + "\n";
+}
+
+}  // namespace aftershade

@@ -1,0 +1,22 @@
+// JSON Schema (draft 2020-12) of the documents that users write, made from the declarations.
+//
+// What an editor completes and marks is what the program takes and refuses, as far as a schema can say it: that
+// names which another document declares (steps, variables) exist, and how two values stand to each other, only
+// the program knows.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/effect/manifest.h"
+
+namespace aftershade {
+
+/// Of a look; one branch for each effect, with its parameters, their docs, units and ranges.
+std::string look_schema(const std::vector<const EffectManifest*>& effects);
+/// Of a capture.json.
+std::string capture_schema();
+/// Of an effect.json.
+std::string effect_schema();
+
+}  // namespace aftershade
