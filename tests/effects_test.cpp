@@ -280,10 +280,18 @@ TEST_P(EveryEffect, BeginsAnewAtACutAGapAndAnotherSize) {
 TEST_P(EveryEffect, GivesTheSameBitsOnBothSoftwareBackends) {
     if (backends().size() < 2) GTEST_SKIP() << "SKIPPED: only one software backend works here";
     const Capture capture = small_capture();
-    const FrameResult first = run({}, backends()[0], capture), second = run({}, backends()[1], capture);
-    ASSERT_EQ(first.images.size(), second.images.size());
-    for (const auto& [role, image] : first.images)
-        EXPECT_TRUE(same_bits(image, second.images.at(role))) << role;
+    std::vector<Values> variants{{}};
+    for (const ParamSpec& spec : manifest().params)
+        if (spec.bind == ParamBind::define)
+            for (const ParamValue& value : extremes_of(spec)) variants.push_back({{spec.name, value}});
+    for (const Values& values : variants) {
+        const FrameResult first = run(values, backends()[0], capture);
+        const FrameResult second = run(values, backends()[1], capture);
+        ASSERT_EQ(first.images.size(), second.images.size());
+        for (const auto& [role, image] : first.images)
+            EXPECT_TRUE(same_bits(image, second.images.at(role)))
+                << role << " of " << look_of(GetParam(), values);
+    }
 }
 
 // ---- cases ----

@@ -3,9 +3,9 @@
 #include <luminance.glsl>
 #include "bright.glsl"
 
-// A texel lies over exactly two by two of the finer level, counted from the top left: the glow stays round and
-// centred whatever the size. The 13 bilinear taps of Jimenez 2014 are five boxes of 4 x 4 texels; here each texel is
-// fetched alone, because a bilinear tap would spread a NaN.
+// A texel lies over exactly two by two of the finer level, counted from the top left: the glow stays round
+// and centred whatever the size. The 13 bilinear taps of Jimenez 2014 are five boxes of 4 x 4 texels; here
+// each texel is fetched alone, because a bilinear tap would spread a NaN.
 vec4 quads[5][5];
 
 float quad_weight(vec4 quad) {

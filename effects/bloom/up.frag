@@ -2,8 +2,8 @@
 #include <pass>
 #include "tent.glsl"
 
-// Going down adds a variance of 1.75 texels squared and coming up 2.75 for each level, in texels of the finer one, so
-// that level n has 1.5 (4^n - 1) px squared.
+// Going down adds a variance of 1.75 texels squared and coming up 2.75 for each level, in texels of the finer
+// one, so that level n has 1.5 (4^n - 1) px squared.
 float widest_level() { return 0.5 * log2(param.radius * param.radius / 1.5 + 1.0); }
 
 void main() {

@@ -63,5 +63,15 @@ TEST(Vignette, ACropHasThePixelsOfTheWhole) {
     EXPECT_TRUE(same_in_window(vignetted(white(), ""), vignetted(cropped(white(), window), ""), window));
 }
 
+TEST(Vignette, OverscanLeavesThePixelsOfTheDisplayWindowAsTheyAre) {
+    Capture overscan = make_capture({.width = 80, .height = 48, .background = {1, 1, 1}});
+    overscan.header.data_window = {-8, -6, 71, 41};
+    overscan.header.display_window = {0, 0, 63, 35};
+    const Image out = vignetted(overscan, ""), plain = vignetted(white(), "");
+    EXPECT_TRUE(same_in_window(out, plain, {8, 6, 71, 41}));
+    // Beyond the corner the falloff goes on.
+    EXPECT_LT(out.at(0, 0, 0), plain.at(0, 0, 0));
+}
+
 }  // namespace
 }  // namespace aftershade::test
