@@ -87,7 +87,8 @@ std::string capture_schema() {
          {"color_space", schema::one_of(spaces)},
          {"channels", by_role},
          {"camera", camera()},
-         {"cryptomatte", schema::object({{"layer", schema::text()}, {"mask", schema::array_of(schema::text())}})},
+         {"cryptomatte",
+          schema::object({{"layer", schema::text()}, {"mask", schema::array_of(schema::text())}})},
          {"cuts", schema::array_of({{"type", "integer"}})},
          {"subframes", {{"type", "integer"}, {"minimum", 1}, {"maximum", 1024}}}},
         {});

@@ -42,7 +42,8 @@ json numbers(int min, int max) {
 }
 
 json param(bool column) {
-    std::vector<std::string> types = {"float", "int", "bool", "enum", "angle", "color", "vec2", "vec3", "vec4"};
+    std::vector<std::string> types = {"float", "int",  "bool", "enum", "angle",
+                                      "color", "vec2", "vec3", "vec4"};
     if (!column) types.insert(types.end(), {"curve", "file", "table"});
     json keys = {{"type", schema::one_of(types)},
                  {"doc", {{"type", "string"}, {"minLength", 1}}},
@@ -58,7 +59,8 @@ json param(bool column) {
         keys["bind"] = schema::one_of({"uniform", "define"});
         keys["from"] = schema::one_of(sources);
         keys["identity"] = json::object();
-        keys["requires"] = schema::array_of({{"type", "string"}, {"pattern", "^\\s*(<|<=|>|>=)\\s*[a-z][a-z0-9_]*\\s*$"}});
+        keys["requires"] =
+            schema::array_of({{"type", "string"}, {"pattern", "^\\s*(<|<=|>|>=)\\s*[a-z][a-z0-9_]*\\s*$"}});
         keys["domain"] = schema::array_of(kNumber, 2, 2);
         keys["kind"] = schema::one_of({"image", "lut"});
         keys["space"] = schema::one_of({"srgb", "data"});
@@ -88,12 +90,15 @@ json texture() {
 }
 
 json per() {
-    return {{"anyOf", {{{"const", "pixel"}}, schema::object({{"tile", count(2, 4096)}}, {"tile"}),
-                       schema::object({{"scale", kNumber}}, {"scale"})}}};
+    return {{"anyOf",
+             {{{"const", "pixel"}},
+              schema::object({{"tile", count(2, 4096)}}, {"tile"}),
+              schema::object({{"scale", kNumber}}, {"scale"})}}};
 }
 
 json buffer() {
-    return schema::object({{"element", schema::one_of({"float", "int", "uint", "vec2", "vec4", "ivec2", "ivec4", "uvec2", "uvec4"})},
+    return schema::object({{"element", schema::one_of({"float", "int", "uint", "vec2", "vec4", "ivec2",
+                                                       "ivec4", "uvec2", "uvec4"})},
                            {"doc", kText},
                            {"count", count(1, 1 << 30)},
                            {"per", per()},
@@ -104,30 +109,37 @@ json buffer() {
 }
 
 json level() {
-    return {{"anyOf", {integer(0, kMaxLayers), {{"type", "string"}, {"pattern", "^pass\\.index( *[-+] *[0-9]+)?$"}}}}};
+    return {{"anyOf",
+             {integer(0, kMaxLayers), {{"type", "string"}, {"pattern", "^pass\\.index( *[-+] *[0-9]+)?$"}}}}};
 }
 
 json read() {
     const json filter = schema::one_of({"nearest", "linear"});
-    const json options =
-        schema::object({{"filter", filter}, {"outside", schema::one_of({"clamp", "weight_zero"})}, {"level", level()}});
-    const json chosen = {{"type", "object"}, {"additionalProperties", {{"anyOf", {filter, options}}}}, {"minProperties", 1}, {"maxProperties", 1}};
+    const json options = schema::object(
+        {{"filter", filter}, {"outside", schema::one_of({"clamp", "weight_zero"})}, {"level", level()}});
+    const json chosen = {{"type", "object"},
+                         {"additionalProperties", {{"anyOf", {filter, options}}}},
+                         {"minProperties", 1},
+                         {"maxProperties", 1}};
     return {{"anyOf", {kText, chosen}}};
 }
 
 json write() {
     const json options = schema::object({{"level", level()}, {"layer", level()}});
-    const json chosen = {{"type", "object"}, {"additionalProperties", options}, {"minProperties", 1}, {"maxProperties", 1}};
+    const json chosen = {
+        {"type", "object"}, {"additionalProperties", options}, {"minProperties", 1}, {"maxProperties", 1}};
     return {{"anyOf", {kText, chosen}}};
 }
 
 json pass() {
     const json value = {{"type", {"boolean", "integer", "string"}}};
-    const json access = {{"type", "object"}, {"additionalProperties", schema::one_of({"read", "write", "atomic"})}};
-    const json dispatch = {{"anyOf",
-                            {schema::object({{"tile", count(1, 1024)}, {"over", kText}}, {"tile"}),
-                             schema::object({{"groups", schema::array_of(integer(1, 65535), 3, 3)}}, {"groups"}),
-                             schema::object({{"indirect", kText}}, {"indirect"})}}};
+    const json access = {{"type", "object"},
+                         {"additionalProperties", schema::one_of({"read", "write", "atomic"})}};
+    const json dispatch = {
+        {"anyOf",
+         {schema::object({{"tile", count(1, 1024)}, {"over", kText}}, {"tile"}),
+          schema::object({{"groups", schema::array_of(integer(1, 65535), 3, 3)}}, {"groups"}),
+          schema::object({{"indirect", kText}}, {"indirect"})}}};
     return schema::object(
         {{"name", {{"type", "string"}, {"pattern", schema::kSnakeCase}}},
          {"kind", schema::one_of({"draw", "compute", "clear"})},
@@ -138,11 +150,14 @@ json pass() {
          {"images", access},
          {"buffers", access},
          {"defines", {{"type", "object"}, {"additionalProperties", {{"type", {"string", "integer"}}}}}},
-         {"when", {{"type", "object"}, {"additionalProperties", {{"anyOf", {value, schema::array_of(value, 1)}}}}}},
+         {"when",
+          {{"type", "object"}, {"additionalProperties", {{"anyOf", {value, schema::array_of(value, 1)}}}}}},
          {"repeat", count(1, kMaxRepeat)},
          {"max_iterations", integer(1, kMaxIterations)},
-         {"instances", schema::object({{"of", schema::one_of({"quads", "points"})}, {"count", count(1, 1 << 30)},
-                                       {"per", per()}, {"indirect", kText}},
+         {"instances", schema::object({{"of", schema::one_of({"quads", "points"})},
+                                       {"count", count(1, 1 << 30)},
+                                       {"per", per()},
+                                       {"indirect", kText}},
                                       {})},
          {"dispatch", dispatch},
          {"blend", schema::one_of({"add", "min", "max"})},
@@ -153,38 +168,45 @@ json pass() {
 json native() {
     const json side = integer(1, 1024);
     return schema::object(
-        {{"uniforms", named(schema::object({{"type", schema::one_of({"float", "int", "uint", "vec2", "vec3", "vec4"})}, {"doc", kText}},
-                                           {"type", "doc"}))},
-         {"tables", named(schema::object({{"element", schema::one_of({"float", "vec2", "vec4", "uint", "uvec2", "uvec4"})},
-                                          {"count", {{"anyOf", {side, schema::array_of(side, 2, 2)}}}},
-                                          {"doc", kText}},
-                                         {"element", "count", "doc"}))}});
+        {{"uniforms",
+          named(schema::object(
+              {{"type", schema::one_of({"float", "int", "uint", "vec2", "vec3", "vec4"})}, {"doc", kText}},
+              {"type", "doc"}))},
+         {"tables", named(schema::object(
+                        {{"element", schema::one_of({"float", "vec2", "vec4", "uint", "uvec2", "uvec4"})},
+                         {"count", {{"anyOf", {side, schema::array_of(side, 2, 2)}}}},
+                         {"doc", kText}},
+                        {"element", "count", "doc"}))}});
 }
 
 }  // namespace
 
 std::string effect_schema() {
-    const json input = schema::object({{"role", role()}, {"optional", kFlag}, {"history", kFlag},
-                                       {"frame", schema::json{{"enum", {-1, 1}}}}, {"doc", kText}},
+    const json input = schema::object({{"role", role()},
+                                       {"optional", kFlag},
+                                       {"history", kFlag},
+                                       {"frame", schema::json{{"enum", {-1, 1}}}},
+                                       {"doc", kText}},
                                       {"role"});
     const json output = schema::object({{"role", role()}, {"doc", kText}}, {"role"});
     json outputs = named(output);
     outputs["minProperties"] = 1;
-    return schema::document("Aftershade effect",
-                            {{"id", {{"type", "string"}, {"pattern", schema::kSnakeCase}}},
-                             {"version", {{"type", "string"}, {"pattern", "^[0-9]+\\.[0-9]+\\.[0-9]+$"}}},
-                             {"summary", kText},
-                             {"sources", schema::array_of(kText)},
-                             {"accumulates", schema::json{{"const", "subframes"}}},
-                             {"inputs", named(input)},
-                             {"outputs", outputs},
-                             {"params", named(param(false))},
-                             {"textures", named(texture())},
-                             {"buffers", named(buffer())},
-                             {"passes", schema::array_of(pass(), 1)},
-                             {"native", native()},
-                             {"presets", {{"type", "object"}, {"additionalProperties", {{"type", "object"}}}}}},
-                            {"id", "version", "summary", "inputs", "outputs", "passes"})
+    return schema::document(
+               "Aftershade effect",
+               {{"id", {{"type", "string"}, {"pattern", schema::kSnakeCase}}},
+                {"version", {{"type", "string"}, {"pattern", "^[0-9]+\\.[0-9]+\\.[0-9]+$"}}},
+                {"summary", kText},
+                {"sources", schema::array_of(kText)},
+                {"accumulates", schema::json{{"const", "subframes"}}},
+                {"inputs", named(input)},
+                {"outputs", outputs},
+                {"params", named(param(false))},
+                {"textures", named(texture())},
+                {"buffers", named(buffer())},
+                {"passes", schema::array_of(pass(), 1)},
+                {"native", native()},
+                {"presets", {{"type", "object"}, {"additionalProperties", {{"type", "object"}}}}}},
+               {"id", "version", "summary", "inputs", "outputs", "passes"})
                .dump(2) +
            "\n";
 }

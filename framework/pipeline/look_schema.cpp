@@ -14,8 +14,11 @@ using schema::json;
 
 namespace {
 
-const json kVariable = schema::object({{"var", {{"type", "string"}, {"description", "Name of a variable of \"vars\"."}}}}, {"var"});
-const json kObject = {{"anyOf", {{{"type", "integer"}, {"minimum", 0}, {"maximum", 4294967295u}}, {{"type", "string"}, {"minLength", 1}}}}};
+const json kVariable = schema::object(
+    {{"var", {{"type", "string"}, {"description", "Name of a variable of \"vars\"."}}}}, {"var"});
+const json kObject = {{"anyOf",
+                       {{{"type", "integer"}, {"minimum", 0}, {"maximum", 4294967295u}},
+                        {{"type", "string"}, {"minLength", 1}}}}};
 
 /// {"keys": {"1": 2.0, "24": 5.6}}
 json keyed(const json& literal) {
@@ -23,7 +26,8 @@ json keyed(const json& literal) {
                  {"patternProperties", {{"^-?[0-9]+$", {{"anyOf", {literal, kVariable}}}}}},
                  {"additionalProperties", false},
                  {"minProperties", 1}};
-    return schema::object({{"keys", keys}, {"interpolation", schema::one_of({"linear", "smooth", "step"})}}, {"keys"});
+    return schema::object({{"keys", keys}, {"interpolation", schema::one_of({"linear", "smooth", "step"})}},
+                          {"keys"});
 }
 
 bool is_number(const ParamSpec& spec) {
@@ -37,12 +41,15 @@ std::vector<json> captured(const ParamSpec& spec) {
     if (spec.type == ParamType::enum_) fields.push_back("camera.lens_model");
     if (is_number(spec))
         for (const CameraField& field : camera_fields())
-            if (field.unit == spec.unit || convert_unit(1, field.unit, spec.unit)) fields.push_back("camera." + field.name);
+            if (field.unit == spec.unit || convert_unit(1, field.unit, spec.unit))
+                fields.push_back("camera." + field.name);
     if (!fields.empty()) forms.push_back(schema::object({{"from", schema::one_of(fields)}}, {"from"}));
     if (!is_number(spec) || !convert_unit(1, "m", spec.unit)) return forms;
     const json side = {{"type", "number"}, {"minimum", 0}, {"maximum", 1}};
-    forms.push_back(schema::object({{"from", {{"const", "depth"}}}, {"uv", schema::array_of(side, 2, 2)}}, {"from", "uv"}));
-    forms.push_back(schema::object({{"from", {{"const", "depth"}}}, {"object", kObject}}, {"from", "object"}));
+    forms.push_back(schema::object({{"from", {{"const", "depth"}}}, {"uv", schema::array_of(side, 2, 2)}},
+                                   {"from", "uv"}));
+    forms.push_back(
+        schema::object({{"from", {{"const", "depth"}}}, {"object", kObject}}, {"from", "object"}));
     return forms;
 }
 
@@ -53,7 +60,8 @@ json value_of(const ParamSpec& spec) {
     if (spec.bind != ParamBind::define) forms.push_back(keyed(literal));
     for (json& form : captured(spec)) forms.push_back(std::move(form));
     const std::string range = range_text(spec);
-    json value = {{"description", spec.doc + " [" + type_text(spec) + (range.empty() ? "" : ", " + range) + "]"}};
+    json value = {
+        {"description", spec.doc + " [" + type_text(spec) + (range.empty() ? "" : ", " + range) + "]"}};
     if (spec.type != ParamType::table) value["default"] = json::parse(format_value(spec, spec.default_value));
     value["anyOf"] = std::move(forms);
     return value;
@@ -64,7 +72,8 @@ json wiring_of(const EffectManifest& effect) {
     for (const InputSpec& input : effect.inputs)
         inputs[input.name] = {{"type", "string"},
                               {"pattern", "^[a-z][a-z0-9_]*\\.[a-z][a-z0-9_:.]*$"},
-                              {"description", "capture.<role> or <step>.<output>; takes the role " + input.role + ". " + input.doc}};
+                              {"description", "capture.<role> or <step>.<output>; takes the role " +
+                                                  input.role + ". " + input.doc}};
     return schema::object(inputs);
 }
 
@@ -81,9 +90,10 @@ json mask() {
 json step_of(const EffectManifest& effect) {
     json params = json::object();
     for (const ParamSpec& spec : effect.params) params[spec.name] = value_of(spec);
-    json properties = {{"effect", {{"const", effect.id}, {"description", effect.summary}}},
-                       {"name", {{"type", "string"}, {"pattern", schema::kSnakeCase}, {"not", {{"const", "capture"}}}}},
-                       {"enabled", {{"type", "boolean"}}}};
+    json properties = {
+        {"effect", {{"const", effect.id}, {"description", effect.summary}}},
+        {"name", {{"type", "string"}, {"pattern", schema::kSnakeCase}, {"not", {{"const", "capture"}}}}},
+        {"enabled", {{"type", "boolean"}}}};
     std::vector<std::string> presets;
     for (const PresetSpec& preset : effect.presets) presets.push_back(preset.name);
     // An effect without presets takes none.
@@ -96,11 +106,12 @@ json step_of(const EffectManifest& effect) {
 }
 
 json use() {
-    return schema::object({{"use", {{"type", "string"}, {"description", "Another look, named from this one's folder."}}},
-                           {"name", {{"type", "string"}, {"pattern", schema::kSnakeCase}}},
-                           {"enabled", {{"type", "boolean"}}},
-                           {"vars", {{"type", "object"}}}},
-                          {"use"});
+    return schema::object(
+        {{"use", {{"type", "string"}, {"description", "Another look, named from this one's folder."}}},
+         {"name", {{"type", "string"}, {"pattern", schema::kSnakeCase}}},
+         {"enabled", {{"type", "boolean"}}},
+         {"vars", {{"type", "object"}}}},
+        {"use"});
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 // JSON Schema (draft 2020-12) of the documents that users write, made from the declarations.
 //
-// What an editor completes and marks is what the program takes and refuses, as far as a schema can say it: that
-// names which another document declares (steps, variables) exist, and how two values stand to each other, only
-// the program knows.
+// What an editor completes and marks is what the program takes and refuses, as far as a schema can say it:
+// that names which another document declares (steps, variables) exist, and how two values stand to each
+// other, only the program knows.
 #pragma once
 
 #include <string>

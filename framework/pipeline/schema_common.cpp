@@ -22,7 +22,9 @@ json curve(const ParamSpec& spec) {
     if (spec.max) y["maximum"] = *spec.max;
     const json point = {{"type", "array"}, {"prefixItems", {x, y}}, {"minItems", 2}, {"items", false}};
     const json points = array_of(point, 1, int(kMaxCurvePoints));
-    return {{"anyOf", {points, object({{"points", points}, {"interpolation", one_of({"linear", "smooth"})}}, {"points"})}}};
+    return {{"anyOf",
+             {points,
+              object({{"points", points}, {"interpolation", one_of({"linear", "smooth"})}}, {"points"})}}};
 }
 
 json table(const ParamSpec& spec) {
@@ -43,7 +45,8 @@ json table(const ParamSpec& spec) {
 }  // namespace
 
 json object(json properties, std::vector<std::string> required) {
-    json result = {{"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
+    json result = {
+        {"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
     if (!required.empty()) result["required"] = std::move(required);
     return result;
 }
@@ -94,7 +97,8 @@ json literal(const ParamSpec& spec) {
 }
 
 json document(const std::string& title, json properties, std::vector<std::string> required) {
-    json all = {{"$schema", text()}, {"aftershade", {{"const", 1}, {"description", "Version of the format."}}}};
+    json all = {{"$schema", text()},
+                {"aftershade", {{"const", 1}, {"description", "Version of the format."}}}};
     all.update(properties);
     required.insert(required.begin(), "aftershade");
     json result = {{"$schema", kDraft}, {"title", title}};
