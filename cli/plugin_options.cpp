@@ -78,7 +78,8 @@ ExitCode told(const WorkerResult& result, const Watchdog& watchdog, double timeo
         WorkerResult hung = result;
         hung.end = WorkerEnd::timed_out;
         hung.limits.wall_time = std::chrono::milliseconds(std::int64_t(timeout_s * 1000));
-        std::fprintf(stderr, "aftershade: error: %s; give it longer with --plugin-timeout\n", describe(hung).c_str());
+        std::fprintf(stderr, "aftershade: error: %s; give it longer with --plugin-timeout\n",
+                     describe(hung).c_str());
         return ExitCode::effect;
     }
     switch (result.end) {
@@ -113,7 +114,8 @@ void add_plugin_options(CLI::App& app, PluginOptions& options) {
 std::optional<ExitCode> run_in_worker(const PluginOptions& options, const Pipeline& pipeline,
                                       const std::atomic<bool>& stop) {
     const std::vector<std::filesystem::path> given(options.paths.begin(), options.paths.end());
-    if (!pipeline.has_native() || native_search_path(given).empty() || std::getenv(kStatusFdVariable)) return std::nullopt;
+    if (!pipeline.has_native() || native_search_path(given).empty() || std::getenv(kStatusFdVariable))
+        return std::nullopt;
     WorkerCommand command;
     command.arguments = own_arguments();
     command.arguments[0] = "/proc/self/exe";

@@ -321,8 +321,15 @@ private:
             return;
         }
         if (role != input->role) {
+            std::string made_at;
+            if (source.step >= 0) {
+                const EffectManifest& maker = *pipeline_.steps[std::size_t(source.step)].manifest;
+                made_at = ", which " + maker.id + " declares at " +
+                          to_string(maker.find_output(source.output)->place);
+            }
             diagnostics_.error(wiring.place, "input '" + input->name + "' of " + step.manifest->id +
-                                                 " takes the role '" + input->role + "', not '" + role + "'");
+                                                 " takes the role '" + input->role + "' (" +
+                                                 to_string(input->place) + "), not '" + role + "'" + made_at);
             return;
         }
         step.inputs[input->name] = source;

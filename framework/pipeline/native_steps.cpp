@@ -82,13 +82,15 @@ void NativeSteps::prepare(const Pipeline& pipeline, const FrameInputs& frame,
         for (const NativeLogLine& line : result.log)
             messages_.push_back(step.name + ": " + std::string(level_name(line.level)) + line.text);
         const auto before = results_.find(i);
-        const bool asks_anew = before == results_.end() || before->second.warm_up_frames != result.warm_up_frames ||
+        const bool asks_anew = before == results_.end() ||
+                               before->second.warm_up_frames != result.warm_up_frames ||
                                before->second.overscan_px != result.overscan_px;
         if (asks_anew && result.warm_up_frames > 0)
             messages_.push_back(step.name + ": wants " + std::to_string(result.warm_up_frames) +
                                 " frames before the first one that counts");
         if (asks_anew && result.overscan_px > 0)
-            messages_.push_back(step.name + ": wants " + std::to_string(result.overscan_px) + " px of overscan");
+            messages_.push_back(step.name + ": wants " + std::to_string(result.overscan_px) +
+                                " px of overscan");
         results_[i] = std::move(result);
     }
 }
@@ -120,8 +122,9 @@ std::vector<std::string> NativeSteps::take_messages() {
 
 gpu::TextureDesc table_desc(const NativeTable& table) {
     using gpu::TextureFormat;
-    constexpr TextureFormat formats[] = {TextureFormat::r32f,  TextureFormat::rg32f,  TextureFormat::rgba32f,
-                                         TextureFormat::r32ui, TextureFormat::rg32ui, TextureFormat::rgba32ui};
+    constexpr TextureFormat formats[] = {TextureFormat::r32f,    TextureFormat::rg32f,
+                                         TextureFormat::rgba32f, TextureFormat::r32ui,
+                                         TextureFormat::rg32ui,  TextureFormat::rgba32ui};
     return {table.width, table.height, formats[std::size_t(table.element)]};
 }
 
@@ -138,7 +141,8 @@ void upload_table(const NativeTable& table, gpu::Texture& texture) {
 std::map<std::string, std::vector<double>> native_values(const NativeResult& result) {
     std::map<std::string, std::vector<double>> values;
     for (const auto& [name, uniform] : result.uniforms)
-        std::visit([&](const auto& numbers) { values[name].assign(numbers.begin(), numbers.end()); }, uniform);
+        std::visit([&](const auto& numbers) { values[name].assign(numbers.begin(), numbers.end()); },
+                   uniform);
     return values;
 }
 

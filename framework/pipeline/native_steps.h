@@ -45,7 +45,7 @@ private:
 
     NativeSources sources_;
     std::unique_ptr<NativeRegistry> linked_;
-    std::map<int, NativeEffect> effects_;   // by step
+    std::map<int, NativeEffect> effects_;  // by step
     std::map<int, NativeResult> results_;
     std::vector<std::string> messages_;
 };

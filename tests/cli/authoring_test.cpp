@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <thread>
 
 #include "tests/cli/command.h"
 #include "tests/synthetic_capture.h"
@@ -55,6 +56,35 @@ TEST_F(Authoring, TheDocsSayHowManyFilesAndLinesNewMakes) {
     EXPECT_NE(docs.find(std::to_string(files) + " files, " + std::to_string(lines) + " lines"),
               std::string::npos)
         << files << " files, " << lines << " lines";
+}
+
+TEST_F(Authoring, WatchMakesThePictureAnewAtEverySaveAndWaitsFaultsOut) {
+    command({"new", "mine"});
+    write_capture(make_capture({.width = 480, .height = 270, .background = {0.5f, 0.5f, 0.5f}}),
+                  folder_ / "in_0001.exr");
+    Command watch({AFTERSHADE_EXECUTABLE, "run", "mine/look.json", "in_0001.exr", "--effect-path", ".", "-o",
+                   "out.png", "--backend", "osmesa", "--watch"},
+                  folder_.path());
+    ASSERT_TRUE(watch.wait_for_lines(1));
+    const std::string first = read_text(folder_ / "out.png");
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    replace("mine/look.json", "0.8", "0.2");
+    ASSERT_TRUE(watch.wait_for_lines(2));
+    const std::string second = read_text(folder_ / "out.png");
+    EXPECT_NE(first, second) << "the look's value";
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    replace("mine/mine.frag", "1.0 - darkness", "1.0 - drakness");
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    replace("mine/mine.frag", "1.0 - drakness", "1.0 - 2.0 * darkness");
+    ASSERT_TRUE(watch.wait_for_lines(3));
+    EXPECT_NE(read_text(folder_ / "out.png"), second) << "the shader";
+    watch.send(SIGINT);
+    const CommandResult result = watch.wait();
+    EXPECT_EQ(result.exit_code, 130);
+    EXPECT_NE(result.err.find("drakness"), std::string::npos) << "the fault was told\n" << result.err;
+    std::smatch taken;
+    ASSERT_TRUE(std::regex_search(result.err, taken, std::regex("made anew in ([0-9]+) ms"))) << result.err;
+    RecordProperty("milliseconds", taken[1].str());
 }
 
 TEST_F(Authoring, NewRefusesBadIdsAndReplacesNothing) {

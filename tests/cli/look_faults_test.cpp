@@ -98,7 +98,8 @@ std::vector<Fault> look_faults() {
         steps("WiringOfAnUnknownInput", R"({ "effect": "bokeh", "in": { "colour": "capture.color" } })",
               {"look\\.json:2:40: error: bokeh has no input 'colour'; did you mean 'color'\\?"}),
         steps("WiringOfAnotherRole", R"({ "effect": "bokeh", "in": { "depth": "capture.color" } })",
-              {"look\\.json:2:39: error: input 'depth' of bokeh takes the role 'depth', not 'color'"}),
+              {"look\\.json:2:39: error: input 'depth' of bokeh takes the role 'depth' "
+               "\\(.*effect\\.json:\\d+:\\d+\\), not 'color'.*"}),
         steps("WiringWithoutADot", R"({ "effect": "bokeh", "in": { "depth": "capture" } })",
               {"look\\.json:2:39: error: 'depth' comes from \"capture\\.<role>\" or \"<step>\\.<output>\""}),
         steps(

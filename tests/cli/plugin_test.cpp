@@ -38,12 +38,13 @@ protected:
         write_text(folder_ / "effects" / id / "main.frag",
                    "#version 450 core\n#include <pass>\nvoid main() { out_color = texelFetch(color, "
                    "ivec2(gl_FragCoord.xy), 0) * native.gain; }\n");
-        write_text(folder_ / "look.json", R"({ "aftershade": 1, "steps": [ { "effect": ")" + id + R"(", "name": "graded" } ] })");
+        write_text(folder_ / "look.json",
+                   R"({ "aftershade": 1, "steps": [ { "effect": ")" + id + R"(", "name": "graded" } ] })");
     }
 
     CommandResult run(std::vector<std::string> more, int exit_code) {
-        std::vector<std::string> arguments{"run",    "look.json", "in_####.exr", "-o",       "out_####.exr",
-                                           "--backend", "osmesa", "--pixel-type", "float"};
+        std::vector<std::string> arguments{"run",       "look.json", "in_####.exr",  "-o",   "out_####.exr",
+                                           "--backend", "osmesa",    "--pixel-type", "float"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         CommandResult result = run_aftershade(arguments, folder_.path());
         EXPECT_EQ(result.exit_code, exit_code) << result.err;
@@ -58,13 +59,16 @@ TEST_F(Plugins, FillUniformsEveryFrame) {
     write_effect("older");
     run({"--effect-path", "effects", "--plugin-path", kCases}, 0);
     for (int frame = 1; frame <= 4; ++frame)
-        EXPECT_FLOAT_EQ(red("out_000" + std::to_string(frame) + ".exr").at(3, 3, 0), 0.25f * 0.5f * float(frame));
+        EXPECT_FLOAT_EQ(red("out_000" + std::to_string(frame) + ".exr").at(3, 3, 0),
+                        0.25f * 0.5f * float(frame));
 }
 
 TEST_F(Plugins, FillTablesThatShadersRead) {
-    write_text(folder_ / "look.json", R"({ "aftershade": 1, "steps": [ { "effect": "gauss_table", "params": { "sigma": 2 } } ] })");
-    run({"--effect-path", std::string(AFTERSHADE_SOURCE_DIR) + "/examples/plugins/kernel_c", "--plugin-path", kExamples,
-         "--frames", "1"}, 0);
+    write_text(folder_ / "look.json",
+               R"({ "aftershade": 1, "steps": [ { "effect": "gauss_table", "params": { "sigma": 2 } } ] })");
+    run({"--effect-path", std::string(AFTERSHADE_SOURCE_DIR) + "/examples/plugins/kernel_c", "--plugin-path",
+         kExamples, "--frames", "1"},
+        0);
     const Image out = red("out_0001.exr");
     double sum = 0;
     for (int i = -6; i <= 6; ++i) sum += std::exp(-0.5 * i * i / 4);
@@ -77,8 +81,9 @@ TEST_F(Plugins, FillTablesThatShadersRead) {
 TEST_F(Plugins, ThatCrashEndTheRunWithTheirNameAndLeaveEarlierFramesWhole) {
     write_effect("crashes_late");
     const CommandResult result = run({"--effect-path", "effects", "--plugin-path", kCases}, 5);
-    EXPECT_NE(result.err.find("plug-in " + kCases + "/crashes_late.so crashed (signal 11, SIGSEGV) in prepare of step "
-                                                    "'graded', frame 3"),
+    EXPECT_NE(result.err.find("plug-in " + kCases +
+                              "/crashes_late.so crashed (signal 11, SIGSEGV) in prepare of step "
+                              "'graded', frame 3"),
               std::string::npos)
         << result.err;
     EXPECT_FLOAT_EQ(red("out_0001.exr").at(3, 3, 0), 0.125f);
@@ -90,7 +95,8 @@ TEST_F(Plugins, ThatCrashEndTheRunWithTheirNameAndLeaveEarlierFramesWhole) {
 
 TEST_F(Plugins, ThatHangAreStopped) {
     write_effect("hangs");
-    const CommandResult result = run({"--effect-path", "effects", "--plugin-path", kCases, "--plugin-timeout", "1"}, 5);
+    const CommandResult result =
+        run({"--effect-path", "effects", "--plugin-path", kCases, "--plugin-timeout", "1"}, 5);
     EXPECT_NE(result.err.find("hangs.so"), std::string::npos) << result.err;
     EXPECT_NE(result.err.find("step 'graded', frame 1"), std::string::npos) << result.err;
     EXPECT_NE(result.err.find("--plugin-timeout"), std::string::npos) << result.err;
@@ -110,7 +116,8 @@ TEST_F(Plugins, AreNeverTakenFromBesideALook) {
     fs::copy_file(kCases + "/older.so", folder_ / "older.so");
     fs::copy_file(kCases + "/older.so", folder_ / "effects/older/older.so");
     const CommandResult result = run({"--effect-path", "effects"}, 5);
-    EXPECT_NE(result.err.find("no library offers native code for the effect 'older'"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("no library offers native code for the effect 'older'"), std::string::npos)
+        << result.err;
 }
 
 }  // namespace

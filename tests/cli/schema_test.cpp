@@ -1,5 +1,5 @@
-// The schemas against a real validator: what is shipped is valid, and what is broken is refused by the schema and by
-// the program alike.
+// The schemas against a real validator: what is shipped is valid, and what is broken is refused by the schema
+// and by the program alike.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,8 +17,8 @@ using nlohmann::json;
 
 const fs::path kRoot = AFTERSHADE_SOURCE_DIR;
 
-// Draft202012Validator of python3-jsonschema. Reads {"schemas": {...}, "documents": [{"schema", "document"}]} and
-// prints one line for each: "valid", or the fault.
+// Draft202012Validator of python3-jsonschema. Reads {"schemas": {...}, "documents": [{"schema", "document"}]}
+// and prints one line for each: "valid", or the fault.
 constexpr const char* kValidator = R"py(
 import json, sys
 from jsonschema import Draft202012Validator
@@ -41,8 +41,10 @@ struct Document {
 class Schemas : public testing::Test {
 protected:
     void SetUp() override {
-        Command probe({"/usr/bin/python3", "-c", "import jsonschema; jsonschema.Draft202012Validator"}, folder_.path());
-        if (probe.wait().exit_code != 0) GTEST_SKIP() << "SKIPPED: /usr/bin/python3 has no jsonschema (python3-jsonschema)";
+        Command probe({"/usr/bin/python3", "-c", "import jsonschema; jsonschema.Draft202012Validator"},
+                      folder_.path());
+        if (probe.wait().exit_code != 0)
+            GTEST_SKIP() << "SKIPPED: /usr/bin/python3 has no jsonschema (python3-jsonschema)";
     }
 
     json schema(const std::string& name) {
@@ -52,12 +54,15 @@ protected:
     }
 
     std::vector<std::string> verdicts(const std::vector<Document>& documents) {
-        json task = {{"schemas", {{"look", schema("look")}, {"capture", schema("capture")}, {"effect", schema("effect")}}},
-                     {"documents", json::array()}};
+        json task = {
+            {"schemas",
+             {{"look", schema("look")}, {"capture", schema("capture")}, {"effect", schema("effect")}}},
+            {"documents", json::array()}};
         for (const Document& document : documents)
             task["documents"].push_back({{"schema", document.schema}, {"document", document.content}});
         write_text(folder_ / "task.json", task.dump());
-        Command validator({"/usr/bin/python3", "-c", kValidator, (folder_ / "task.json").string()}, folder_.path());
+        Command validator({"/usr/bin/python3", "-c", kValidator, (folder_ / "task.json").string()},
+                          folder_.path());
         const CommandResult result = validator.wait();
         EXPECT_EQ(result.exit_code, 0) << result.err;
         return lines_of_text(result.out);
@@ -73,10 +78,10 @@ TEST_F(Schemas, TakeEveryShippedDocument) {
         const fs::path path = entry.path();
         const std::string text = path.lexically_relative(kRoot).string();
         if (path.extension() != ".json" || text.starts_with("build") || text.starts_with(".")) continue;
-        const std::string kind = path.filename() == "effect.json"               ? "effect"
-                                 : path.filename() == "capture.json"            ? "capture"
-                                 : path.parent_path().filename() == "looks"     ? "look"
-                                                                                : "";
+        const std::string kind = path.filename() == "effect.json"           ? "effect"
+                                 : path.filename() == "capture.json"        ? "capture"
+                                 : path.parent_path().filename() == "looks" ? "look"
+                                                                            : "";
         if (!kind.empty()) documents.push_back({kind, text, parsed(read_text(path))});
     }
     ASSERT_GE(documents.size(), 14U);
@@ -93,12 +98,15 @@ TEST_F(Schemas, OfEffectsIsTheOneThatIsPublished) {
 
 TEST_F(Schemas, TakeEveryFormOfAValue) {
     std::vector<Document> documents;
-    for (const char* value : {"2", "\"2.4 m\"", "\"240cm\"", R"({"keys": {"1": 2, "24": "3 m"}, "interpolation": "step"})",
-                              R"({"var": "focus"})", R"({"from": "camera.far"})", R"({"from": "depth", "uv": [0.5, 0.5]})",
-                              R"({"from": "depth", "object": "Wheel"})"})
-        documents.push_back({"look", value, parsed(R"({"aftershade": 1, "vars": {"focus": 2}, "steps": [
+    for (const char* value :
+         {"2", "\"2.4 m\"", "\"240cm\"", R"({"keys": {"1": 2, "24": "3 m"}, "interpolation": "step"})",
+          R"({"var": "focus"})", R"({"from": "camera.far"})", R"({"from": "depth", "uv": [0.5, 0.5]})",
+          R"({"from": "depth", "object": "Wheel"})"})
+        documents.push_back({"look", value,
+                             parsed(R"({"aftershade": 1, "vars": {"focus": 2}, "steps": [
             {"effect": "bokeh", "preset": "fast", "mix": {"keys": {"1": 0, "9": 1}}, "mask": {"object": [2, "Wheel"]},
-             "in": {"depth": "capture.depth"}, "params": {"focus_distance": )" + std::string(value) + "}}]}")});
+             "in": {"depth": "capture.depth"}, "params": {"focus_distance": )" +
+                                    std::string(value) + "}}]}")});
     const std::vector<std::string> seen = verdicts(documents);
     for (std::size_t i = 0; i < seen.size(); ++i) EXPECT_EQ(seen[i], "valid") << documents[i].name;
 }
@@ -123,8 +131,12 @@ std::string effect(const std::string& before, const std::string& after) {
 }
 
 std::vector<std::pair<std::string, std::string>> broken_documents() {
-    const auto look = [](const std::string& text) { return std::pair<std::string, std::string>("look", text); };
-    const auto cap = [](const std::string& members) { return std::pair<std::string, std::string>("capture", capture(members)); };
+    const auto look = [](const std::string& text) {
+        return std::pair<std::string, std::string>("look", text);
+    };
+    const auto cap = [](const std::string& members) {
+        return std::pair<std::string, std::string>("capture", capture(members));
+    };
     const auto eff = [](const std::string& before, const std::string& after) {
         return std::pair<std::string, std::string>("effect", effect(before, after));
     };
