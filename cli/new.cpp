@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -68,6 +70,15 @@ bool is_snake_case(const std::string& id) {
     return !id.empty() && id[0] >= 'a' && id[0] <= 'z' && std::all_of(id.begin(), id.end(), fits);
 }
 
+/// As a shell takes it for one word.
+std::string quoted(const std::string& word) {
+    const auto is_plain = [](unsigned char c) { return std::isalnum(c) || std::strchr("_-./+:@%,=", c); };
+    if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
+    std::string text = "'";
+    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return text + "'";
+}
+
 ExitCode make(const NewOptions& options) {
     Diagnostics diagnostics;
     const EffectRegistry shipped = find_effects({}, diagnostics);
@@ -88,8 +99,8 @@ ExitCode make(const NewOptions& options) {
     fmt::print("{}: {} lines\n{}: {} lines\n{}: {} lines\n", (folder / "effect.json").string(), manifest,
                (folder / (options.id + ".frag")).string(), shader, (folder / "look.json").string(), look);
     fmt::print("Run it:   aftershade run {} CAPTURE --effect-path {} -o out.png\n",
-               (folder / "look.json").string(), options.folder);
-    fmt::print("Check it: aftershade check {}\n", folder.string());
+               quoted((folder / "look.json").string()), quoted(options.folder));
+    fmt::print("Check it: aftershade check {}\n", quoted(folder.string()));
     return ExitCode::done;
 }
 

@@ -45,6 +45,23 @@ TEST_F(Authoring, NewMakesAnEffectThatRunsAtOnceAndPassesItsCheck) {
               std::string::npos);
 }
 
+TEST_F(Authoring, NewPrintsCommandsThatAShellTakesWhateverTheFoldersName) {
+    write_capture(make_capture({.width = 8, .height = 8}), folder_ / "in_0001.exr");
+    const CommandResult made = command({"new", "mine", "--path", "it's $HOME"});
+    std::smatch run, check;
+    ASSERT_TRUE(std::regex_search(made.out, run, std::regex("Run it: +aftershade (.*) CAPTURE (.*)\n")));
+    ASSERT_TRUE(std::regex_search(made.out, check, std::regex("Check it: aftershade (.*)\n")));
+    const auto in_shell = [&](const std::string& words) {
+        Command shell({"/bin/sh", "-c", "exec '" AFTERSHADE_EXECUTABLE "' " + words + " --backend osmesa"},
+                      folder_.path());
+        const CommandResult result = shell.wait();
+        EXPECT_EQ(result.exit_code, 0) << words << "\n" << result.err;
+    };
+    in_shell(run[1].str() + " in_0001.exr " + run[2].str());
+    EXPECT_TRUE(fs::exists(folder_ / "out.png"));
+    in_shell(check[1].str());
+}
+
 TEST_F(Authoring, TheDocsSayHowManyFilesAndLinesNewMakes) {
     command({"new", "vignette2"});
     int files = 0, lines = 0;

@@ -176,6 +176,8 @@ const std::vector<BrokenSpec> kBrokenSpecs = {
      {"doc.json:1:25: error: a bool has no 'min'", "doc.json:1:51: error: a bool has no 'ui'"}},
     {R"({"type": "enum", "values": ["a"], "default": "a", "doc": "."})",
      {"doc.json:1:1: error: enum parameter 'p' needs at least two 'values'"}},
+    {R"({"type": "enum", "values": ["a", ""], "default": "a", "doc": "."})",
+     {"doc.json:1:34: error: '' cannot name a value: a-z, 0-9 and _ only"}},
     {R"({"type": "enum", "values": ["a", "a b", "a"], "default": "a", "doc": "."})",
      {"doc.json:1:34: error: 'a b' cannot name a value: a-z, 0-9 and _ only",
       "doc.json:1:41: error: 'a' stands twice in 'values'"}},

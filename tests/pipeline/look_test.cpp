@@ -91,6 +91,15 @@ TEST(Look, DoesNotTakeTwoStepsWithoutEffectForTwoOfOneName) {
               "look:1:31: error: the step has no 'effect'\nlook:2:1: error: the step has no 'effect'\n");
 }
 
+TEST(Look, RefusesEmptyWordsWhereSomethingMustBeNamed) {
+    EXPECT_EQ(parse(R"({ "aftershade": 1, "steps": [ { "effect": "" } ] })").faults,
+              "look:1:43: error: 'effect' is empty: it is the id of an effect\n");
+    EXPECT_EQ(parse(R"({ "aftershade": 1, "steps": [ { "effect": "a", "mask": { "role": "" } } ] })").faults,
+              "look:1:66: error: the mask's 'role' is empty\n");
+    EXPECT_EQ(parse(R"({ "aftershade": 1, "steps": [ { "effect": "a", "mask": { "file": "" } } ] })").faults,
+              "look:1:66: error: the mask's 'file' is empty\n");
+}
+
 TEST(Look, ReportsAFieldOfTheWrongType) {
     EXPECT_EQ(
         parse("{ \"aftershade\": 1, \"steps\": [\n"
