@@ -51,10 +51,27 @@ std::string texture_text(const TextureSpec& texture) {
     if (grid.kind == GridSpec::Kind::size)
         text += ", " + std::to_string(grid.size[0]) + " x " + std::to_string(grid.size[1]);
     if (grid.kind == GridSpec::Kind::scale && grid.scale != 1) text += ", scale " + format_number(grid.scale);
-    if (texture.layers > 1) text += ", " + std::to_string(texture.layers) + " layers";
+    if (texture.layers > 1) text += ", " + std::to_string(texture.layers) + " layers, no tap";
     if (texture.auto_mips) text += ", mips";
+    else if (texture.mips > 1) text += ", " + std::to_string(texture.mips) + " levels";
     if (texture.history) text += ", history";
     return text;
+}
+
+/// "color, kept.prev -> near, list": what a pass takes and makes.
+std::string flow_text(const PassSpec& pass) {
+    std::string reads, writes;
+    const auto add = [](std::string& list, const std::string& name, bool previous) {
+        list += (list.empty() ? "" : ", ") + name + (previous ? ".prev" : "");
+    };
+    for (const ReadSpec& read : pass.reads) add(reads, read.name, read.previous);
+    for (const WriteSpec& write : pass.writes) add(writes, write.name, false);
+    for (const auto* list : {&pass.images, &pass.buffers})
+        for (const AccessSpec& access : *list) {
+            if (access.kind != AccessSpec::Kind::write) add(reads, access.name, access.previous);
+            if (access.kind != AccessSpec::Kind::read) add(writes, access.name, false);
+        }
+    return (reads.empty() ? "" : reads + " ") + "-> " + writes;
 }
 
 /// A cell of a Markdown table.
@@ -146,6 +163,11 @@ std::string describe_text(const EffectManifest& manifest) {
     for (const TextureSpec& texture : manifest.textures)
         textures.add({texture.name, texture_text(texture), texture.doc});
     textures.print(out);
+    out << "\npasses\n";
+    TextTable passes("  ");
+    for (const PassSpec& pass : manifest.passes)
+        passes.add({pass.name, pass.shader.empty() ? "clear" : pass.shader, flow_text(pass)});
+    passes.print(out);
     return out.str();
 }
 
