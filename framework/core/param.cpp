@@ -84,7 +84,8 @@ void read_enum_values(ObjectReader& reader, const Node& node, ParamSpec& spec, c
     for (const Node& item : node.find("values")->items) {
         if (!item.is_string()) continue;
         // Shaders see a value as a preprocessor symbol: SHAPE_HEXAGON.
-        if (item.string.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != std::string::npos)
+        if (item.string.empty() ||
+            item.string.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != std::string::npos)
             diagnostics.error(item.place, "'" + item.string + "' cannot name a value: a-z, 0-9 and _ only");
         if (!seen.insert(item.string).second)
             diagnostics.error(item.place, "'" + item.string + "' stands twice in 'values'");

@@ -33,8 +33,8 @@ void ManifestParser::identifier(const std::string& name, const Place& place, con
 void ManifestParser::identity(ObjectReader& reader, const Node& node) {
     manifest_.id = reader.text("id", Presence::required).value_or("");
     const std::string folder = manifest_.folder.filename().string();
-    if (!manifest_.id.empty()) {
-        const Place& place = node.find("id")->place;
+    if (const Node* id = node.find("id"); id && id->is_string()) {
+        const Place& place = id->place;
         if (manifest_.id != folder)
             fault(place, "the id '" + manifest_.id + "' is not the name of its folder, '" + folder + "'");
         identifier(manifest_.id, place, "the id");
@@ -59,7 +59,7 @@ void ManifestParser::params(const Node& section) {
             faulty_params_.insert(member.key);
             continue;
         }
-        if (!spec->from.empty()) check_from(*spec, member.value.find("from")->place);
+        if (const Node* from = member.value.find("from")) check_from(*spec, from->place);
         manifest_.params.push_back(*spec);
     }
 }

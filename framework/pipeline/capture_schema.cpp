@@ -14,6 +14,9 @@ namespace {
 
 const json kNumber = {{"type", "number"}};
 const json kFlag = {{"type", "boolean"}};
+/// As parse_frame_range() reads it.
+const std::string kFramePiece =
+    R"(\s*-?[0-9]{1,9}((-|\.\.)-?[0-9]{1,9}([x:](?!0+(?![0-9]))[0-9]{1,9})?)?\s*)";
 
 json length_m() {
     ParamSpec spec;
@@ -25,9 +28,14 @@ json length_m() {
 /// As profile_parse.cpp reads them.
 json decoding_of(const ChannelRole& role) {
     const json names = schema::array_of(schema::text(), role.channels, role.channels);
-    json keys = {{"channels", names}, {"sum", schema::array_of(names)}};
-    for (const std::string& native : role.native_channels)
-        keys[std::string(1, char(std::tolower(static_cast<unsigned char>(native.back()))))] = schema::text();
+    json keys = {{"channels", names}, {"sum", schema::array_of(names, 1)}};
+    std::vector<std::string> components;
+    for (const std::string& native : role.native_channels) {
+        components.emplace_back(1, char(std::tolower(static_cast<unsigned char>(native.back()))));
+        keys[components.back()] = schema::text();
+    }
+    // Colour may have no alpha.
+    if (role.name == "color") components.pop_back();
     if (role.name == "color") keys["luminance"] = schema::text();
     if (role.name == "depth") {
         for (const char* key : {"scale", "no_hit", "no_hit_stored"}) keys[key] = kNumber;
@@ -49,6 +57,11 @@ json decoding_of(const ChannelRole& role) {
     }
     json decoding = schema::object(keys);
     decoding["description"] = role.meaning;
+    decoding["anyOf"] = {{{"required", {"channels"}}}, {{"required", {"sum"}}}, {{"required", components}}};
+    json together = json::object();
+    for (const std::string& native : role.native_channels)
+        together[std::string(1, char(std::tolower(static_cast<unsigned char>(native.back()))))] = components;
+    decoding["dependentRequired"] = together;
     return decoding;
 }
 
@@ -72,15 +85,18 @@ std::string capture_schema() {
         files[role.name] = schema::text();
     }
     json by_role = schema::object(decodings), file_by_role = schema::object(files);
-    by_role["patternProperties"] = {{"^aov:.+$", {{"type", "object"}}}};
-    file_by_role["patternProperties"] = {{"^aov:.+$", schema::text()}};
+    by_role["patternProperties"] = {{schema::kAovPattern, decoding_of(*find_role("aov:name"))}};
+    file_by_role["patternProperties"] = {{schema::kAovPattern, schema::text()}};
     std::vector<std::string> spaces = color_space_names();
     spaces.insert(spaces.begin(), "auto");
     json document = schema::document(
         "Aftershade capture",
         {{"frames", {{"type", "string"}, {"description", "The main files: \"gbuffer_####.exr\"."}}},
          {"files", file_by_role},
-         {"range", {{"type", "string"}, {"description", "Frames that there are: \"1-100x2,120\"."}}},
+         {"range",
+          {{"type", "string"},
+           {"description", "Frames that there are: \"1-100x2,120\"."},
+           {"pattern", "^" + kFramePiece + "(," + kFramePiece + ")*$"}}},
          {"fps", {{"type", "number"}, {"exclusiveMinimum", 0}}},
          {"profile", {{"type", "string"}, {"description", "Conventions of the producer; default auto."}}},
          {"view", schema::text()},

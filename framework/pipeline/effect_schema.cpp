@@ -1,3 +1,6 @@
+#include <limits>
+#include <utility>
+
 #include "framework/core/units.h"
 #include "framework/effect/manifest.h"
 #include "framework/image/camera.h"
@@ -12,15 +15,11 @@ using schema::json;
 namespace {
 
 const json kText = {{"type", "string"}};
+const json kName = {{"type", "string"}, {"minLength", 1}};
 const json kFlag = {{"type", "boolean"}};
 const json kNumber = {{"type", "number"}};
-
-/// Members of any snake_case name, each as `value`.
-json named(const json& value) {
-    return {{"type", "object"},
-            {"propertyNames", {{"pattern", schema::kSnakeCase}}},
-            {"additionalProperties", value}};
-}
+constexpr int kMostLevel = 14;         // of 16384 texels a side
+constexpr int kMaxElements = 1 << 25;  // of 4 bytes, in a block of 128 MiB
 
 json integer(int min, int max) {
     return {{"type", "integer"}, {"minimum", min}, {"maximum", max}};
@@ -28,31 +27,85 @@ json integer(int min, int max) {
 
 /// A number, or the name of an int parameter.
 json count(int min, int max) {
-    return {{"anyOf", {integer(min, max), {{"type", "string"}, {"pattern", schema::kSnakeCase}}}}};
+    return {{"anyOf", {integer(min, max), schema::snake_case()}}};
 }
 
-json role() {
-    std::vector<std::string> roles;
-    for (const ChannelRole& known : channel_roles()) roles.push_back(known.name);
-    return {{"anyOf", {schema::one_of(roles), {{"type", "string"}, {"pattern", "^aov:.+$"}}}}};
+/// A value of every channel, or four of them.
+json texel() {
+    return schema::any_of({kNumber, schema::array_of(kNumber, 1, 1), schema::array_of(kNumber, 4, 4)});
 }
 
-json numbers(int min, int max) {
-    return {{"anyOf", {kNumber, schema::array_of(kNumber, min, max)}}};
+json at_most_one(const std::vector<std::string>& keys) {
+    json pairs = json::array();
+    for (std::size_t i = 0; i < keys.size(); ++i)
+        for (std::size_t k = i + 1; k < keys.size(); ++k) pairs.push_back({{"required", {keys[i], keys[k]}}});
+    return {{"anyOf", pairs}};
+}
+
+/// What else holds for an object whose `key` is `value`.
+json where(const std::string& key, const std::string& value, json then) {
+    return {{"if", {{"properties", {{key, {{"const", value}}}}}, {"required", {key}}}},
+            {"then", std::move(then)}};
+}
+
+/// No such keys.
+json without(const std::vector<std::string>& keys) {
+    json properties = json::object();
+    for (const std::string& key : keys) properties[key] = false;
+    return {{"properties", properties}};
+}
+
+/// What a parameter of this type has, and has not, beside what all have.
+json rules_of(ParamType type, bool column) {
+    ParamSpec any;
+    any.type = type;
+    any.domain = {-std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
+    const bool has_unit = type != ParamType::bool_ && type != ParamType::enum_ && type != ParamType::file;
+    if (has_unit) any.unit = schema::kAnyUnit;
+    std::vector<std::string> absent;
+    if (!has_unit || type == ParamType::table) absent = {"unit", "min", "max", "ui"};
+    if (type != ParamType::enum_) absent.push_back("values");
+    if (!column) {
+        if (type != ParamType::curve) absent.push_back("domain");
+        if (type != ParamType::file) absent.insert(absent.end(), {"kind", "space"});
+        if (type != ParamType::table) absent.push_back("columns");
+        if (!is_block_type(type)) absent.insert(absent.end(), {"from"});
+        if (type != ParamType::float_ && type != ParamType::int_ && type != ParamType::angle)
+            absent.push_back("requires");
+    }
+    json rules = without(absent);
+    rules["properties"]["default"] = schema::literal(any);
+    if (!column) rules["properties"]["identity"] = schema::literal(any);
+    if (!column && !is_block_type(type)) rules["properties"]["bind"] = {{"const", "uniform"}};
+    if (!column && type == ParamType::enum_) rules["properties"]["from"] = {{"const", "camera.lens_model"}};
+    if (!column && is_block_type(type) && type != ParamType::enum_)
+        rules["properties"]["from"] = {{"not", {{"const", "camera.lens_model"}}}};
+    if (type == ParamType::table) rules["required"] = {"columns"};
+    else if (type == ParamType::enum_) rules["required"] = {"default", "values"};
+    else if (type == ParamType::file) rules["required"] = {"default", "kind"};
+    else rules["required"] = {"default"};
+    return rules;
 }
 
 json param(bool column) {
-    std::vector<std::string> types = {"float", "int",  "bool", "enum", "angle",
-                                      "color", "vec2", "vec3", "vec4"};
-    if (!column) types.insert(types.end(), {"curve", "file", "table"});
+    std::vector<std::string> types;
+    json rules = json::array();
+    for (const ParamType type : {ParamType::float_, ParamType::int_, ParamType::bool_, ParamType::enum_,
+                                 ParamType::angle, ParamType::color, ParamType::vec2, ParamType::vec3,
+                                 ParamType::vec4, ParamType::curve, ParamType::file, ParamType::table}) {
+        if (column && !is_block_type(type)) continue;
+        types.emplace_back(param_type_name(type));
+        rules.push_back(where("type", types.back(), rules_of(type, column)));
+    }
     json keys = {{"type", schema::one_of(types)},
-                 {"doc", {{"type", "string"}, {"minLength", 1}}},
+                 {"doc", kText},
                  {"unit", schema::one_of(unit_names())},
                  {"default", json::object()},
                  {"min", kNumber},
                  {"max", kNumber},
                  {"ui", schema::array_of(kNumber, 2, 2)},
                  {"values", schema::array_of({{"type", "string"}, {"pattern", "^[a-z0-9_]+$"}}, 2)}};
+    keys["values"]["uniqueItems"] = true;
     if (!column) {
         std::vector<std::string> sources{"camera.lens_model"};
         for (const CameraField& field : camera_fields()) sources.push_back("camera." + field.name);
@@ -60,63 +113,82 @@ json param(bool column) {
         keys["from"] = schema::one_of(sources);
         keys["identity"] = json::object();
         keys["requires"] =
-            schema::array_of({{"type", "string"}, {"pattern", "^\\s*(<|<=|>|>=)\\s*[a-z][a-z0-9_]*\\s*$"}});
+            schema::array_of({{"type", "string"}, {"pattern", R"(^\s*(<|<=|>|>=)\s*[a-z][a-z0-9_]*\s*$)"}});
         keys["domain"] = schema::array_of(kNumber, 2, 2);
         keys["kind"] = schema::one_of({"image", "lut"});
         keys["space"] = schema::one_of({"srgb", "data"});
-        keys["columns"] = named(param(true));
+        keys["columns"] = schema::named(param(true));
+        keys["columns"]["minProperties"] = 1;
+        keys["columns"]["properties"] = without({"object", "objects", "name"})["properties"];
     }
     json result = schema::object(keys, {"type", "doc"});
-    // A table's default is its columns'.
-    result["if"] = {{"properties", {{"type", {{"const", "table"}}}}}};
-    result["then"] = column ? json(json::object()) : json{{"required", {"columns"}}};
-    result["else"] = {{"required", {"default"}}};
+    result["allOf"] = rules;
     return result;
+}
+
+json grid_scale() {
+    return {{"type", "number"}, {"exclusiveMinimum", 0}, {"maximum", 4}};
 }
 
 json texture() {
     std::vector<std::string> formats;
     for (const auto name : gpu::texture_format_names()) formats.emplace_back(name);
-    return schema::object({{"format", schema::one_of(formats)},
-                           {"doc", kText},
-                           {"scale", {{"type", "number"}, {"exclusiveMinimum", 0}, {"maximum", 4}}},
-                           {"tile", count(2, 4096)},
-                           {"size", schema::array_of(integer(1, kMaxSide), 2, 2)},
-                           {"layers", integer(1, kMaxLayers)},
-                           {"mips", {{"anyOf", {{{"const", "auto"}}, integer(1, 15)}}}},
-                           {"clear", numbers(4, 4)},
-                           {"history", kFlag}},
-                          {"format", "doc"});
+    json result = schema::object({{"format", schema::one_of(formats)},
+                                  {"doc", kText},
+                                  {"scale", grid_scale()},
+                                  {"tile", count(2, 4096)},
+                                  {"size", schema::array_of(integer(1, kMaxSide), 2, 2)},
+                                  {"layers", integer(1, kMaxLayers)},
+                                  {"mips", {{"anyOf", {{{"const", "auto"}}, integer(1, 15)}}}},
+                                  {"clear", texel()},
+                                  {"history", kFlag}},
+                                 {"format", "doc"});
+    result["not"] = at_most_one({"scale", "tile", "size"});
+    return result;
 }
 
 json per() {
     return {{"anyOf",
              {{{"const", "pixel"}},
               schema::object({{"tile", count(2, 4096)}}, {"tile"}),
-              schema::object({{"scale", kNumber}}, {"scale"})}}};
+              schema::object({{"scale", grid_scale()}}, {"scale"})}}};
 }
 
 json buffer() {
-    return schema::object({{"element", schema::one_of({"float", "int", "uint", "vec2", "vec4", "ivec2",
-                                                       "ivec4", "uvec2", "uvec4"})},
-                           {"doc", kText},
-                           {"count", count(1, 1 << 30)},
-                           {"per", per()},
-                           {"clear", numbers(1, 65536)},
-                           {"history", kFlag},
-                           {"indirect", kFlag}},
-                          {"element", "doc"});
+    const std::vector<std::string> elements = {"float", "int",   "uint",  "vec2", "vec4",
+                                               "ivec2", "ivec4", "uvec2", "uvec4"};
+    json result = schema::object({{"element", schema::one_of(elements)},
+                                  {"doc", kText},
+                                  {"count", count(1, kMaxElements)},
+                                  {"per", per()},
+                                  {"clear", schema::any_of({kNumber, schema::array_of(kNumber, 1)})},
+                                  {"history", kFlag},
+                                  {"indirect", kFlag}},
+                                 {"element", "doc"});
+    result["anyOf"] = {{{"required", {"per"}}, {"properties", {{"count", count(1, 256)}}}},
+                       {{"required", {"count"}}, {"properties", {{"per", false}}}}};
+    const json arguments = {{"properties",
+                             {{"element", {{"const", "uint"}}},
+                              {"count", integer(4, kMaxElements)},
+                              {"per", false},
+                              {"history", {{"const", false}}}}},
+                            {"required", {"count"}}};
+    result["if"] = {{"properties", {{"indirect", {{"const", true}}}}}, {"required", {"indirect"}}};
+    result["then"] = arguments;
+    return result;
 }
 
-json level() {
-    return {{"anyOf",
-             {integer(0, kMaxLayers), {{"type", "string"}, {"pattern", "^pass\\.index( *[-+] *[0-9]+)?$"}}}}};
+/// Of a texture's levels, or layers.
+json level(int most) {
+    const json of_turn = {{"type", "string"}, {"pattern", "^pass\\.index( *[-+] *[0-9]{1,2})?$"}};
+    return schema::any_of({integer(0, most), of_turn});
 }
 
 json read() {
     const json filter = schema::one_of({"nearest", "linear"});
-    const json options = schema::object(
-        {{"filter", filter}, {"outside", schema::one_of({"clamp", "weight_zero"})}, {"level", level()}});
+    const json options = schema::object({{"filter", filter},
+                                         {"outside", schema::one_of({"clamp", "weight_zero"})},
+                                         {"level", level(kMostLevel)}});
     const json chosen = {{"type", "object"},
                          {"additionalProperties", {{"anyOf", {filter, options}}}},
                          {"minProperties", 1},
@@ -125,54 +197,88 @@ json read() {
 }
 
 json write() {
-    const json options = schema::object({{"level", level()}, {"layer", level()}});
+    const json options = schema::object({{"level", level(kMostLevel)}, {"layer", level(kMaxLayers - 1)}});
     const json chosen = {
         {"type", "object"}, {"additionalProperties", options}, {"minProperties", 1}, {"maxProperties", 1}};
     return {{"anyOf", {kText, chosen}}};
 }
 
-json pass() {
+json instances() {
+    json result = schema::object({{"of", schema::one_of({"quads", "points"})},
+                                  {"count", count(1, 1 << 24)},
+                                  {"per", per()},
+                                  {"indirect", kName}},
+                                 {"of"});
+    result["oneOf"] = {{{"required", {"indirect"}}},
+                       {{"anyOf", {{{"required", {"count"}}}, {{"required", {"per"}}}}}}};
+    return result;
+}
+
+json dispatch() {
+    const json groups = schema::array_of(integer(1, 65535), 3, 3);
+    return schema::any_of({schema::object({{"tile", count(1, 4096)}, {"over", kText}}, {"tile"}),
+                           schema::object({{"groups", groups}}, {"groups"}),
+                           schema::object({{"indirect", kText}}, {"indirect"})});
+}
+
+/// What the kinds of passes have, and have not.
+json rules_of_kinds() {
+    json compute = without({"writes", "vertex", "instances", "blend", "value"});
+    compute["required"] = {"shader", "dispatch"};
+    json clear = without({"shader", "vertex", "reads", "images", "buffers", "defines", "repeat",
+                          "max_iterations", "instances", "dispatch", "blend"});
+    clear["required"] = {"writes", "value"};
+    json draw = without({"dispatch", "value"});
+    draw["required"] = {"shader", "writes"};
+    draw["dependentRequired"] = {{"vertex", {"instances"}}, {"instances", {"vertex"}}};
+    json draws = where("kind", "draw", draw);
+    draws["if"].erase("required");  // the kind of a pass that names none
+    return {where("kind", "compute", compute), where("kind", "clear", clear), draws};
+}
+
+json when() {
     const json value = {{"type", {"boolean", "integer", "string"}}};
+    return {{"type", "object"},
+            {"patternProperties", {{"^has\\.", schema::any_of({kFlag, schema::array_of(kFlag, 1)})}}},
+            {"additionalProperties", schema::any_of({value, schema::array_of(value, 1)})}};
+}
+
+json pass() {
     const json access = {{"type", "object"},
                          {"additionalProperties", schema::one_of({"read", "write", "atomic"})}};
-    const json dispatch = {
-        {"anyOf",
-         {schema::object({{"tile", count(1, 1024)}, {"over", kText}}, {"tile"}),
-          schema::object({{"groups", schema::array_of(integer(1, 65535), 3, 3)}}, {"groups"}),
-          schema::object({{"indirect", kText}}, {"indirect"})}}};
-    return schema::object(
-        {{"name", {{"type", "string"}, {"pattern", schema::kSnakeCase}}},
-         {"kind", schema::one_of({"draw", "compute", "clear"})},
-         {"shader", kText},
-         {"vertex", kText},
-         {"reads", schema::array_of(read())},
-         {"writes", schema::array_of(write())},
-         {"images", access},
-         {"buffers", access},
-         {"defines", {{"type", "object"}, {"additionalProperties", {{"type", {"string", "integer"}}}}}},
-         {"when",
-          {{"type", "object"}, {"additionalProperties", {{"anyOf", {value, schema::array_of(value, 1)}}}}}},
-         {"repeat", count(1, kMaxRepeat)},
-         {"max_iterations", integer(1, kMaxIterations)},
-         {"instances", schema::object({{"of", schema::one_of({"quads", "points"})},
-                                       {"count", count(1, 1 << 30)},
-                                       {"per", per()},
-                                       {"indirect", kText}},
-                                      {})},
-         {"dispatch", dispatch},
-         {"blend", schema::one_of({"add", "min", "max"})},
-         {"value", numbers(4, 4)}},
-        {"name"});
+    // As GLSL names macros.
+    const json defines = {{"type", "object"},
+                          {"propertyNames", {{"pattern", "^(?!GL_)(?!.*__)[A-Za-z_][A-Za-z0-9_]*$"}}},
+                          {"additionalProperties", {{"type", {"string", "integer"}}}}};
+    json result = schema::object({{"name", schema::snake_case()},
+                                  {"kind", schema::one_of({"draw", "compute", "clear"})},
+                                  {"shader", kText},
+                                  {"vertex", kName},
+                                  {"reads", schema::array_of(read())},
+                                  {"writes", schema::array_of(write(), 1)},
+                                  {"images", access},
+                                  {"buffers", access},
+                                  {"defines", defines},
+                                  {"when", when()},
+                                  {"repeat", count(1, kMaxRepeat)},
+                                  {"max_iterations", integer(1, kMaxIterations)},
+                                  {"instances", instances()},
+                                  {"dispatch", dispatch()},
+                                  {"blend", schema::one_of({"add", "min", "max"})},
+                                  {"value", texel()}},
+                                 {"name"});
+    result["allOf"] = rules_of_kinds();
+    return result;
 }
 
 json native() {
     const json side = integer(1, 1024);
     return schema::object(
         {{"uniforms",
-          named(schema::object(
+          schema::named(schema::object(
               {{"type", schema::one_of({"float", "int", "uint", "vec2", "vec3", "vec4"})}, {"doc", kText}},
               {"type", "doc"}))},
-         {"tables", named(schema::object(
+         {"tables", schema::named(schema::object(
                         {{"element", schema::one_of({"float", "vec2", "vec4", "uint", "uvec2", "uvec4"})},
                          {"count", {{"anyOf", {side, schema::array_of(side, 2, 2)}}}},
                          {"doc", kText}},
@@ -182,31 +288,36 @@ json native() {
 }  // namespace
 
 std::string effect_schema() {
-    const json input = schema::object({{"role", role()},
-                                       {"optional", kFlag},
-                                       {"history", kFlag},
-                                       {"frame", schema::json{{"enum", {-1, 1}}}},
-                                       {"doc", kText}},
-                                      {"role"});
-    const json output = schema::object({{"role", role()}, {"doc", kText}}, {"role"});
-    json outputs = named(output);
+    json input = schema::object({{"role", schema::role()},
+                                 {"optional", kFlag},
+                                 {"history", kFlag},
+                                 {"frame", {{"enum", {-1, 1}}}},
+                                 {"doc", kText}},
+                                {"role"});
+    input["if"] = {{"required", {"frame"}}};
+    input["then"] = {{"required", {"optional"}},
+                     {"properties", {{"optional", {{"const", true}}}, {"history", {{"const", false}}}}}};
+    json outputs = schema::named(schema::object({{"role", schema::role()}, {"doc", kText}}, {"role"}));
     outputs["minProperties"] = 1;
-    return schema::document(
-               "Aftershade effect",
-               {{"id", {{"type", "string"}, {"pattern", schema::kSnakeCase}}},
-                {"version", {{"type", "string"}, {"pattern", "^[0-9]+\\.[0-9]+\\.[0-9]+$"}}},
-                {"summary", kText},
-                {"sources", schema::array_of(kText)},
-                {"accumulates", schema::json{{"const", "subframes"}}},
-                {"inputs", named(input)},
-                {"outputs", outputs},
-                {"params", named(param(false))},
-                {"textures", named(texture())},
-                {"buffers", named(buffer())},
-                {"passes", schema::array_of(pass(), 1)},
-                {"native", native()},
-                {"presets", {{"type", "object"}, {"additionalProperties", {{"type", "object"}}}}}},
-               {"id", "version", "summary", "inputs", "outputs", "passes"})
+    const std::string number = "(0|[1-9][0-9]*)";
+    const json version = {{"type", "string"},
+                          {"pattern", "^" + number + "\\." + number + "\\." + number + "$"}};
+    const json presets = {{"type", "object"}, {"additionalProperties", {{"type", "object"}}}};
+    return schema::document("Aftershade effect",
+                            {{"id", schema::snake_case()},
+                             {"version", version},
+                             {"summary", kText},
+                             {"sources", schema::array_of(kText)},
+                             {"accumulates", {{"const", "subframes"}}},
+                             {"inputs", schema::named(input)},
+                             {"outputs", outputs},
+                             {"params", schema::named(param(false))},
+                             {"textures", schema::named(texture())},
+                             {"buffers", schema::named(buffer())},
+                             {"passes", schema::array_of(pass(), 1)},
+                             {"native", native()},
+                             {"presets", presets}},
+                            {"id", "version", "summary", "inputs", "outputs", "passes"})
                .dump(2) +
            "\n";
 }

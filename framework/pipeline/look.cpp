@@ -60,6 +60,9 @@ MaskSpec parse_mask(const Node& node, const fs::path& folder, Diagnostics& diagn
                       int(node.find("file") != nullptr);
     if (node.is_object() && kinds != 1)
         diagnostics.error(node.place, "a mask has one of 'role', 'object' and 'file'");
+    for (const char* key : {"role", "file"})
+        if (const Node* value = node.find(key); value && value->is_string() && value->string.empty())
+            diagnostics.error(value->place, "the mask's '" + std::string(key) + "' is empty");
     return mask;
 }
 
@@ -157,7 +160,11 @@ private:
         step.folder = scope.folder;
         ObjectReader reader(node, "the step", diagnostics_);
         step.effect = reader.text("effect", Presence::required).value_or("");
-        if (const Node* effect = node.find("effect")) step.effect_place = effect->place;
+        if (const Node* effect = node.find("effect")) {
+            step.effect_place = effect->place;
+            if (effect->is_string() && step.effect.empty())
+                diagnostics_.error(effect->place, "'effect' is empty: it is the id of an effect");
+        }
         const auto name = reader.text("name");
         // Wiring, --set and --tap part a name from what follows at the first dot, and taps are files of that
         // name.

@@ -14,19 +14,19 @@ using schema::json;
 
 namespace {
 
-const json kVariable = schema::object(
-    {{"var", {{"type", "string"}, {"description", "Name of a variable of \"vars\"."}}}}, {"var"});
-const json kObject = {{"anyOf",
-                       {{{"type", "integer"}, {"minimum", 0}, {"maximum", 4294967295u}},
-                        {{"type", "string"}, {"minLength", 1}}}}};
+/// {"var": "name"} may stand for every part of a value.
+json or_variable(json form) {
+    return schema::any_of({std::move(form), schema::variable()});
+}
 
 /// {"keys": {"1": 2.0, "24": 5.6}}
 json keyed(const json& literal) {
     json keys = {{"type", "object"},
-                 {"patternProperties", {{"^-?[0-9]+$", {{"anyOf", {literal, kVariable}}}}}},
+                 {"patternProperties", {{"^-?[0-9]+$", literal}}},
                  {"additionalProperties", false},
                  {"minProperties", 1}};
-    return schema::object({{"keys", keys}, {"interpolation", schema::one_of({"linear", "smooth", "step"})}},
+    return schema::object({{"keys", or_variable(keys)},
+                           {"interpolation", or_variable(schema::one_of({"linear", "smooth", "step"}))}},
                           {"keys"});
 }
 
@@ -43,20 +43,22 @@ std::vector<json> captured(const ParamSpec& spec) {
         for (const CameraField& field : camera_fields())
             if (field.unit == spec.unit || convert_unit(1, field.unit, spec.unit))
                 fields.push_back("camera." + field.name);
-    if (!fields.empty()) forms.push_back(schema::object({{"from", schema::one_of(fields)}}, {"from"}));
+    if (!fields.empty())
+        forms.push_back(schema::object({{"from", or_variable(schema::one_of(fields))}}, {"from"}));
     if (!is_number(spec) || !convert_unit(1, "m", spec.unit)) return forms;
-    const json side = {{"type", "number"}, {"minimum", 0}, {"maximum", 1}};
-    forms.push_back(schema::object({{"from", {{"const", "depth"}}}, {"uv", schema::array_of(side, 2, 2)}},
-                                   {"from", "uv"}));
+    const json depth = or_variable({{"const", "depth"}});
+    const json side = or_variable({{"type", "number"}, {"minimum", 0}, {"maximum", 1}});
+    const json point = or_variable(schema::array_of(side, 2, 2));
+    forms.push_back(schema::object({{"from", depth}, {"uv", point}}, {"from", "uv"}));
     forms.push_back(
-        schema::object({{"from", {{"const", "depth"}}}, {"object", kObject}}, {"from", "object"}));
+        schema::object({{"from", depth}, {"object", or_variable(schema::object_key())}}, {"from", "object"}));
     return forms;
 }
 
 /// A value in any form, with what the manifest says of it.
 json value_of(const ParamSpec& spec) {
-    const json literal = schema::literal(spec);
-    json forms = {literal, kVariable};
+    const json literal = schema::literal(spec, schema::Variables::yes);
+    json forms = {literal};
     if (spec.bind != ParamBind::define) forms.push_back(keyed(literal));
     for (json& form : captured(spec)) forms.push_back(std::move(form));
     const std::string range = range_text(spec);
@@ -78,10 +80,11 @@ json wiring_of(const EffectManifest& effect) {
 }
 
 json mask() {
-    json result = schema::object({{"role", schema::text()},
-                                  {"object", {{"anyOf", {kObject, schema::array_of(kObject)}}}},
-                                  {"file", schema::text()},
-                                  {"invert", {{"type", "boolean"}}}});
+    const json object = or_variable(schema::object_key());
+    json result = schema::object({{"role", or_variable(schema::role())},
+                                  {"object", schema::any_of({object, schema::array_of(object)})},
+                                  {"file", or_variable({{"type", "string"}, {"minLength", 1}})},
+                                  {"invert", or_variable({{"type", "boolean"}})}});
     result["oneOf"] = {{{"required", {"role"}}}, {{"required", {"object"}}}, {{"required", {"file"}}}};
     result["description"] = "Where the step works: a role of one channel, objects, or a picture.";
     return result;
@@ -101,7 +104,7 @@ json step_of(const EffectManifest& effect) {
     properties["params"] = schema::object(params);
     properties["in"] = wiring_of(effect);
     properties["mix"] = value_of(mix_spec());
-    properties["mask"] = mask();
+    properties["mask"] = {{"$ref", "#/$defs/Mask"}};
     return schema::object(properties, {"effect"});
 }
 
@@ -118,7 +121,8 @@ json use() {
 
 std::string look_schema(const std::vector<const EffectManifest*>& effects) {
     json branches = json::array({use()});
-    json definitions = json::object();
+    json definitions = {{"Mask", mask()}};
+    schema::define_variable(definitions);
     for (const EffectManifest* effect : effects) {
         definitions[effect->id] = step_of(*effect);
         branches.push_back({{"$ref", "#/$defs/" + effect->id}});

@@ -1,8 +1,10 @@
 #include "framework/pipeline/schema_common.h"
 
+#include <cstdint>
 #include <utility>
 
 #include "framework/core/units.h"
+#include "framework/image/role.h"
 
 namespace aftershade::schema {
 
@@ -11,36 +13,89 @@ namespace {
 /// What parse_quantity() takes, for the units that convert to `unit`.
 std::string unit_pattern(const std::string& unit) {
     std::string units;
-    for (const std::string& name : compatible_units(unit)) units += (units.empty() ? "" : "|") + name;
-    return "^\\s*[-+]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)?\\s*(" + units + ")\\s*$";
+    for (const std::string& name : unit == kAnyUnit ? unit_names() : compatible_units(unit))
+        units += (units.empty() ? "" : "|") + name;
+    return "^[-+]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)? *(" + units + ")$";
 }
 
-json curve(const ParamSpec& spec) {
-    json x = {{"type", "number"}, {"minimum", spec.domain[0]}, {"maximum", spec.domain[1]}};
-    json y = {{"type", "number"}};
-    if (spec.min) y["minimum"] = *spec.min;
-    if (spec.max) y["maximum"] = *spec.max;
-    const json point = {{"type", "array"}, {"prefixItems", {x, y}}, {"minItems", 2}, {"items", false}};
-    const json points = array_of(point, 1, int(kMaxCurvePoints));
-    return {{"anyOf",
-             {points,
-              object({{"points", points}, {"interpolation", one_of({"linear", "smooth"})}}, {"points"})}}};
-}
+/// Makes the literals of one document's kind.
+class LiteralWriter {
+public:
+    explicit LiteralWriter(Variables variables) : variables_(variables) {}
 
-json table(const ParamSpec& spec) {
-    json cells = json::object();
-    for (const ParamSpec& column : spec.columns) {
-        cells[column.name] = literal(column);
-        cells[column.name]["description"] = column.doc;
+    json literal(const ParamSpec& spec) const {
+        switch (spec.type) {
+            case ParamType::bool_: return part({{"type", "boolean"}});
+            case ParamType::enum_: return part(spec.values.empty() ? text() : one_of(spec.values));
+            case ParamType::float_:
+            case ParamType::angle:
+            case ParamType::int_: return part(quantity(spec));
+            case ParamType::color:
+            case ParamType::vec2:
+            case ParamType::vec3:
+            case ParamType::vec4: {
+                ParamSpec component = spec;
+                component.type = ParamType::float_;
+                const int count = component_count(spec.type);
+                return part(array_of(part(quantity(component)), count, count));
+            }
+            case ParamType::curve: return part(curve(spec));
+            case ParamType::file: return part(text());
+            case ParamType::table: return part(table(spec));
+        }
+        return json::object();
     }
-    json row = cells;
-    row["object"] = {{"type", "integer"}, {"minimum", 0}, {"maximum", 4294967295u}};
-    row["objects"] = {{"type", "string"}, {"pattern", "^[0-9]+(-[0-9]+)?(,[0-9]+(-[0-9]+)?)*$"}};
-    row["name"] = text();
-    json keyed = object(row);
-    keyed["oneOf"] = {{{"required", {"object"}}}, {{"required", {"objects"}}}, {{"required", {"name"}}}};
-    return object({{"default", object(cells)}, {"rows", array_of(keyed)}});
-}
+
+private:
+    json part(json form) const {
+        return variables_ == Variables::yes ? any_of({std::move(form), variable()}) : form;
+    }
+
+    json curve(const ParamSpec& spec) const {
+        const json x = {{"type", "number"}, {"minimum", spec.domain[0]}, {"maximum", spec.domain[1]}};
+        ParamSpec y = spec;
+        y.type = ParamType::float_;
+        const json point = {{"type", "array"},
+                            {"prefixItems", {part(x), part(quantity(y))}},
+                            {"minItems", 2},
+                            {"maxItems", 2}};
+        const json points = array_of(part(point), 1, int(kMaxCurvePoints));
+        const json interpolation = part(one_of({"linear", "smooth"}));
+        return any_of(
+            {points, object({{"points", part(points)}, {"interpolation", interpolation}}, {"points"})});
+    }
+
+    /// A row says by one key which objects it is for.
+    static json one_key() {
+        return {{{"required", {"object"}}}, {{"required", {"objects"}}}, {{"required", {"name"}}}};
+    }
+
+    json table(const ParamSpec& spec) const {
+        // A declaration's columns are not known where the schema is of every declaration.
+        if (spec.columns.empty()) {
+            const json row = {{"type", "object"}};
+            json keyed = row;
+            keyed["oneOf"] = one_key();
+            return object({{"default", row}, {"rows", array_of(keyed)}});
+        }
+        json cells = json::object();
+        for (const ParamSpec& column : spec.columns) {
+            cells[column.name] = literal(column);
+            cells[column.name]["description"] = column.doc;
+        }
+        json row = cells;
+        row["object"] = part({{"type", "integer"}, {"minimum", 0}, {"maximum", UINT32_MAX}});
+        row["objects"] = part({{"type", "string"},
+                               {"description", "Ids: \"3-7,9\"."},
+                               {"pattern", "^ *[0-9]+ *(- *[0-9]+ *)?(, *[0-9]+ *(- *[0-9]+ *)?)*$"}});
+        row["name"] = part({{"type", "string"}, {"minLength", 1}});
+        json keyed = object(row);
+        keyed["oneOf"] = one_key();
+        return object({{"default", part(object(cells))}, {"rows", part(array_of(part(keyed)))}});
+    }
+
+    Variables variables_;
+};
 
 }  // namespace
 
@@ -49,6 +104,11 @@ json object(json properties, std::vector<std::string> required) {
         {"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
     if (!required.empty()) result["required"] = std::move(required);
     return result;
+}
+
+json named(const json& value) {
+    return {
+        {"type", "object"}, {"propertyNames", {{"pattern", kSnakeCase}}}, {"additionalProperties", value}};
 }
 
 json array_of(json items, int min, int max) {
@@ -62,8 +122,20 @@ json one_of(const std::vector<std::string>& words) {
     return {{"enum", words}};
 }
 
+json any_of(std::vector<json> forms) {
+    return {{"anyOf", std::move(forms)}};
+}
+
 json text() {
     return {{"type", "string"}};
+}
+
+json snake_case() {
+    return {{"type", "string"}, {"pattern", kSnakeCase}};
+}
+
+json role() {
+    return any_of({one_of(role_names()), {{"type", "string"}, {"pattern", kAovPattern}}});
 }
 
 json quantity(const ParamSpec& spec) {
@@ -71,29 +143,25 @@ json quantity(const ParamSpec& spec) {
     if (spec.min) number["minimum"] = *spec.min;
     if (spec.max) number["maximum"] = *spec.max;
     if (spec.unit.empty()) return number;
-    return {{"anyOf", {number, {{"type", "string"}, {"pattern", unit_pattern(spec.unit)}}}}};
+    return any_of({number, {{"type", "string"}, {"pattern", unit_pattern(spec.unit)}}});
 }
 
-json literal(const ParamSpec& spec) {
-    switch (spec.type) {
-        case ParamType::bool_: return {{"type", "boolean"}};
-        case ParamType::enum_: return one_of(spec.values);
-        case ParamType::float_:
-        case ParamType::angle:
-        case ParamType::int_: return quantity(spec);
-        case ParamType::color:
-        case ParamType::vec2:
-        case ParamType::vec3:
-        case ParamType::vec4: {
-            ParamSpec component = spec;
-            component.type = ParamType::float_;
-            return array_of(quantity(component), component_count(spec.type), component_count(spec.type));
-        }
-        case ParamType::curve: return curve(spec);
-        case ParamType::file: return text();
-        case ParamType::table: return table(spec);
-    }
-    return json::object();
+json variable() {
+    return {{"$ref", "#/$defs/Variable"}};
+}
+
+void define_variable(json& definitions) {
+    definitions["Variable"] =
+        object({{"var", {{"type", "string"}, {"description", "Name of a variable of \"vars\"."}}}}, {"var"});
+}
+
+json literal(const ParamSpec& spec, Variables variables) {
+    return LiteralWriter(variables).literal(spec);
+}
+
+json object_key() {
+    return any_of({{{"type", "integer"}, {"minimum", 0}, {"maximum", UINT32_MAX}},
+                   {{"type", "string"}, {"minLength", 1}}});
 }
 
 json document(const std::string& title, json properties, std::vector<std::string> required) {

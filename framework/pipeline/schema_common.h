@@ -16,13 +16,31 @@ inline constexpr const char* kSnakeCase = "^[a-z][a-z0-9_]*$";
 
 /// An object with these members and no others.
 json object(json properties, std::vector<std::string> required = {});
+/// Members of any snake_case name, each as `value`.
+json named(const json& value);
 json array_of(json items, int min = 0, int max = -1);
 json one_of(const std::vector<std::string>& words);
 json text();
-/// A number with limits; `unit` adds strings such as "85 mm" in any unit that converts to it.
+json snake_case();
+/// {"anyOf": [...]}
+json any_of(std::vector<json> forms);
+inline constexpr const char* kAovPattern = "^aov:.+$";
+/// Name of a role: a fixed one, or "aov:<name>".
+json role();
+
+/// As a ParamSpec's unit: strings in every unit that there is.
+inline constexpr const char* kAnyUnit = "*";
+/// A number with limits; the spec's unit adds strings such as "85 mm" in any unit that converts to it.
 json quantity(const ParamSpec& spec);
-/// A literal of the parameter's type.
-json literal(const ParamSpec& spec);
+
+enum class Variables { no, yes };
+/// {"var": "name"}: refers to what define_variable() puts among "$defs". Ids of effects have no capitals.
+json variable();
+void define_variable(json& definitions);
+/// A literal of the parameter's type. With variables, one may stand for it and for any part of it.
+json literal(const ParamSpec& spec, Variables variables = Variables::no);
+/// Id of an object, or its Cryptomatte name.
+json object_key();
 /// Head of a document: "$schema" of the schema itself, title, and "aftershade": 1 among the properties.
 json document(const std::string& title, json properties, std::vector<std::string> required);
 

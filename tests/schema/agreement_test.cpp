@@ -1,0 +1,231 @@
+// The schemas against the program that they speak for: three documents with every key that there is, changed
+// in every place and every way, and judged by both.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "framework/core/document.h"
+#include "framework/core/error.h"
+#include "framework/effect/registry.h"
+#include "framework/image/sequence.h"
+#include "framework/pipeline/look.h"
+#include "framework/pipeline/pipeline.h"
+#include "framework/pipeline/schema.h"
+#include "tests/documents.h"
+#include "tests/temporary_folder.h"
+
+namespace aftershade::test {
+namespace {
+
+namespace fs = std::filesystem;
+using json = nlohmann::ordered_json;
+
+const fs::path kFolder = fs::path(AFTERSHADE_SOURCE_DIR) / "tests/schema";
+
+/// A document with one change.
+struct Variant {
+    std::string change;  ///< "/steps/0/enabled = null"
+    json document;
+};
+
+/// What stands in place of a value: each kind of JSON, and what is near to a sound value of it.
+std::vector<json> substitutes(const json& value) {
+    std::vector<json> all = {
+        nullptr,          true,          0, -1, 0.5, 1000000000, "", "x", "1 m", json::array(),
+        json::array({0}), json::object()};
+    if (value.is_number_integer())
+        for (const int step : {-1, 1}) all.push_back(value.get<int>() + step);
+    if (value.is_string()) {
+        const std::string text = value;
+        for (const std::string& near : {" " + text, text + " ", text + "-", "+" + text, text + ".1"})
+            all.push_back(near);
+    }
+    if (value.is_array() && !value.empty()) {
+        json shorter = value, longer = value;
+        shorter.erase(shorter.size() - 1);
+        longer.push_back(value.back());
+        all.push_back(shorter);
+        all.push_back(longer);
+    }
+    return all;
+}
+
+std::vector<Variant> variants_of(const json& document) {
+    std::vector<Variant> variants;
+    const auto add = [&](const std::string& change, const std::function<void(json&)>& make) {
+        variants.push_back({change, document});
+        make(variants.back().document);
+    };
+    std::vector<json::json_pointer> places{json::json_pointer()};
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const json::json_pointer place = places[i];
+        const json& value = document.at(place);
+        for (const json& other : substitutes(value))
+            add(place.to_string() + " = " + other.dump(), [&](json& changed) { changed[place] = other; });
+        if (value.is_object()) {
+            add(place.to_string() + " + odd_key", [&](json& changed) { changed[place]["odd_key"] = 1; });
+            for (const auto& [key, member] : value.items()) {
+                add((place / key).to_string() + " gone", [&](json& changed) { changed[place].erase(key); });
+                places.push_back(place / key);
+            }
+        } else if (value.is_array()) {
+            for (std::size_t k = 0; k < value.size(); ++k) places.push_back(place / k);
+        }
+    }
+    return variants;
+}
+
+/// "" for a document without faults, else the first.
+using Judge = std::function<std::string(const std::string& text)>;
+
+std::string first_fault(const Diagnostics& diagnostics) {
+    for (const Diagnostic& diagnostic : diagnostics.all())
+        if (diagnostic.severity == Severity::error) return diagnostic.message;
+    return "";
+}
+
+std::string judge_look(const std::string& text) {
+    static EffectRegistry effects({kFolder});
+    Diagnostics diagnostics;
+    const auto node = parse_document(text, (kFolder / "look.json").string(), diagnostics);
+    if (const auto look = node ? parse_look(*node, diagnostics) : std::nullopt)
+        compile_pipeline(*look, effects, {}, diagnostics);
+    return first_fault(diagnostics);
+}
+
+std::string judge_capture(const std::string& text) {
+    static const TemporaryFolder folder;
+    write_text(folder / "capture.json", text);
+    Diagnostics diagnostics;
+    try {
+        open_sequence((folder / "capture.json").string(), diagnostics);
+    } catch (const Error& error) {
+        // No such files: the document itself is sound.
+        if (error.exit_code() != ExitCode::capture) return error.what();
+    }
+    return first_fault(diagnostics);
+}
+
+std::string judge_manifest(const std::string& text) {
+    Diagnostics diagnostics;
+    const auto node = parse_document(text, "effect.json", diagnostics);
+    if (node) parse_manifest(*node, kFolder / "every_form", diagnostics);
+    return first_fault(diagnostics);
+}
+
+class SchemaAgreement : public testing::Test {
+protected:
+    void SetUp() override {
+        if (std::system("/usr/bin/python3 -W ignore -c 'import jsonschema; jsonschema.Draft202012Validator' "
+                        "2>/dev/null") != 0)
+            GTEST_SKIP() << "SKIPPED: /usr/bin/python3 has no jsonschema (python3-jsonschema)";
+    }
+
+    /// For each variant "" or the schema's fault.
+    std::vector<std::string> judge_by_schema(const std::string& schema,
+                                             const std::vector<Variant>& variants) {
+        write_text(folder_ / "schema.json", schema);
+        std::string lines;
+        for (const Variant& variant : variants) lines += variant.document.dump() + "\n";
+        write_text(folder_ / "documents", lines);
+        const std::string command = "/usr/bin/python3 '" + (kFolder / "validate.py").string() + "' '" +
+                                    (folder_ / "schema.json").string() + "' < '" +
+                                    (folder_ / "documents").string() + "' > '" +
+                                    (folder_ / "verdicts").string() + "'";
+        EXPECT_EQ(std::system(command.c_str()), 0);
+        std::vector<std::string> verdicts;
+        std::istringstream in(read_text(folder_ / "verdicts"));
+        for (std::string line; std::getline(in, line);) verdicts.push_back(line);
+        EXPECT_EQ(verdicts.size(), variants.size());
+        verdicts.resize(variants.size());
+        return verdicts;
+    }
+
+    /// `only_the_program` are faults that no schema can find, as regular expressions over
+    /// "<change>\n<fault>".
+    void hold(const std::string& file, const std::string& schema, const Judge& judge,
+              const std::vector<std::string>& only_the_program) {
+        const json document = json::parse(read_text(kFolder / file), nullptr, true, true);
+        std::vector<Variant> variants{{"unchanged", document}};
+        for (Variant& variant : variants_of(document)) variants.push_back(std::move(variant));
+        const std::vector<std::string> by_schema = judge_by_schema(schema, variants);
+        ASSERT_EQ(by_schema[0], "") << file;
+        ASSERT_EQ(judge(document.dump()), "") << file;
+        const std::vector<std::regex> rules(only_the_program.begin(), only_the_program.end());
+        int taken = 0, refused = 0, known_to_the_program_alone = 0;
+        for (std::size_t i = 0; i < variants.size(); ++i) {
+            const std::string by_program = judge(variants[i].document.dump());
+            const std::string both = variants[i].change + "\n" + by_program;
+            const auto fits = [&](const std::regex& rule) { return std::regex_search(both, rule); };
+            if (by_program.empty()) {
+                ++taken;
+                EXPECT_EQ(by_schema[i], "")
+                    << "the program takes what the schema refuses: " << variants[i].change;
+            } else if (!by_schema[i].empty()) {
+                ++refused;
+            } else if (std::any_of(rules.begin(), rules.end(), fits)) {
+                ++known_to_the_program_alone;
+            } else {
+                ADD_FAILURE() << "the schema takes what the program refuses: " << variants[i].change << "\n  "
+                              << by_program;
+            }
+        }
+        RecordProperty("taken", taken);
+        RecordProperty("refused", refused);
+        RecordProperty("known_to_the_program_alone", known_to_the_program_alone);
+        std::printf("%s: %d changes taken by both, %d refused by both, %d that only the program can know\n",
+                    file.c_str(), taken, refused, known_to_the_program_alone);
+    }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(SchemaAgreement, OfALookChangedEverywhere) {
+    EffectRegistry effects({kFolder});
+    Diagnostics diagnostics;
+    const EffectManifest* effect = effects.find("every_form", diagnostics);
+    ASSERT_EQ(lines_of(diagnostics), Lines{});
+    hold("look.json", look_schema({effect}), judge_look,
+         {
+             "^/vars",               // what a variable's value must be depends on where it is used
+             "has no variable '",    // names of what stands elsewhere in the document
+             "no step '.*' before",  //
+             "a second step named",  //
+             "/in/[^]*(is not a role|has no output|takes the role)",
+             "no file '",                          // what lies on the disk
+             "\"1 m\"\n.* is above the maximum",   // numbers within strings
+             "is taken already by",                // two values against each other
+             "must lie above the x of the point",  //
+         });
+}
+
+TEST_F(SchemaAgreement, OfACaptureChangedEverywhere) {
+    hold("capture.json", capture_schema(), judge_capture, {});
+}
+
+TEST_F(SchemaAgreement, OfAManifestChangedEverywhere) {
+    hold("every_form/effect.json", effect_schema(), judge_manifest,
+         {
+             "is not the name of its folder|no file '",  // what lies on the disk
+             // Names of what stands elsewhere in the document, and what that is.
+             "which is no |which is not |is not a parameter|is not one of '|does not name an optional",
+             "has no 'history'|has no 'repeat'|no pass (reads|writes|uses) |before any pass has written it",
+             "has no key '|is not declared 'indirect'|another pass has this name",
+             // One value against another, or their units.
+             "is (above|below) |'min' of at least|must rise|has a unit, but|cannot be (compared|converted)",
+             "must lie above|taken already|twice|differ in size|in one turn|but it has|holds|whole number",
+             "words, more than|writes no image|outside the domain|is not a value of '|level",
+             "^/presets/|^/params/skins/default",  // as the parameters and columns say
+         });
+}
+
+}  // namespace
+}  // namespace aftershade::test
