@@ -210,6 +210,9 @@ ExitCode run(const RunArguments& options) {
     // A lone frame that cannot be read is told of before a context is made.
     require_first_frame(*sequence, reader, bound->pipeline);
 
+    require_output_folders(outputs, *sequence);
+    require_output_folder(options.render.history_out);
+    require_output_folder(options.render.graph);
     if (const auto code = run_in_worker(options.plugins, bound->pipeline, stop)) return *code;
 
     set_exr_threads(int(std::thread::hardware_concurrency()));

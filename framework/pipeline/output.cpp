@@ -113,6 +113,19 @@ void write_tap(const fs::path& path, const Image& image, const OutputOptions& op
 
 }  // namespace
 
+void require_output_folder(const fs::path& file) {
+    const fs::path folder = file.parent_path();
+    std::error_code failure;
+    if (folder.empty() || fs::exists(folder, failure)) return;
+    throw Error(ExitCode::output,
+                file.string() + ": there is no folder '" + folder.string() + "' (create it first)");
+}
+
+void require_output_folders(const OutputOptions& options, const Sequence& sequence) {
+    for (const std::string& text : options.patterns)
+        for (const int frame : sequence.frames) require_output_folder(FramePattern(text).path(frame));
+}
+
 void check_outputs(const OutputOptions& options, const Sequence& sequence, Diagnostics& diagnostics) {
     std::map<fs::path, fs::path> inputs;
     for (const int frame : sequence.frames)

@@ -23,6 +23,12 @@ struct OutputOptions {
     std::string renderer{};           ///< GL_RENDERER, written as attribute aftershade/renderer
 };
 
+/// Throws Error(ExitCode::output) where the folder of a file that shall be written is not there: better told
+/// before the work than after it. "" is no file.
+void require_output_folder(const std::filesystem::path& file);
+/// The same for every file of every frame.
+void require_output_folders(const OutputOptions& options, const Sequence& sequence);
+
 /// Faults that show before any work: an unknown extension, several frames for one file, an output that is an
 /// input.
 void check_outputs(const OutputOptions& options, const Sequence& sequence, Diagnostics& diagnostics);
