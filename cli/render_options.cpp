@@ -82,16 +82,8 @@ LookVariables parse_variables(const RenderOptions& options, Diagnostics& diagnos
             diagnostics.error(place, "expected name=value");
             continue;
         }
-        // A value is JSON where it reads as JSON, else a bare word, as for --set.
-        Diagnostics not_json;
-        auto node = parse_document(text.substr(equals + 1), place.file, not_json);
-        if (!node) {
-            node.emplace();
-            node->kind = Node::Kind::string;
-            node->string = text.substr(equals + 1);
-        }
-        node->place = place;
-        if (!variables.emplace(text.substr(0, equals), *node).second)
+        if (!variables.emplace(text.substr(0, equals), parse_command_value(text.substr(equals + 1), place))
+                 .second)
             diagnostics.error(place, "this variable is given twice");
     }
     return variables;

@@ -1,9 +1,11 @@
 #include "framework/image/capture_window.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "framework/core/error.h"
 #include "framework/image/role.h"
+#include "framework/image/window.h"
 
 namespace aftershade {
 
@@ -80,31 +82,14 @@ void scale_capture(Capture& capture, int divisor) {
     header.data_window = data;
 }
 
-Image cropped(const Image& image, const Window& from, const Window& to) {
-    Image result(to.width(), to.height(), image.channels(), image.type());
-    const auto row = std::size_t(to.width()) * std::size_t(image.channels());
-    for (int y = 0; y < to.height(); ++y) {
-        const auto first = (std::size_t(y + to.min_y - from.min_y) * std::size_t(from.width()) +
-                            std::size_t(to.min_x - from.min_x)) *
-                           std::size_t(image.channels());
-        const auto target = std::size_t(y) * row;
-        if (image.type() == ComponentType::uint32)
-            std::copy_n(image.uints().begin() + std::ptrdiff_t(first), row,
-                        result.uints().begin() + std::ptrdiff_t(target));
-        else
-            std::copy_n(image.floats().begin() + std::ptrdiff_t(first), row,
-                        result.floats().begin() + std::ptrdiff_t(target));
-    }
-    return result;
-}
-
 void crop_capture(Capture& capture, const Window& window) {
     CaptureHeader& header = capture.header;
     const Window common = intersection(window, header.data_window);
     if (common.width() < 1 || common.height() < 1)
         throw Error(ExitCode::capture, header.path.string() + ": the region has no pixel of the data window");
     if (common == header.data_window) return;
-    for (auto& [name, image] : capture.images) image = cropped(image, header.data_window, common);
+    for (auto& [name, image] : capture.images)
+        image = place_in_window(std::move(image), header.data_window, common, 0);
     header.data_window = common;
 }
 

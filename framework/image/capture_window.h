@@ -18,9 +18,6 @@ Window scaled_window(const Window& window, const Window& display, int divisor);
 /// Error(ExitCode::capture) where they have none in common.
 void crop_capture(Capture& capture, const Window& window);
 
-/// The part of `image`, which covers `from`, that lies in `to`; `to` lies inside `from`.
-Image cropped(const Image& image, const Window& from, const Window& to);
-
 /// What two windows have in common; width or height 0 or below where that is nothing.
 Window intersection(const Window& a, const Window& b);
 

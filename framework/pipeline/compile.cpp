@@ -47,22 +47,13 @@ public:
         }
         PipelineStep* step = find_step(text.substr(0, dot), place);
         if (!step) return;
-        // A value is JSON where it reads as JSON, else a bare word: --set bokeh.shape=square.
-        const std::string value = text.substr(equals + 1);
-        Diagnostics not_json;
-        auto node = parse_document(value, place.file, not_json);
-        if (!node) {
-            node.emplace();
-            node->kind = Node::Kind::string;
-            node->string = value;
-        }
-        clear_lines(*node, place);
+        const Node value = parse_command_value(text.substr(equals + 1), place);
         const std::string name = text.substr(dot + 1, equals - dot - 1);
         if (name == "mix" && !step->manifest->find_param(name)) {
-            set_mix(*step, *node);
+            set_mix(*step, value);
             find_before(*step, std::size_t(step - pipeline_.steps.data()), place);
         } else {
-            set_value(*step, name, *node, place, "--set", {});
+            set_value(*step, name, value, place, "--set", {});
         }
     }
 
@@ -183,12 +174,6 @@ private:
                     "step '" + step.name + "' makes display, of which there is none before it to mix with");
             step.before[output.name] = source;
         }
-    }
-
-    static void clear_lines(Node& node, const Place& place) {
-        node.place = place;
-        for (Node& item : node.items) clear_lines(item, place);
-        for (Member& member : node.members) clear_lines(member.value, place);
     }
 
     PipelineStep* find_step(const std::string& name, const Place& place) {

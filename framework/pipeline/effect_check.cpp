@@ -80,34 +80,8 @@ std::string first_bad_value(const FrameResult& result) {
     return "";
 }
 
-/// "" where all is well.
-std::string fault_of(gpu::Context& context, const EffectManifest& manifest, const Setting& setting,
-                     const std::filesystem::path& data_folder, NativeSources natives) {
-    const Pipeline pipeline = pipeline_of(manifest, setting);
-    std::vector<std::string> roles;
-    for (const OutputSpec& output : manifest.outputs) roles.push_back(output.role);
-    PipelineRenderer renderer(context, pipeline, data_folder, natives);
-    // Two frames, so that history is read.
-    for (const int number : {1, 2}) {
-        const Capture previous = make_test_capture(64, 36, number - 1),
-                      capture = make_test_capture(64, 36, number),
-                      next = make_test_capture(64, 36, number + 1);
-        FrameInputs frame;
-        frame.capture = &capture;
-        frame.previous = &previous;
-        frame.next = &next;
-        try {
-            const std::string bad = first_bad_value(renderer.render(frame, roles, false));
-            if (!bad.empty()) return bad;
-        } catch (const Error& error) {
-            return error.what();
-        }
-    }
-    return "";
-}
-
-}  // namespace
-
+/// A small capture from formulas, with every role: a plane, a box in motion, lamps far brighter than 1, and
+/// sky without depth.
 Capture make_test_capture(int width, int height, int frame) {
     Capture capture;
     CaptureHeader& header = capture.header;
@@ -145,6 +119,34 @@ Capture make_test_capture(int width, int height, int frame) {
         }
     return capture;
 }
+
+/// "" where all is well.
+std::string fault_of(gpu::Context& context, const EffectManifest& manifest, const Setting& setting,
+                     const std::filesystem::path& data_folder, NativeSources natives) {
+    const Pipeline pipeline = pipeline_of(manifest, setting);
+    std::vector<std::string> roles;
+    for (const OutputSpec& output : manifest.outputs) roles.push_back(output.role);
+    PipelineRenderer renderer(context, pipeline, data_folder, natives);
+    // Two frames, so that history is read.
+    for (const int number : {1, 2}) {
+        const Capture previous = make_test_capture(64, 36, number - 1),
+                      capture = make_test_capture(64, 36, number),
+                      next = make_test_capture(64, 36, number + 1);
+        FrameInputs frame;
+        frame.capture = &capture;
+        frame.previous = &previous;
+        frame.next = &next;
+        try {
+            const std::string bad = first_bad_value(renderer.render(frame, roles, false));
+            if (!bad.empty()) return bad;
+        } catch (const Error& error) {
+            return error.what();
+        }
+    }
+    return "";
+}
+
+}  // namespace
 
 void check_effect(gpu::Context& context, const EffectManifest& manifest,
                   const std::filesystem::path& data_folder, NativeSources natives, Diagnostics& diagnostics) {

@@ -6,14 +6,9 @@
 #include "framework/core/diagnostics.h"
 #include "framework/effect/manifest.h"
 #include "framework/gpu/context.h"
-#include "framework/image/capture.h"
 #include "framework/pipeline/native_steps.h"
 
 namespace aftershade {
-
-/// A small capture from formulas, with every role: a plane, a box in motion, lamps far brighter than 1, and
-/// sky without depth.
-Capture make_test_capture(int width, int height, int frame);
 
 /// Renders the effect over the test capture with every value of its bools, enums and define-bound ints, one
 /// at a time from the defaults; with numbers at min and max; with and without each optional input. Shaders

@@ -248,7 +248,25 @@ void check_names(const Look& look, Diagnostics& diagnostics) {
     }
 }
 
+void set_place(Node& node, const Place& place) {
+    node.place = place;
+    for (Node& item : node.items) set_place(item, place);
+    for (Member& member : node.members) set_place(member.value, place);
+}
+
 }  // namespace
+
+Node parse_command_value(const std::string& text, const Place& place) {
+    Diagnostics not_json;
+    auto node = parse_document(text, place.file, not_json);
+    if (!node) {
+        node.emplace();
+        node->kind = Node::Kind::string;
+        node->string = text;
+    }
+    set_place(*node, place);
+    return std::move(*node);
+}
 
 std::optional<Look> parse_look(const Node& node, Diagnostics& diagnostics, const LookVariables& variables) {
     if (!node.is_object()) {

@@ -54,6 +54,9 @@ struct Look {
 /// Values by name, above a look's own "vars".
 using LookVariables = std::map<std::string, Node>;
 
+/// A value of the command line: JSON where it reads as JSON, else a bare word. All of it stands at `place`.
+Node parse_command_value(const std::string& text, const Place& place);
+
 /// Reads the form of the document and of every look that it uses ({"use": "lens.json"}); whether effects
 /// exist and values fit is compile_pipeline's to say.
 std::optional<Look> read_look(const std::filesystem::path& path, Diagnostics& diagnostics,

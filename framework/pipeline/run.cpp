@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "framework/image/capture_window.h"
+#include "framework/image/window.h"
 #include "framework/pipeline/frame_loader.h"
 
 namespace aftershade {
@@ -132,7 +133,8 @@ private:
                 for (auto& [name, image] : *images)
                     if (image.width() == capture->header.data_window.width() &&
                         image.height() == capture->header.data_window.height())
-                        image = cropped(image, capture->header.data_window, part->header.data_window);
+                        image = place_in_window(std::move(image), capture->header.data_window,
+                                                part->header.data_window, 0);
             result.region = region;
             capture = std::move(part);
         }
