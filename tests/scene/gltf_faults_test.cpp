@@ -109,6 +109,8 @@ TEST(Gltf, RefusesBrokenFilesAndSaysWhatIsWrong) {
          "scale of node 0 has 2 numbers, not 3"},
         {with(good, mesh_node, R"("nodes": [{"mesh": 0, "rotation": [0, 0, 0, 0]}])"),
          "rotation of node 0 is zero"},
+        {with(good, mesh_node, R"("nodes": [{"mesh": 0, "scale": [1e999, 1, 1]}])"),
+         "cannot be read as glTF"},
         {with(good, mesh_node, R"("nodes": [{"mesh": 0, "scale": [1e300, 1e300, 1]}])"),
          "is not finite where"},
         {with(good, R"("scene": 0)", R"("scene": 2)"), "its default scene 2 is not there, the file has 1"},
@@ -122,6 +124,41 @@ TEST(Gltf, RefusesBrokenFilesAndSaysWhatIsWrong) {
         const std::string fault = fault_of(test.bytes);
         EXPECT_NE(fault.find(test.says), std::string::npos) << fault << "\nshould say: " << test.says;
     }
+}
+
+TEST(Gltf, RefusesNormalsAndCoordinatesThatAreNotFinite) {
+    const float inf = std::numeric_limits<float>::infinity();
+    for (const char* name : {"NORMAL", "TEXCOORD_0"}) {
+        File file;
+        const int positions = file.floats(kSquare, 3);
+        const bool normal = std::string(name) == "NORMAL";
+        const int values = file.floats(normal ? std::vector<float>{0, 0, 1, 0, 0, 1, 0, inf, 1, 0, 0, 1}
+                                              : std::vector<float>{0, 0, 1, 0, 0, inf, 1, 1},
+                                       normal ? 3 : 2);
+        file.primitive(fmt::format(R"("POSITION": {}, "{}": {})", positions, name, values),
+                       file.indices<std::uint8_t>({0, 1, 2}));
+        EXPECT_EQ(fault_of(file.text()), fmt::format("mesh 0 primitive 0 {}: value 2 is not finite", name));
+    }
+}
+
+TEST(Gltf, RefusesABinaryChunkThatEndsOutsideTheFile) {
+    std::string file = tilted_triangle().binary();
+    // Both lengths agree with each other; 8 bytes too few are what tinygltf itself lets pass.
+    for (int cut = 0; cut < 3; ++cut) {
+        file = file.substr(0, file.size() - 4);
+        file.replace(8, 4, little_endian_32(file.size()));
+        EXPECT_TRUE(fault_of(file).starts_with("is cut short inside its binary chunk")) << fault_of(file);
+    }
+    file.replace(12, 4, little_endian_32(file.size()));
+    EXPECT_EQ(fault_of(file), "is cut short inside its JSON chunk");
+}
+
+TEST(Gltf, RefusesABufferBesideTheFileOfAnotherSize) {
+    const TemporaryFolder folder;
+    const File file = tilted_triangle();
+    write_text(folder / "data.bin", file.buffer().substr(1));
+    write_text(folder / "mesh.gltf", file.json("data.bin"));
+    EXPECT_THROW(read_gltf(folder / "mesh.gltf"), Error);
 }
 
 TEST(Gltf, RefusesNormalsAndCoordinatesThatAreNotOneForEachPosition) {
