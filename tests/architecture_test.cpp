@@ -26,7 +26,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
     {"effect", {"core", "image", "gpu", "graph", "plugin"}},
     {"pipeline", {"core", "image", "gpu", "graph", "effect", "plugin"}},
     {"batch", {"core", "image", "compare", "gpu", "graph", "effect", "pipeline"}},
-    {"scene", {"core", "image", "gpu"}},
+    {"scene", {"core", "image"}},
 };
 
 struct Line {

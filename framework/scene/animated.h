@@ -33,6 +33,7 @@ public:
 
     bool is_constant() const { return keys_.size() == 1; }
     const std::vector<Key>& keys() const { return keys_; }
+    Interpolation interpolation() const { return interpolation_; }
 
     /// The first and last key hold outside the keys.
     T at(double time) const {

@@ -16,9 +16,9 @@ namespace aftershade::scene {
 
 /// World and object space: right-handed, y up, metres. A shape stands about its object's origin.
 enum class ShapeKind {
-    group,     ///< nothing to see: a parent for others
-    plane,     ///< a rectangle in xy, seen from both sides; normal +z
-    disk,      ///< in xy; normal +z
+    group,  ///< nothing to see: a parent for others
+    plane,  ///< a rectangle in xy, seen from both sides; normal +z
+    disk,   ///< in xy; normal +z
     sphere,
     box,
     cylinder,  ///< along y, with its caps

@@ -1,0 +1,144 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "framework/scene/world.h"
+
+namespace aftershade::scene {
+
+using glm::dvec3;
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kFar_m = 1e7;
+
+/// Where a ray leaves a surface that must not hide itself.
+dvec3 off_surface(const Surface& surface, const dvec3& toward) {
+    const dvec3 size = glm::abs(surface.position);
+    const double step_m = surface.precision * std::max({size.x, size.y, size.z, 1e-3});
+    return surface.position +
+           surface.geometric_normal * std::copysign(step_m, glm::dot(surface.geometric_normal, toward));
+}
+
+/// Lambert's formula (Photometria, 1760; Baum et al. 1989) over a quadrilateral cut at the horizon: the
+/// integral of the cosine over the solid angle.
+double polygon_cosine(const std::array<dvec3, 4>& corners, const Surface& surface) {
+    std::array<dvec3, 6> kept;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const dvec3 a = corners[i] - surface.position, b = corners[(i + 1) % 4] - surface.position;
+        const double height_a = glm::dot(a, surface.normal), height_b = glm::dot(b, surface.normal);
+        if (height_a >= 0) kept[count++] = a;
+        if ((height_a >= 0) != (height_b >= 0)) kept[count++] = glm::mix(a, b, height_a / (height_a - height_b));
+    }
+    double sum = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const dvec3 &a = kept[i], &b = kept[(i + 1) % count];
+        const dvec3 across = glm::cross(a, b);
+        const double length = glm::length(across);
+        if (length > 0) sum += std::atan2(length, glm::dot(a, b)) * glm::dot(across, surface.normal) / length;
+    }
+    return std::abs(sum) / 2;
+}
+
+double pattern_at(const LightPattern& pattern, const dvec3& position) {
+    const double along_m = glm::dot(position, pattern.axis) - pattern.offset_m;
+    switch (pattern.kind) {
+        case LightPattern::Kind::edge: return along_m >= 0 ? 1 : 0;
+        case LightPattern::Kind::cosine:
+            return 1 + pattern.amplitude * std::cos(2 * kPi * along_m / pattern.period_m);
+        case LightPattern::Kind::none: break;
+    }
+    return 1;
+}
+
+/// GGX with the height-correlated masking of Heitz 2014 and Schlick's Fresnel; without the light's cosine.
+double highlight(const Material& material, const dvec3& normal, const dvec3& to_light, const dvec3& to_eye) {
+    const double n_l = glm::dot(normal, to_light), n_v = glm::dot(normal, to_eye);
+    if (material.specular <= 0 || n_l <= 0 || n_v <= 0) return 0;
+    const dvec3 half_way = glm::normalize(to_light + to_eye);
+    const double alpha = material.roughness * material.roughness, a2 = alpha * alpha;
+    const double n_h = std::clamp(glm::dot(normal, half_way), 0.0, 1.0);
+    const double base = n_h * n_h * (a2 - 1) + 1;
+    const double distribution = a2 / (kPi * base * base);
+    const double masking =
+        0.5 / (n_l * std::sqrt(n_v * n_v * (1 - a2) + a2) + n_v * std::sqrt(n_l * n_l * (1 - a2) + a2));
+    const double grazing = 1 - std::clamp(glm::dot(half_way, to_light), 0.0, 1.0);
+    return distribution * masking * (material.specular + (1 - material.specular) * std::pow(grazing, 5));
+}
+
+dvec3 albedo_at(const Material& material, const glm::dvec2& uv) {
+    const auto cell = [](double at) { return std::int64_t(std::floor(at)); };
+    const bool second = ((cell(uv.x * material.checker_cells.x) + cell(uv.y * material.checker_cells.y)) & 1) != 0;
+    return second ? material.albedo_2 : material.albedo;
+}
+
+}  // namespace
+
+/// Of an area light: the part of a grid of its points that nothing hides.
+double World::visible_part(std::size_t index, const dvec3& from) const {
+    const LightState& light = state_.lights[index];
+    const int side = scene().lights[index].shadow_samples;
+    int seen = 0;
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) {
+            const double u = (x + 0.5) / side * 2 - 1, v = (y + 0.5) / side * 2 - 1;
+            seen += is_hidden(from, light.position_m + u * light.half_u_m + v * light.half_v_m, true) ? 0 : 1;
+        }
+    return double(seen) / (side * side);
+}
+
+void World::add_light(std::size_t index, const Surface& surface, const dvec3* to_eye, Shading& shading) const {
+    const Light& light = scene().lights[index];
+    const LightState& now = state_.lights[index];
+    const bool is_area = light.kind == LightKind::area, is_far = light.kind == LightKind::directional;
+    const dvec3 way = is_far ? -now.direction : now.position_m - surface.position;
+    const double distance2 = glm::dot(way, way);
+    const dvec3 toward = way / std::sqrt(distance2);
+    const double cosine = std::max(glm::dot(surface.normal, toward), 0.0);
+    const double front = is_area ? -glm::dot(now.direction, toward) : 1;
+    // Parts of an area light may stand above the horizon where its middle does not.
+    if (front <= 0 || (!is_area && glm::dot(surface.geometric_normal, toward) <= 0)) return;
+    double received = is_far ? cosine * pattern_at(light.pattern, surface.position) : cosine / distance2;
+    double highlighted = received;
+    if (is_area) {
+        const dvec3 &u = now.half_u_m, &v = now.half_v_m, &centre = now.position_m;
+        highlighted *= front * 4 * glm::length(u) * glm::length(v);
+        received = polygon_cosine({centre - u - v, centre + u - v, centre + u + v, centre - u + v}, surface);
+    }
+    if (received <= 0) return;
+    if (light.shadows) {
+        const dvec3 from = off_surface(surface, toward);
+        const dvec3 to = is_far ? from + toward * kFar_m : now.position_m;
+        const double seen = is_area ? visible_part(index, from) : is_hidden(from, to, true) ? 0 : 1;
+        received *= seen;
+        highlighted *= seen;
+    }
+    shading.irradiance += now.color_intensity * (received / kPi);
+    if (!to_eye || highlighted <= 0) return;
+    const Material& material =
+        scene().materials[std::size_t(scene().objects[std::size_t(surface.object)].material)];
+    shading.specular +=
+        now.color_intensity * (highlighted * highlight(material, surface.normal, toward, *to_eye));
+}
+
+Shading World::light(const Surface& surface, const dvec3* to_eye) const {
+    Shading shading;
+    shading.irradiance = scene().ambient;
+    for (std::size_t i = 0; i < state_.lights.size(); ++i) add_light(i, surface, to_eye, shading);
+    return shading;
+}
+
+Shading World::shade(const Surface& surface, const dvec3& eye) const {
+    const dvec3 to_eye = glm::normalize(eye - surface.position);
+    Shading shading = light(surface, &to_eye);
+    const Material& material =
+        scene().materials[std::size_t(scene().objects[std::size_t(surface.object)].material)];
+    shading.albedo = albedo_at(material, surface.uv);
+    shading.emission = material.emission;
+    return shading;
+}
+
+}  // namespace aftershade::scene

@@ -1,0 +1,34 @@
+// The rows of a picture on all cores.
+#pragma once
+
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace aftershade::scene {
+
+/// Calls work(row) for each row, on `threads` threads, in no order; rows must not depend on each other.
+/// Rethrows the first exception.
+template <class Work>
+void for_each_row(int rows, int threads, const Work& work) {
+    std::atomic<int> next = 0;
+    std::exception_ptr failure;
+    std::mutex guard;
+    const auto run = [&] {
+        try {
+            for (int row = next++; row < rows; row = next++) work(row);
+        } catch (...) {
+            const std::lock_guard lock(guard);
+            if (!failure) failure = std::current_exception();
+        }
+    };
+    std::vector<std::jthread> others;
+    for (int i = 1; i < threads; ++i) others.emplace_back(run);
+    run();
+    others.clear();
+    if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace aftershade::scene

@@ -1,0 +1,160 @@
+#include "framework/scene/renderer.h"
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "framework/image/role.h"
+#include "framework/scene/capture_images.h"
+#include "framework/scene/parallel.h"
+#include "framework/scene/samples.h"
+
+namespace aftershade::scene {
+
+using glm::dmat3;
+using glm::dvec2;
+using glm::dvec3;
+using glm::dvec4;
+
+namespace {
+
+constexpr double kFar = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+SceneRenderer::SceneRenderer(const Scene& scene, int width_px, int height_px, int threads)
+    : scene_(scene), geometry_(scene), width_px_(width_px), height_px_(height_px), threads_(std::max(threads, 1)) {}
+
+double SceneRenderer::pixels_per_tangent(const CameraState& camera) const {
+    return camera.focal_length_mm * width_px_ / scene_.camera.sensor_width_mm;
+}
+
+/// `pixel` is a position: the middle of the first pixel is (0.5, 0.5). `lens_m` is on the aperture as the
+/// picture shows it (+y down). A point in the plane of focus stays where it is, whatever the place on the
+/// lens (Cook, Porter and Carpenter 1984); t is the depth along the view axis.
+Ray SceneRenderer::camera_ray(const CameraState& camera, const dvec2& pixel, const dvec2& lens_m) const {
+    const dvec2 middle = 0.5 * dvec2(width_px_, height_px_);
+    const dvec2 tangent = (pixel - middle) / pixels_per_tangent(camera);
+    const dvec3 origin(lens_m.x, -lens_m.y, 0);
+    const dvec3 direction = dvec3(tangent.x, -tangent.y, -1) - origin / camera.focus_distance_m;
+    return {dvec3(camera.world_from_camera * dvec4(origin, 1)), dmat3(camera.world_from_camera) * direction};
+}
+
+bool SceneRenderer::project(const CameraState& camera, const dvec4& point, dvec2& pixel) const {
+    const dvec4 view = camera.camera_from_world * point;
+    if (view.z >= 0) return false;
+    pixel = 0.5 * dvec2(width_px_, height_px_) + pixels_per_tangent(camera) * dvec2(view.x, -view.y) / -view.z;
+    return true;
+}
+
+/// `states` are now, a frame before, a frame after. What nothing hides moves with the camera alone; a point
+/// that one of two cameras has behind it gets 0.
+void SceneRenderer::write_motion(Capture& capture, int x, int y, const std::array<const SceneState*, 3>& states,
+                                 const Surface* surface, const dvec3& direction) const {
+    std::array<dvec2, 3> at{};
+    std::array<bool, 3> valid{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const dvec4 point =
+            surface ? states[i]->world_from_object[std::size_t(surface->object)] * dvec4(surface->local, 1)
+                    : dvec4(direction, 0);
+        valid[i] = project(states[i]->camera, point, at[i]);
+    }
+    const auto write = [&](Image& image, const dvec2& motion_px) {
+        image.at(x, y, 0) = float(motion_px.x);
+        image.at(x, y, 1) = float(motion_px.y);
+    };
+    if (valid[0] && valid[1]) write(capture.images.at("velocity"), at[0] - at[1]);
+    if (valid[0] && valid[2]) write(capture.images.at("velocity_next"), at[2] - at[0]);
+}
+
+Capture SceneRenderer::render_capture(int frame, double time, std::array<double, 2> jitter_px) const {
+    const World world(geometry_, state_at(scene_, frame, time));
+    const SceneState before = state_at(scene_, frame, time - 1), after = state_at(scene_, frame, time + 1);
+    const std::array<const SceneState*, 3> states = {&world.state(), &before, &after};
+    Capture capture = make_capture(frame, width_px_, height_px_, all_roles());
+    capture.header.camera = capture_camera(scene_, world.state(), width_px_, height_px_);
+    const CameraState& camera = world.state().camera;
+    for_each_row(height_px_, threads_, [&](int y) {
+        for (int x = 0; x < width_px_; ++x) {
+            const dvec2 pixel(x + 0.5 + jitter_px[0], y + 0.5 + jitter_px[1]);
+            const Ray ray = camera_ray(camera, pixel, dvec2(0));
+            const auto surface = world.trace(ray, 0, kFar);
+            write_motion(capture, x, y, states, surface ? &*surface : nullptr, ray.direction);
+            if (surface) {
+                capture.images.at("depth").at(x, y, 0) = float(surface->t);
+                write_surface(capture, x, y, scene_, *surface, world.shade(*surface, ray.origin));
+            } else {
+                capture.images.at("depth").at(x, y, 0) = std::numeric_limits<float>::infinity();
+                write_background(capture, x, y, scene_.background);
+            }
+        }
+    });
+    return capture;
+}
+
+SceneRenderer::SamplePoint SceneRenderer::sample_point(const TruthSettings& truth, int index, std::uint32_t seed) const {
+    const auto count = std::uint32_t(truth.samples);
+    // Each dimension in an order of its own, so that early times do not go with one side of the lens.
+    const auto sample = [&](std::uint32_t dimension) {
+        const std::uint32_t own_seed = pcg3d(seed, dimension, 0)[0];
+        return multi_jittered(permuted(std::uint32_t(index), count, own_seed), count, own_seed + 1);
+    };
+    SamplePoint point;
+    point.offset_px = {0.5 + truth.jitter_px[0], 0.5 + truth.jitter_px[1]};
+    if (truth.kinds.antialias) point.offset_px += sample(1) - 0.5;
+    if (truth.kinds.lens)
+        point.on_lens = on_aperture(sample(2), scene_.camera.blades, glm::radians(scene_.camera.rotation_deg));
+    return point;
+}
+
+dvec3 SceneRenderer::radiance(const World& world, int x, int y, const SamplePoint& point) const {
+    const CameraState& camera = world.state().camera;
+    const Ray ray = camera_ray(camera, dvec2(x, y) + point.offset_px, camera.aperture_radius_m * point.on_lens);
+    const auto surface = world.trace(ray, 0, kFar);
+    return surface ? world.shade(*surface, ray.origin).color() : scene_.background;
+}
+
+/// The moments of one sample: its own for accumulation, several to choose from where pixels have their own.
+std::vector<World> SceneRenderer::moments_of(int frame, const TruthSettings& truth, int sample) const {
+    constexpr int kMomentsOfAPixel = 16;
+    const bool own = truth.method == TruthMethod::interleaved && truth.kinds.shutter;
+    const int count = own ? kMomentsOfAPixel : 1;
+    const Exposure exposure = exposure_of(scene_.camera, frame);
+    std::vector<World> moments;
+    for (int i = 0; i < count; ++i) {
+        const double time =
+            truth.kinds.shutter ? exposure.middle(sample * count + i, truth.samples * count) : frame;
+        moments.emplace_back(geometry_, state_at(scene_, frame, time));
+    }
+    return moments;
+}
+
+Image SceneRenderer::render_truth(int frame, const TruthSettings& truth) const {
+    const bool own = truth.method == TruthMethod::interleaved;
+    const std::uint32_t frame_seed = pcg3d(truth.seed, std::uint32_t(frame), 0)[0];
+    std::vector<dvec3> sums(std::size_t(width_px_) * std::size_t(height_px_), dvec3(0));
+    for (int sample = 0; sample < truth.samples; ++sample) {
+        const std::vector<World> moments = moments_of(frame, truth, sample);
+        const SamplePoint shared = sample_point(truth, sample, frame_seed);
+        for_each_row(height_px_, threads_, [&](int y) {
+            for (int x = 0; x < width_px_; ++x) {
+                dvec3& sum = sums[std::size_t(y) * std::size_t(width_px_) + std::size_t(x)];
+                if (!own) {
+                    sum += radiance(moments.front(), x, y, shared);
+                    continue;
+                }
+                const std::uint32_t seed = pcg3d(std::uint32_t(x), std::uint32_t(y), frame_seed)[0];
+                const auto moment = pcg3d(seed, std::uint32_t(sample), 0x27d4eb2fu)[0] % moments.size();
+                sum += radiance(moments[moment], x, y, sample_point(truth, sample, seed));
+            }
+        });
+    }
+    Image image(width_px_, height_px_, 4);
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        for (std::size_t c = 0; c < 3; ++c) image.floats()[i * 4 + c] = float(sums[i][int(c)] / truth.samples);
+        image.floats()[i * 4 + 3] = 1;
+    }
+    return image;
+}
+
+}  // namespace aftershade::scene

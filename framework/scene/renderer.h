@@ -1,0 +1,95 @@
+// Makes captures of a scene, and the pictures that effects approximate: by rays, in double precision, on the
+// CPU. Nothing of it depends on the GL that effects run on, and the same scene gives the same bits whatever
+// the threads.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "framework/image/capture.h"
+#include "framework/scene/world.h"
+
+namespace aftershade::scene {
+
+/// What a true picture has that a capture's one ray a pixel has not.
+struct TruthKinds {
+    bool lens = false;
+    bool shutter = false;
+    bool antialias = false;  ///< the mean over the pixel's square
+};
+
+enum class TruthMethod {
+    accumulation,  ///< every pixel has the same samples (Haeberli and Akeley 1990)
+    interleaved    ///< every pixel has its own, in an order of its own (Cook 1986): noise instead of ghosts
+};
+
+inline constexpr int kMaxSamples = 65536;
+
+struct TruthSettings {
+    TruthKinds kinds;
+    TruthMethod method = TruthMethod::accumulation;
+    int samples = 256;  ///< 1 to kMaxSamples
+    std::uint32_t seed = 0;
+    std::array<double, 2> jitter_px{0, 0};
+};
+
+struct ScatteringSettings {
+    int samples = 4096;        ///< points of the surface for each pixel, about; 64 to kMaxSamples
+    bool visible_only = true;  ///< points that the camera sees, which is what an effect has; else all
+};
+
+/// The truth of subsurface scattering.
+struct ScatteringTruth {
+    Image irradiance;  ///< RGB, E / pi, scattered; of what does not scatter as the capture has it
+    Image color;       ///< RGBA: color + albedo * (scattered - unscattered irradiance)
+};
+
+/// [const functions: any thread; each uses `threads` of its own]
+class SceneRenderer {
+public:
+    /// `scene` must outlive this. The picture's height follows from nothing: pixels are square.
+    SceneRenderer(const Scene& scene, int width_px, int height_px, int threads);
+
+    /// Every role but mask, at `time` in frames; motion is to `time` minus and plus one frame, in the shot of
+    /// `frame`. `jitter_px` is the samples' offset from the pixels' centres, +y down.
+    Capture render_capture(int frame, double time, std::array<double, 2> jitter_px = {0, 0}) const;
+    Capture render_capture(int frame) const { return render_capture(frame, frame); }
+
+    /// RGBA. Of the shutter, sample i of n is the middle of part i of the exposure, or for interleaved samples one
+    /// of 16 moments in that part; lens and pixel are multi-jittered. Without `antialias` rays go through the pixels' centres, moved by `jitter_px`.
+    Image render_truth(int frame, const TruthSettings& settings) const;
+
+    /// Light scattered by each material's profile: the integral of profile times irradiance over the surface
+    /// of the object that the pixel shows, divided by that of the profile alone, so that even light stays as
+    /// it is. Points lie on rings about the pixel's own, where light and shadows are computed anew: on planes,
+    /// disks and spheres exactly, elsewhere where a line along the normal meets the object (King et al. 2013).
+    ScatteringTruth render_scattering(int frame, const ScatteringSettings& settings) const;
+
+    /// Roles of one object over its texture coordinates, `side_px` square: color, irradiance, albedo,
+    /// specular, emission, normal, position and object_id; 0 where no surface has them. Highlights are those
+    /// of the frame's camera.
+    Capture render_texture_space(int frame, int object, int side_px) const;
+
+private:
+    Ray camera_ray(const CameraState& camera, const glm::dvec2& pixel, const glm::dvec2& lens_m) const;
+    /// Where the pinhole camera sees a point (w 1) or a direction (w 0), px; false behind it.
+    bool project(const CameraState& camera, const glm::dvec4& point, glm::dvec2& pixel) const;
+    void write_motion(Capture& capture, int x, int y, const std::array<const SceneState*, 3>& states,
+                      const Surface* surface, const glm::dvec3& direction) const;
+    std::vector<World> moments_of(int frame, const TruthSettings& settings, int sample) const;
+    struct SamplePoint {
+        glm::dvec2 offset_px{0};  ///< from the pixel's top left
+        glm::dvec2 on_lens{0};    ///< over the aperture's radius, +y down
+    };
+    SamplePoint sample_point(const TruthSettings& settings, int index, std::uint32_t seed) const;
+    glm::dvec3 radiance(const World& world, int x, int y, const SamplePoint& point) const;
+    double pixels_per_tangent(const CameraState& camera) const;
+
+    const Scene& scene_;
+    Geometry geometry_;
+    int width_px_;
+    int height_px_;
+    int threads_;
+};
+
+}  // namespace aftershade::scene

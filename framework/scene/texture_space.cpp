@@ -1,0 +1,42 @@
+#include <algorithm>
+
+#include "framework/scene/capture_images.h"
+#include "framework/scene/parallel.h"
+#include "framework/scene/renderer.h"
+#include "framework/scene/surface_map.h"
+
+namespace aftershade::scene {
+
+using glm::dvec3;
+
+Capture SceneRenderer::render_texture_space(int frame, int object, int side_px) const {
+    const Shape& shape = scene_.objects[std::size_t(object)].shape;
+    const MeshTree* mesh = geometry_.mesh_of(shape);
+    const SurfaceMap map = make_surface_map(shape, mesh ? mesh->mesh : nullptr, side_px);
+    const World world(geometry_, state_at(scene_, frame, frame));
+    std::vector<std::string> roles(all_roles().begin(), all_roles().end());
+    std::erase_if(roles, [](const std::string& role) { return role == "depth" || role.starts_with("velocity"); });
+    Capture capture = make_capture(frame, side_px, side_px, roles);
+    capture.header.camera = capture_camera(scene_, world.state(), width_px_, height_px_);
+    // The matrices would tell where in this picture a point is, which they do not know.
+    capture.header.camera.camera_from_world.reset();
+    capture.header.camera.ndc_from_world.reset();
+    const dvec3 eye(world.state().camera.world_from_camera[3]);
+    for_each_row(side_px, threads_, [&](int y) {
+        for (int x = 0; x < side_px; ++x) {
+            if (map.position.at(x, y, 3) == 0) continue;
+            ShapePoint point;
+            for (int c = 0; c < 3; ++c) {
+                point.position[c] = map.position.at(x, y, c);
+                point.normal[c] = point.geometric_normal[c] = map.normal.at(x, y, c);
+            }
+            point.uv = {(x + 0.5) / side_px, (y + 0.5) / side_px};
+            Surface surface = world.surface(object, point);
+            surface.precision = 1e-6;  // the map holds floats
+            write_surface(capture, x, y, scene_, surface, world.shade(surface, eye));
+        }
+    });
+    return capture;
+}
+
+}  // namespace aftershade::scene

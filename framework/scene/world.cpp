@@ -1,0 +1,123 @@
+#include "framework/scene/world.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace aftershade::scene {
+
+using glm::dmat3;
+using glm::dmat4;
+using glm::dvec3;
+using glm::dvec4;
+
+namespace {
+
+dvec3 point(const dmat4& matrix, const dvec3& p) { return dvec3(matrix * dvec4(p, 1)); }
+
+Ray transformed(const Ray& ray, const dmat4& matrix) {
+    return {point(matrix, ray.origin), dmat3(matrix) * ray.direction};
+}
+
+Bounds transformed(const Bounds& bounds, const dmat4& matrix) {
+    Bounds result;
+    for (int corner = 0; corner < 8; ++corner)
+        result.add(point(matrix, {corner & 1 ? bounds.high.x : bounds.low.x, corner & 2 ? bounds.high.y : bounds.low.y,
+                                  corner & 4 ? bounds.high.z : bounds.low.z}));
+    return result;
+}
+
+}  // namespace
+
+Geometry::Geometry(const Scene& scene) : scene_(scene) {
+    meshes_.reserve(scene.meshes.size());
+    for (const Mesh& mesh : scene.meshes) meshes_.emplace_back(mesh);
+}
+
+World::World(const Geometry& geometry, SceneState state) : geometry_(&geometry), state_(std::move(state)) {
+    std::vector<Bounds> bounds;
+    for (std::size_t i = 0; i < state_.world_from_object.size(); ++i) {
+        object_from_world_.push_back(glm::inverse(state_.world_from_object[i]));
+        const Shape& shape = scene().objects[i].shape;
+        const Bounds local = bounds_of(shape, geometry.mesh_of(shape));
+        if (local.empty()) continue;
+        seen_.push_back(int(i));
+        bounds.push_back(transformed(local, state_.world_from_object[i]));
+        // A flat box keeps rays that run along it only if it has some height.
+        const dvec3 margin = 1e-12 * glm::max(glm::abs(bounds.back().low), glm::abs(bounds.back().high));
+        bounds.back().low -= margin;
+        bounds.back().high += margin;
+    }
+    bvh_ = build_bvh(bounds, 2);
+}
+
+/// Calls visit(object) for objects whose boxes the ray meets before `high`, which it may lower; ends where it
+/// returns true.
+template <class Visit>
+void World::walk(const Ray& ray, double low, double& high, const Visit& visit) const {
+    const dvec3 inverse = 1.0 / ray.direction;
+    for (std::uint32_t at = 0; at < bvh_.nodes.size();) {
+        const BvhNode& node = bvh_.nodes[at];
+        if (!meets(ray, inverse, node.bounds, low, high)) {
+            at = node.skip;
+            continue;
+        }
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
+            if (visit(seen_[bvh_.items[i]])) return;
+        ++at;
+    }
+}
+
+std::optional<Surface> World::trace(const Ray& ray, double low, double high, unsigned only_id) const {
+    int nearest = -1;
+    ShapeHit nearest_hit;
+    walk(ray, low, high, [&](int index) {
+        const Object& object = scene().objects[std::size_t(index)];
+        if (only_id != 0 && object.id != only_id) return false;
+        ShapeHit hit;
+        if (!intersect(object.shape, geometry_->mesh_of(object.shape), transformed(ray, object_from_world(index)), low,
+                       high, false, hit))
+            return false;
+        nearest = index;
+        nearest_hit = hit;
+        high = hit.t;
+        return false;
+    });
+    if (nearest < 0) return std::nullopt;
+    const Shape& shape = scene().objects[std::size_t(nearest)].shape;
+    Surface found = surface(nearest, point_of(shape, geometry_->mesh_of(shape),
+                                              transformed(ray, object_from_world(nearest)), nearest_hit));
+    found.t = nearest_hit.t;
+    if (glm::dot(found.geometric_normal, ray.direction) > 0) found.geometric_normal = -found.geometric_normal;
+    if (glm::dot(found.geometric_normal, found.normal) < 0) found.normal = -found.normal;
+    return found;
+}
+
+bool World::is_hidden(const dvec3& from, const dvec3& to, bool casts_shadow) const {
+    const Ray ray{from, to - from};
+    double high = 1;
+    bool hidden = false;
+    walk(ray, 0, high, [&](int index) {
+        const Object& object = scene().objects[std::size_t(index)];
+        ShapeHit hit;
+        hidden = (object.casts_shadow || !casts_shadow) &&
+                 intersect(object.shape, geometry_->mesh_of(object.shape),
+                           transformed(ray, object_from_world(index)), 0, 1, true, hit);
+        return hidden;
+    });
+    return hidden;
+}
+
+Surface World::surface(int object, const ShapePoint& on_shape) const {
+    // Normals go by the inverse's transpose.
+    const dmat3 normal_matrix = glm::transpose(dmat3(object_from_world(object)));
+    Surface surface;
+    surface.position = point(state_.world_from_object[std::size_t(object)], on_shape.position);
+    surface.local = on_shape.position;
+    surface.normal = glm::normalize(normal_matrix * on_shape.normal);
+    surface.geometric_normal = glm::normalize(normal_matrix * on_shape.geometric_normal);
+    surface.uv = on_shape.uv;
+    surface.object = object;
+    return surface;
+}
+
+}  // namespace aftershade::scene

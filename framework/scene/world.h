@@ -1,0 +1,86 @@
+// A scene at one moment that rays can be sent into, and the light on what they meet.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <vector>
+
+#include "framework/scene/scene.h"
+#include "framework/scene/scene_state.h"
+#include "framework/scene/shape.h"
+
+namespace aftershade::scene {
+
+/// What does not move: the meshes' hierarchies. [immutable: any thread]
+class Geometry {
+public:
+    /// `scene` must outlive this.
+    explicit Geometry(const Scene& scene);
+    const Scene& scene() const { return scene_; }
+    const MeshTree* mesh_of(const Shape& shape) const {
+        return shape.mesh >= 0 ? &meshes_[std::size_t(shape.mesh)] : nullptr;
+    }
+
+private:
+    const Scene& scene_;
+    std::vector<MeshTree> meshes_;
+};
+
+struct Surface {
+    glm::dvec3 position{0};          ///< world, m
+    glm::dvec3 local{0};             ///< in the object's space
+    glm::dvec3 normal{0};            ///< world, unit length, for shading
+    glm::dvec3 geometric_normal{0};  ///< world, unit length; both on the side that the ray came from
+    glm::dvec2 uv{0};
+    int object = -1;  ///< index into Scene::objects
+    double t = 0;     ///< along the ray
+    double precision = 1e-9;  ///< of the position, over the size of its coordinates
+};
+
+/// Light at a surface, as the roles of a capture have it.
+struct Shading {
+    glm::dvec3 irradiance{0};  ///< E / pi
+    glm::dvec3 albedo{0};
+    glm::dvec3 specular{0};
+    glm::dvec3 emission{0};
+    glm::dvec3 color() const { return albedo * irradiance + specular + emission; }
+};
+
+/// [immutable: any thread]
+class World {
+public:
+    /// `geometry` must outlive this.
+    World(const Geometry& geometry, SceneState state);
+
+    const SceneState& state() const { return state_; }
+    const Scene& scene() const { return geometry_->scene(); }
+    const glm::dmat4& object_from_world(int object) const { return object_from_world_[std::size_t(object)]; }
+
+    /// The nearest surface with low < t < high; only of objects with the id `only_id` where that is not 0.
+    std::optional<Surface> trace(const Ray& ray, double low, double high, unsigned only_id = 0) const;
+    /// Whether anything stands between two points; with `casts_shadow`, of what casts shadows alone.
+    bool is_hidden(const glm::dvec3& from, const glm::dvec3& to, bool casts_shadow) const;
+
+    /// A point of an object: by its own space. Normals are outwards.
+    Surface surface(int object, const ShapePoint& point) const;
+
+    /// E / pi, with shadows.
+    glm::dvec3 irradiance(const Surface& surface) const { return light(surface, nullptr).irradiance; }
+    Shading shade(const Surface& surface, const glm::dvec3& eye) const;
+
+private:
+    template <class Visit>
+    void walk(const Ray& ray, double low, double& high, const Visit& visit) const;
+    Shading light(const Surface& surface, const glm::dvec3* to_eye) const;
+    void add_light(std::size_t index, const Surface& surface, const glm::dvec3* to_eye,
+                   Shading& shading) const;
+    double visible_part(std::size_t light, const glm::dvec3& from) const;
+
+    const Geometry* geometry_;
+    SceneState state_;
+    std::vector<glm::dmat4> object_from_world_;
+    std::vector<int> seen_;  ///< objects that there is something of
+    Bvh bvh_;                ///< over those, in world space
+};
+
+}  // namespace aftershade::scene

@@ -1,0 +1,182 @@
+// Scattered light against closed forms (reference: Christensen and Burley 2015; the line spread of the profile).
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "framework/scene/renderer.h"
+#include "framework/scene/rings.h"
+#include "tests/scene/scene_text.h"
+
+namespace aftershade::scene {
+namespace {
+
+using glm::dvec3;
+
+constexpr double kPi = std::numbers::pi;
+
+/// Integral of the line spread (K0(x) + K0(x / 3)) / (4 pi) from minus infinity to x, in units of d.
+double edge_response(double x) {
+    constexpr int kSteps = 4000;
+    double sum = 0;
+    // x = t^2 takes the logarithm at 0 away.
+    const double end = std::sqrt(std::abs(x));
+    for (int i = 0; i < kSteps; ++i) {
+        const double t = (i + 0.5) / kSteps * end;
+        sum += (std::cyl_bessel_k(0, t * t) + std::cyl_bessel_k(0, t * t / 3)) / (4 * kPi) * 2 * t * end / kSteps;
+    }
+    return 0.5 + std::copysign(sum, x);
+}
+
+TEST(EdgeResponse, OfTheTestIsThePublishedTable) {
+    EXPECT_NEAR(edge_response(0.1), 0.56318, 1e-5);
+    EXPECT_NEAR(edge_response(1), 0.77699, 1e-5);
+    EXPECT_NEAR(edge_response(-4), 1 - 0.94762, 1e-5);
+}
+
+TEST(Rings, HaveRadiiThatInvertTheDistribution) {
+    for (const double u : {0.001, 0.25, 0.5, 0.9, 0.99, 0.999}) {
+        const double x = burley_radius(u);
+        EXPECT_NEAR(1 - std::exp(-x) / 4 - 0.75 * std::exp(-x / 3), u, 1e-12);
+    }
+    EXPECT_NEAR(burley_radius(0.5), 1.5522, 1e-4);
+}
+
+TEST(Rings, StandForTheWholeProfileOfEveryChannel) {
+    const Scattering scattering{dvec3(5e-3, 1e-3, 0.4e-3)};
+    const std::vector<Ring> rings = make_rings(scattering, 96);
+    for (int c = 0; c < 3; ++c) {
+        double sum = 0;
+        for (const Ring& ring : rings) sum += burley_density(ring.radius_m, scattering.d_m[c]) * ring.area_m2;
+        EXPECT_NEAR(sum, 1, 0.02);
+    }
+}
+
+TEST(ScatteringTruth, OfAnEdgeIsTheEdgeResponse) {
+    const Scene scene = shipped_scene("plane_edge");
+    const ScatteringTruth truth = SceneRenderer(scene, 480, 2, 2).render_scattering(1, {});
+    double worst = 0;
+    for (int x = 0; x < 480; ++x)
+        for (int c = 0; c < 3; ++c) {
+            // 666.7 px per unit of tangent at 5 m.
+            const double x_m = (x + 0.5 - 240) / (480 * 50.0 / 36) * 5;
+            const double expected = edge_response(x_m / scene.materials[0].scattering->d_m[c]);
+            worst = std::max(worst, std::abs(double(truth.irradiance.at(x, 0, c)) - expected));
+        }
+    RecordProperty("worst", fmt::format("{:.5f}", worst));
+    EXPECT_LT(worst, 0.005) << worst;
+}
+
+TEST(ScatteringTruth, OfACosineKeepsItWithTheProfilesModulation) {
+    const Scene scene = shipped_scene("plane_cosine");
+    const ScatteringTruth truth = SceneRenderer(scene, 480, 2, 2).render_scattering(1, {});
+    for (int c = 0; c < 3; ++c) {
+        const double w_d = 2 * kPi / 0.9 * scene.materials[0].scattering->d_m[c];
+        const double modulation = 0.25 / std::sqrt(1 + w_d * w_d) + 0.75 / std::sqrt(1 + 9 * w_d * w_d);
+        double worst = 0;
+        for (int x = 0; x < 480; ++x) {
+            const double x_m = (x + 0.5 - 240) / (480 * 50.0 / 36) * 5;
+            const double expected = 1 + 0.8 * modulation * std::cos(2 * kPi * x_m / 0.9);
+            worst = std::max(worst, std::abs(double(truth.irradiance.at(x, 1, c)) - expected));
+        }
+        RecordProperty(fmt::format("worst_{}", c), fmt::format("{:.5f} at M = {:.4f}", worst, modulation));
+        EXPECT_LT(worst, 0.005) << "w d = " << w_d;
+    }
+}
+
+TEST(ScatteringTruth, LeavesEvenLightAndWhatDoesNotScatterAsTheyAre) {
+    for (const char* shape : {R"("shape": "plane", "size": [3, 3])", R"("shape": "sphere", "radius": 1)",
+                              R"("shape": "box", "size": [2, 2, 2], "rotation": [20, 30, 0])",
+                              R"("shape": "sphere", "radius": 1, "scale": [1, 0.5, 0.8])",
+                              R"("shape": "mesh", "mesh": "waves")"}) {
+        const Scene scene = scene_of(fmt::format(R"({{ "aftershade": 1, "size": [48, 27], "ambient": 0.7,
+            "camera": {{ "position": [0, 0, 6] }},
+            "materials": {{ "wax": {{ "albedo": 0.8, "scattering_profile": {{ "type": "burley", "d_mm": [90, 30, 10] }} }} }},
+            "meshes": {{ "waves": {{ "height_field": {{ "size": [3, 3], "segments": 32,
+                         "waves": [ {{ "amplitude": 0.1, "cycles": [0.7, 0.3] }} ] }} }} }},
+            "objects": [ {{ {}, "material": "wax" }} ] }})", shape));
+        const ScatteringTruth truth = SceneRenderer(scene, 48, 27, 2).render_scattering(1, {256, false});
+        for (int x = 0; x < 48; ++x) {
+            const float light = truth.irradiance.at(x, 13, 0);
+            ASSERT_TRUE(light == 0 || std::abs(light - 0.7f) < 1e-5f) << shape << " " << light;
+        }
+        ASSERT_NEAR(truth.irradiance.at(24, 13, 1), 0.7, 1e-5) << shape;
+    }
+}
+
+/// The same integral by another way: a fine grid over the surface's own coordinates.
+struct GridSum {
+    dvec3 light{0}, weight{0};
+    void add(const dvec3& at, const dvec3& position, double area_m2, double irradiance, const dvec3& d_m) {
+        for (int c = 0; c < 3; ++c) {
+            const double share = burley_density(std::max(glm::distance(at, position), 1e-9), d_m[c]) * area_m2;
+            light[c] += share * irradiance;
+            weight[c] += share;
+        }
+    }
+    dvec3 mean() const { return light / weight; }
+};
+
+TEST(ScatteringTruth, OnASphereIsTheSurfaceIntegral) {
+    const Scene scene = scene_of(R"({ "aftershade": 1, "size": [41, 41], "camera": { "position": [0, 0, 6], "focal_length": 90 },
+        "materials": { "wax": { "albedo": 0.8, "specular": 0, "scattering_profile": { "type": "burley", "d_mm": [200, 100, 50] } } },
+        "objects": [ { "shape": "sphere", "radius": 1, "material": "wax" } ],
+        "lights": [ { "type": "directional", "position": [1, 0, 0], "intensity": 3.14159265 } ] })");
+    const SceneRenderer renderer(scene, 41, 41, 2);
+    const ScatteringTruth truth = renderer.render_scattering(1, {4096, false});
+    const Capture capture = renderer.render_capture(1);
+    for (const int x : {10, 17, 20, 24, 31}) {
+        dvec3 at;
+        for (int c = 0; c < 3; ++c) at[c] = capture.images.at("position").at(x, 20, c);
+        GridSum sum;
+        constexpr int kRows = 1500;
+        for (int i = 0; i < kRows; ++i) {
+            const double polar = (i + 0.5) / kRows * kPi;
+            for (int j = 0; j < 2 * kRows; ++j) {
+                const double round = (j + 0.5) / kRows * kPi;
+                const dvec3 p(std::sin(polar) * std::cos(round), std::cos(polar), std::sin(polar) * std::sin(round));
+                sum.add(at, p, std::sin(polar) * kPi / kRows * kPi / kRows, std::max(p.x, 0.0), {0.2, 0.1, 0.05});
+            }
+        }
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(truth.irradiance.at(x, 20, c), sum.mean()[c], 0.005) << x;
+    }
+}
+
+TEST(ScatteringTruth, OnAHeightFieldIsTheSurfaceIntegral) {
+    const Scene scene = scene_of(R"({ "aftershade": 1, "size": [41, 41], "camera": { "position": [0, 0, 6], "focal_length": 60 },
+        "materials": { "wax": { "albedo": 0.8, "specular": 0, "scattering_profile": { "type": "burley", "d_mm": [120, 80, 50] } } },
+        "meshes": { "waves": { "height_field": { "size": [6, 6], "segments": 256,
+                    "waves": [ { "amplitude": 0.12, "cycles": [0.8, 0] }, { "amplitude": 0.05, "cycles": [0.3, 1.1], "phase": 40 } ] } } },
+        "objects": [ { "shape": "mesh", "mesh": "waves", "material": "wax" } ],
+        "lights": [ { "type": "directional", "position": [1, 0, 1.2], "intensity": 3.14159265, "shadows": false } ] })");
+    const SceneRenderer renderer(scene, 41, 41, 2);
+    const ScatteringTruth truth = renderer.render_scattering(1, {4096, false});
+    const Capture capture = renderer.render_capture(1);
+    const dvec3 toward = glm::normalize(dvec3(1, 0, 1.2));
+    const auto gradient = [](double x, double y) {
+        const double a = 2 * kPi * 0.8 * x, b = 2 * kPi * (0.3 * x + 1.1 * y) + 40 * kPi / 180;
+        return dvec3(-0.12 * std::sin(a) * 2 * kPi * 0.8 - 0.05 * std::sin(b) * 2 * kPi * 0.3,
+                     -0.05 * std::sin(b) * 2 * kPi * 1.1, 0.12 * std::cos(a) + 0.05 * std::cos(b));
+    };
+    for (const int x : {6, 13, 20, 26, 33}) {
+        dvec3 at;
+        for (int c = 0; c < 3; ++c) at[c] = capture.images.at("position").at(x, 20, c);
+        GridSum sum;
+        constexpr int kCells = 2000;
+        for (int i = 0; i < kCells; ++i)
+            for (int j = 0; j < kCells; ++j) {
+                const double px = (i + 0.5) / kCells * 6 - 3, py = (j + 0.5) / kCells * 6 - 3;
+                const dvec3 slope = gradient(px, py);
+                const dvec3 normal(-slope.x, -slope.y, 1);
+                const double stretch = glm::length(normal);
+                sum.add(at, {px, py, slope.z}, stretch * 36.0 / kCells / kCells,
+                        std::max(glm::dot(normal, toward) / stretch, 0.0), {0.12, 0.08, 0.05});
+            }
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(truth.irradiance.at(x, 20, c), sum.mean()[c], 0.01) << x << " " << c;
+    }
+}
+
+}  // namespace
+}  // namespace aftershade::scene
