@@ -37,6 +37,8 @@ int main(int argc, char** argv) {
     add("run", "Run a look over a capture and write the result", aftershade::cli::add_run);
     add("inspect", "Tell what a capture holds: parts, channels with their figures, roles, camera",
         aftershade::cli::add_inspect);
+    add("render", "Render a scene: captures, and the true pictures that effects approximate",
+        aftershade::cli::add_render);
     add("list", "List the effects that there are", aftershade::cli::add_list);
     add("describe", "Tell what an effect takes, makes and can be told", aftershade::cli::add_describe);
     add("new", "Make the folder of a new effect, which runs at once", aftershade::cli::add_new);

@@ -16,6 +16,7 @@ Verb add_describe(CLI::App& app);
 Verb add_docs(CLI::App& app);
 Verb add_list(CLI::App& app);
 Verb add_new(CLI::App& app);
+Verb add_render(CLI::App& app);
 Verb add_schema(CLI::App& app);
 Verb add_inspect(CLI::App& app);
 Verb add_doctor(CLI::App& app);

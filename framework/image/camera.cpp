@@ -48,6 +48,7 @@ void Camera::complete_from(const Camera& other) {
     origins_.insert(other.origins_.begin(), other.origins_.end());
     if (!camera_from_world) camera_from_world = other.camera_from_world;
     if (!ndc_from_world) ndc_from_world = other.ndc_from_world;
+    if (!jitter_px) jitter_px = other.jitter_px;
 }
 
 Camera parse_camera(const Node& node, Diagnostics& diagnostics) {

@@ -44,6 +44,9 @@ public:
     std::optional<CameraMatrix> camera_from_world;  ///< view space: right-handed, looks along -z, y up, m
     std::optional<CameraMatrix>
         ndc_from_world;  ///< projective; x right and y up from -1 to 1 over the display window
+    /// The samples' offset from the pixels' centres, px, +y down; contained neither in velocity nor in the
+    /// matrices.
+    std::optional<std::array<double, 2>> jitter_px;
 
 private:
     std::map<std::string, double> values_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "framework/core/error.h"
 #include "framework/core/units.h"
 
 namespace aftershade {
@@ -72,7 +73,23 @@ Camera camera_of_metadata(const ExrMetadata& metadata, const Profile& profile) {
     else if (!profile.lens_model.empty()) camera.set_lens_model(profile.lens_model, "profile " + profile.id);
     camera.camera_from_world = transposed_matrix(metadata, "worldToCamera");
     camera.ndc_from_world = transposed_matrix(metadata, "worldToNDC");
+    const auto jitter = metadata.value("aftershade/jitter_px");
+    if (const auto* px = jitter ? std::get_if<std::vector<float>>(&*jitter) : nullptr; px && px->size() == 2)
+        camera.jitter_px = {double((*px)[0]), double((*px)[1])};
     return camera;
+}
+
+std::vector<CaptureLight> lights_of_metadata(const ExrMetadata& metadata, const std::filesystem::path& path) {
+    const std::string name = "aftershade/lights";
+    const auto text = metadata.text(name);
+    if (!text) return {};
+    Diagnostics diagnostics;
+    std::vector<CaptureLight> lights;
+    if (const auto node = parse_document(*text, name, diagnostics)) lights = parse_lights(*node, diagnostics);
+    if (!diagnostics.has_errors()) return lights;
+    const Diagnostic& fault = diagnostics.all().front();
+    throw Error(ExitCode::capture,
+                path.string() + ": attribute " + to_string(fault.place) + ": " + fault.message);
 }
 
 }  // namespace aftershade

@@ -1,8 +1,12 @@
-// The camera out of a file's header.
+// The camera and the lights out of a file's header.
 #pragma once
+
+#include <filesystem>
+#include <vector>
 
 #include "framework/image/camera.h"
 #include "framework/image/exr_file.h"
+#include "framework/image/light.h"
 #include "framework/image/profile.h"
 
 namespace aftershade {
@@ -11,5 +15,9 @@ namespace aftershade {
 /// sensorOverallDimensions, worldToCamera, worldToNDC) and aftershade/camera/<field>. Values that are not
 /// positive where the field must be are taken as not known: producers write 0 for that.
 Camera camera_of_metadata(const ExrMetadata& metadata, const Profile& profile);
+
+/// The attribute aftershade/lights; none where there is no such text. Throws Error(ExitCode::capture) that
+/// begins with `path` where the text is no list of lights.
+std::vector<CaptureLight> lights_of_metadata(const ExrMetadata& metadata, const std::filesystem::path& path);
 
 }  // namespace aftershade

@@ -162,6 +162,7 @@ CaptureReader::OpenFrame CaptureReader::open(int frame) const {
     header.profile = open.profile->id;
     header.camera = sequence_.camera;
     header.camera.complete_from(camera_of_metadata(part.metadata, *open.profile));
+    header.lights = sequence_.lights ? *sequence_.lights : lights_of_metadata(part.metadata, header.path);
     find_roles(open);
 
     const auto color = open.roles.find("color");

@@ -12,6 +12,7 @@
 #include "framework/image/color_space.h"
 #include "framework/image/exr_file.h"
 #include "framework/image/image.h"
+#include "framework/image/light.h"
 #include "framework/image/profile.h"
 #include "framework/image/sequence.h"
 
@@ -35,6 +36,7 @@ struct CaptureHeader {
     std::vector<std::string> channels;   ///< of the file, in this view
     Chromaticities primaries = kRec709;  ///< of the colours as they are in memory
     Camera camera;                       ///< capture.json's, completed by the file's metadata
+    std::vector<CaptureLight> lights;    ///< capture.json's, else those of the file's metadata
     ExrMetadata metadata;
 };
 

@@ -80,6 +80,8 @@ void scale_capture(Capture& capture, int divisor) {
     for (auto& [name, image] : capture.images) image = scaled(image, *find_role(name), header, data, divisor);
     header.display_window = scaled_window(header.display_window, header.display_window, divisor);
     header.data_window = data;
+    if (header.camera.jitter_px)
+        for (double& offset_px : *header.camera.jitter_px) offset_px /= divisor;
 }
 
 void crop_capture(Capture& capture, const Window& window) {

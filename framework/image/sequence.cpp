@@ -98,6 +98,7 @@ std::optional<Sequence> read_capture_document(const fs::path& path, Diagnostics&
             if (is_role(member.key, member.key_place, diagnostics))
                 sequence.channels[member.key] = parse_role_decoding(member.key, member.value, diagnostics);
     if (const Node* camera = reader.object("camera")) sequence.camera = parse_camera(*camera, diagnostics);
+    if (const Node* lights = reader.array("lights")) sequence.lights = parse_lights(*lights, diagnostics);
     if (const Node* matte = reader.object("cryptomatte"))
         sequence.cryptomatte = read_cryptomatte(*matte, diagnostics);
     sequence.cuts = read_cuts(reader, diagnostics);
@@ -183,8 +184,10 @@ std::vector<int> find_frames(const FramePattern& pattern) {
 }
 
 std::optional<Sequence> open_sequence(const std::string& argument, Diagnostics& diagnostics) {
-    const fs::path path = argument;
+    fs::path path = argument;
     Sequence sequence;
+    // A folder with a capture.json is that capture.
+    if (std::error_code failure; fs::exists(path / "capture.json", failure)) path /= "capture.json";
     if (path.extension() == ".json") {
         if (std::error_code failure; !fs::exists(path, failure))
             throw Error(ExitCode::capture, argument + ": no such file");

@@ -10,6 +10,7 @@
 #include "framework/core/diagnostics.h"
 #include "framework/image/camera.h"
 #include "framework/image/frame_range.h"
+#include "framework/image/light.h"
 #include "framework/image/profile.h"
 
 namespace aftershade {
@@ -33,7 +34,8 @@ struct Sequence {
     double fps = 24;
     int subframes = 1;  ///< a frame is this many captures: the files subframes * frame + 0 .. subframes - 1
     Camera camera;      ///< of capture.json
-    std::vector<int> cuts;  ///< frames that begin a shot
+    std::optional<std::vector<CaptureLight>> lights;  ///< of capture.json
+    std::vector<int> cuts;                            ///< frames that begin a shot
     std::optional<CryptomatteChoice> cryptomatte;
 
     /// The number in the name of a frame's file, by which a CaptureReader reads it.

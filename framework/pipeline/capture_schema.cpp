@@ -2,6 +2,7 @@
 
 #include "framework/image/camera.h"
 #include "framework/image/color_space.h"
+#include "framework/image/light.h"
 #include "framework/image/role.h"
 #include "framework/pipeline/schema.h"
 #include "framework/pipeline/schema_common.h"
@@ -76,6 +77,33 @@ json camera() {
     return schema::object(fields);
 }
 
+/// As light.cpp reads them.
+json light() {
+    const auto numbers = [](ParamType type, const char* unit, std::optional<double> min) {
+        ParamSpec spec;
+        spec.type = type;
+        spec.unit = unit;
+        spec.min = min;
+        return schema::literal(spec);
+    };
+    std::vector<json> forms;
+    for (const std::string& kind : light_kind_names()) {
+        json keys = {{"type", {{"const", kind}}},
+                     {"name", schema::text()},
+                     {"intensity", numbers(ParamType::vec3, "", 0)}};
+        std::vector<std::string> required = {"type", "intensity"};
+        const auto add = [&](const char* key, const json& form) {
+            keys[key] = form;
+            required.emplace_back(key);
+        };
+        if (kind != "directional") add("position", numbers(ParamType::vec3, "m", {}));
+        if (kind != "point") add("direction", numbers(ParamType::vec3, "", {}));
+        if (kind == "area") add("size", numbers(ParamType::vec2, "m", 0));
+        forms.push_back(schema::object(keys, required));
+    }
+    return schema::any_of(forms);
+}
+
 }  // namespace
 
 std::string capture_schema() {
@@ -103,6 +131,7 @@ std::string capture_schema() {
          {"color_space", schema::one_of(spaces)},
          {"channels", by_role},
          {"camera", camera()},
+         {"lights", schema::array_of(light())},
          {"cryptomatte",
           schema::object({{"layer", schema::text()}, {"mask", schema::array_of(schema::text())}})},
          {"cuts", schema::array_of({{"type", "integer"}})},

@@ -123,6 +123,11 @@ CameraBlock camera_block(const FrameInputs& frame, const FrameBefore& before) {
         block.prev_view_from_world = columns_of(previous->view_from_world);
         block.has_prev_matrices = 1;
     }
+    const auto set_jitter = [](const Camera& from, float(&jitter_px)[2]) {
+        for (std::size_t i = 0; i < 2 && from.jitter_px; ++i) jitter_px[i] = float((*from.jitter_px)[i]);
+    };
+    set_jitter(camera, block.jitter_px);
+    if (known) set_jitter(*known, block.prev_jitter_px);
     block.focal_length_mm = float(camera.get("focal_length").value_or(0));
     block.sensor_width_mm = float(camera.get("sensor_width").value_or(0));
     block.focus_distance_m = float(camera.get("focus_distance").value_or(0));

@@ -15,9 +15,9 @@ void write(Image& image, int x, int y, const glm::dvec3& value) {
 }  // namespace
 
 std::span<const std::string> all_roles() {
-    static const std::array<std::string, 11> roles = {"color",  "depth",    "velocity", "velocity_next",
+    static const std::array<std::string, 11> roles = {"color",      "depth",    "velocity", "velocity_next",
                                                       "irradiance", "albedo",   "specular", "emission",
-                                                      "normal", "position", "object_id"};
+                                                      "normal",     "position", "object_id"};
     return roles;
 }
 

@@ -46,8 +46,9 @@ FieldReader::Keys FieldReader::read_keys(const Field& field, const Node& node) {
         for (const Member& member : members->members) {
             const auto frame = parse_number(member.key);
             if (!frame) {
-                diagnostics_.error(member.key_place, "a key is a frame number such as \"12\" or \"1.5\", not '" +
-                                                         member.key + "'");
+                diagnostics_.error(
+                    member.key_place,
+                    "a key is a frame number such as \"12\" or \"1.5\", not '" + member.key + "'");
                 continue;
             }
             if (const auto value = read_value(field, member.value)) found.emplace_back(*frame, *value);
@@ -92,7 +93,8 @@ FieldReader::Keys FieldReader::read(const Block& block, const std::string& name)
 Animated<double> FieldReader::animated_number(const Block& block, const std::string& name) {
     const Keys keys = read(block, name);
     std::vector<Animated<double>::Key> result;
-    for (std::size_t i = 0; i < keys.frames.size(); ++i) result.push_back({keys.frames[i], keys.values[i][0]});
+    for (std::size_t i = 0; i < keys.frames.size(); ++i)
+        result.push_back({keys.frames[i], keys.values[i][0]});
     return {std::move(result), keys.interpolation};
 }
 
@@ -109,7 +111,9 @@ glm::dvec2 FieldReader::vec2(const Block& block, const std::string& name) {
     return {keys.values[0][0], keys.values[0][1]};
 }
 
-bool FieldReader::flag(const Block& block, const std::string& name) { return number(block, name) != 0; }
+bool FieldReader::flag(const Block& block, const std::string& name) {
+    return number(block, name) != 0;
+}
 
 std::string FieldReader::choice(const Block& block, const std::string& name) {
     return block.field(name).spec.values[std::size_t(number(block, name))];

@@ -32,8 +32,8 @@ Field integer(std::string name, int value, int min, int max, std::string doc) {
     return field;
 }
 
-Field vector(ParamType type, std::string name, std::string unit, std::vector<double> value, double min, double max,
-             std::string doc) {
+Field vector(ParamType type, std::string name, std::string unit, std::vector<double> value, double min,
+             double max, std::string doc) {
     Field field = make(type, std::move(name), std::move(unit), std::move(value), std::move(doc));
     field.spec.min = min;
     field.spec.max = max;
@@ -41,7 +41,8 @@ Field vector(ParamType type, std::string name, std::string unit, std::vector<dou
 }
 
 Field color(std::string name, double value, double max, std::string doc) {
-    Field field = vector(ParamType::color, std::move(name), "", {value, value, value}, 0, max, std::move(doc));
+    Field field =
+        vector(ParamType::color, std::move(name), "", {value, value, value}, 0, max, std::move(doc));
     field.uniform = true;
     return field;
 }
@@ -75,7 +76,9 @@ Field uniform(Field field) {
     return field;
 }
 
-Field radius() { return required(number("radius", "m", 1, 1e-6, kFar_m, "Radius.")); }
+Field radius() {
+    return required(number("radius", "m", 1, 1e-6, kFar_m, "Radius."));
+}
 
 }  // namespace
 
@@ -86,12 +89,16 @@ const Block& camera_block() {
         {animated(place("position", {0, 0, 5}, "The lens.")),
          animated(place("target", {0, 0, 0}, "The point in the middle of the picture.")),
          animated(number("roll", "deg", 0, -36000, 36000, "Turns the picture's content anticlockwise.")),
-         animated(number("focal_length", "mm", 50, 0.1, 10000, "With the sensor's width it gives the angle of view.")),
+         animated(number("focal_length", "mm", 50, 0.1, 10000,
+                         "With the sensor's width it gives the angle of view.")),
          number("sensor_width", "mm", 36, 0.1, 1000, "Sensor, as wide as the picture."),
-         animated(number("focus_distance", "m", 5, 0.01, kFar_m, "Along the view axis to the plane in focus.")),
+         animated(
+             number("focus_distance", "m", 5, 0.01, kFar_m, "Along the view axis to the plane in focus.")),
          number("f_number", "", 2.8, 0.05, 1000, "Focal length over the aperture's diameter."),
          integer("blades", 0, 0, 32, "Corners of the aperture; 0 is a disk, 1 and 2 are not polygons."),
-         number("rotation", "deg", 0, -36000, 36000, "Of the aperture; 0 puts the middle of a straight edge at +x, positive turns +x towards +y (down).")}};
+         number("rotation", "deg", 0, -36000, 36000,
+                "Of the aperture; 0 puts the middle of a straight edge at +x, positive turns +x towards +y "
+                "(down).")}};
     return block;
 }
 
@@ -109,7 +116,8 @@ const Block& material_block() {
         "material",
         "Lambert's diffuse reflection and a GGX highlight.",
         {number("roughness", "", 0.5, 0.03, 1, "The highlight's; GGX alpha is its square."),
-         number("specular", "", 0.04, 0, 1, "Reflectance at normal incidence, by Schlick; 0 for no highlight."),
+         number("specular", "", 0.04, 0, 1,
+                "Reflectance at normal incidence, by Schlick; 0 for no highlight."),
          color("emission", 0, 1e9, "Radiance that it gives off.")}};
     return block;
 }
@@ -119,7 +127,8 @@ const Block& object_block() {
         "object",
         "A shape with a material that may move.",
         {animated(place("position", {0, 0, 0}, "Of its origin, in its parent's space.")),
-         animated(vector(ParamType::vec3, "rotation", "deg", {0, 0, 0}, -1e6, 1e6, "About x, then y, then z.")),
+         animated(
+             vector(ParamType::vec3, "rotation", "deg", {0, 0, 0}, -1e6, 1e6, "About x, then y, then z.")),
          animated(uniform(vector(ParamType::vec3, "scale", "", {1, 1, 1}, 1e-6, 1e6, "Along its own axes."))),
          integer("id", 0, 0, 16777215, "The role object_id; 0 takes the object's place in the list, from 1."),
          flag("casts_shadow", true, "Whether it stands between lights and others.")}};
@@ -136,7 +145,8 @@ const std::vector<Block>& shape_blocks() {
         {"sphere", "About its origin.", {radius()}},
         {"box",
          "About its origin.",
-         {required(uniform(vector(ParamType::vec3, "size", "m", {1, 1, 1}, 1e-6, kFar_m, "Along x, y and z.")))}},
+         {required(
+             uniform(vector(ParamType::vec3, "size", "m", {1, 1, 1}, 1e-6, kFar_m, "Along x, y and z.")))}},
         {"cylinder",
          "Along y about its origin, with its caps.",
          {radius(), required(number("height", "m", 1, 1e-6, kFar_m, "Along y."))}},
@@ -158,7 +168,8 @@ const Block& wave_block() {
         "wave",
         "amplitude * cos(2 pi (x, y) . cycles + phase), metres.",
         {required(number("amplitude", "m", 0, -kFar_m, kFar_m, "Height of the crest.")),
-         required(vector(ParamType::vec2, "cycles", "", {1, 0}, -1e6, 1e6, "Waves in a metre along x and y.")),
+         required(
+             vector(ParamType::vec2, "cycles", "", {1, 0}, -1e6, 1e6, "Waves in a metre along x and y.")),
          number("phase", "deg", 0, -1e6, 1e6, "At the origin.")}};
     return block;
 }
@@ -167,25 +178,30 @@ const Block& repeat_block() {
     static const Block block = {
         "repeat",
         "The object several times, along a grid in its parent's space.",
-        {required(vector(ParamType::vec3, "count", "", {1, 1, 1}, 1, 4096, "Along x, y and z; whole numbers.")),
+        {required(
+             vector(ParamType::vec3, "count", "", {1, 1, 1}, 1, 4096, "Along x, y and z; whole numbers.")),
          place("step", {1, 1, 1}, "From one to the next along each axis."),
-         uniform(vector(ParamType::vec3, "scatter", "m", {0, 0, 0}, 0, kFar_m, "Moves each by up to this much, by a hash of its number.")),
-         vector(ParamType::vec3, "turn", "deg", {0, 0, 0}, 0, 360, "Turns each by up to this much either way."),
+         uniform(vector(ParamType::vec3, "scatter", "m", {0, 0, 0}, 0, kFar_m,
+                        "Moves each by up to this much, by a hash of its number.")),
+         vector(ParamType::vec3, "turn", "deg", {0, 0, 0}, 0, 360,
+                "Turns each by up to this much either way."),
          integer("id_step", 0, 0, 4096, "What the id grows by from one to the next.")}};
     return block;
 }
 
 const Block& light_block() {
-    static const Block block = {
-        "light",
-        "Light of a colour and an intensity.",
-        {color("color", 1, 1e9, "Times intensity."), flag("shadows", true, "Whether objects stand in its way.")}};
+    static const Block block = {"light",
+                                "Light of a colour and an intensity.",
+                                {color("color", 1, 1e9, "Times intensity."),
+                                 flag("shadows", true, "Whether objects stand in its way.")}};
     return block;
 }
 
 const std::vector<Block>& light_blocks() {
     const auto intensity = [](const char* doc) { return animated(number("intensity", "", 1, 0, 1e12, doc)); };
-    const auto position = [](const char* doc) { return animated(required(place("position", {0, 5, 0}, doc))); };
+    const auto position = [](const char* doc) {
+        return animated(required(place("position", {0, 5, 0}, doc)));
+    };
     const auto target = [](const char* doc) { return animated(place("target", {0, 0, 0}, doc)); };
     static const std::vector<Block> blocks = {
         {"point", "From one point to all sides.", {position("Where it stands."), intensity("W/sr.")}},
@@ -197,7 +213,8 @@ const std::vector<Block>& light_blocks() {
          "A rectangle that shines from its front alone; it is not seen itself.",
          {position("Its centre."), target("What its front faces."), intensity("Radiance, W/(m^2 sr)."),
           vector(ParamType::vec2, "size", "m", {1, 1}, 1e-6, kFar_m, "Its sides; the first is level."),
-          integer("shadow_samples", 1, 1, 16, "Shadows from a grid of this many points a side; 1: hard ones from the centre.")}}};
+          integer("shadow_samples", 1, 1, 16,
+                  "Shadows from a grid of this many points a side; 1: hard ones from the centre.")}}};
     return blocks;
 }
 
@@ -205,7 +222,8 @@ const Block& pattern_block() {
     static const Block block = {
         "pattern",
         "What a directional light shines through, by the distance along an axis.",
-        {required(choice("type", {"edge", "cosine"}, "edge: dark below the offset; cosine: 1 + amplitude * cos.")),
+        {required(
+             choice("type", {"edge", "cosine"}, "edge: dark below the offset; cosine: 1 + amplitude * cos.")),
          vector(ParamType::vec3, "axis", "", {1, 0, 0}, -1, 1, "World; need not have unit length."),
          number("offset", "m", 0, -kFar_m, kFar_m, "edge: lit from here on; cosine: a crest."),
          number("period", "m", 1, 1e-9, kFar_m, "cosine: from crest to crest."),
@@ -214,12 +232,11 @@ const Block& pattern_block() {
 }
 
 const Block& scene_block() {
-    static const Block block = {
-        "scene",
-        "The document.",
-        {number("fps", "", 24, 0.001, 1000, "Frames a second."),
-         color("background", 0, 1e9, "Radiance where nothing is hit."),
-         color("ambient", 0, 1e9, "Radiance from all sides, without shadows.")}};
+    static const Block block = {"scene",
+                                "The document.",
+                                {number("fps", "", 24, 0.001, 1000, "Frames a second."),
+                                 color("background", 0, 1e9, "Radiance where nothing is hit."),
+                                 color("ambient", 0, 1e9, "Radiance from all sides, without shadows.")}};
     return block;
 }
 

@@ -1,4 +1,5 @@
-// The values of a scene document, declared once: reading, checking, the JSON Schema and the docs come from here.
+// The values of a scene document, declared once: reading, checking, the JSON Schema and the docs come from
+// here.
 #pragma once
 
 #include <glm/glm.hpp>

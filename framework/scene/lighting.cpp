@@ -31,7 +31,8 @@ double polygon_cosine(const std::array<dvec3, 4>& corners, const Surface& surfac
         const dvec3 a = corners[i] - surface.position, b = corners[(i + 1) % 4] - surface.position;
         const double height_a = glm::dot(a, surface.normal), height_b = glm::dot(b, surface.normal);
         if (height_a >= 0) kept[count++] = a;
-        if ((height_a >= 0) != (height_b >= 0)) kept[count++] = glm::mix(a, b, height_a / (height_a - height_b));
+        if ((height_a >= 0) != (height_b >= 0))
+            kept[count++] = glm::mix(a, b, height_a / (height_a - height_b));
     }
     double sum = 0;
     for (std::size_t i = 0; i < count; ++i) {
@@ -71,7 +72,8 @@ double highlight(const Material& material, const dvec3& normal, const dvec3& to_
 
 dvec3 albedo_at(const Material& material, const glm::dvec2& uv) {
     const auto cell = [](double at) { return std::int64_t(std::floor(at)); };
-    const bool second = ((cell(uv.x * material.checker_cells.x) + cell(uv.y * material.checker_cells.y)) & 1) != 0;
+    const bool second =
+        ((cell(uv.x * material.checker_cells.x) + cell(uv.y * material.checker_cells.y)) & 1) != 0;
     return second ? material.albedo_2 : material.albedo;
 }
 
@@ -90,7 +92,8 @@ double World::visible_part(std::size_t index, const dvec3& from) const {
     return double(seen) / (side * side);
 }
 
-void World::add_light(std::size_t index, const Surface& surface, const dvec3* to_eye, Shading& shading) const {
+void World::add_light(std::size_t index, const Surface& surface, const dvec3* to_eye,
+                      Shading& shading) const {
     const Light& light = scene().lights[index];
     const LightState& now = state_.lights[index];
     const bool is_area = light.kind == LightKind::area, is_far = light.kind == LightKind::directional;

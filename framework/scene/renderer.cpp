@@ -23,7 +23,11 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 }  // namespace
 
 SceneRenderer::SceneRenderer(const Scene& scene, int width_px, int height_px, int threads)
-    : scene_(scene), geometry_(scene), width_px_(width_px), height_px_(height_px), threads_(std::max(threads, 1)) {}
+    : scene_(scene),
+      geometry_(scene),
+      width_px_(width_px),
+      height_px_(height_px),
+      threads_(std::max(threads, 1)) {}
 
 double SceneRenderer::pixels_per_tangent(const CameraState& camera) const {
     return camera.focal_length_mm * width_px_ / scene_.camera.sensor_width_mm;
@@ -43,14 +47,16 @@ Ray SceneRenderer::camera_ray(const CameraState& camera, const dvec2& pixel, con
 bool SceneRenderer::project(const CameraState& camera, const dvec4& point, dvec2& pixel) const {
     const dvec4 view = camera.camera_from_world * point;
     if (view.z >= 0) return false;
-    pixel = 0.5 * dvec2(width_px_, height_px_) + pixels_per_tangent(camera) * dvec2(view.x, -view.y) / -view.z;
+    pixel =
+        0.5 * dvec2(width_px_, height_px_) + pixels_per_tangent(camera) * dvec2(view.x, -view.y) / -view.z;
     return true;
 }
 
 /// `states` are now, a frame before, a frame after. What nothing hides moves with the camera alone; a point
 /// that one of two cameras has behind it gets 0.
-void SceneRenderer::write_motion(Capture& capture, int x, int y, const std::array<const SceneState*, 3>& states,
-                                 const Surface* surface, const dvec3& direction) const {
+void SceneRenderer::write_motion(Capture& capture, int x, int y,
+                                 const std::array<const SceneState*, 3>& states, const Surface* surface,
+                                 const dvec3& direction) const {
     std::array<dvec2, 3> at{};
     std::array<bool, 3> valid{};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -92,7 +98,8 @@ Capture SceneRenderer::render_capture(int frame, double time, std::array<double,
     return capture;
 }
 
-SceneRenderer::SamplePoint SceneRenderer::sample_point(const TruthSettings& truth, int index, std::uint32_t seed) const {
+SceneRenderer::SamplePoint SceneRenderer::sample_point(const TruthSettings& truth, int index,
+                                                       std::uint32_t seed) const {
     const auto count = std::uint32_t(truth.samples);
     // Each dimension in an order of its own, so that early times do not go with one side of the lens.
     const auto sample = [&](std::uint32_t dimension) {
@@ -103,13 +110,15 @@ SceneRenderer::SamplePoint SceneRenderer::sample_point(const TruthSettings& trut
     point.offset_px = {0.5 + truth.jitter_px[0], 0.5 + truth.jitter_px[1]};
     if (truth.kinds.antialias) point.offset_px += sample(1) - 0.5;
     if (truth.kinds.lens)
-        point.on_lens = on_aperture(sample(2), scene_.camera.blades, glm::radians(scene_.camera.rotation_deg));
+        point.on_lens =
+            on_aperture(sample(2), scene_.camera.blades, glm::radians(scene_.camera.rotation_deg));
     return point;
 }
 
 dvec3 SceneRenderer::radiance(const World& world, int x, int y, const SamplePoint& point) const {
     const CameraState& camera = world.state().camera;
-    const Ray ray = camera_ray(camera, dvec2(x, y) + point.offset_px, camera.aperture_radius_m * point.on_lens);
+    const Ray ray =
+        camera_ray(camera, dvec2(x, y) + point.offset_px, camera.aperture_radius_m * point.on_lens);
     const auto surface = world.trace(ray, 0, kFar);
     return surface ? world.shade(*surface, ray.origin).color() : scene_.background;
 }
@@ -151,7 +160,8 @@ Image SceneRenderer::render_truth(int frame, const TruthSettings& truth) const {
     }
     Image image(width_px_, height_px_, 4);
     for (std::size_t i = 0; i < sums.size(); ++i) {
-        for (std::size_t c = 0; c < 3; ++c) image.floats()[i * 4 + c] = float(sums[i][int(c)] / truth.samples);
+        for (std::size_t c = 0; c < 3; ++c)
+            image.floats()[i * 4 + c] = float(sums[i][int(c)] / truth.samples);
         image.floats()[i * 4 + 3] = 1;
     }
     return image;

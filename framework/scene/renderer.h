@@ -34,7 +34,7 @@ struct TruthSettings {
 };
 
 struct ScatteringSettings {
-    int samples = 4096;        ///< points of the surface for each pixel, about; 64 to kMaxSamples
+    int samples = 1024;        ///< points of the surface for each pixel, about; 64 to kMaxSamples
     bool visible_only = true;  ///< points that the camera sees, which is what an effect has; else all
 };
 
@@ -55,14 +55,16 @@ public:
     Capture render_capture(int frame, double time, std::array<double, 2> jitter_px = {0, 0}) const;
     Capture render_capture(int frame) const { return render_capture(frame, frame); }
 
-    /// RGBA. Of the shutter, sample i of n is the middle of part i of the exposure, or for interleaved samples one
-    /// of 16 moments in that part; lens and pixel are multi-jittered. Without `antialias` rays go through the pixels' centres, moved by `jitter_px`.
+    /// RGBA. Of the shutter, sample i of n is the middle of part i of the exposure, or for interleaved
+    /// samples one of 16 moments in that part; lens and pixel are multi-jittered. Without `antialias` rays go
+    /// through the pixels' centres, moved by `jitter_px`.
     Image render_truth(int frame, const TruthSettings& settings) const;
 
     /// Light scattered by each material's profile: the integral of profile times irradiance over the surface
     /// of the object that the pixel shows, divided by that of the profile alone, so that even light stays as
-    /// it is. Points lie on rings about the pixel's own, where light and shadows are computed anew: on planes,
-    /// disks and spheres exactly, elsewhere where a line along the normal meets the object (King et al. 2013).
+    /// it is. Points lie on rings about the pixel's own, where light and shadows are computed anew: on
+    /// planes, disks and spheres exactly, elsewhere where a line along the normal meets the object (King et
+    /// al. 2013).
     ScatteringTruth render_scattering(int frame, const ScatteringSettings& settings) const;
 
     /// Roles of one object over its texture coordinates, `side_px` square: color, irradiance, albedo,

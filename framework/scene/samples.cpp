@@ -67,7 +67,8 @@ dvec2 multi_jittered(std::uint32_t index, std::uint32_t count, std::uint32_t see
     const std::uint32_t cell = permuted(index, count, seed);
     const std::uint32_t column = cell % columns, row = cell / columns;
     const double x = (permuted(row, rows, pcg3d(seed, 1, 0)[0]) + unit_hash(cell, seed ^ 0xa511e9b3u)) / rows;
-    const double y = (permuted(column, columns, pcg3d(seed, 2, 0)[0]) + unit_hash(cell, seed ^ 0x63d83595u)) / columns;
+    const double y =
+        (permuted(column, columns, pcg3d(seed, 2, 0)[0]) + unit_hash(cell, seed ^ 0x63d83595u)) / columns;
     return {(column + x) / columns, (row + y) / rows};
 }
 
@@ -82,8 +83,10 @@ dvec2 on_aperture(const dvec2& u, int blades, double rotation_rad) {
     }
     const double scaled = u.x * blades;
     const double blade = std::min(std::floor(scaled), double(blades - 1));
-    const double first_rad = rotation_rad + (2 * blade - 1) * kPi / blades, second_rad = first_rad + 2 * kPi / blades;
-    const dvec2 first(std::cos(first_rad), std::sin(first_rad)), second(std::cos(second_rad), std::sin(second_rad));
+    const double first_rad = rotation_rad + (2 * blade - 1) * kPi / blades,
+                 second_rad = first_rad + 2 * kPi / blades;
+    const dvec2 first(std::cos(first_rad), std::sin(first_rad)),
+        second(std::cos(second_rad), std::sin(second_rad));
     return std::sqrt(u.y) * glm::mix(first, second, scaled - blade);
 }
 

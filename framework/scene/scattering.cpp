@@ -22,7 +22,8 @@ constexpr double kPi = std::numbers::pi;
 
 /// A sphere stays one where its three axes keep one length.
 bool is_round(const glm::dmat4& matrix) {
-    const dvec3 axes(glm::length(dvec3(matrix[0])), glm::length(dvec3(matrix[1])), glm::length(dvec3(matrix[2])));
+    const dvec3 axes(glm::length(dvec3(matrix[0])), glm::length(dvec3(matrix[1])),
+                     glm::length(dvec3(matrix[2])));
     return std::max({axes.x, axes.y, axes.z}) - std::min({axes.x, axes.y, axes.z}) < 1e-9 * axes.x;
 }
 
@@ -30,7 +31,10 @@ bool is_round(const glm::dmat4& matrix) {
 class Gather {
 public:
     Gather(const World& world, const dvec3& eye, bool visible_only, const Surface& here)
-        : world_(world), eye_(eye), visible_only_(visible_only), here_(here),
+        : world_(world),
+          eye_(eye),
+          visible_only_(visible_only),
+          here_(here),
           object_(world.scene().objects[std::size_t(here.object)]),
           scattering_(*world.scene().materials[std::size_t(object_.material)].scattering) {
         const dvec3& normal = here.geometric_normal;
@@ -76,8 +80,9 @@ private:
         there.position += radius_m * along;
         const dvec3 local(world_.object_from_world(here_.object) * dvec4(there.position, 1));
         const dvec3& half = object_.shape.half_size_m;
-        const bool inside = object_.shape.kind == ShapeKind::disk ? std::hypot(local.x, local.y) <= half.x
-                                                                  : std::abs(local.x) <= half.x && std::abs(local.y) <= half.y;
+        const bool inside = object_.shape.kind == ShapeKind::disk
+                                ? std::hypot(local.x, local.y) <= half.x
+                                : std::abs(local.x) <= half.x && std::abs(local.y) <= half.y;
         if (inside) add(there, radius_m, area_m2);
     }
 
@@ -136,8 +141,9 @@ ScatteringTruth SceneRenderer::render_scattering(int frame, const ScatteringSett
     const int directions = std::max(8, int(std::sqrt(scattering.samples / 1.5)));
     std::vector<std::vector<Ring>> rings;
     for (const Material& material : scene_.materials)
-        rings.push_back(material.scattering ? make_rings(*material.scattering, scattering.samples / directions)
-                                            : std::vector<Ring>());
+        rings.push_back(material.scattering
+                            ? make_rings(*material.scattering, scattering.samples / directions)
+                            : std::vector<Ring>());
     for_each_row(height_px_, threads_, [&](int y) {
         for (int x = 0; x < width_px_; ++x) {
             const Ray ray = camera_ray(world.state().camera, dvec2(x + 0.5, y + 0.5), dvec2(0));
@@ -148,7 +154,8 @@ ScatteringTruth SceneRenderer::render_scattering(int frame, const ScatteringSett
             Gather gather(world, ray.origin, scattering.visible_only, *here);
             const dvec3 light = gather.scattered(table, directions);
             for (int c = 0; c < 3; ++c) {
-                truth.color.at(x, y, c) += albedo.at(x, y, c) * (float(light[c]) - truth.irradiance.at(x, y, c));
+                truth.color.at(x, y, c) +=
+                    albedo.at(x, y, c) * (float(light[c]) - truth.irradiance.at(x, y, c));
                 truth.irradiance.at(x, y, c) = float(light[c]);
             }
         }

@@ -77,9 +77,10 @@ void SceneReader::read_size(ObjectReader& reader) {
 
 void SceneReader::read_frames(ObjectReader& reader) {
     if (const Node* frames = reader.any("frames")) {
-        const auto range = frames->is_string()                      ? parse_frame_range(frames->string)
-                           : frames->kind == Node::Kind::integer ? parse_frame_range(std::to_string(frames->integer))
-                                                                    : std::nullopt;
+        const auto range = frames->is_string() ? parse_frame_range(frames->string)
+                           : frames->kind == Node::Kind::integer
+                               ? parse_frame_range(std::to_string(frames->integer))
+                               : std::nullopt;
         if (!range || range->empty())
             diagnostics_.error(frames->place, "frames are a range such as \"1-24\" or \"1-100x2,120\"");
         else scene_.frames = *range;

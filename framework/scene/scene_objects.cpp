@@ -125,8 +125,8 @@ void SceneReader::add_repeated(const Object& object, const Node& node, const std
             for (int x = 0; x < int(count.x); ++x, ++number) {
                 Object one = object;
                 one.id += number * unsigned(id_step);
-                one.position_m = offset_by(object.position_m, glm::dvec3(x, y, z) * step_m +
-                                                                  signed_hash3(2 * number) * scatter_m);
+                one.position_m = offset_by(
+                    object.position_m, glm::dvec3(x, y, z) * step_m + signed_hash3(2 * number) * scatter_m);
                 one.rotation_deg = offset_by(object.rotation_deg, signed_hash3(2 * number + 1) * turn_deg);
                 scene_.objects.push_back(std::move(one));
             }
@@ -155,13 +155,16 @@ void SceneReader::read_light(const Node& node, std::size_t index) {
         return;
     }
     const Block& block = *find_block(light_blocks(), *type);
-    light.kind = *type == "point" ? LightKind::point : *type == "area" ? LightKind::area : LightKind::directional;
+    light.kind = *type == "point"  ? LightKind::point
+                 : *type == "area" ? LightKind::area
+                                   : LightKind::directional;
     light.position_m = fields.animated_vec3(block, "position");
     light.intensity = fields.animated_number(block, "intensity");
     if (light.kind != LightKind::point) {
         light.target_m = fields.animated_vec3(block, "target");
         if (light.position_m.at(scene_.frames.front()) == light.target_m.at(scene_.frames.front()))
-            diagnostics_.error(node.place, place + ": position and target are one point, which gives no direction");
+            diagnostics_.error(node.place,
+                               place + ": position and target are one point, which gives no direction");
     }
     if (light.kind == LightKind::area) {
         light.size_m = fields.vec2(block, "size");
@@ -179,7 +182,7 @@ LightPattern SceneReader::read_pattern(const Node& node, const std::string& labe
     FieldReader fields(reader, label, diagnostics_);
     LightPattern pattern;
     pattern.kind = fields.choice(pattern_block(), "type") == "edge" ? LightPattern::Kind::edge
-                                                                     : LightPattern::Kind::cosine;
+                                                                    : LightPattern::Kind::cosine;
     const glm::dvec3 axis = fields.vec3(pattern_block(), "axis");
     if (glm::length(axis) > 0) pattern.axis = glm::normalize(axis);
     else diagnostics_.error(node.place, label + "axis: has no length");

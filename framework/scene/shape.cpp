@@ -132,7 +132,9 @@ double around(const dvec3& p) {
     return turns < 0 ? turns + 1 : turns;
 }
 
-int largest_axis(const dvec3& v) { return v.x >= v.y && v.x >= v.z ? 0 : v.y >= v.z ? 1 : 2; }
+int largest_axis(const dvec3& v) {
+    return v.x >= v.y && v.x >= v.z ? 0 : v.y >= v.z ? 1 : 2;
+}
 
 dvec2 box_uv(const dvec3& p, int axis) {
     const bool positive = p[axis] > 0;
@@ -145,7 +147,8 @@ dvec2 box_uv(const dvec3& p, int axis) {
 
 ShapePoint sphere_point(const dvec3& near, double radius) {
     const dvec3 normal = glm::normalize(near);
-    return {normal * radius, normal, normal, {around(normal), std::acos(std::clamp(normal.y, -1.0, 1.0)) / kPi}};
+    return {
+        normal * radius, normal, normal, {around(normal), std::acos(std::clamp(normal.y, -1.0, 1.0)) / kPi}};
 }
 
 ShapePoint box_point(const dvec3& near, const dvec3& half_size) {
@@ -183,7 +186,8 @@ ShapePoint mesh_point(const Mesh& mesh, const ShapeHit& hit) {
     const auto& corner = mesh.triangles[hit.triangle];
     const Vertex &a = mesh.vertices[corner[0]], &b = mesh.vertices[corner[1]], &c = mesh.vertices[corner[2]];
     const double wb = hit.barycentric.x, wc = hit.barycentric.y, wa = 1 - wb - wc;
-    return {wa * a.position + wb * b.position + wc * c.position, wa * a.normal + wb * b.normal + wc * c.normal,
+    return {wa * a.position + wb * b.position + wc * c.position,
+            wa * a.normal + wb * b.normal + wc * c.normal,
             glm::cross(b.position - a.position, c.position - a.position), wa * a.uv + wb * b.uv + wc * c.uv};
 }
 

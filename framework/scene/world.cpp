@@ -12,7 +12,9 @@ using glm::dvec4;
 
 namespace {
 
-dvec3 point(const dmat4& matrix, const dvec3& p) { return dvec3(matrix * dvec4(p, 1)); }
+dvec3 point(const dmat4& matrix, const dvec3& p) {
+    return dvec3(matrix * dvec4(p, 1));
+}
 
 Ray transformed(const Ray& ray, const dmat4& matrix) {
     return {point(matrix, ray.origin), dmat3(matrix) * ray.direction};
@@ -21,8 +23,9 @@ Ray transformed(const Ray& ray, const dmat4& matrix) {
 Bounds transformed(const Bounds& bounds, const dmat4& matrix) {
     Bounds result;
     for (int corner = 0; corner < 8; ++corner)
-        result.add(point(matrix, {corner & 1 ? bounds.high.x : bounds.low.x, corner & 2 ? bounds.high.y : bounds.low.y,
-                                  corner & 4 ? bounds.high.z : bounds.low.z}));
+        result.add(point(
+            matrix, {corner & 1 ? bounds.high.x : bounds.low.x, corner & 2 ? bounds.high.y : bounds.low.y,
+                     corner & 4 ? bounds.high.z : bounds.low.z}));
     return result;
 }
 
@@ -74,8 +77,8 @@ std::optional<Surface> World::trace(const Ray& ray, double low, double high, uns
         const Object& object = scene().objects[std::size_t(index)];
         if (only_id != 0 && object.id != only_id) return false;
         ShapeHit hit;
-        if (!intersect(object.shape, geometry_->mesh_of(object.shape), transformed(ray, object_from_world(index)), low,
-                       high, false, hit))
+        if (!intersect(object.shape, geometry_->mesh_of(object.shape),
+                       transformed(ray, object_from_world(index)), low, high, false, hit))
             return false;
         nearest = index;
         nearest_hit = hit;

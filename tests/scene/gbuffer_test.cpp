@@ -15,7 +15,9 @@ using glm::dvec2;
 using glm::dvec3;
 using glm::dvec4;
 
-dvec3 rgb(const Image& image, int x, int y) { return {image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)}; }
+dvec3 rgb(const Image& image, int x, int y) {
+    return {image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)};
+}
 
 /// What a surface's pixel was in its object's own space.
 dvec3 local_of(const SceneState& state, int object, const dvec3& world) {
@@ -23,7 +25,8 @@ dvec3 local_of(const SceneState& state, int object, const dvec3& world) {
 }
 
 TEST(Gbuffer, OfAPlaneAndASphereIsTheirClosedForm) {
-    // 100 px per unit of tangent: the sphere's silhouette is where the tangent of its angle is r / sqrt(d^2 - r^2).
+    // 100 px per unit of tangent: the sphere's silhouette is where the tangent of its angle is r / sqrt(d^2 -
+    // r^2).
     const Scene scene = scene_of(R"({ "aftershade": 1, "size": [200, 100],
         "camera": { "position": [0, 0, 10], "focal_length": 18, "sensor_width": 36 },
         "background": 0.5, "materials": { "grey": { "albedo": 0.5, "specular": 0 } },
@@ -43,7 +46,8 @@ TEST(Gbuffer, OfAPlaneAndASphereIsTheirClosedForm) {
             const float depth = capture.images.at("depth").at(x, y, 0);
             if (id == 9) {
                 ASSERT_FLOAT_EQ(depth, 15);
-                ASSERT_LT(glm::distance(rgb(capture.images.at("position"), x, y), dvec3(tangent * 15.0, -5)), 1e-5);
+                ASSERT_LT(glm::distance(rgb(capture.images.at("position"), x, y), dvec3(tangent * 15.0, -5)),
+                          1e-5);
                 ASSERT_EQ(rgb(capture.images.at("normal"), x, y), dvec3(0, 0, 1));
                 // E = 6 head on; the role is E / pi.
                 ASSERT_NEAR(capture.images.at("irradiance").at(x, y, 0), 6 / std::acos(-1), 1e-6);
@@ -61,8 +65,8 @@ TEST(Gbuffer, OfAPlaneAndASphereIsTheirClosedForm) {
 }
 
 TEST(Gbuffer, MovesAsObjectsAndCameraDo) {
-    // 1000 px per unit of tangent. The box moves 0.1 m to the right and 0.05 m up a frame at a depth of 9.9 m, the
-    // camera 0.02 m to the right.
+    // 1000 px per unit of tangent. The box moves 0.1 m to the right and 0.05 m up a frame at a depth of 9.9
+    // m, the camera 0.02 m to the right.
     const Scene scene = scene_of(R"({ "aftershade": 1, "size": [100, 50],
         "camera": { "position": { "keys": { "0": [0, 0, 10], "10": [0.2, 0, 10] } },
                     "target": { "keys": { "0": [0, 0, 0], "10": [0.2, 0, 0] } }, "focal_length": 360, "sensor_width": 36 },
@@ -89,7 +93,9 @@ TEST(Gbuffer, KeepsVelocityApartFromJitter) {
     int compared = 0;
     for (int y = 0; y < 54; ++y)
         for (int x = 0; x < 96; ++x) {
-            if (still.images.at("object_id").uint_at(x, y, 0) != jittered.images.at("object_id").uint_at(x, y, 0)) continue;
+            if (still.images.at("object_id").uint_at(x, y, 0) !=
+                jittered.images.at("object_id").uint_at(x, y, 0))
+                continue;
             ASSERT_NEAR(a.at(x, y, 0), b.at(x, y, 0), 1e-3);
             ASSERT_NEAR(a.at(x, y, 1), b.at(x, y, 1), 1e-3);
             ++compared;
@@ -121,8 +127,9 @@ TEST_P(EveryScene, HasColorThatIsTheSumOfItsParts) {
     double worst = 0;
     for (int y = 0; y < 135; ++y)
         for (int x = 0; x < 240; ++x) {
-            const dvec3 sum = rgb(capture.images.at("albedo"), x, y) * rgb(capture.images.at("irradiance"), x, y) +
-                              rgb(capture.images.at("specular"), x, y) + rgb(capture.images.at("emission"), x, y);
+            const dvec3 sum =
+                rgb(capture.images.at("albedo"), x, y) * rgb(capture.images.at("irradiance"), x, y) +
+                rgb(capture.images.at("specular"), x, y) + rgb(capture.images.at("emission"), x, y);
             const dvec3 color = rgb(capture.images.at("color"), x, y);
             for (int c = 0; c < 3; ++c)
                 worst = std::max(worst, std::abs(color[c] - sum[c]) / std::max(1.0, std::abs(color[c])));
@@ -130,25 +137,29 @@ TEST_P(EveryScene, HasColorThatIsTheSumOfItsParts) {
     EXPECT_LT(worst, 1e-5);
 }
 
-/// Warps the frame before by the velocity, and asks by how much the point that comes is another one: both are brought to
-/// their object's space, with matrices that the renderer's own projection has no part in.
+/// Warps the frame before by the velocity, and asks by how much the point that comes is another one: both are
+/// brought to their object's space, with matrices that the renderer's own projection has no part in.
 TEST_P(EveryScene, HasVelocityThatFindsThePointInTheFrameBefore) {
     constexpr int kWidth = 480, kHeight = 270;
     const SceneRenderer renderer(scene_, kWidth, kHeight, 2);
     const int frame = scene_.frames.size() > 1 ? middle_ : 1;
     const Capture now = renderer.render_capture(frame), then = renderer.render_capture(frame - 1);
-    const SceneState state = state_at(scene_, frame, frame), state_then = state_at(scene_, frame - 1, frame - 1);
+    const SceneState state = state_at(scene_, frame, frame),
+                     state_then = state_at(scene_, frame - 1, frame - 1);
     std::map<unsigned, std::vector<int>> objects_of;
     for (std::size_t i = 0; i < scene_.objects.size(); ++i)
-        if (scene_.objects[i].shape.kind != ShapeKind::group) objects_of[scene_.objects[i].id].push_back(int(i));
+        if (scene_.objects[i].shape.kind != ShapeKind::group)
+            objects_of[scene_.objects[i].id].push_back(int(i));
     const CameraMatrix& view_then = *then.header.camera.camera_from_world;
-    const double px_per_tangent = scene_.camera.focal_length_mm.at(frame) * kWidth / scene_.camera.sensor_width_mm;
+    const double px_per_tangent =
+        scene_.camera.focal_length_mm.at(frame) * kWidth / scene_.camera.sensor_width_mm;
     int visible = 0, off = 0;
     for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x) {
             const unsigned id = now.images.at("object_id").uint_at(x, y, 0);
             if (id == 0) continue;
-            const dvec2 at(x - double(now.images.at("velocity").at(x, y, 0)), y - double(now.images.at("velocity").at(x, y, 1)));
+            const dvec2 at(x - double(now.images.at("velocity").at(x, y, 0)),
+                           y - double(now.images.at("velocity").at(x, y, 1)));
             const int x0 = int(std::floor(at.x)), y0 = int(std::floor(at.y));
             if (x0 < 0 || y0 < 0 || x0 + 1 >= kWidth || y0 + 1 >= kHeight) continue;
             const dvec2 part = at - dvec2(x0, y0);
@@ -161,7 +172,8 @@ TEST_P(EveryScene, HasVelocityThatFindsThePointInTheFrameBefore) {
                 const int cx = x0 + (k & 1), cy = y0 + (k >> 1);
                 whole &= then.images.at("object_id").uint_at(cx, cy, 0) == id;
                 whole &= glm::distance(corner, rgb(then.images.at("position"), cx, cy)) < apart_m;
-                found += ((k & 1) ? part.x : 1 - part.x) * ((k >> 1) ? part.y : 1 - part.y) * rgb(then.images.at("position"), cx, cy);
+                found += ((k & 1) ? part.x : 1 - part.x) * ((k >> 1) ? part.y : 1 - part.y) *
+                         rgb(then.images.at("position"), cx, cy);
             }
             if (!whole) continue;
             double nearest_px = 1e9;
@@ -169,15 +181,20 @@ TEST_P(EveryScene, HasVelocityThatFindsThePointInTheFrameBefore) {
             for (const int object : objects_of[id]) {
                 const dvec3 local = local_of(state, object, rgb(now.images.at("position"), x, y));
                 const dvec3 was(state_then.world_from_object[std::size_t(object)] * dvec4(local, 1));
-                const double depth = -(view_then[8] * was.x + view_then[9] * was.y + view_then[10] * was.z + view_then[11]);
-                is_seen |= std::abs(depth - double(then.images.at("depth").at(int(std::lround(at.x)), int(std::lround(at.y)), 0))) < 0.01 * depth;
+                const double depth =
+                    -(view_then[8] * was.x + view_then[9] * was.y + view_then[10] * was.z + view_then[11]);
+                is_seen |=
+                    std::abs(depth - double(then.images.at("depth").at(
+                                         int(std::lround(at.x)), int(std::lround(at.y)), 0))) < 0.01 * depth;
                 nearest_px = std::min(nearest_px, glm::distance(was, found) / depth * px_per_tangent);
             }
             if (!is_seen) continue;
             ++visible;
             off += nearest_px > 0.5;
         }
-    if (GetParam() != "point_grid" && GetParam() != "bats") { EXPECT_GT(visible, 20000); }
+    if (GetParam() != "point_grid" && GetParam() != "bats") {
+        EXPECT_GT(visible, 20000);
+    }
     RecordProperty("visible_px", visible);
     RecordProperty("off_px", off);
     EXPECT_LE(off, 0.01 * visible) << off << " of " << visible;
@@ -194,8 +211,11 @@ TEST(Gbuffer, HasTheSameBitsWhateverTheThreads) {
         for (const auto& [role, image] : a.images) {
             const Image& other = b.images.at(role);
             if (image.type() == ComponentType::float32)
-                ASSERT_TRUE(std::equal(image.floats().begin(), image.floats().end(), other.floats().begin())) << role;
-            else ASSERT_TRUE(std::equal(image.uints().begin(), image.uints().end(), other.uints().begin())) << role;
+                ASSERT_TRUE(std::equal(image.floats().begin(), image.floats().end(), other.floats().begin()))
+                    << role;
+            else
+                ASSERT_TRUE(std::equal(image.uints().begin(), image.uints().end(), other.uints().begin()))
+                    << role;
         }
     }
 }

@@ -1,4 +1,5 @@
-// Scattered light against closed forms (reference: Christensen and Burley 2015; the line spread of the profile).
+// Scattered light against closed forms (reference: Christensen and Burley 2015; the line spread of the
+// profile).
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -25,7 +26,8 @@ double edge_response(double x) {
     const double end = std::sqrt(std::abs(x));
     for (int i = 0; i < kSteps; ++i) {
         const double t = (i + 0.5) / kSteps * end;
-        sum += (std::cyl_bessel_k(0, t * t) + std::cyl_bessel_k(0, t * t / 3)) / (4 * kPi) * 2 * t * end / kSteps;
+        sum += (std::cyl_bessel_k(0, t * t) + std::cyl_bessel_k(0, t * t / 3)) / (4 * kPi) * 2 * t * end /
+               kSteps;
     }
     return 0.5 + std::copysign(sum, x);
 }
@@ -96,7 +98,8 @@ TEST(ScatteringTruth, LeavesEvenLightAndWhatDoesNotScatterAsTheyAre) {
             "materials": {{ "wax": {{ "albedo": 0.8, "scattering_profile": {{ "type": "burley", "d_mm": [90, 30, 10] }} }} }},
             "meshes": {{ "waves": {{ "height_field": {{ "size": [3, 3], "segments": 32,
                          "waves": [ {{ "amplitude": 0.1, "cycles": [0.7, 0.3] }} ] }} }} }},
-            "objects": [ {{ {}, "material": "wax" }} ] }})", shape));
+            "objects": [ {{ {}, "material": "wax" }} ] }})",
+                                                 shape));
         const ScatteringTruth truth = SceneRenderer(scene, 48, 27, 2).render_scattering(1, {256, false});
         for (int x = 0; x < 48; ++x) {
             const float light = truth.irradiance.at(x, 13, 0);
@@ -111,7 +114,8 @@ struct GridSum {
     dvec3 light{0}, weight{0};
     void add(const dvec3& at, const dvec3& position, double area_m2, double irradiance, const dvec3& d_m) {
         for (int c = 0; c < 3; ++c) {
-            const double share = burley_density(std::max(glm::distance(at, position), 1e-9), d_m[c]) * area_m2;
+            const double share =
+                burley_density(std::max(glm::distance(at, position), 1e-9), d_m[c]) * area_m2;
             light[c] += share * irradiance;
             weight[c] += share;
         }
@@ -120,7 +124,8 @@ struct GridSum {
 };
 
 TEST(ScatteringTruth, OnASphereIsTheSurfaceIntegral) {
-    const Scene scene = scene_of(R"({ "aftershade": 1, "size": [41, 41], "camera": { "position": [0, 0, 6], "focal_length": 90 },
+    const Scene scene = scene_of(
+        R"({ "aftershade": 1, "size": [41, 41], "camera": { "position": [0, 0, 6], "focal_length": 90 },
         "materials": { "wax": { "albedo": 0.8, "specular": 0, "scattering_profile": { "type": "burley", "d_mm": [200, 100, 50] } } },
         "objects": [ { "shape": "sphere", "radius": 1, "material": "wax" } ],
         "lights": [ { "type": "directional", "position": [1, 0, 0], "intensity": 3.14159265 } ] })");
@@ -136,8 +141,10 @@ TEST(ScatteringTruth, OnASphereIsTheSurfaceIntegral) {
             const double polar = (i + 0.5) / kRows * kPi;
             for (int j = 0; j < 2 * kRows; ++j) {
                 const double round = (j + 0.5) / kRows * kPi;
-                const dvec3 p(std::sin(polar) * std::cos(round), std::cos(polar), std::sin(polar) * std::sin(round));
-                sum.add(at, p, std::sin(polar) * kPi / kRows * kPi / kRows, std::max(p.x, 0.0), {0.2, 0.1, 0.05});
+                const dvec3 p(std::sin(polar) * std::cos(round), std::cos(polar),
+                              std::sin(polar) * std::sin(round));
+                sum.add(at, p, std::sin(polar) * kPi / kRows * kPi / kRows, std::max(p.x, 0.0),
+                        {0.2, 0.1, 0.05});
             }
         }
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(truth.irradiance.at(x, 20, c), sum.mean()[c], 0.005) << x;
@@ -145,7 +152,8 @@ TEST(ScatteringTruth, OnASphereIsTheSurfaceIntegral) {
 }
 
 TEST(ScatteringTruth, OnAHeightFieldIsTheSurfaceIntegral) {
-    const Scene scene = scene_of(R"({ "aftershade": 1, "size": [41, 41], "camera": { "position": [0, 0, 6], "focal_length": 60 },
+    const Scene scene = scene_of(
+        R"({ "aftershade": 1, "size": [41, 41], "camera": { "position": [0, 0, 6], "focal_length": 60 },
         "materials": { "wax": { "albedo": 0.8, "specular": 0, "scattering_profile": { "type": "burley", "d_mm": [120, 80, 50] } } },
         "meshes": { "waves": { "height_field": { "size": [6, 6], "segments": 256,
                     "waves": [ { "amplitude": 0.12, "cycles": [0.8, 0] }, { "amplitude": 0.05, "cycles": [0.3, 1.1], "phase": 40 } ] } } },
@@ -174,7 +182,8 @@ TEST(ScatteringTruth, OnAHeightFieldIsTheSurfaceIntegral) {
                 sum.add(at, {px, py, slope.z}, stretch * 36.0 / kCells / kCells,
                         std::max(glm::dot(normal, toward) / stretch, 0.0), {0.12, 0.08, 0.05});
             }
-        for (int c = 0; c < 3; ++c) EXPECT_NEAR(truth.irradiance.at(x, 20, c), sum.mean()[c], 0.01) << x << " " << c;
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(truth.irradiance.at(x, 20, c), sum.mean()[c], 0.01) << x << " " << c;
     }
 }
 

@@ -26,13 +26,16 @@ inline Scene scene_of(const std::string& text) {
     return std::move(*scene);
 }
 
-inline std::filesystem::path scenes_folder() { return std::filesystem::path(AFTERSHADE_SOURCE_DIR) / "scenes"; }
+inline std::filesystem::path scenes_folder() {
+    return std::filesystem::path(AFTERSHADE_SOURCE_DIR) / "scenes";
+}
 
 /// The ids of the shipped scenes, sorted.
 inline std::vector<std::string> shipped_scenes() {
     std::vector<std::string> ids;
     for (const auto& entry : std::filesystem::directory_iterator(scenes_folder()))
-        if (std::filesystem::exists(entry.path() / "scene.json")) ids.push_back(entry.path().filename().string());
+        if (std::filesystem::exists(entry.path() / "scene.json"))
+            ids.push_back(entry.path().filename().string());
     std::sort(ids.begin(), ids.end());
     return ids;
 }

@@ -15,7 +15,8 @@ using glm::dvec3;
 
 /// What the picture shows at a pixel, the texture has where the surface's uv say.
 TEST(TextureSpace, HasTheLightThatThePictureShows) {
-    const Scene scene = scene_of(R"({ "aftershade": 1, "size": [160, 90], "camera": { "position": [1, 1.5, 5] }, "ambient": 0.1,
+    const Scene scene = scene_of(
+        R"({ "aftershade": 1, "size": [160, 90], "camera": { "position": [1, 1.5, 5] }, "ambient": 0.1,
         "materials": { "clay": { "albedo": 0.6 } },
         "objects": [ { "name": "ball", "shape": "sphere", "radius": 1, "material": "clay", "rotation": [10, 40, 0] },
                      { "shape": "plane", "size": [6, 4], "position": [0, 0, -1.5], "material": "clay" } ],
@@ -31,9 +32,12 @@ TEST(TextureSpace, HasTheLightThatThePictureShows) {
             for (int c = 0; c < 3; ++c) position[c] = picture.images.at("position").at(x, y, c);
             const dvec3 local(glm::inverse(state.world_from_object[0]) * glm::dvec4(position, 1));
             const double turn = std::atan2(local.z, local.x) / (2 * std::acos(-1.0));
-            const int u = int((turn - std::floor(turn)) * 512), v = int(std::acos(local.y) / std::acos(-1.0) * 512);
-            ASSERT_NEAR(texture.images.at("irradiance").at(u, v, 0), picture.images.at("irradiance").at(x, y, 0), 0.01);
-            for (int c = 0; c < 3; ++c) ASSERT_NEAR(texture.images.at("position").at(u, v, c), position[c], 0.02);
+            const int u = int((turn - std::floor(turn)) * 512),
+                      v = int(std::acos(local.y) / std::acos(-1.0) * 512);
+            ASSERT_NEAR(texture.images.at("irradiance").at(u, v, 0),
+                        picture.images.at("irradiance").at(x, y, 0), 0.01);
+            for (int c = 0; c < 3; ++c)
+                ASSERT_NEAR(texture.images.at("position").at(u, v, c), position[c], 0.02);
             ++compared;
         }
     EXPECT_GT(compared, 1000);
@@ -43,10 +47,12 @@ TEST(TextureSpace, HasTheLightThatThePictureShows) {
 
 /// The renderer's uv of each mapped point is the texel that it came from.
 TEST(TextureSpace, AgreesWithTheUvThatCheckersUse) {
-    for (const ShapeKind kind : {ShapeKind::plane, ShapeKind::disk, ShapeKind::sphere, ShapeKind::box, ShapeKind::cylinder}) {
+    for (const ShapeKind kind :
+         {ShapeKind::plane, ShapeKind::disk, ShapeKind::sphere, ShapeKind::box, ShapeKind::cylinder}) {
         Shape shape;
         shape.kind = kind;
-        shape.half_size_m = kind == ShapeKind::sphere || kind == ShapeKind::disk ? dvec3(0.7) : dvec3(0.7, 0.4, 0.7);
+        shape.half_size_m =
+            kind == ShapeKind::sphere || kind == ShapeKind::disk ? dvec3(0.7) : dvec3(0.7, 0.4, 0.7);
         constexpr int kSide = 48;
         const SurfaceMap map = make_surface_map(shape, nullptr, kSide);
         int covered = 0;

@@ -38,7 +38,8 @@ Scene bright_point(const Lens& lens) {
                      "f_number": 0.12, "blades": {}, "rotation": {} }},
         "materials": {{ "lamp": {{ "albedo": 0, "specular": 0, "emission": 100 }} }},
         "objects": [ {{ "shape": "disk", "radius": {}, "position": [0, 0, {}], "material": "lamp" }} ] }})",
-                                lens.blades, lens.rotation_deg, 2.5 * lens.depth_m / px_per_tangent, -lens.depth_m));
+                                lens.blades, lens.rotation_deg, 2.5 * lens.depth_m / px_per_tangent,
+                                -lens.depth_m));
 }
 
 TEST_P(LensTruth, ShowsThePolygonOfTheApertureInTheSizeOfThePinholeModel) {
@@ -55,8 +56,8 @@ TEST_P(LensTruth, ShowsThePolygonOfTheApertureInTheSizeOfThePinholeModel) {
     const double turned_deg = lens.rotation_deg + (lens.depth_m < 4 ? 180 : 0);
     const Image expected = test::coverage(test::regular_polygon(lens.blades, radius_px, turned_deg), kSide_px,
                                           kSide_px, kMiddle, kMiddle);
-    // The light of the whole picture over the polygon's area; and its second moment, that of a regular polygon,
-    // R^2 (2 + cos(2 pi / n)) / 6, and that of the disk, r^2 / 2, together.
+    // The light of the whole picture over the polygon's area; and its second moment, that of a regular
+    // polygon, R^2 (2 + cos(2 pi / n)) / 6, and that of the disk, r^2 / 2, together.
     double energy = 0, moment = 0;
     for (int y = 0; y < kSide_px; ++y)
         for (int x = 0; x < kSide_px; ++x) {
@@ -74,8 +75,8 @@ TEST_P(LensTruth, ShowsThePolygonOfTheApertureInTheSizeOfThePinholeModel) {
 }
 
 INSTANTIATE_TEST_SUITE_P(BladesNearAndFar, LensTruth,
-                         testing::Values(Lens{3, 2, 0}, Lens{3, 80, 0}, Lens{5, 2, 0}, Lens{5, 80, 20}, Lens{6, 2, 10},
-                                         Lens{6, 80, 0}, Lens{7, 2, -15}, Lens{7, 80, 0}));
+                         testing::Values(Lens{3, 2, 0}, Lens{3, 80, 0}, Lens{5, 2, 0}, Lens{5, 80, 20},
+                                         Lens{6, 2, 10}, Lens{6, 80, 0}, Lens{7, 2, -15}, Lens{7, 80, 0}));
 
 TEST(LensTruth, LeavesThePlaneOfFocusAsItIs) {
     const Scene scene = scene_of(R"({ "aftershade": 1, "size": [96, 54],
@@ -89,7 +90,8 @@ TEST(LensTruth, LeavesThePlaneOfFocusAsItIs) {
     settings.kinds.lens = true;
     settings.samples = 64;
     const Image truth = renderer.render_truth(1, settings);
-    for (std::size_t i = 0; i < sharp.floats().size(); ++i) ASSERT_NEAR(sharp.floats()[i], truth.floats()[i], 1e-6);
+    for (std::size_t i = 0; i < sharp.floats().size(); ++i)
+        ASSERT_NEAR(sharp.floats()[i], truth.floats()[i], 1e-6);
 }
 
 const char* const kMovingLamp = R"({{ "aftershade": 1, "size": [200, 8],
@@ -99,7 +101,8 @@ const char* const kMovingLamp = R"({{ "aftershade": 1, "size": [200, 8],
     "objects": [ {{ "shape": "plane", "size": [4, 20], "material": "lamp",
                    "position": {{ "keys": {{ "0": [-4, 0, 0], "10": [4, 0, 0] }} }} }} ] }})";
 
-/// Part of [open, close] in which |pixel - middle(t)| is below half the width; 100 px per unit of tangent, 10 m away.
+/// Part of [open, close] in which |pixel - middle(t)| is below half the width; 100 px per unit of tangent, 10
+/// m away.
 double exposed(double pixel, double open, double close) {
     const auto middle_px = [](double time) { return 100 + (-4 + 0.8 * time) * 10; };
     const double from = (pixel - 20 - middle_px(0)) / 8, to = (pixel + 20 - middle_px(0)) / 8;
@@ -148,7 +151,8 @@ TEST(Truth, OfThePixelsAreaIsItsCoverage) {
         const Image truth = SceneRenderer(scene, 121, 121, 2).render_truth(1, settings);
         double worst = 0;
         for (int y = 0; y < 121; ++y)
-            for (int x = 0; x < 121; ++x) worst = std::max(worst, std::abs(double(truth.at(x, y, 0) - expected.at(x, y, 0))));
+            for (int x = 0; x < 121; ++x)
+                worst = std::max(worst, std::abs(double(truth.at(x, y, 0) - expected.at(x, y, 0))));
         EXPECT_LT(worst, 0.02);
     }
 }
@@ -181,7 +185,8 @@ TEST(Truth, OfSubframesAveragedIsTheShuttersOwn) {
     const Image truth = renderer.render_truth(4, settings);
     std::vector<double> sum(truth.floats().size());
     for (int s = 0; s < 16; ++s) {
-        const Image part = renderer.render_capture(4, exposure_of(scene.camera, 4).middle(s, 16)).images.at("color");
+        const Image part =
+            renderer.render_capture(4, exposure_of(scene.camera, 4).middle(s, 16)).images.at("color");
         for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += double(part.floats()[i]) / 16;
     }
     for (std::size_t i = 0; i < sum.size(); ++i) ASSERT_NEAR(truth.floats()[i], sum[i], 1e-5);

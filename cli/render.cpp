@@ -1,0 +1,209 @@
+#include <algorithm>
+#include <iostream>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/interrupt.h"
+#include "cli/verbs.h"
+#include "framework/core/data_path.h"
+#include "framework/image/frame_range.h"
+#include "framework/scene/job.h"
+
+namespace aftershade::cli {
+
+namespace {
+
+struct RenderArguments {
+    std::string scene;
+    std::string folder;
+    std::string frames;
+    std::string size;
+    std::vector<std::string> truths;
+    std::string method = "accumulation";
+    int samples = 0;
+    std::string surface = "visible";
+    std::string jitter = "none";
+    std::string space = "screen";
+    std::string object;
+    int texture_size = 512;
+    std::string profile = "native";
+    std::vector<std::string> profile_paths;
+    bool only_truth = false;
+    bool json = false;
+    bool quiet = false;
+    scene::Job job;
+};
+
+void add_options(CLI::App& app, RenderArguments& options) {
+    app.add_option("scene", options.scene, "scene.json, or its folder")->required();
+    app.add_option("-o,--output", options.folder, "Folder of the capture; is made where it is not there")
+        ->required();
+    app.add_option("--frames", options.frames, "Frames to render, such as 1-24 (default: the scene's)");
+    app.add_option("--size", options.size, "WIDTHxHEIGHT in px (default: the scene's)");
+    app.add_option("--truth", options.truths,
+                   "The true picture too: lens, shutter, antialias, joined by +, or scattering; repeatable")
+        ->allow_extra_args(false);
+    app.add_option("--truth-method", options.method,
+                   "accumulation (one set of samples for all pixels) or interleaved (each its own)")
+        ->check(CLI::IsMember({"accumulation", "interleaved"}))
+        ->capture_default_str();
+    app.add_option("--samples", options.samples,
+                   "Of each truth, 1 to 65536 (default: 256; scattering: 1024)")
+        ->check(CLI::Range(1, scene::kMaxSamples));
+    app.add_option("--surface", options.surface,
+                   "scattering: light from the visible surface, or from the whole object")
+        ->check(CLI::IsMember({"visible", "whole"}))
+        ->capture_default_str();
+    app.add_flag("--truth-only", options.only_truth, "Write no capture");
+    app.add_option("--subframes", options.job.subframes, "Captures over each frame's exposure")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
+    app.add_option("--jitter", options.jitter, "Moves the pixels' samples: none, or halton (16 phases)")
+        ->check(CLI::IsMember({"none", "halton"}))
+        ->capture_default_str();
+    app.add_option("--space", options.space, "screen, or uv: one object over its texture coordinates")
+        ->check(CLI::IsMember({"screen", "uv"}))
+        ->capture_default_str();
+    app.add_option("--object", options.object, "uv: the object's name");
+    app.add_option("--texture-size", options.texture_size, "uv: px of each side")
+        ->check(CLI::Range(1, 8192))
+        ->capture_default_str();
+    app.add_option("--profile", options.profile, "Whose conventions the files keep: native, blender, unreal, nuke, ...")
+        ->capture_default_str();
+    app.add_option("--profile-path", options.profile_paths, "Folders of further profiles; repeatable")
+        ->allow_extra_args(false);
+    app.add_option("--compression", options.job.compression, "none, rle, zips, zip or piz")
+        ->check(CLI::IsMember({"none", "rle", "zips", "zip", "piz"}))
+        ->capture_default_str();
+    app.add_option("--seed", options.job.seed, "Another set of samples");
+    app.add_flag("--json", options.json, "A report on stdout");
+    app.add_flag("--quiet", options.quiet, "No line for each frame");
+}
+
+Place place_of(const std::string& option, const std::string& value) { return {option + " " + value, 0, 0}; }
+
+void read_size(const std::string& text, scene::Job& job, Diagnostics& diagnostics) {
+    const std::size_t x = text.find('x');
+    const auto side = [&](const std::string& part) {
+        const auto range = parse_frame_range(part);
+        return range && range->size() == 1 ? range->front() : 0;
+    };
+    job.width_px = x == std::string::npos ? 0 : side(text.substr(0, x));
+    job.height_px = x == std::string::npos ? 0 : side(text.substr(x + 1));
+    if (std::min(job.width_px, job.height_px) < 1 || std::max(job.width_px, job.height_px) > 16384)
+        diagnostics.error(place_of("--size", text), "a size is WIDTHxHEIGHT, sides from 1 to 16384 px");
+}
+
+void read_texture_space(const RenderArguments& options, const scene::Scene& scene, scene::Job& job,
+                        Diagnostics& diagnostics) {
+    if (options.space != "uv") {
+        if (!options.object.empty())
+            diagnostics.error(place_of("--object", options.object), "is for --space uv");
+        return;
+    }
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+        const scene::Object& object = scene.objects[i];
+        if (object.name.empty() || object.shape.kind == scene::ShapeKind::group) continue;
+        names.push_back(object.name);
+        if (object.name == options.object) job.texture_object = int(i);
+    }
+    if (job.texture_object >= 0) return;
+    diagnostics.error(place_of("--object", options.object),
+                      names.empty() ? "the scene has no object with a name"
+                                    : "--space uv needs the name of an object: " + list_of_names(names) +
+                                          did_you_mean(options.object, names));
+}
+
+/// The rest of the job, from words.
+void complete_job(const RenderArguments& options, const scene::Scene& scene, scene::Job& job,
+                  Diagnostics& diagnostics) {
+    job.folder = options.folder;
+    job.frames = scene.frames;
+    job.width_px = scene.width_px;
+    job.height_px = scene.height_px;
+    if (!options.size.empty()) read_size(options.size, job, diagnostics);
+    if (!options.frames.empty()) {
+        const auto frames = parse_frame_range(options.frames);
+        if (frames && !frames->empty()) job.frames = *frames;
+        else diagnostics.error(place_of("--frames", options.frames), "is not a range such as 1-100x2,120");
+    }
+    for (const std::string& text : options.truths) {
+        if (const auto truth = scene::parse_truth(text)) job.truths.push_back(*truth);
+        else
+            diagnostics.error(place_of("--truth", text),
+                              "is neither scattering nor lens, shutter and antialias joined by +");
+    }
+    if (options.samples > 0) job.samples = job.scattering_samples = options.samples;
+    job.method = options.method == "interleaved" ? scene::TruthMethod::interleaved
+                                                 : scene::TruthMethod::accumulation;
+    job.visible_only = options.surface == "visible";
+    job.captures = !options.only_truth;
+    job.jitter = options.jitter == "halton";
+    job.texture_side_px = options.texture_size;
+    job.threads = int(std::max(std::thread::hardware_concurrency(), 1u));
+    read_texture_space(options, scene, job, diagnostics);
+    scene::check_job(scene, job, diagnostics);
+}
+
+std::vector<Profile> find_profiles(const RenderArguments& options, Diagnostics& diagnostics) {
+    std::vector<std::filesystem::path> folders(options.profile_paths.begin(), options.profile_paths.end());
+    folders.push_back(data_path() / "profiles");
+    return read_profiles(folders, diagnostics);
+}
+
+void print_report(const RenderArguments& options, const scene::JobReport& report) {
+    if (options.json) {
+        nlohmann::ordered_json json = {{"frames", report.frames},
+                                       {"render_s", report.render_s},
+                                       {"total_s", report.total_s},
+                                       {"roles_left_out", report.roles_left_out}};
+        json["files"] = nlohmann::json::array();
+        for (const auto& file : report.files) json["files"].push_back(file.string());
+        std::cout << json.dump(2) << "\n";
+    } else {
+        for (const auto& file : report.files) std::cout << file.string() << "\n";
+    }
+    if (!report.roles_left_out.empty())
+        std::cerr << "the profile '" << options.profile << "' has no way to store "
+                  << list_of_names(report.roles_left_out, "and") << "\n";
+    if (!options.quiet)
+        std::cerr << report.frames << " frames in " << report.total_s << " s, of which rendering "
+                  << report.render_s << " s\n";
+}
+
+ExitCode render(RenderArguments options) {
+    const std::atomic<bool>& stop = watch_for_interrupt();
+    Diagnostics diagnostics;
+    const std::vector<Profile> profiles = find_profiles(options, diagnostics);
+    std::vector<std::string> ids;
+    for (const Profile& profile : profiles) ids.push_back(profile.id);
+    const auto profile = std::find_if(profiles.begin(), profiles.end(),
+                                      [&](const Profile& one) { return one.id == options.profile; });
+    if (profile == profiles.end())
+        diagnostics.error(place_of("--profile", options.profile),
+                          "there are " + list_of_names(ids, "and") + did_you_mean(options.profile, ids));
+    std::filesystem::path path = options.scene;
+    if (std::filesystem::is_directory(path)) path /= "scene.json";
+    const auto scene = scene::read_scene(path, diagnostics);
+    if (scene) complete_job(options, *scene, options.job, diagnostics);
+    diagnostics.print(std::cerr);
+    if (diagnostics.has_errors()) return ExitCode::usage;
+    const scene::JobReport report =
+        scene::run_job(*scene, *profile, options.job, stop, [&](int frame) {
+            if (!options.quiet) std::cerr << "frame " << frame << "\n";
+        });
+    print_report(options, report);
+    return stop ? ExitCode::interrupted : ExitCode::done;
+}
+
+}  // namespace
+
+Verb add_render(CLI::App& app) {
+    auto options = std::make_shared<RenderArguments>();
+    add_options(app, *options);
+    return [options] { return render(*options); };
+}
+
+}  // namespace aftershade::cli

@@ -1,0 +1,129 @@
+#include "framework/image/capture_writer.h"
+
+#include <algorithm>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "framework/image/encode_role.h"
+#include "framework/image/output_stream.h"
+#include "framework/image/role.h"
+
+namespace aftershade {
+
+namespace {
+
+/// The first alternative of "a|b?", with the layer's name put in.
+std::string channel_name(std::string pattern) {
+    pattern = pattern.substr(0, pattern.find('|'));
+    if (pattern.ends_with('?')) pattern.pop_back();
+    const std::string layer = "{layer}";
+    if (const std::size_t at = pattern.find(layer); at != std::string::npos)
+        pattern.replace(at, layer.size(), "ViewLayer");
+    return pattern;
+}
+
+FoundChannels channel_names(const RoleDecoding& decoding, int channels) {
+    FoundChannels names;
+    for (const auto& layer : decoding.layers) {
+        names.emplace_back();
+        for (std::size_t c = 0; c < std::min(layer.size(), std::size_t(channels)); ++c)
+            names.back().push_back(channel_name(layer[c]));
+    }
+    return names;
+}
+
+std::vector<float> row_vector_matrix(const CameraMatrix& matrix) {
+    std::vector<float> stored(16);
+    for (std::size_t row = 0; row < 4; ++row)
+        for (std::size_t column = 0; column < 4; ++column)
+            stored[column * 4 + row] = float(matrix[row * 4 + column]);
+    return stored;
+}
+
+void add_camera(const Camera& camera, std::map<std::string, ExrValue>& attributes) {
+    for (const auto& [field, value] : camera.values())
+        attributes["aftershade/camera/" + field] = float(value);
+    if (!camera.lens_model.empty()) attributes["aftershade/camera/lens_model"] = camera.lens_model;
+    const auto add = [&](const char* field, const char* attribute) {
+        if (const auto value = camera.get(field)) attributes[attribute] = float(*value);
+    };
+    // OpenEXR's standard attributes, ImfStandardAttributes.h.
+    add("focus_distance", "focus");
+    add("f_number", "aperture");
+    add("focal_length", "nominalFocalLength");
+    if (camera.camera_from_world) attributes["worldToCamera"] = row_vector_matrix(*camera.camera_from_world);
+    if (camera.ndc_from_world) attributes["worldToNDC"] = row_vector_matrix(*camera.ndc_from_world);
+    if (camera.jitter_px)
+        attributes["aftershade/jitter_px"] =
+            std::vector<float>{float((*camera.jitter_px)[0]), float((*camera.jitter_px)[1])};
+}
+
+/// What makes detect_profile() choose the profile, where an attribute does.
+void add_mark(const Profile& profile, std::map<std::string, ExrValue>& attributes) {
+    if (profile.detect_attributes.empty()) return;
+    std::string name = profile.detect_attributes.front();
+    std::replace(name.begin(), name.end(), '*', '_');
+    attributes.emplace(name, std::string("written by Aftershade"));
+}
+
+}  // namespace
+
+std::vector<std::string> write_capture(const std::filesystem::path& path, const Capture& capture,
+                                       const Profile& profile, const CaptureWriteOptions& options) {
+    const CaptureHeader& header = capture.header;
+    const auto color = capture.images.find("color");
+    const DecodeContext context{path.string(), header.data_window, header.display_window, header.camera,
+                                color == capture.images.end() ? nullptr : &color->second};
+    std::vector<std::string> left_out;
+    std::map<std::string, Image> stored;
+    for (const auto& [role, image] : capture.images) {
+        const auto found = profile.roles.find(role);
+        if (found == profile.roles.end() || found->second.layers.empty()) {
+            left_out.push_back(role);
+            continue;
+        }
+        // A producer that is not ours stores ids as floats, as every one of them does.
+        stored.merge(encode_role(role, image, found->second, channel_names(found->second, image.channels()),
+                                 profile.id == "native", context));
+    }
+    std::vector<ExrOutputChannel> channels;
+    for (const auto& [name, image] : stored)
+        channels.push_back({name, image.type() == ComponentType::uint32 ? PixelType::uint32 : options.float_type,
+                            &image, 0});
+    ExrWriteOptions write;
+    write.data_window = header.data_window;
+    write.display_window = header.display_window;
+    write.pixel_aspect = header.pixel_aspect;
+    write.compression = options.compression;
+    write.attributes = options.attributes;
+    add_mark(profile, write.attributes);
+    add_camera(header.camera, write.attributes);
+    if (!header.lights.empty()) write.attributes["aftershade/lights"] = format_lights(header.lights);
+    if (options.fps > 0) write.attributes["aftershade/fps"] = float(options.fps);
+    write_exr(path, channels, write);
+    return left_out;
+}
+
+void write_capture_document(const std::filesystem::path& path, const CaptureDocument& document) {
+    nlohmann::ordered_json json = {{"aftershade", 1}, {"frames", document.frames}};
+    std::string range;
+    for (const int frame : document.frame_numbers) range += (range.empty() ? "" : ",") + std::to_string(frame);
+    const auto& numbers = document.frame_numbers;
+    const bool dense = numbers.size() > 2 && numbers.back() - numbers.front() + 1 == int(numbers.size()) &&
+                       std::is_sorted(numbers.begin(), numbers.end());
+    json["range"] = dense ? std::to_string(numbers.front()) + "-" + std::to_string(numbers.back()) : range;
+    json["fps"] = document.fps;
+    json["profile"] = document.profile;
+    if (!document.camera.empty()) json["camera"] = document.camera;
+    if (!document.lens_model.empty()) json["camera"]["lens_model"] = document.lens_model;
+    if (!document.lights.empty()) json["lights"] = nlohmann::ordered_json::parse(format_lights(document.lights));
+    json["cuts"] = document.cuts;
+    json["subframes"] = document.subframes;
+    const std::string text = json.dump(2) + "\n";
+    OutputStream out(path);
+    out.write(text.data(), text.size());
+    out.commit();
+}
+
+}  // namespace aftershade

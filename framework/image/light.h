@@ -1,0 +1,36 @@
+// Lights of a capture, for effects that need to know them: capture.json's "lights", or the attribute
+// aftershade/lights.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "framework/core/diagnostics.h"
+#include "framework/core/document.h"
+
+namespace aftershade {
+
+struct CaptureLight {
+    enum class Kind { point, directional, area };
+
+    Kind kind = Kind::point;
+    std::string name;
+    std::array<double, 3> position_m{};    ///< world; of an area light its centre; not of a directional one
+    std::array<double, 3> direction{};     ///< unit length, the way the light shines; not of a point
+    std::array<double, 2> size_m{};        ///< of an area light
+    std::array<double, 3> intensity{};     ///< RGB: W/sr of a point, W/m^2 across a directional light,
+                                           ///< W/(m^2 sr) of an area light
+    bool operator==(const CaptureLight&) const = default;
+};
+
+/// "point", "directional", "area".
+const std::vector<std::string>& light_kind_names();
+
+/// An array of {"type": "point", "name": "key", "position": [x, y, z], "direction": [x, y, z],
+/// "size": [w, h], "intensity": [r, g, b]}; what a type does not have is an unknown key.
+std::vector<CaptureLight> parse_lights(const Node& node, Diagnostics& diagnostics);
+/// One line of JSON that parse_lights reads back as it was.
+std::string format_lights(const std::vector<CaptureLight>& lights);
+
+}  // namespace aftershade

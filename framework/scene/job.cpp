@@ -1,0 +1,248 @@
+#include "framework/scene/job.h"
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <fmt/format.h>
+#include <future>
+#include <set>
+#include <utility>
+
+#include "framework/core/error.h"
+#include "framework/core/units.h"
+#include "framework/image/capture_writer.h"
+#include "framework/image/light.h"
+#include "framework/scene/samples.h"
+
+namespace aftershade::scene {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int kJitterPhases = 16;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+CaptureLight capture_light(const Light& light, const LightState& state) {
+    CaptureLight result;
+    result.name = light.name;
+    result.kind = light.kind == LightKind::point  ? CaptureLight::Kind::point
+                  : light.kind == LightKind::area ? CaptureLight::Kind::area
+                                                  : CaptureLight::Kind::directional;
+    for (int c = 0; c < 3; ++c) {
+        // Of a directional light only the direction counts.
+        if (light.kind != LightKind::directional)
+            result.position_m[std::size_t(c)] = state.position_m[c];
+        result.direction[std::size_t(c)] = state.direction[c];
+        result.intensity[std::size_t(c)] = state.color_intensity[c];
+    }
+    if (light.kind == LightKind::area) result.size_m = {light.size_m.x, light.size_m.y};
+    return result;
+}
+
+std::vector<CaptureLight> capture_lights(const Scene& scene, const SceneState& state) {
+    std::vector<CaptureLight> lights;
+    for (std::size_t i = 0; i < scene.lights.size(); ++i)
+        lights.push_back(capture_light(scene.lights[i], state.lights[i]));
+    return lights;
+}
+
+bool is_constant(const Light& light) {
+    return light.position_m.is_constant() && light.target_m.is_constant() && light.intensity.is_constant();
+}
+
+/// Writes files one after another on a thread of its own, with at most one waiting, so that memory stays
+/// level.
+class BackgroundWriter {
+public:
+    /// Rethrows what an earlier write threw.
+    void write(std::function<void()> work) {
+        finish();
+        pending_ = std::async(std::launch::async, std::move(work));
+    }
+    void finish() {
+        if (pending_.valid()) pending_.get();
+    }
+
+private:
+    std::future<void> pending_;
+};
+
+class JobRunner {
+public:
+    JobRunner(const Scene& scene, const Profile& profile, const Job& job)
+        : scene_(scene), profile_(profile), job_(job), renderer_(scene, job.width_px, job.height_px, job.threads) {}
+
+    JobReport run(const std::atomic<bool>& stop, const std::function<void(int)>& done) {
+        const Clock::time_point start = Clock::now();
+        std::error_code failure;
+        fs::create_directories(job_.folder, failure);
+        if (failure) throw Error(ExitCode::output, job_.folder.string() + ": " + failure.message());
+        for (const int frame : job_.frames) {
+            if (stop) break;
+            if (job_.captures) render_captures(frame);
+            for (const Truth& truth : job_.truths) render_truth(frame, truth);
+            ++report_.frames;
+            done(frame);
+        }
+        writer_.finish();
+        if (job_.captures) write_document();
+        report_.roles_left_out.assign(left_out_.begin(), left_out_.end());
+        report_.total_s = seconds_since(start);
+        return report_;
+    }
+
+private:
+    std::array<double, 2> jitter_px(int frame) const {
+        const int phase = ((frame % kJitterPhases) + kJitterPhases) % kJitterPhases;
+        return job_.jitter ? halton_jitter_px(phase + 1) : std::array<double, 2>{0, 0};
+    }
+
+    void render_captures(int frame) {
+        for (int s = 0; s < job_.subframes; ++s) {
+            const double time =
+                job_.subframes == 1 ? frame : exposure_of(scene_.camera, frame).middle(s, job_.subframes);
+            const Clock::time_point start = Clock::now();
+            Capture capture = job_.texture_object >= 0
+                                  ? renderer_.render_texture_space(frame, job_.texture_object, job_.texture_side_px)
+                                  : renderer_.render_capture(frame, time, jitter_px(frame));
+            report_.render_s += seconds_since(start);
+            const int number = frame * job_.subframes + s;
+            write(std::move(capture), fmt::format("gbuffer_{:04}.exr", number), frame, time, {});
+        }
+    }
+
+    void render_truth(int frame, const Truth& truth) {
+        const Clock::time_point start = Clock::now();
+        Capture capture;
+        capture.header.data_window = capture.header.display_window = {0, 0, job_.width_px - 1, job_.height_px - 1};
+        capture.header.camera =
+            capture_camera(scene_, state_at(scene_, frame, frame), job_.width_px, job_.height_px);
+        if (truth.scattering) {
+            ScatteringTruth scattered =
+                renderer_.render_scattering(frame, {job_.scattering_samples, job_.visible_only});
+            capture.images["irradiance"] = std::move(scattered.irradiance);
+            capture.images["color"] = std::move(scattered.color);
+        } else {
+            capture.images["color"] = renderer_.render_truth(
+                frame, {truth.kinds, job_.method, job_.samples, job_.seed, jitter_px(frame)});
+        }
+        report_.render_s += seconds_since(start);
+        std::string name = truth.name();
+        std::replace(name.begin(), name.end(), '+', '_');
+        const int samples = truth.scattering ? job_.scattering_samples : job_.samples;
+        write(std::move(capture), fmt::format("truth_{}_{:04}.exr", name, frame), frame, frame,
+              {{"aftershade/truth", truth.name()}, {"aftershade/samples", samples}});
+    }
+
+    void write(Capture capture, const std::string& name, int frame, double time,
+               std::map<std::string, ExrValue> attributes) {
+        CaptureHeader& header = capture.header;
+        header.lights = capture_lights(scene_, state_at(scene_, frame, time));
+        if (job_.jitter) header.camera.jitter_px = jitter_px(frame);
+        attributes["aftershade/time"] = float(time);
+        CaptureWriteOptions options;
+        options.compression = job_.compression;
+        options.fps = scene_.fps;
+        options.attributes = std::move(attributes);
+        const fs::path path = job_.folder / name;
+        report_.files.push_back(path);
+        writer_.write([this, capture = std::move(capture), path, options] {
+            for (const std::string& role : write_capture(path, capture, profile_, options)) left_out_.insert(role);
+        });
+    }
+
+    void write_document() {
+        CaptureDocument document;
+        document.frames = "gbuffer_####.exr";
+        document.frame_numbers = job_.frames;
+        document.fps = scene_.fps;
+        document.profile = profile_.id;
+        document.cuts = scene_.cuts;
+        document.subframes = job_.subframes;
+        const SceneState state = state_at(scene_, job_.frames.front(), job_.frames.front());
+        const Camera camera = capture_camera(scene_, state, job_.width_px, job_.height_px);
+        document.camera = camera.values();
+        document.lens_model = camera.lens_model;
+        // What moves is in each frame's own header; capture.json would overrule that.
+        if (!scene_.camera.focal_length_mm.is_constant()) document.camera.erase("focal_length");
+        if (!scene_.camera.focus_distance_m.is_constant()) document.camera.erase("focus_distance");
+        if (std::all_of(scene_.lights.begin(), scene_.lights.end(), is_constant))
+            document.lights = capture_lights(scene_, state);
+        const fs::path path = job_.folder / "capture.json";
+        write_capture_document(path, document);
+        report_.files.push_back(path);
+    }
+
+    const Scene& scene_;
+    const Profile& profile_;
+    const Job& job_;
+    SceneRenderer renderer_;
+    JobReport report_;
+    std::set<std::string> left_out_;
+    BackgroundWriter writer_;
+};
+
+}  // namespace
+
+std::string Truth::name() const {
+    if (scattering) return "scattering";
+    std::string name;
+    const auto add = [&](bool has, const char* word) {
+        if (has) name += (name.empty() ? "" : "+") + std::string(word);
+    };
+    add(kinds.lens, "lens");
+    add(kinds.shutter, "shutter");
+    add(kinds.antialias, "antialias");
+    return name;
+}
+
+std::optional<Truth> parse_truth(const std::string& text) {
+    Truth truth;
+    if (text == "scattering") {
+        truth.scattering = true;
+        return truth;
+    }
+    for (std::size_t at = 0; at <= text.size();) {
+        const std::size_t end = std::min(text.find('+', at), text.size());
+        const std::string word = text.substr(at, end - at);
+        bool* kind = word == "lens"        ? &truth.kinds.lens
+                     : word == "shutter"   ? &truth.kinds.shutter
+                     : word == "antialias" ? &truth.kinds.antialias
+                                           : nullptr;
+        if (!kind || *kind) return std::nullopt;
+        *kind = true;
+        at = end + 1;
+    }
+    return truth;
+}
+
+void check_job(const Scene& scene, const Job& job, Diagnostics& diagnostics) {
+    const auto fault = [&](const char* option, const std::string& text) {
+        diagnostics.error({option, 0, 0}, text);
+    };
+    if (!job.captures && job.truths.empty()) fault("--truth-only", "there is no --truth to render");
+    const bool scattering = std::any_of(job.truths.begin(), job.truths.end(), [](const Truth& t) { return t.scattering; });
+    const bool scatters = std::any_of(scene.materials.begin(), scene.materials.end(),
+                                      [](const Material& material) { return material.scattering.has_value(); });
+    if (scattering && !scatters)
+        fault("--truth scattering", "no material of the scene has a \"scattering_profile\"");
+    if (scattering && job.scattering_samples < 64)
+        fault("--samples", "scattering needs at least 64 points for each pixel");
+    const bool shutter = std::any_of(job.truths.begin(), job.truths.end(), [](const Truth& t) { return t.kinds.shutter; });
+    if ((shutter || job.subframes > 1) && scene.camera.shutter_angle_deg == 0)
+        fault("the shutter", "its angle is 0, so that it never opens; write \"shutter\": { \"angle\": 180 } in the scene");
+    if (job.texture_object >= 0 && job.subframes > 1) fault("--subframes", "texture space has no sub-frames");
+    if (job.texture_object >= 0 && !job.truths.empty()) fault("--truth", "is not there in texture space");
+}
+
+JobReport run_job(const Scene& scene, const Profile& profile, const Job& job, const std::atomic<bool>& stop,
+                  const std::function<void(int frame)>& done) {
+    return JobRunner(scene, profile, job).run(stop, done);
+}
+
+}  // namespace aftershade::scene
