@@ -48,8 +48,7 @@ void add_options(CLI::App& app, RenderArguments& options) {
                    "accumulation (one set of samples for all pixels) or interleaved (each its own)")
         ->check(CLI::IsMember({"accumulation", "interleaved"}))
         ->capture_default_str();
-    app.add_option("--samples", options.samples,
-                   "Of each truth, 1 to 65536 (default: 256; scattering: 1024)")
+    app.add_option("--samples", options.samples, "Of each truth, 1 to 65536 (default: 256; scattering: 2048)")
         ->check(CLI::Range(1, scene::kMaxSamples));
     app.add_option("--surface", options.surface,
                    "scattering: light from the visible surface, or from the whole object")
@@ -69,7 +68,8 @@ void add_options(CLI::App& app, RenderArguments& options) {
     app.add_option("--texture-size", options.texture_size, "uv: px of each side")
         ->check(CLI::Range(1, 8192))
         ->capture_default_str();
-    app.add_option("--profile", options.profile, "Whose conventions the files keep: native, blender, unreal, nuke, ...")
+    app.add_option("--profile", options.profile,
+                   "Whose conventions the files keep: native, blender, unreal, nuke, ...")
         ->capture_default_str();
     app.add_option("--profile-path", options.profile_paths, "Folders of further profiles; repeatable")
         ->allow_extra_args(false);
@@ -81,7 +81,9 @@ void add_options(CLI::App& app, RenderArguments& options) {
     app.add_flag("--quiet", options.quiet, "No line for each frame");
 }
 
-Place place_of(const std::string& option, const std::string& value) { return {option + " " + value, 0, 0}; }
+Place place_of(const std::string& option, const std::string& value) {
+    return {option + " " + value, 0, 0};
+}
 
 void read_size(const std::string& text, scene::Job& job, Diagnostics& diagnostics) {
     const std::size_t x = text.find('x');
@@ -136,8 +138,8 @@ void complete_job(const RenderArguments& options, const scene::Scene& scene, sce
                               "is neither scattering nor lens, shutter and antialias joined by +");
     }
     if (options.samples > 0) job.samples = job.scattering_samples = options.samples;
-    job.method = options.method == "interleaved" ? scene::TruthMethod::interleaved
-                                                 : scene::TruthMethod::accumulation;
+    job.method =
+        options.method == "interleaved" ? scene::TruthMethod::interleaved : scene::TruthMethod::accumulation;
     job.visible_only = options.surface == "visible";
     job.captures = !options.only_truth;
     job.jitter = options.jitter == "halton";
@@ -190,10 +192,9 @@ ExitCode render(RenderArguments options) {
     if (scene) complete_job(options, *scene, options.job, diagnostics);
     diagnostics.print(std::cerr);
     if (diagnostics.has_errors()) return ExitCode::usage;
-    const scene::JobReport report =
-        scene::run_job(*scene, *profile, options.job, stop, [&](int frame) {
-            if (!options.quiet) std::cerr << "frame " << frame << "\n";
-        });
+    const scene::JobReport report = scene::run_job(*scene, *profile, options.job, stop, [&](int frame) {
+        if (!options.quiet) std::cerr << "frame " << frame << "\n";
+    });
     print_report(options, report);
     return stop ? ExitCode::interrupted : ExitCode::done;
 }

@@ -40,6 +40,14 @@ std::optional<CameraMatrix> transposed_matrix(const ExrMetadata& metadata, const
     return matrix;
 }
 
+std::vector<float> row_vector_matrix(const CameraMatrix& matrix) {
+    std::vector<float> stored(16);
+    for (std::size_t row = 0; row < 4; ++row)
+        for (std::size_t column = 0; column < 4; ++column)
+            stored[column * 4 + row] = float(matrix[row * 4 + column]);
+    return stored;
+}
+
 }  // namespace
 
 Camera camera_of_metadata(const ExrMetadata& metadata, const Profile& profile) {
@@ -79,9 +87,31 @@ Camera camera_of_metadata(const ExrMetadata& metadata, const Profile& profile) {
     return camera;
 }
 
+void add_attributes(const Camera& camera, const std::vector<CaptureLight>& lights,
+                    std::map<std::string, ExrValue>& attributes) {
+    for (const auto& [field, value] : camera.values())
+        attributes["aftershade/camera/" + field] = float(value);
+    if (!camera.lens_model.empty()) attributes["aftershade/camera/lens_model"] = camera.lens_model;
+    const auto add = [&](const char* field, const char* attribute) {
+        if (const auto value = camera.get(field)) attributes[attribute] = float(*value);
+    };
+    add("focus_distance", "focus");
+    add("f_number", "aperture");
+    add("focal_length", "nominalFocalLength");
+    if (camera.camera_from_world) attributes["worldToCamera"] = row_vector_matrix(*camera.camera_from_world);
+    if (camera.ndc_from_world) attributes["worldToNDC"] = row_vector_matrix(*camera.ndc_from_world);
+    if (camera.jitter_px)
+        attributes["aftershade/jitter_px"] =
+            std::vector<float>{float((*camera.jitter_px)[0]), float((*camera.jitter_px)[1])};
+    if (!lights.empty()) attributes["aftershade/lights"] = format_lights(lights);
+}
+
 std::vector<CaptureLight> lights_of_metadata(const ExrMetadata& metadata, const std::filesystem::path& path) {
     const std::string name = "aftershade/lights";
     const auto text = metadata.text(name);
+    const auto names = metadata.names();
+    if (!text && std::find(names.begin(), names.end(), name) != names.end())
+        throw Error(ExitCode::capture, path.string() + ": attribute " + name + " is no text");
     if (!text) return {};
     Diagnostics diagnostics;
     std::vector<CaptureLight> lights;

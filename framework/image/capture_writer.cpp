@@ -5,6 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "framework/core/error.h"
+#include "framework/image/camera_metadata.h"
+#include "framework/image/capture_internal.h"
 #include "framework/image/encode_role.h"
 #include "framework/image/output_stream.h"
 #include "framework/image/role.h"
@@ -33,32 +36,6 @@ FoundChannels channel_names(const RoleDecoding& decoding, int channels) {
     return names;
 }
 
-std::vector<float> row_vector_matrix(const CameraMatrix& matrix) {
-    std::vector<float> stored(16);
-    for (std::size_t row = 0; row < 4; ++row)
-        for (std::size_t column = 0; column < 4; ++column)
-            stored[column * 4 + row] = float(matrix[row * 4 + column]);
-    return stored;
-}
-
-void add_camera(const Camera& camera, std::map<std::string, ExrValue>& attributes) {
-    for (const auto& [field, value] : camera.values())
-        attributes["aftershade/camera/" + field] = float(value);
-    if (!camera.lens_model.empty()) attributes["aftershade/camera/lens_model"] = camera.lens_model;
-    const auto add = [&](const char* field, const char* attribute) {
-        if (const auto value = camera.get(field)) attributes[attribute] = float(*value);
-    };
-    // OpenEXR's standard attributes, ImfStandardAttributes.h.
-    add("focus_distance", "focus");
-    add("f_number", "aperture");
-    add("focal_length", "nominalFocalLength");
-    if (camera.camera_from_world) attributes["worldToCamera"] = row_vector_matrix(*camera.camera_from_world);
-    if (camera.ndc_from_world) attributes["worldToNDC"] = row_vector_matrix(*camera.ndc_from_world);
-    if (camera.jitter_px)
-        attributes["aftershade/jitter_px"] =
-            std::vector<float>{float((*camera.jitter_px)[0]), float((*camera.jitter_px)[1])};
-}
-
 /// What makes detect_profile() choose the profile, where an attribute does.
 void add_mark(const Profile& profile, std::map<std::string, ExrValue>& attributes) {
     if (profile.detect_attributes.empty()) return;
@@ -75,6 +52,8 @@ std::vector<std::string> write_capture(const std::filesystem::path& path, const 
     const auto color = capture.images.find("color");
     const DecodeContext context{path.string(), header.data_window, header.display_window, header.camera,
                                 color == capture.images.end() ? nullptr : &color->second};
+    const Chromaticities primaries =
+        profile.color_space == "auto" ? header.primaries : *color_space_primaries(profile.color_space);
     std::vector<std::string> left_out;
     std::map<std::string, Image> stored;
     for (const auto& [role, image] : capture.images) {
@@ -83,13 +62,21 @@ std::vector<std::string> write_capture(const std::filesystem::path& path, const 
             left_out.push_back(role);
             continue;
         }
+        Image encoded = image;
+        if (is_color_role(role) && primaries != header.primaries)
+            convert_colors(encoded, conversion_matrix(header.primaries, primaries));
         // A producer that is not ours stores ids as floats, as every one of them does.
-        stored.merge(encode_role(role, image, found->second, channel_names(found->second, image.channels()),
-                                 profile.id == "native", context));
+        stored.merge(encode_role(role, std::move(encoded), found->second,
+                                 channel_names(found->second, image.channels()), profile.id == "native",
+                                 context));
     }
+    if (stored.empty())
+        throw Error(ExitCode::output,
+                    path.string() + ": the profile '" + profile.id + "' stores none of the roles");
     std::vector<ExrOutputChannel> channels;
     for (const auto& [name, image] : stored)
-        channels.push_back({name, image.type() == ComponentType::uint32 ? PixelType::uint32 : options.float_type,
+        channels.push_back({name,
+                            image.type() == ComponentType::uint32 ? PixelType::uint32 : PixelType::float32,
                             &image, 0});
     ExrWriteOptions write;
     write.data_window = header.data_window;
@@ -98,9 +85,9 @@ std::vector<std::string> write_capture(const std::filesystem::path& path, const 
     write.compression = options.compression;
     write.attributes = options.attributes;
     add_mark(profile, write.attributes);
-    add_camera(header.camera, write.attributes);
-    if (!header.lights.empty()) write.attributes["aftershade/lights"] = format_lights(header.lights);
-    if (options.fps > 0) write.attributes["aftershade/fps"] = float(options.fps);
+    add_attributes(header.camera, header.lights, write.attributes);
+    write.attributes["chromaticities"] = std::vector<float>(primaries.begin(), primaries.end());
+    if (options.fps > 0) write.attributes["framesPerSecond"] = float(options.fps);
     write_exr(path, channels, write);
     return left_out;
 }
@@ -108,7 +95,8 @@ std::vector<std::string> write_capture(const std::filesystem::path& path, const 
 void write_capture_document(const std::filesystem::path& path, const CaptureDocument& document) {
     nlohmann::ordered_json json = {{"aftershade", 1}, {"frames", document.frames}};
     std::string range;
-    for (const int frame : document.frame_numbers) range += (range.empty() ? "" : ",") + std::to_string(frame);
+    for (const int frame : document.frame_numbers)
+        range += (range.empty() ? "" : ",") + std::to_string(frame);
     const auto& numbers = document.frame_numbers;
     const bool dense = numbers.size() > 2 && numbers.back() - numbers.front() + 1 == int(numbers.size()) &&
                        std::is_sorted(numbers.begin(), numbers.end());
@@ -117,7 +105,8 @@ void write_capture_document(const std::filesystem::path& path, const CaptureDocu
     json["profile"] = document.profile;
     if (!document.camera.empty()) json["camera"] = document.camera;
     if (!document.lens_model.empty()) json["camera"]["lens_model"] = document.lens_model;
-    if (!document.lights.empty()) json["lights"] = nlohmann::ordered_json::parse(format_lights(document.lights));
+    if (!document.lights.empty())
+        json["lights"] = nlohmann::ordered_json::parse(format_lights(document.lights));
     json["cuts"] = document.cuts;
     json["subframes"] = document.subframes;
     const std::string text = json.dump(2) + "\n";

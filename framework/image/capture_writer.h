@@ -12,17 +12,16 @@
 namespace aftershade {
 
 struct CaptureWriteOptions {
-    std::string compression = "zip";
-    PixelType float_type = PixelType::float32;  ///< of everything but ids
-    double fps = 0;                             ///< attribute framesPerSecond; 0: none
+    std::string compression = "zip";  ///< a lossless one, for the sake of ids
+    double fps = 0;                   ///< attribute framesPerSecond; 0: none
     std::map<std::string, ExrValue> attributes{};
 };
 
-/// Writes one frame by rename: every role of `capture.images` that the profile can store, under the profile's
-/// channel names and in its units; of a sum of layers the first holds all and the others 0. "{layer}" becomes
-/// "ViewLayer". With it go the attribute by which the profile is detected, the camera (aftershade/camera/...,
-/// OpenEXR's own names, both matrices), aftershade/jitter_px and aftershade/lights where they are known.
-/// Returns the roles that the profile has no way to store. Throws Error(ExitCode::output).
+/// Writes one frame of floats by rename: every role of `capture.images` that the profile can store, under the
+/// profile's channel names and in its units; of a sum of layers the first holds all and the others 0.
+/// "{layer}" becomes "ViewLayer". With it go the attribute by which the profile is detected, the camera
+/// (aftershade/camera/..., OpenEXR's own names, both matrices), aftershade/jitter_px, aftershade/lights and
+/// chromaticities. Returns the roles that the profile has no way to store. Throws Error(ExitCode::output).
 std::vector<std::string> write_capture(const std::filesystem::path& path, const Capture& capture,
                                        const Profile& profile, const CaptureWriteOptions& options);
 

@@ -112,7 +112,7 @@ struct ExrWriteOptions {
     /// preview.
     std::optional<ExrMetadata> carry_over;
     /// Instead of those carried over. Vectors of 2, 3, 9 and 16 become v2f, v3f, m33f and m44f,
-    /// "chromaticities" of 8 its own type, others floatvector.
+    /// "chromaticities" of 8 its own type, others floatvector; "framesPerSecond" becomes a rational.
     std::map<std::string, ExrValue> attributes;
 };
 

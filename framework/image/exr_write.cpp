@@ -9,9 +9,11 @@
 #include <OpenEXR/ImfFloatAttribute.h>
 #include <OpenEXR/ImfFloatVectorAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfFramesPerSecond.h>
 #include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfMatrixAttribute.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfRationalAttribute.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
 #include <OpenEXR/ImfVecAttribute.h>
@@ -78,6 +80,8 @@ std::unique_ptr<Imf::Attribute> to_attribute(const std::string& name, const ExrV
     if (const auto* text = std::get_if<std::string>(&value))
         return std::make_unique<Imf::StringAttribute>(*text);
     if (const auto* number = std::get_if<int>(&value)) return std::make_unique<Imf::IntAttribute>(*number);
+    if (const auto* fps = std::get_if<float>(&value); fps && name == "framesPerSecond")
+        return std::make_unique<Imf::RationalAttribute>(Imf::guessExactFps(double(*fps)));
     if (const auto* number = std::get_if<float>(&value))
         return std::make_unique<Imf::FloatAttribute>(*number);
     return to_attribute(name, std::get<std::vector<float>>(value));

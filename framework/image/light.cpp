@@ -12,6 +12,8 @@ namespace {
 
 using Presence = ObjectReader::Presence;
 
+constexpr double kMinSize_m = 1e-6;
+
 /// Numbers of a required key, or zeros after an error.
 template <std::size_t N>
 std::array<double, N> read_numbers(ObjectReader& reader, const std::string& key, const std::string& unit,
@@ -47,14 +49,15 @@ CaptureLight parse_light(const Node& node, Diagnostics& diagnostics) {
         if (light.kind != CaptureLight::Kind::point) {
             light.direction = read_numbers<3>(reader, "direction", "", {}, diagnostics);
             const auto [x, y, z] = light.direction;
-            const double length = std::sqrt(x * x + y * y + z * z);
+            const double length = std::hypot(x, y, z);
             if (const Node* direction = node.find("direction"); direction && !(length > 0))
                 diagnostics.error(direction->place, "light.direction: has no length");
             // One that has unit length already keeps its bits.
             if (std::abs(length - 1) > 1e-12)
                 for (double& component : light.direction) component /= length > 0 ? length : 1;
         }
-        if (light.kind == CaptureLight::Kind::area) light.size_m = read_numbers<2>(reader, "size", "m", 0.0, diagnostics);
+        if (light.kind == CaptureLight::Kind::area)
+            light.size_m = read_numbers<2>(reader, "size", "m", kMinSize_m, diagnostics);
     }
     reader.finish();
     return light;
@@ -86,7 +89,7 @@ std::string format_lights(const std::vector<CaptureLight>& lights) {
         one["intensity"] = light.intensity;
         list.push_back(std::move(one));
     }
-    return list.dump();
+    return list.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 }  // namespace aftershade

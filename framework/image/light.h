@@ -16,11 +16,11 @@ struct CaptureLight {
 
     Kind kind = Kind::point;
     std::string name;
-    std::array<double, 3> position_m{};    ///< world; of an area light its centre; not of a directional one
-    std::array<double, 3> direction{};     ///< unit length, the way the light shines; not of a point
-    std::array<double, 2> size_m{};        ///< of an area light
-    std::array<double, 3> intensity{};     ///< RGB: W/sr of a point, W/m^2 across a directional light,
-                                           ///< W/(m^2 sr) of an area light
+    std::array<double, 3> position_m{};  ///< world; of an area light its centre; not of a directional one
+    std::array<double, 3> direction{};   ///< unit length, the way the light shines; not of a point
+    std::array<double, 2> size_m{};      ///< of an area light
+    std::array<double, 3> intensity{};   ///< RGB: W/sr of a point, W/m^2 across a directional light,
+                                         ///< W/(m^2 sr) of an area light
     bool operator==(const CaptureLight&) const = default;
 };
 

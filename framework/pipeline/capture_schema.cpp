@@ -97,8 +97,11 @@ json light() {
             required.emplace_back(key);
         };
         if (kind != "directional") add("position", numbers(ParamType::vec3, "m", {}));
-        if (kind != "point") add("direction", numbers(ParamType::vec3, "", {}));
-        if (kind == "area") add("size", numbers(ParamType::vec2, "m", 0));
+        if (kind != "point") {
+            add("direction", numbers(ParamType::vec3, "", {}));
+            keys["direction"]["not"] = {{"const", {0, 0, 0}}};
+        }
+        if (kind == "area") add("size", numbers(ParamType::vec2, "m", 1e-6));
         forms.push_back(schema::object(keys, required));
     }
     return schema::any_of(forms);

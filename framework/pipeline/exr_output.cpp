@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "framework/core/error.h"
+#include "framework/image/camera_metadata.h"
 #include "framework/image/role.h"
 #include "framework/image/window.h"
 
@@ -101,10 +102,7 @@ ExrWriteOptions exr_write_options(const OutputOptions& options, const CaptureHea
     write.attributes["aftershade/renderer"] = options.renderer;
     write.attributes["aftershade/profile"] = header.profile;
     write.attributes["aftershade/frame"] = header.frame;
-    for (const auto& [name, value] : header.camera.values())
-        write.attributes["aftershade/camera/" + name] = float(value);
-    if (!header.camera.lens_model.empty())
-        write.attributes["aftershade/camera/lens_model"] = header.camera.lens_model;
+    add_attributes(header.camera, header.lights, write.attributes);
     // A file without the attribute is Rec. 709, so colours of other primaries must say so.
     if (!options.keep_channels && header.primaries != stored_primaries(header.metadata))
         write.attributes["chromaticities"] =

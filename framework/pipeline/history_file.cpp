@@ -71,6 +71,7 @@ json camera_json(const Camera& camera) {
     json result = {{"values", camera.values()}, {"lens_model", camera.lens_model}};
     if (camera.camera_from_world) result["camera_from_world"] = *camera.camera_from_world;
     if (camera.ndc_from_world) result["ndc_from_world"] = *camera.ndc_from_world;
+    if (camera.jitter_px) result["jitter_px"] = *camera.jitter_px;
     return result;
 }
 
@@ -82,6 +83,8 @@ Camera camera_of(const json& document) {
         camera.camera_from_world = document.at("camera_from_world").get<CameraMatrix>();
     if (document.contains("ndc_from_world"))
         camera.ndc_from_world = document.at("ndc_from_world").get<CameraMatrix>();
+    if (document.contains("jitter_px"))
+        camera.jitter_px = document.at("jitter_px").get<std::array<double, 2>>();
     return camera;
 }
 

@@ -1,9 +1,9 @@
 #include "framework/scene/job.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <chrono>
 #include <deque>
-#include <fmt/format.h>
 #include <future>
 #include <set>
 #include <utility>
@@ -35,8 +35,7 @@ CaptureLight capture_light(const Light& light, const LightState& state) {
                                                   : CaptureLight::Kind::directional;
     for (int c = 0; c < 3; ++c) {
         // Of a directional light only the direction counts.
-        if (light.kind != LightKind::directional)
-            result.position_m[std::size_t(c)] = state.position_m[c];
+        if (light.kind != LightKind::directional) result.position_m[std::size_t(c)] = state.position_m[c];
         result.direction[std::size_t(c)] = state.direction[c];
         result.intensity[std::size_t(c)] = state.color_intensity[c];
     }
@@ -75,7 +74,10 @@ private:
 class JobRunner {
 public:
     JobRunner(const Scene& scene, const Profile& profile, const Job& job)
-        : scene_(scene), profile_(profile), job_(job), renderer_(scene, job.width_px, job.height_px, job.threads) {}
+        : scene_(scene),
+          profile_(profile),
+          job_(job),
+          renderer_(scene, job.width_px, job.height_px, job.threads) {}
 
     JobReport run(const std::atomic<bool>& stop, const std::function<void(int)>& done) {
         const Clock::time_point start = Clock::now();
@@ -107,9 +109,10 @@ private:
             const double time =
                 job_.subframes == 1 ? frame : exposure_of(scene_.camera, frame).middle(s, job_.subframes);
             const Clock::time_point start = Clock::now();
-            Capture capture = job_.texture_object >= 0
-                                  ? renderer_.render_texture_space(frame, job_.texture_object, job_.texture_side_px)
-                                  : renderer_.render_capture(frame, time, jitter_px(frame));
+            Capture capture =
+                job_.texture_object >= 0
+                    ? renderer_.render_texture_space(frame, job_.texture_object, job_.texture_side_px)
+                    : renderer_.render_capture(frame, time, jitter_px(frame));
             report_.render_s += seconds_since(start);
             const int number = frame * job_.subframes + s;
             write(std::move(capture), fmt::format("gbuffer_{:04}.exr", number), frame, time, {});
@@ -119,7 +122,8 @@ private:
     void render_truth(int frame, const Truth& truth) {
         const Clock::time_point start = Clock::now();
         Capture capture;
-        capture.header.data_window = capture.header.display_window = {0, 0, job_.width_px - 1, job_.height_px - 1};
+        capture.header.data_window =
+            capture.header.display_window = {0, 0, job_.width_px - 1, job_.height_px - 1};
         capture.header.camera =
             capture_camera(scene_, state_at(scene_, frame, frame), job_.width_px, job_.height_px);
         if (truth.scattering) {
@@ -152,7 +156,8 @@ private:
         const fs::path path = job_.folder / name;
         report_.files.push_back(path);
         writer_.write([this, capture = std::move(capture), path, options] {
-            for (const std::string& role : write_capture(path, capture, profile_, options)) left_out_.insert(role);
+            for (const std::string& role : write_capture(path, capture, profile_, options))
+                left_out_.insert(role);
         });
     }
 
@@ -226,16 +231,20 @@ void check_job(const Scene& scene, const Job& job, Diagnostics& diagnostics) {
         diagnostics.error({option, 0, 0}, text);
     };
     if (!job.captures && job.truths.empty()) fault("--truth-only", "there is no --truth to render");
-    const bool scattering = std::any_of(job.truths.begin(), job.truths.end(), [](const Truth& t) { return t.scattering; });
-    const bool scatters = std::any_of(scene.materials.begin(), scene.materials.end(),
-                                      [](const Material& material) { return material.scattering.has_value(); });
+    const bool scattering =
+        std::any_of(job.truths.begin(), job.truths.end(), [](const Truth& t) { return t.scattering; });
+    const bool scatters =
+        std::any_of(scene.materials.begin(), scene.materials.end(),
+                    [](const Material& material) { return material.scattering.has_value(); });
     if (scattering && !scatters)
         fault("--truth scattering", "no material of the scene has a \"scattering_profile\"");
     if (scattering && job.scattering_samples < 64)
         fault("--samples", "scattering needs at least 64 points for each pixel");
-    const bool shutter = std::any_of(job.truths.begin(), job.truths.end(), [](const Truth& t) { return t.kinds.shutter; });
+    const bool shutter =
+        std::any_of(job.truths.begin(), job.truths.end(), [](const Truth& t) { return t.kinds.shutter; });
     if ((shutter || job.subframes > 1) && scene.camera.shutter_angle_deg == 0)
-        fault("the shutter", "its angle is 0, so that it never opens; write \"shutter\": { \"angle\": 180 } in the scene");
+        fault("the shutter",
+              "its angle is 0, so that it never opens; write \"shutter\": { \"angle\": 180 } in the scene");
     if (job.texture_object >= 0 && job.subframes > 1) fault("--subframes", "texture space has no sub-frames");
     if (job.texture_object >= 0 && !job.truths.empty()) fault("--truth", "is not there in texture space");
 }

@@ -31,15 +31,15 @@ struct Job {
     std::vector<int> frames;       ///< of the scene
     int width_px = 480;
     int height_px = 270;
-    bool captures = true;  ///< false: truths alone
-    int subframes = 1;     ///< of the exposure; files N * frame + s
-    bool jitter = false;   ///< of captures and truths, by halton_jitter_px over 16 frames
+    bool captures = true;     ///< false: truths alone
+    int subframes = 1;        ///< of the exposure; files N * frame + s
+    bool jitter = false;      ///< of captures and truths, by halton_jitter_px over 16 frames
     int texture_object = -1;  ///< index of the object whose texture space is rendered; -1: the picture
     int texture_side_px = 512;
     std::vector<Truth> truths;
     TruthMethod method = TruthMethod::accumulation;
-    int samples = 256;             ///< of lens, shutter and antialias
-    int scattering_samples = 1024;
+    int samples = 256;  ///< of lens, shutter and antialias
+    int scattering_samples = 2048;
     bool visible_only = true;
     std::uint32_t seed = 0;
     int threads = 1;

@@ -34,7 +34,7 @@ struct TruthSettings {
 };
 
 struct ScatteringSettings {
-    int samples = 1024;        ///< points of the surface for each pixel, about; 64 to kMaxSamples
+    int samples = 2048;        ///< points of the surface for each pixel, about; 64 to kMaxSamples
     bool visible_only = true;  ///< points that the camera sees, which is what an effect has; else all
 };
 

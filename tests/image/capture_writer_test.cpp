@@ -1,4 +1,5 @@
-// Captures written under each producer's conventions and read back by the readers that real files are read with.
+// Captures written under each producer's conventions and read back by the readers that real files are read
+// with.
 #include "framework/image/capture_writer.h"
 
 #include <cmath>
@@ -25,8 +26,10 @@ constexpr int kWidth = 23, kHeight = 17;
 
 float formula(const std::string& role, int x, int y, int c) {
     const float wave = std::sin(0.7f * float(x) + 1.3f * float(y) + 2.1f * float(c));
-    if (role == "depth") return (x + y) % 11 == 0 ? std::numeric_limits<float>::infinity() : 2 + 30 * (wave + 1);
-    if (role.starts_with("velocity")) return 9 * wave;  // Unity marks what crosses half the picture as no motion
+    if (role == "depth")
+        return (x + y) % 11 == 0 ? std::numeric_limits<float>::infinity() : 2 + 30 * (wave + 1);
+    if (role.starts_with("velocity"))
+        return 9 * wave;  // Unity marks what crosses half the picture as no motion
     if (role == "position" || role == "normal") return wave;
     return c == 3 ? 1 : 3 * (wave + 1);
 }
@@ -35,8 +38,8 @@ Capture make_capture() {
     Capture capture;
     CaptureHeader& header = capture.header;
     header.data_window = header.display_window = {0, 0, kWidth - 1, kHeight - 1};
-    for (const char* name : {"color", "depth", "velocity", "velocity_next", "irradiance", "albedo", "specular",
-                             "emission", "normal", "position"}) {
+    for (const char* name : {"color", "depth", "velocity", "velocity_next", "irradiance", "albedo",
+                             "specular", "emission", "normal", "position"}) {
         Image image(kWidth, kHeight, find_role(name)->channels);
         for (int y = 0; y < kHeight; ++y)
             for (int x = 0; x < kWidth; ++x)
@@ -77,7 +80,9 @@ protected:
 TEST_P(EveryProfile, IsReadBackToWhatWasWritten) {
     const Capture capture = make_capture();
     const fs::path path = folder_ / "frame_0007.exr";
-    const auto left_out = write_capture(path, capture, profile(), {});
+    CaptureWriteOptions options;
+    options.fps = 24000.0 / 1001;
+    const auto left_out = write_capture(path, capture, profile(), options);
     Diagnostics diagnostics;
     auto sequence = open_sequence(path.string(), diagnostics);
     ASSERT_TRUE(sequence);
@@ -99,7 +104,8 @@ TEST_P(EveryProfile, IsReadBackToWhatWasWritten) {
                 for (int c = 0; c < image.channels(); ++c) {
                     const float expected = original.at(x, y, c), found = image.at(x, y, c);
                     if (std::isinf(expected)) ASSERT_EQ(found, expected) << role;
-                    else if (role == "depth") ASSERT_NEAR(found, expected, 2e-5 * expected) << role << " " << x << " " << y;
+                    else if (role == "depth")
+                        ASSERT_NEAR(found, expected, 2e-5 * expected) << role << " " << x << " " << y;
                     else if (role.starts_with("velocity")) ASSERT_NEAR(found, expected, 1e-3) << role;
                     else ASSERT_EQ(found, expected) << role;
                 }
@@ -108,12 +114,14 @@ TEST_P(EveryProfile, IsReadBackToWhatWasWritten) {
     const Camera& camera = back.header.camera;
     EXPECT_EQ(camera.get("focus_distance"), 4.5);
     EXPECT_EQ(camera.get("blades"), 6);
+    EXPECT_NEAR(back.header.metadata.number("framesPerSecond").value_or(0), 24000.0 / 1001, 1e-9);
     EXPECT_EQ(camera.lens_model, "pinhole");
     ASSERT_TRUE(camera.jitter_px);
     EXPECT_EQ(*camera.jitter_px, (std::array<double, 2>{0.25, -0.375}));
     ASSERT_TRUE(camera.camera_from_world && camera.ndc_from_world);
     for (std::size_t i = 0; i < 16; ++i)
-        EXPECT_FLOAT_EQ(float((*camera.ndc_from_world)[i]), float((*capture.header.camera.ndc_from_world)[i]));
+        EXPECT_FLOAT_EQ(float((*camera.ndc_from_world)[i]),
+                        float((*capture.header.camera.ndc_from_world)[i]));
     EXPECT_EQ(back.header.lights, capture.header.lights);
 }
 
@@ -138,7 +146,8 @@ INSTANTIATE_TEST_SUITE_P(Shipped, EveryProfile, testing::ValuesIn(profile_ids())
 
 TEST(CaptureWriter, UsesTheNamesAndUnitsOfTheProducer) {
     test::TemporaryFolder folder;
-    for (const Profile& profile : shipped_profiles()) write_capture(folder / (profile.id + ".exr"), make_capture(), profile, {});
+    for (const Profile& profile : shipped_profiles())
+        write_capture(folder / (profile.id + ".exr"), make_capture(), profile, {});
     const auto value = [&](const char* file, const char* channel, int x, int y) {
         const std::vector<std::string> one = {channel};
         return ExrFile(folder / file).read_floats(0, one).at(x, y, 0);
@@ -148,8 +157,10 @@ TEST(CaptureWriter, UsesTheNamesAndUnitsOfTheProducer) {
     EXPECT_FLOAT_EQ(value("blender.exr", "ViewLayer.Vector.X", 3, 2), -vx);
     EXPECT_FLOAT_EQ(value("blender.exr", "ViewLayer.Vector.Y", 3, 2), vy);
     // Unreal: half the screen is 0.5, centimetres.
-    EXPECT_NEAR(value("unreal.exr", "FinalImageMovieRenderQueue_MotionVectors.R", 3, 2), 0.5 + vx / kWidth, 1e-6);
-    EXPECT_FLOAT_EQ(value("unreal.exr", "FinalImageMovieRenderQueue_WorldDepth.R", 3, 2), 100 * formula("depth", 3, 2, 0));
+    EXPECT_NEAR(value("unreal.exr", "FinalImageMovieRenderQueue_MotionVectors.R", 3, 2), 0.5 + vx / kWidth,
+                1e-6);
+    EXPECT_FLOAT_EQ(value("unreal.exr", "FinalImageMovieRenderQueue_WorldDepth.R", 3, 2),
+                    100 * formula("depth", 3, 2, 0));
     // Nuke: backward is previous minus current, rows upwards.
     EXPECT_FLOAT_EQ(value("nuke.exr", "backward.u", 3, 2), -vx);
     EXPECT_FLOAT_EQ(value("nuke.exr", "backward.v", 3, 2), vy);
@@ -199,7 +210,8 @@ TEST(CaptureReader, TellsWhereTheLightsOfAFileAreDamaged) {
         FAIL();
     } catch (const Error& error) {
         EXPECT_EQ(error.exit_code(), ExitCode::capture);
-        EXPECT_NE(std::string(error.what()).find("attribute aftershade/lights:1:"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("attribute aftershade/lights:1:"), std::string::npos)
+            << error.what();
     }
 }
 
