@@ -89,10 +89,11 @@ public:
             if (job_.captures) render_captures(frame);
             for (const Truth& truth : job_.truths) render_truth(frame, truth);
             ++report_.frames;
+            rendered_.push_back(frame);
             done(frame);
         }
         writer_.finish();
-        if (job_.captures) write_document();
+        if (job_.captures && !rendered_.empty()) write_document();
         report_.roles_left_out.assign(left_out_.begin(), left_out_.end());
         report_.total_s = seconds_since(start);
         return report_;
@@ -164,7 +165,7 @@ private:
     void write_document() {
         CaptureDocument document;
         document.frames = "gbuffer_####.exr";
-        document.frame_numbers = job_.frames;
+        document.frame_numbers = rendered_;
         document.fps = scene_.fps;
         document.profile = profile_.id;
         document.cuts = scene_.cuts;
@@ -188,6 +189,7 @@ private:
     const Job& job_;
     SceneRenderer renderer_;
     JobReport report_;
+    std::vector<int> rendered_;  ///< frames
     std::set<std::string> left_out_;
     BackgroundWriter writer_;
 };

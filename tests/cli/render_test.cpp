@@ -1,0 +1,170 @@
+// Scenes through the command: captures that run can take, truths, conventions, faults.
+#include <algorithm>
+#include <fstream>
+#include <set>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "framework/image/exr_file.h"
+#include "tests/cli/command.h"
+#include "tests/temporary_folder.h"
+
+namespace aftershade::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Args = std::vector<std::string>;
+
+std::string scene(const std::string& id) { return std::string(AFTERSHADE_SOURCE_DIR "/scenes/") + id; }
+
+class Render : public testing::Test {
+protected:
+    CommandResult render(Args arguments) {
+        arguments.insert(arguments.begin(), {AFTERSHADE_EXECUTABLE, "render"});
+        return Command(std::move(arguments), folder_.path()).wait();
+    }
+    CommandResult aftershade(Args arguments) {
+        arguments.insert(arguments.begin(), AFTERSHADE_EXECUTABLE);
+        return Command(std::move(arguments), folder_.path()).wait();
+    }
+    std::string bytes(const std::string& file) {
+        std::ifstream in(folder_ / file, std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+    std::vector<float> channel(const std::string& file, const std::string& name) {
+        const std::vector<std::string> one = {name};
+        const Image image = ExrFile(folder_ / file).read_floats(0, one);
+        return {image.floats().begin(), image.floats().end()};
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_F(Render, MakesACaptureThatALookRunsOn) {
+    const CommandResult made = render({scene("head"), "-o", "head", "--size", "96x54", "--frames", "1-3", "--truth", "scattering",
+                                       "--truth", "lens+antialias", "--samples", "64"});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    std::set<std::string> files;
+    for (const std::string& line : lines_of_text(made.out)) files.insert(fs::path(line).filename().string());
+    EXPECT_EQ(files, (std::set<std::string>{"capture.json", "gbuffer_0001.exr", "gbuffer_0002.exr", "gbuffer_0003.exr",
+                                            "truth_lens_antialias_0001.exr", "truth_lens_antialias_0002.exr",
+                                            "truth_lens_antialias_0003.exr", "truth_scattering_0001.exr",
+                                            "truth_scattering_0002.exr", "truth_scattering_0003.exr"}));
+    for (const std::string& line : lines_of_text(made.out)) EXPECT_TRUE(fs::exists(folder_ / line)) << line;
+    const CommandResult ran = aftershade({"run", AFTERSHADE_SOURCE_DIR "/scenes/looks/portrait.json", "head", "-o", "out_####.png"});
+    EXPECT_EQ(ran.exit_code, 0) << ran.err;
+    EXPECT_TRUE(fs::exists(folder_ / "out_0002.png"));
+    const CommandResult told = aftershade({"inspect", "head"});
+    EXPECT_EQ(told.exit_code, 0) << told.err;
+    for (const char* role : {"irradiance", "velocity_next", "object_id", "emission"})
+        EXPECT_NE(told.out.find(role), std::string::npos) << told.out;
+}
+
+TEST_F(Render, GivesTheSameBitsTwice) {
+    for (const char* name : {"a", "b"})
+        ASSERT_EQ(render({scene("wheel"), "-o", name, "--size", "64x36", "--frames", "1-24", "--jitter", "halton"}).exit_code, 0);
+    for (int frame = 1; frame <= 24; ++frame) {
+        const std::string file = "/gbuffer_00" + std::string(frame < 10 ? "0" : "") + std::to_string(frame) + ".exr";
+        ASSERT_EQ(bytes("a" + file), bytes("b" + file)) << file;
+    }
+    EXPECT_NE(bytes("a/gbuffer_0001.exr"), bytes("a/gbuffer_0002.exr"));
+}
+
+TEST_F(Render, WritesSubframesThatAreOneFramesExposure) {
+    ASSERT_EQ(render({scene("moving_box"), "-o", "box", "--size", "120x68", "--frames", "4-5", "--subframes", "4", "--truth", "shutter",
+                      "--samples", "4"}).exit_code, 0);
+    std::vector<double> mean;
+    for (int s = 0; s < 4; ++s) {
+        const std::vector<float> part = channel("box/gbuffer_00" + std::to_string(16 + s) + ".exr", "R");
+        mean.resize(part.size());
+        for (std::size_t i = 0; i < part.size(); ++i) mean[i] += part[i] / 4.0;
+    }
+    const std::vector<float> truth = channel("box/truth_shutter_0004.exr", "R");
+    for (std::size_t i = 0; i < truth.size(); ++i) ASSERT_NEAR(truth[i], mean[i], 1e-6);
+    // Frame 4 of a capture with 4 sub-frames is the files 16 to 19, as capture.json says.
+    const CommandResult told = aftershade({"inspect", "box/capture.json", "--frames", "4"});
+    EXPECT_EQ(told.exit_code, 0) << told.err;
+}
+
+/// Each decoder against a renderer that knows the truth: the velocities of its own pictures must explain them.
+TEST_F(Render, SpeaksTheConventionsOfOtherProducers) {
+    for (const std::string profile : {"native", "blender", "unreal", "nuke"}) {
+        ASSERT_EQ(render({scene("wheel"), "-o", profile, "--size", "320x180", "--frames", "5-6", "--profile", profile}).exit_code, 0);
+        const CommandResult checked = aftershade(
+            {"inspect", "--check-velocity", profile + "/gbuffer_0005.exr", profile + "/gbuffer_0006.exr"});
+        EXPECT_EQ(checked.exit_code, 0) << profile << checked.out << checked.err;
+        EXPECT_NE(checked.out.find("The profile is right"), std::string::npos) << checked.out;
+    }
+    const CommandResult left_out = render({scene("plane_edge"), "-o", "u", "--size", "32x18", "--profile", "unreal"});
+    EXPECT_NE(left_out.err.find("'unreal' has no way to store"), std::string::npos) << left_out.err;
+    EXPECT_NE(left_out.err.find("irradiance"), std::string::npos) << left_out.err;
+}
+
+TEST_F(Render, WritesTextureSpace) {
+    const CommandResult made = render({scene("head"), "-o", "uv", "--space", "uv", "--object", "skull", "--texture-size", "64", "--frames", "2"});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    const ExrFile file(folder_ / "uv/gbuffer_0002.exr");
+    EXPECT_EQ(file.parts()[0].data_window.width(), 64);
+    std::set<std::string> names;
+    for (const ExrChannel& one : file.parts()[0].channels) names.insert(one.name);
+    EXPECT_TRUE(names.contains("irradiance.R") && names.contains("position.X"));
+    EXPECT_FALSE(names.contains("Z") || names.contains("velocity.X"));
+}
+
+TEST_F(Render, TellsWhatIsInTheHeader) {
+    ASSERT_EQ(render({scene("head"), "-o", "head", "--size", "32x18", "--frames", "3", "--jitter", "halton"}).exit_code, 0);
+    const ExrFile file(folder_ / "head/gbuffer_0003.exr");
+    const ExrMetadata& metadata = file.parts()[0].metadata;
+    EXPECT_NEAR(metadata.number("aftershade/camera/focal_length").value_or(0), 62, 1e-4);
+    EXPECT_NEAR(metadata.number("framesPerSecond").value_or(0), 24, 1e-9);
+    ASSERT_TRUE(metadata.value("worldToNDC") && metadata.value("worldToCamera"));
+    // Phase 4 of the sequence: radical inverses of 4 in bases 2 and 3, minus a half.
+    const auto jitter = std::get<std::vector<float>>(metadata.value("aftershade/jitter_px").value());
+    EXPECT_FLOAT_EQ(jitter[0], 0.125f - 0.5f);
+    EXPECT_FLOAT_EQ(jitter[1], float(4.0 / 9 - 0.5));
+    const auto lights = nlohmann::json::parse(metadata.text("aftershade/lights").value_or("[]"));
+    ASSERT_EQ(lights.size(), 2u);
+    EXPECT_EQ(lights[0]["name"], "key");
+    // The light moves, so that capture.json, which would overrule the headers, has none.
+    const auto document = nlohmann::json::parse(bytes("head/capture.json"));
+    EXPECT_FALSE(document.contains("lights"));
+    EXPECT_EQ(document["camera"]["lens_model"], "pinhole");
+}
+
+struct Fault {
+    Args arguments;
+    const char* message;
+};
+
+TEST_F(Render, TellsWhatIsWrongWithTheCommand) {
+    const std::string head = scene("head");
+    const Fault faults[] = {
+        {{head, "-o", "x", "--truth", "lense"}, "--truth lense: error: is neither scattering nor lens"},
+        {{head, "-o", "x", "--truth", "lens+lens"}, "is neither scattering nor lens"},
+        {{head, "-o", "x", "--size", "96"}, "a size is WIDTHxHEIGHT"},
+        {{head, "-o", "x", "--frames", "a"}, "is not a range"},
+        {{head, "-o", "x", "--space", "uv"}, "--space uv needs the name of an object: 'skull'"},
+        {{head, "-o", "x", "--space", "uv", "--object", "skul"}, "did you mean 'skull'?"},
+        {{head, "-o", "x", "--object", "skull"}, "is for --space uv"},
+        {{head, "-o", "x", "--profile", "blendr"}, "did you mean 'blender'?"},
+        {{head, "-o", "x", "--truth-only"}, "there is no --truth to render"},
+        {{scene("wheel"), "-o", "x", "--truth", "scattering"}, "no material of the scene has a \"scattering_profile\""},
+        {{"nowhere", "-o", "x"}, "nowhere"},
+    };
+    for (const Fault& fault : faults) {
+        const CommandResult result = render(fault.arguments);
+        EXPECT_EQ(result.exit_code, 2) << fault.message << result.err;
+        EXPECT_NE(result.err.find(fault.message), std::string::npos) << result.err;
+    }
+    EXPECT_FALSE(fs::exists(folder_ / "x"));
+}
+
+TEST_F(Render, TellsWhereItCannotWrite) {
+    std::ofstream(folder_ / "file") << "x";
+    const CommandResult result = render({scene("plane_edge"), "-o", "file/inside", "--size", "16x9"});
+    EXPECT_EQ(result.exit_code, 6) << result.err;
+    EXPECT_NE(result.err.find("file/inside"), std::string::npos) << result.err;
+}
+
+}  // namespace
+}  // namespace aftershade::test
