@@ -7,7 +7,7 @@
 
 #include "framework/scene/parallel.h"
 #include "framework/scene/renderer.h"
-#include "framework/scene/rings.h"
+#include "framework/scene/scatter_points.h"
 
 namespace aftershade::scene {
 
@@ -43,23 +43,17 @@ public:
         bitangent_ = glm::cross(normal, tangent_);
     }
 
-    dvec3 scattered(const std::vector<Ring>& rings, int directions) {
+    dvec3 scattered(const std::vector<ScatterPoint>& points) {
         const ShapeKind kind = object_.shape.kind;
         const auto& matrix = world_.state().world_from_object[std::size_t(here_.object)];
         const bool flat = kind == ShapeKind::plane || kind == ShapeKind::disk;
         const bool round = kind == ShapeKind::sphere && is_round(matrix);
         const dvec3 centre(matrix[3]);
-        for (std::size_t i = 0; i < rings.size(); ++i) {
-            // Each ring is turned by the golden ratio of a step, so that directions do not line up.
-            const double turn = std::fmod(double(i) * 0.61803398874989485, 1.0);
-            for (int k = 0; k < directions; ++k) {
-                const double angle_rad = 2 * kPi * (k + turn) / directions;
-                const dvec3 along = std::cos(angle_rad) * tangent_ + std::sin(angle_rad) * bitangent_;
-                const double area_m2 = rings[i].area_m2 / directions;
-                if (flat) add_on_plane(along, rings[i].radius_m, area_m2);
-                else if (round) add_on_sphere(centre, along, rings[i].radius_m, area_m2);
-                else add_by_probe(along, rings[i].radius_m, area_m2);
-            }
+        for (const ScatterPoint& point : points) {
+            const dvec3 along = std::cos(point.angle_rad) * tangent_ + std::sin(point.angle_rad) * bitangent_;
+            if (flat) add_on_plane(along, point.radius_m, point.area_m2);
+            else if (round) add_on_sphere(centre, along, point.radius_m, point.area_m2);
+            else add_by_probe(along, point.radius_m, point.area_m2);
         }
         return {weights_.x > 0 ? sum_.x / weights_.x : 0, weights_.y > 0 ? sum_.y / weights_.y : 0,
                 weights_.z > 0 ? sum_.z / weights_.z : 0};
@@ -105,11 +99,11 @@ private:
         const Ray probe{here_.position + radius_m * along + reach_m * normal, -normal};
         double low = 0;
         for (int i = 0; i < kMaxCrossings; ++i) {
-            auto there = world_.trace(probe, low, 2 * reach_m, object_.id);
+            auto there = world_.trace(probe, low, 2 * reach_m, here_.object);
             if (!there) return;
             low = there->t + 1e-9 * reach_m;
-            // The side that the probe leaves by is that of the far wall: its outside looks away.
-            if (i % 2 == 1) {
+            // Outwards again: the side that the pixel is on.
+            if (there->is_turned != here_.is_turned) {
                 there->normal = -there->normal;
                 there->geometric_normal = -there->geometric_normal;
             }
@@ -137,22 +131,19 @@ ScatteringTruth SceneRenderer::render_scattering(int frame, const ScatteringSett
     ScatteringTruth truth{std::move(capture.images.at("irradiance")), std::move(capture.images.at("color"))};
     const Image& albedo = capture.images.at("albedo");
     const World world(geometry_, state_at(scene_, frame, frame));
-    // Up to three channels share the rings.
-    const int directions = std::max(8, int(std::sqrt(scattering.samples / 1.5)));
-    std::vector<std::vector<Ring>> rings;
+    std::vector<std::vector<ScatterPoint>> points;
     for (const Material& material : scene_.materials)
-        rings.push_back(material.scattering
-                            ? make_rings(*material.scattering, scattering.samples / directions)
-                            : std::vector<Ring>());
+        points.push_back(material.scattering ? make_scatter_points(*material.scattering, scattering.samples)
+                                             : std::vector<ScatterPoint>());
     for_each_row(height_px_, threads_, [&](int y) {
         for (int x = 0; x < width_px_; ++x) {
             const Ray ray = camera_ray(world.state().camera, dvec2(x + 0.5, y + 0.5), dvec2(0));
             const auto here = world.trace(ray, 0, std::numeric_limits<double>::infinity());
             if (!here) continue;
-            const auto& table = rings[std::size_t(scene_.objects[std::size_t(here->object)].material)];
+            const auto& table = points[std::size_t(scene_.objects[std::size_t(here->object)].material)];
             if (table.empty()) continue;
             Gather gather(world, ray.origin, scattering.visible_only, *here);
-            const dvec3 light = gather.scattered(table, directions);
+            const dvec3 light = gather.scattered(table);
             for (int c = 0; c < 3; ++c) {
                 truth.color.at(x, y, c) +=
                     albedo.at(x, y, c) * (float(light[c]) - truth.irradiance.at(x, y, c));

@@ -70,12 +70,12 @@ void World::walk(const Ray& ray, double low, double& high, const Visit& visit) c
     }
 }
 
-std::optional<Surface> World::trace(const Ray& ray, double low, double high, unsigned only_id) const {
+std::optional<Surface> World::trace(const Ray& ray, double low, double high, int only) const {
     int nearest = -1;
     ShapeHit nearest_hit;
     walk(ray, low, high, [&](int index) {
         const Object& object = scene().objects[std::size_t(index)];
-        if (only_id != 0 && object.id != only_id) return false;
+        if (only >= 0 && index != only) return false;
         ShapeHit hit;
         if (!intersect(object.shape, geometry_->mesh_of(object.shape),
                        transformed(ray, object_from_world(index)), low, high, false, hit))
@@ -90,7 +90,8 @@ std::optional<Surface> World::trace(const Ray& ray, double low, double high, uns
     Surface found = surface(nearest, point_of(shape, geometry_->mesh_of(shape),
                                               transformed(ray, object_from_world(nearest)), nearest_hit));
     found.t = nearest_hit.t;
-    if (glm::dot(found.geometric_normal, ray.direction) > 0) found.geometric_normal = -found.geometric_normal;
+    found.is_turned = glm::dot(found.geometric_normal, ray.direction) > 0;
+    if (found.is_turned) found.geometric_normal = -found.geometric_normal;
     if (glm::dot(found.geometric_normal, found.normal) < 0) found.normal = -found.normal;
     return found;
 }

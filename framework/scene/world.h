@@ -35,6 +35,7 @@ struct Surface {
     int object = -1;          ///< index into Scene::objects
     double t = 0;             ///< along the ray
     double precision = 1e-9;  ///< of the position, over the size of its coordinates
+    bool is_turned = false;   ///< the normals were turned to the side that the ray came from
 };
 
 /// Light at a surface, as the roles of a capture have it.
@@ -56,8 +57,8 @@ public:
     const Scene& scene() const { return geometry_->scene(); }
     const glm::dmat4& object_from_world(int object) const { return object_from_world_[std::size_t(object)]; }
 
-    /// The nearest surface with low < t < high; only of objects with the id `only_id` where that is not 0.
-    std::optional<Surface> trace(const Ray& ray, double low, double high, unsigned only_id = 0) const;
+    /// The nearest surface with low < t < high; of one object alone where `only` is its index.
+    std::optional<Surface> trace(const Ray& ray, double low, double high, int only = -1) const;
     /// Whether anything stands between two points; with `casts_shadow`, of what casts shadows alone.
     bool is_hidden(const glm::dvec3& from, const glm::dvec3& to, bool casts_shadow) const;
 

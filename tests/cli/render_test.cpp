@@ -16,7 +16,9 @@ namespace {
 namespace fs = std::filesystem;
 using Args = std::vector<std::string>;
 
-std::string scene(const std::string& id) { return std::string(AFTERSHADE_SOURCE_DIR "/scenes/") + id; }
+std::string scene(const std::string& id) {
+    return std::string(AFTERSHADE_SOURCE_DIR "/scenes/") + id;
+}
 
 class Render : public testing::Test {
 protected:
@@ -41,17 +43,20 @@ protected:
 };
 
 TEST_F(Render, MakesACaptureThatALookRunsOn) {
-    const CommandResult made = render({scene("head"), "-o", "head", "--size", "96x54", "--frames", "1-3", "--truth", "scattering",
-                                       "--truth", "lens+antialias", "--samples", "64"});
+    const CommandResult made =
+        render({scene("head"), "-o", "head", "--size", "96x54", "--frames", "1-3", "--truth", "scattering",
+                "--truth", "lens+antialias", "--samples", "64"});
     ASSERT_EQ(made.exit_code, 0) << made.err;
     std::set<std::string> files;
     for (const std::string& line : lines_of_text(made.out)) files.insert(fs::path(line).filename().string());
-    EXPECT_EQ(files, (std::set<std::string>{"capture.json", "gbuffer_0001.exr", "gbuffer_0002.exr", "gbuffer_0003.exr",
-                                            "truth_lens_antialias_0001.exr", "truth_lens_antialias_0002.exr",
-                                            "truth_lens_antialias_0003.exr", "truth_scattering_0001.exr",
-                                            "truth_scattering_0002.exr", "truth_scattering_0003.exr"}));
+    EXPECT_EQ(files, (std::set<std::string>{"capture.json", "gbuffer_0001.exr", "gbuffer_0002.exr",
+                                            "gbuffer_0003.exr", "truth_lens_antialias_0001.exr",
+                                            "truth_lens_antialias_0002.exr", "truth_lens_antialias_0003.exr",
+                                            "truth_scattering_0001.exr", "truth_scattering_0002.exr",
+                                            "truth_scattering_0003.exr"}));
     for (const std::string& line : lines_of_text(made.out)) EXPECT_TRUE(fs::exists(folder_ / line)) << line;
-    const CommandResult ran = aftershade({"run", AFTERSHADE_SOURCE_DIR "/scenes/looks/portrait.json", "head", "-o", "out_####.png"});
+    const CommandResult ran = aftershade(
+        {"run", AFTERSHADE_SOURCE_DIR "/scenes/looks/portrait.json", "head", "-o", "out_####.png"});
     EXPECT_EQ(ran.exit_code, 0) << ran.err;
     EXPECT_TRUE(fs::exists(folder_ / "out_0002.png"));
     const CommandResult told = aftershade({"inspect", "head"});
@@ -62,17 +67,23 @@ TEST_F(Render, MakesACaptureThatALookRunsOn) {
 
 TEST_F(Render, GivesTheSameBitsTwice) {
     for (const char* name : {"a", "b"})
-        ASSERT_EQ(render({scene("wheel"), "-o", name, "--size", "64x36", "--frames", "1-24", "--jitter", "halton"}).exit_code, 0);
+        ASSERT_EQ(
+            render({scene("wheel"), "-o", name, "--size", "64x36", "--frames", "1-24", "--jitter", "halton"})
+                .exit_code,
+            0);
     for (int frame = 1; frame <= 24; ++frame) {
-        const std::string file = "/gbuffer_00" + std::string(frame < 10 ? "0" : "") + std::to_string(frame) + ".exr";
+        const std::string file =
+            "/gbuffer_00" + std::string(frame < 10 ? "0" : "") + std::to_string(frame) + ".exr";
         ASSERT_EQ(bytes("a" + file), bytes("b" + file)) << file;
     }
     EXPECT_NE(bytes("a/gbuffer_0001.exr"), bytes("a/gbuffer_0002.exr"));
 }
 
 TEST_F(Render, WritesSubframesThatAreOneFramesExposure) {
-    ASSERT_EQ(render({scene("moving_box"), "-o", "box", "--size", "120x68", "--frames", "4-5", "--subframes", "4", "--truth", "shutter",
-                      "--samples", "4"}).exit_code, 0);
+    ASSERT_EQ(render({scene("moving_box"), "-o", "box", "--size", "120x68", "--frames", "4-5", "--subframes",
+                      "4", "--truth", "shutter", "--samples", "4"})
+                  .exit_code,
+              0);
     std::vector<double> mean;
     for (int s = 0; s < 4; ++s) {
         const std::vector<float> part = channel("box/gbuffer_00" + std::to_string(16 + s) + ".exr", "R");
@@ -86,22 +97,28 @@ TEST_F(Render, WritesSubframesThatAreOneFramesExposure) {
     EXPECT_EQ(told.exit_code, 0) << told.err;
 }
 
-/// Each decoder against a renderer that knows the truth: the velocities of its own pictures must explain them.
+/// Each decoder against a renderer that knows the truth: the velocities of its own pictures must explain
+/// them.
 TEST_F(Render, SpeaksTheConventionsOfOtherProducers) {
     for (const std::string profile : {"native", "blender", "unreal", "nuke"}) {
-        ASSERT_EQ(render({scene("wheel"), "-o", profile, "--size", "320x180", "--frames", "5-6", "--profile", profile}).exit_code, 0);
+        ASSERT_EQ(render({scene("wheel"), "-o", profile, "--size", "320x180", "--frames", "5-6", "--profile",
+                          profile})
+                      .exit_code,
+                  0);
         const CommandResult checked = aftershade(
             {"inspect", "--check-velocity", profile + "/gbuffer_0005.exr", profile + "/gbuffer_0006.exr"});
         EXPECT_EQ(checked.exit_code, 0) << profile << checked.out << checked.err;
         EXPECT_NE(checked.out.find("The profile is right"), std::string::npos) << checked.out;
     }
-    const CommandResult left_out = render({scene("plane_edge"), "-o", "u", "--size", "32x18", "--profile", "unreal"});
+    const CommandResult left_out =
+        render({scene("plane_edge"), "-o", "u", "--size", "32x18", "--profile", "unreal"});
     EXPECT_NE(left_out.err.find("'unreal' has no way to store"), std::string::npos) << left_out.err;
     EXPECT_NE(left_out.err.find("irradiance"), std::string::npos) << left_out.err;
 }
 
 TEST_F(Render, WritesTextureSpace) {
-    const CommandResult made = render({scene("head"), "-o", "uv", "--space", "uv", "--object", "skull", "--texture-size", "64", "--frames", "2"});
+    const CommandResult made = render({scene("head"), "-o", "uv", "--space", "uv", "--object", "skull",
+                                       "--texture-size", "64", "--frames", "2"});
     ASSERT_EQ(made.exit_code, 0) << made.err;
     const ExrFile file(folder_ / "uv/gbuffer_0002.exr");
     EXPECT_EQ(file.parts()[0].data_window.width(), 64);
@@ -112,7 +129,9 @@ TEST_F(Render, WritesTextureSpace) {
 }
 
 TEST_F(Render, TellsWhatIsInTheHeader) {
-    ASSERT_EQ(render({scene("head"), "-o", "head", "--size", "32x18", "--frames", "3", "--jitter", "halton"}).exit_code, 0);
+    ASSERT_EQ(render({scene("head"), "-o", "head", "--size", "32x18", "--frames", "3", "--jitter", "halton"})
+                  .exit_code,
+              0);
     const ExrFile file(folder_ / "head/gbuffer_0003.exr");
     const ExrMetadata& metadata = file.parts()[0].metadata;
     EXPECT_NEAR(metadata.number("aftershade/camera/focal_length").value_or(0), 62, 1e-4);
@@ -148,7 +167,8 @@ TEST_F(Render, TellsWhatIsWrongWithTheCommand) {
         {{head, "-o", "x", "--object", "skull"}, "is for --space uv"},
         {{head, "-o", "x", "--profile", "blendr"}, "did you mean 'blender'?"},
         {{head, "-o", "x", "--truth-only"}, "there is no --truth to render"},
-        {{scene("wheel"), "-o", "x", "--truth", "scattering"}, "no material of the scene has a \"scattering_profile\""},
+        {{scene("wheel"), "-o", "x", "--truth", "scattering"},
+         "no material of the scene has a \"scattering_profile\""},
         {{"nowhere", "-o", "x"}, "nowhere"},
     };
     for (const Fault& fault : faults) {

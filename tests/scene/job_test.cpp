@@ -17,7 +17,8 @@ namespace {
 
 Profile native_profile() {
     Diagnostics diagnostics;
-    for (Profile& profile : read_profiles(std::filesystem::path(AFTERSHADE_SOURCE_DIR) / "profiles", diagnostics))
+    for (Profile& profile :
+         read_profiles(std::filesystem::path(AFTERSHADE_SOURCE_DIR) / "profiles", diagnostics))
         if (profile.id == "native") return std::move(profile);
     throw std::runtime_error("no native profile");
 }
@@ -62,8 +63,8 @@ TEST(Job, EndsBetweenFramesWithWholeFiles) {
     const Scene scene = shipped_scene("wheel");
     test::TemporaryFolder folder;
     std::atomic<bool> stop = false;
-    const JobReport report = run_job(scene, native_profile(), small_job(folder / "capture", {1, 2, 3, 4}), stop,
-                                     [&](int frame) { stop = frame == 2; });
+    const JobReport report = run_job(scene, native_profile(), small_job(folder / "capture", {1, 2, 3, 4}),
+                                     stop, [&](int frame) { stop = frame == 2; });
     EXPECT_EQ(report.frames, 2);
     Diagnostics diagnostics;
     const auto sequence = open_sequence((folder / "capture").string(), diagnostics);

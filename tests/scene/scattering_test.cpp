@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/scene/renderer.h"
-#include "framework/scene/rings.h"
+#include "framework/scene/scatter_points.h"
 #include "tests/scene/scene_text.h"
 
 namespace aftershade::scene {
@@ -38,7 +38,7 @@ TEST(EdgeResponse, OfTheTestIsThePublishedTable) {
     EXPECT_NEAR(edge_response(-4), 1 - 0.94762, 1e-5);
 }
 
-TEST(Rings, HaveRadiiThatInvertTheDistribution) {
+TEST(ScatterPoints, HaveRadiiThatInvertTheDistribution) {
     for (const double u : {0.001, 0.25, 0.5, 0.9, 0.99, 0.999}) {
         const double x = burley_radius(u);
         EXPECT_NEAR(1 - std::exp(-x) / 4 - 0.75 * std::exp(-x / 3), u, 1e-12);
@@ -46,13 +46,14 @@ TEST(Rings, HaveRadiiThatInvertTheDistribution) {
     EXPECT_NEAR(burley_radius(0.5), 1.5522, 1e-4);
 }
 
-TEST(Rings, StandForTheWholeProfileOfEveryChannel) {
+TEST(ScatterPoints, StandForTheWholeProfileOfEveryChannel) {
     const Scattering scattering{dvec3(5e-3, 1e-3, 0.4e-3)};
-    const std::vector<Ring> rings = make_rings(scattering, 96);
+    const std::vector<ScatterPoint> points = make_scatter_points(scattering, 3000);
     for (int c = 0; c < 3; ++c) {
         double sum = 0;
-        for (const Ring& ring : rings) sum += burley_density(ring.radius_m, scattering.d_m[c]) * ring.area_m2;
-        EXPECT_NEAR(sum, 1, 0.02);
+        for (const ScatterPoint& point : points)
+            sum += burley_density(point.radius_m, scattering.d_m[c]) * point.area_m2;
+        EXPECT_NEAR(sum, 1, 1e-3);
     }
 }
 

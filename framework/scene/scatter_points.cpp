@@ -1,0 +1,39 @@
+#include "framework/scene/scatter_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace aftershade::scene {
+
+double burley_density(double radius_m, double d_m) {
+    return (std::exp(-radius_m / d_m) + std::exp(-radius_m / (3 * d_m))) /
+           (8 * std::numbers::pi * d_m * radius_m);
+}
+
+double burley_radius(double u) {
+    const double rest = 1 - u;
+    const double g = 1 + 4 * rest * (2 * rest + std::sqrt(1 + 4 * rest * rest));
+    const double root = std::cbrt(g);
+    return 3 * std::log((1 + 1 / root + root) / (4 * rest));
+}
+
+std::vector<ScatterPoint> make_scatter_points(const Scattering& scattering, int count) {
+    std::vector<double> widths_m = {scattering.d_m.x, scattering.d_m.y, scattering.d_m.z};
+    std::sort(widths_m.begin(), widths_m.end());
+    widths_m.erase(std::unique(widths_m.begin(), widths_m.end()), widths_m.end());
+    const int each = std::max(count / int(widths_m.size()), 1);
+    const double golden_turns = (std::sqrt(5.0) - 1) / 2;
+    std::vector<ScatterPoint> points;
+    for (const double d_m : widths_m)
+        for (int i = 0; i < each; ++i) {
+            const double radius_m = d_m * burley_radius((i + 0.5) / each);
+            double density = 0;
+            for (const double other_m : widths_m) density += burley_density(radius_m, other_m);
+            const double turns = std::fmod(i * golden_turns, 1.0);
+            points.push_back({radius_m, 2 * std::numbers::pi * turns, 1 / (each * density)});
+        }
+    return points;
+}
+
+}  // namespace aftershade::scene
