@@ -47,7 +47,7 @@ struct ScatteringTruth {
 /// [const functions: any thread; each uses `threads` of its own]
 class SceneRenderer {
 public:
-    /// `scene` must outlive this. The picture's height follows from nothing: pixels are square.
+    /// `scene` must outlive this. Pixels are square, and the sensor is as wide as the picture.
     SceneRenderer(const Scene& scene, int width_px, int height_px, int threads);
 
     /// Every role but mask, at `time` in frames; motion is to `time` minus and plus one frame, in the shot of
@@ -62,7 +62,7 @@ public:
 
     /// Light scattered by each material's profile: the integral of profile times irradiance over the surface
     /// of the object that the pixel shows, divided by that of the profile alone, so that even light stays as
-    /// it is. Points lie on rings about the pixel's own, where light and shadows are computed anew: on
+    /// it is. Points lie on spirals about the pixel's own, where light and shadows are computed anew: on
     /// planes, disks and spheres exactly, elsewhere where a line along the normal meets the object (King et
     /// al. 2013).
     ScatteringTruth render_scattering(int frame, const ScatteringSettings& settings) const;

@@ -18,6 +18,18 @@ double burley_radius(double u) {
     return 3 * std::log((1 + 1 / root + root) / (4 * rest));
 }
 
+namespace {
+
+/// Points an area has for each of a spiral's: u = 1 - (1 - v)^2 of the light lies within the radius of point
+/// v, so that the far tail, where the light is least, is finely divided too.
+double point_density(double radius_m, double d_m) {
+    const double x = radius_m / d_m;
+    const double outside = std::exp(-x) / 4 + 0.75 * std::exp(-x / 3);
+    return burley_density(radius_m, d_m) / (2 * std::sqrt(outside));
+}
+
+}  // namespace
+
 std::vector<ScatterPoint> make_scatter_points(const Scattering& scattering, int count) {
     std::vector<double> widths_m = {scattering.d_m.x, scattering.d_m.y, scattering.d_m.z};
     std::sort(widths_m.begin(), widths_m.end());
@@ -27,9 +39,10 @@ std::vector<ScatterPoint> make_scatter_points(const Scattering& scattering, int 
     std::vector<ScatterPoint> points;
     for (const double d_m : widths_m)
         for (int i = 0; i < each; ++i) {
-            const double radius_m = d_m * burley_radius((i + 0.5) / each);
+            const double rest = 1 - (i + 0.5) / each;
+            const double radius_m = d_m * burley_radius(1 - rest * rest);
             double density = 0;
-            for (const double other_m : widths_m) density += burley_density(radius_m, other_m);
+            for (const double other_m : widths_m) density += point_density(radius_m, other_m);
             const double turns = std::fmod(i * golden_turns, 1.0);
             points.push_back({radius_m, 2 * std::numbers::pi * turns, 1 / (each * density)});
         }
