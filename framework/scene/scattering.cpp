@@ -72,7 +72,7 @@ private:
     void add_on_plane(const dvec3& along, double radius_m, double area_m2) {
         Surface there = here_;
         there.position += radius_m * along;
-        const dvec3 local(world_.object_from_world(here_.object) * dvec4(there.position, 1));
+        const dvec3 local = world_.to_object(here_.object, there.position);
         const dvec3& half = object_.shape.half_size_m;
         const bool inside = object_.shape.kind == ShapeKind::disk
                                 ? std::hypot(local.x, local.y) <= half.x

@@ -16,10 +16,6 @@ dvec3 point(const dmat4& matrix, const dvec3& p) {
     return dvec3(matrix * dvec4(p, 1));
 }
 
-Ray transformed(const Ray& ray, const dmat4& matrix) {
-    return {point(matrix, ray.origin), dmat3(matrix) * ray.direction};
-}
-
 Bounds transformed(const Bounds& bounds, const dmat4& matrix) {
     Bounds result;
     for (int corner = 0; corner < 8; ++corner)
@@ -39,12 +35,15 @@ Geometry::Geometry(const Scene& scene) : scene_(scene) {
 World::World(const Geometry& geometry, SceneState state) : geometry_(&geometry), state_(std::move(state)) {
     std::vector<Bounds> bounds;
     for (std::size_t i = 0; i < state_.world_from_object.size(); ++i) {
-        object_from_world_.push_back(glm::inverse(state_.world_from_object[i]));
-        const Shape& shape = scene().objects[i].shape;
-        const Bounds local = bounds_of(shape, geometry.mesh_of(shape));
+        const Object& object = scene().objects[i];
+        const MeshTree* mesh = geometry.mesh_of(object.shape);
+        const Bounds local = bounds_of(object.shape, mesh);
+        seen_of_object_.push_back(local.empty() ? -1 : int(seen_.size()));
         if (local.empty()) continue;
-        seen_.push_back(int(i));
-        bounds.push_back(transformed(local, state_.world_from_object[i]));
+        const dmat4& matrix = state_.world_from_object[i];
+        seen_.push_back(
+            {int(i), object.casts_shadow, &object.shape, mesh, glm::dmat4x3(glm::inverse(matrix))});
+        bounds.push_back(transformed(local, matrix));
         // A flat box keeps rays that run along it only if it has some height.
         const dvec3 margin = 1e-12 * glm::max(glm::abs(bounds.back().low), glm::abs(bounds.back().high));
         bounds.back().low -= margin;
@@ -53,7 +52,11 @@ World::World(const Geometry& geometry, SceneState state) : geometry_(&geometry),
     bvh_ = build_bvh(bounds, 2);
 }
 
-/// Calls visit(object) for objects whose boxes the ray meets before `high`, which it may lower; ends where it
+dvec3 World::to_object(int object, const dvec3& position) const {
+    return seen_[std::size_t(seen_of_object_[std::size_t(object)])].object_from_world * dvec4(position, 1);
+}
+
+/// Calls visit(seen) for objects whose boxes the ray meets before `high`, which it may lower; ends where it
 /// returns true.
 template <class Visit>
 void World::walk(const Ray& ray, double low, double& high, const Visit& visit) const {
@@ -71,24 +74,22 @@ void World::walk(const Ray& ray, double low, double& high, const Visit& visit) c
 }
 
 std::optional<Surface> World::trace(const Ray& ray, double low, double high, int only) const {
-    int nearest = -1;
+    const Seen* nearest = nullptr;
     ShapeHit nearest_hit;
-    walk(ray, low, high, [&](int index) {
-        const Object& object = scene().objects[std::size_t(index)];
-        if (only >= 0 && index != only) return false;
+    const auto visit = [&](const Seen& seen) {
         ShapeHit hit;
-        if (!intersect(object.shape, geometry_->mesh_of(object.shape),
-                       transformed(ray, object_from_world(index)), low, high, false, hit))
-            return false;
-        nearest = index;
-        nearest_hit = hit;
-        high = hit.t;
+        if (intersect(*seen.shape, seen.mesh, seen.local(ray), low, high, false, hit)) {
+            nearest = &seen;
+            nearest_hit = hit;
+            high = hit.t;
+        }
         return false;
-    });
-    if (nearest < 0) return std::nullopt;
-    const Shape& shape = scene().objects[std::size_t(nearest)].shape;
-    Surface found = surface(nearest, point_of(shape, geometry_->mesh_of(shape),
-                                              transformed(ray, object_from_world(nearest)), nearest_hit));
+    };
+    if (only < 0) walk(ray, low, high, visit);
+    else visit(seen_[std::size_t(seen_of_object_[std::size_t(only)])]);
+    if (!nearest) return std::nullopt;
+    Surface found =
+        surface(nearest->object, point_of(*nearest->shape, nearest->mesh, nearest->local(ray), nearest_hit));
     found.t = nearest_hit.t;
     found.is_turned = glm::dot(found.geometric_normal, ray.direction) > 0;
     if (found.is_turned) found.geometric_normal = -found.geometric_normal;
@@ -100,12 +101,10 @@ bool World::is_hidden(const dvec3& from, const dvec3& to, bool casts_shadow) con
     const Ray ray{from, to - from};
     double high = 1;
     bool hidden = false;
-    walk(ray, 0, high, [&](int index) {
-        const Object& object = scene().objects[std::size_t(index)];
+    walk(ray, 0, high, [&](const Seen& seen) {
         ShapeHit hit;
-        hidden = (object.casts_shadow || !casts_shadow) &&
-                 intersect(object.shape, geometry_->mesh_of(object.shape),
-                           transformed(ray, object_from_world(index)), 0, 1, true, hit);
+        hidden = (seen.casts_shadow || !casts_shadow) &&
+                 intersect(*seen.shape, seen.mesh, seen.local(ray), 0, 1, true, hit);
         return hidden;
     });
     return hidden;
@@ -113,7 +112,8 @@ bool World::is_hidden(const dvec3& from, const dvec3& to, bool casts_shadow) con
 
 Surface World::surface(int object, const ShapePoint& on_shape) const {
     // Normals go by the inverse's transpose.
-    const dmat3 normal_matrix = glm::transpose(dmat3(object_from_world(object)));
+    const Seen& seen = seen_[std::size_t(seen_of_object_[std::size_t(object)])];
+    const dmat3 normal_matrix = glm::transpose(dmat3(seen.object_from_world));
     Surface surface;
     surface.position = point(state_.world_from_object[std::size_t(object)], on_shape.position);
     surface.local = on_shape.position;

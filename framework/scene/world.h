@@ -55,7 +55,7 @@ public:
 
     const SceneState& state() const { return state_; }
     const Scene& scene() const { return geometry_->scene(); }
-    const glm::dmat4& object_from_world(int object) const { return object_from_world_[std::size_t(object)]; }
+    glm::dvec3 to_object(int object, const glm::dvec3& position) const;
 
     /// The nearest surface with low < t < high; of one object alone where `only` is its index.
     std::optional<Surface> trace(const Ray& ray, double low, double high, int only = -1) const;
@@ -70,6 +70,19 @@ public:
     Shading shade(const Surface& surface, const glm::dvec3& eye) const;
 
 private:
+    /// What a ray needs of an object, close together.
+    struct Seen {
+        int object = 0;
+        bool casts_shadow = true;
+        const Shape* shape = nullptr;
+        const MeshTree* mesh = nullptr;
+        glm::dmat4x3 object_from_world{1};
+
+        Ray local(const Ray& ray) const {
+            return {object_from_world * glm::dvec4(ray.origin, 1),
+                    glm::dmat3(object_from_world) * ray.direction};
+        }
+    };
     template <class Visit>
     void walk(const Ray& ray, double low, double& high, const Visit& visit) const;
     Shading light(const Surface& surface, const glm::dvec3* to_eye) const;
@@ -79,9 +92,9 @@ private:
 
     const Geometry* geometry_;
     SceneState state_;
-    std::vector<glm::dmat4> object_from_world_;
-    std::vector<int> seen_;  ///< objects that there is something of
-    Bvh bvh_;                ///< over those, in world space
+    std::vector<int> seen_of_object_;  ///< index into seen_, -1: there is nothing to see of it
+    std::vector<Seen> seen_;
+    Bvh bvh_;  ///< over seen_, in world space
 };
 
 }  // namespace aftershade::scene
