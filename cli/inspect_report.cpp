@@ -76,6 +76,15 @@ std::string role_lines(const Inspection& inspection) {
     return text + fmt::format("  {:<14}  {}\n", "(missing)", fmt::join(inspection.missing_roles(), ", "));
 }
 
+std::string light_lines(const std::vector<CaptureLight>& lights) {
+    std::string text = lights.empty() ? "" : "lights:\n";
+    for (const CaptureLight& light : lights)
+        text += fmt::format("  {:<14}  {}, intensity {:.4g} {:.4g} {:.4g}\n", light.name,
+                            light_kind_names()[std::size_t(light.kind)], light.intensity[0],
+                            light.intensity[1], light.intensity[2]);
+    return text;
+}
+
 std::string camera_lines(const Camera& camera) {
     std::string text;
     for (const auto& [name, value] : camera.values()) {
@@ -84,6 +93,8 @@ std::string camera_lines(const Camera& camera) {
     }
     if (!camera.lens_model.empty()) text += fmt::format("  {:<14}  {}\n", "lens_model", camera.lens_model);
     if (camera.camera_from_world) text += "  camera_from_world and the rest of its place are known\n";
+    if (camera.jitter_px)
+        text += fmt::format("  {:<14}  {} {} px\n", "jitter", (*camera.jitter_px)[0], (*camera.jitter_px)[1]);
     return text.empty() ? "camera: nothing is known\n" : "camera:\n" + text;
 }
 
@@ -128,12 +139,17 @@ Json part_json(const InspectedPart& part) {
     return json;
 }
 
+Json lights_json(const std::vector<CaptureLight>& lights) {
+    return Json::parse(format_lights(lights));
+}
+
 Json camera_json(const Camera& camera) {
     Json json = Json::object();
     for (const auto& [name, value] : camera.values()) json[name] = value;
     if (!camera.lens_model.empty()) json["lens_model"] = camera.lens_model;
     if (camera.camera_from_world) json["camera_from_world"] = *camera.camera_from_world;
     if (camera.ndc_from_world) json["ndc_from_world"] = *camera.ndc_from_world;
+    if (camera.jitter_px) json["jitter_px"] = *camera.jitter_px;
     return json;
 }
 
@@ -168,7 +184,8 @@ std::string text_of(const Inspection& inspection) {
     if (inspection.capture && !inspection.capture->view.empty())
         text += fmt::format("view: {}\n", printable(inspection.capture->view));
     return text + role_lines(inspection) +
-           camera_lines(inspection.capture ? inspection.capture->camera : Camera{});
+           camera_lines(inspection.capture ? inspection.capture->camera : Camera{}) +
+           light_lines(inspection.capture ? inspection.capture->lights : std::vector<CaptureLight>());
 }
 
 std::string json_of(const Inspection& inspection) {
@@ -184,6 +201,8 @@ std::string json_of(const Inspection& inspection) {
             json["roles"][role] = channels_of(*inspection.capture, role);
     json["missing"] = inspection.missing_roles();
     json["camera"] = camera_json(inspection.capture ? inspection.capture->camera : Camera{});
+    json["lights"] =
+        lights_json(inspection.capture ? inspection.capture->lights : std::vector<CaptureLight>());
     // Names in files need not be UTF-8.
     return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }

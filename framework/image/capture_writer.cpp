@@ -44,6 +44,17 @@ void add_mark(const Profile& profile, std::map<std::string, ExrValue>& attribute
     attributes.emplace(name, std::string("written by Aftershade"));
 }
 
+void require_exact_ids(const std::filesystem::path& path, const Image& image, bool ids_as_uint) {
+    constexpr std::uint32_t kLargestExactFloat = 1u << 24;
+    if (image.type() != ComponentType::uint32 || ids_as_uint) return;
+    const auto ids = image.uints();
+    const auto largest = std::max_element(ids.begin(), ids.end());
+    if (largest != ids.end() && *largest > kLargestExactFloat)
+        throw Error(ExitCode::output,
+                    path.string() + ": object id " + std::to_string(*largest) +
+                        " is above 16777216, which the profile's floats cannot hold; use native");
+}
+
 }  // namespace
 
 std::vector<std::string> write_capture(const std::filesystem::path& path, const Capture& capture,
@@ -66,9 +77,10 @@ std::vector<std::string> write_capture(const std::filesystem::path& path, const 
         if (is_color_role(role) && primaries != header.primaries)
             convert_colors(encoded, conversion_matrix(header.primaries, primaries));
         // A producer that is not ours stores ids as floats, as every one of them does.
+        const bool ids_as_uint = profile.id == "native";
+        require_exact_ids(path, image, ids_as_uint);
         stored.merge(encode_role(role, std::move(encoded), found->second,
-                                 channel_names(found->second, image.channels()), profile.id == "native",
-                                 context));
+                                 channel_names(found->second, image.channels()), ids_as_uint, context));
     }
     if (stored.empty())
         throw Error(ExitCode::output,

@@ -66,8 +66,10 @@ double highlight(const Material& material, const dvec3& normal, const dvec3& to_
     const double distribution = a2 / (kPi * base * base);
     const double masking =
         0.5 / (n_l * std::sqrt(n_v * n_v * (1 - a2) + a2) + n_v * std::sqrt(n_l * n_l * (1 - a2) + a2));
-    const double grazing = 1 - std::clamp(glm::dot(half_way, to_light), 0.0, 1.0);
-    return distribution * masking * (material.specular + (1 - material.specular) * std::pow(grazing, 5));
+    const double grazing = 1 - std::clamp(glm::dot(half_way, to_light), 0.0, 1.0),
+                 squared = grazing * grazing;
+    return distribution * masking *
+           (material.specular + (1 - material.specular) * squared * squared * grazing);
 }
 
 dvec3 albedo_at(const Material& material, const glm::dvec2& uv) {

@@ -148,6 +148,9 @@ TEST_F(Render, TellsWhatIsInTheHeader) {
     const auto document = nlohmann::json::parse(bytes("head/capture.json"));
     EXPECT_FALSE(document.contains("lights"));
     EXPECT_EQ(document["camera"]["lens_model"], "pinhole");
+    const CommandResult told = aftershade({"inspect", "head"});
+    EXPECT_NE(told.out.find("jitter"), std::string::npos) << told.out;
+    EXPECT_NE(told.out.find("key             point"), std::string::npos) << told.out;
 }
 
 struct Fault {

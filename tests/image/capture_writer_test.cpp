@@ -166,6 +166,26 @@ TEST(CaptureWriter, UsesTheNamesAndUnitsOfTheProducer) {
     EXPECT_FLOAT_EQ(value("nuke.exr", "backward.v", 3, 2), vy);
 }
 
+TEST(CaptureWriter, RefusesIdsThatTheProducersFloatsCannotHold) {
+    test::TemporaryFolder folder;
+    Capture capture = make_capture();
+    capture.images.at("object_id").uint_at(5, 5, 0) = 16777217;
+    for (const Profile& profile : shipped_profiles()) {
+        if (profile.id == "native") {
+            EXPECT_NO_THROW(write_capture(folder / "native.exr", capture, profile, {}));
+        }
+        if (profile.id != "blender") continue;
+        try {
+            write_capture(folder / "blender.exr", capture, profile, {});
+            FAIL();
+        } catch (const Error& error) {
+            EXPECT_EQ(error.exit_code(), ExitCode::output);
+            EXPECT_NE(std::string(error.what()).find("object id 16777217"), std::string::npos)
+                << error.what();
+        }
+    }
+}
+
 TEST(CaptureDocument, IsReadBackAsTheSequenceThatItDescribes) {
     test::TemporaryFolder folder;
     CaptureDocument document;

@@ -231,6 +231,20 @@ TEST_F(Renderer, TellsTheShaderWhereItIsInTheDisplayWindow) {
     EXPECT_EQ(color.at(0, 0, 3), -2);
 }
 
+TEST_F(Renderer, TellsTheShaderOfThisFramesAndTheLastFramesJitter) {
+    effects_.add_color("show", "vec4(camera.jitter_px, camera.prev_jitter_px)");
+    Bench bench(effects_, look_of(R"({ "effect": "show" })"));
+    Capture capture = plain();
+    capture.header.frame = 1;
+    capture.header.camera.jitter_px = {0.25, -0.5};
+    expect_everywhere(bench.color(capture), {0.25f, -0.5f, 0});
+    capture.header.frame = 2;
+    capture.header.camera.jitter_px = {0.125, 0};
+    const Image second = bench.color(capture);
+    expect_everywhere(second, {0.125f, 0, 0.25f});
+    EXPECT_EQ(second.at(0, 0, 3), -0.5f);
+}
+
 TEST_F(Renderer, GivesEachStepASeedThatAnotherStepDoesNotChange) {
     effects_.add_color("seed", "source + vec4(float(frame.step_seed >> 8u), 0, 0, 0)");
     const Capture black = plain(2, 2, {});
