@@ -10,6 +10,7 @@
 #include "cli/capture_options.h"
 #include "cli/effect_options.h"
 #include "cli/verbs.h"
+#include "framework/core/text.h"
 
 namespace aftershade::cli {
 
@@ -65,11 +66,6 @@ int write(const fs::path& file, const std::string& text) {
     return int(std::count(text.begin(), text.end(), '\n'));
 }
 
-bool is_snake_case(const std::string& id) {
-    const auto fits = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
-    return !id.empty() && id[0] >= 'a' && id[0] <= 'z' && std::all_of(id.begin(), id.end(), fits);
-}
-
 /// As a shell takes it for one word.
 std::string quoted(const std::string& word) {
     const auto is_plain = [](unsigned char c) { return std::isalnum(c) || std::strchr("_-./+:@%,=", c); };
@@ -84,9 +80,7 @@ ExitCode make(const NewOptions& options) {
     const EffectRegistry shipped = find_effects({}, diagnostics);
     const fs::path folder = fs::path(options.folder) / options.id;
     std::error_code failure;
-    if (!is_snake_case(options.id))
-        diagnostics.error({"ID"},
-                          "'" + options.id + "' must be snake_case: a-z, 0-9 and _, beginning with a letter");
+    if (!is_snake_case(options.id)) diagnostics.error({"ID"}, "'" + options.id + "' " + kMustBeSnakeCase);
     else if (shipped.contains(options.id))
         diagnostics.error({"ID"}, "an effect that comes with Aftershade is called '" + options.id + "'");
     else if (fs::exists(folder, failure)) diagnostics.error({"ID"}, folder.string() + " is there already");

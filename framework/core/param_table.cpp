@@ -1,10 +1,11 @@
 #include "framework/core/param_internal.h"
 
+#include "framework/core/text.h"
+
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <map>
-#include <regex>
 #include <set>
 #include <utility>
 
@@ -184,14 +185,11 @@ std::optional<ParamValue> ValueReader::table(const Node& node) const {
 }
 
 void read_columns(const Node& node, ParamSpec& spec, Diagnostics& diagnostics) {
-    static const std::regex rule("[a-z][a-z0-9_]*");
     if (node.members.empty())
         diagnostics.error(node.place, "table parameter '" + spec.name + "' has no columns");
     for (const Member& member : node.members) {
         const std::string thing = "column '" + member.key + "' of parameter '" + spec.name + "'";
-        if (!std::regex_match(member.key, rule))
-            diagnostics.error(member.key_place,
-                              thing + " must be snake_case: a-z, 0-9 and _, beginning with a letter");
+        if (!is_snake_case(member.key)) diagnostics.error(member.key_place, thing + " " + kMustBeSnakeCase);
         if (std::find(std::begin(kKeys), std::end(kKeys), member.key) != std::end(kKeys))
             diagnostics.error(member.key_place, thing + ": a row says by this key which object it is for");
         auto column = parse_spec(member.key, thing, spec.name + ".columns." + member.key, SpecOwner::table,

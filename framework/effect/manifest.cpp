@@ -4,6 +4,7 @@
 #include <regex>
 #include <utility>
 
+#include "framework/core/text.h"
 #include "framework/effect/manifest_check.h"
 #include "framework/effect/manifest_parser.h"
 #include "framework/image/camera.h"
@@ -25,9 +26,7 @@ const T* find_named(const std::vector<T>& list, const std::string& name) {
 }  // namespace
 
 void ManifestParser::identifier(const std::string& name, const Place& place, const std::string& thing) {
-    static const std::regex rule("[a-z][a-z0-9_]*");
-    if (!std::regex_match(name, rule))
-        fault(place, thing + " '" + name + "' must be snake_case: a-z, 0-9 and _, beginning with a letter");
+    if (!is_snake_case(name)) fault(place, thing + " '" + name + "' " + kMustBeSnakeCase);
 }
 
 void ManifestParser::identity(ObjectReader& reader, const Node& node) {

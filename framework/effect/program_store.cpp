@@ -10,6 +10,7 @@
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 
 namespace aftershade {
 
@@ -21,15 +22,8 @@ constexpr std::string_view kMagic = "aftershade program 1\n";
 /// More than any program of ours; what is larger is no program.
 constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t(64) << 20;
 
-/// FNV-1a, Fowler, Noll and Vo 1991. It names files and finds damage; it does not resist an attacker, who
-/// could write the folder anyway.
 std::uint64_t hash_of(std::string_view bytes) {
-    std::uint64_t hash = 14695981039346656037U;
-    for (const char byte : bytes) {
-        hash ^= static_cast<unsigned char>(byte);
-        hash *= 1099511628211U;
-    }
-    return hash;
+    return fnv1a(std::as_bytes(std::span(bytes)));
 }
 
 void append(std::string& bytes, std::uint64_t value) {

@@ -9,6 +9,7 @@
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 
 namespace aftershade {
 
@@ -18,13 +19,6 @@ using nlohmann::json;
 namespace {
 
 constexpr std::string_view kMagic = "aftershade-history 1";
-
-/// FNV-1a, 64 bits: against damage, not against intent.
-std::uint64_t checksum(std::uint64_t hash, std::span<const std::byte> bytes) {
-    for (const std::byte byte : bytes) hash = (hash ^ std::uint64_t(byte)) * 1099511628211ull;
-    return hash;
-}
-constexpr std::uint64_t kChecksumBegin = 14695981039346656037ull;
 
 template <typename T>
 void append(std::vector<std::byte>& bytes, const std::vector<T>& values) {
@@ -138,7 +132,7 @@ bool read_resources(std::istream& in, std::uintmax_t file_bytes, const json& doc
         saved.bytes.resize(bytes);
         in.read(reinterpret_cast<char*>(saved.bytes.data()), std::streamsize(bytes));
         if (!in) return false;
-        sum = checksum(sum, saved.bytes);
+        sum = fnv1a(saved.bytes, sum);
         history.resources[entry.at("name").get<std::string>()] = std::move(saved);
     }
     std::uint64_t stored = 0;
@@ -207,10 +201,10 @@ void write_history(const fs::path& path, const SavedHistory& history) {
     std::ofstream out(file.temporary_path(), std::ios::binary);
     const std::string head = describe(history).dump();
     out << kMagic << "\n" << head << "\n";
-    std::uint64_t sum = checksum(kChecksumBegin, std::as_bytes(std::span(head)));
+    std::uint64_t sum = fnv1a(std::as_bytes(std::span(head)));
     for (const auto& [name, saved] : history.resources) {
         out.write(reinterpret_cast<const char*>(saved.bytes.data()), std::streamsize(saved.bytes.size()));
-        sum = checksum(sum, saved.bytes);
+        sum = fnv1a(saved.bytes, sum);
     }
     out.write(reinterpret_cast<const char*>(&sum), sizeof sum);
     out.close();
@@ -235,7 +229,7 @@ SavedHistory read_history(const fs::path& path) {
     try {
         const json document = json::parse(head);
         apply(document, history);
-        const std::uint64_t sum = checksum(kChecksumBegin, std::as_bytes(std::span(head)));
+        const std::uint64_t sum = fnv1a(std::as_bytes(std::span(head)));
         if (!read_resources(in, file_bytes, document, sum, history))
             throw refuse("this history is damaged; make it anew with --history-out");
     } catch (const json::exception&) {

@@ -1,5 +1,7 @@
 #include "framework/pipeline/look.h"
 
+#include "framework/core/text.h"
+
 #include <algorithm>
 #include <set>
 #include <utility>
@@ -10,12 +12,6 @@ namespace fs = std::filesystem;
 using Presence = ObjectReader::Presence;
 
 namespace {
-
-bool is_snake_case(const std::string& name) {
-    const auto is_letter = [](char c) { return c >= 'a' && c <= 'z'; };
-    const auto fits = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; };
-    return !name.empty() && is_letter(name.front()) && std::all_of(name.begin(), name.end(), fits);
-}
 
 std::vector<WiringSpec> parse_wiring(const Node& node, Diagnostics& diagnostics) {
     std::vector<WiringSpec> wiring;
@@ -118,8 +114,8 @@ private:
         if (const Node* vars = reader.object("vars"))
             for (const Member& member : vars->members) {
                 if (!is_snake_case(member.key))
-                    diagnostics_.error(member.key_place, "the variable '" + member.key +
-                                                             "' must be snake_case: a-z, 0-9 and _");
+                    diagnostics_.error(member.key_place,
+                                       "the variable '" + member.key + "' " + kMustBeSnakeCase);
                 scope.variables[member.key] = member.value;
             }
         std::vector<std::string> known;
@@ -169,9 +165,7 @@ private:
         // Wiring, --set and --tap part a name from what follows at the first dot, and taps are files of that
         // name.
         if (name && !is_snake_case(*name))
-            diagnostics_.error(
-                node.place,
-                "the name '" + *name + "' must be snake_case: a-z, 0-9 and _, beginning with a letter");
+            diagnostics_.error(node.place, "the name '" + *name + "' " + kMustBeSnakeCase);
         step.name = scope.prefix + name.value_or(step.effect);
         step.enabled = reader.boolean("enabled").value_or(true) && scope.enabled;
         step.preset = reader.text("preset");
@@ -203,9 +197,7 @@ private:
                 variables[member.key] = with_variables(member.value, scope);
         reader.finish();
         if (name && !is_snake_case(*name))
-            diagnostics_.error(
-                node.place,
-                "the name '" + *name + "' must be snake_case: a-z, 0-9 and _, beginning with a letter");
+            diagnostics_.error(node.place, "the name '" + *name + "' " + kMustBeSnakeCase);
         if (!file) return;
         const Place& place = node.find("use")->place;
         const fs::path path = scope.folder / *file;
