@@ -46,8 +46,7 @@ std::optional<std::vector<int>> parse_frame_range(std::string_view text) {
 }
 
 std::string frame_range_pattern() {
-    const std::string piece =
-        R"(\s*-?[0-9]{1,9}((-|\.\.)-?[0-9]{1,9}([x:](?!0+(?![0-9]))[0-9]{1,9})?)?\s*)";
+    const std::string piece = R"(\s*-?[0-9]{1,9}((-|\.\.)-?[0-9]{1,9}([x:](?!0+(?![0-9]))[0-9]{1,9})?)?\s*)";
     return "^" + piece + "(," + piece + ")*$";
 }
 
