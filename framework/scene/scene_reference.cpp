@@ -66,16 +66,12 @@ void write_block(const Block& block, const std::string& heading, const std::vect
     out << "\n| key | type | unit | range | default | animated | |\n|---|---|---|---|---|---|---|\n";
     for (const Row& row : first) out << row;
     for (const Field& field : block.fields)
-        out << Row{field.spec.name,
-                   type_of(field),
-                   field.spec.unit,
-                   range_text(field.spec),
-                   default_of(field),
-                   field.animated ? "yes" : "",
+        out << Row{field.spec.name,        type_of(field),    field.spec.unit,
+                   range_text(field.spec), default_of(field), field.animated ? "yes" : "",
                    field.spec.doc};
     for (const Part& part : block.parts)
-        out << Row{part.name, type_of(part), "", count_of(part), part.required ? "required" : "", "",
-                   part.doc};
+        out << Row{part.name, type_of(part), "", count_of(part), part.required ? "required" : "",
+                   "",        part.doc};
 }
 
 void write_kinds(const Block& common, const std::string& selector, const std::vector<Block>& kinds,
@@ -83,11 +79,11 @@ void write_kinds(const Block& common, const std::string& selector, const std::ve
     std::string names = "enum";
     for (std::size_t i = 0; i < kinds.size(); ++i) names += (i ? ", " : ": ") + kinds[i].name;
     write_block(common, "## " + common.name, {{selector, names, "", "", "required", "", "See below."}}, out);
-    for (const Block& kind : kinds)
-        write_block(kind, "### " + selector + " \"" + kind.name + "\"", {}, out);
+    for (const Block& kind : kinds) write_block(kind, "### " + selector + " \"" + kind.name + "\"", {}, out);
 }
 
-constexpr const char* kHead = R"(<!-- Made by `aftershade docs` from framework/scene/fields.cpp; do not edit. -->
+constexpr const char* kHead =
+    R"(<!-- Made by `aftershade docs` from framework/scene/fields.cpp; do not edit. -->
 # Scene documents
 
 What a `scene.json` for `aftershade render` may say. It is JSON with `//` comments; a key that is not listed is

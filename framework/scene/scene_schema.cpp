@@ -65,8 +65,7 @@ json form_of(const Part& part) {
         case Part::Form::name: return schema::text();
         case Part::Form::object: return reference(part.of);
         case Part::Form::list: return schema::array_of(reference(part.of), part.min_items, part.max_items);
-        case Part::Form::by_name:
-            return {{"type", "object"}, {"additionalProperties", reference(part.of)}};
+        case Part::Form::by_name: return {{"type", "object"}, {"additionalProperties", reference(part.of)}};
         case Part::Form::values:
             return schema::array_of(any_of(literals(material_block().field(part.of))), part.min_items,
                                     part.max_items);
@@ -137,8 +136,7 @@ void require_materials(json& document) {
     const json is_group = {{"properties", {{"shape", {{"const", "group"}}}}}};
     const json has_material = {{"required", {"material"}}};
     document["if"] = {{"required", {"materials"}}, {"properties", {{"materials", {{"minProperties", 1}}}}}};
-    document["then"] = {
-        {"properties", {{"objects", {{"items", schema::any_of({is_group, has_material})}}}}}};
+    document["then"] = {{"properties", {{"objects", {{"items", schema::any_of({is_group, has_material})}}}}}};
 }
 
 }  // namespace
@@ -149,9 +147,9 @@ std::string scene_schema() {
     json document = schema::document("Aftershade scene", keys.properties, keys.required);
     require_materials(document);
     json definitions = json::object();
-    for (const Block* block : {&camera_block(), &shutter_block(), &material_block(), &checker_block(),
-                               &scattering_block(), &height_field_block(), &wave_block(), &repeat_block(),
-                               &pattern_block()})
+    for (const Block* block :
+         {&camera_block(), &shutter_block(), &material_block(), &checker_block(), &scattering_block(),
+          &height_field_block(), &wave_block(), &repeat_block(), &pattern_block()})
         definitions[block->name] = object_of(*block);
     definitions[mesh_block().name] = one_part_of(mesh_block());
     definitions[object_block().name] = kinds_of(object_block(), "shape", shape_blocks());

@@ -54,9 +54,7 @@ protected:
     }
 
     std::vector<std::string> verdicts(const std::vector<Document>& documents) {
-        json task = {
-            {"schemas", json::object()},
-            {"documents", json::array()}};
+        json task = {{"schemas", json::object()}, {"documents", json::array()}};
         for (const char* name : {"look", "capture", "effect", "scene"}) task["schemas"][name] = schema(name);
         for (const Document& document : documents)
             task["documents"].push_back({{"schema", document.schema}, {"document", document.content}});
@@ -237,7 +235,7 @@ TEST_F(Schemas, RefuseWhatTheProgramRefuses) {
         } else if (kind == "scene") {
             write_text(folder_ / "scene.json", text);
             result = run_aftershade({"render", "scene.json", "-o", "out"}, folder_.path());
-            EXPECT_EQ(result.exit_code, 1) << "the program takes " << text << result.err;
+            EXPECT_EQ(result.exit_code, 2) << "the program takes " << text << result.err;
         } else if (kind == "capture") {
             write_text(folder_ / "capture.json", text);
             result = run_aftershade({"inspect", "capture.json"}, folder_.path());

@@ -237,13 +237,14 @@ TEST_F(SchemaAgreement, OfAManifestChangedEverywhere) {
 }
 
 TEST_F(SchemaAgreement, OfASceneChangedEverywhere) {
-    hold("scene.json", scene::scene_schema(), judge_scene,
-         {
-             "there is no (material|mesh|earlier object) '",  // names of what stands elsewhere in the document
-             "^/meshes/quad/file ",                           // what lies on the disk
-             "count: makes .* objects, more than",            // a product
-             "are one point, which gives no direction",       // two values against each other
-         });
+    hold(
+        "scene.json", scene::scene_schema(), judge_scene,
+        {
+            "there is no (material|mesh|earlier object) '",  // names of what stands elsewhere in the document
+            "^/meshes/quad/file ",                           // what lies on the disk
+            "count: makes .* objects, more than",            // a product
+            "are one point, which gives no direction",       // two values against each other
+        });
 }
 
 }  // namespace
