@@ -12,6 +12,7 @@
 #include "cli/verbs.h"
 #include "framework/core/atomic_file.h"
 #include "framework/effect/describe.h"
+#include "framework/scene/scene_schema.h"
 
 namespace aftershade::cli {
 
@@ -26,7 +27,7 @@ struct DocsOptions {
     bool check = false;
 };
 
-/// File name and text of every page.
+/// File name, from the folder of the effects' pages, and text of every page.
 std::map<std::string, std::string> pages(const DocsOptions& options, EffectRegistry& effects,
                                          Diagnostics& diagnostics) {
     std::map<std::string, std::string> pages;
@@ -40,7 +41,10 @@ std::map<std::string, std::string> pages(const DocsOptions& options, EffectRegis
         manifests.push_back(manifest);
         pages[id + ".md"] = describe_markdown(*manifest);
     }
-    if (options.effects.empty()) pages["README.md"] = index_markdown(manifests);
+    if (options.effects.empty()) {
+        pages["README.md"] = index_markdown(manifests);
+        pages["../scene-reference.md"] = scene::scene_reference();
+    }
     return pages;
 }
 
@@ -69,12 +73,12 @@ ExitCode docs(const DocsOptions& options) {
     if (!options.check) fs::create_directories(options.folder, failure);
     bool same = true;
     for (const auto& [name, text] : made) {
-        const fs::path file = fs::path(options.folder) / name;
+        const fs::path file = (fs::path(options.folder) / name).lexically_normal();
         if (text_of(file) == text) continue;
         same = false;
         if (!options.check) write(file, text);
         fmt::print("{}{}\n", file.string(),
-                   options.check ? ": is not what the manifest says; run aftershade docs" : "");
+                   options.check ? ": is not what is declared; run aftershade docs" : "");
     }
     // A page of an effect that is gone.
     if (options.effects.empty() && fs::is_directory(options.folder, failure))
@@ -90,10 +94,12 @@ ExitCode docs(const DocsOptions& options) {
 
 Verb add_docs(CLI::App& app) {
     auto options = std::make_shared<DocsOptions>();
-    app.add_option("effects", options->effects, "Ids of effects (default: all, and their index)");
-    app.add_option("-o,--output", options->folder, "Folder of the pages")->capture_default_str();
-    app.add_flag("--check", options->check,
-                 "Write nothing; exit 1 where a page is not what the manifests say");
+    app.add_option("effects", options->effects,
+                   "Ids of effects (default: all, their index and the scene reference)");
+    app.add_option("-o,--output", options->folder,
+                   "Folder of the effects' pages; scene-reference.md stands beside it")
+        ->capture_default_str();
+    app.add_flag("--check", options->check, "Write nothing; exit 1 where a page is not what is declared");
     add_effect_path_option(app, options->effect_paths);
     return [options] { return docs(*options); };
 }

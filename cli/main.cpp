@@ -44,9 +44,10 @@ int main(int argc, char** argv) {
     add("new", "Make the folder of a new effect, which runs at once", aftershade::cli::add_new);
     add("check", "Check an effect or a look: documents, shaders, values; exit 1: no",
         aftershade::cli::add_check);
-    add("schema", "Print the JSON Schema of looks, captures or effects, for editors",
+    add("schema", "Print the JSON Schema of looks, captures, effects or scenes, for editors",
         aftershade::cli::add_schema);
-    add("docs", "Write the page of each effect from its manifest", aftershade::cli::add_docs);
+    add("docs", "Write the page of each effect from its manifest, and the scene reference",
+        aftershade::cli::add_docs);
     add("doctor", "Tell which GL backends work on this machine, and why others do not",
         aftershade::cli::add_doctor);
 

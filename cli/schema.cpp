@@ -6,6 +6,7 @@
 #include "cli/capture_options.h"
 #include "cli/effect_options.h"
 #include "cli/verbs.h"
+#include "framework/scene/scene_schema.h"
 
 namespace aftershade::cli {
 
@@ -19,6 +20,7 @@ struct SchemaOptions {
 std::string schema_of(const SchemaOptions& options) {
     if (options.document == "capture") return capture_schema();
     if (options.document == "effect") return effect_schema();
+    if (options.document == "scene") return scene::scene_schema();
     Diagnostics diagnostics;
     EffectRegistry effects = find_effects(options.effect_paths, diagnostics);
     std::vector<const EffectManifest*> manifests;
@@ -32,8 +34,8 @@ std::string schema_of(const SchemaOptions& options) {
 
 Verb add_schema(CLI::App& app) {
     auto options = std::make_shared<SchemaOptions>();
-    app.add_option("document", options->document, "look, capture or effect")
-        ->check(CLI::IsMember({"look", "capture", "effect"}))
+    app.add_option("document", options->document, "look, capture, effect or scene")
+        ->check(CLI::IsMember({"look", "capture", "effect", "scene"}))
         ->capture_default_str();
     add_effect_path_option(app, options->effect_paths);
     return [options] {

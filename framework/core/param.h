@@ -117,6 +117,8 @@ std::optional<ParamValue> parse_param_value(const ParamSpec& spec, const Node& n
 std::string format_value(const ParamValue& value);
 /// The same with the columns' names, as a document would write a table too.
 std::string format_value(const ParamSpec& spec, const ParamValue& value);
+/// "0.05 to 1000", "at least 0", "" where nothing bounds it.
+std::string range_text(const ParamSpec& spec);
 
 /// The values of one effect instance, complete: every parameter of its manifest has one.
 class ParamSet {

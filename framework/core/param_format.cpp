@@ -86,4 +86,10 @@ std::string format_value(const ParamSpec& spec, const ParamValue& value) {
     return format_value(value);
 }
 
+std::string range_text(const ParamSpec& spec) {
+    if (spec.min && spec.max) return format_number(*spec.min) + " to " + format_number(*spec.max);
+    if (spec.min) return "at least " + format_number(*spec.min);
+    return spec.max ? "at most " + format_number(*spec.max) : "";
+}
+
 }  // namespace aftershade

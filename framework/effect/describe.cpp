@@ -116,12 +116,6 @@ std::string type_text(const ParamSpec& spec) {
     return text + (spec.unit.empty() ? "" : ", " + spec.unit);
 }
 
-std::string range_text(const ParamSpec& spec) {
-    if (spec.min && spec.max) return format_number(*spec.min) + " to " + format_number(*spec.max);
-    if (spec.min) return "at least " + format_number(*spec.min);
-    return spec.max ? "at most " + format_number(*spec.max) : "";
-}
-
 std::string default_text(const ParamSpec& spec) {
     if (spec.type == ParamType::table) return "its columns'";
     if (spec.type == ParamType::file && std::get<std::string>(spec.default_value).empty()) return "none";

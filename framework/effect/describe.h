@@ -10,8 +10,6 @@ namespace aftershade {
 
 /// "float, m", "int", "enum: square, hexagon", "table by object".
 std::string type_text(const ParamSpec& spec);
-/// "0.05 to 1000", "at least 0", "" where nothing bounds it.
-std::string range_text(const ParamSpec& spec);
 /// The default with its unit, and where it comes from before that: "3 m, else camera.focus_distance".
 std::string default_text(const ParamSpec& spec);
 

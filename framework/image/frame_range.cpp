@@ -45,6 +45,11 @@ std::optional<std::vector<int>> parse_frame_range(std::string_view text) {
     return frames;
 }
 
+std::string frame_range_pattern() {
+    const std::string piece = R"(\s*-?[0-9]{1,9}((-|\.\.)-?[0-9]{1,9}([x:](?!0+(?![0-9]))[0-9]{1,9})?)?\s*)";
+    return "^" + piece + "(," + piece + ")*$";
+}
+
 FramePattern::FramePattern(std::string text) : text_(std::move(text)) {
     const std::size_t folder = text_.rfind('/');
     const std::size_t name = folder == std::string::npos ? 0 : folder + 1;

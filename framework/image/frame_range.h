@@ -13,6 +13,9 @@ namespace aftershade {
 /// step of 0 and for more than a million frames.
 std::optional<std::vector<int>> parse_frame_range(std::string_view text);
 
+/// The same as a regular expression of ECMA-262, for schemas; it cannot count the frames.
+std::string frame_range_pattern();
+
 /// A file name with the frame number left open: "####" (padded to the number of #), "%04d", "%d", or "@" (no
 /// padding;
 /// "@@@@" pads).

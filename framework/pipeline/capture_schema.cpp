@@ -2,10 +2,11 @@
 
 #include "framework/image/camera.h"
 #include "framework/image/color_space.h"
+#include "framework/image/frame_range.h"
 #include "framework/image/light.h"
 #include "framework/image/role.h"
 #include "framework/pipeline/schema.h"
-#include "framework/pipeline/schema_common.h"
+#include "framework/pipeline/schema_role.h"
 
 namespace aftershade {
 
@@ -15,9 +16,6 @@ namespace {
 
 const json kNumber = {{"type", "number"}};
 const json kFlag = {{"type", "boolean"}};
-/// As parse_frame_range() reads it.
-const std::string kFramePiece =
-    R"(\s*-?[0-9]{1,9}((-|\.\.)-?[0-9]{1,9}([x:](?!0+(?![0-9]))[0-9]{1,9})?)?\s*)";
 
 json length_m() {
     ParamSpec spec;
@@ -127,7 +125,7 @@ std::string capture_schema() {
          {"range",
           {{"type", "string"},
            {"description", "Frames that there are: \"1-100x2,120\"."},
-           {"pattern", "^" + kFramePiece + "(," + kFramePiece + ")*$"}}},
+           {"pattern", frame_range_pattern()}}},
          {"fps", {{"type", "number"}, {"exclusiveMinimum", 0}}},
          {"profile", {{"type", "string"}, {"description", "Conventions of the producer; default auto."}}},
          {"view", schema::text()},

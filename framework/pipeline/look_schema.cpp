@@ -6,7 +6,7 @@
 #include "framework/image/role.h"
 #include "framework/pipeline/pipeline.h"
 #include "framework/pipeline/schema.h"
-#include "framework/pipeline/schema_common.h"
+#include "framework/pipeline/schema_role.h"
 
 namespace aftershade {
 

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <numeric>
 
 #include "framework/core/units.h"
 #include "framework/scene/fields.h"
@@ -24,7 +26,7 @@ const std::vector<std::string>& interpolation_names() {
     return names;
 }
 
-std::optional<std::vector<double>> FieldReader::read_value(const Field& field, const Node& node) {
+std::optional<std::vector<double>> FieldReader::read_numbers(const Field& field, const Node& node) {
     const std::string label = label_ + field.spec.name;
     if (field.uniform && !node.is_array()) {
         ParamSpec scalar = field.spec;
@@ -36,6 +38,30 @@ std::optional<std::vector<double>> FieldReader::read_value(const Field& field, c
     const auto value = parse_param_value(field.spec, node, label, diagnostics_);
     if (!value) return std::nullopt;
     return numbers_of(field.spec, *value);
+}
+
+std::optional<std::vector<double>> FieldReader::read_value(const Field& field, const Node& node) {
+    const auto values = read_numbers(field, node);
+    if (!values) return std::nullopt;
+    const auto fault = [&](const std::string& text) {
+        diagnostics_.error(node.place, label_ + field.spec.name + ": " + text);
+        return std::nullopt;
+    };
+    for (const double value : *values) {
+        if (field.whole && value != std::floor(value))
+            return fault(format_number(value) + " is not a whole number");
+        if (std::find(field.never.begin(), field.never.end(), value) != field.never.end())
+            return fault(format_number(value) + " has no meaning. " + field.spec.doc);
+    }
+    if (field.has_length && std::inner_product(values->begin(), values->end(), values->begin(), 0.0) == 0)
+        return fault("has no length");
+    return values;
+}
+
+std::optional<glm::dvec3> FieldReader::vec3(const Field& field, const Node& node) {
+    const auto values = read_value(field, node);
+    if (!values) return std::nullopt;
+    return glm::dvec3((*values)[0], (*values)[1], (*values)[2]);
 }
 
 FieldReader::Keys FieldReader::read_keys(const Field& field, const Node& node) {

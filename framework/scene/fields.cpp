@@ -76,6 +76,37 @@ Field uniform(Field field) {
     return field;
 }
 
+Field whole(Field field) {
+    field.whole = true;
+    return field;
+}
+
+Field never(Field field, std::vector<double> values) {
+    field.never = std::move(values);
+    return field;
+}
+
+Field or_block(Field field, std::string block) {
+    field.block = std::move(block);
+    return field;
+}
+
+Field with_length(Field field) {
+    field.has_length = true;
+    return field;
+}
+
+using Form = Part::Form;
+
+Part required(Part part) {
+    part.required = true;
+    return part;
+}
+
+Part name_part(std::string doc) {
+    return {"name", Form::text, "", std::move(doc)};
+}
+
 Field radius() {
     return required(number("radius", "m", 1, 1e-6, kFar_m, "Radius."));
 }
@@ -95,7 +126,8 @@ const Block& camera_block() {
          animated(
              number("focus_distance", "m", 5, 0.01, kFar_m, "Along the view axis to the plane in focus.")),
          number("f_number", "", 2.8, 0.05, 1000, "Focal length over the aperture's diameter."),
-         integer("blades", 0, 0, 32, "Corners of the aperture; 0 is a disk, 1 and 2 are not polygons."),
+         never(integer("blades", 0, 0, 32, "Corners of the aperture; 0 is a disk, 1 and 2 are not polygons."),
+               {1, 2}),
          number("rotation", "deg", 0, -36000, 36000,
                 "Of the aperture; 0 puts the middle of a straight edge at +x, positive turns +x towards +y "
                 "(down).")}};
@@ -115,10 +147,39 @@ const Block& material_block() {
     static const Block block = {
         "material",
         "Lambert's diffuse reflection and a GGX highlight.",
-        {number("roughness", "", 0.5, 0.03, 1, "The highlight's; GGX alpha is its square."),
+        {or_block(color("albedo", 0.8, 1, "Share of the light that is reflected to all sides."), "checker"),
+         number("roughness", "", 0.5, 0.03, 1, "The highlight's; GGX alpha is its square."),
          number("specular", "", 0.04, 0, 1,
                 "Reflectance at normal incidence, by Schlick; 0 for no highlight."),
-         color("emission", 0, 1e9, "Radiance that it gives off.")}};
+         color("emission", 0, 1e9, "Radiance that it gives off.")},
+        {{"scattering_profile", Form::object, "scattering_profile", "Light goes in and comes out nearby."}}};
+    return block;
+}
+
+const Block& checker_block() {
+    static const Block block = {
+        "checker",
+        "Squares of two colours over the texture coordinates.",
+        {required(vector(ParamType::vec2, "cells", "", {8, 8}, 1e-6, 65536, "Squares along u and v."))},
+        {{"checker", Form::values, "albedo", "The two colours.", true, 2, 2}}};
+    return block;
+}
+
+const Block& scattering_block() {
+    static const Block block = {"scattering_profile",
+                                "How far light goes under the surface (Christensen and Burley 2015).",
+                                {required(choice("type", {"burley"}, "The profile's formula.")),
+                                 required(vector(ParamType::vec3, "d_mm", "", {1, 1, 1}, 1e-6, 1e6,
+                                                 "Burley's d of red, green and blue, in millimetres."))}};
+    return block;
+}
+
+const Block& mesh_block() {
+    static const Block block = {"mesh",
+                                "Triangles for objects: of a file or a height field, one of the two.",
+                                {},
+                                {{"file", Form::file, "", "glTF 2.0, .gltf or .glb."},
+                                 {"height_field", Form::object, "height_field", "A sheet of waves."}}};
     return block;
 }
 
@@ -131,7 +192,12 @@ const Block& object_block() {
              vector(ParamType::vec3, "rotation", "deg", {0, 0, 0}, -1e6, 1e6, "About x, then y, then z.")),
          animated(uniform(vector(ParamType::vec3, "scale", "", {1, 1, 1}, 1e-6, 1e6, "Along its own axes."))),
          integer("id", 0, 0, 16777215, "The role object_id; 0 takes the object's place in the list, from 1."),
-         flag("casts_shadow", true, "Whether it stands between lights and others.")}};
+         flag("casts_shadow", true, "Whether it stands between lights and others.")},
+        {name_part("For \"parent\"; no two without \"repeat\" have the same."),
+         {"material", Form::name, "material",
+          "What it is made of; a group may do without, and a scene that declares none."},
+         {"parent", Form::name, "object", "An earlier object, without \"repeat\", that it moves with."},
+         {"repeat", Form::object, "repeat", "Makes a grid of it, which no parent can be."}}};
     return block;
 }
 
@@ -150,7 +216,10 @@ const std::vector<Block>& shape_blocks() {
         {"cylinder",
          "Along y about its origin, with its caps.",
          {radius(), required(number("height", "m", 1, 1e-6, kFar_m, "Along y."))}},
-        {"mesh", "Triangles of the scene's \"meshes\", by the key \"mesh\".", {}}};
+        {"mesh",
+         "Triangles of the scene's \"meshes\".",
+         {},
+         {required({"mesh", Form::name, "mesh", "Which."})}}};
     return blocks;
 }
 
@@ -159,7 +228,8 @@ const Block& height_field_block() {
         "height_field",
         "A sheet over xy, raised along z by the sum of its waves.",
         {required(vector(ParamType::vec2, "size", "m", {1, 1}, 1e-6, kFar_m, "Along x and y.")),
-         integer("segments", 64, 1, 1024, "Squares along each side.")}};
+         integer("segments", 64, 1, 1024, "Squares along each side.")},
+        {{"waves", Form::list, "wave", "What is added up; none: flat."}}};
     return block;
 }
 
@@ -179,7 +249,8 @@ const Block& repeat_block() {
         "repeat",
         "The object several times, along a grid in its parent's space.",
         {required(
-             vector(ParamType::vec3, "count", "", {1, 1, 1}, 1, 4096, "Along x, y and z; whole numbers.")),
+             whole(vector(ParamType::vec3, "count", "", {1, 1, 1}, 1, 4096,
+                          "Along x, y and z; the product is at most " + std::to_string(kMaxObjects) + "."))),
          place("step", {1, 1, 1}, "From one to the next along each axis."),
          uniform(vector(ParamType::vec3, "scatter", "m", {0, 0, 0}, 0, kFar_m,
                         "Moves each by up to this much, by a hash of its number.")),
@@ -193,7 +264,8 @@ const Block& light_block() {
     static const Block block = {"light",
                                 "Light of a colour and an intensity.",
                                 {color("color", 1, 1e9, "Times intensity."),
-                                 flag("shadows", true, "Whether objects stand in its way.")}};
+                                 flag("shadows", true, "Whether objects stand in its way.")},
+                                {name_part("As captures and messages have it.")}};
     return block;
 }
 
@@ -208,7 +280,8 @@ const std::vector<Block>& light_blocks() {
         {"directional",
          "From far away.",
          {position("It shines along the line from here to the target."), target("Where that line goes."),
-          intensity("W/m^2 across the light.")}},
+          intensity("W/m^2 across the light.")},
+         {{"pattern", Form::object, "pattern", "What it shines through."}}},
         {"area",
          "A rectangle that shines from its front alone; it is not seen itself.",
          {position("Its centre."), target("What its front faces."), intensity("Radiance, W/(m^2 sr)."),
@@ -224,7 +297,8 @@ const Block& pattern_block() {
         "What a directional light shines through, by the distance along an axis.",
         {required(
              choice("type", {"edge", "cosine"}, "edge: dark below the offset; cosine: 1 + amplitude * cos.")),
-         vector(ParamType::vec3, "axis", "", {1, 0, 0}, -1, 1, "World; need not have unit length."),
+         with_length(
+             vector(ParamType::vec3, "axis", "", {1, 0, 0}, -1, 1, "World; need not have unit length.")),
          number("offset", "m", 0, -kFar_m, kFar_m, "edge: lit from here on; cosine: a crest."),
          number("period", "m", 1, 1e-9, kFar_m, "cosine: from crest to crest."),
          number("amplitude", "", 1, 0, 1, "cosine.")}};
@@ -232,11 +306,22 @@ const Block& pattern_block() {
 }
 
 const Block& scene_block() {
-    static const Block block = {"scene",
-                                "The document.",
-                                {number("fps", "", 24, 0.001, 1000, "Frames a second."),
-                                 color("background", 0, 1e9, "Radiance where nothing is hit."),
-                                 color("ambient", 0, 1e9, "Radiance from all sides, without shadows.")}};
+    static const Block block = {
+        "scene",
+        "The document.",
+        {number("fps", "", 24, 0.001, 1000, "Frames a second."),
+         whole(vector(ParamType::vec2, "size", "", {480, 270}, 1, 16384, "Of the picture, px.")),
+         color("background", 0, 1e9, "Radiance where nothing is hit."),
+         color("ambient", 0, 1e9, "Radiance from all sides, without shadows.")},
+        {{"summary", Form::text, "", "One sentence."},
+         {"frames", Form::frame_range, "", "What is rendered; default 1."},
+         {"cuts", Form::frames, "", "Frames that begin a shot; each stands once."},
+         required({"camera", Form::object, "camera", "Sees the scene."}),
+         {"shutter", Form::object, "shutter", "When light is let in."},
+         {"materials", Form::by_name, "material", "What objects are made of."},
+         {"meshes", Form::by_name, "mesh", "Triangles for objects of the shape mesh."},
+         {"objects", Form::list, "object", "What is seen.", true, 0, int(kMaxObjects)},
+         {"lights", Form::list, "light", "What shines.", false, 0, int(kMaxLights)}}};
     return block;
 }
 

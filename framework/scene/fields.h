@@ -15,11 +15,43 @@
 
 namespace aftershade::scene {
 
+/// Limits that keep a mistyped scene from taking the machine's memory.
+inline constexpr std::size_t kMaxObjects = 8192;
+inline constexpr std::size_t kMaxLights = 64;
+/// A cut is a frame of this number at most, either side of 0.
+inline constexpr int kMaxCut = 1000000;
+
 struct Field {
     ParamSpec spec;
     bool animated = false;  ///< may be {"keys": {"1": ..., "24": ...}, "interpolation": "linear"}
     bool required = false;
-    bool uniform = false;  ///< a vector that may be written as one number
+    bool uniform = false;       ///< a vector that may be written as one number
+    bool whole = false;         ///< a vector of whole numbers
+    bool has_length = false;    ///< a vector that is not 0
+    std::vector<double> never;  ///< within the range, but without a meaning that `doc` gives
+    std::string block;          ///< an object with the keys of this block may stand for it
+};
+
+/// A key whose value is no number, flag or word: a name, a list, an object with keys of its own.
+struct Part {
+    enum class Form {
+        text,
+        file,         ///< path from the document's folder
+        name,         ///< of an `of` of this document
+        object,       ///< with the keys of the block `of`
+        list,         ///< of such objects
+        by_name,      ///< such objects by name
+        values,       ///< a list of values of the material's field `of`
+        frame_range,  ///< "1-24", or one number
+        frames,       ///< a list of numbers of frames
+    };
+    std::string name;
+    Form form = Form::text;
+    std::string of;
+    std::string doc;
+    bool required = false;
+    int min_items = 0;
+    int max_items = -1;  ///< -1: any number
 };
 
 /// The fields of one kind of object in the document.
@@ -27,20 +59,24 @@ struct Block {
     std::string name;  ///< "camera", "material", "plane", "point", ...
     std::string doc;
     std::vector<Field> fields;
+    std::vector<Part> parts = {};
     const Field& field(const std::string& name) const;  ///< must exist
 };
 
 const Block& camera_block();
 const Block& shutter_block();
 const Block& material_block();
+const Block& checker_block();
+const Block& scattering_block();
+const Block& mesh_block();  ///< has one of its parts
 const Block& height_field_block();
 const Block& wave_block();
 const Block& repeat_block();
 const Block& pattern_block();
-/// What every object has, and what each shape has beside it.
+/// What every object has, and what each shape (the key "shape") has beside it.
 const Block& object_block();
 const std::vector<Block>& shape_blocks();
-/// What every light has, and what each type has beside it.
+/// What every light has, and what each type (the key "type") has beside it.
 const Block& light_block();
 const std::vector<Block>& light_blocks();
 /// Of the document itself.
@@ -63,6 +99,8 @@ public:
     glm::dvec3 vec3(const Block& block, const std::string& name) { return animated_vec3(block, name).at(0); }
     Animated<double> animated_number(const Block& block, const std::string& name);
     Animated<glm::dvec3> animated_vec3(const Block& block, const std::string& name);
+    /// A value of a field of three numbers that stands elsewhere than by the field's key.
+    std::optional<glm::dvec3> vec3(const Field& field, const Node& node);
 
 private:
     struct Keys {
@@ -72,6 +110,7 @@ private:
     };
     Keys read(const Block& block, const std::string& name);
     std::optional<std::vector<double>> read_value(const Field& field, const Node& node);
+    std::optional<std::vector<double>> read_numbers(const Field& field, const Node& node);
     Keys read_keys(const Field& field, const Node& node);
 
     ObjectReader& reader_;

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "framework/core/error.h"
+#include "framework/core/units.h"
 #include "framework/scene/scene_reader.h"
 
 namespace aftershade::scene {
@@ -114,8 +115,8 @@ void SceneReader::add_repeated(const Object& object, const Node& node, const std
     const glm::dvec3 turn_deg = fields.vec3(block, "turn");
     const int id_step = fields.integer(block, "id_step");
     reader.finish();
-    if (count != glm::floor(count) || count.x * count.y * count.z > double(kMaxObjects)) {
-        diagnostics_.error(node.place, label + "count: whole numbers whose product is at most " +
+    if (const double all = count.x * count.y * count.z; all > double(kMaxObjects)) {
+        diagnostics_.error(node.place, label + "count: makes " + format_number(all) + " objects, more than " +
                                            std::to_string(kMaxObjects));
         return;
     }
@@ -183,9 +184,7 @@ LightPattern SceneReader::read_pattern(const Node& node, const std::string& labe
     LightPattern pattern;
     pattern.kind = fields.choice(pattern_block(), "type") == "edge" ? LightPattern::Kind::edge
                                                                     : LightPattern::Kind::cosine;
-    const glm::dvec3 axis = fields.vec3(pattern_block(), "axis");
-    if (glm::length(axis) > 0) pattern.axis = glm::normalize(axis);
-    else diagnostics_.error(node.place, label + "axis: has no length");
+    pattern.axis = glm::normalize(fields.vec3(pattern_block(), "axis"));
     pattern.offset_m = fields.number(pattern_block(), "offset");
     pattern.period_m = fields.number(pattern_block(), "period");
     pattern.amplitude = fields.number(pattern_block(), "amplitude");

@@ -11,10 +11,6 @@
 
 namespace aftershade::scene {
 
-/// Limits that keep a mistyped scene from taking the machine's memory.
-inline constexpr std::size_t kMaxObjects = 8192;
-inline constexpr std::size_t kMaxLights = 64;
-
 class SceneReader {
 public:
     SceneReader(Scene& scene, Diagnostics& diagnostics) : scene_(scene), diagnostics_(diagnostics) {}
@@ -23,11 +19,11 @@ public:
 
 private:
     void read_frames(ObjectReader& reader);
-    void read_size(ObjectReader& reader);
     void read_camera(const Node& node);
     void read_shutter(const Node& node);
     void read_materials(const Node& node);
-    void read_albedo(ObjectReader& reader, const std::string& label, Material& material);
+    void read_albedo(ObjectReader& reader, FieldReader& fields, const std::string& label, Material& material);
+    void read_checker(const Node& node, FieldReader& fields, const std::string& label, Material& material);
     std::optional<Scattering> read_scattering(const Node& node, const std::string& label);
     void read_meshes(const Node& node);
     std::optional<Mesh> read_height_field(const Node& node, const std::string& label);

@@ -210,12 +210,14 @@ TEST_F(Authoring, DocsAreWrittenOnceAndTheirDriftIsFound) {
     command({"docs", "-o", "pages", "--check"});
     write_text(folder_ / "pages/gone.md", "x");
     replace("pages/README.md", "# Effects", "# effects");
+    replace("scene-reference.md", "# Scene", "# scene");
     const std::string drift = command({"docs", "-o", "pages", "--check"}, 1).out;
-    EXPECT_NE(drift.find("pages/README.md: is not what the manifest says"), std::string::npos);
+    EXPECT_NE(drift.find("pages/README.md: is not what is declared"), std::string::npos);
+    EXPECT_NE(drift.find("scene-reference.md: is not what is declared"), std::string::npos);
     EXPECT_NE(drift.find("pages/gone.md: no effect has this page"), std::string::npos);
 }
 
-TEST(EffectPages, AreWhatTheManifestsSay) {
+TEST(Pages, AreWhatIsDeclared) {
     const std::string folder = std::string(AFTERSHADE_SOURCE_DIR) + "/docs/effects";
     const TemporaryFolder here;
     const CommandResult result = run_aftershade({"docs", "-o", folder, "--check"}, here.path());

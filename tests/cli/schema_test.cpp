@@ -54,10 +54,8 @@ protected:
     }
 
     std::vector<std::string> verdicts(const std::vector<Document>& documents) {
-        json task = {
-            {"schemas",
-             {{"look", schema("look")}, {"capture", schema("capture")}, {"effect", schema("effect")}}},
-            {"documents", json::array()}};
+        json task = {{"schemas", json::object()}, {"documents", json::array()}};
+        for (const char* name : {"look", "capture", "effect", "scene"}) task["schemas"][name] = schema(name);
         for (const Document& document : documents)
             task["documents"].push_back({{"schema", document.schema}, {"document", document.content}});
         write_text(folder_ / "task.json", task.dump());
@@ -80,11 +78,12 @@ TEST_F(Schemas, TakeEveryShippedDocument) {
         if (path.extension() != ".json" || text.starts_with("build") || text.starts_with(".")) continue;
         const std::string kind = path.filename() == "effect.json"           ? "effect"
                                  : path.filename() == "capture.json"        ? "capture"
+                                 : path.filename() == "scene.json"          ? "scene"
                                  : path.parent_path().filename() == "looks" ? "look"
                                                                             : "";
         if (!kind.empty()) documents.push_back({kind, text, parsed(read_text(path))});
     }
-    ASSERT_GE(documents.size(), 14U);
+    ASSERT_GE(documents.size(), 28U);
     const std::vector<std::string> seen = verdicts(documents);
     ASSERT_EQ(seen.size(), documents.size());
     for (std::size_t i = 0; i < seen.size(); ++i) EXPECT_EQ(seen[i], "valid") << documents[i].name;
@@ -137,6 +136,14 @@ std::vector<std::pair<std::string, std::string>> broken_documents() {
     const auto cap = [](const std::string& members) {
         return std::pair<std::string, std::string>("capture", capture(members));
     };
+    // A key that stands twice would be another fault.
+    const auto scene = [](const std::string& members) {
+        std::string text = R"({"aftershade": 1, )" + members;
+        for (const char* rest : {R"("camera": {})", R"("objects": [])"})
+            if (members.find(std::string(rest).substr(0, std::string(rest).find(':'))) == std::string::npos)
+                text += ", " + std::string(rest);
+        return std::pair<std::string, std::string>("scene", text + "}");
+    };
     const auto eff = [](const std::string& before, const std::string& after) {
         return std::pair<std::string, std::string>("effect", effect(before, after));
     };
@@ -180,6 +187,19 @@ std::vector<std::pair<std::string, std::string>> broken_documents() {
         cap(R"("camera": {"focal": 50})"),
         cap(R"("channels": {"velocity": {"x": "u", "y": "v", "delta": "next-cur"}})"),
         cap(R"("channels": {"depth": {"channels": ["Z"], "kind": "round"}})"),
+        scene(R"("objcets": [])"),
+        scene(R"("size": [0, 20])"),
+        scene(R"("cuts": [2, 2])"),
+        scene(R"("camera": {"blades": 2})"),
+        scene(R"("camera": {"f_number": {"keys": {"1": 2}}})"),
+        scene(R"("camera": {"roll": {"keys": {"one": 2}}})"),
+        scene(R"("camera": {"focal_length": "50 kg"})"),
+        scene(R"("materials": {"a": {"albedo": 2}})"),
+        scene(R"("materials": {"a": {"albedo": {"checker": [0, 1]}}})"),
+        scene(R"("materials": {"a": {}}, "objects": [{"shape": "disk", "radius": 1}])"),
+        scene(R"("meshes": {"a": {"file": "a.glb", "height_field": {"size": [1, 1]}}})"),
+        scene(R"("objects": [{"shape": "plane", "size": [1, 1], "radius": 1}])"),
+        scene(R"("lights": [{"type": "point", "position": [0, 1, 0], "pattern": {"type": "edge"}}])"),
         eff(R"("version": "1.0.0")", R"("version": "1")"),
         eff(R"("summary": "Odd.",)", ""),
         eff(R"("unit": "m")", R"("unit": "yards")"),
@@ -212,6 +232,10 @@ TEST_F(Schemas, RefuseWhatTheProgramRefuses) {
             write_text(folder_ / "broken.json", text);
             result = run_aftershade({"check", "broken.json"}, folder_.path());
             EXPECT_EQ(result.exit_code, 1) << "the program takes " << text << result.err;
+        } else if (kind == "scene") {
+            write_text(folder_ / "scene.json", text);
+            result = run_aftershade({"render", "scene.json", "-o", "out"}, folder_.path());
+            EXPECT_EQ(result.exit_code, 2) << "the program takes " << text << result.err;
         } else if (kind == "capture") {
             write_text(folder_ / "capture.json", text);
             result = run_aftershade({"inspect", "capture.json"}, folder_.path());

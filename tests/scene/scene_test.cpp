@@ -66,7 +66,8 @@ TEST_P(SceneFaults, AreToldWithTheirPlace) {
 const Fault kFaults[] = {
     {"unknown key", R"("light": [])", "the scene has no key 'light'; did you mean 'lights'?"},
     {"frames", R"("frames": "1-x")", "frames are a range"},
-    {"size", R"("size": [0, 20])", "whole numbers from 1 to 16384 px"},
+    {"size", R"("size": [0, 20])", "size: 0 is below the minimum 1"},
+    {"half a size", R"("size": [10.5, 20])", "size: 10.5 is not a whole number"},
     {"cut", R"("cuts": [2, 2])", "a frame is named twice"},
     {"fps", R"("fps": 0)", "fps: 0 is below the minimum 0.001"},
     {"background", R"("background": [0, -1, 0])", "background: -1 is below the minimum 0"},
@@ -140,9 +141,9 @@ const Fault kObjectFaults[] = {
      R"({ "shape": "group", "position": { "keys": { "1": [0, 0, 0] }, "interpolation": "cubic" } })",
      "'interpolation' is 'cubic' but must be"},
     {"repetition", R"({ "shape": "group", "repeat": { "count": [1.5, 1, 1] } })",
-     "whole numbers whose product is at most 8192"},
+     "repeat.count: 1.5 is not a whole number"},
     {"too many", R"({ "shape": "group", "repeat": { "count": [100, 100, 1] } })",
-     "whole numbers whose product is at most 8192"},
+     "repeat.count: makes 10000 objects, more than 8192"},
     {"id", R"({ "shape": "group", "id": 16777216 })", "id: 16777216 is above the maximum 16777215"},
 };
 INSTANTIATE_TEST_SUITE_P(All, ObjectFaults, testing::ValuesIn(kObjectFaults));

@@ -1,4 +1,4 @@
-// The schemas against the program that they speak for: three documents with every key that there is, changed
+// The schemas against the program that they speak for: four documents with every key that there is, changed
 // in every place and every way, and judged by both.
 #include <gtest/gtest.h>
 
@@ -19,6 +19,8 @@
 #include "framework/pipeline/look.h"
 #include "framework/pipeline/pipeline.h"
 #include "framework/pipeline/schema.h"
+#include "framework/scene/scene.h"
+#include "framework/scene/scene_schema.h"
 #include "tests/documents.h"
 #include "tests/temporary_folder.h"
 
@@ -118,6 +120,13 @@ std::string judge_manifest(const std::string& text) {
     Diagnostics diagnostics;
     const auto node = parse_document(text, "effect.json", diagnostics);
     if (node) parse_manifest(*node, kFolder / "every_form", diagnostics);
+    return first_fault(diagnostics);
+}
+
+std::string judge_scene(const std::string& text) {
+    Diagnostics diagnostics;
+    const auto node = parse_document(text, (kFolder / "scene.json").string(), diagnostics);
+    if (node) scene::parse_scene(*node, diagnostics);
     return first_fault(diagnostics);
 }
 
@@ -225,6 +234,17 @@ TEST_F(SchemaAgreement, OfAManifestChangedEverywhere) {
              "words, more than|writes no image|outside the domain|is not a value of '|level",
              "^/presets/|^/params/skins/default",  // as the parameters and columns say
          });
+}
+
+TEST_F(SchemaAgreement, OfASceneChangedEverywhere) {
+    hold(
+        "scene.json", scene::scene_schema(), judge_scene,
+        {
+            "there is no (material|mesh|earlier object) '",  // names of what stands elsewhere in the document
+            "^/meshes/quad/file ",                           // what lies on the disk
+            "count: makes .* objects, more than",            // a product
+            "are one point, which gives no direction",       // two values against each other
+        });
 }
 
 }  // namespace

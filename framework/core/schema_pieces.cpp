@@ -1,10 +1,9 @@
-#include "framework/pipeline/schema_common.h"
+#include "framework/core/schema_pieces.h"
 
 #include <cstdint>
 #include <utility>
 
 #include "framework/core/units.h"
-#include "framework/image/role.h"
 
 namespace aftershade::schema {
 
@@ -132,10 +131,6 @@ json text() {
 
 json snake_case() {
     return {{"type", "string"}, {"pattern", kSnakeCase}};
-}
-
-json role() {
-    return any_of({one_of(role_names()), {{"type", "string"}, {"pattern", kAovPattern}}});
 }
 
 json quantity(const ParamSpec& spec) {

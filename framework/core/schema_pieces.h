@@ -1,4 +1,4 @@
-// Pieces that the schemas share.
+// Pieces that the JSON Schemas of documents share.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -24,9 +24,6 @@ json text();
 json snake_case();
 /// {"anyOf": [...]}
 json any_of(std::vector<json> forms);
-inline constexpr const char* kAovPattern = "^aov:.+$";
-/// Name of a role: a fixed one, or "aov:<name>".
-json role();
 
 /// As a ParamSpec's unit: strings in every unit that there is.
 inline constexpr const char* kAnyUnit = "*";

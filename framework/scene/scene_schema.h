@@ -1,0 +1,15 @@
+// What a scene document may say, made from the declarations of its fields: for editors and for readers.
+#pragma once
+
+#include <string>
+
+namespace aftershade::scene {
+
+/// JSON Schema (draft 2020-12) of a scene.json. That names refer to something, that files exist and how two
+/// values stand to each other only the program knows.
+std::string scene_schema();
+
+/// docs/scene-reference.md: one table for each block of keys.
+std::string scene_reference();
+
+}  // namespace aftershade::scene
