@@ -74,7 +74,7 @@ private:
     Shading light(const Surface& surface, const glm::dvec3* to_eye) const;
     void add_light(std::size_t index, const Surface& surface, const glm::dvec3* to_eye,
                    Shading& shading) const;
-    double visible_part(std::size_t light, const glm::dvec3& from) const;
+    double visible_part(std::size_t light, const Surface& surface) const;
 
     const Geometry* geometry_;
     SceneState state_;
