@@ -151,6 +151,50 @@ TEST(ScatteringTruth, OnASphereIsTheSurfaceIntegral) {
     }
 }
 
+/// Where the profile is narrow against the room, scattered light is nearly the light that came in.
+TEST(ScatteringTruth, InsideASphereIsOfTheWallThatThePixelShows) {
+    const Scene scene = scene_of(
+        R"({ "aftershade": 1, "size": [21, 21], "camera": { "position": [0, 0, 0] },
+        "materials": { "wax": { "scattering_profile": { "type": "burley", "d_mm": [1, 2, 3] } } },
+        "objects": [ { "shape": "sphere", "radius": 1, "material": "wax" } ],
+        "lights": [ { "type": "point", "position": [0.2, 0, -0.5], "intensity": 3 } ] })");
+    const SceneRenderer renderer(scene, 21, 21, 1);
+    const ScatteringTruth truth = renderer.render_scattering(1, {512, false});
+    const Capture capture = renderer.render_capture(1);
+    for (int x = 0; x < 21; ++x) {
+        const float light = capture.images.at("irradiance").at(x, 10, 0);
+        ASSERT_GT(light, 0);
+        EXPECT_NEAR(truth.irradiance.at(x, 10, 0), light, 0.01 * light) << x;
+    }
+}
+
+/// Sheared by its parent, a ball is none any more, though its axes can keep one length.
+TEST(ScatteringTruth, OnAShearedBallGoesByItsSurface) {
+    const auto middle_of = [](double depth) {
+        const Scene scene = scene_of(fmt::format(
+            R"({{ "aftershade": 1, "size": [31, 31], "camera": {{ "position": [0, 0, 8] }},
+            "materials": {{ "wax": {{ "scattering_profile": {{ "type": "burley", "d_mm": [300, 200, 100] }} }} }},
+            "objects": [ {{ "name": "squeeze", "shape": "group", "scale": [2, 1, {:.17g}] }},
+                         {{ "shape": "sphere", "radius": 0.5, "material": "wax", "parent": "squeeze",
+                            "rotation": [0, 0, 45] }} ],
+            "lights": [ {{ "type": "directional", "position": [2, 0, 1], "intensity": 3 }} ] }})",
+            depth));
+        const ScatteringTruth truth = SceneRenderer(scene, 31, 31, 1).render_scattering(1, {1024, false});
+        return truth.irradiance.at(13, 15, 0);
+    };
+    EXPECT_NEAR(middle_of(std::sqrt(2.5)), middle_of(std::sqrt(2.5) * (1 + 1e-6)), 1e-3);
+}
+
+/// Half a pixel to the right is the next pixel's left edge, whichever of the two says so.
+TEST(ScatteringTruth, IsJitteredAsTheCaptureIs) {
+    const Scene scene = shipped_scene("plane_edge");
+    const SceneRenderer renderer(scene, 48, 2, 1);
+    const ScatteringTruth right = renderer.render_scattering(1, {512, true, {0.5, 0}}),
+                          left = renderer.render_scattering(1, {512, true, {-0.5, 0}});
+    for (int x = 0; x + 1 < 48; ++x)
+        EXPECT_NEAR(right.irradiance.at(x, 0, 0), left.irradiance.at(x + 1, 0, 0), 1e-6) << x;
+}
+
 TEST(ScatteringTruth, OnAHeightFieldIsTheSurfaceIntegral) {
     const Scene scene = scene_of(
         R"({ "aftershade": 1, "size": [41, 41], "camera": { "position": [0, 0, 6], "focal_length": 60 },
