@@ -113,8 +113,8 @@ private:
             auto there = world_.trace(probe, low, 2 * reach_m, object_.id);
             if (!there) return;
             low = there->t + 1e-9 * reach_m;
-            // The side that the probe leaves by is that of the far wall: its outside looks away.
-            if (i % 2 == 1) {
+            // The surface's same side counts, whichever the probe meets: it may begin inside the object.
+            if (there->from_behind != here_.from_behind) {
                 there->normal = -there->normal;
                 there->geometric_normal = -there->geometric_normal;
             }

@@ -90,7 +90,8 @@ std::optional<Surface> World::trace(const Ray& ray, double low, double high, uns
     Surface found = surface(nearest, point_of(shape, geometry_->mesh_of(shape),
                                               transformed(ray, object_from_world(nearest)), nearest_hit));
     found.t = nearest_hit.t;
-    if (glm::dot(found.geometric_normal, ray.direction) > 0) found.geometric_normal = -found.geometric_normal;
+    found.from_behind = glm::dot(found.geometric_normal, ray.direction) > 0;
+    if (found.from_behind) found.geometric_normal = -found.geometric_normal;
     if (glm::dot(found.geometric_normal, found.normal) < 0) found.normal = -found.normal;
     return found;
 }

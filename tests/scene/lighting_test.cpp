@@ -43,7 +43,8 @@ TEST(Light, ThatTouchesASurfaceGivesItNoNan) {
             "lights": [ {{ "position": [0, 0, 0], {} }} ] }})",
                                                  type));
         const Capture capture = SceneRenderer(scene, 3, 3, 1).render_capture(1);
-        for (const float value : capture.images.at("color").floats()) EXPECT_TRUE(std::isfinite(value)) << type;
+        for (const float value : capture.images.at("color").floats())
+            EXPECT_TRUE(std::isfinite(value)) << type;
     }
 }
 
