@@ -51,15 +51,25 @@ public:
     /// position and speed are continuous; where the shot is too short for that, and between steps, the end
     /// holds.
     T at(double time, const Shot& shot) const {
+        return at(time, shot, [](const T& end, const T& mirrored) { return end + (end - mirrored); });
+    }
+
+    /// The same for values above 0, which stay above it: the curve of their logarithm is what goes on.
+    T positive_at(double time, const Shot& shot) const {
+        return at(time, shot, [](const T& end, const T& mirrored) { return end * (end / mirrored); });
+    }
+
+private:
+    template <class GoOn>
+    T at(double time, const Shot& shot, const GoOn& go_on) const {
         const double end = std::clamp(time, shot.first, shot.last);
         if (end == time) return at(time);
         const double mirrored = 2 * end - time;
         const bool inside = mirrored >= shot.first && mirrored <= shot.last;
         if (!inside || interpolation_ == Interpolation::step) return at(end);
-        return at(end) + (at(end) - at(mirrored));
+        return go_on(at(end), at(mirrored));
     }
 
-private:
     std::vector<Key> keys_;
     Interpolation interpolation_ = Interpolation::linear;
 };

@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kJitterPhases = 16;
+constexpr std::int64_t kMaxFileNumber = 999'999'999;  // nine digits: parse_frame_range
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
@@ -48,6 +49,27 @@ std::vector<CaptureLight> capture_lights(const Scene& scene, const SceneState& s
     for (std::size_t i = 0; i < scene.lights.size(); ++i)
         lights.push_back(capture_light(scene.lights[i], state.lights[i]));
     return lights;
+}
+
+bool numbers_fit(const Job& job) {
+    if (job.frames.empty()) return true;
+    const auto [first, last] = std::minmax_element(job.frames.begin(), job.frames.end());
+    return std::int64_t(*first) * job.subframes >= -kMaxFileNumber &&
+           (std::int64_t(*last) + 1) * job.subframes - 1 <= kMaxFileNumber;
+}
+
+/// Whether any texel can show the object: shapes have coordinates of their own, meshes those of their file.
+bool has_texture_space(const Scene& scene, int object) {
+    const Shape& shape = scene.objects[std::size_t(object)].shape;
+    if (shape.kind != ShapeKind::mesh) return shape.kind != ShapeKind::group;
+    const Mesh& mesh = scene.meshes[std::size_t(shape.mesh)];
+    return std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const auto& corners) {
+        const glm::dvec2 &a = mesh.vertices[corners[0]].uv, &b = mesh.vertices[corners[1]].uv,
+                         &c = mesh.vertices[corners[2]].uv;
+        const glm::dvec2 low = glm::min(a, glm::min(b, c)), high = glm::max(a, glm::max(b, c));
+        const glm::dvec2 ab = b - a, ac = c - a;
+        return ab.x * ac.y != ab.y * ac.x && std::max(low.x, low.y) < 1 && std::min(high.x, high.y) > 0;
+    });
 }
 
 bool is_constant(const Light& light) {
@@ -128,8 +150,8 @@ private:
         capture.header.camera =
             capture_camera(scene_, state_at(scene_, frame, frame), job_.width_px, job_.height_px);
         if (truth.scattering) {
-            ScatteringTruth scattered =
-                renderer_.render_scattering(frame, {job_.scattering_samples, job_.visible_only});
+            ScatteringTruth scattered = renderer_.render_scattering(
+                frame, {job_.scattering_samples, job_.visible_only, jitter_px(frame)});
             capture.images["irradiance"] = std::move(scattered.irradiance);
             capture.images["color"] = std::move(scattered.color);
         } else {
@@ -232,6 +254,11 @@ void check_job(const Scene& scene, const Job& job, Diagnostics& diagnostics) {
     const auto fault = [&](const char* option, const std::string& text) {
         diagnostics.error({option, 0, 0}, text);
     };
+    if (job.folder.empty()) fault("--output", "names no folder");
+    if (!numbers_fit(job))
+        fault("--subframes", fmt::format("file numbers, {} times the frame's, go beyond the {} that a "
+                                         "capture's range can have; choose lower frames",
+                                         job.subframes, kMaxFileNumber));
     if (!job.captures && job.truths.empty()) fault("--truth-only", "there is no --truth to render");
     const bool scattering =
         std::any_of(job.truths.begin(), job.truths.end(), [](const Truth& t) { return t.scattering; });
@@ -249,6 +276,11 @@ void check_job(const Scene& scene, const Job& job, Diagnostics& diagnostics) {
               "its angle is 0, so that it never opens; write \"shutter\": { \"angle\": 180 } in the scene");
     if (job.texture_object >= 0 && job.subframes > 1) fault("--subframes", "texture space has no sub-frames");
     if (job.texture_object >= 0 && !job.truths.empty()) fault("--truth", "is not there in texture space");
+    if (job.texture_object >= 0 && job.jitter) fault("--jitter", "is not there in texture space");
+    if (job.texture_object >= 0 && !has_texture_space(scene, job.texture_object))
+        fault("--object",
+              "no triangle of its mesh has texture coordinates between 0 and 1, so there would be nothing to "
+              "see; give the mesh an unwrapping (TEXCOORD_0)");
 }
 
 JobReport run_job(const Scene& scene, const Profile& profile, const Job& job, const std::atomic<bool>& stop,

@@ -14,17 +14,27 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kFar_m = 1e7;
 
-/// Where a ray leaves a surface that must not hide itself.
-dvec3 off_surface(const Surface& surface, const dvec3& toward) {
+/// Where a ray to a light leaves a surface that must not hide itself: all light comes to the normal's side.
+dvec3 off_surface(const Surface& surface) {
     const dvec3 size = glm::abs(surface.position);
     const double step_m = surface.precision * std::max({size.x, size.y, size.z, 1e-3});
-    return surface.position +
-           surface.geometric_normal * std::copysign(step_m, glm::dot(surface.geometric_normal, toward));
+    return surface.position + surface.geometric_normal * step_m;
+}
+
+using Quad = std::array<dvec3, 4>;
+
+Quad corners_of(const LightState& light) {
+    const dvec3 &u = light.half_u_m, &v = light.half_v_m, &centre = light.position_m;
+    return {centre - u - v, centre + u - v, centre + u + v, centre - u + v};
+}
+
+double height_over(const Surface& surface, const dvec3& point) {
+    return glm::dot(point - surface.position, surface.geometric_normal);
 }
 
 /// Lambert's formula (Photometria, 1760; Baum et al. 1989) over a quadrilateral cut at the horizon: the
 /// integral of the cosine over the solid angle.
-double polygon_cosine(const std::array<dvec3, 4>& corners, const Surface& surface) {
+double polygon_cosine(const Quad& corners, const Surface& surface) {
     std::array<dvec3, 6> kept;
     std::size_t count = 0;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -81,17 +91,27 @@ dvec3 albedo_at(const Material& material, const glm::dvec2& uv) {
 
 }  // namespace
 
-/// Of an area light: the part of a grid of its points that nothing hides.
-double World::visible_part(std::size_t index, const dvec3& from) const {
+/// Of an area light: the part of a grid of its points that nothing hides. Points below the surface's horizon
+/// do not count, since polygon_cosine cuts them off; where all are, the highest corner stands for the rest.
+double World::visible_part(std::size_t index, const Surface& surface) const {
     const LightState& light = state_.lights[index];
     const int side = scene().lights[index].shadow_samples;
-    int seen = 0;
+    const dvec3 from = off_surface(surface);
+    int seen = 0, count = 0;
     for (int y = 0; y < side; ++y)
         for (int x = 0; x < side; ++x) {
             const double u = (x + 0.5) / side * 2 - 1, v = (y + 0.5) / side * 2 - 1;
-            seen += is_hidden(from, light.position_m + u * light.half_u_m + v * light.half_v_m, true) ? 0 : 1;
+            const dvec3 to = light.position_m + u * light.half_u_m + v * light.half_v_m;
+            if (height_over(surface, to) <= 0) continue;
+            ++count;
+            seen += is_hidden(from, to, true) ? 0 : 1;
         }
-    return double(seen) / (side * side);
+    if (count > 0) return double(seen) / count;
+    const Quad corners = corners_of(light);
+    const dvec3& highest = *std::max_element(
+        corners.begin(), corners.end(),
+        [&](const dvec3& a, const dvec3& b) { return height_over(surface, a) < height_over(surface, b); });
+    return is_hidden(from, highest, true) ? 0 : 1;
 }
 
 void World::add_light(std::size_t index, const Surface& surface, const dvec3* to_eye,
@@ -101,6 +121,7 @@ void World::add_light(std::size_t index, const Surface& surface, const dvec3* to
     const bool is_area = light.kind == LightKind::area, is_far = light.kind == LightKind::directional;
     const dvec3 way = is_far ? -now.direction : now.position_m - surface.position;
     const double distance2 = glm::dot(way, way);
+    if (distance2 == 0) return;  // in the light itself no direction leads to it
     const dvec3 toward = way / std::sqrt(distance2);
     const double cosine = std::max(glm::dot(surface.normal, toward), 0.0);
     const double front = is_area ? -glm::dot(now.direction, toward) : 1;
@@ -109,15 +130,14 @@ void World::add_light(std::size_t index, const Surface& surface, const dvec3* to
     double received = is_far ? cosine * pattern_at(light.pattern, surface.position) : cosine / distance2;
     double highlighted = received;
     if (is_area) {
-        const dvec3 &u = now.half_u_m, &v = now.half_v_m, &centre = now.position_m;
-        highlighted *= front * 4 * glm::length(u) * glm::length(v);
-        received = polygon_cosine({centre - u - v, centre + u - v, centre + u + v, centre - u + v}, surface);
+        highlighted *= front * 4 * glm::length(now.half_u_m) * glm::length(now.half_v_m);
+        received = polygon_cosine(corners_of(now), surface);
     }
     if (received <= 0) return;
     if (light.shadows) {
-        const dvec3 from = off_surface(surface, toward);
+        const dvec3 from = off_surface(surface);
         const dvec3 to = is_far ? from + toward * kFar_m : now.position_m;
-        const double seen = is_area ? visible_part(index, from) : is_hidden(from, to, true) ? 0 : 1;
+        const double seen = is_area ? visible_part(index, surface) : is_hidden(from, to, true) ? 0 : 1;
         received *= seen;
         highlighted *= seen;
     }

@@ -36,6 +36,7 @@ struct TruthSettings {
 struct ScatteringSettings {
     int samples = 2048;        ///< points of the surface for each pixel, about; 64 to kMaxSamples
     bool visible_only = true;  ///< points that the camera sees, which is what an effect has; else all
+    std::array<double, 2> jitter_px{0, 0};
 };
 
 /// The truth of subsurface scattering.

@@ -20,11 +20,14 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// A sphere stays one where its three axes keep one length.
+/// A sphere stays one where its three axes keep one length and their right angles.
 bool is_round(const glm::dmat4& matrix) {
-    const dvec3 axes(glm::length(dvec3(matrix[0])), glm::length(dvec3(matrix[1])),
-                     glm::length(dvec3(matrix[2])));
-    return std::max({axes.x, axes.y, axes.z}) - std::min({axes.x, axes.y, axes.z}) < 1e-9 * axes.x;
+    const dvec3 x(matrix[0]), y(matrix[1]), z(matrix[2]);
+    const dvec3 axes(glm::length(x), glm::length(y), glm::length(z));
+    const double skew =
+        std::max({std::abs(glm::dot(x, y)), std::abs(glm::dot(y, z)), std::abs(glm::dot(z, x))});
+    return std::max({axes.x, axes.y, axes.z}) - std::min({axes.x, axes.y, axes.z}) < 1e-9 * axes.x &&
+           skew < 1e-9 * axes.x * axes.x;
 }
 
 /// The points around one pixel's own, and what they send there.
@@ -83,13 +86,15 @@ private:
     /// With the chord r as radius, an area of the sphere about a point is r dr dphi, as in a plane.
     void add_on_sphere(const dvec3& centre, const dvec3& along, double chord_m, double area_m2) {
         const double radius_m = glm::distance(here_.position, centre);
+        // From inside the sphere the normal points at its centre.
+        const double side = glm::dot(here_.geometric_normal, here_.position - centre) < 0 ? -1 : 1;
         const double half_sine = chord_m / (2 * radius_m);
         if (half_sine > 1) return;
         const double sine = 2 * half_sine * std::sqrt(1 - half_sine * half_sine);
         Surface there = here_;
-        there.normal = here_.geometric_normal * (1 - 2 * half_sine * half_sine) + along * sine;
-        there.geometric_normal = there.normal;
-        there.position = centre + radius_m * there.normal;
+        const dvec3 out = side * here_.geometric_normal * (1 - 2 * half_sine * half_sine) + along * sine;
+        there.normal = there.geometric_normal = side * out;
+        there.position = centre + radius_m * out;
         add(there, chord_m, area_m2);
     }
 
@@ -102,8 +107,8 @@ private:
             auto there = world_.trace(probe, low, 2 * reach_m, here_.object);
             if (!there) return;
             low = there->t + 1e-9 * reach_m;
-            // Outwards again: the side that the pixel is on.
-            if (there->is_turned != here_.is_turned) {
+            // The surface's same side counts, whichever the probe meets: it may begin inside the object.
+            if (there->from_behind != here_.from_behind) {
                 there->normal = -there->normal;
                 there->geometric_normal = -there->geometric_normal;
             }
@@ -127,7 +132,7 @@ private:
 }  // namespace
 
 ScatteringTruth SceneRenderer::render_scattering(int frame, const ScatteringSettings& scattering) const {
-    Capture capture = render_capture(frame);
+    Capture capture = render_capture(frame, frame, scattering.jitter_px);
     ScatteringTruth truth{std::move(capture.images.at("irradiance")), std::move(capture.images.at("color"))};
     const Image& albedo = capture.images.at("albedo");
     const World world(geometry_, state_at(scene_, frame, frame));
@@ -135,9 +140,10 @@ ScatteringTruth SceneRenderer::render_scattering(int frame, const ScatteringSett
     for (const Material& material : scene_.materials)
         points.push_back(material.scattering ? make_scatter_points(*material.scattering, scattering.samples)
                                              : std::vector<ScatterPoint>());
+    const dvec2 offset_px(0.5 + scattering.jitter_px[0], 0.5 + scattering.jitter_px[1]);
     for_each_row(height_px_, threads_, [&](int y) {
         for (int x = 0; x < width_px_; ++x) {
-            const Ray ray = camera_ray(world.state().camera, dvec2(x + 0.5, y + 0.5), dvec2(0));
+            const Ray ray = camera_ray(world.state().camera, dvec2(x, y) + offset_px, dvec2(0));
             const auto here = world.trace(ray, 0, std::numeric_limits<double>::infinity());
             if (!here) continue;
             const auto& table = points[std::size_t(scene_.objects[std::size_t(here->object)].material)];

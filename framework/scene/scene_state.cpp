@@ -1,5 +1,6 @@
 #include "framework/scene/scene_state.h"
 
+#include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 
 namespace aftershade::scene {
@@ -26,7 +27,7 @@ glm::dvec3 level_across(const glm::dvec3& direction) {
 LightState light_at(const Light& light, const Shot& shot, double time) {
     LightState state;
     state.position_m = light.position_m.at(time, shot);
-    state.color_intensity = light.color * light.intensity.at(time, shot);
+    state.color_intensity = light.color * std::max(light.intensity.at(time, shot), 0.0);
     if (light.kind == LightKind::point) {
         state.direction = glm::dvec3(0);
         return state;
@@ -50,8 +51,8 @@ CameraState camera_at(const SceneCamera& camera, const Shot& shot, double time) 
     const double roll_rad = glm::radians(camera.roll_deg.at(time, shot));
     state.world_from_camera = look * glm::rotate(glm::dmat4(1), -roll_rad, glm::dvec3(0, 0, 1));
     state.camera_from_world = glm::inverse(state.world_from_camera);
-    state.focal_length_mm = camera.focal_length_mm.at(time, shot);
-    state.focus_distance_m = camera.focus_distance_m.at(time, shot);
+    state.focal_length_mm = camera.focal_length_mm.positive_at(time, shot);
+    state.focus_distance_m = camera.focus_distance_m.positive_at(time, shot);
     state.aperture_radius_m = state.focal_length_mm * 1e-3 / camera.f_number * 0.5;
     return state;
 }
@@ -74,7 +75,7 @@ SceneState state_at(const Scene& scene, int frame, double time) {
             object.parent < 0 ? glm::dmat4(1) : state.world_from_object[std::size_t(object.parent)];
         const glm::dmat4 moved = glm::translate(glm::dmat4(1), object.position_m.at(time, shot)) *
                                  turned(object.rotation_deg.at(time, shot));
-        state.world_from_object.push_back(parent * glm::scale(moved, object.scale.at(time, shot)));
+        state.world_from_object.push_back(parent * glm::scale(moved, object.scale.positive_at(time, shot)));
     }
     for (const Light& light : scene.lights) state.lights.push_back(light_at(light, shot, time));
     state.camera = camera_at(scene.camera, shot, time);

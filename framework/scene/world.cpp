@@ -91,8 +91,8 @@ std::optional<Surface> World::trace(const Ray& ray, double low, double high, int
     Surface found =
         surface(nearest->object, point_of(*nearest->shape, nearest->mesh, nearest->local(ray), nearest_hit));
     found.t = nearest_hit.t;
-    found.is_turned = glm::dot(found.geometric_normal, ray.direction) > 0;
-    if (found.is_turned) found.geometric_normal = -found.geometric_normal;
+    found.from_behind = glm::dot(found.geometric_normal, ray.direction) > 0;
+    if (found.from_behind) found.geometric_normal = -found.geometric_normal;
     if (glm::dot(found.geometric_normal, found.normal) < 0) found.normal = -found.normal;
     return found;
 }

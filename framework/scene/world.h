@@ -32,10 +32,10 @@ struct Surface {
     glm::dvec3 normal{0};            ///< world, unit length, for shading
     glm::dvec3 geometric_normal{0};  ///< world, unit length; both on the side that the ray came from
     glm::dvec2 uv{0};
-    int object = -1;          ///< index into Scene::objects
-    double t = 0;             ///< along the ray
-    double precision = 1e-9;  ///< of the position, over the size of its coordinates
-    bool is_turned = false;   ///< the normals were turned to the side that the ray came from
+    bool from_behind = false;  ///< whether that is the inside, by the shape's outward normal
+    int object = -1;           ///< index into Scene::objects
+    double t = 0;              ///< along the ray
+    double precision = 1e-9;   ///< of the position, over the size of its coordinates
 };
 
 /// Light at a surface, as the roles of a capture have it.
@@ -88,7 +88,7 @@ private:
     Shading light(const Surface& surface, const glm::dvec3* to_eye) const;
     void add_light(std::size_t index, const Surface& surface, const glm::dvec3* to_eye,
                    Shading& shading) const;
-    double visible_part(std::size_t light, const glm::dvec3& from) const;
+    double visible_part(std::size_t light, const Surface& surface) const;
 
     const Geometry* geometry_;
     SceneState state_;

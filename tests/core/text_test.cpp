@@ -8,7 +8,9 @@
 namespace aftershade {
 namespace {
 
-std::uint64_t hash(const std::string& text) { return fnv1a(std::as_bytes(std::span(text))); }
+std::uint64_t hash(const std::string& text) {
+    return fnv1a(std::as_bytes(std::span(text)));
+}
 
 // The vectors of the authors' own test suite (http://www.isthe.com/chongo/src/fnv/test_fnv.c).
 TEST(Fnv1a, GivesThePublishedHashes) {
@@ -24,7 +26,8 @@ TEST(Fnv1a, GoesOnWhereItEnded) {
 
 TEST(SnakeCase, BeginsWithALetterAndHasNoCapitals) {
     for (const char* name : {"a", "a1", "near_tile", "a_"}) EXPECT_TRUE(is_snake_case(name)) << name;
-    for (const char* name : {"", "_a", "1a", "nearTile", "a-b", "a b", "\xc3\xa4"}) EXPECT_FALSE(is_snake_case(name)) << name;
+    for (const char* name : {"", "_a", "1a", "nearTile", "a-b", "a b", "\xc3\xa4"})
+        EXPECT_FALSE(is_snake_case(name)) << name;
 }
 
 }  // namespace

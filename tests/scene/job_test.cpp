@@ -1,8 +1,9 @@
-// A whole job: memory, stopping, the files that appear.
+// A whole job: what it refuses, memory, stopping, the files that appear.
 #include "framework/scene/job.h"
 
 #include <unistd.h>
 
+#include <atomic>
 #include <fstream>
 
 #include <gtest/gtest.h>
@@ -90,6 +91,68 @@ TEST(Job, ToldWhatItCannotDoBeforeItBegins) {
     check_job(scene, job, diagnostics);
     // No profile, too few points, a shutter that never opens, no sub-frames and no truth in texture space.
     EXPECT_EQ(diagnostics.error_count(), 5) << faults_of(diagnostics);
+}
+
+const char* const kBall = R"({ "aftershade": 1, "size": [4, 4], "frames": "1-5", "camera": {},
+    "materials": { "grey": {} }, "objects": [ { "shape": "sphere", "radius": 1, "material": "grey" } ] })";
+
+std::string faults(const Scene& scene, Job job) {
+    Diagnostics diagnostics;
+    if (job.folder.empty()) job.folder = "anywhere";
+    check_job(scene, job, diagnostics);
+    return faults_of(diagnostics);
+}
+
+TEST(Job, RefusesFileNumbersThatNoRangeCanName) {
+    const Scene scene = scene_of(kBall);
+    Job job;
+    job.subframes = 1024;
+    job.frames = {1, 976561};
+    EXPECT_EQ(faults(scene, job), "");
+    job.frames = {1, 976562};
+    EXPECT_NE(faults(scene, job).find("--subframes: error: file numbers"), std::string::npos);
+    job.frames = {-999999999};
+    EXPECT_NE(faults(scene, job).find("--subframes: error: file numbers"), std::string::npos);
+}
+
+TEST(Job, RefusesAFolderWithoutAName) {
+    Diagnostics diagnostics;
+    check_job(scene_of(kBall), Job{}, diagnostics);
+    EXPECT_NE(faults_of(diagnostics).find("--output: error: names no folder"), std::string::npos);
+}
+
+TEST(Job, RefusesTheTextureSpaceOfAMeshThatHasNone) {
+    Scene scene = scene_of(kBall);
+    Job job;
+    job.texture_object = 0;
+    EXPECT_EQ(faults(scene, job), "");
+    scene.objects[0].shape.kind = ShapeKind::mesh;
+    scene.objects[0].shape.mesh = 0;
+    scene.meshes.emplace_back();
+    Mesh& mesh = scene.meshes.back();
+    mesh.vertices.resize(3);
+    mesh.triangles = {{0, 1, 2}};
+    EXPECT_NE(faults(scene, job).find("--object: error: no triangle"), std::string::npos);
+    mesh.vertices[1].uv = {1, 0};
+    mesh.vertices[2].uv = {0, 1};
+    EXPECT_EQ(faults(scene, job), "");
+    for (Vertex& vertex : mesh.vertices) vertex.uv += glm::dvec2(0, 1);
+    EXPECT_NE(faults(scene, job).find("--object: error: no triangle"), std::string::npos);
+}
+
+TEST(Job, RefusesJitterInTextureSpace) {
+    Job job;
+    job.texture_object = 0;
+    job.jitter = true;
+    EXPECT_NE(faults(scene_of(kBall), job).find("--jitter"), std::string::npos);
+}
+
+TEST(Job, WritesNoDocumentOfNoFrames) {
+    test::TemporaryFolder folder;
+    const std::atomic<bool> stop = true;
+    const Scene scene = scene_of(kBall);
+    run_job(scene, native_profile(), small_job(folder / "capture", {1}), stop, [](int) {});
+    EXPECT_TRUE(std::filesystem::is_empty(folder / "capture"));
 }
 
 }  // namespace

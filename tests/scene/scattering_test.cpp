@@ -152,6 +152,93 @@ TEST(ScatteringTruth, OnASphereIsTheSurfaceIntegral) {
     }
 }
 
+/// Where the profile is narrow against the room, scattered light is nearly the light that came in.
+TEST(ScatteringTruth, InsideASphereIsOfTheWallThatThePixelShows) {
+    const Scene scene = scene_of(
+        R"({ "aftershade": 1, "size": [21, 21], "camera": { "position": [0, 0, 0] },
+        "materials": { "wax": { "scattering_profile": { "type": "burley", "d_mm": [1, 2, 3] } } },
+        "objects": [ { "shape": "sphere", "radius": 1, "material": "wax" } ],
+        "lights": [ { "type": "point", "position": [0.2, 0, -0.5], "intensity": 3 } ] })");
+    const SceneRenderer renderer(scene, 21, 21, 1);
+    const ScatteringTruth truth = renderer.render_scattering(1, {512, false});
+    const Capture capture = renderer.render_capture(1);
+    for (int x = 0; x < 21; ++x) {
+        const float light = capture.images.at("irradiance").at(x, 10, 0);
+        ASSERT_GT(light, 0);
+        EXPECT_NEAR(truth.irradiance.at(x, 10, 0), light, 0.01 * light) << x;
+    }
+}
+
+/// Sheared by its parent, a ball is none any more, though its axes can keep one length.
+TEST(ScatteringTruth, OnAShearedBallGoesByItsSurface) {
+    const auto middle_of = [](double depth) {
+        const Scene scene = scene_of(fmt::format(
+            R"({{ "aftershade": 1, "size": [31, 31], "camera": {{ "position": [0, 0, 8] }},
+            "materials": {{ "wax": {{ "scattering_profile": {{ "type": "burley", "d_mm": [300, 200, 100] }} }} }},
+            "objects": [ {{ "name": "squeeze", "shape": "group", "scale": [2, 1, {:.17g}] }},
+                         {{ "shape": "sphere", "radius": 0.5, "material": "wax", "parent": "squeeze",
+                            "rotation": [0, 0, 45] }} ],
+            "lights": [ {{ "type": "directional", "position": [2, 0, 1], "intensity": 3 }} ] }})",
+            depth));
+        const ScatteringTruth truth = SceneRenderer(scene, 31, 31, 1).render_scattering(1, {1024, false});
+        return truth.irradiance.at(13, 15, 0);
+    };
+    EXPECT_NEAR(middle_of(std::sqrt(2.5)), middle_of(std::sqrt(2.5) * (1 + 1e-6)), 1e-3);
+}
+
+void add_box(Mesh& mesh, const dvec3& low, const dvec3& high) {
+    for (int axis = 0; axis < 3; ++axis)
+        for (const int side : {0, 1}) {
+            dvec3 normal(0), right(0), up(0);
+            normal[axis] = side * 2 - 1;
+            right[(axis + 1) % 3] = normal[axis] * (high - low)[(axis + 1) % 3];
+            up[(axis + 2) % 3] = (high - low)[(axis + 2) % 3];
+            const dvec3 middle = 0.5 * (low + high) + 0.5 * normal * (high - low);
+            const auto first = std::uint32_t(mesh.vertices.size());
+            for (const dvec3& corner : {-right - up, right - up, right + up, -right + up})
+                mesh.vertices.push_back({middle + 0.5 * corner, normal, {}});
+            mesh.triangles.push_back({first, first + 1, first + 2});
+            mesh.triangles.push_back({first, first + 2, first + 3});
+        }
+}
+
+/// A slab with a block over it: lines along the slab's normal begin inside the block. What looks up is lit.
+TEST(ScatteringTruth, KnowsOutsideFromInsideWhereALineBeginsInTheObject) {
+    Scene scene = scene_of(
+        R"({ "aftershade": 1, "size": [3, 3], "camera": { "position": [0, 5, 0] },
+        "materials": { "wax": { "scattering_profile": { "type": "burley", "d_mm": [200, 150, 100] } } },
+        "meshes": { "blocks": { "height_field": { "size": [1, 1] } } },
+        "objects": [ { "shape": "mesh", "mesh": "blocks", "material": "wax" } ],
+        "lights": [ { "type": "directional", "position": [0, 1, 0], "intensity": 3.14159265, "shadows": false } ] })");
+    Mesh& mesh = scene.meshes[0] = Mesh{};
+    add_box(mesh, {-5, -0.2, -5}, {5, 0, 5});
+    add_box(mesh, {0.3, 0.05, -5}, {5, 40, 5});
+    const ScatteringTruth truth = SceneRenderer(scene, 3, 3, 1).render_scattering(1, {8192, false});
+    GridSum sum;
+    constexpr int kSteps = 2000;
+    for (int i = 0; i < kSteps; ++i)
+        for (int k = 0; k < kSteps; ++k) {
+            const double r = (i + 0.5) / kSteps * 5, angle = (k + 0.5) / kSteps * 2 * kPi;
+            const double area = r * 5 / kSteps * 2 * kPi / kSteps;
+            const dvec3 p(r * std::cos(angle), 0, r * std::sin(angle)), d_m(0.2, 0.15, 0.1);
+            sum.add(dvec3(0), p, area, 1, d_m);
+            // Lines reach three radii to both sides.
+            if (3 * r > 0.2) sum.add(dvec3(0), p + dvec3(0, -0.2, 0), area, 0, d_m);
+            if (p.x > 0.3) sum.add(dvec3(0), p + dvec3(0, 0.05, 0), area, 0, d_m);
+        }
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(truth.irradiance.at(1, 1, c), sum.mean()[c], 0.01) << c;
+}
+
+/// Half a pixel to the right is the next pixel's left edge, whichever of the two says so.
+TEST(ScatteringTruth, IsJitteredAsTheCaptureIs) {
+    const Scene scene = shipped_scene("plane_edge");
+    const SceneRenderer renderer(scene, 48, 2, 1);
+    const ScatteringTruth right = renderer.render_scattering(1, {512, true, {0.5, 0}}),
+                          left = renderer.render_scattering(1, {512, true, {-0.5, 0}});
+    for (int x = 0; x + 1 < 48; ++x)
+        EXPECT_NEAR(right.irradiance.at(x, 0, 0), left.irradiance.at(x + 1, 0, 0), 1e-6) << x;
+}
+
 TEST(ScatteringTruth, OnAHeightFieldIsTheSurfaceIntegral) {
     const Scene scene = scene_of(
         R"({ "aftershade": 1, "size": [41, 41], "camera": { "position": [0, 0, 6], "focal_length": 60 },
