@@ -1,0 +1,264 @@
+// What dof must do, against closed forms and against a renderer's own lens.
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "framework/compare/metrics.h"
+#include "framework/image/capture.h"
+#include "tests/lens.h"
+#include "tests/look_runner.h"
+#include "tests/polygon.h"
+#include "tests/real_captures.h"
+#include "tests/synthetic_capture.h"
+
+namespace aftershade::test {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kFocusM = float(Lens::kFocusM);
+
+Image blur(const Capture& capture, double radius_px, const std::string& more = "",
+           gpu::Backend backend = gpu::Backend::osmesa) {
+    const Lens lens{radius_px, capture.header.display_window.width()};
+    return LookRunner(lens.look("dof", more), backend).color(capture);
+}
+
+/// A 3 x 3 px light in the middle of a square picture whose every pixel has the CoC radius of the lens.
+Capture light_of_nine(int size, bool is_near, float intensity) {
+    SyntheticScene scene{.width = size, .height = size, .background_depth_m = is_near ? kFocusM / 2 : kInfinity};
+    for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x) scene.points.push_back({size / 2 + x, size / 2 + y, intensity});
+    return make_capture(scene);
+}
+
+double sum_of(const Image& image) {
+    double sum = 0;
+    for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x) sum += image.at(x, y, 0);
+    return sum;
+}
+
+// ---- the shape of a light ----
+
+struct ShapeCase {
+    int blades;
+    double radius_px;
+    double rotation_deg;
+    bool is_near;
+    const char* highlights;
+    double least_iou;
+};
+
+void PrintTo(const ShapeCase& c, std::ostream* out) {
+    *out << c.blades << " blades R " << c.radius_px << " rotation " << c.rotation_deg << (c.is_near ? " near " : " far ")
+         << c.highlights;
+}
+
+class DofShape : public testing::TestWithParam<ShapeCase> {};
+
+TEST_P(DofShape, OfALightOfThreePixelsIsTheAperturesWithAllItsEnergy) {
+    const ShapeCase& c = GetParam();
+    const int size = 96, center = size / 2;
+    const float intensity = 1000;
+    const std::string params = fmt::format(R"("blades": {}, "rotation": {}, "highlights": "{}")", c.blades, c.rotation_deg,
+                                           c.highlights);
+    const Image blurred = blur(light_of_nine(size, c.is_near, intensity), c.radius_px, params);
+    const int sides = c.blades == 0 ? 64 : c.blades;  // 64 corners are a disk to 0.2 % of its area
+    const Image expected = coverage_of_light(
+        regular_polygon(sides, c.radius_px, c.rotation_deg + (c.is_near ? 180 : 0)), size, center, 3);
+    const double iou = shape_iou(blurred, blurred.at(center, center, 0), expected);
+    const double energy = sum_of(blurred) / (9.0 * intensity);
+    RecordProperty("iou", fmt::format("{:.4f}", iou));
+    RecordProperty("energy", fmt::format("{:.4f}", energy));
+    EXPECT_GE(iou, c.least_iou);
+    EXPECT_NEAR(energy, 1, 0.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scattered, DofShape,
+                         testing::Values(ShapeCase{6, 24, 0, false, "scatter", 0.93},
+                                         ShapeCase{6, 24, 10, true, "scatter", 0.93},
+                                         ShapeCase{3, 24, 0, false, "scatter", 0.93},
+                                         ShapeCase{3, 24, 0, true, "scatter", 0.93},
+                                         ShapeCase{5, 16, 0, false, "scatter", 0.93},
+                                         ShapeCase{5, 16, 0, true, "scatter", 0.93},
+                                         ShapeCase{7, 12, 20, true, "scatter", 0.93},
+                                         ShapeCase{0, 20, 0, false, "scatter", 0.93},
+                                         ShapeCase{6, 8, 0, false, "scatter", 0.93},
+                                         ShapeCase{6, 4, 0, true, "scatter", 0.93}));
+INSTANTIATE_TEST_SUITE_P(Gathered, DofShape,
+                         testing::Values(ShapeCase{6, 24, 0, false, "gather", 0.93},
+                                         ShapeCase{5, 16, 0, true, "gather", 0.93},
+                                         ShapeCase{0, 12, 0, false, "gather", 0.93},
+                                         ShapeCase{6, 6, 0, true, "gather", 0.93},
+                                         ShapeCase{6, 4, 0, false, "gather", 0.93}));
+
+TEST(DofShapeOf, BladesBentAllTheWayIsADisk) {
+    const Capture light = light_of_nine(96, false, 1000);
+    const Image disk = blur(light, 20, R"("blades": 0)"), bent = blur(light, 20, R"("blades": 5, "curvature": 1)");
+    for (int y = 0; y < 96; ++y)
+        for (int x = 0; x < 96; ++x) ASSERT_NEAR(bent.at(x, y, 0), disk.at(x, y, 0), 1e-3) << x << " " << y;
+}
+
+TEST(DofShapeOf, BladesBentHalfWayLiesBetween) {
+    const Capture light = light_of_nine(96, false, 1000);
+    const auto pixels = [&](const char* params) {
+        const Image image = blur(light, 24, params);
+        int count = 0;
+        for (int i = 0; i < 96 * 96; ++i) count += image.at(i % 96, i / 96, 0) > 0.5f * image.at(48, 48, 0);
+        return count;
+    };
+    const int straight = pixels(R"("blades": 5)"), half = pixels(R"("blades": 5, "curvature": 0.5)"),
+              disk = pixels(R"("blades": 0)");
+    EXPECT_GT(half, straight + 50);
+    EXPECT_LT(half, disk - 50);
+}
+
+TEST(DofShapeOf, ALightAtTheCornerIsCutByTheRimOfTheLensAndKeepsItsEnergy) {
+    const int size = 160, at = 130;
+    const double radius_px = 20, cat_eye = 0.6;
+    SyntheticScene scene{.width = size, .height = size, .points = {{at, at, 1000}}};
+    const Image cut = blur(make_capture(scene), radius_px, R"("blades": 0, "cat_eye": 0.6)");
+    EXPECT_NEAR(sum_of(cut) / 1000, 1, 0.02);
+    // The rim's middle lies from the light towards the picture's middle, in radii: cat_eye at the corner.
+    const double shift = cat_eye * (size / 2.0 - (at + 0.5)) / (size / 2.0 * std::sqrt(2.0));
+    Image expected(size, size, 1);
+    for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x) {
+            const double dx = (x - at) / radius_px, dy = (y - at) / radius_px;
+            expected.at(x, y, 0) = std::hypot(dx, dy) <= 1 && std::hypot(dx - shift, dy - shift) <= 1 ? 1.0f : 0.0f;
+        }
+    EXPECT_GE(shape_iou(cut, cut.at(at - 3, at - 3, 0), expected), 0.95);
+}
+
+// ---- what must not change ----
+
+Capture varied_depth(SyntheticScene scene) {
+    Capture capture = make_capture(scene);
+    std::uint32_t state = 1;
+    for (float& depth_m : capture.images["depth"].floats()) {
+        state = state * 1664525u + 1013904223u;
+        depth_m = 0.5f + float(state >> 16) / 65536.0f * 10;
+    }
+    return capture;
+}
+
+class DofSettings : public testing::TestWithParam<const char*> {};
+
+TEST_P(DofSettings, LeaveAUniformImageUnchanged) {
+    const Capture capture =
+        varied_depth({.width = 96, .height = 64, .background = {0.7f, 0.4f, 12.0f}, .alpha = 0.5f});
+    const Image blurred = blur(capture, 12, GetParam());
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 96; ++x)
+            for (int c = 0; c < 4; ++c) {
+                const float source = capture.images.at("color").at(x, y, c);
+                // A float's rounding, in sums of up to a thousand taps; alpha is stored as a half.
+                ASSERT_NEAR(blurred.at(x, y, c), source, 5e-5 * source + (c == 3 ? 1e-3 : 0))
+                    << x << " " << y << " " << c;
+            }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, DofSettings,
+                         testing::Values(R"("blades": 6)", R"("blades": 0, "cat_eye": 0.5)",
+                                         R"("blades": 7, "curvature": 0.3, "rotation": 17)",
+                                         R"("quality": "fast")", R"("quality": "exact")",
+                                         R"("highlights": "gather")"));
+
+TEST(Dof, CopiesPixelsInFocusBitForBit) {
+    Capture capture = make_capture({.width = 64, .height = 36, .background_depth_m = kFocusM});
+    for (std::size_t i = 0; i < capture.images["color"].floats().size(); ++i)
+        capture.images["color"].floats()[i] = i % 4 == 3 ? 1.0f : float(i) * 0.37f;
+    const Image out = blur(capture, 20);
+    const auto expected = capture.images["color"].floats();
+    EXPECT_TRUE(std::equal(expected.begin(), expected.end(), out.floats().begin()));
+}
+
+TEST(Dof, KeepsAFocusedObjectOutOfTheBlurBehindIt) {
+    const SyntheticBox box{
+        .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kFocusM, .color = {9, 9, 9}};
+    const Capture capture = make_capture({.width = 96, .height = 48, .box = box}, 0);
+    const Image out = blur(capture, 12);
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 96; ++x) {
+            const bool in_box = x >= 20 && x < 44 && y >= 10 && y < 30;
+            if (in_box) ASSERT_EQ(out.at(x, y, 0), 9) << x << " " << y;
+            else ASSERT_LE(out.at(x, y, 0), 0.001f * 9) << x << " " << y;
+        }
+}
+
+/// The silhouette of a near object, straight from top to bottom, is a ramp as wide as the aperture, and what it hides shows
+/// through on both sides: the closed form is the aperture's part on one side of a line.
+TEST(Dof, MakesANearSilhouetteTheRampOfItsAperture) {
+    const double radius_px = 12;
+    const SyntheticBox box{
+        .x = 40, .y = -10, .width = 80, .height = 100, .depth_m = kFocusM / 2, .color = {1, 1, 1}};
+    const Capture capture =
+        make_capture({.width = 96, .height = 64, .background = {0, 0, 4}, .background_depth_m = kFocusM, .box = box}, 0);
+    const Image out = blur(capture, radius_px, R"("blades": 0)");
+    for (int x = 20; x < 60; ++x) {
+        const double t = std::clamp((x + 0.5 - 40) / radius_px, -1.0, 1.0);
+        const double share = 0.5 + (t * std::sqrt(1 - t * t) + std::asin(t)) / 3.14159265358979;
+        EXPECT_NEAR(out.at(x, 32, 0), share, 0.03) << x;
+        EXPECT_NEAR(out.at(x, 32, 2), share + 4 * (1 - share), 0.09) << x;
+    }
+}
+
+TEST(Dof, BlursAlphaWithTheColorThatItCovers) {
+    const SyntheticBox box{
+        .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kInfinity, .color = {1, 1, 1}};
+    const Capture capture = make_capture({.width = 96, .height = 48, .alpha = 0, .box = box}, 0);
+    const Image out = blur(capture, 6);
+    for (int x = 10; x < 56; ++x) ASSERT_NEAR(out.at(x, 20, 3), out.at(x, 20, 0), 2e-3f) << x;
+    EXPECT_GT(out.at(18, 20, 3), 0.05f);
+    EXPECT_LT(out.at(18, 20, 3), 0.95f);
+}
+
+/// An overscan capture's data window is larger than what is displayed, so a light out of sight can reach into it.
+TEST(Dof, ShowsTheBlurOfALightInTheOverscan) {
+    Capture capture = make_capture({.width = 96, .height = 48, .points = {{4, 24, 1000}}});
+    capture.header.display_window = {8, 0, 95, 47};
+    const Image out = LookRunner(Lens{12, 88}.look("dof"), gpu::Backend::osmesa).color(capture);
+    EXPECT_NEAR(out.at(10, 24, 0), 1000 / (2.598 * 12 * 12), 0.1);
+}
+
+TEST(Dof, GivesTheSameBitsOnBothSoftwareBackends) {
+    Capture capture = varied_depth({.width = 96, .height = 64, .background = {0.2f, 0.1f, 0.05f}});
+    for (int i = 0; i < 96 * 64; i += 37) capture.images["color"].floats()[std::size_t(i) * 4] = float(i);
+    const char* params = R"("blades": 5, "rotation": 7, "cat_eye": 0.3)";
+    const Image egl = blur(capture, 12, params, gpu::Backend::egl_software);
+    const Image osmesa = blur(capture, 12, params, gpu::Backend::osmesa);
+    EXPECT_TRUE(std::equal(egl.floats().begin(), egl.floats().end(), osmesa.floats().begin()));
+}
+
+// ---- against a renderer's lens ----
+
+/// captures/suzanne/README.md: the sharp input has 21.7 dB, Blender's own Defocus node 20.3 to 21.1.
+TEST(DofOnSuzanne, ComesCloseToTheRenderersLens) {
+    AFTERSHADE_REQUIRE_CAPTURE(folder, "suzanne");
+    Sequence sequence;
+    sequence.files = FramePattern((*folder / "large/gbuffer_####.exr").string());
+    sequence.profile = "blender";
+    Diagnostics diagnostics;
+    const CaptureReader reader(sequence, read_profiles(AFTERSHADE_SOURCE_DIR "/profiles", diagnostics), {});
+    const Capture capture = reader.read(4, std::vector<std::string>{"color", "depth"});
+    const Image truth =
+        ExrFile(*folder / "truth/dof_0004.exr").read_floats(0, std::vector<std::string>{"R", "G", "B"});
+    const auto psnr = [&](const std::string& quality) {
+        LookRunner runner(R"({"aftershade": 1, "steps": [{"effect": "dof", "params": {"focus_distance": 6.4,
+            "focal_length": 50, "f_number": 0.25, "sensor_width": 36, "lens_model": "pinhole", "quality": ")" +
+                              quality + "\"}}]}",
+                          gpu::Backend::osmesa);
+        return display_psnr_db(truth, runner.color(capture));
+    };
+    const double fast_db = psnr("fast"), normal_db = psnr("normal"), exact_db = psnr("exact");
+    fmt::print("PSNR against the lens: fast {:.2f}, normal {:.2f}, exact {:.2f} dB\n", fast_db, normal_db, exact_db);
+    EXPECT_GE(fast_db, 32.4);    // measured 32.66
+    EXPECT_GE(normal_db, 32.6);  // measured 32.87; the project asks for 31
+    EXPECT_GE(exact_db, 32.9);   // measured 33.14
+}
+
+}  // namespace
+}  // namespace aftershade::test

@@ -1,0 +1,27 @@
+#version 450 core
+#include <pass>
+#include "blur.glsl"
+#include "levels.glsl"
+
+void main() {
+    prepare_outline();
+    ivec2 p = ivec2(gl_FragCoord.xy);
+    Light own = tap_light(p, 1);
+    vec2 center = 2.0 * vec2(p) + 1.0;
+    move_rim(center);
+    float reach_px = front_reach_px(texelFetch(around, min(2 * p, frame.size - 1) / kTile, 0), own.coc);
+    Layer over = Layer(vec4(0.0), 0.0);
+    if (reach_px > kFullSizePx) {
+        int level = level_for(reach_px);
+        over = gather_front(center / float(1 << level), own.coc, reach_px, level);
+    }
+    Back surface = Back(own.color, 1.0);
+    if (abs(own.coc) > kFullSizePx - 1.0) {
+        int level = level_for(abs(own.coc));
+        surface = gather_back(center / float(1 << level), own.coc, level);
+    }
+    // Light and opacity must agree to the last bit for what is even to stay even, and opacity is stored as a half.
+    float opacity = unpackHalf2x16(packHalf2x16(vec2(over.opacity))).x;
+    out_front = pack_light(Light(over.color * (over.opacity > 0.0 ? opacity / over.opacity : 0.0), opacity));
+    out_back = pack_light(Light(surface.color, surface.share));
+}

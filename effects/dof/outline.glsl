@@ -1,0 +1,57 @@
+// The aperture's outline as a gauge: the factor by which the outline must grow to reach an offset. prepare_outline comes
+// first in each shader.
+#include <aperture.glsl>
+
+#if BLADES >= 3
+vec2 edge_normals[BLADES];  // over the inradius
+#endif
+Aperture aperture;
+vec2 rim;  // middle of the lens's rim, in radii of the aperture
+
+void prepare_outline() {
+    aperture = make_aperture(BLADES, param.curvature, radians(param.rotation));
+#if BLADES >= 3
+    for (int i = 0; i < BLADES; ++i) {
+        float angle = radians(param.rotation) + 2.0 * kPi * float(i) / float(BLADES);
+        edge_normals[i] = vec2(cos(angle), sin(angle)) / cos(kPi / float(BLADES));
+    }
+#endif
+    rim = vec2(0.0);
+}
+
+// Off the middle of the picture the rim of the lens hides the aperture's outer side.
+void move_rim(vec2 pixel) {
+    vec2 middle = 0.5 * vec2(frame.display_size);
+    rim = param.cat_eye * (middle - (pixel + vec2(frame.origin))) / length(middle);
+}
+
+// offset: of the lit pixel from the light's own; a light in front of the focus plane is turned by 180 degrees.
+float gauge(vec2 offset, float coc) {
+    if (coc < 0.0) offset = -offset;
+    float distance = length(offset), outline = distance;
+#if BLADES >= 3
+    float straight = 0.0;
+    for (int i = 0; i < BLADES; ++i) straight = max(straight, dot(edge_normals[i], offset));
+    outline = param.curvature == 0.0 ? straight : distance / mix(distance / max(straight, 1e-6), 1.0, param.curvature);
+#endif
+    if (param.cat_eye > 0.0) {
+        // |offset / t - rim| = 1, solved for t.
+        float along = dot(offset, rim), rest = 1.0 - dot(rim, rim);
+        outline = max(outline, (sqrt(along * along + rest * distance * distance) - along) / rest);
+    }
+    return outline;
+}
+
+// Of the open aperture within the rim: two circles' common area, as a share of one.
+float rim_share() {
+    float apart = min(length(rim), 2.0);
+    return (2.0 * acos(0.5 * apart) - 0.5 * apart * sqrt(4.0 - apart * apart)) / kPi;
+}
+
+// Area in px that a light of this CoC radius covers, at least a pixel.
+float spread_area(float radius_px) { return max(aperture.area * rim_share() * radius_px * radius_px, 1.0); }
+
+// Coverage of a pixel whose gauge is this by the outline of this radius: 1 inside, half on the outline.
+float cover(float radius_px, float gauge_px) {
+    return clamp((radius_px - gauge_px) * aperture.inradius + 0.5, 0.0, 1.0);
+}

@@ -1,0 +1,15 @@
+// Colour and CoC in one RGBA32UI texel, so that a tap is one fetch: RGB as the bits of 32-bit floats, then two halves: alpha
+// and signed CoC radius (px at full size). Integers, because a float texture need not keep the bits of what is not a number.
+struct Light {
+    vec4 color;  // premultiplied
+    float coc;
+};
+
+uvec4 pack_light(Light light) {
+    return uvec4(floatBitsToUint(light.color.rgb), packHalf2x16(vec2(light.color.a, light.coc)));
+}
+
+Light unpack_light(uvec4 texel) {
+    vec2 alpha_coc = unpackHalf2x16(texel.w);
+    return Light(vec4(uintBitsToFloat(texel.xyz), alpha_coc.x), alpha_coc.y);
+}

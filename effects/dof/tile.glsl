@@ -1,0 +1,5 @@
+// Side in px of the tiles of tile_coc and around, as effect.json declares it.
+const int kTile = 16;
+
+// Difference of two CoC radii, px, from which on one surface is clearly in front of the other.
+const float kClear = 1.0;

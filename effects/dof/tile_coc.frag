@@ -1,0 +1,22 @@
+#version 450 core
+#include <pass>
+#include "tile.glsl"
+
+void main() {
+    ivec2 last = ivec2(coc_size.xy) - 1, corner = kTile * ivec2(gl_FragCoord.xy);
+    float smallest = texelFetch(coc, min(corner, last), 0).r, largest = smallest;
+    for (int y = 0; y < kTile; ++y)
+        for (int x = 0; x < kTile; ++x) {
+            float coc_px = texelFetch(coc, min(corner + ivec2(x, y), last), 0).r;
+            smallest = min(smallest, coc_px);
+            largest = max(largest, coc_px);
+        }
+    float before = smallest;
+    if (smallest < largest - kClear)
+        for (int y = 0; y < kTile; ++y)
+            for (int x = 0; x < kTile; ++x) {
+                float coc_px = texelFetch(coc, min(corner + ivec2(x, y), last), 0).r;
+                if (coc_px < largest - kClear) before = max(before, coc_px);
+            }
+    out_tile_coc = vec4(smallest, largest, before, 0.0);
+}
