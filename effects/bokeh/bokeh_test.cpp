@@ -1,40 +1,23 @@
 // What bokeh must do, against closed forms and against a renderer's own lens.
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <string>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "effects/bokeh/bokeh_test.h"
 #include "framework/compare/metrics.h"
 #include "framework/core/document.h"
 #include "framework/image/capture.h"
 #include "tests/look_runner.h"
-#include "tests/polygon.h"
 #include "tests/real_captures.h"
 #include "tests/synthetic_capture.h"
 
-namespace aftershade::test {
+namespace aftershade::test::bokeh {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr double kFocusM = 2, kSensorWidthMm = 36;  // the focal length is the manifest's default, 50 mm
-
-std::string look(const std::string& params) {
-    return fmt::format(R"({{"aftershade": 1, "steps": [{{"effect": "bokeh", "params": {{
-        "focus_distance": {}, "sensor_width": {}, {}}}}}]}})",
-                       kFocusM, kSensorWidthMm, params);
-}
-
-/// A pinhole lens that gives a point at infinity this CoC radius in an image `width_px` wide.
-std::string lens(double radius_px, int width_px) {
-    const double focal_length_mm = 200;
-    const double aperture_mm = 2 * radius_px * kSensorWidthMm / width_px * (kFocusM * 1000) / focal_length_mm;
-    return fmt::format(R"("lens_model": "pinhole", "focal_length": {}, "f_number": {})", focal_length_mm,
-                       focal_length_mm / aperture_mm);
-}
-
 // ---- circle of confusion ----
 
 struct CocCase {
@@ -78,89 +61,6 @@ TEST(BokehCoc, IsCutToTheLargestRadius) {
     EXPECT_EQ(coc.at(5, 0, 0), 10);
 }
 
-// ---- shapes ----
-
-struct ShapeCase {
-    const char* shape;
-    const char* combine;
-    int sides;      // 0: not a convex polygon, only its energy is known
-    double energy;  // of an isolated point; the areas' ratio, reference/algorithms.md section 12
-    double radius_px;
-    double rotation_deg;
-    bool near;
-};
-
-void PrintTo(const ShapeCase& c, std::ostream* out) {
-    *out << c.shape << " " << c.combine << " R " << c.radius_px << " rotation " << c.rotation_deg
-         << (c.near ? " near" : " far");
-}
-
-class BokehShape : public testing::TestWithParam<ShapeCase> {};
-
-TEST_P(BokehShape, OfABrightPointIsThePolygonWithItsEnergy) {
-    const ShapeCase& c = GetParam();
-    const int size = 128, center = 64;
-    // At half the focus distance the radius is minus that at infinity.
-    const float depth_m = c.near ? float(kFocusM / 2) : kInfinity;
-    const float intensity = 1000;
-    const Capture capture = make_capture({.width = size,
-                                          .height = size,
-                                          .background_depth_m = depth_m,
-                                          .points = {{center, center, intensity}}});
-    const std::string shape = fmt::format(R"({}, "shape": "{}", "combine": "{}", "rotation": {})",
-                                          lens(c.radius_px, size), c.shape, c.combine, c.rotation_deg);
-    const Image blurred = LookRunner(look(shape), gpu::Backend::osmesa).color(capture);
-
-    double energy = 0;
-    for (int y = 0; y < size; ++y)
-        for (int x = 0; x < size; ++x) energy += blurred.at(x, y, 0) / intensity;
-    EXPECT_NEAR(energy, c.energy, 0.02 * c.energy);
-    if (c.sides == 0) return;
-    const Image polygon =
-        coverage(regular_polygon(c.sides, c.radius_px, c.rotation_deg), size, size, center, center);
-    const double iou = shape_iou(blurred, blurred.at(center, center, 0), polygon);
-    RecordProperty("iou", fmt::format("{:.4f}", iou));
-    RecordProperty("energy", fmt::format("{:.4f}", energy));
-    EXPECT_GE(iou, 0.97);
-}
-
-constexpr double kOctagonEnergy = 2 * (std::numbers::sqrt2 - 1);  // 0.828: regular octagon over its square
-INSTANTIATE_TEST_SUITE_P(AtR24, BokehShape,
-                         testing::Values(ShapeCase{"hexagon", "min", 6, 0.75, 24, 0, false},
-                                         ShapeCase{"hexagon", "min", 6, 0.75, 24, 0, true},
-                                         ShapeCase{"hexagon", "max", 0, 1.25, 24, 0, false},
-                                         ShapeCase{"hexagon", "min", 6, 0.75, 24, 30, false},
-                                         ShapeCase{"hexagon", "min", 6, 0.75, 24, 10, false},
-                                         ShapeCase{"square", "min", 4, 1, 24, 0, false},
-                                         ShapeCase{"square", "min", 4, 1, 23.5, 45, false},
-                                         ShapeCase{"square", "max", 4, 1, 24, 0, true},
-                                         ShapeCase{"octagon", "min", 8, kOctagonEnergy, 24, 0, false},
-                                         ShapeCase{"octagon", "min", 8, kOctagonEnergy, 24, 0, true},
-                                         ShapeCase{"octagon", "max", 0, 2 - kOctagonEnergy, 24, 0, false},
-                                         ShapeCase{"octagon", "min", 8, kOctagonEnergy, 24, 22.5, false}));
-INSTANTIATE_TEST_SUITE_P(AtR8AndR48, BokehShape,
-                         testing::Values(ShapeCase{"hexagon", "min", 6, 0.75, 8, 0, false},
-                                         ShapeCase{"square", "min", 4, 1, 8, 0, false},
-                                         ShapeCase{"octagon", "min", 8, kOctagonEnergy, 8, 0, false},
-                                         ShapeCase{"hexagon", "min", 6, 0.75, 48, 0, false},
-                                         ShapeCase{"octagon", "min", 8, kOctagonEnergy, 48, 0, false}));
-
-TEST(BokehShapeOfAParallelogram, LeansByItsSkewWithinTheCircle) {
-    const int size = 128, center = 64;
-    const double radius_px = 24, skew_deg = 30;
-    const Capture capture = make_capture({.width = size, .height = size, .points = {{center, center, 1000}}});
-    const std::string shape =
-        fmt::format(R"({}, "shape": "parallelogram", "skew": {})", lens(radius_px, size), skew_deg);
-    const Image blurred = LookRunner(look(shape), gpu::Backend::osmesa).color(capture);
-    // Half sides h u and h v with 60 deg between them; the longer diagonal |h (u + v)| is the circumradius.
-    const double angle = (90 - skew_deg) * std::numbers::pi / 180, h = radius_px / (2 * std::cos(angle / 2));
-    const double vx = h * std::cos(angle), vy = h * std::sin(angle);
-    const std::vector<Vertex> corners = {{-h - vx, -vy}, {h - vx, -vy}, {h + vx, vy}, {-h + vx, vy}};
-    EXPECT_NEAR(std::hypot(h + vx, vy), radius_px, 1e-9);
-    const Image expected = coverage(corners, size, size, center, center);
-    EXPECT_GE(shape_iou(blurred, blurred.at(center, center, 0), expected), 0.97);
-}
-
 // ---- what must not change ----
 
 Capture varied_depth(SyntheticScene scene) {
@@ -193,7 +93,9 @@ INSTANTIATE_TEST_SUITE_P(All, BokehSettings,
                          testing::Values(R"("shape": "hexagon")", R"("shape": "octagon", "combine": "max")",
                                          R"("shape": "square", "rotation": 17)",
                                          R"("shape": "parallelogram")", R"("weights": "seed")",
-                                         R"("taps": 7)"));
+                                         R"("taps": 7)", R"("shape": "octagon", "highlight_gain": 1)",
+                                         R"("weights": "listing", "shape": "hexagon")",
+                                         R"("shape": "custom", "third_angle": 20, "squeeze": 0.4)"));
 
 TEST(Bokeh, CopiesPixelsInFocusBitForBit) {
     Capture capture = make_capture({.width = 64, .height = 36, .background_depth_m = float(kFocusM)});
@@ -283,4 +185,4 @@ TEST(BokehOnSuzanne, ComesWithinReachOfTheRenderersLens) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::bokeh

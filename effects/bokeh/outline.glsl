@@ -50,9 +50,12 @@ Outline make_outline() {
 #endif
 }
 
-// Half the length of a side over the CoC radius, which is the outline's circumradius; but no line is longer than its diameter.
-float half_side() { return 1.0 / max(make_outline().radius, 1.0); }
-float kept_energy() { return clamp(make_outline().energy, 0.1, 1.0); }
+Outline g_outline = make_outline();  // once, not for every line
+
+// Half the length of a side over the CoC radius, which is the outline's circumradius; but no line is longer than its
+// diameter.
+float half_side() { return 1.0 / max(g_outline.radius, 1.0); }
+float kept_energy() { return clamp(g_outline.energy, 0.1, 1.0); }
 #else
 float half_side() {
 #if SHAPE == SHAPE_HEXAGON

@@ -1,5 +1,5 @@
-// The baseline of 2004 against a double-precision twin written from its papers' equations, with its merits and
-// its known faults.
+// The baseline of 2004 against a double-precision twin written from its papers' equations, with its merits
+// and its known faults.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -36,9 +36,8 @@ std::string lens(double radius_px, int width_px) {
 
 FrameResult run(const Capture& capture, const std::string& params,
                 gpu::Backend backend = gpu::Backend::osmesa) {
-    LookRunner runner(
-        R"({"aftershade": 1, "steps": [{"effect": "dof_simple", "params": {)" + params + "}}]}", backend,
-        {"dof_simple.coc"});
+    LookRunner runner(R"({"aftershade": 1, "steps": [{"effect": "dof_simple", "params": {)" + params + "}}]}",
+                      backend, {"dof_simple.coc"});
     return runner.run(capture);
 }
 
@@ -121,9 +120,9 @@ struct TwinSettings {
     double low_radius = 0.25;
 };
 
-constexpr double kPoisson[12][2] = {{0.468, -0.385}, {0.63, 0.495},    {-0.47, -0.546},  {-0.512, 0.846},
-                                    {0.046, 0.608},  {-0.85, -0.087},  {0.971, -0.066},  {-0.459, 0.3},
-                                    {-0.409, -0.122}, {-0.059, -0.425}, {0.232, -0.74}, {0.408, 0.125}};
+constexpr double kPoisson[12][2] = {{0.468, -0.385},  {0.63, 0.495},    {-0.47, -0.546}, {-0.512, 0.846},
+                                    {0.046, 0.608},   {-0.85, -0.087},  {0.971, -0.066}, {-0.459, 0.3},
+                                    {-0.409, -0.122}, {-0.059, -0.425}, {0.232, -0.74},  {0.408, 0.125}};
 
 /// Reference/algorithms.md section 11, with depth as signed CoC.
 Texel twin(const Picture& full, const Picture& low, int x, int y, const TwinSettings& settings) {
@@ -183,15 +182,15 @@ TEST_P(DofSimpleTwin, EqualsTheEquationsInDoublePrecision) {
     EXPECT_LE(off, width * height * 4 / 1000);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All, DofSimpleTwin,
-    testing::Values(TwinCase{"", {}}, TwinCase{R"(, "taps": 8)", {.taps = 8}},
-                    TwinCase{R"(, "weights": "riguer")", {.riguer = true}},
-                    TwinCase{R"(, "low_radius": 0.4, "taps": 7)", {.taps = 7, .low_radius = 0.4}},
-                    TwinCase{R"(, "low_resolution": false)", {.low_resolution = false}},
-                    TwinCase{R"(, "weights": "riguer", "low_resolution": false)",
-                             {.riguer = true, .low_resolution = false}}),
-    [](const auto& test) { return fmt::format("setting_{}", test.index); });
+INSTANTIATE_TEST_SUITE_P(All, DofSimpleTwin,
+                         testing::Values(TwinCase{"", {}}, TwinCase{R"(, "taps": 8)", {.taps = 8}},
+                                         TwinCase{R"(, "weights": "riguer")", {.riguer = true}},
+                                         TwinCase{R"(, "low_radius": 0.4, "taps": 7)",
+                                                  {.taps = 7, .low_radius = 0.4}},
+                                         TwinCase{R"(, "low_resolution": false)", {.low_resolution = false}},
+                                         TwinCase{R"(, "weights": "riguer", "low_resolution": false)",
+                                                  {.riguer = true, .low_resolution = false}}),
+                         [](const auto& test) { return fmt::format("setting_{}", test.index); });
 
 // ---- what it promises ----
 
@@ -207,8 +206,7 @@ INSTANTIATE_TEST_SUITE_P(Both, DofSimpleWeights, testing::Values("riguer", "sche
 TEST_P(DofSimpleWeights, SpreadAPointOverADiskOfTheCocsRadius) {
     const int size = 64, center = 32;
     const double radius_px = 10;
-    const Capture capture =
-        make_capture({.width = size, .height = size, .points = {{center, center, 1000}}});
+    const Capture capture = make_capture({.width = size, .height = size, .points = {{center, center, 1000}}});
     const Image out = color(capture, params(radius_px, size) + R"(, "low_resolution": false)");
     double energy = 0, second_moment = 0;
     for (int y = 0; y < size; ++y)
@@ -221,15 +219,15 @@ TEST_P(DofSimpleWeights, SpreadAPointOverADiskOfTheCocsRadius) {
             second_moment += light * distance * distance;
         }
     EXPECT_NEAR(energy, 1, 1e-5);
-    // R^2 / 2 of an even disk, of which the centre takes its share: 1 tap of 13, or with riguer 1 of 1 + 12 R/max.
+    // R^2 / 2 of an even disk, of which the centre takes its share: 1 tap of 13, or with riguer 1 of 1 + 12
+    // R/max.
     const double taps = GetParam() == std::string("riguer") ? 12 * radius_px / kMaxRadiusPx : 12;
     EXPECT_NEAR(second_moment, 0.5 * radius_px * radius_px * taps / (taps + 1), 2);
 }
 
 TEST_P(DofSimpleWeights, KeepAPointsEnergyWithTheLowResolutionToo) {
     const int size = 96, center = 45;
-    const Capture capture =
-        make_capture({.width = size, .height = size, .points = {{center, center, 1000}}});
+    const Capture capture = make_capture({.width = size, .height = size, .points = {{center, center, 1000}}});
     const Image out = color(capture, params(12, size));
     double energy = 0;
     for (int y = 0; y < size; ++y)
@@ -314,8 +312,7 @@ TEST(DofSimpleOnSuzanne, IsBetterThanNoLensAndShortOfBokeh) {
     const std::string params = R"("focus_distance": 6.4, "focal_length": 50, "f_number": 0.25,
         "sensor_width": 36, "lens_model": "pinhole")";
     const double scheuermann_db = display_psnr_db(truth, color(capture, params));
-    const double riguer_db =
-        display_psnr_db(truth, color(capture, params + R"(, "weights": "riguer")"));
+    const double riguer_db = display_psnr_db(truth, color(capture, params + R"(, "weights": "riguer")"));
     fmt::print("PSNR against the lens: scheuermann {:.2f}, riguer {:.2f} dB\n", scheuermann_db, riguer_db);
     EXPECT_GE(scheuermann_db, 23.8);  // measured 24.10; the sharp input has 21.7, bokeh 31.35
     EXPECT_GE(riguer_db, 23.6);       // measured 23.90
