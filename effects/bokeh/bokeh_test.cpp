@@ -275,7 +275,7 @@ TEST(BokehOnSuzanne, ComesWithinReachOfTheRenderersLens) {
         return display_psnr_db(truth, runner.color(capture));
     };
     const double hexagon_db = psnr("");
-    const double seed_db = psnr(R"(, "weights": "seed")");
+    const double seed_db = psnr(R"(, "weights": "seed", "highlight_repair": false)");
     fmt::print("PSNR against the lens: sharp {:.2f}, hexagon {:.2f}, weights seed {:.2f} dB\n", sharp_db,
                hexagon_db, seed_db);
     EXPECT_GE(hexagon_db, 31.0);  // measured 31.35; the project asks for 26.5
