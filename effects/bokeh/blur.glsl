@@ -1,5 +1,6 @@
 // One skewed 1-D blur that spreads every texel by its own circle of confusion.
-#include "packing.glsl"
+#include <lens/packing.glsl>
+#include <lens/highlight.glsl>
 #include "tile.glsl"
 #include "line.glsl"
 

@@ -43,8 +43,8 @@ struct Texture {
     T operator()(double u, double v) const {
         const double x = u * kWidth - 0.5, y = v * kHeight - 0.5;
         const int i = int(std::floor(x)), j = int(std::floor(y));
-        return mix(mix(clamped(i, j), clamped(i + 1, j), x - i), mix(clamped(i, j + 1), clamped(i + 1, j + 1), x - i),
-                   y - j);
+        return mix(mix(clamped(i, j), clamped(i + 1, j), x - i),
+                   mix(clamped(i, j + 1), clamped(i + 1, j + 1), x - i), y - j);
     }
 };
 
@@ -68,7 +68,8 @@ Texture<Rgba> listing_pass(const Texture<Rgba>& color, const Scene& scene, doubl
             double weights = 0;
             for (int i = 0; i < kSamples; ++i) {
                 const double t = double(i) / (kSamples - 1);
-                const double s_u = u + mix(-point_x, point_x, t) * coc, s_v = v + mix(-point_y, point_y, t) * coc;
+                const double s_u = u + mix(-point_x, point_x, t) * coc,
+                             s_v = v + mix(-point_y, point_y, t) * coc;
                 const double sample_coc = scene.coc(s_u, s_v);
                 double weight = scene.depth(s_u, s_v) < depth ? sample_coc * kBleedingMult : 1.0;
                 weight = coc > sample_coc + kBleedingBias ? weight : 1.0;
@@ -122,9 +123,10 @@ Scene scene_of(const Capture& capture, double at_infinity_px) {
 }
 
 std::string seed_look(const std::string& params) {
-    return fmt::format(R"({{"aftershade": 1, "steps": [{{"effect": "bokeh", "preset": "seed_2013", "params": {{
+    return fmt::format(
+        R"({{"aftershade": 1, "steps": [{{"effect": "bokeh", "preset": "seed_2013", "params": {{
         "focus_distance": {}, "sensor_width": {}, "max_coc_radius": {}, {}}}}}]}})",
-                       kFocusM, kSensorWidthMm, kMaxCocRadiusPx, params);
+        kFocusM, kSensorWidthMm, kMaxCocRadiusPx, params);
 }
 
 struct DepthCase {
@@ -136,8 +138,7 @@ class BokehPresetSeed2013 : public testing::TestWithParam<DepthCase> {};
 
 TEST_P(BokehPresetSeed2013, IsTheListingsToFloatPrecision) {
     const Capture capture = random_capture(GetParam().nearest_m, GetParam().range_m);
-    const Image out =
-        LookRunner(seed_look(lens(9, kWidth)), gpu::Backend::osmesa).color(capture);
+    const Image out = LookRunner(seed_look(lens(9, kWidth)), gpu::Backend::osmesa).color(capture);
     const Texture<Rgba> expected = listings(scene_of(capture, 9));
     double most = 0;
     for (int y = 0; y < kHeight; ++y)
@@ -155,16 +156,14 @@ INSTANTIATE_TEST_SUITE_P(All, BokehPresetSeed2013,
 
 TEST(BokehPresetSeed2013, CopiesWhatIsExactlyInFocusAndKeepsAUniformImage) {
     Capture capture = random_capture(float(kFocusM), 0);
-    const Image in_focus =
-        LookRunner(seed_look(lens(9, kWidth)), gpu::Backend::osmesa).color(capture);
+    const Image in_focus = LookRunner(seed_look(lens(9, kWidth)), gpu::Backend::osmesa).color(capture);
     const auto expected = capture.images.at("color").floats();
     EXPECT_TRUE(std::equal(expected.begin(), expected.end(), in_focus.floats().begin()));
 
     capture = random_capture(0.8f, 8);
     capture.images["depth"].at(5, 5, 0) = std::numeric_limits<float>::infinity();
     for (float& value : capture.images["color"].floats()) value = 0.7f;
-    const Image uniform =
-        LookRunner(seed_look(lens(9, kWidth)), gpu::Backend::osmesa).color(capture);
+    const Image uniform = LookRunner(seed_look(lens(9, kWidth)), gpu::Backend::osmesa).color(capture);
     for (const float value : uniform.floats()) ASSERT_NEAR(value, 0.7f, 2e-6f * 0.7f);
 }
 

@@ -115,7 +115,9 @@ Polygon parallelogram(double first_deg, double second_deg) {
 Polygon clipped(Polygon polygon, const Polygon& clip) {
     for (std::size_t i = 0; i < clip.size(); ++i) {
         const Vertex a = clip[i], b = clip[(i + 1) % clip.size()];
-        const auto side = [&](const Vertex& p) { return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x); };
+        const auto side = [&](const Vertex& p) {
+            return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+        };
         Polygon kept;
         for (std::size_t j = 0; j < polygon.size(); ++j) {
             const Vertex p = polygon[j], q = polygon[(j + 1) % polygon.size()];
@@ -157,15 +159,15 @@ struct CustomCase {
 };
 
 void PrintTo(const CustomCase& c, std::ostream* out) {
-    *out << (c.max ? "max " : "min ") << c.angles_deg[0] << " " << c.angles_deg[1] << " " << c.angles_deg[2] << " "
-         << c.angles_deg[3] << " squeeze " << c.squeeze;
+    *out << (c.max ? "max " : "min ") << c.angles_deg[0] << " " << c.angles_deg[1] << " " << c.angles_deg[2]
+         << " " << c.angles_deg[3] << " squeeze " << c.squeeze;
 }
 
 std::string params_of(const CustomCase& c, double radius_px, int size) {
     return fmt::format(R"({}, "shape": "custom", "first_angle": {}, "second_angle": {}, "third_angle": {},
         "fourth_angle": {}, "combine": "{}", "squeeze": {})",
-                       lens(radius_px, size), c.angles_deg[0], c.angles_deg[1], c.angles_deg[2], c.angles_deg[3],
-                       c.max ? "max" : "min", c.squeeze);
+                       lens(radius_px, size), c.angles_deg[0], c.angles_deg[1], c.angles_deg[2],
+                       c.angles_deg[3], c.max ? "max" : "min", c.squeeze);
 }
 
 class BokehCustomShape : public testing::TestWithParam<CustomCase> {};
@@ -204,16 +206,13 @@ TEST_P(BokehCustomShape, IsWhatItsParallelogramsHaveInCommonOrCoverWithinTheCoc)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, BokehCustomShape,
-                         testing::Values(CustomCase{{0, 90, 45, 135}, false, 1},
-                                         CustomCase{{90, 30, 90, 150}, false, 1},
-                                         CustomCase{{0, 90, 30, 120}, false, 1},
-                                         CustomCase{{10, 80, 60, 150}, false, 1},
-                                         CustomCase{{0, 90, 20, 65}, false, 1},
-                                         CustomCase{{0, -45, 0, 45}, true, 1},
-                                         CustomCase{{0, 90, 45, 135}, true, 1},
-                                         CustomCase{{0, 60, 0, -60}, false, 2},
-                                         CustomCase{{15, 100, 60, 140}, false, 0.5}));
+INSTANTIATE_TEST_SUITE_P(
+    All, BokehCustomShape,
+    testing::Values(CustomCase{{0, 90, 45, 135}, false, 1}, CustomCase{{90, 30, 90, 150}, false, 1},
+                    CustomCase{{0, 90, 30, 120}, false, 1}, CustomCase{{10, 80, 60, 150}, false, 1},
+                    CustomCase{{0, 90, 20, 65}, false, 1}, CustomCase{{0, -45, 0, 45}, true, 1},
+                    CustomCase{{0, 90, 45, 135}, true, 1}, CustomCase{{0, 60, 0, -60}, false, 2},
+                    CustomCase{{15, 100, 60, 140}, false, 0.5}));
 
 struct SqueezeCase {
     const char* shape;
@@ -229,8 +228,8 @@ TEST_P(BokehSqueeze, IsTheShapesHeightOverItsWidth) {
     const double radius_px = 32;
     const Capture capture = make_capture({.width = size, .height = size, .points = {{center, center, 1000}}});
     const Image blurred =
-        color(capture, fmt::format(R"({}, "shape": "{}", "rotation": {}, "squeeze": {})", lens(radius_px, size),
-                                   c.shape, c.rotation_deg, c.squeeze));
+        color(capture, fmt::format(R"({}, "shape": "{}", "rotation": {}, "squeeze": {})",
+                                   lens(radius_px, size), c.shape, c.rotation_deg, c.squeeze));
     const Polygon polygon = scaled(regular_polygon(c.sides, radius_px, c.rotation_deg),
                                    std::min(1 / c.squeeze, 1.0), std::min(c.squeeze, 1.0));
     const Image expected = coverage(polygon, size, size, center, center);
@@ -241,8 +240,9 @@ TEST_P(BokehSqueeze, IsTheShapesHeightOverItsWidth) {
 
 INSTANTIATE_TEST_SUITE_P(All, BokehSqueeze,
                          testing::Values(SqueezeCase{"hexagon", 6, 2, 0}, SqueezeCase{"hexagon", 6, 0.5, 15},
-                                         SqueezeCase{"octagon", 8, 1.33, 0}, SqueezeCase{"octagon", 8, 0.75, 20},
-                                         SqueezeCase{"square", 4, 2, 0}, SqueezeCase{"hexagon", 6, 3, 30}));
+                                         SqueezeCase{"octagon", 8, 1.33, 0},
+                                         SqueezeCase{"octagon", 8, 0.75, 20}, SqueezeCase{"square", 4, 2, 0},
+                                         SqueezeCase{"hexagon", 6, 3, 30}));
 
 // ---- energy that the minimum takes, given back ----
 
@@ -270,22 +270,22 @@ TEST_P(BokehHighlightGain, GivesAnIsolatedPointItsEnergy) {
     EXPECT_NEAR(energy, 1, 0.02) << c.params << " R " << c.radius_px;
 }
 
-constexpr const char* kUneven = R"("shape": "custom", "first_angle": 10, "second_angle": 80, "third_angle": 60,
+constexpr const char* kUneven =
+    R"("shape": "custom", "first_angle": 10, "second_angle": 80, "third_angle": 60,
     "fourth_angle": 150)";
-INSTANTIATE_TEST_SUITE_P(All, BokehHighlightGain,
-                         testing::Values(GainCase{R"("shape": "hexagon")", 24, false},
-                                         GainCase{R"("shape": "hexagon")", 24, true},
-                                         GainCase{R"("shape": "hexagon")", 8, false},
-                                         GainCase{R"("shape": "hexagon")", 48, false},
-                                         GainCase{R"("shape": "octagon")", 24, false},
-                                         GainCase{R"("shape": "square")", 24, false},
-                                         GainCase{kUneven, 24, false}));
+INSTANTIATE_TEST_SUITE_P(
+    All, BokehHighlightGain,
+    testing::Values(GainCase{R"("shape": "hexagon")", 24, false}, GainCase{R"("shape": "hexagon")", 24, true},
+                    GainCase{R"("shape": "hexagon")", 8, false}, GainCase{R"("shape": "hexagon")", 48, false},
+                    GainCase{R"("shape": "octagon")", 24, false}, GainCase{R"("shape": "square")", 24, false},
+                    GainCase{kUneven, 24, false}));
 
 TEST(BokehHighlightGain, LeavesLightThatIsNoHighlightAlone) {
     // A wide wall, three times as bright as the rest.
     const SyntheticBox wall{
         .x = 30, .y = 0, .width = 60, .height = 96, .depth_m = kInfinity, .color = {3, 3, 3}};
-    const Capture capture = make_capture({.width = 120, .height = 96, .background = {1, 1, 1}, .box = wall}, 0);
+    const Capture capture =
+        make_capture({.width = 120, .height = 96, .background = {1, 1, 1}, .box = wall}, 0);
     const Image without = color(capture, lens(12, 120));
     const Image with = color(capture, lens(12, 120) + R"(, "highlight_gain": 1)");
     EXPECT_TRUE(std::equal(with.floats().begin(), with.floats().end(), without.floats().begin()));

@@ -133,6 +133,26 @@ TEST(Bokeh, SpreadsANearObjectSoftlyOverWhatIsInFocus) {
     EXPECT_LE(out.at(74, 24, 0), 0.001f);
 }
 
+/// Gathering by the centre's CoC alone leaves a near silhouette as sharp as it was: half its light on one
+/// side of the edge and none on the other. Hammon's filter of the CoC lets it run out.
+TEST(Bokeh, SoftensANearSilhouetteByTheCocFilter) {
+    const SyntheticBox box{
+        .x = 30, .y = -10, .width = 34, .height = 80, .depth_m = float(kFocusM / 2), .color = {1, 1, 1}};
+    const Capture capture =
+        make_capture({.width = 96, .height = 48, .background_depth_m = float(kFocusM), .box = box}, 0);
+    const std::string params =
+        lens(12, 96) + R"(, "weights": "seed", "shape": "square", "highlight_repair": false, "coc_filter": )";
+    const Image sharp = color(capture, params + R"("none")"), soft = color(capture, params + R"("near")");
+    const auto step = [](const Image& image) { return image.at(63, 24, 0) - image.at(64, 24, 0); };
+    EXPECT_EQ(sharp.at(64, 24, 0), 0);
+    EXPECT_GT(step(sharp), 0.4f);
+    EXPECT_LT(step(soft), 0.1f);
+    EXPECT_GT(soft.at(65, 24, 0), 0.2f);
+    EXPECT_GT(soft.at(67, 24, 0), 0.02f);
+    for (int x = 64; x < 80; ++x) EXPECT_LE(soft.at(x, 24, 0), soft.at(x - 1, 24, 0) + 1e-6f) << x;
+    EXPECT_EQ(soft.at(85, 24, 0), 0);
+}
+
 TEST(Bokeh, BlursAlphaWithTheColorThatItCovers) {
     const SyntheticBox box{
         .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kInfinity, .color = {1, 1, 1}};
@@ -177,7 +197,7 @@ TEST(BokehOnSuzanne, ComesWithinReachOfTheRenderersLens) {
         return display_psnr_db(truth, runner.color(capture));
     };
     const double hexagon_db = psnr("");
-    const double seed_db = psnr(R"(, "weights": "seed")");
+    const double seed_db = psnr(R"(, "weights": "seed", "highlight_repair": false)");
     fmt::print("PSNR against the lens: sharp {:.2f}, hexagon {:.2f}, weights seed {:.2f} dB\n", sharp_db,
                hexagon_db, seed_db);
     EXPECT_GE(hexagon_db, 31.0);  // measured 31.35; the project asks for 26.5

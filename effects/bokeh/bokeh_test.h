@@ -18,8 +18,8 @@ inline std::string look(const std::string& params) {
                        kFocusM, kSensorWidthMm, params);
 }
 
-/// A pinhole lens that gives a point at infinity this CoC radius in an image `width_px` wide. At half the focus
-/// distance the radius is minus that.
+/// A pinhole lens that gives a point at infinity this CoC radius in an image `width_px` wide. At half the
+/// focus distance the radius is minus that.
 inline std::string lens(double radius_px, int width_px) {
     const double focal_length_mm = 200;
     const double aperture_mm = 2 * radius_px * kSensorWidthMm / width_px * (kFocusM * 1000) / focal_length_mm;

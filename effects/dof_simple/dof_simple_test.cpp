@@ -29,7 +29,8 @@ std::string lens(double radius_px, int width_px) {
     const double aperture_mm =
         2 * radius_px * sensor_width_mm / width_px * (double(kFocusM) * 1000) / focal_length_mm;
     return fmt::format(R"("focus_distance": {}, "sensor_width": {}, "lens_model": "pinhole",
-        "focal_length": {}, "f_number": {}, "max_coc_radius": {})",
+        "focal_length": {}, "f_number": {}, "max_coc_radius": {},
+        "highlight_repair": false)",
                        kFocusM, sensor_width_mm, focal_length_mm, focal_length_mm / aperture_mm,
                        kMaxRadiusPx);
 }
@@ -314,8 +315,8 @@ TEST(DofSimpleOnSuzanne, IsBetterThanNoLensAndShortOfBokeh) {
     const double scheuermann_db = display_psnr_db(truth, color(capture, params));
     const double riguer_db = display_psnr_db(truth, color(capture, params + R"(, "weights": "riguer")"));
     fmt::print("PSNR against the lens: scheuermann {:.2f}, riguer {:.2f} dB\n", scheuermann_db, riguer_db);
-    EXPECT_GE(scheuermann_db, 23.8);  // measured 24.10; the sharp input has 21.7, bokeh 31.35
-    EXPECT_GE(riguer_db, 23.6);       // measured 23.90
+    EXPECT_GE(scheuermann_db, 23.9);  // measured 24.18; the sharp input has 21.7, bokeh 31.35
+    EXPECT_GE(riguer_db, 23.8);       // measured 24.03
 }
 
 }  // namespace
