@@ -20,6 +20,7 @@ struct SchemaOptions {
 std::string schema_of(const SchemaOptions& options) {
     if (options.document == "capture") return capture_schema();
     if (options.document == "effect") return effect_schema();
+    if (options.document == "module") return module_schema();
     if (options.document == "scene") return scene::scene_schema();
     Diagnostics diagnostics;
     EffectRegistry effects = find_effects(options.effect_paths, diagnostics);
@@ -34,8 +35,8 @@ std::string schema_of(const SchemaOptions& options) {
 
 Verb add_schema(CLI::App& app) {
     auto options = std::make_shared<SchemaOptions>();
-    app.add_option("document", options->document, "look, capture, effect or scene")
-        ->check(CLI::IsMember({"look", "capture", "effect", "scene"}))
+    app.add_option("document", options->document, "look, capture, effect, module or scene")
+        ->check(CLI::IsMember({"look", "capture", "effect", "module", "scene"}))
         ->capture_default_str();
     add_effect_path_option(app, options->effect_paths);
     return [options] {

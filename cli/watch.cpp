@@ -32,7 +32,11 @@ std::vector<fs::path> paths_to_watch(const Look& look, const Pipeline& pipeline,
                                      const fs::path& data_folder) {
     std::vector<fs::path> paths = look.files;
     for (const PipelineStep& step : pipeline.steps) paths.push_back(step.manifest->folder);
-    paths.push_back(data_folder / "glsl");
+    const fs::path glsl = data_folder / "glsl";
+    paths.push_back(glsl);
+    std::error_code failure;
+    for (const auto& entry : fs::directory_iterator(glsl, failure))
+        if (entry.is_directory(failure)) paths.push_back(entry.path());
     return paths;
 }
 

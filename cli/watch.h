@@ -33,7 +33,7 @@ private:
     States seen_;
 };
 
-/// The look, the looks that it uses, and the folders of its effects and of shared shaders.
+/// The look, the looks that it uses, and the folders of its effects, of modules and of shared shaders.
 std::vector<std::filesystem::path> paths_to_watch(const Look& look, const Pipeline& pipeline,
                                                   const std::filesystem::path& data_folder);
 

@@ -1,5 +1,6 @@
 // One skewed 1-D blur that spreads every texel by its own circle of confusion.
-#include "packing.glsl"
+#include <lens/packing.glsl>
+#include <lens/highlight.glsl>
 #include "tile.glsl"
 #include "line.glsl"
 
@@ -73,8 +74,7 @@ Light blur(usampler2D image, ivec2 p, float near_px, Line line) {
     if (extent_px < 0.5) return centre;
 
     ivec2 last = textureSize(image, 0) - 1;
-    float scale = kSide * line.major;  // px along the major axis that 1 px of CoC radius reaches
-    float half_length_px = scale * extent_px;
+    float half_length_px = line.major * extent_px;
     float step_px = 1.0;
     int limit = tap_limit(extent_px);
     int count = max(int(ceil(half_length_px - 0.5 - 1e-4)), 0);
@@ -88,12 +88,12 @@ Light blur(usampler2D image, ivec2 p, float near_px, Line line) {
         float along = floor(float(k) * step_px + 0.5);
         float middle = along * line.slope;
         float low = middle - 0.5 * line.width, high = middle + 0.5 * line.width;
-        float own_cover = cover(scale * abs(centre.coc), abs(along), step_px);
+        float own_cover = cover(line.major * abs(centre.coc), abs(along), step_px);
         for (int j = int(floor(low + 0.501)); j <= int(ceil(high - 0.501)); ++j) {
             float across = (min(float(j) + 0.5, high) - max(float(j) - 0.5, low)) / line.width;
             ivec2 offset = line.x_major ? ivec2(int(along), j) : ivec2(j, int(along));
             Light tap = unpack_light(texelFetch(image, clamp(p + offset, ivec2(0), last), 0));
-            add_tap(front, back, tap, centre.coc, across, own_cover, abs(along), scale, step_px);
+            add_tap(front, back, tap, centre.coc, across, own_cover, abs(along), line.major, step_px);
         }
     }
     return combine_sums(front, back, centre.coc);

@@ -1,40 +1,23 @@
 // What bokeh must do, against closed forms and against a renderer's own lens.
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <string>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "effects/bokeh/bokeh_test.h"
 #include "framework/compare/metrics.h"
 #include "framework/core/document.h"
 #include "framework/image/capture.h"
 #include "tests/look_runner.h"
-#include "tests/polygon.h"
 #include "tests/real_captures.h"
 #include "tests/synthetic_capture.h"
 
-namespace aftershade::test {
+namespace aftershade::test::bokeh {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr double kFocusM = 2, kSensorWidthMm = 36;  // the focal length is the manifest's default, 50 mm
-
-std::string look(const std::string& params) {
-    return fmt::format(R"({{"aftershade": 1, "steps": [{{"effect": "bokeh", "params": {{
-        "focus_distance": {}, "sensor_width": {}, {}}}}}]}})",
-                       kFocusM, kSensorWidthMm, params);
-}
-
-/// A pinhole lens that gives a point at infinity this CoC radius in an image `width_px` wide.
-std::string lens(double radius_px, int width_px) {
-    const double focal_length_mm = 200;
-    const double aperture_mm = 2 * radius_px * kSensorWidthMm / width_px * (kFocusM * 1000) / focal_length_mm;
-    return fmt::format(R"("lens_model": "pinhole", "focal_length": {}, "f_number": {})", focal_length_mm,
-                       focal_length_mm / aperture_mm);
-}
-
 // ---- circle of confusion ----
 
 struct CocCase {
@@ -78,89 +61,6 @@ TEST(BokehCoc, IsCutToTheLargestRadius) {
     EXPECT_EQ(coc.at(5, 0, 0), 10);
 }
 
-// ---- shapes ----
-
-struct ShapeCase {
-    const char* shape;
-    const char* combine;
-    int sides;      // 0: not a convex polygon, only its energy is known
-    double energy;  // of an isolated point; the areas' ratio, reference/algorithms.md section 12
-    double radius_px;
-    double rotation_deg;
-    bool near;
-};
-
-void PrintTo(const ShapeCase& c, std::ostream* out) {
-    *out << c.shape << " " << c.combine << " R " << c.radius_px << " rotation " << c.rotation_deg
-         << (c.near ? " near" : " far");
-}
-
-class BokehShape : public testing::TestWithParam<ShapeCase> {};
-
-TEST_P(BokehShape, OfABrightPointIsThePolygonWithItsEnergy) {
-    const ShapeCase& c = GetParam();
-    const int size = 128, center = 64;
-    // At half the focus distance the radius is minus that at infinity.
-    const float depth_m = c.near ? float(kFocusM / 2) : kInfinity;
-    const float intensity = 1000;
-    const Capture capture = make_capture({.width = size,
-                                          .height = size,
-                                          .background_depth_m = depth_m,
-                                          .points = {{center, center, intensity}}});
-    const std::string shape = fmt::format(R"({}, "shape": "{}", "combine": "{}", "rotation": {})",
-                                          lens(c.radius_px, size), c.shape, c.combine, c.rotation_deg);
-    const Image blurred = LookRunner(look(shape), gpu::Backend::osmesa).color(capture);
-
-    double energy = 0;
-    for (int y = 0; y < size; ++y)
-        for (int x = 0; x < size; ++x) energy += blurred.at(x, y, 0) / intensity;
-    EXPECT_NEAR(energy, c.energy, 0.02 * c.energy);
-    if (c.sides == 0) return;
-    const Image polygon =
-        coverage(regular_polygon(c.sides, c.radius_px, c.rotation_deg), size, size, center, center);
-    const double iou = shape_iou(blurred, blurred.at(center, center, 0), polygon);
-    RecordProperty("iou", fmt::format("{:.4f}", iou));
-    RecordProperty("energy", fmt::format("{:.4f}", energy));
-    EXPECT_GE(iou, 0.97);
-}
-
-constexpr double kOctagonEnergy = 2 * (std::numbers::sqrt2 - 1);  // 0.828: regular octagon over its square
-INSTANTIATE_TEST_SUITE_P(AtR24, BokehShape,
-                         testing::Values(ShapeCase{"hexagon", "min", 6, 0.75, 24, 0, false},
-                                         ShapeCase{"hexagon", "min", 6, 0.75, 24, 0, true},
-                                         ShapeCase{"hexagon", "max", 0, 1.25, 24, 0, false},
-                                         ShapeCase{"hexagon", "min", 6, 0.75, 24, 30, false},
-                                         ShapeCase{"hexagon", "min", 6, 0.75, 24, 10, false},
-                                         ShapeCase{"square", "min", 4, 1, 24, 0, false},
-                                         ShapeCase{"square", "min", 4, 1, 23.5, 45, false},
-                                         ShapeCase{"square", "max", 4, 1, 24, 0, true},
-                                         ShapeCase{"octagon", "min", 8, kOctagonEnergy, 24, 0, false},
-                                         ShapeCase{"octagon", "min", 8, kOctagonEnergy, 24, 0, true},
-                                         ShapeCase{"octagon", "max", 0, 2 - kOctagonEnergy, 24, 0, false},
-                                         ShapeCase{"octagon", "min", 8, kOctagonEnergy, 24, 22.5, false}));
-INSTANTIATE_TEST_SUITE_P(AtR8AndR48, BokehShape,
-                         testing::Values(ShapeCase{"hexagon", "min", 6, 0.75, 8, 0, false},
-                                         ShapeCase{"square", "min", 4, 1, 8, 0, false},
-                                         ShapeCase{"octagon", "min", 8, kOctagonEnergy, 8, 0, false},
-                                         ShapeCase{"hexagon", "min", 6, 0.75, 48, 0, false},
-                                         ShapeCase{"octagon", "min", 8, kOctagonEnergy, 48, 0, false}));
-
-TEST(BokehShapeOfAParallelogram, LeansByItsSkewWithinTheCircle) {
-    const int size = 128, center = 64;
-    const double radius_px = 24, skew_deg = 30;
-    const Capture capture = make_capture({.width = size, .height = size, .points = {{center, center, 1000}}});
-    const std::string shape =
-        fmt::format(R"({}, "shape": "parallelogram", "skew": {})", lens(radius_px, size), skew_deg);
-    const Image blurred = LookRunner(look(shape), gpu::Backend::osmesa).color(capture);
-    // Half sides h u and h v with 60 deg between them; the longer diagonal |h (u + v)| is the circumradius.
-    const double angle = (90 - skew_deg) * std::numbers::pi / 180, h = radius_px / (2 * std::cos(angle / 2));
-    const double vx = h * std::cos(angle), vy = h * std::sin(angle);
-    const std::vector<Vertex> corners = {{-h - vx, -vy}, {h - vx, -vy}, {h + vx, vy}, {-h + vx, vy}};
-    EXPECT_NEAR(std::hypot(h + vx, vy), radius_px, 1e-9);
-    const Image expected = coverage(corners, size, size, center, center);
-    EXPECT_GE(shape_iou(blurred, blurred.at(center, center, 0), expected), 0.97);
-}
-
 // ---- what must not change ----
 
 Capture varied_depth(SyntheticScene scene) {
@@ -193,7 +93,9 @@ INSTANTIATE_TEST_SUITE_P(All, BokehSettings,
                          testing::Values(R"("shape": "hexagon")", R"("shape": "octagon", "combine": "max")",
                                          R"("shape": "square", "rotation": 17)",
                                          R"("shape": "parallelogram")", R"("weights": "seed")",
-                                         R"("taps": 7)"));
+                                         R"("taps": 7)", R"("shape": "octagon", "highlight_gain": 1)",
+                                         R"("weights": "listing", "shape": "hexagon")",
+                                         R"("shape": "custom", "third_angle": 20, "squeeze": 0.4)"));
 
 TEST(Bokeh, CopiesPixelsInFocusBitForBit) {
     Capture capture = make_capture({.width = 64, .height = 36, .background_depth_m = float(kFocusM)});
@@ -231,6 +133,26 @@ TEST(Bokeh, SpreadsANearObjectSoftlyOverWhatIsInFocus) {
     EXPECT_LE(out.at(74, 24, 0), 0.001f);
 }
 
+/// Gathering by the centre's CoC alone leaves a near silhouette as sharp as it was: half its light on one
+/// side of the edge and none on the other. Hammon's filter of the CoC lets it run out.
+TEST(Bokeh, SoftensANearSilhouetteByTheCocFilter) {
+    const SyntheticBox box{
+        .x = 30, .y = -10, .width = 34, .height = 80, .depth_m = float(kFocusM / 2), .color = {1, 1, 1}};
+    const Capture capture =
+        make_capture({.width = 96, .height = 48, .background_depth_m = float(kFocusM), .box = box}, 0);
+    const std::string params =
+        lens(12, 96) + R"(, "weights": "seed", "shape": "square", "highlight_repair": false, "coc_filter": )";
+    const Image sharp = color(capture, params + R"("none")"), soft = color(capture, params + R"("near")");
+    const auto step = [](const Image& image) { return image.at(63, 24, 0) - image.at(64, 24, 0); };
+    EXPECT_EQ(sharp.at(64, 24, 0), 0);
+    EXPECT_GT(step(sharp), 0.4f);
+    EXPECT_LT(step(soft), 0.1f);
+    EXPECT_GT(soft.at(65, 24, 0), 0.2f);
+    EXPECT_GT(soft.at(67, 24, 0), 0.02f);
+    for (int x = 64; x < 80; ++x) EXPECT_LE(soft.at(x, 24, 0), soft.at(x - 1, 24, 0) + 1e-6f) << x;
+    EXPECT_EQ(soft.at(85, 24, 0), 0);
+}
+
 TEST(Bokeh, BlursAlphaWithTheColorThatItCovers) {
     const SyntheticBox box{
         .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kInfinity, .color = {1, 1, 1}};
@@ -244,7 +166,7 @@ TEST(Bokeh, BlursAlphaWithTheColorThatItCovers) {
 TEST(Bokeh, GivesTheSameBitsOnBothSoftwareBackends) {
     Capture capture = varied_depth({.width = 96, .height = 64, .background = {0.2f, 0.1f, 0.05f}});
     for (int i = 0; i < 96 * 64; i += 37) capture.images["color"].floats()[std::size_t(i) * 4] = float(i);
-    const std::string params = lens(12, 96) + R"(, "shape": "octagon", "rotation": 7)";
+    const std::string params = lens(12, 96) + R"(, "shape": "custom", "rotation": 7, "highlight_gain": 1)";
     const Image egl = LookRunner(look(params), gpu::Backend::egl_software).color(capture);
     const Image osmesa = LookRunner(look(params), gpu::Backend::osmesa).color(capture);
     EXPECT_TRUE(std::equal(egl.floats().begin(), egl.floats().end(), osmesa.floats().begin()));
@@ -275,7 +197,7 @@ TEST(BokehOnSuzanne, ComesWithinReachOfTheRenderersLens) {
         return display_psnr_db(truth, runner.color(capture));
     };
     const double hexagon_db = psnr("");
-    const double seed_db = psnr(R"(, "weights": "seed")");
+    const double seed_db = psnr(R"(, "weights": "seed", "highlight_repair": false)");
     fmt::print("PSNR against the lens: sharp {:.2f}, hexagon {:.2f}, weights seed {:.2f} dB\n", sharp_db,
                hexagon_db, seed_db);
     EXPECT_GE(hexagon_db, 31.0);  // measured 31.35; the project asks for 26.5
@@ -283,4 +205,4 @@ TEST(BokehOnSuzanne, ComesWithinReachOfTheRenderersLens) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::bokeh

@@ -74,6 +74,12 @@ std::string flow_text(const PassSpec& pass) {
     return (reads.empty() ? "" : reads + " ") + "-> " + writes;
 }
 
+/// "blur.frag", "lens/coc.frag" of a module.
+std::string shader_text(const PassSpec& pass) {
+    if (pass.shader.empty()) return "clear";
+    return (pass.module.empty() ? "" : pass.module + "/") + pass.shader;
+}
+
 /// A cell of a Markdown table.
 std::string cell(std::string text) {
     for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
@@ -129,6 +135,8 @@ std::string describe_text(const EffectManifest& manifest) {
     std::ostringstream out;
     out << manifest.id << " " << manifest.version << "\n" << manifest.summary << "\n";
     for (const std::string& source : manifest.sources) out << "  source: " << source << "\n";
+    for (const ModuleSpec& module : manifest.modules)
+        out << "  module " << module.name << ": " << module.summary << "\n";
     out << "\ninputs\n";
     TextTable inputs("  ");
     for (const InputSpec& input : manifest.inputs)
@@ -159,8 +167,7 @@ std::string describe_text(const EffectManifest& manifest) {
     textures.print(out);
     out << "\npasses\n";
     TextTable passes("  ");
-    for (const PassSpec& pass : manifest.passes)
-        passes.add({pass.name, pass.shader.empty() ? "clear" : pass.shader, flow_text(pass)});
+    for (const PassSpec& pass : manifest.passes) passes.add({pass.name, shader_text(pass), flow_text(pass)});
     passes.print(out);
     return out.str();
 }
@@ -170,6 +177,9 @@ std::string describe_markdown(const EffectManifest& manifest) {
     out << "<!-- Made by `aftershade docs` from effects/" << manifest.id << "/effect.json; do not edit. -->\n"
         << "# " << manifest.id << "\n\n"
         << manifest.summary << " Version " << manifest.version << ".\n";
+    for (const ModuleSpec& module : manifest.modules)
+        out << "\nTakes the module `" << module.name << "` (glsl/" << module.name << "): " << module.summary
+            << "\n";
     out << "\n## Images\n\n| | name | role | |\n|---|---|---|---|\n";
     for (const InputSpec& input : manifest.inputs)
         out << "| in | `" << input.name << "` | " << input.role << input_flags(input) << " | "

@@ -51,7 +51,7 @@ std::string describe_json(const EffectManifest& manifest) {
                                             {"history", texture.history},
                                             {"doc", texture.doc}};
     for (const PassSpec& pass : manifest.passes)
-        result["passes"].push_back({{"name", pass.name}, {"shader", pass.shader}});
+        result["passes"].push_back({{"name", pass.name}, {"shader", pass.shader}, {"module", pass.module}});
     for (const PresetSpec& preset : manifest.presets) {
         json& values = result["presets"][preset.name] = json::object();
         for (const auto& [name, value] : preset.values)

@@ -106,7 +106,7 @@ private:
             for (std::size_t i = 0; i < tokens.size(); ++i) {
                 const Token& token = tokens[i];
                 // A shared module may hold the curve; using it is what counts.
-                if (std::filesystem::path(token.place.file).parent_path() == glsl_folder_) continue;
+                if (token.place.file.starts_with(glsl_folder_.string() + "/")) continue;
                 if (token.text == "encode_srgb" && i + 1 < tokens.size() && tokens[i + 1].text == "(" &&
                     told.insert(to_string(token.place)).second)
                     diagnostics_.warning(token.place,

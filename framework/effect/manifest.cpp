@@ -53,6 +53,7 @@ void ManifestParser::identity(ObjectReader& reader, const Node& node) {
 void ManifestParser::params(const Node& section) {
     for (const Member& member : section.members) {
         identifier(member.key, member.key_place, "parameter");
+        if (!is_new("parameter", member)) continue;
         const auto spec = parse_param_spec(member.key, member.value, diagnostics_);
         if (!spec) {
             faulty_params_.insert(member.key);
@@ -138,7 +139,7 @@ int EffectManifest::most_of(const CountSpec& count) const {
 }
 
 std::optional<EffectManifest> parse_manifest(const Node& node, const fs::path& folder,
-                                             Diagnostics& diagnostics) {
+                                             Diagnostics& diagnostics, const fs::path& glsl_folder) {
     ObjectReader reader(node, "the manifest", diagnostics);
     if (!reader.is_object()) return std::nullopt;
     const int errors_before = diagnostics.error_count();
@@ -148,14 +149,15 @@ std::optional<EffectManifest> parse_manifest(const Node& node, const fs::path& f
     reader.text("$schema");
     ManifestParser parser(manifest, diagnostics);
     parser.identity(reader, node);
+    if (const Node* section = reader.array("modules")) parser.modules(*section, glsl_folder);
     if (const Node* section = reader.object("inputs", Presence::required)) parser.inputs(*section);
     if (const Node* section = reader.object("outputs", Presence::required)) parser.outputs(*section);
-    if (const Node* section = reader.object("params")) parser.params(*section);
+    parser.declarations("params", reader.object("params"), &ManifestParser::params);
     check_relation_declarations(manifest.params, diagnostics);
-    if (const Node* section = reader.object("textures")) parser.textures(*section);
-    if (const Node* section = reader.object("buffers")) parser.buffers(*section);
+    parser.declarations("textures", reader.object("textures"), &ManifestParser::textures);
+    parser.declarations("buffers", reader.object("buffers"), &ManifestParser::buffers);
     if (const Node* section = reader.object("native")) parser.native(*section);
-    if (const Node* section = reader.array("passes", Presence::required)) parser.passes(*section);
+    parser.declarations("passes", reader.array("passes", Presence::required), &ManifestParser::passes);
     if (const Node* section = reader.object("presets")) parser.presets(*section);
     reader.finish();
     check_manifest(manifest, node, diagnostics);

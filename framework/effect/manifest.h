@@ -1,4 +1,4 @@
-// The declaration of an effect: effects/<id>/effect.json.
+// The declaration of an effect: effects/<id>/effect.json, and of what it shares: glsl/<module>/module.json.
 #pragma once
 
 #include <filesystem>
@@ -165,8 +165,10 @@ enum class PassKind { draw, compute, clear };
 struct PassSpec {
     std::string name;
     PassKind kind = PassKind::draw;
-    std::string shader;  ///< file in the effect's folder; "" for a clear
-    std::string vertex;  ///< draw of instances: its vertex shader; "" for the full screen
+    std::filesystem::path folder;  ///< of its shaders: the effect's, or its module's
+    std::string module;            ///< that declares it; "" for the effect itself
+    std::string shader;            ///< file in that folder; "" for a clear
+    std::string vertex;            ///< draw of instances: its vertex shader; "" for the full screen
     std::vector<ReadSpec> reads;
     std::vector<WriteSpec>
         writes;  ///< textures and outputs, in the order of the attachments; clear: what it sets
@@ -204,6 +206,13 @@ struct NativeSpec {
     Place place;
 };
 
+/// Parameters, textures, buffers and passes that effects share; they stand before the effect's own.
+struct ModuleSpec {
+    std::string name;
+    std::string summary;
+    std::filesystem::path folder;  ///< glsl/<name>, with module.json and its shaders
+};
+
 struct PresetSpec {
     std::string name;
     std::map<std::string, ParamValue> values;
@@ -214,6 +223,7 @@ struct EffectManifest {
     std::string version;
     std::string summary;
     std::vector<std::string> sources;
+    std::vector<ModuleSpec> modules;
     std::vector<InputSpec> inputs;
     std::vector<OutputSpec> outputs;
     std::vector<ParamSpec> params;
@@ -241,7 +251,9 @@ struct EffectManifest {
 /// what an earlier one may have written, that every output and texture is written, that shader files exist.
 /// Every fault is reported; nullopt if there was one. What the shaders' text must agree with is
 /// check_declared_used's (usage_check.h).
+/// Modules are read from `glsl_folder`, empty for the shipped one; only then may this throw, as data_path().
 std::optional<EffectManifest> parse_manifest(const Node& node, const std::filesystem::path& folder,
-                                             Diagnostics& diagnostics);
+                                             Diagnostics& diagnostics,
+                                             const std::filesystem::path& glsl_folder = {});
 
 }  // namespace aftershade

@@ -88,11 +88,11 @@ private:
         claim(name, thing + " '" + name + "'", place);
     }
     void claim(const std::string& identifier, const std::string& owner, const Place& place) {
-        const auto [known, is_new] = owners_.emplace(identifier, owner);
-        if (is_new || known->second == owner) return;
-        if (told_.emplace(known->second, owner).second)
+        const auto [known, is_new] = owners_.emplace(identifier, Owner{owner, place});
+        if (is_new || known->second.name == owner) return;
+        if (told_.emplace(known->second.name, owner).second)
             diagnostics_.error(place, owner + " needs the GLSL name '" + identifier + "', which the " +
-                                          known->second + " has");
+                                          known->second.seen_from(place) + " has");
     }
 
     template <typename Spec>
@@ -131,7 +131,8 @@ private:
             const auto known = owners_.find(name);
             if (known != owners_.end())
                 diagnostics_.error(pass.place, "pass '" + pass.name + "' defines '" + name + "', which the " +
-                                                   known->second + " has as its GLSL name");
+                                                   known->second.seen_from(pass.place) +
+                                                   " has as its GLSL name");
             else if (is_word(name) || kTaken.contains(name))
                 diagnostics_.error(pass.place, "pass '" + pass.name + "' defines '" + name +
                                                    "', a word of GLSL or the host");
@@ -140,7 +141,15 @@ private:
 
     const EffectManifest& manifest_;
     Diagnostics& diagnostics_;
-    std::map<std::string, std::string> owners_;  // by GLSL identifier
+    struct Owner {
+        std::string name;
+        Place place;
+        /// With its place, if in another document.
+        std::string seen_from(const Place& other) const {
+            return place.file == other.file ? name : name + " (" + to_string(place) + ")";
+        }
+    };
+    std::map<std::string, Owner> owners_;  // by GLSL identifier
     std::set<std::pair<std::string, std::string>> told_;
 };
 

@@ -1,6 +1,8 @@
 // Reads the sections of effect.json. Internal to framework/effect.
 #pragma once
 
+#include <list>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -18,6 +20,11 @@ public:
         : manifest_(manifest), diagnostics_(diagnostics) {}
 
     void identity(ObjectReader& reader, const Node& node);
+    /// Opens the modules that the effect names, for declarations().
+    void modules(const Node& section, const std::filesystem::path& glsl_folder);
+    /// The section `key` of every module, then the effect's own; nullptr: it has none.
+    using SectionReader = void (ManifestParser::*)(const Node& section);
+    void declarations(const std::string& key, const Node* own, SectionReader section_reader);
     void inputs(const Node& section);
     void outputs(const Node& section);
     void params(const Node& section);  ///< before everything that may count by one
@@ -35,6 +42,16 @@ private:
         int least_of_param = 1;
     };
 
+    struct Module {
+        ModuleSpec spec;
+        Node document;
+        std::map<std::string, const Node*> sections;  // of the document, by key
+    };
+
+    void module(const Node& item, const std::filesystem::path& glsl_folder);
+    std::map<std::string, const Node*> module_sections(Module& module);
+    /// Whether no module before has a `thing` of this name; otherwise a fault.
+    bool is_new(const std::string& thing, const Member& member);
     void fault(const Place& place, std::string text) { diagnostics_.error(place, std::move(text)); }
     void identifier(const std::string& name, const Place& place, const std::string& thing);
     std::string role(ObjectReader& reader, const Node& node);
@@ -71,7 +88,14 @@ private:
 
     EffectManifest& manifest_;
     Diagnostics& diagnostics_;
-    std::set<std::string> faulty_params_;  // declared, but with faults that are already told
+    std::list<Module> modules_;        // a list: sections point into its documents
+    const Module* reading_ = nullptr;  // the module that is being read; nullptr: the effect
+    struct Declaration {
+        std::string owner;  // "the module 'x'"
+        Place place;
+    };
+    std::map<std::string, Declaration> declared_;  // by "texture 'x'"
+    std::set<std::string> faulty_params_;          // declared, but with faults that are already told
 };
 
 }  // namespace aftershade

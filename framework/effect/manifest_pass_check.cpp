@@ -39,7 +39,7 @@ public:
     void check(const PassSpec& pass) {
         pass_ = &pass;
         if (!pass.name.empty() && !names_.insert(pass.name).second)
-            fault(pass.place, "another pass has this name");
+            fault(pass.place, "another pass has this name" + elsewhere(pass));
         for (const std::string& file : {pass.shader, pass.vertex}) check_shader_file(file);
         for (const ReadSpec& read : pass.reads) check_read(read);
         for (const AccessSpec& image : pass.images) check_image(image);
@@ -82,7 +82,17 @@ public:
 
 private:
     void fault(const Place& place, const std::string& text) {
-        diagnostics_.error(place, "pass '" + pass_->name + "': " + text);
+        // A module is fine or not in an effect: what it reads may be missing there.
+        const std::string origin =
+            pass_->module.empty() ? "" : " of the module '" + pass_->module + "' in '" + manifest_.id + "'";
+        diagnostics_.error(place, "pass '" + pass_->name + "'" + origin + ": " + text);
+    }
+
+    /// Where the first pass with the name of this one is, if in another document.
+    std::string elsewhere(const PassSpec& pass) const {
+        const auto same = [&](const PassSpec& other) { return other.name == pass.name; };
+        const auto first = std::find_if(manifest_.passes.begin(), manifest_.passes.end(), same);
+        return first->place.file == pass.place.file ? "" : " (" + to_string(first->place) + ")";
     }
 
     template <typename Spec>
@@ -94,11 +104,11 @@ private:
 
     void check_shader_file(const std::string& file) {
         if (file.empty()) return;
-        // A shader is part of its effect: nothing from elsewhere on the disk is read.
+        // A shader is part of its effect or module: nothing from elsewhere on the disk is read.
         if (file.find('/') != std::string::npos)
             fault(pass_->place, "'shader' is a file name without folders");
-        else if (!std::filesystem::is_regular_file(manifest_.folder / file))
-            fault(pass_->place, "no file '" + file + "' in " + manifest_.folder.string());
+        else if (!std::filesystem::is_regular_file(pass_->folder / file))
+            fault(pass_->place, "no file '" + file + "' in " + pass_->folder.string());
     }
 
     /// Notes the use of `name`, and refuses ".prev" of what keeps no history and the rest before it is

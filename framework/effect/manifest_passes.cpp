@@ -51,6 +51,8 @@ void ManifestParser::pass(const Node& node) {
     if (!reader.is_object()) return;
     PassSpec pass;
     pass.place = node.place;
+    pass.folder = reading_ ? reading_->spec.folder : manifest_.folder;
+    pass.module = reading_ ? reading_->spec.name : "";
     pass.name = reader.text("name", Presence::required).value_or("");
     if (node.find("name")) identifier(pass.name, node.find("name")->place, "pass");
     pass.kind = choice_of(reader.choice("kind", kKinds), kKinds, PassKind::draw);

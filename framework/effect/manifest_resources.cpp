@@ -193,7 +193,8 @@ void ManifestParser::outputs(const Node& section) {
 }
 
 void ManifestParser::textures(const Node& section) {
-    for (const Member& member : section.members) texture(member);
+    for (const Member& member : section.members)
+        if (is_new("texture", member)) texture(member);
 }
 
 void ManifestParser::texture(const Member& member) {
@@ -241,7 +242,8 @@ void ManifestParser::mips(ObjectReader& reader, TextureSpec& texture) {
 }
 
 void ManifestParser::buffers(const Node& section) {
-    for (const Member& member : section.members) buffer(member);
+    for (const Member& member : section.members)
+        if (is_new("buffer", member)) buffer(member);
 }
 
 void ManifestParser::buffer(const Member& member) {

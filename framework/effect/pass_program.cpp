@@ -113,8 +113,7 @@ const gpu::Program& ProgramCache::get(const ShaderContext& context) {
             for (const gpu::ShaderMessage& message : error.messages())
                 if (message.error)
                     faults.error(author_place(source, message), message.text + "   [" + where + "]");
-            if (!faults.has_errors())
-                faults.error({(context.manifest->folder / pass.shader).string()}, error.what());
+            if (!faults.has_errors()) faults.error({(pass.folder / pass.shader).string()}, error.what());
         }
     }
     std::ostringstream text;

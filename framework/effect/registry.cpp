@@ -1,12 +1,15 @@
 #include "framework/effect/registry.h"
 
+#include <utility>
+
 #include "framework/core/document.h"
 
 namespace aftershade {
 
 namespace fs = std::filesystem;
 
-EffectRegistry::EffectRegistry(std::vector<fs::path> folders) {
+EffectRegistry::EffectRegistry(std::vector<fs::path> folders, fs::path glsl_folder)
+    : glsl_folder_(std::move(glsl_folder)) {
     for (const fs::path& folder : folders) {
         std::error_code failure;
         for (const auto& entry : fs::directory_iterator(folder, failure))
@@ -27,7 +30,7 @@ const EffectManifest* EffectRegistry::find(const std::string& id, Diagnostics& d
     auto manifest = manifests_.find(id);
     if (manifest == manifests_.end()) {
         const auto node = read_document(folder->second / "effect.json", diagnostics);
-        auto parsed = node ? parse_manifest(*node, folder->second, diagnostics) : std::nullopt;
+        auto parsed = node ? parse_manifest(*node, folder->second, diagnostics, glsl_folder_) : std::nullopt;
         manifest = manifests_.emplace(id, std::move(parsed)).first;
     }
     return manifest->second ? &*manifest->second : nullptr;

@@ -16,7 +16,9 @@ namespace aftershade {
 /// [one thread at a time: manifests are read when they are first asked for]
 class EffectRegistry {
 public:
-    explicit EffectRegistry(std::vector<std::filesystem::path> folders);
+    /// Modules are read from `glsl_folder`, empty for the shipped one.
+    explicit EffectRegistry(std::vector<std::filesystem::path> folders,
+                            std::filesystem::path glsl_folder = {});
 
     /// Ids of all effects, sorted. The first folder wins where two have an effect of one id.
     std::vector<std::string> ids() const;
@@ -25,6 +27,7 @@ public:
     const EffectManifest* find(const std::string& id, Diagnostics& diagnostics);
 
 private:
+    std::filesystem::path glsl_folder_;
     std::map<std::string, std::filesystem::path> folders_;  // by id
     std::map<std::string, std::optional<EffectManifest>> manifests_;
 };

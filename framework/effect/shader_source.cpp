@@ -21,8 +21,7 @@ public:
 
     ShaderSource assemble() {
         const PassSpec& pass = *context_.pass;
-        const fs::path file =
-            context_.manifest->folder / (file_ == ShaderFile::vertex ? pass.vertex : pass.shader);
+        const fs::path file = pass.folder / (file_ == ShaderFile::vertex ? pass.vertex : pass.shader);
         add_file(file, Place{file.string()});
         if (!has_version_ || !has_pass_)
             diagnostics_.error({file.string(), 1, 1},
@@ -72,12 +71,20 @@ private:
             for (std::string line; std::getline(lines, line);) add_line(line, "<generated>", place.line);
             return;
         }
-        // Only plain file names: a shader cannot reach outside its own folder and glsl/.
-        if (name.empty() || name.find('/') != std::string::npos || name.starts_with('.')) {
+        // A shader cannot reach outside its own folder and glsl/.
+        const std::size_t slash = shared ? name.find('/') : std::string::npos;
+        const bool is_plain = slash == std::string::npos ? is_plain_name(name)
+                                                         : is_plain_name(name.substr(0, slash)) &&
+                                                               is_plain_name(name.substr(slash + 1));
+        if (!is_plain) {
             diagnostics_.error(place, "'" + name + "' is not a plain file name");
             return;
         }
-        add_file((shared ? context_.glsl_folder : context_.manifest->folder) / name, place);
+        add_file((shared ? context_.glsl_folder : fs::path(place.file).parent_path()) / name, place);
+    }
+
+    static bool is_plain_name(const std::string& name) {
+        return !name.empty() && name.find('/') == std::string::npos && !name.starts_with('.');
     }
 
     const ShaderContext& context_;

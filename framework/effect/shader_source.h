@@ -2,8 +2,8 @@
 //
 // A shader begins `#version 450 core` and `#include <pass>`. The host generates what <pass> stands for:
 // samplers, images, storage blocks, outputs and the blocks `param`, `frame`, `camera`, `pass` and `native`
-// (docs/shaders.md). `#include <x.glsl>` takes a module of glsl/, `#include "x.glsl"` one of the effect's
-// folder; each is included once.
+// (docs/shaders.md). `#include <x.glsl>` takes a file of glsl/, `#include <module/x.glsl>` one of a module's
+// folder there, `#include "x.glsl"` one of the including file's own folder; each is included once.
 #pragma once
 
 #include <array>

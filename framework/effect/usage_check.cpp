@@ -69,17 +69,23 @@ public:
     }
 
 private:
+    /// Paths: an effect and its modules may have files of one name.
     static std::vector<std::string> files_of(const PassSpec& pass) {
         std::vector<std::string> files;
-        for (const std::string& file : {pass.shader, pass.vertex})
-            if (!file.empty()) files.push_back(file);
+        for (const std::string& name : names_of(pass)) files.push_back((pass.folder / name).string());
         return files;
+    }
+    static std::vector<std::string> names_of(const PassSpec& pass) {
+        std::vector<std::string> names;
+        for (const std::string& name : {pass.shader, pass.vertex})
+            if (!name.empty()) names.push_back(name);
+        return names;
     }
 
     void read_shader(const PassSpec& pass, const std::string& file) {
         if (shaders_.contains(file)) return;
         const ShaderContext context{&manifest_, &pass, &defaults_, inputs_, glsl_folder_};
-        const auto which = file == pass.shader ? ShaderFile::main : ShaderFile::vertex;
+        const auto which = file == pass.folder / pass.shader ? ShaderFile::main : ShaderFile::vertex;
         const ShaderSource source = assemble_shader(context, diagnostics_, which);
         shaders_.emplace(file, ShaderUses(glsl_tokens(source)));
     }
@@ -104,8 +110,8 @@ private:
 
     void check_pass(const PassSpec& pass) {
         const auto unused = [&](const Place& place, const std::string& what) {
-            diagnostics_.error(place, "pass '" + pass.name + "': " + list_of_names(files_of(pass), "and") +
-                                          " " + (files_of(pass).size() > 1 ? "do" : "does") + " not use " +
+            diagnostics_.error(place, "pass '" + pass.name + "': " + list_of_names(names_of(pass), "and") +
+                                          " " + (names_of(pass).size() > 1 ? "do" : "does") + " not use " +
                                           what);
         };
         for (const ReadSpec& read : pass.reads)
@@ -126,7 +132,7 @@ private:
     void check_shader(const std::string& file, const ShaderUses& uses) {
         std::vector<std::string> targets;
         for (const PassSpec& pass : manifest_.passes)
-            if (pass.shader == file)
+            if (pass.folder / pass.shader == file)
                 for (const WriteSpec& write : pass.writes) targets.push_back(std::string(kOut) + write.name);
         for (const auto& [name, place] : uses.outputs) {
             const std::string word = std::string(kOut) + name;
@@ -226,7 +232,7 @@ private:
     Diagnostics& diagnostics_;
     ParamSet defaults_;
     std::vector<std::string> inputs_;
-    std::map<std::string, ShaderUses> shaders_;  // by file
+    std::map<std::string, ShaderUses> shaders_;  // by path
     std::set<std::string> told_;
 };
 

@@ -303,12 +303,15 @@ std::string effect_schema() {
     const json version = {{"type", "string"},
                           {"pattern", "^" + number + "\\." + number + "\\." + number + "$"}};
     const json presets = {{"type", "object"}, {"additionalProperties", {{"type", "object"}}}};
+    json modules = schema::array_of(schema::snake_case());
+    modules["uniqueItems"] = true;
     return schema::document("Aftershade effect",
                             {{"id", schema::snake_case()},
                              {"version", version},
                              {"summary", kText},
                              {"sources", schema::array_of(kText)},
                              {"accumulates", {{"const", "subframes"}}},
+                             {"modules", modules},
                              {"inputs", schema::named(input)},
                              {"outputs", outputs},
                              {"params", schema::named(param(false))},
@@ -318,6 +321,19 @@ std::string effect_schema() {
                              {"native", native()},
                              {"presets", presets}},
                             {"id", "version", "summary", "inputs", "outputs", "passes"})
+               .dump(2) +
+           "\n";
+}
+
+std::string module_schema() {
+    return schema::document("Aftershade module",
+                            {{"module", schema::snake_case()},
+                             {"summary", kText},
+                             {"params", schema::named(param(false))},
+                             {"textures", schema::named(texture())},
+                             {"buffers", schema::named(buffer())},
+                             {"passes", schema::array_of(pass())}},
+                            {"module", "summary"})
                .dump(2) +
            "\n";
 }

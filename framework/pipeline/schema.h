@@ -18,5 +18,7 @@ std::string look_schema(const std::vector<const EffectManifest*>& effects);
 std::string capture_schema();
 /// Of an effect.json.
 std::string effect_schema();
+/// Of a module.json.
+std::string module_schema();
 
 }  // namespace aftershade

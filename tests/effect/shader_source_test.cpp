@@ -214,8 +214,8 @@ TEST(ShaderSource, IncludesOnlyPlainNamesOfItsOwnFolderAndTheShared) {
     const EffectFolder folder;
     folder.write("../secret.glsl", "float secret;\n");
     folder.write(".hidden.glsl", "float hidden;\n");
-    for (const std::string name :
-         {"../secret.glsl", "./own.glsl", "/etc/passwd", "sub/own.glsl", ".hidden.glsl", "..", ""}) {
+    for (const std::string name : {"../secret.glsl", "./own.glsl", "/etc/passwd", "sub/../own.glsl",
+                                   "a/b/own.glsl", "sub/.hidden.glsl", "sub/", ".hidden.glsl", "..", ""}) {
         folder.write("a.frag", "#version 450 core\n#include <pass>\n#include \"" + name + "\"\n");
         EXPECT_EQ(Assembly(folder).faults(),
                   Lines{"a.frag:3:1: error: '" + name + "' is not a plain file name"});
@@ -223,12 +223,27 @@ TEST(ShaderSource, IncludesOnlyPlainNamesOfItsOwnFolderAndTheShared) {
         EXPECT_EQ(Assembly(folder).faults(),
                   Lines{"a.frag:3:1: error: '" + name + "' is not a plain file name"});
     }
+    folder.write("a.frag", "#version 450 core\n#include <pass>\n#include \"sub/own.glsl\"\n");
+    EXPECT_EQ(Assembly(folder).faults(), Lines{"a.frag:3:1: error: 'sub/own.glsl' is not a plain file name"});
     // What the effect's own folder has is not found among the shared modules.
     folder.write("own.glsl", "float own;\n");
     folder.write("a.frag", "#version 450 core\n#include <pass>\n#include <own.glsl>\n");
     const Assembly assembly(folder);
     EXPECT_EQ(assembly.faults(),
               Lines{"a.frag:3:1: error: cannot read " + (assembly.glsl / "own.glsl").string()});
+}
+
+TEST(ShaderSource, TakesAFileOfAModuleAndWhatLiesBesideThatFile) {
+    const EffectFolder folder;
+    folder.write("a.frag",
+                 "#version 450 core\n#include <pass>\n#include <lens/x.glsl>\n#include \"own.glsl\"\n");
+    folder.write("own.glsl", "float effects_own;\n#include <lens/x.glsl>\n");
+    const Assembly assembly(folder);
+    std::filesystem::create_directories(assembly.glsl / "lens");
+    test::write_text(assembly.glsl / "lens/x.glsl", "#include \"own.glsl\"\nfloat x;\n");
+    test::write_text(assembly.glsl / "lens/own.glsl", "float lens_own;\n");
+    const std::string text = assembly.sound().text;
+    EXPECT_TRUE(text.ends_with("float lens_own;\nfloat x;\nfloat effects_own;\n")) << text;
 }
 
 TEST(ShaderSource, ListsAllMissingIncludes) {

@@ -1,7 +1,7 @@
 #version 450 core
 #include <pass>
-#include <coc.glsl>
-#include "packing.glsl"
+#include "coc.glsl"
+#include "highlight.glsl"
 
 ivec2 inside(ivec2 p) { return clamp(p, ivec2(0), ivec2(color_size.xy) - 1); }
 
@@ -35,11 +35,9 @@ float repaired_coc(ivec2 p, float coc, float own_amount) {
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
-    vec4 texel = texelFetch(color, p, 0);
     float coc = coc_at(p);
-#if WEIGHTS == WEIGHTS_COVERAGE
-    coc = repaired_coc(p, coc, amount(texel.rgb));
+#if HIGHLIGHT_REPAIR
+    coc = repaired_coc(p, coc, amount(texelFetch(color, p, 0).rgb));
 #endif
-    out_light = pack_light(Light(texel.rgb, texel.a, coc));
     out_coc = coc;
 }

@@ -15,9 +15,3 @@ Light unpack_light(uvec4 texel) {
     vec2 alpha_coc = unpackHalf2x16(texel.w);
     return Light(uintBitsToFloat(texel.xyz), alpha_coc.x, alpha_coc.y);
 }
-
-// Sum of R, G and B: what light means where only its amount matters.
-float amount(vec3 rgb) { return rgb.r + rgb.g + rgb.b; }
-
-// A texel of light that outshines the rest this many times is a highlight.
-const float kHighlight = 4.0;

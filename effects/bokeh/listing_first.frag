@@ -1,0 +1,10 @@
+#version 450 core
+#include <pass>
+#include "listing.glsl"
+
+void main() {
+    out_line_a = listing_blur(color, first_degrees(0));
+#if SHAPE == SHAPE_OCTAGON || SHAPE == SHAPE_CUSTOM
+    out_line_b = listing_blur(color, first_degrees(1));
+#endif
+}
