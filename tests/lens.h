@@ -1,4 +1,5 @@
-// What the tests of lens effects share: a look with one such effect, a lens of a wanted blur, and the picture of a light.
+// What the tests of lens effects share: a look with one such effect, a lens of a wanted blur, and the picture
+// of a light.
 #pragma once
 
 #include <string>
@@ -9,8 +10,9 @@
 
 namespace aftershade::test {
 
-/// A lens that is focused at 2 m and whose CoC radius at infinity is `radius_px` in a picture `width_px` wide, as members
-/// of "params". By the lens model `pinhole` a point at half the focus distance has minus that radius.
+/// A lens that is focused at 2 m and whose CoC radius at infinity is `radius_px` in a picture `width_px`
+/// wide, as members of "params". By the lens model `pinhole` a point at half the focus distance has minus
+/// that radius.
 struct Lens {
     double radius_px = 12;
     int width_px = 128;
@@ -18,7 +20,8 @@ struct Lens {
     static constexpr double kFocusM = 2, kSensorWidthMm = 36, kFocalLengthMm = 200;
 
     std::string params() const {
-        const double aperture_mm = 2 * radius_px * kSensorWidthMm / width_px * (kFocusM * 1000) / kFocalLengthMm;
+        const double aperture_mm =
+            2 * radius_px * kSensorWidthMm / width_px * (kFocusM * 1000) / kFocalLengthMm;
         return fmt::format(R"("focus_distance": {}, "sensor_width": {}, "lens_model": "pinhole",
                               "focal_length": {}, "f_number": {})",
                            kFocusM, kSensorWidthMm, kFocalLengthMm, kFocalLengthMm / aperture_mm);
@@ -26,12 +29,13 @@ struct Lens {
 
     /// `more`: further members of "params".
     std::string look(const std::string& effect, const std::string& more = "") const {
-        return fmt::format(R"({{"aftershade": 1, "steps": [{{"effect": "{}", "params": {{{}{}}}}}]}})", effect, params(),
-                           more.empty() ? "" : ", " + more);
+        return fmt::format(R"({{"aftershade": 1, "steps": [{{"effect": "{}", "params": {{{}{}}}}}]}})",
+                           effect, params(), more.empty() ? "" : ", " + more);
     }
 };
 
-/// Coverage by what a square light of `side_px` (odd) makes of an outline: the mean of the outline at each of its pixels.
+/// Coverage by what a square light of `side_px` (odd) makes of an outline: the mean of the outline at each of
+/// its pixels.
 inline Image coverage_of_light(const std::vector<Vertex>& outline, int size, int center, int side_px) {
     Image sum(size, size, 1);
     const int half = side_px / 2;

@@ -44,10 +44,10 @@ void add_tap(inout Sum front, inout Sum back, Light tap, float centre_coc, float
     float front_weight = across * in_front * cover(reach_px, distance_px, step_px) * step_px / max(2.0 * reach_px, step_px);
     float back_weight = across * (1.0 - in_front) * own_cover;
 #endif
-    front.light += front_weight * vec4(tap.rgb, tap.alpha);
+    front.light += front_weight * tap.color;
     front.weight += front_weight;
-    front.coc += front_weight * amount(tap.rgb) * tap.coc;
-    back.light += back_weight * vec4(tap.rgb, tap.alpha);
+    front.coc += front_weight * amount(tap.color.rgb) * tap.coc;
+    back.light += back_weight * tap.color;
     back.weight += back_weight;
 }
 
@@ -62,7 +62,7 @@ Light combine_sums(Sum front, Sum back, float centre_coc) {
     float excess = max(front_amount - kHighlight * front.weight * back_amount, 0.0);
     float share = front_amount > 0.0 ? excess / max(excess + back_amount * (1.0 - opacity), 1e-6) : 0.0;
     float coc = mix(centre_coc, front.coc / max(front_amount, 1e-6), share);
-    return Light(light.rgb, light.a, coc);
+    return Light(light, coc);
 }
 
 Light blur(usampler2D image, ivec2 p, float near_px, Line line) {

@@ -28,5 +28,5 @@ void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     vec4 texel = texelFetch(color, p, 0);
     float radius = texelFetch(coc, p, 0).r;
-    out_light = pack_light(Light(texel.rgb * gain(texel.rgb, abs(radius)), texel.a, radius));
+    out_light = pack_light(Light(vec4(texel.rgb * gain(texel.rgb, abs(radius)), texel.a), radius));
 }

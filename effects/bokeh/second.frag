@@ -5,7 +5,7 @@
 
 vec4 second_blur(usampler2D image, ivec2 p, float near_px, int parallelogram) {
     Light light = blur(image, p, near_px, second_line(parallelogram));
-    return vec4(light.rgb, light.alpha);
+    return light.color;
 }
 
 void main() {

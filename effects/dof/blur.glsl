@@ -1,6 +1,6 @@
 // Gathers at one point what the lens spreads over it, from one level of `light`. Lengths in px of that level; CoC differences
 // in px at full size.
-#include "packing.glsl"
+#include <lens/packing.glsl>
 #include "outline.glsl"
 #include "tile.glsl"
 

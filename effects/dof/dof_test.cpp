@@ -28,7 +28,8 @@ Image blur(const Capture& capture, double radius_px, const std::string& more = "
 
 /// A 3 x 3 px light in the middle of a square picture whose every pixel has the CoC radius of the lens.
 Capture light_of_nine(int size, bool is_near, float intensity) {
-    SyntheticScene scene{.width = size, .height = size, .background_depth_m = is_near ? kFocusM / 2 : kInfinity};
+    SyntheticScene scene{
+        .width = size, .height = size, .background_depth_m = is_near ? kFocusM / 2 : kInfinity};
     for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x) scene.points.push_back({size / 2 + x, size / 2 + y, intensity});
     return make_capture(scene);
@@ -53,8 +54,8 @@ struct ShapeCase {
 };
 
 void PrintTo(const ShapeCase& c, std::ostream* out) {
-    *out << c.blades << " blades R " << c.radius_px << " rotation " << c.rotation_deg << (c.is_near ? " near " : " far ")
-         << c.highlights;
+    *out << c.blades << " blades R " << c.radius_px << " rotation " << c.rotation_deg
+         << (c.is_near ? " near " : " far ") << c.highlights;
 }
 
 class DofShape : public testing::TestWithParam<ShapeCase> {};
@@ -63,8 +64,8 @@ TEST_P(DofShape, OfALightOfThreePixelsIsTheAperturesWithAllItsEnergy) {
     const ShapeCase& c = GetParam();
     const int size = 96, center = size / 2;
     const float intensity = 1000;
-    const std::string params = fmt::format(R"("blades": {}, "rotation": {}, "highlights": "{}")", c.blades, c.rotation_deg,
-                                           c.highlights);
+    const std::string params = fmt::format(R"("blades": {}, "rotation": {}, "highlights": "{}")", c.blades,
+                                           c.rotation_deg, c.highlights);
     const Image blurred = blur(light_of_nine(size, c.is_near, intensity), c.radius_px, params);
     const int sides = c.blades == 0 ? 64 : c.blades;  // 64 corners are a disk to 0.2 % of its area
     const Image expected = coverage_of_light(
@@ -77,17 +78,13 @@ TEST_P(DofShape, OfALightOfThreePixelsIsTheAperturesWithAllItsEnergy) {
     EXPECT_NEAR(energy, 1, 0.01);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scattered, DofShape,
-                         testing::Values(ShapeCase{6, 24, 0, false, "scatter", 0.93},
-                                         ShapeCase{6, 24, 10, true, "scatter", 0.93},
-                                         ShapeCase{3, 24, 0, false, "scatter", 0.93},
-                                         ShapeCase{3, 24, 0, true, "scatter", 0.93},
-                                         ShapeCase{5, 16, 0, false, "scatter", 0.93},
-                                         ShapeCase{5, 16, 0, true, "scatter", 0.93},
-                                         ShapeCase{7, 12, 20, true, "scatter", 0.93},
-                                         ShapeCase{0, 20, 0, false, "scatter", 0.93},
-                                         ShapeCase{6, 8, 0, false, "scatter", 0.93},
-                                         ShapeCase{6, 4, 0, true, "scatter", 0.93}));
+INSTANTIATE_TEST_SUITE_P(
+    Scattered, DofShape,
+    testing::Values(ShapeCase{6, 24, 0, false, "scatter", 0.93}, ShapeCase{6, 24, 10, true, "scatter", 0.93},
+                    ShapeCase{3, 24, 0, false, "scatter", 0.93}, ShapeCase{3, 24, 0, true, "scatter", 0.93},
+                    ShapeCase{5, 16, 0, false, "scatter", 0.93}, ShapeCase{5, 16, 0, true, "scatter", 0.93},
+                    ShapeCase{7, 12, 20, true, "scatter", 0.93}, ShapeCase{0, 20, 0, false, "scatter", 0.93},
+                    ShapeCase{6, 8, 0, false, "scatter", 0.93}, ShapeCase{6, 4, 0, true, "scatter", 0.93}));
 INSTANTIATE_TEST_SUITE_P(Gathered, DofShape,
                          testing::Values(ShapeCase{6, 24, 0, false, "gather", 0.93},
                                          ShapeCase{5, 16, 0, true, "gather", 0.93},
@@ -97,7 +94,8 @@ INSTANTIATE_TEST_SUITE_P(Gathered, DofShape,
 
 TEST(DofShapeOf, BladesBentAllTheWayIsADisk) {
     const Capture light = light_of_nine(96, false, 1000);
-    const Image disk = blur(light, 20, R"("blades": 0)"), bent = blur(light, 20, R"("blades": 5, "curvature": 1)");
+    const Image disk = blur(light, 20, R"("blades": 0)"),
+                bent = blur(light, 20, R"("blades": 5, "curvature": 1)");
     for (int y = 0; y < 96; ++y)
         for (int x = 0; x < 96; ++x) ASSERT_NEAR(bent.at(x, y, 0), disk.at(x, y, 0), 1e-3) << x << " " << y;
 }
@@ -128,7 +126,8 @@ TEST(DofShapeOf, ALightAtTheCornerIsCutByTheRimOfTheLensAndKeepsItsEnergy) {
     for (int y = 0; y < size; ++y)
         for (int x = 0; x < size; ++x) {
             const double dx = (x - at) / radius_px, dy = (y - at) / radius_px;
-            expected.at(x, y, 0) = std::hypot(dx, dy) <= 1 && std::hypot(dx - shift, dy - shift) <= 1 ? 1.0f : 0.0f;
+            expected.at(x, y, 0) =
+                std::hypot(dx, dy) <= 1 && std::hypot(dx - shift, dy - shift) <= 1 ? 1.0f : 0.0f;
         }
     EXPECT_GE(shape_iou(cut, cut.at(at - 3, at - 3, 0), expected), 0.95);
 }
@@ -189,14 +188,14 @@ TEST(Dof, KeepsAFocusedObjectOutOfTheBlurBehindIt) {
         }
 }
 
-/// The silhouette of a near object, straight from top to bottom, is a ramp as wide as the aperture, and what it hides shows
-/// through on both sides: the closed form is the aperture's part on one side of a line.
+/// The silhouette of a near object, straight from top to bottom, is a ramp as wide as the aperture, and what
+/// it hides shows through on both sides: the closed form is the aperture's part on one side of a line.
 TEST(Dof, MakesANearSilhouetteTheRampOfItsAperture) {
     const double radius_px = 12;
     const SyntheticBox box{
         .x = 40, .y = -10, .width = 80, .height = 100, .depth_m = kFocusM / 2, .color = {1, 1, 1}};
-    const Capture capture =
-        make_capture({.width = 96, .height = 64, .background = {0, 0, 4}, .background_depth_m = kFocusM, .box = box}, 0);
+    const Capture capture = make_capture(
+        {.width = 96, .height = 64, .background = {0, 0, 4}, .background_depth_m = kFocusM, .box = box}, 0);
     const Image out = blur(capture, radius_px, R"("blades": 0)");
     for (int x = 20; x < 60; ++x) {
         const double t = std::clamp((x + 0.5 - 40) / radius_px, -1.0, 1.0);
@@ -216,7 +215,8 @@ TEST(Dof, BlursAlphaWithTheColorThatItCovers) {
     EXPECT_LT(out.at(18, 20, 3), 0.95f);
 }
 
-/// An overscan capture's data window is larger than what is displayed, so a light out of sight can reach into it.
+/// An overscan capture's data window is larger than what is displayed, so a light out of sight can reach into
+/// it.
 TEST(Dof, ShowsTheBlurOfALightInTheOverscan) {
     Capture capture = make_capture({.width = 96, .height = 48, .points = {{4, 24, 1000}}});
     capture.header.display_window = {8, 0, 95, 47};
@@ -254,7 +254,8 @@ TEST(DofOnSuzanne, ComesCloseToTheRenderersLens) {
         return display_psnr_db(truth, runner.color(capture));
     };
     const double fast_db = psnr("fast"), normal_db = psnr("normal"), exact_db = psnr("exact");
-    fmt::print("PSNR against the lens: fast {:.2f}, normal {:.2f}, exact {:.2f} dB\n", fast_db, normal_db, exact_db);
+    fmt::print("PSNR against the lens: fast {:.2f}, normal {:.2f}, exact {:.2f} dB\n", fast_db, normal_db,
+               exact_db);
     EXPECT_GE(fast_db, 32.4);    // measured 32.66
     EXPECT_GE(normal_db, 32.6);  // measured 32.87; the project asks for 31
     EXPECT_GE(exact_db, 32.9);   // measured 33.14

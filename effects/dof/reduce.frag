@@ -1,6 +1,6 @@
 #version 450 core
 #include <pass>
-#include "packing.glsl"
+#include <lens/packing.glsl>
 
 // The mean of those of 2 x 2 texels that show the surface that most of them show: a mean over the edge of two surfaces would
 // belong to neither. Where there are as many of both, texels take turns.

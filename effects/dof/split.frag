@@ -1,6 +1,6 @@
 #version 450 core
 #include <pass>
-#include "packing.glsl"
+#include <lens/packing.glsl>
 #include "outline.glsl"
 
 // A highlight outshines its surroundings this many times, and its light, spread over its CoC, still adds this fraction of them.

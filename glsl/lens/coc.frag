@@ -15,22 +15,22 @@ float coc_at(ivec2 p) {
 
 // An antialiased pixel at the edge of a small light has the light's colour but may have the background's depth, and would
 // throw a large polygon around the light's own. Where all of a pixel's light came across such an edge, it takes the CoC of
-// the brighter neighbour on the other side.
+// the brightest neighbour on the other side. One or the other: a CoC in between is that of no surface.
 float repaired_coc(ivec2 p, float coc, float own_amount) {
-    const ivec2 kNeighbours[4] = ivec2[](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
     float darkest = own_amount, brightest = own_amount, other_coc = coc;
-    for (int i = 0; i < 4; ++i) {
-        ivec2 q = p + kNeighbours[i];
-        float tap_amount = amount(texelFetch(color, inside(q), 0).rgb);
-        float tap_coc = coc_at(q);
-        if (abs(tap_coc - coc) <= 1.0) {
-            darkest = min(darkest, tap_amount);
-        } else if (tap_amount > brightest) {
-            brightest = tap_amount;
-            other_coc = tap_coc;
+    for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x) {
+            ivec2 q = p + ivec2(x, y);
+            float tap_amount = amount(texelFetch(color, inside(q), 0).rgb);
+            float tap_coc = coc_at(q);
+            if (abs(tap_coc - coc) <= 1.0) {
+                darkest = min(darkest, tap_amount);
+            } else if (tap_amount > brightest) {
+                brightest = tap_amount;
+                other_coc = tap_coc;
+            }
         }
-    }
-    return mix(coc, other_coc, clamp(1.0 - kHighlight * darkest / max(own_amount, 1e-6), 0.0, 1.0));
+    return own_amount > 1.4 * kHighlight * darkest ? other_coc : coc;
 }
 
 void main() {
