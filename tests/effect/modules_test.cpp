@@ -166,6 +166,9 @@ TEST_F(Modules, ThatAreNotThereAreNamedWithTheNearest) {
               (Lines{"demo/effect.json:8: error: no module 'toen' in glsl; did you mean 'tone'?",
                      "demo/effect.json:8: error: 'modules' holds names, not an integer",
                      "demo/effect.json:8: error: the module 'tone' is named twice"}));
+    // What would come from it is not told to be missing.
+    EXPECT_EQ(faults(nullptr, R"(["tones"])", {{test::kPresets, R"("presets": {"strong": {"key": 3}})"}}),
+              Lines{"demo/effect.json:8: error: no module 'tones' in glsl; did you mean 'tone'?"});
     EXPECT_EQ(faults(nullptr, R"("tone")"),
               Lines{"demo/effect.json:8: error: 'modules' must be an array, not a string"});
     EXPECT_EQ(faults(nullptr, R"(["../glsl/tone"])"),
