@@ -158,9 +158,11 @@ std::optional<EffectManifest> parse_manifest(const Node& node, const fs::path& f
     parser.declarations("buffers", reader.object("buffers"), &ManifestParser::buffers);
     if (const Node* section = reader.object("native")) parser.native(*section);
     parser.declarations("passes", reader.array("passes", Presence::required), &ManifestParser::passes);
-    if (const Node* section = reader.object("presets")) parser.presets(*section);
+    const Node* presets = reader.object("presets");
+    if (presets && parser.has_all_modules()) parser.presets(*presets);
     reader.finish();
-    check_manifest(manifest, node, diagnostics);
+    // Whatever uses what a module would declare would seem to be wrong.
+    if (parser.has_all_modules()) check_manifest(manifest, node, diagnostics);
     if (diagnostics.error_count() > errors_before) return std::nullopt;
     return manifest;
 }

@@ -41,6 +41,7 @@ void ManifestParser::module(const Node& item, const fs::path& glsl_folder) {
     if (std::find(known.begin(), known.end(), item.string) == known.end()) {
         fault(item.place, "no module '" + item.string + "' in " + glsl_folder.string() +
                               did_you_mean(item.string, known));
+        lacks_modules_ = true;
         return;
     }
     const auto same = [&](const Module& other) { return other.spec.name == item.string; };
@@ -50,7 +51,10 @@ void ManifestParser::module(const Node& item, const fs::path& glsl_folder) {
     }
     const fs::path folder = glsl_folder / item.string;
     auto document = read_document(folder / kModuleFile, diagnostics_);
-    if (!document) return;
+    if (!document) {
+        lacks_modules_ = true;
+        return;
+    }
     modules_.push_back({{item.string, "", folder}, std::move(*document), {}});
     modules_.back().sections = module_sections(modules_.back());
     manifest_.modules.push_back(modules_.back().spec);

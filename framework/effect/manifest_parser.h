@@ -22,6 +22,8 @@ public:
     void identity(ObjectReader& reader, const Node& node);
     /// Opens the modules that the effect names, for declarations().
     void modules(const Node& section, const std::filesystem::path& glsl_folder);
+    /// Whether every module that was named could be read.
+    bool has_all_modules() const { return !lacks_modules_; }
     /// The section `key` of every module, then the effect's own; nullptr: it has none.
     using SectionReader = void (ManifestParser::*)(const Node& section);
     void declarations(const std::string& key, const Node* own, SectionReader section_reader);
@@ -88,7 +90,8 @@ private:
 
     EffectManifest& manifest_;
     Diagnostics& diagnostics_;
-    std::list<Module> modules_;        // a list: sections point into its documents
+    std::list<Module> modules_;  // a list: sections point into its documents
+    bool lacks_modules_ = false;
     const Module* reading_ = nullptr;  // the module that is being read; nullptr: the effect
     struct Declaration {
         std::string owner;  // "the module 'x'"

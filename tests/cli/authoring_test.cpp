@@ -104,6 +104,41 @@ TEST_F(Authoring, WatchMakesThePictureAnewAtEverySaveAndWaitsFaultsOut) {
     RecordProperty("milliseconds", taken[1].str());
 }
 
+TEST_F(Authoring, WatchMakesThePictureAnewWhenAModuleChanges) {
+    command({"new", "mine"});
+    replace("mine/effect.json", "\"inputs\"", "\"modules\": [\"tint\"], \"inputs\"");
+    // A data folder of its own, where a module may be changed.
+    const fs::path shipped = AFTERSHADE_SOURCE_DIR;
+    fs::create_directories(folder_ / "data/effects");
+    for (const char* part : {"glsl", "profiles"})
+        fs::copy(shipped / part, folder_ / "data" / part, fs::copy_options::recursive);
+    fs::create_directories(folder_ / "data/glsl/tint");
+    write_text(folder_ / "data/glsl/tint/module.json",
+               R"({"aftershade": 1, "module": "tint", "summary": "A factor.",
+                   "params": {"tint": {"type": "float", "default": 1, "doc": "Factor."}}})");
+    write_text(folder_ / "data/glsl/tint/tint.glsl", "vec4 tinted(vec4 c) { return c * param.tint; }\n");
+    replace("mine/mine.frag", "#include <pass>", "#include <pass>\n#include <tint/tint.glsl>");
+    replace("mine/mine.frag", "light.rgb *", "tinted(light).rgb *");
+    write_capture(make_capture({.width = 64, .height = 36, .background = {0.5f, 0.5f, 0.5f}}),
+                  folder_ / "in_0001.exr");
+    Command watch({AFTERSHADE_EXECUTABLE, "run", "mine/look.json", "in_0001.exr", "--effect-path", ".", "-o",
+                   "out.png", "--backend", "osmesa", "--watch"},
+                  folder_.path(), {{"AFTERSHADE_DATA", (folder_ / "data").string()}});
+    ASSERT_TRUE(watch.wait_for_lines(1));
+    const std::string first = read_text(folder_ / "out.png");
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    replace("data/glsl/tint/tint.glsl", "c * param", "0.5 * c * param");
+    ASSERT_TRUE(watch.wait_for_lines(2)) << "a shader of a module";
+    const std::string second = read_text(folder_ / "out.png");
+    EXPECT_NE(first, second);
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    replace("data/glsl/tint/module.json", "\"default\": 1,", "\"default\": 0.25,");
+    ASSERT_TRUE(watch.wait_for_lines(3)) << "the module's declarations";
+    EXPECT_NE(read_text(folder_ / "out.png"), second);
+    watch.send(SIGINT);
+    EXPECT_EQ(watch.wait().exit_code, 130);
+}
+
 TEST_F(Authoring, NewRefusesBadIdsAndReplacesNothing) {
     EXPECT_NE(command({"new", "Bad-Name"}, 2).err.find("must be snake_case"), std::string::npos);
     EXPECT_NE(command({"new", "sanitize"}, 2).err.find("an effect that comes with Aftershade"),

@@ -55,7 +55,8 @@ protected:
 
     std::vector<std::string> verdicts(const std::vector<Document>& documents) {
         json task = {{"schemas", json::object()}, {"documents", json::array()}};
-        for (const char* name : {"look", "capture", "effect", "scene"}) task["schemas"][name] = schema(name);
+        for (const char* name : {"look", "capture", "effect", "module", "scene"})
+            task["schemas"][name] = schema(name);
         for (const Document& document : documents)
             task["documents"].push_back({{"schema", document.schema}, {"document", document.content}});
         write_text(folder_ / "task.json", task.dump());
@@ -77,6 +78,7 @@ TEST_F(Schemas, TakeEveryShippedDocument) {
         const std::string text = path.lexically_relative(kRoot).string();
         if (path.extension() != ".json" || text.starts_with("build") || text.starts_with(".")) continue;
         const std::string kind = path.filename() == "effect.json"           ? "effect"
+                                 : path.filename() == "module.json"         ? "module"
                                  : path.filename() == "capture.json"        ? "capture"
                                  : path.filename() == "scene.json"          ? "scene"
                                  : path.parent_path().filename() == "looks" ? "look"
@@ -89,10 +91,13 @@ TEST_F(Schemas, TakeEveryShippedDocument) {
     for (std::size_t i = 0; i < seen.size(); ++i) EXPECT_EQ(seen[i], "valid") << documents[i].name;
 }
 
-TEST_F(Schemas, OfEffectsIsTheOneThatIsPublished) {
+TEST_F(Schemas, OfEffectsAndModulesAreThoseThatArePublished) {
     const CommandResult result = run_aftershade({"schema", "effect"}, folder_.path());
     EXPECT_EQ(result.out, read_text(kRoot / "effects/effect.schema.json"))
         << "run: aftershade schema effect > effects/effect.schema.json";
+    EXPECT_EQ(run_aftershade({"schema", "module"}, folder_.path()).out,
+              read_text(kRoot / "glsl/module.schema.json"))
+        << "run: aftershade schema module > glsl/module.schema.json";
 }
 
 TEST_F(Schemas, TakeEveryFormOfAValue) {

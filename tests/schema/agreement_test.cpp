@@ -1,4 +1,4 @@
-// The schemas against the program that they speak for: four documents with every key that there is, changed
+// The schemas against the program that they speak for: five documents with every key that there is, changed
 // in every place and every way, and judged by both.
 #include <gtest/gtest.h>
 
@@ -123,6 +123,21 @@ std::string judge_manifest(const std::string& text) {
     return first_fault(diagnostics);
 }
 
+/// By a manifest that takes the module.
+std::string judge_module(const std::string& text) {
+    static const TemporaryFolder glsl;
+    static const Node effect =
+        parsed(R"({"aftershade": 1, "id": "every_form", "version": "1.0.0", "summary": ".",
+        "modules": ["every_part"], "inputs": {"color": {"role": "color"}}, "outputs": {"color": {"role": "color"}},
+        "passes": [{"name": "main", "shader": "main.frag", "reads": ["color"], "writes": ["color"]}]})");
+    fs::create_directories(glsl / "every_part");
+    write_text(glsl / "every_part/tone.frag", "");
+    write_text(glsl / "every_part/module.json", text);
+    Diagnostics diagnostics;
+    parse_manifest(effect, kFolder / "every_form", diagnostics, glsl.path());
+    return first_fault(diagnostics);
+}
+
 std::string judge_scene(const std::string& text) {
     Diagnostics diagnostics;
     const auto node = parse_document(text, (kFolder / "scene.json").string(), diagnostics);
@@ -233,6 +248,18 @@ TEST_F(SchemaAgreement, OfAManifestChangedEverywhere) {
              "must lie above|taken already|twice|differ in size|in one turn|but it has|holds|whole number",
              "words, more than|writes no image|outside the domain|is not a value of '|level",
              "^/presets/|^/params/skins/default",  // as the parameters and columns say
+         });
+}
+
+TEST_F(SchemaAgreement, OfAModuleChangedEverywhere) {
+    hold("every_part/module.json", module_schema(), judge_module,
+         {
+             "is not the name of its folder|no file '",  // what lies on the disk
+             "which is no |which is not |is not a parameter|is not one of '|declared already|GLSL name",
+             "no pass (reads|writes|uses) |before any pass has written it|another pass has this name",
+             "is (above|below) |has a unit, but|must rise|holds|taken already|twice|whole number|words, more "
+             "than",
+             "writes no image|is not a value of '",
          });
 }
 
