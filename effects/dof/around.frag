@@ -7,15 +7,16 @@ void main() {
     ivec2 last = ivec2(tile_coc_size.xy) - 1, p = ivec2(gl_FragCoord.xy);
     int range = int(ceil(param.max_coc_radius / float(kTile)));
     vec4 own = texelFetch(tile_coc, p, 0);
-    float smallest = own.x, before = own.z;
+    float smallest = own.x, largest = own.y, before = own.z;
     for (int y = max(p.y - range, 0); y <= min(p.y + range, last.y); ++y)
         for (int x = max(p.x - range, 0); x <= min(p.x + range, last.x); ++x) {
             vec4 tile = texelFetch(tile_coc, ivec2(x, y), 0);
             float gap_px = float((max(max(abs(x - p.x), abs(y - p.y)), 1) - 1) * kTile);
             if (max(-tile.x, tile.y) <= gap_px - 1.0) continue;
             smallest = min(smallest, tile.x);
+            largest = max(largest, tile.y);
             float bound = own.y - kClear;
             if (tile.x < bound) before = max(before, tile.y < bound ? tile.y : tile.z < bound ? tile.z : own.y);
         }
-    out_around = vec4(smallest, before, own.y, 0.0);
+    out_around = vec4(smallest, before, own.y, largest);
 }

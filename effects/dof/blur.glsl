@@ -2,7 +2,7 @@
 // in px at full size.
 #include <lens/packing.glsl>
 #include "outline.glsl"
-#include "tile.glsl"
+#include "reach.glsl"
 
 // Surfaces whose CoC radii differ by less are one, by more are two; between, both.
 float in_front(float tap_coc, float coc) { return clamp(coc - tap_coc, 0.0, 1.0); }
@@ -70,11 +70,4 @@ Back gather_back(vec2 center, float coc, int level) {
     }
     float sum = own_weight + behind_weight;
     return Back((own + behind) / max(sum, 1e-6), sum > 0.0 ? own_weight / sum : 1.0);
-}
-
-// How far what is in front of a point may reach it, px; `around_coc` is the texel of `around`.
-float front_reach_px(vec4 around_coc, float coc) {
-    if (around_coc.x >= coc - 0.05) return 0.0;
-    float far_px = coc > around_coc.z - kClear ? around_coc.y : coc;
-    return max(-around_coc.x, max(far_px, 0.0));
 }

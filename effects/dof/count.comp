@@ -2,13 +2,19 @@
 #include <pass>
 #include "tile.glsl"
 
-layout(local_size_x = 1) in;
+layout(local_size_x = 16) in;  // a row of the tile each
+
+shared uint sums[kTile];
 
 void main() {
-    ivec2 tile = ivec2(gl_WorkGroupID.xy), corner = kTile * tile, end = min(corner + kTile, frame.size);
+    ivec2 tile = ivec2(gl_WorkGroupID.xy), p = kTile * tile + ivec2(0, gl_LocalInvocationID.x);
     uint count = 0u;
-    for (int y = corner.y; y < end.y; ++y)
-        for (int x = corner.x; x < end.x; ++x)
-            if (texelFetch(highlight, ivec2(x, y), 0).rgb != vec3(0.0)) ++count;
-    tile_count[tile.y * int(gl_NumWorkGroups.x) + tile.x] = count;
+    if (p.y < frame.size.y)
+        for (int i = 0; i < kTile; ++i)
+            if (p.x + i < frame.size.x && texelFetch(is_highlight, p + ivec2(i, 0), 0).r > 0.5) ++count;
+    sums[gl_LocalInvocationID.x] = count;
+    barrier();
+    if (gl_LocalInvocationID.x != 0u) return;
+    for (int i = 1; i < kTile; ++i) count += sums[i];
+    tile_count[tile.y * tiles_in_a_row() + tile.x] = count;
 }

@@ -4,20 +4,21 @@
 #include "levels.glsl"
 
 void main() {
-    prepare_outline();
     ivec2 p = ivec2(gl_FragCoord.xy);
     Light own = tap_light(p, 1);
     vec2 center = 2.0 * vec2(p) + 1.0;
-    move_rim(center);
-    float reach_px = front_reach_px(texelFetch(around, min(2 * p, frame.size - 1) / kTile, 0), own.coc);
+    vec4 around_coc = texelFetch(around, min(2 * p, frame.size - 1) / kTile, 0);
+    float reach_px = front_reach_px(around_coc, own.coc);
+    bool is_blurred = abs(own.coc) > kFullSizePx - 1.0;
+    if (reach_px > kFullSizePx || is_blurred) prepare_outline_at(center);
     Layer over = Layer(vec4(0.0), 0.0);
     if (reach_px > kFullSizePx) {
-        int level = level_for(reach_px);
+        int level = level_for(reach_px, around_coc);
         over = gather_front(center / float(1 << level), own.coc, reach_px, level);
     }
     Back surface = Back(own.color, 1.0);
-    if (abs(own.coc) > kFullSizePx - 1.0) {
-        int level = level_for(abs(own.coc));
+    if (is_blurred) {
+        int level = level_for(abs(own.coc), around_coc);
         surface = gather_back(center / float(1 << level), own.coc, level);
     }
     // Light and opacity must agree to the last bit for what is even to stay even, and opacity is stored as a half.

@@ -1,11 +1,16 @@
 // Up to kFullSizePx the blur is gathered at full size; beyond, at half size from the finest level whose texels are at most
-// kTexels a radius: about pi times its square are fetched.
+// kTexels a radius: about pi times its square are fetched. Where all CoC are alike there is no silhouette to be precise about.
 #if QUALITY == QUALITY_FAST
-const float kFullSizePx = 4.0, kTexels = 8.0;
+const float kFullSizePx = 4.0, kTexels = 8.0, kEvenTexels = 6.0;
 #elif QUALITY == QUALITY_NORMAL
-const float kFullSizePx = 8.0, kTexels = 16.0;
+const float kFullSizePx = 8.0, kTexels = 16.0, kEvenTexels = 8.0;
 #else
-const float kFullSizePx = 64.0, kTexels = 64.0;
+const float kFullSizePx = 64.0, kTexels = 64.0, kEvenTexels = 64.0;
 #endif
+const float kAlikePx = 2.0;  // difference of CoC radii
 
-int level_for(float radius_px) { return clamp(int(ceil(log2(radius_px / kTexels))), 0, 3); }
+// around_coc: the texel of `around`.
+int level_for(float radius_px, vec4 around_coc) {
+    float texels = around_coc.w - around_coc.x <= kAlikePx ? kEvenTexels : kTexels;
+    return clamp(int(ceil(log2(radius_px / texels))), 0, 3);
+}

@@ -6,8 +6,10 @@ layout(local_size_x = 1) in;
 
 void main() {
     ivec2 tile = ivec2(gl_WorkGroupID.xy), corner = kTile * tile, end = min(corner + kTile, frame.size);
-    uint next = tile_first[tile.y * int(gl_NumWorkGroups.x) + tile.x];
+    int number = tile.y * tiles_in_a_row() + tile.x;
+    if (tile_count[number] == 0u) return;
+    uint next = tile_first[number];
     for (int y = corner.y; y < end.y; ++y)
         for (int x = corner.x; x < end.x; ++x)
-            if (texelFetch(highlight, ivec2(x, y), 0).rgb != vec3(0.0)) highlight_list[next++] = uint(x) | uint(y) << 16;
+            if (texelFetch(is_highlight, ivec2(x, y), 0).r > 0.5) highlight_list[next++] = uint(x) | uint(y) << 16;
 }

@@ -1,5 +1,5 @@
-// The aperture's outline as a gauge: the factor by which the outline must grow to reach an offset. prepare_outline comes
-// first in each shader.
+// The aperture's outline as a gauge: the factor by which the outline must grow to reach an offset. prepare_outline_at comes
+// before the others.
 #include <aperture.glsl>
 
 #if BLADES >= 3
@@ -8,7 +8,7 @@ vec2 edge_normals[BLADES];  // over the inradius
 Aperture aperture;
 vec2 rim;  // middle of the lens's rim, in radii of the aperture
 
-void prepare_outline() {
+void prepare_outline_at(vec2 pixel) {
     aperture = make_aperture(BLADES, param.curvature, radians(param.rotation));
 #if BLADES >= 3
     for (int i = 0; i < BLADES; ++i) {
@@ -16,11 +16,7 @@ void prepare_outline() {
         edge_normals[i] = vec2(cos(angle), sin(angle)) / cos(kPi / float(BLADES));
     }
 #endif
-    rim = vec2(0.0);
-}
-
-// Off the middle of the picture the rim of the lens hides the aperture's outer side.
-void move_rim(vec2 pixel) {
+    // Off the middle of the picture the rim of the lens hides the aperture's outer side.
     vec2 middle = 0.5 * vec2(frame.display_size);
     rim = param.cat_eye * (middle - (pixel + vec2(frame.origin))) / length(middle);
 }

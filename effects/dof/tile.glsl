@@ -1,5 +1,7 @@
 // Side in px of the tiles of tile_coc and around, as effect.json declares it.
 const int kTile = 16;
 
+int tiles_in_a_row() { return (frame.size.x + kTile - 1) / kTile; }
+
 // Difference of two CoC radii, px, from which on one surface is clearly in front of the other.
 const float kClear = 1.0;
