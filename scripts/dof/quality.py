@@ -200,6 +200,11 @@ def document(family, on_suzanne, shown, on_scenes, bokeh_shapes):
         [[names(n) if n != "truth" else "the renderer's lens, 1024 samples"] + [
             "n/a" if (n, b, s) not in bokeh_shapes else "%.3f, %.2f" % bokeh_shapes[n, b, s]
             for s in ("near", "far") for b in (3, 5, 7)] for n in [*ids, "truth"]]))
+    cost = ROOT / "scripts/dof/cost-table.md"  # of scripts/bench-dof
+    if cost.exists():
+        parts.append("## Cost\n\n" + (ROOT / "scripts/dof/quality-cost.md").read_text() + "\n" + cost.read_text())
+        parts.append(table(["over radius", "over the part out of focus"],
+                           [[f"![{n}](images/dof/{n}.svg)" for n in ("cost_radius", "cost_fraction")]]))
     parts.append((ROOT / "scripts/dof/quality-faults.md").read_text())
     return "\n\n".join(p.strip() for p in parts) + "\n"
 

@@ -89,10 +89,10 @@ json measure(gpu::Context& context, gpu::Buffer& counts, const json& job, const 
     PipelineRenderer renderer(context, pipeline, job.at("data").get<std::string>());
     FrameInputs frame;
     frame.capture = &capture;
-    renderer.render(frame, {}, false);
+    renderer.render(frame, {"color"}, false);
     counts.clear(0);
     context.gl().BindBufferBase(GL_SHADER_STORAGE_BUFFER, kCountBinding, counts.handle());
-    const FrameResult result = renderer.render(frame, {}, true);
+    const FrameResult result = renderer.render(frame, {"color"}, true);
     json passes = json::array();
     double ms = 0;
     for (const graph::PassTime& pass : result.times) {
