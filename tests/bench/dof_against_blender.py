@@ -2,6 +2,7 @@
 Started by tests/bench/dof-against-blender."""
 import os
 import pathlib
+import resource
 import shutil
 import subprocess
 import sys
@@ -30,11 +31,13 @@ def doubled(source, target):
 
 
 def seconds(words, **more):
-    start = time.monotonic()
+    """(wall, processor of all threads)"""
+    start, before = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run([str(w) for w in words], capture_output=True, text=True, cwd=ROOT, **more)
     if done.returncode:
         raise SystemExit(f"{words[0]} ended with {done.returncode}:\n{done.stdout[-1000:]}{done.stderr[-2000:]}")
-    return time.monotonic() - start
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return time.monotonic() - start, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
 def main():
@@ -60,12 +63,12 @@ def main():
     for i in range(int(os.environ.get("REPETITIONS", "3"))):
         times["aftershade"].append(seconds(run_words))
         times["blender"].append(seconds(blender_words))
-        print(f"turn {i + 1}: aftershade {times['aftershade'][-1]:.2f} s, blender {times['blender'][-1]:.2f} s", flush=True)
+        print(f"turn {i + 1}: " + ", ".join("%s %.2f s (%.2f s of processor)" % (k, *v[-1]) for k, v in times.items()), flush=True)
     truth = read_exr(CAPTURES / "suzanne/truth/dof_0004.exr", ["R", "G", "B"])
     for label, file in ("aftershade", ours), ("blender", theirs):
         at_half = read_exr(file, ["R", "G", "B"]).reshape(540, 2, 960, 2, 3).mean(axis=(1, 3))
         print(f"{label:10} against the renderer's lens, at 960x540: {psnr_db(truth, at_half):.2f} dB")
-    a, b = (float(numpy.median(times[k])) for k in ("aftershade", "blender"))
+    a, b = (float(numpy.median([wall for wall, _ in times[k]])) for k in ("aftershade", "blender"))
     print(f"suzanne frame 4 at 1920x1080, whole process, EXR to EXR, median of {len(times['blender'])}: `{name}` {a:.2f} s, "
           f"Blender's Defocus {b:.2f} s: {b / a:.1f} times as fast")
 
