@@ -54,8 +54,10 @@ void add_options(CLI::App& app, RunArguments& options) {
         ->allow_extra_args(false);
     app.add_option("--set", options.pipeline.sets, "step.param=value, above the look's own; repeatable")
         ->allow_extra_args(false);
-    app.add_option("--tap", options.pipeline.taps,
-                   "step.texture to write beside the first output; repeatable")
+    app.add_option(
+           "--tap", options.pipeline.taps,
+           "step.texture to write as EXR beside the first output, or step.texture=FILE (.exr, or .png "
+           "in false colour); repeatable")
         ->allow_extra_args(false);
     add_capture_options(app, options.capture, "Frames to run, such as 1-100x2,120");
     app.add_option("--output-roles", options.roles, "Roles in EXR outputs (default: color)")->delimiter(',');
@@ -96,6 +98,9 @@ OutputOptions output_options(const RunArguments& options) {
     outputs.crop_to_display = options.crop == "display";
     outputs.compression = options.compression;
     outputs.look = options.look;
+    for (const std::string& tap : options.pipeline.taps)
+        if (const std::size_t equals = tap.find('='); equals != std::string::npos)
+            outputs.tap_patterns[tap.substr(0, equals)] = tap.substr(equals + 1);
     return outputs;
 }
 
@@ -110,8 +115,9 @@ struct BoundLook {
 std::unique_ptr<BoundLook> bind_look(const RunArguments& options, Diagnostics& diagnostics) {
     auto bound = std::make_unique<BoundLook>(find_effects(options.effect_paths, diagnostics));
     bound->look = read_look(options.look, diagnostics, parse_variables(options.render, diagnostics));
-    if (bound->look)
-        bound->pipeline = compile_pipeline(*bound->look, bound->effects, options.pipeline, diagnostics);
+    PipelineOptions pipeline = options.pipeline;
+    for (std::string& tap : pipeline.taps) tap = tap.substr(0, tap.find('='));  // the files are the output's
+    if (bound->look) bound->pipeline = compile_pipeline(*bound->look, bound->effects, pipeline, diagnostics);
     return bound;
 }
 

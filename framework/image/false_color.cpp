@@ -10,6 +10,7 @@
 #include <numbers>
 #include <optional>
 #include <set>
+#include <span>
 
 namespace aftershade {
 
@@ -72,6 +73,18 @@ DisplayColor hue_color(float turns, float saturation, float value) {
     return color;
 }
 
+/// Stops as 0xrrggbb at even distances, t in 0..1.
+DisplayColor between(std::span<const std::uint32_t> stops, float t) {
+    const float at = std::clamp(t, 0.0f, 1.0f) * float(stops.size() - 1);
+    const std::size_t stop = std::min(std::size_t(at), stops.size() - 2);
+    DisplayColor color{};
+    for (std::size_t c = 0; c < 3; ++c) {
+        const auto component = [&](std::uint32_t rgb) { return float((rgb >> (16 - 8 * c)) & 255) / 255; };
+        color[c] = std::lerp(component(stops[stop]), component(stops[stop + 1]), at - float(stop));
+    }
+    return color;
+}
+
 /// Neighbouring ids get hues far apart: multiples of the golden ratio (Knuth, TAOCP 3, 6.4).
 DisplayColor id_color(std::uint32_t id) {
     if (id == 0) return {0, 0, 0};
@@ -97,14 +110,7 @@ DisplayColor ramp_color(float t) {
     // matplotlib's viridis at ninths (Smith and van der Walt 2015, CC0).
     constexpr std::array<std::uint32_t, 10> stops = {0x440154, 0x482878, 0x3e4989, 0x31688e, 0x26828e,
                                                      0x1f9e89, 0x35b779, 0x6ece58, 0xb5de2b, 0xfde725};
-    const float at = std::clamp(t, 0.0f, 1.0f) * 9;
-    const std::size_t stop = std::min(std::size_t(at), std::size_t(8));
-    DisplayColor color{};
-    for (std::size_t c = 0; c < 3; ++c) {
-        const auto component = [&](std::uint32_t rgb) { return float((rgb >> (16 - 8 * c)) & 255) / 255; };
-        color[c] = std::lerp(component(stops[stop]), component(stops[stop + 1]), at - float(stop));
-    }
-    return color;
+    return between(stops, t);
 }
 
 DisplayColor wheel_color(float x, float y) {
@@ -115,12 +121,25 @@ DisplayColor wheel_color(float x, float y) {
     return hue_color(turns, length > 1 ? 1 / length : 1, std::sqrt(std::min(length, 1.0f)));
 }
 
+DisplayColor diverging_color(float t) {
+    // ColorBrewer's RdBu of nine classes from blue to red (Brewer 2002, Apache 2.0).
+    constexpr std::array<std::uint32_t, 9> stops = {0x2166ac, 0x4393c3, 0x92c5de, 0xd1e5f0, 0xf7f7f7,
+                                                    0xfddbc7, 0xf4a582, 0xd6604d, 0xb2182b};
+    return between(stops, std::clamp(t, -1.0f, 1.0f) * 0.5f + 0.5f);
+}
+
 FalseColor::Kind FalseColor::kind_of(const std::string& role, const Image& image) {
     if (image.type() == ComponentType::uint32) return Kind::ids;
     if (role == "depth") return Kind::depth;
     if (role == "velocity" || role == "velocity_next") return Kind::velocity;
     if (role == "normal") return Kind::normal;
     if (role == "position") return Kind::position;
+    if (role == kDataRole && image.channels() == 2) return Kind::velocity;
+    if (role == kDataRole && image.channels() == 1) {
+        const auto values = image.floats();
+        const bool any_below = std::any_of(values.begin(), values.end(), [](float v) { return v < 0; });
+        return any_below ? Kind::signed_data : Kind::data;
+    }
     return image.channels() >= 3 ? Kind::color : Kind::grey;
 }
 
@@ -128,7 +147,7 @@ FalseColor::FalseColor(const std::string& role, const Image& image, const Chroma
     : image_(image),
       kind_(kind_of(role, image)),
       may_be_negative_(kind_ == Kind::velocity || kind_ == Kind::normal || kind_ == Kind::position ||
-                       role.starts_with("aov:")),
+                       role.starts_with("aov:") || role == kDataRole),
       may_be_infinite_(kind_ == Kind::depth) {
     count_faults();
     switch (kind_) {
@@ -139,6 +158,8 @@ FalseColor::FalseColor(const std::string& role, const Image& image, const Chroma
         case Kind::position: fit_position(); break;
         case Kind::ids: fit_ids(); break;
         case Kind::grey: fit_grey(); break;
+        case Kind::signed_data:
+        case Kind::data: fit_data(); break;
     }
 }
 
@@ -263,6 +284,15 @@ void FalseColor::fit_grey() {
               fmt::format("black is {:.4g}, white {:.4g}", low_[0], high_[0])};
 }
 
+void FalseColor::fit_data() {
+    const Range range = finite_range(image_, 0).value_or(Range{});
+    high_[0] = std::max(std::abs(range.min), std::abs(range.max));
+    low_[0] = kind_ == Kind::signed_data ? -high_[0] : 0;
+    label_ = {fmt::format("{:.4g} to {:.4g}", range.min, range.max),
+              kind_ == Kind::signed_data ? fmt::format("blue {:.4g}, white 0, red {:.4g}", low_[0], high_[0])
+                                         : fmt::format("dark 0, bright {:.4g}", high_[0])};
+}
+
 const float* FalseColor::pixel(int x, int y) const {
     const std::size_t index = std::size_t(y) * std::size_t(image_.width()) + std::size_t(x);
     return &image_.floats()[index * std::size_t(image_.channels())];
@@ -333,6 +363,8 @@ DisplayColor FalseColor::color(int x, int y) const {
             const float grey = span > 0 ? (values[0] - low_[0]) / span : 0.5f;
             return {grey, grey, grey};
         }
+        case Kind::signed_data: return diverging_color(high_[0] > 0 ? values[0] / high_[0] : 0);
+        case Kind::data: return ramp_color(high_[0] > 0 ? values[0] / high_[0] : 0);
         default: return exposed(values);
     }
 }

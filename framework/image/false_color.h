@@ -27,9 +27,16 @@ DisplayColor ramp_color(float t);
 /// Direction (+x right, +y down) as hue, length 0..1 from black to the full colour; longer vectors turn
 /// paler.
 DisplayColor wheel_color(float x, float y);
+/// Signed values t in -1..1: blue below 0, white at 0, red above.
+DisplayColor diverging_color(float t);
 
 /// What explains the colours beside the words.
 enum class Legend { none, ramp, wheel };
+
+/// The word for an image that is no role's, such as an effect's texture: one channel is shown as
+/// diverging_color where any value is below 0, else as ramp_color from 0 to the largest; two as vectors;
+/// three and four as light.
+inline constexpr std::string_view kDataRole = "data";
 
 /// Shows one role's image. Negative values are faults only where the role's contract forbids them.
 /// [thread-safe; `image` must outlive it]
@@ -49,7 +56,7 @@ public:
     }  ///< false: the mean of two colours would be a third id
 
 private:
-    enum class Kind { color, depth, velocity, normal, position, ids, grey };
+    enum class Kind { color, depth, velocity, normal, position, ids, grey, signed_data, data };
     static Kind kind_of(const std::string& role, const Image& image);
     void count_faults();
     void fit_color(const std::string& role, const Chromaticities& primaries);
@@ -58,6 +65,7 @@ private:
     void fit_ids();
     void fit_position();
     void fit_grey();
+    void fit_data();
     DisplayColor exposed(const float* pixel) const;
     DisplayColor scaled(const float* pixel) const;
     const float* pixel(int x, int y) const;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "framework/core/error.h"
+#include "framework/image/false_color.h"
 #include "framework/image/png_file.h"
 #include "framework/image/role.h"
 #include "framework/image/srgb.h"
@@ -95,6 +96,17 @@ fs::path tap_path(const std::string& text, const std::string& tap, int frame) {
            (stem + (stem.empty() ? "" : ".") + tap + "." + FramePattern("####").path(frame) + ".exr");
 }
 
+void write_false_color(const fs::path& path, const Image& image, const CaptureHeader& header) {
+    const FalseColor colors(std::string(kDataRole), image, header.primaries);
+    Image picture(image.width(), image.height(), 3);
+    for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x) {
+            const DisplayColor color = colors.color(x, y);
+            for (int c = 0; c < 3; ++c) picture.at(x, y, c) = color[std::size_t(c)];
+        }
+    write_png(path, picture);
+}
+
 void write_tap(const fs::path& path, const Image& image, const OutputOptions& options,
                const CaptureHeader& header) {
     constexpr std::string_view kNames = "RGBA";
@@ -111,6 +123,15 @@ void write_tap(const fs::path& path, const Image& image, const OutputOptions& op
     write_exr(path, channels, write);
 }
 
+/// Every file name that was written down, with where.
+std::vector<std::pair<Place, std::string>> all_patterns(const OutputOptions& options) {
+    std::vector<std::pair<Place, std::string>> patterns;
+    for (const std::string& text : options.patterns) patterns.push_back({{"-o " + text}, text});
+    for (const auto& [tap, text] : options.tap_patterns)
+        patterns.push_back({{"--tap " + tap + "=" + text}, text});
+    return patterns;
+}
+
 }  // namespace
 
 void require_output_folder(const fs::path& file) {
@@ -122,7 +143,7 @@ void require_output_folder(const fs::path& file) {
 }
 
 void require_output_folders(const OutputOptions& options, const Sequence& sequence) {
-    for (const std::string& text : options.patterns)
+    for (const auto& [place, text] : all_patterns(options))
         for (const int frame : sequence.frames) require_output_folder(FramePattern(text).path(frame));
 }
 
@@ -138,8 +159,7 @@ void check_outputs(const OutputOptions& options, const Sequence& sequence, Diagn
     std::set<fs::path> named;
     if (options.patterns.empty())
         diagnostics.error({"-o"}, "no output; name at least one file, such as -o out_####.exr");
-    for (const std::string& text : options.patterns) {
-        const Place place{"-o " + text};
+    for (const auto& [place, text] : all_patterns(options)) {
         const FramePattern pattern(text);
         const std::string type = extension(text);
         if (type != ".exr" && type != ".png")
@@ -191,8 +211,12 @@ std::vector<fs::path> write_outputs(const OutputOptions& options, const FrameRes
         written.push_back(path);
     }
     for (const auto& [tap, image] : result.taps) {
-        const fs::path path = tap_path(options.patterns.front(), tap, frame);
-        write_tap(path, image, options, capture.header);
+        const auto asked = options.tap_patterns.find(tap);
+        const fs::path path = asked == options.tap_patterns.end()
+                                  ? tap_path(options.patterns.front(), tap, frame)
+                                  : fs::path(FramePattern(asked->second).path(frame));
+        if (extension(path) == ".png") write_false_color(path, image, capture.header);
+        else write_tap(path, image, options, capture.header);
         written.push_back(path);
     }
     return written;

@@ -1,7 +1,8 @@
-// What `run` writes: EXR of color and other roles, PNG of display, EXR of taps.
+// What `run` writes: EXR of color and other roles, PNG of display, taps as EXR or as PNG in false colour.
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct OutputOptions {
     std::string compression = "zip";  ///< EXR
     std::string look{};               ///< written as attribute aftershade/look
     std::string renderer{};           ///< GL_RENDERER, written as attribute aftershade/renderer
+    std::map<std::string, std::string> tap_patterns{};  ///< by "step.texture"; else beside the first pattern
 };
 
 /// Throws Error(ExitCode::output) where the folder of a file that shall be written is not there: better told

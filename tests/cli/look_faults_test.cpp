@@ -145,6 +145,12 @@ std::vector<Fault> word_faults() {
               "--tap blur\\.coc: error: the look has no step 'blur'.*"),
         words("ATapOfAnUnknownTexture", {"--tap", "bokeh.coe"},
               "--tap bokeh\\.coe: error: bokeh has no texture 'coe'; did you mean 'coc'\\? \\(known: .*\\)"),
+        words(
+            "ATapIntoAnUnknownFormat", {"--tap", "bokeh.coc=coc.tif"},
+            "--tap bokeh\\.coc=coc\\.tif: error: the format '\\.tif' is not known; outputs end in \\.exr or "
+            "\\.png"),
+        words("ATapIntoTheOutput", {"--tap", "bokeh.coc=out.exr"},
+              "--tap bokeh\\.coc=out\\.exr: error: another output has this name"),
         words("AnUnknownProfile", {"--profile", "blendr"},
               "--profile blendr: error: no profile 'blendr'; did you mean 'blender'\\? \\(known: "
               ".*'native'.*\\)"),

@@ -149,6 +149,17 @@ TEST_F(Run, WritesTapsBesideTheFirstOutput) {
     EXPECT_NEAR(coc.read_floats(0, std::vector<std::string>{"Y"}).at(60, 30, 0), radius_px, 1e-4 * radius_px);
 }
 
+TEST_F(Run, DrawsATapInFalseColorIntoThePngThatItNames) {
+    write_capture(still(), folder_ / "still.exr");
+    const CommandResult result = run({"film.json", "still.exr", "-o", "out.exr", "--tap", "bokeh.coc=coc.png",
+                                      "--tap", "bokeh.near=near.exr"});
+    EXPECT_EQ(result.out, "out.exr\ncoc.png\nnear.exr\n");
+    const Image picture = read_png(folder_ / "coc.png");
+    EXPECT_EQ(picture.width(), still().header.data_window.width());
+    EXPECT_EQ(picture.channels(), 3);
+    EXPECT_EQ(ExrFile(folder_ / "near.exr").parts()[0].channels[0].name, "Y");
+}
+
 TEST_F(Run, CarriesAttributesAndWindowsOverAndAddsItsOwn) {
     const Capture capture = still();
     const Image& image = capture.images.at("color");

@@ -193,6 +193,17 @@ TEST(FalseColor, GivesNeighbouringIdsColorsThatDiffer) {
     EXPECT_TRUE(picture.label()[0].starts_with("256 ids: 1 2 3")) << picture.label()[0];
 }
 
+TEST(FalseColor, ShowsDataWithoutASignFromDarkToBright) {
+    Image radii(3, 1, 1);
+    radii.at(1, 0, 0) = 8;
+    radii.at(2, 0, 0) = std::numeric_limits<float>::infinity();
+    const FalseColor picture(std::string(kDataRole), radii, {});
+    EXPECT_EQ(picture.color(0, 0), ramp_color(0));
+    EXPECT_EQ(picture.color(1, 0), ramp_color(1));
+    EXPECT_EQ(picture.color(2, 0), pixel_fault_color(PixelFault::infinite));
+    EXPECT_EQ(picture.label()[0], "0 to 8");
+}
+
 TEST(FalseColor, CountsFaultsByTheRolesContract) {
     Image image = filled(3, 1, 1, 0.5f);
     image.at(0, 0, 0) = -1;

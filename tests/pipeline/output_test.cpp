@@ -95,6 +95,8 @@ protected:
         for (const std::string& pattern : patterns) options.patterns.push_back((folder_ / pattern).string());
         options.roles = roles;
         options.look = "look.json";
+        for (const auto& [tap, pattern] : tap_patterns_)
+            options.tap_patterns[tap] = (folder_ / pattern).string();
         std::vector<std::string> names;
         for (const fs::path& path : write_outputs(options, result_, capture_, reader_)) {
             EXPECT_TRUE(fs::is_regular_file(path)) << path;
@@ -110,6 +112,7 @@ protected:
     Capture capture_ =
         make_capture({.width = 6, .height = 4, .background = {0.25f, 0.5f, 0.75f}, .background_depth_m = 3});
     FrameResult result_;
+    std::map<std::string, std::string> tap_patterns_;
     Sequence sequence_;
     CaptureReader reader_{sequence_, {}, {}};
 };
@@ -218,6 +221,27 @@ TEST_F(Write, GivesATapOfAnotherSizeWindowsOfItsOwn) {
     EXPECT_EQ(same.parts()[0].display_window, (Window{0, 0, 9, 9}));
     EXPECT_EQ(tiles.parts()[0].data_window, (Window{0, 0, 1, 0}));
     EXPECT_EQ(tiles.parts()[0].display_window, (Window{0, 0, 1, 0}));
+}
+
+TEST_F(Write, DrawsASignedTapInBlueAndRedAroundWhiteWhereAPngIsNamed) {
+    Image& coc = result_.taps["bokeh.coc"] = Image(6, 4, 1);
+    coc.at(1, 2, 0) = -8;
+    coc.at(2, 2, 0) = 8;
+    coc.at(3, 2, 0) = -4;
+    tap_patterns_["bokeh.coc"] = "coc_####.png";
+    const auto written = write({"out.exr"});
+    ASSERT_EQ(written.size(), 2u);
+    EXPECT_EQ(written[1], "coc_0001.png");
+    const Image picture = read_png(folder_ / "coc_0001.png");
+    const auto rgb = [&](int x) {
+        std::array<long, 3> bytes{};
+        for (int c = 0; c < 3; ++c) bytes[std::size_t(c)] = std::lround(picture.at(x, 2, c) * 255);
+        return bytes;
+    };
+    EXPECT_EQ(rgb(0), (std::array<long, 3>{0xf7, 0xf7, 0xf7}));
+    EXPECT_EQ(rgb(1), (std::array<long, 3>{0x21, 0x66, 0xac}));
+    EXPECT_EQ(rgb(2), (std::array<long, 3>{0xb2, 0x18, 0x2b}));
+    EXPECT_EQ(rgb(3), (std::array<long, 3>{0x92, 0xc5, 0xde}));
 }
 
 TEST_F(Write, StoresTapsWithoutLoss) {

@@ -1,0 +1,198 @@
+"""What the effects of the depth-of-field family cost; started by scripts/bench-dof, which says what it needs."""
+import json
+import os
+import re
+import shutil
+import subprocess
+
+import matplotlib
+import numpy
+
+matplotlib.use("svg")
+from matplotlib import pyplot
+
+from family import FAMILY, ROOT, effect_folders, effects, iou, polygon_coverage, read_exr, run_effect, write_exr
+
+WORK = ROOT / "build/bench-dof"
+IMAGES = ROOT / "docs/images/dof"
+BENCH = ROOT / "build/release/tests/bench/dof_bench"
+SIZE = [int(n) for n in os.environ.get("SIZE", "1920x1080").split("x")]
+REPETITIONS = int(os.environ.get("REPETITIONS", "5"))
+RADII = [2, 4, 8, 16, 32, 64]
+FRACTIONS = [0, 0.1, 0.25, 0.5, 0.75, 1]
+FOCUS_M, FOCAL_MM, SENSOR_MM = 2, 200, 36
+ENOUGH_IOU = 0.97  # DESIGN.md section 10
+
+
+def lens(radius_px, width, **more):
+    """A pinhole lens of this CoC radius at infinity and, with the other sign, at half the focus distance."""
+    aperture_mm = 2 * radius_px * SENSOR_MM / width * FOCUS_M * 1000 / FOCAL_MM
+    return {"focus_distance": FOCUS_M, "focal_length": FOCAL_MM, "sensor_width": SENSOR_MM, "lens_model": "pinhole",
+            "f_number": FOCAL_MM / aperture_mm, "max_coc_radius": 64} | more
+
+
+def case(effect, radius, blurred=1.0, near=False, **more):
+    params = lens(radius, SIZE[0], **effect.closest_to_hexagon()) | more
+    return {"name": f"{effect.id} R {radius} blurred {blurred:g}{' near' if near else ''} {json.dumps(more) if more else ''}".strip(),
+            "effect": effect.id, "params": params, "blurred": blurred, "depth_m": FOCUS_M / 2 if near else None}
+
+
+def bench(cases, repetitions=REPETITIONS, counting=False):
+    """Results by name: the median of ms, the passes of that run, fetches a pixel."""
+    data = counting_copy() if counting else ROOT
+    folders = [data / f"effects-{i}" if counting else f for i, f in enumerate(effect_folders())]
+    job = {"data": str(data), "effects": [str(f) for f in folders], "size": SIZE, "repetitions": repetitions, "cases": cases}
+    done = subprocess.run([BENCH], input=json.dumps(job), stdout=subprocess.PIPE, text=True,
+                          stderr=None if os.environ.get("VERBOSE") else subprocess.PIPE)
+    if done.returncode:
+        raise SystemExit(f"dof_bench ended with {done.returncode}: {(done.stderr or '')[-2000:]}")
+    results = {}
+    for result in json.loads(done.stdout)["results"]:
+        results.setdefault(result["name"], []).append(result)
+    return {name: sorted(runs, key=lambda r: r["ms"])[(len(runs) - 1) // 2] for name, runs in results.items()}
+
+
+# Counting: the same shaders with every fetch through a macro that adds one, and the sum of each invocation at its end.
+PRELUDE = """
+layout(std430, binding = 15) buffer FetchCounts { uint fetch_counts[4096]; };
+uint fetches_made = 0u;
+#define texelFetch(s, p, l) (fetches_made++, texelFetch(s, p, l))
+#define textureLod(s, p, l) (fetches_made++, textureLod(s, p, l))
+#define texture(s, p) (fetches_made++, texture(s, p))
+"""
+EPILOGUE = """
+void main() {
+    main_that_is_counted();
+    atomicAdd(fetch_counts[%s & 4095u], fetches_made);
+}
+"""
+PLACE = {".frag": "(uint(gl_FragCoord.x) * 37u + uint(gl_FragCoord.y))", ".vert": "uint(gl_InstanceID)",
+         ".comp": "gl_GlobalInvocationID.x"}
+
+
+def counting_copy():
+    """A data folder of counting shaders; imageLoad and buffers are not fetches of textures and are not counted."""
+    folder = WORK / "counting"
+    shutil.rmtree(folder, ignore_errors=True)
+    shutil.copytree(ROOT / "glsl", folder / "glsl")
+    (folder / "effects").mkdir()
+    for i, source in enumerate(effect_folders()):
+        for name in FAMILY:
+            if (source / name / "effect.json").exists():
+                shutil.copytree(source / name, folder / f"effects-{i}" / name, ignore=shutil.ignore_patterns("cases", "*.cpp"))
+        (folder / f"effects-{i}").mkdir(exist_ok=True)
+    for file in folder.rglob("*"):
+        if not file.is_file() or file.suffix not in (".glsl", *PLACE):
+            continue
+        text = file.read_text()
+        code = re.sub(r"//.*", "", text)
+        other = set(re.findall(r"\b(texture\w*|texelFetch\w+)\s*\(", code)) - {"texture", "textureLod", "texelFetch", "textureSize"}
+        if other:
+            raise SystemExit(f"{file}: {', '.join(sorted(other))} is not counted yet; extend PRELUDE")
+        if file.suffix in PLACE and "#include <pass>" in text and re.search(r"\bvoid\s+main\s*\(", code):
+            text = text.replace("#include <pass>", "#include <pass>" + PRELUDE, 1)
+            text = re.sub(r"\bvoid\s+main\s*\(\s*\)", "void main_that_is_counted()", text)
+            file.write_text(text + EPILOGUE % PLACE[file.suffix])
+    return folder
+
+
+# ---- what is asked ----
+
+def plots(family, by_radius, by_fraction):
+    for name, values, label, ticks in (("cost_radius", by_radius, "CoC radius, px", RADII),
+                                       ("cost_fraction", by_fraction, "% of the frame out of focus", [100 * f for f in FRACTIONS])):
+        figure, axes = pyplot.subplots(figsize=(6, 3.4))
+        for effect in family:
+            axes.plot(ticks, values[effect.id], marker="o", markersize=3, linewidth=1.2, label=effect.id)
+        if name == "cost_radius":
+            axes.set_xscale("log", base=2)
+            axes.set_yscale("log")
+        else:
+            axes.set_ylim(bottom=0)
+        axes.set(xlabel=label, ylabel=f"ms, {SIZE[0]} x {SIZE[1]}", xticks=ticks, xticklabels=[f"{t:g}" for t in ticks])
+        axes.grid(alpha=0.3)
+        axes.legend(fontsize=7)
+        figure.tight_layout()
+        figure.savefig(IMAGES / f"{name}.svg", metadata={"Date": None})
+
+
+def point_iou(effect, radius, params):
+    """IoU of a bright point with a hexagon, at constant CoC."""
+    size = 2 * int(radius) + 33
+    color = numpy.zeros((size, size), numpy.float32)
+    color[size // 2, size // 2] = 1000
+    write_exr(WORK / "point.exr", {c: color for c in "RGB"} | {"A": numpy.ones_like(color),
+                                                               "Z": numpy.full_like(color, numpy.inf)})
+    out = run_effect(effect.id, WORK / "point.exr", WORK / "point-out.exr",
+                     lens(radius, size, **effect.closest_to_hexagon()) | params, WORK)[..., 0]
+    coverage = polygon_coverage(6, radius, False, size)
+    return iou(out >= 0.5 * out[size // 2, size // 2], coverage >= 0.5) if out.max() > 0 else 0.0
+
+
+def fewest_taps(gather, radius):
+    """(parameter, value, IoU) of the cheapest setting with a hexagon's IoU of ENOUGH_IOU."""
+    for name in ("taps", "samples", "rings"):
+        spec = gather.params.get(name)
+        if not spec or spec["type"] != "int":
+            continue
+        low, high = max(spec.get("min", 1), 1), spec["max"]
+        while low < high:  # more taps are never worse by much: a search by halves
+            middle = (low + high) // 2
+            low, high = (low, middle) if point_iou(gather, radius, {name: middle}) >= ENOUGH_IOU else (middle + 1, high)
+        return name, low, point_iou(gather, radius, {name: low})
+    return None
+
+
+def hexagon_against_gather(family):
+    by_id = {e.id: e for e in family}
+    if not {"bokeh_hexagon", "bokeh_gather"} <= by_id.keys():
+        return "bokeh_hexagon against bokeh_gather: n/a, not both are in effects/"
+    found = fewest_taps(by_id["bokeh_gather"], 16)
+    if not found:
+        return "bokeh_hexagon against bokeh_gather: n/a, bokeh_gather has no int parameter taps, samples or rings"
+    name, value, reached = found
+    cases = [case(by_id["bokeh_hexagon"], 16), case(by_id["bokeh_gather"], 16, **{name: value})]
+    times, counts = bench(cases), bench(cases, 1, True)
+    hexagon, gather = ((times[c["name"]]["ms"], counts[c["name"]]["fetches_per_pixel"]) for c in cases)
+    return (f"bokeh_hexagon {hexagon[0]:.0f} ms, {hexagon[1]:.1f} fetches a pixel; bokeh_gather with {name} {value} (IoU {reached:.3f}) "
+            f"{gather[0]:.0f} ms, {gather[1]:.1f} fetches: {gather[0] / hexagon[0]:.2f} times the time")
+
+
+def main():
+    WORK.mkdir(parents=True, exist_ok=True)
+    IMAGES.mkdir(parents=True, exist_ok=True)
+    os.environ.setdefault("AFTERSHADE_CACHE", str(WORK / "programs"))
+    family = effects()
+    only = os.environ.get("ONLY", "").split(",")
+    family = [e for e in family if only == [""] or e.id in only]
+    full = {e.id: case(e, 16) for e in family}
+    near = {e.id: case(e, 16, near=True) for e in family}
+    ninety = {e.id: case(e, 16, blurred=0.1) for e in family}
+    counts = bench([*full.values(), *near.values()], 1, True)
+    times = bench([*full.values(), *near.values(), *ninety.values()])
+    rows = []
+    for e in family:
+        ms = [times[c[e.id]["name"]]["ms"] for c in (full, near, ninety)]
+        fetches = [counts[c[e.id]["name"]]["fetches_per_pixel"] for c in (full, near)]
+        rows.append((e.id, ms[0], fetches[0], ms[1], fetches[1], ms[2] / ms[0]))
+        print(f"{e.id:14} far {ms[0]:7.1f} ms, {fetches[0]:6.1f} fetches a pixel; near {ms[1]:7.1f} ms, {fetches[1]:6.1f}; "
+              f"90 % in focus {ms[2] / ms[0]:.3f} of the time", flush=True)
+        print("    " + ", ".join(f"{p['pass']} {p['ms']:.1f}" for p in times[full[e.id]["name"]]["passes"]))
+    cases = [case(e, r) for r in RADII for e in family] + [case(e, 16, blurred=f) for f in FRACTIONS for e in family]
+    unique = list({c["name"]: c for c in cases}.values())
+    sweep = bench(unique, max(1, REPETITIONS * 3 // 5))
+    by_radius = {e.id: [sweep[case(e, r)["name"]]["ms"] for r in RADII] for e in family}
+    by_fraction = {e.id: [sweep[case(e, 16, blurred=f)["name"]]["ms"] for f in FRACTIONS] for e in family}
+    plots(family, by_radius, by_fraction)
+    for e in family:
+        print(f"{e.id:14} ms at R {RADII}: " + " ".join(f"{v:.0f}" for v in by_radius[e.id])
+              + f"; blurred {FRACTIONS}: " + " ".join(f"{v:.0f}" for v in by_fraction[e.id]))
+    against = hexagon_against_gather(family)
+    print(against)
+    table = ["| | far, ms | fetches a pixel | near, ms | fetches a pixel | 90 % in focus, of the time |", "|---|---|---|---|---|---|"]
+    table += [f"| `{r[0]}` | {r[1]:.0f} | {r[2]:.1f} | {r[3]:.0f} | {r[4]:.1f} | {r[5]:.2f} |" for r in rows]
+    (ROOT / "scripts/dof/cost-table.md").write_text("\n".join(table) + f"\n\n{against}.\n")
+    print("docs/images/dof/cost_radius.svg, cost_fraction.svg and scripts/dof/cost-table.md, which scripts/quality-dof takes in")
+
+
+main()

@@ -1,0 +1,139 @@
+// Times effects on pictures of known CoC, or counts their texel fetches. scripts/bench-dof says which, as
+// JSON on stdin, and reads JSON from stdout; the figures are of its making, the measuring is here.
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "framework/effect/registry.h"
+#include "framework/gpu/buffer.h"
+#include "framework/gpu/context.h"
+#include "framework/pipeline/look.h"
+#include "framework/pipeline/renderer.h"
+
+#include <glad/gl.h>
+
+namespace aftershade {
+namespace {
+
+using nlohmann::json;
+
+/// Where the counting shaders of scripts/dof/bench.py add up, in as many words as pixels would crowd.
+constexpr unsigned kCountBinding = 15;
+constexpr std::size_t kCountWords = 4096;
+
+/// `blurred` of the width from the left is at `depth_m`, the rest at `focus_m`; null is nothing hit.
+Capture make_capture(const json& job, const json& test) {
+    const int width = job.at("size").at(0), height = job.at("size").at(1);
+    const json& depth = test.at("depth_m");
+    const float blurred_m = depth.is_null() ? std::numeric_limits<float>::infinity() : depth.get<float>();
+    const float focus_m = test.at("params").at("focus_distance");
+    const int edge = int(double(width) * test.at("blurred").get<double>() + 0.5);
+    Capture capture;
+    CaptureHeader& header = capture.header;
+    header.frame = 1;
+    header.path = "bench";
+    header.profile = "native";
+    header.roles = {"color", "depth"};
+    header.data_window = header.display_window = {0, 0, width - 1, height - 1};
+    Image& color = capture.images["color"] = Image(width, height, 4);
+    Image& z = capture.images["depth"] = Image(width, height, 1);
+    std::uint32_t state = 1;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            for (int c = 0; c < 3; ++c) {
+                state = state * 1664525U + 1013904223U;
+                color.at(x, y, c) = float(state >> 8) / float(1 << 24);
+            }
+            color.at(x, y, 3) = 1;
+            z.at(x, y, 0) = x < edge ? blurred_m : focus_m;
+        }
+    return capture;
+}
+
+Pipeline bind(const json& test, EffectRegistry& effects) {
+    const json text = {{"aftershade", 1},
+                       {"steps", {{{"effect", test.at("effect")}, {"params", test.at("params")}}}}};
+    Diagnostics diagnostics;
+    Pipeline pipeline;
+    if (const auto node = parse_document(text.dump(), test.at("name"), diagnostics))
+        if (const auto look = parse_look(*node, diagnostics))
+            pipeline = compile_pipeline(*look, effects, {}, diagnostics);
+    std::ostringstream faults;
+    diagnostics.print(faults);
+    if (diagnostics.has_errors()) throw std::runtime_error(faults.str());
+    return pipeline;
+}
+
+std::uint64_t sum(const gpu::Buffer& counts) {
+    const std::vector<std::byte> bytes = counts.read();
+    std::uint64_t total = 0;
+    for (std::size_t i = 0; i < kCountWords; ++i) {
+        std::uint32_t word = 0;
+        std::memcpy(&word, &bytes[i * sizeof word], sizeof word);
+        total += word;
+    }
+    return total;
+}
+
+/// One frame to compile and touch everything, then one that counts.
+json measure(gpu::Context& context, gpu::Buffer& counts, const json& job, const json& test,
+             EffectRegistry& effects) {
+    const Pipeline pipeline = bind(test, effects);
+    const Capture capture = make_capture(job, test);
+    PipelineRenderer renderer(context, pipeline, job.at("data").get<std::string>());
+    FrameInputs frame;
+    frame.capture = &capture;
+    renderer.render(frame, {"color"}, false);
+    counts.clear(0);
+    context.gl().BindBufferBase(GL_SHADER_STORAGE_BUFFER, kCountBinding, counts.handle());
+    const FrameResult result = renderer.render(frame, {"color"}, true);
+    json passes = json::array();
+    double ms = 0;
+    for (const graph::PassTime& pass : result.times) {
+        if (pass.pass == "upload" || pass.pass == "readback") continue;
+        passes.push_back({{"pass", pass.pass}, {"ms", pass.milliseconds}});
+        ms += pass.milliseconds;
+    }
+    const double pixels = double(job.at("size").at(0)) * double(job.at("size").at(1));
+    return {{"name", test.at("name")},
+            {"ms", ms},
+            {"passes", passes},
+            {"fetches_per_pixel", double(sum(counts)) / pixels}};
+}
+
+int run() {
+    const json job = json::parse(std::cin);
+    std::vector<std::filesystem::path> folders;
+    for (const std::string folder : job.at("effects")) folders.emplace_back(folder);
+    EffectRegistry effects(folders);
+    gpu::Context context(gpu::Backend::osmesa);
+    gpu::Buffer counts(context, kCountWords * sizeof(std::uint32_t), "counts");
+    json results = json::array();
+    // In turns, so that the machine's noise meets all alike.
+    for (int i = 0; i < job.at("repetitions"); ++i)
+        for (const json& test : job.at("cases")) {
+            results.push_back(measure(context, counts, job, test, effects));
+            std::cerr << test.at("name").get<std::string>() << " " << results.back().at("ms") << " ms\n";
+        }
+    std::cout << json{
+        {"renderer", context.info().renderer}, {"gl", context.info().version}, {"results", results}};
+    return 0;
+}
+
+}  // namespace
+}  // namespace aftershade
+
+int main() {
+    try {
+        return aftershade::run();
+    } catch (const std::exception& error) {
+        std::cerr << "dof_bench: " << error.what() << "\n";
+        return 1;
+    }
+}
