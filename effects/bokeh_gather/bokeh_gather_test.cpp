@@ -61,14 +61,15 @@ class BokehGatherShape : public testing::TestWithParam<ShapeCase> {};
 TEST_P(BokehGatherShape, OfAPixelOfLightIsTheApertureWithAllItsEnergy) {
     const ShapeCase& c = GetParam();
     const int size = 64, center = size / 2;
-    const std::string shape = fmt::format(R"("blades": {}, "rotation": {}, "taps": 1024, "sampler": "nearest")",
-                                          c.blades, c.rotation_deg);
+    const std::string shape = fmt::format(
+        R"("blades": {}, "rotation": {}, "taps": 1024, "sampler": "nearest")", c.blades, c.rotation_deg);
     const Image image = blur(point_of_light(size, c.is_near), c.radius_px, shape);
     EXPECT_NEAR(sum_of(image), kIntensity, 0.01 * kIntensity);
     const int sides = c.blades == 0 ? 256 : c.blades;
     const std::vector<Vertex> outline =
         regular_polygon(sides, c.radius_px, c.rotation_deg + (c.is_near ? 180 : 0));
-    const double iou = shape_iou(image, image.at(center, center, 0), coverage(outline, size, size, center, center));
+    const double iou =
+        shape_iou(image, image.at(center, center, 0), coverage(outline, size, size, center, center));
     RecordProperty("iou", fmt::format("{:.4f}", iou));
     EXPECT_GE(iou, c.least_iou);
 }
@@ -78,7 +79,8 @@ std::vector<ShapeCase> shapes() {
     for (const int blades : {0, 3, 5, 6, 7})
         for (const double radius_px : {4.0, 8.0, 16.0})
             for (const bool is_near : {false, true})
-                cases.push_back({blades, radius_px, is_near ? 13.0 : 0.0, is_near, radius_px < 8 ? 0.9 : 0.97});
+                cases.push_back(
+                    {blades, radius_px, is_near ? 13.0 : 0.0, is_near, radius_px < 8 ? 0.9 : 0.97});
     cases.push_back({6, 15.3, 30, false, 0.97});
     cases.push_back({12, 16, 5, true, 0.97});
     return cases;
@@ -87,8 +89,8 @@ INSTANTIATE_TEST_SUITE_P(All, BokehGatherShape, testing::ValuesIn(shapes()));
 
 double iou_at_16_px(const std::string& sampler, int taps) {
     const int size = 64, center = size / 2;
-    const Image image = blur(point_of_light(size, false), 16,
-                             fmt::format(R"("sampler": "{}", "taps": {})", sampler, taps));
+    const Image image =
+        blur(point_of_light(size, false), 16, fmt::format(R"("sampler": "{}", "taps": {})", sampler, taps));
     return shape_iou(image, image.at(center, center, 0),
                      coverage(regular_polygon(6, 16, 0), size, size, center, center));
 }
@@ -159,7 +161,8 @@ TEST(BokehGather, CopiesPixelsInFocusBitForBit) {
 }
 
 TEST(BokehGather, KeepsAFocusedObjectOutOfTheBlurBehindIt) {
-    const SyntheticBox box{.x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kFocusM, .color = {9, 9, 9}};
+    const SyntheticBox box{
+        .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kFocusM, .color = {9, 9, 9}};
     for (const char* settings : {R"("taps": 256)", R"("sampler": "mips", "taps": 32)"}) {
         const Image out = blur(make_capture({.width = 96, .height = 48, .box = box}, 0), 12, settings);
         for (int y = 0; y < 48; ++y)
@@ -174,8 +177,9 @@ TEST(BokehGather, KeepsAFocusedObjectOutOfTheBlurBehindIt) {
 TEST(BokehGather, LetsHalfOfTheLightPastTheEdgeOfANearObject) {
     const SyntheticBox box{
         .x = 0, .y = -10, .width = 64, .height = 84, .depth_m = kFocusM / 2, .color = {1, 0, 0}};
-    const Capture capture =
-        make_capture({.width = 96, .height = 64, .background = {0, 0.5f, 0}, .background_depth_m = kFocusM, .box = box}, 0);
+    const Capture capture = make_capture(
+        {.width = 96, .height = 64, .background = {0, 0.5f, 0}, .background_depth_m = kFocusM, .box = box},
+        0);
     // The half plane's share of a square's area, 14.142 px across, beyond x.
     const Image out = blur(capture, 10, R"("blades": 4, "taps": 1024)");
     for (int x = 64; x < 78; ++x) {
@@ -186,7 +190,8 @@ TEST(BokehGather, LetsHalfOfTheLightPastTheEdgeOfANearObject) {
 }
 
 TEST(BokehGather, BlursAlphaWithTheColorThatItCovers) {
-    const SyntheticBox box{.x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kInfinity, .color = {1, 1, 1}};
+    const SyntheticBox box{
+        .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kInfinity, .color = {1, 1, 1}};
     const Image out = blur(make_capture({.width = 96, .height = 48, .alpha = 0, .box = box}, 0), 6);
     for (int x = 10; x < 56; ++x) ASSERT_NEAR(out.at(x, 20, 3), out.at(x, 20, 0), 2e-3f) << x;
     EXPECT_GT(out.at(18, 20, 3), 0.05f);
@@ -216,9 +221,10 @@ TEST(BokehGatherOnSuzanne, ComesWithinReachOfTheRenderersLens) {
     const Capture capture = reader.read(4, roles);
     const ExrFile truth_file(*folder / "truth/dof_0004.exr");
     const Image truth = truth_file.read_floats(0, std::vector<std::string>{"R", "G", "B"});
-    LookRunner runner(R"({"aftershade": 1, "steps": [{"effect": "bokeh_gather", "params": {"focus_distance": 6.4,
+    LookRunner runner(
+        R"({"aftershade": 1, "steps": [{"effect": "bokeh_gather", "params": {"focus_distance": 6.4,
         "focal_length": 50, "f_number": 0.25, "sensor_width": 36, "lens_model": "pinhole"}}]})",
-                      gpu::Backend::osmesa);
+        gpu::Backend::osmesa);
     const double db = display_psnr_db(truth, runner.color(capture));
     fmt::print("PSNR against the lens: {:.2f} dB\n", db);
     EXPECT_GE(db, 31.5);  // measured 31.9
