@@ -70,8 +70,8 @@ class BokehDiskShape : public testing::TestWithParam<ShapeCase> {};
 TEST_P(BokehDiskShape, OfAPixelOfLightIsADiskWithNearlyAllItsEnergy) {
     const ShapeCase& c = GetParam();
     const int size = c.radius_px > 20 ? 128 : 64, center = size / 2;
-    const Image image = blur(point_of_light(size, c.is_near), c.radius_px,
-                             fmt::format(R"("components": {})", c.components));
+    const Image image =
+        blur(point_of_light(size, c.is_near), c.radius_px, fmt::format(R"("components": {})", c.components));
     // What the kernel has below 0 is missing from the outside.
     EXPECT_NEAR(sum_of(image), kIntensity, (c.components == 1 ? 0.06 : 0.015) * kIntensity);
     const double area = std::numbers::pi * c.radius_px * c.radius_px;
@@ -94,7 +94,10 @@ std::vector<ShapeCase> shapes() {
     for (const double radius_px : {8.0, 16.0, 24.5})
         for (const bool is_near : {false, true})
             for (const int components : {1, 2, 3})
-                cases.push_back({radius_px, components, is_near, components == 1 ? 0.3 : components == 2 ? 0.15 : 0.08});
+                cases.push_back({radius_px, components, is_near,
+                                 components == 1   ? 0.3
+                                 : components == 2 ? 0.15
+                                                   : 0.08});
     return cases;
 }
 INSTANTIATE_TEST_SUITE_P(All, BokehDiskShape, testing::ValuesIn(shapes()));
@@ -121,11 +124,13 @@ TEST_P(BokehDiskSettings, LeaveAUniformImageUnchanged) {
         for (int x = 0; x < 96; ++x)
             for (int c = 0; c < 4; ++c) {
                 const float source = capture.images.at("color").at(x, y, c);
-                ASSERT_NEAR(blurred.at(x, y, c), source, 2e-6 * source + (c == 3 ? 5e-4 : 0)) << x << " " << y << " " << c;
+                ASSERT_NEAR(blurred.at(x, y, c), source, 2e-6 * source + (c == 3 ? 5e-4 : 0))
+                    << x << " " << y << " " << c;
             }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, BokehDiskSettings, testing::Values(R"("components": 1)", R"("components": 2)", R"("components": 3)"));
+INSTANTIATE_TEST_SUITE_P(All, BokehDiskSettings,
+                         testing::Values(R"("components": 1)", R"("components": 2)", R"("components": 3)"));
 
 TEST(BokehDisk, CopiesPixelsInFocusBitForBit) {
     Capture capture = make_capture({.width = 64, .height = 36, .background_depth_m = kFocusM});
@@ -137,7 +142,8 @@ TEST(BokehDisk, CopiesPixelsInFocusBitForBit) {
 }
 
 TEST(BokehDisk, KeepsAFocusedObjectOutOfTheBlurBehindIt) {
-    const SyntheticBox box{.x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kFocusM, .color = {9, 9, 9}};
+    const SyntheticBox box{
+        .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kFocusM, .color = {9, 9, 9}};
     for (const double radius_px : {6, 12}) {
         const Image out = blur(make_capture({.width = 96, .height = 48, .box = box}, 0), radius_px);
         for (int y = 0; y < 48; ++y)
@@ -153,7 +159,8 @@ TEST(BokehDisk, SpreadsANearObjectSoftlyOverWhatIsInFocus) {
     const SyntheticBox box{
         .x = 0, .y = -10, .width = 64, .height = 84, .depth_m = kFocusM / 2, .color = {1, 0, 0}};
     const Capture capture = make_capture(
-        {.width = 96, .height = 64, .background = {0, 0.5f, 0}, .background_depth_m = kFocusM, .box = box}, 0);
+        {.width = 96, .height = 64, .background = {0, 0.5f, 0}, .background_depth_m = kFocusM, .box = box},
+        0);
     const double radius_px = 14;
     const Image out = blur(capture, radius_px);
     for (int x = 64; x < 84; ++x) {
@@ -181,7 +188,8 @@ TEST(BokehDisk, KeepsALightRoundBeforeMoreBlurredThings) {
 }
 
 TEST(BokehDisk, BlursAlphaWithTheColorThatItCovers) {
-    const SyntheticBox box{.x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kInfinity, .color = {1, 1, 1}};
+    const SyntheticBox box{
+        .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kInfinity, .color = {1, 1, 1}};
     const Image out = blur(make_capture({.width = 96, .height = 48, .alpha = 0, .box = box}, 0), 6);
     for (int x = 10; x < 56; ++x) ASSERT_NEAR(out.at(x, 20, 3), out.at(x, 20, 0), 2e-3f) << x;
     EXPECT_GT(out.at(18, 20, 3), 0.05f);
@@ -211,9 +219,10 @@ TEST(BokehDiskOnSuzanne, ComesWithinReachOfTheRenderersLens) {
     const Capture capture = reader.read(4, roles);
     const ExrFile truth_file(*folder / "truth/dof_0004.exr");
     const Image truth = truth_file.read_floats(0, std::vector<std::string>{"R", "G", "B"});
-    LookRunner runner(R"({"aftershade": 1, "steps": [{"effect": "bokeh_disk", "params": {"focus_distance": 6.4,
+    LookRunner runner(
+        R"({"aftershade": 1, "steps": [{"effect": "bokeh_disk", "params": {"focus_distance": 6.4,
         "focal_length": 50, "f_number": 0.25, "sensor_width": 36, "lens_model": "pinhole"}}]})",
-                      gpu::Backend::osmesa);
+        gpu::Backend::osmesa);
     const double db = display_psnr_db(truth, runner.color(capture));
     fmt::print("PSNR against the lens: {:.2f} dB\n", db);
     EXPECT_GE(db, 29.5);  // measured 30.0, although the lens has six blades

@@ -1,6 +1,7 @@
 // What bokeh_gather must do, against closed forms and against a renderer's own lens.
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 
 #include <fmt/format.h>
@@ -118,6 +119,26 @@ TEST(BokehGather, BendsItsBladesIntoADisk) {
         before = iou;
     }
     EXPECT_GE(before, 0.97);
+}
+
+TEST(BokehGather, TakesTheShapeOfAPictureOfTheAperture) {
+    const int size = 96, center = size / 2;
+    for (const bool is_near : {false, true}) {
+        Capture capture = point_of_light(size, is_near);
+        // Closed above the middle; below it a quarter passes on the right.
+        Image picture(size, size, 4);
+        for (int y = size / 2; y < size; ++y)
+            for (int x = 0; x < size; ++x) picture.at(x, y, 0) = x < size / 2 ? 1.0f : 0.25f;
+        capture.images["aov:aperture"] = picture;
+        const Image image = blur(capture, 12, R"("blades": 0, "taps": 1024)");
+        EXPECT_NEAR(sum_of(image), kIntensity, 0.01 * kIntensity);
+        const int side = is_near ? -1 : 1;
+        const double full = kIntensity / (std::numbers::pi * 12 * 12 / 4 * 1.25);
+        EXPECT_NEAR(image.at(center - side * 5, center + side * 5, 0), full, 0.05 * full);
+        EXPECT_NEAR(image.at(center + side * 5, center + side * 5, 0), full / 4, 0.05 * full);
+        EXPECT_EQ(image.at(center + 5, center - side * 5, 0), 0);
+        EXPECT_EQ(image.at(center - side * 11, center + side * 11, 0), 0);
+    }
 }
 
 // ---- what must not change ----

@@ -3,6 +3,9 @@
 #include <lens/packing.glsl>
 #include <aperture.glsl>
 #include "tile.glsl"
+#if PICTURE
+#include "picture.glsl"
+#endif
 
 const float kLeastBlurPx = 0.5;
 const float kAlikePx = 0.5;  // standard deviation of the CoC radii that a mean may have
@@ -64,10 +67,14 @@ void add_tap(inout Sum front, inout Sum back, Light tap, Aperture a, float centr
     back.weight += back_weight;
     if (in_front == 0.0) return;
     float radius_px = abs(tap.coc);
+    if (radius_px == 0.0) return;
     float gauge_px = aperture_gauge(a, tap.coc < 0.0 ? offset : -offset);
     float reached = clamp((radius_px - gauge_px) * a.inradius / step_px + 0.5, 0.0, 1.0);
     float tap_area = step_px * step_px;
     float front_weight = in_front * reached * tap_area / max(a.area * radius_px * radius_px, tap_area);
+#if PICTURE
+    front_weight *= passes_at(-offset / tap.coc) / max(texelFetch(passes_mean, ivec2(0), 0).r, 1e-6);
+#endif
     front.light += front_weight * tap.color;
     front.weight += front_weight;
 }
@@ -100,6 +107,9 @@ vec4 gather(ivec2 p, Light centre, float near_px) {
             bool middle = row == 0 && column == 0;
             ivec2 texel = clamp(p + ivec2(floor(offset + 0.5)), ivec2(0), last);
             float own_cover = sharp ? (middle ? 1.0 : 0.0) : cover(own, offset.x, step_px);
+#if PICTURE
+            if (own_cover > 0.0 && !sharp) own_cover *= passes_at(-offset / own_coc);
+#endif
             Light tap = take(texel, sharp && middle ? 0 : level);
             add_tap(row_front, row_back, tap, a, centre.coc, offset, own_cover, step_px);
         }
