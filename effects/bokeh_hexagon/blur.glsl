@@ -1,7 +1,6 @@
 // One-sided blurs from grid point to grid point that spread every point by its own circle of confusion.
 #include <lens/highlight.glsl>
-#include "tile.glsl"
-#include "grid.glsl"
+#include "passed_grid.glsl"
 #include "sample.glsl"
 
 const float kSharpPx = 1.0;  // the light of a point with a smaller CoC is its own

@@ -1,7 +1,6 @@
 #version 450 core
 #include <pass>
-#include "tile.glsl"
-#include "grid.glsl"
+#include "passed_grid.glsl"
 #include "sample.glsl"
 
 // Between these CoC radii a pixel's own colour gives way to the grid's.
@@ -26,7 +25,7 @@ void add_point(inout Sum sum, usampler2D image, usampler2D light, ivec2 texel, f
 
 // Linear between the three points around the pixel.
 Sum take(usampler2D image, usampler2D light, float spacing, ivec2 p, float coc) {
-    Grid grid = make_grid(spacing);
+    Grid grid = passed_grid(spacing);
     vec2 at = coordinates_of(grid, vec2(p) + 0.5), base = floor(at), part = at - base;
     ivec2 point = ivec2(base);
     bool second = part.x + part.y > 1.0;  // of the two triangles of a parallelogram
@@ -52,7 +51,5 @@ vec4 compose(ivec2 p, vec4 own, float blur_px) {
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
-    out_color = texelFetch(color, p, 0);
-    float blur_px = texelFetch(grids, p / kTile, 0).y;
-    if (blur_px >= kLeastBlurPx) out_color = compose(p, out_color, blur_px);
+    out_color = compose(p, texelFetch(color, p, 0), texelFetch(grids, p / kTile, 0).y);
 }

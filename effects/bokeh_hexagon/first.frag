@@ -16,7 +16,7 @@ void blur_first(Grid grid, ivec2 point, float near_px) {
 void main() {
     OUT_A = uvec4(0u);
     OUT_AB = uvec4(0u);
-    Grid grid = make_grid(kSpacing);
+    Grid grid = passed_grid(kSpacing);
     ivec2 point = point_of(grid, ivec2(gl_FragCoord.xy));
     vec4 tile = grids_at(position_of(grid, point));
     if (is_needed(tile)) blur_first(grid, point, tile.x);

@@ -2,8 +2,7 @@
 #include <pass>
 #include <lens/packing.glsl>
 #include <lens/highlight.glsl>
-#include "tile.glsl"
-#include "grid.glsl"
+#include "passed_grid.glsl"
 #include "sample.glsl"
 
 const int kSide = FINE == 1 ? 3 : 5, kPixels = kSide * kSide;
@@ -42,7 +41,7 @@ uvec4 resample(Grid grid, vec2 position) {
 }
 
 void main() {
-    Grid grid = make_grid(kSpacing);
+    Grid grid = passed_grid(kSpacing);
     vec2 position = position_of(grid, point_of(grid, ivec2(gl_FragCoord.xy)));
     OUT = uvec4(0u);
     if (is_needed(grids_at(position))) OUT = resample(grid, position);

@@ -19,7 +19,7 @@ uvec4 blur_second(Grid grid, ivec2 point, float near_px) {
 
 void main() {
     OUT = uvec4(0u);
-    Grid grid = make_grid(kSpacing);
+    Grid grid = passed_grid(kSpacing);
     ivec2 point = point_of(grid, ivec2(gl_FragCoord.xy));
     vec4 tile = grids_at(position_of(grid, point));
     if (is_needed(tile)) OUT = blur_second(grid, point, tile.x);
