@@ -27,7 +27,11 @@ float gauge(vec2 offset, float coc) {
     float distance = length(offset), outline = distance;
 #if BLADES >= 3
     float straight = 0.0;
+#if BLADES % 2 == 0
+    for (int i = 0; i < BLADES / 2; ++i) straight = max(straight, abs(dot(edge_normals[i], offset)));
+#else
     for (int i = 0; i < BLADES; ++i) straight = max(straight, dot(edge_normals[i], offset));
+#endif
     outline = param.curvature == 0.0 ? straight : distance / mix(distance / max(straight, 1e-6), 1.0, param.curvature);
 #endif
     if (param.cat_eye > 0.0) {
