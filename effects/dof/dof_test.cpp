@@ -233,6 +233,34 @@ TEST(Dof, GivesTheSameBitsOnBothSoftwareBackends) {
     EXPECT_TRUE(std::equal(egl.floats().begin(), egl.floats().end(), osmesa.floats().begin()));
 }
 
+// ---- where the focus is ----
+
+/// A lens of a wanted focus: any form of value that a look takes.
+std::string focused_at(const std::string& focus) {
+    return R"({"aftershade": 1, "steps": [{"effect": "dof", "params": {"f_number": 0.5, "focus_distance": )" +
+           focus + "}}]}";
+}
+
+TEST(DofFocus, IsTheSameByANumberADepthAnObjectTheCameraOrAKey) {
+    const SyntheticBox box{.x = 40, .y = 10, .width = 30, .height = 28, .depth_m = 1.5f, .color = {1, 2, 3}};
+    Capture capture = make_capture(
+        {.width = 96, .height = 48, .background = {1, 0, 0}, .background_depth_m = 4, .box = box}, 2);
+    capture.header.camera.set("focus_distance", 1.5);
+    const auto picture = [&](const std::string& look) {
+        return LookRunner(look, gpu::Backend::osmesa).color(capture);
+    };
+    const Image expected = picture(focused_at("1.5"));
+    for (const char* focus :
+         {R"("150 cm")", R"({"from": "depth", "uv": [0.5, 0.5]})", R"({"from": "depth", "object": 2})",
+          R"({"from": "camera.focus_distance"})", R"({"keys": {"1": 1, "3": 2}})"}) {
+        const Image image = picture(focused_at(focus));
+        EXPECT_TRUE(std::equal(expected.floats().begin(), expected.floats().end(), image.floats().begin()))
+            << focus;
+    }
+    const Image elsewhere = picture(focused_at("4"));
+    EXPECT_FALSE(std::equal(expected.floats().begin(), expected.floats().end(), elsewhere.floats().begin()));
+}
+
 // ---- against a renderer's lens ----
 
 /// captures/suzanne/README.md: the sharp input has 21.7 dB.

@@ -88,7 +88,16 @@ def suzanne(family):
     for crop, (x, y, w, h) in CROPS.items():
         for name, picture in pictures.items():
             save(picture[y:y + h, x:x + w], f"suzanne_{crop}_{name}")
+    three(pictures["sharp"], pictures.get("dof", truth), truth)
     return values, list(pictures)
+
+
+def three(*pictures):
+    """The strip at the head of docs/depth-of-field.md, at half size."""
+    x, y, w, h = 330, 30, 630, 400
+    small = [p[y:y + h, x:x + w].reshape(h // 2, 2, w // 2, 2, 3).mean(axis=(1, 3)) for p in pictures]
+    gap = numpy.full((h // 2, 7, 3), 1.0)
+    save(numpy.concatenate([small[0], gap, small[1], gap, small[2]], axis=1), "three")
 
 
 def save(linear, name, exposure=1.6):
