@@ -38,7 +38,7 @@ void main() {
 
     if (radius_px >= kLeastBlurPx || reach_px >= kLeastBlurPx) prepare_outline_at(center);
     Back surface = Back(own.color, 1.0);
-    if (radius_px >= kLeastBlurPx && radius_px < kFullSizePx) surface = gather_back(center, own.coc, 0);
+    if (radius_px >= kLeastBlurPx && radius_px < kFullSizePx) surface = gather_back(center, own, 0);
     Layer over = Layer(vec4(0.0), 0.0);
     if (reach_px >= kLeastBlurPx && reach_px <= kFullSizePx) over = gather_front(center, own.coc, reach_px, 0);
 
