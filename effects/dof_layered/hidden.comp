@@ -1,5 +1,6 @@
 #version 450 core
 #include <pass>
+#include "layers.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -7,6 +8,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 void main() {
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy), size = imageSize(hidden_light).xy;
     if (any(greaterThanEqual(texel, size))) return;
+    if (pass.index >= layer_count(make_layers(texelFetch(range, ivec2(0), 0).rg))) return;
     vec3 at = vec3((vec2(texel) + 0.5) / vec2(size), float(pass.index));
     int levels = textureQueryLevels(seen_share);
     vec4 light = vec4(0.0);

@@ -1,7 +1,8 @@
 // Which layers there are and what a pixel is in each. Layers are numbered from near to far. Their anchors are even in CoC
-// from the nearest pixel's to the farthest's; one of them is the focus plane.
+// from the nearest pixel's to the farthest's, kStep apart or, where there are too few, more; one is the focus plane.
 const int kLayers = 24;  // as effect.json declares
-const int kTile = 64;    // px a side; sums along a row start anew in each
+const int kTile = 64;    // px; sums along a row start anew so often
+const int kOccupied = 16;  // px a side of the tiles of `occupied`
 
 struct Layers {
     float near_px, far_px;  // largest CoC radius beyond kSharp
@@ -10,6 +11,7 @@ struct Layers {
 
 // Pixels with a smaller CoC radius are in focus, px.
 const float kSharp = 0.5;
+const float kStep = 1.5;  // px of CoC radius
 
 Layers make_layers(vec2 largest_px) {
     Layers layers;
@@ -19,8 +21,12 @@ Layers make_layers(vec2 largest_px) {
     layers.near_count = clamp(int(float(kLayers - 1) * share + 0.5), layers.near_px > 0.0 ? 1 : 0,
                               kLayers - (layers.far_px > 0.0 ? 2 : 1));
     layers.far_count = layers.far_px > 0.0 ? kLayers - 1 - layers.near_count : 0;
+    layers.near_count = min(layers.near_count, int(ceil(layers.near_px / kStep)));
+    layers.far_count = min(layers.far_count, int(ceil(layers.far_px / kStep)));
     return layers;
 }
+
+int layer_count(Layers layers) { return layers.near_count + 1 + layers.far_count; }
 
 // A layer's number between anchors.
 float layer_of(Layers layers, float coc) {

@@ -41,7 +41,7 @@ void add_span(inout Part sum, float left, float right, int y, float weight) {
 
 bool anything_within(ivec2 p, int reach) {
     ivec2 last = ivec2(color_size.xy) - 1;
-    ivec2 low = clamp(p - reach, ivec2(0), last) / kTile, high = clamp(p + reach, ivec2(0), last) / kTile;
+    ivec2 low = clamp(p - reach, ivec2(0), last) / kOccupied, high = clamp(p + reach, ivec2(0), last) / kOccupied;
     for (int y = low.y; y <= high.y; ++y)
         for (int x = low.x; x <= high.x; ++x)
             if (texelFetch(occupied, ivec3(x, y, pass.index), 0).r > 0.0) return true;
@@ -74,7 +74,7 @@ void main() {
     out_front = texelFetch(front, p, 0);
     out_open = texelFetch(open, p, 0).rg;
     Layers layers = make_layers(texelFetch(range, ivec2(0), 0).rg);
-    if (out_open.r == 0.0 || pass.index > layers.near_count + layers.far_count) return;
+    if (out_open.r == 0.0 || pass.index >= layer_count(layers)) return;
     bool sharp = pass.index == layers.near_count;
     int reach = int(ceil(abs(layer_radius(layers, pass.index)) + 0.5));
     if (!anything_within(p, sharp ? 0 : reach)) return;
