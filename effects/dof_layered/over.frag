@@ -1,12 +1,6 @@
 #version 450 core
 #include <pass>
-#include "layers.glsl"
-
-// Part of a layer: its light, its opacity, and how much is known about it.
-struct Part {
-    vec4 light;
-    vec2 share;
-};
+#include "part.glsl"
 
 void add(inout Part sum, Part part, float weight) {
     sum.light += weight * part.light;
@@ -15,29 +9,32 @@ void add(inout Part sum, Part part, float weight) {
 
 Part sum_to(ivec2 p) { return Part(texelFetch(sums, ivec3(p, pass.index), 0), texelFetch(shares, ivec3(p, pass.index), 0).rg); }
 
-// Adds `weight` times the sum from the start of the tile to an edge at `x` between or within pixels.
+// Adds `weight` times the sum from the start of its run to an edge at `x` between or within pixels.
 void add_to(inout Part sum, float x, int y, float weight) {
-    int column = min(int(x), int(color_size.x) - 1);
+    int width = int(color_size.x), column = min(int(x), width - 1);
     float part = x - float(column);
     if (part > 0.0) add(sum, sum_to(ivec2(column, y)), weight * part);
-    if (column % kTile != 0) add(sum, sum_to(ivec2(column - 1, y)), weight * (1.0 - part));
+    if (!starts_run(column, width)) add(sum, sum_to(ivec2(column - 1, y)), weight * (1.0 - part));
 }
 
-// Adds the pixels of a row from `left` to `right`; beyond the picture, the pixels at its edge.
-void add_span(inout Part sum, float left, float right, int y, float weight) {
-    float width = color_size.x;
-    float from = clamp(left, 0.0, width), to = clamp(right, 0.0, width);
-    int first = min(int(from), int(width) - 1) / kTile, last = min(int(to), int(width) - 1) / kTile;
-    add_to(sum, to, y, weight);
-    add_to(sum, from, y, -weight);
-    for (int tile = first; tile < last; ++tile) add(sum, sum_to(ivec2(tile * kTile + kTile - 1, y)), weight);
+// The pixels of a row from `left` to `right`; beyond the picture, those at its edges, which are runs of their own or the
+// start of one.
+Part span_sum(float left, float right, int y) {
+    float width = color_size.x, from = clamp(left, 0.0, width), to = clamp(right, 0.0, width);
+    int last_column = int(width) - 1, first = min(int(from), last_column), last = min(int(to), last_column);
+    Part sum = Part(vec4(0.0), vec2(0.0));
+    add_to(sum, to, y, 1.0);
+    add_to(sum, from, y, -1.0);
+    for (int tile = first / kTile; tile < last / kTile; ++tile) add(sum, sum_to(ivec2(tile * kTile + kTile - 1, y)), 1.0);
+    if (last == last_column && first < last && last % kTile != 0) add(sum, sum_to(ivec2(last - 1, y)), 1.0);
     float before = max(-left, 0.0) - max(-right, 0.0), after = max(right - width, 0.0) - max(left - width, 0.0);
-    if (before > 0.0) add(sum, sum_to(ivec2(0, y)), weight * before);
-    if (after > 0.0) {
-        add_to(sum, width, y, weight * after);
-        add_to(sum, width - 1.0, y, -weight * after);
-    }
+    if (before > 0.0) add(sum, sum_to(ivec2(0, y)), before);
+    if (after > 0.0) add(sum, sum_to(ivec2(last_column, y)), after);
+    return sum;
 }
+
+// Less is what rounding leaves where the layer is in the run but not in the span; one pixel of the largest CoC has more.
+const float kLeastOpacity = 1e-6;
 
 bool anything_within(ivec2 p, int reach) {
     ivec2 last = ivec2(color_size.xy) - 1;
@@ -56,17 +53,9 @@ Part blurred_layer(ivec2 p, int reach) {
         vec3 span = texelFetch(spans, ivec2(row + 256, pass.index), 0).rgb;
         if (span.z == 0.0) continue;
         int y = clamp(p.y + row, 0, int(color_size.y) - 1);
-        add_span(sum, float(p.x) + 0.5 + span.x, float(p.x) + 0.5 + span.y, y, span.z);
+        add(sum, span_sum(float(p.x) + 0.5 + span.x, float(p.x) + 0.5 + span.y, y), span.z);
     }
     return sum;
-}
-
-Part sharp_layer(ivec2 p, Layers layers) {
-    float behind = float(pass.index) - layer_of(layers, texelFetch(coc, p, 0).r);
-    if (behind == 0.0) return Part(texelFetch(color, p, 0), vec2(1.0));
-    Part part = sum_to(p);
-    if (p.x % kTile != 0) add(part, sum_to(p - ivec2(1, 0)), -1.0);
-    return part;
 }
 
 void main() {
@@ -80,9 +69,9 @@ void main() {
     if (!anything_within(p, sharp ? 0 : reach)) return;
 
     Part part;
-    if (sharp) part = sharp_layer(p, layers);
+    if (sharp) part = part_at(p, layers);
     else part = blurred_layer(p, reach);
-    if (part.share.x <= 0.0) return;
+    if (part.share.x <= kLeastOpacity * part.share.y) return;
     float known = max(part.share.y, part.share.x);
     float opacity = part.share.x / known;
     out_front += out_open.r / known * part.light;

@@ -3,7 +3,7 @@
 #include "layers.glsl"
 
 void main() {
-    ivec2 corner = ivec2(gl_FragCoord.xy) * kTile, end = min(corner + kTile, ivec2(coc_size.xy));
+    ivec2 corner = ivec2(gl_FragCoord.xy) * kRangeTile, end = min(corner + kRangeTile, ivec2(coc_size.xy));
     vec2 largest = vec2(0.0);
     for (int y = corner.y; y < end.y; ++y)
         for (int x = corner.x; x < end.x; ++x) {
