@@ -7,7 +7,10 @@ void add(inout Part sum, Part part, float weight) {
     sum.share += weight * part.share;
 }
 
-Part sum_to(ivec2 p) { return Part(texelFetch(sums, ivec3(p, pass.index), 0), texelFetch(shares, ivec3(p, pass.index), 0).rg); }
+Part sum_to(ivec2 p) {
+    ivec3 texel = ivec3(p, pass.index);
+    return Part(texelFetch(sums, texel, 0), texelFetch(shares, texel, 0).rg);
+}
 
 // Adds `weight` times the sum from the start of its run to an edge at `x` between or within pixels.
 void add_to(inout Part sum, float x, int y, float weight) {

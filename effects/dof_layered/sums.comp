@@ -38,5 +38,6 @@ void main() {
     }
     barrier();
     if (cell.y < across)
-        imageStore(occupied, ivec3(ivec2(gl_WorkGroupID.xy) * across + cell, pass.index), vec4(float(any_share[cell.y][cell.x])));
+        imageStore(occupied, ivec3(ivec2(gl_WorkGroupID.xy) * across + cell, pass.index),
+                   vec4(float(any_share[cell.y][cell.x])));
 }

@@ -16,7 +16,8 @@ int slice_of(vec2 largest_px, float coc) {
         return clamp(int(float(near_count) * from_front), 0, max(near_count - 1, 0));
     }
     int far_count = kSlices - 1 - near_count;
-    return near_count + 1 + clamp(int(float(far_count) * (radius - kSharp) / max(blurred_px.y, 1e-6)), 0, max(far_count - 1, 0));
+    float from_focus = (radius - kSharp) / max(blurred_px.y, 1e-6);
+    return near_count + 1 + clamp(int(float(far_count) * from_focus), 0, max(far_count - 1, 0));
 }
 
 // Px by which pixels beyond the picture can reach it.

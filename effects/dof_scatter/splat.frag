@@ -4,7 +4,10 @@
 flat in vec4 light;
 flat in vec3 middle_radius;
 
-vec3 outline_to(float y) { return texelFetch(outline, ivec2(clamp((y + 1.0) * 0.5, 0.0, 1.0) * (outline_size.x - 1.0) + 0.5, 0), 0).rgb; }
+vec3 outline_to(float y) {
+    float row = clamp(0.5 * (y + 1.0), 0.0, 1.0) * (outline_size.x - 1.0);
+    return texelFetch(outline, ivec2(int(row + 0.5), 0), 0).rgb;
+}
 
 // The part of the splat's light that falls on this pixel: of each row of pixels the outline's area is exact, so that the
 // parts add up to 1 at any radius. A negative radius turns the outline by 180 degrees.
