@@ -8,7 +8,7 @@
 
 #include "framework/compare/metrics.h"
 #include "framework/image/capture.h"
-#include "tests/lens.h"
+#include "tests/aperture_checks.h"
 #include "tests/look_runner.h"
 #include "tests/polygon.h"
 #include "tests/real_captures.h"
@@ -18,12 +18,11 @@ namespace aftershade::test {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kFocusM = float(Lens::kFocusM);
+constexpr float kFocusM = kApertureFocusM;
 
 Image blur(const Capture& capture, double radius_px, const std::string& more = "",
            gpu::Backend backend = gpu::Backend::osmesa) {
-    const Lens lens{radius_px, capture.header.display_window.width()};
-    return LookRunner(lens.look("dof", more), backend).color(capture);
+    return through_aperture("dof", capture, radius_px, more.empty() ? "" : ", " + more, backend);
 }
 
 /// A 3 x 3 px light in the middle of a square picture whose every pixel has the CoC radius of the lens.
@@ -33,6 +32,20 @@ Capture light_of_nine(int size, bool is_near, float intensity) {
     for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x) scene.points.push_back({size / 2 + x, size / 2 + y, intensity});
     return make_capture(scene);
+}
+
+/// Coverage by what a square light of `side_px` (odd) makes of an outline: the mean of the outline at each of
+/// its pixels.
+Image coverage_of_light(const std::vector<Vertex>& outline, int size, int center, int side_px) {
+    Image sum(size, size, 1);
+    const int half = side_px / 2;
+    for (int j = -half; j <= half; ++j)
+        for (int i = -half; i <= half; ++i) {
+            const Image one = coverage(outline, size, size, center + i, center + j);
+            for (std::size_t k = 0; k < sum.floats().size(); ++k)
+                sum.floats()[k] += one.floats()[k] / float(side_px * side_px);
+        }
+    return sum;
 }
 
 double sum_of(const Image& image) {
@@ -222,7 +235,7 @@ TEST(Dof, BlursAlphaWithTheColorThatItCovers) {
 TEST(Dof, ShowsTheBlurOfALightInTheOverscan) {
     Capture capture = make_capture({.width = 96, .height = 48, .points = {{4, 24, 1000}}});
     capture.header.display_window = {8, 0, 95, 47};
-    const Image out = LookRunner(Lens{12, 88}.look("dof"), gpu::Backend::osmesa).color(capture);
+    const Image out = LookRunner(aperture_look("dof", 12, 88), gpu::Backend::osmesa).color(capture);
     EXPECT_NEAR(out.at(10, 24, 0), 1000 / (2.598 * 12 * 12), 0.1);
 }
 
