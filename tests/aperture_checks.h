@@ -11,6 +11,7 @@
 
 #include "framework/compare/metrics.h"
 #include "framework/image/capture.h"
+#include "tests/lens.h"
 #include "tests/look_runner.h"
 #include "tests/polygon.h"
 #include "tests/real_captures.h"
@@ -19,19 +20,13 @@
 namespace aftershade::test {
 
 /// In front of the focus plane at half its distance, and at infinity, a pinhole lens has CoC of one radius.
-constexpr float kApertureFocusM = 2, kApertureNearM = 1;
+constexpr float kApertureFocusM = Lens::kFocusM, kApertureNearM = kApertureFocusM / 2;
 constexpr float kApertureFarM = std::numeric_limits<float>::infinity();
 
-/// A look with a pinhole lens that gives a point at infinity this CoC radius in an image `width_px` wide.
 /// `more` begins with a comma where it is not empty.
 inline std::string aperture_look(const std::string& effect, double radius_px, int width_px,
                                  const std::string& more = "") {
-    const double focal_length_mm = 200, sensor_width_mm = 36, focus_mm = double(kApertureFocusM) * 1000;
-    const double aperture_mm = 2 * radius_px * sensor_width_mm / width_px * focus_mm / focal_length_mm;
-    return fmt::format(R"({{"aftershade": 1, "steps": [{{"effect": "{}", "params": {{"focus_distance": {},
-        "sensor_width": {}, "lens_model": "pinhole", "focal_length": {}, "f_number": {}{}}}}}]}})",
-                       effect, kApertureFocusM, sensor_width_mm, focal_length_mm,
-                       focal_length_mm / aperture_mm, more);
+    return Lens{radius_px, width_px}.look(effect, more.empty() ? "" : more.substr(1));
 }
 
 inline Image through_aperture(const std::string& effect, const Capture& capture, double radius_px,

@@ -34,20 +34,6 @@ Capture light_of_nine(int size, bool is_near, float intensity) {
     return make_capture(scene);
 }
 
-/// Coverage by what a square light of `side_px` (odd) makes of an outline: the mean of the outline at each of
-/// its pixels.
-Image coverage_of_light(const std::vector<Vertex>& outline, int size, int center, int side_px) {
-    Image sum(size, size, 1);
-    const int half = side_px / 2;
-    for (int j = -half; j <= half; ++j)
-        for (int i = -half; i <= half; ++i) {
-            const Image one = coverage(outline, size, size, center + i, center + j);
-            for (std::size_t k = 0; k < sum.floats().size(); ++k)
-                sum.floats()[k] += one.floats()[k] / float(side_px * side_px);
-        }
-    return sum;
-}
-
 double sum_of(const Image& image) {
     double sum = 0;
     for (int y = 0; y < image.height(); ++y)
