@@ -58,8 +58,8 @@ class BokehHexagonShape : public testing::TestWithParam<ShapeCase> {};
 TEST_P(BokehHexagonShape, OfAPixelOfLightIsAnEvenHexagonWithAllItsEnergy) {
     const ShapeCase& c = GetParam();
     const int size = c.radius_px > 40 ? 256 : c.radius_px > 20 ? 128 : 64, center = size / 2;
-    const Image image = blur(point_of_light(size, c.is_near), c.radius_px,
-                             fmt::format(R"("rotation": {})", c.rotation_deg));
+    const Image image =
+        blur(point_of_light(size, c.is_near), c.radius_px, fmt::format(R"("rotation": {})", c.rotation_deg));
     EXPECT_NEAR(sum_of(image), kIntensity, 0.01 * kIntensity);
     const auto hexagon = [&](double radius_px) {
         return coverage(regular_polygon(6, radius_px, c.rotation_deg), size, size, center, center);
@@ -118,7 +118,8 @@ TEST_P(BokehHexagonSettings, LeaveAUniformImageUnchanged) {
         for (int x = 0; x < 96; ++x)
             for (int c = 0; c < 4; ++c) {
                 const float source = capture.images.at("color").at(x, y, c);
-                ASSERT_NEAR(blurred.at(x, y, c), source, 2e-6 * source + (c == 3 ? 5e-4 : 0)) << x << " " << y << " " << c;
+                ASSERT_NEAR(blurred.at(x, y, c), source, 2e-6 * source + (c == 3 ? 5e-4 : 0))
+                    << x << " " << y << " " << c;
             }
 }
 
@@ -134,7 +135,8 @@ TEST(BokehHexagon, CopiesPixelsInFocusBitForBit) {
 }
 
 TEST(BokehHexagon, KeepsAFocusedObjectOutOfTheBlurBehindIt) {
-    const SyntheticBox box{.x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kFocusM, .color = {9, 9, 9}};
+    const SyntheticBox box{
+        .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kFocusM, .color = {9, 9, 9}};
     for (const double radius_px : {6, 12}) {
         const Image out = blur(make_capture({.width = 96, .height = 48, .box = box}, 0), radius_px);
         for (int y = 0; y < 48; ++y)
@@ -150,7 +152,8 @@ TEST(BokehHexagon, LetsHalfOfTheLightPastTheEdgeOfANearObject) {
     const SyntheticBox box{
         .x = 0, .y = -10, .width = 64, .height = 84, .depth_m = kFocusM / 2, .color = {1, 0, 0}};
     const Capture capture = make_capture(
-        {.width = 96, .height = 64, .background = {0, 0.5f, 0}, .background_depth_m = kFocusM, .box = box}, 0);
+        {.width = 96, .height = 64, .background = {0, 0.5f, 0}, .background_depth_m = kFocusM, .box = box},
+        0);
     for (const double radius_px : {9, 14}) {
         const Image out = blur(capture, radius_px);
         for (int x = 64; x < 80; ++x) {
@@ -164,7 +167,8 @@ TEST(BokehHexagon, LetsHalfOfTheLightPastTheEdgeOfANearObject) {
 }
 
 TEST(BokehHexagon, BlursAlphaWithTheColorThatItCovers) {
-    const SyntheticBox box{.x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kInfinity, .color = {1, 1, 1}};
+    const SyntheticBox box{
+        .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kInfinity, .color = {1, 1, 1}};
     const Image out = blur(make_capture({.width = 96, .height = 48, .alpha = 0, .box = box}, 0), 6);
     for (int x = 10; x < 56; ++x) ASSERT_NEAR(out.at(x, 20, 3), out.at(x, 20, 0), 2e-3f) << x;
     EXPECT_GT(out.at(18, 20, 3), 0.05f);
@@ -194,9 +198,10 @@ TEST(BokehHexagonOnSuzanne, ComesWithinReachOfTheRenderersLens) {
     const Capture capture = reader.read(4, roles);
     const ExrFile truth_file(*folder / "truth/dof_0004.exr");
     const Image truth = truth_file.read_floats(0, std::vector<std::string>{"R", "G", "B"});
-    LookRunner runner(R"({"aftershade": 1, "steps": [{"effect": "bokeh_hexagon", "params": {"focus_distance": 6.4,
+    LookRunner runner(
+        R"({"aftershade": 1, "steps": [{"effect": "bokeh_hexagon", "params": {"focus_distance": 6.4,
         "focal_length": 50, "f_number": 0.25, "sensor_width": 36, "lens_model": "pinhole"}}]})",
-                      gpu::Backend::osmesa);
+        gpu::Backend::osmesa);
     const double db = display_psnr_db(truth, runner.color(capture));
     fmt::print("PSNR against the lens: {:.2f} dB\n", db);
     EXPECT_GE(db, 31.0);  // measured 31.3; the project asks for 27

@@ -37,19 +37,22 @@ Sum take(usampler2D image, usampler2D light, float spacing, ivec2 p, float coc) 
     return sum;
 }
 
-void main() {
-    ivec2 p = ivec2(gl_FragCoord.xy);
-    vec4 own = texelFetch(color, p, 0);
-    float blur_px = texelFetch(grids, p / kTile, 0).y;
-    out_color = own;
-    if (blur_px < kLeastBlurPx) return;
+vec4 compose(ivec2 p, vec4 own, float blur_px) {
     float coc_px = texelFetch(coc, p, 0).r;
     Sum sum;
     if (blur_px < kCoarsePx) sum = take(fine, fine_light, 1.0, p, coc_px);
     else sum = take(coarse, coarse_light, 2.0, p, coc_px);
     float opacity = sum.opacity / max(sum.weight, 1e-9), blurred = smoothstep(kSharpPx, kBlurredPx, abs(coc_px));
-    if (sum.weight <= 0.0 || (opacity == 0.0 && blurred == 0.0)) return;
+    if (sum.weight <= 0.0 || (opacity == 0.0 && blurred == 0.0)) return own;
     // What lies over the pixel covers its own colour as it covers the grid's.
-    out_color = sum.blurred / sum.weight;
-    if (blurred < 1.0) out_color += (1.0 - blurred) * (1.0 - opacity) * (own - sum.sharp / sum.weight);
+    vec4 result = sum.blurred / sum.weight;
+    if (blurred < 1.0) result += (1.0 - blurred) * (1.0 - opacity) * (own - sum.sharp / sum.weight);
+    return result;
+}
+
+void main() {
+    ivec2 p = ivec2(gl_FragCoord.xy);
+    out_color = texelFetch(color, p, 0);
+    float blur_px = texelFetch(grids, p / kTile, 0).y;
+    if (blur_px >= kLeastBlurPx) out_color = compose(p, out_color, blur_px);
 }
