@@ -174,7 +174,7 @@ TEST(Bokeh, GivesTheSameBitsOnBothSoftwareBackends) {
 
 // ---- against a renderer's lens ----
 
-/// captures/suzanne/README.md: the sharp input has 21.7 dB, Blender's own Defocus node 20.3 to 21.1.
+/// captures/suzanne/README.md: the sharp input has 21.7 dB.
 TEST(BokehOnSuzanne, ComesWithinReachOfTheRenderersLens) {
     AFTERSHADE_REQUIRE_CAPTURE(folder, "suzanne");
     Sequence sequence;
@@ -200,7 +200,7 @@ TEST(BokehOnSuzanne, ComesWithinReachOfTheRenderersLens) {
     const double seed_db = psnr(R"(, "weights": "seed", "highlight_repair": false)");
     fmt::print("PSNR against the lens: sharp {:.2f}, hexagon {:.2f}, weights seed {:.2f} dB\n", sharp_db,
                hexagon_db, seed_db);
-    EXPECT_GE(hexagon_db, 31.0);  // measured 31.35; the project asks for 26.5
+    EXPECT_GE(hexagon_db, 31.0);  // measured 31.42; the project asks for 26.5
     EXPECT_GE(seed_db, 23.5);     // measured 24.6: no gate of the project, but a change here is to be noticed
 }
 

@@ -8,7 +8,8 @@
 float in_front(float tap_coc, float coc) { return clamp(coc - tap_coc, 0.0, 1.0); }
 
 Light tap_light(ivec2 texel, int level) {
-    ivec2 last = max((frame.size + (1 << level) - 1) >> level, ivec2(1)) - 1;
+    // Not textureSize, which llvmpipe answers for the level of the first of its lanes.
+    ivec2 last = max(frame.size >> level, ivec2(1)) - 1;
     return unpack_light(texelFetch(light, clamp(texel, ivec2(0), last), level));
 }
 
@@ -47,11 +48,14 @@ struct Back {
     float share;  // of the own surface
 };
 
-// The point's own surface and what is behind it, each seen through the point's own aperture.
-Back gather_back(vec2 center, float coc, int level) {
+// The point's own surface and what is behind it, each seen through the point's own aperture. A coarse level may show neither:
+// then the point's own light is all there is.
+Back gather_back(vec2 center, Light point, int level) {
+    const float kLeastWeight = 1e-3;
+    float coc = point.coc;
     float texels_per_px = 1.0 / float(1 << level), radius = abs(coc) * texels_per_px, reach = radius + 0.5;
-    vec4 own = vec4(0.0), behind = vec4(0.0);
-    float own_weight = 0.0, behind_weight = 0.0;
+    vec4 own = kLeastWeight * point.color, behind = vec4(0.0);
+    float own_weight = kLeastWeight, behind_weight = 0.0;
     ivec2 low = ivec2(floor(center - reach)), high = ivec2(floor(center + reach));
     for (int y = low.y; y <= high.y; ++y) {
         float dy = float(y) + 0.5 - center.y;
@@ -69,5 +73,5 @@ Back gather_back(vec2 center, float coc, int level) {
         }
     }
     float sum = own_weight + behind_weight;
-    return Back((own + behind) / max(sum, 1e-6), sum > 0.0 ? own_weight / sum : 1.0);
+    return Back((own + behind) / sum, own_weight / sum);
 }

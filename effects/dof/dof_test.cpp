@@ -8,7 +8,7 @@
 
 #include "framework/compare/metrics.h"
 #include "framework/image/capture.h"
-#include "tests/lens.h"
+#include "tests/aperture_checks.h"
 #include "tests/look_runner.h"
 #include "tests/polygon.h"
 #include "tests/real_captures.h"
@@ -18,12 +18,11 @@ namespace aftershade::test {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kFocusM = float(Lens::kFocusM);
+constexpr float kFocusM = kApertureFocusM;
 
 Image blur(const Capture& capture, double radius_px, const std::string& more = "",
            gpu::Backend backend = gpu::Backend::osmesa) {
-    const Lens lens{radius_px, capture.header.display_window.width()};
-    return LookRunner(lens.look("dof", more), backend).color(capture);
+    return through_aperture("dof", capture, radius_px, more.empty() ? "" : ", " + more, backend);
 }
 
 /// A 3 x 3 px light in the middle of a square picture whose every pixel has the CoC radius of the lens.
@@ -147,15 +146,17 @@ Capture varied_depth(SyntheticScene scene) {
 class DofSettings : public testing::TestWithParam<const char*> {};
 
 TEST_P(DofSettings, LeaveAUniformImageUnchanged) {
-    const Capture capture =
-        varied_depth({.width = 96, .height = 64, .background = {0.7f, 0.4f, 12.0f}, .alpha = 0.5f});
-    const Image blurred = blur(capture, 12, GetParam());
-    for (int y = 0; y < 64; ++y)
-        for (int x = 0; x < 96; ++x)
+    const Capture capture = varied_depth({/* odd, for the coarser levels */ .width = 95,
+                                          .height = 63,
+                                          .background = {0.7f, 0.4f, 12.0f},
+                                          .alpha = 0.5f});
+    const Image blurred = blur(capture, 20, GetParam());
+    for (int y = 0; y < 63; ++y)
+        for (int x = 0; x < 95; ++x)
             for (int c = 0; c < 4; ++c) {
                 const float source = capture.images.at("color").at(x, y, c);
-                // A float's rounding, in sums of up to a thousand taps; alpha is stored as a half.
-                ASSERT_NEAR(blurred.at(x, y, c), source, 5e-5 * source + (c == 3 ? 1e-3 : 0))
+                // A float's rounding, in sums of up to five thousand taps; alpha is stored as a half.
+                ASSERT_NEAR(blurred.at(x, y, c), source, 1e-4 * source + (c == 3 ? 1e-3 : 0))
                     << x << " " << y << " " << c;
             }
 }
@@ -220,7 +221,7 @@ TEST(Dof, BlursAlphaWithTheColorThatItCovers) {
 TEST(Dof, ShowsTheBlurOfALightInTheOverscan) {
     Capture capture = make_capture({.width = 96, .height = 48, .points = {{4, 24, 1000}}});
     capture.header.display_window = {8, 0, 95, 47};
-    const Image out = LookRunner(Lens{12, 88}.look("dof"), gpu::Backend::osmesa).color(capture);
+    const Image out = LookRunner(aperture_look("dof", 12, 88), gpu::Backend::osmesa).color(capture);
     EXPECT_NEAR(out.at(10, 24, 0), 1000 / (2.598 * 12 * 12), 0.1);
 }
 
@@ -233,9 +234,37 @@ TEST(Dof, GivesTheSameBitsOnBothSoftwareBackends) {
     EXPECT_TRUE(std::equal(egl.floats().begin(), egl.floats().end(), osmesa.floats().begin()));
 }
 
+// ---- where the focus is ----
+
+/// A lens of a wanted focus: any form of value that a look takes.
+std::string focused_at(const std::string& focus) {
+    return R"({"aftershade": 1, "steps": [{"effect": "dof", "params": {"f_number": 0.5, "focus_distance": )" +
+           focus + "}}]}";
+}
+
+TEST(DofFocus, IsTheSameByANumberADepthAnObjectTheCameraOrAKey) {
+    const SyntheticBox box{.x = 40, .y = 10, .width = 30, .height = 28, .depth_m = 1.5f, .color = {1, 2, 3}};
+    Capture capture = make_capture(
+        {.width = 96, .height = 48, .background = {1, 0, 0}, .background_depth_m = 4, .box = box}, 2);
+    capture.header.camera.set("focus_distance", 1.5);
+    const auto picture = [&](const std::string& look) {
+        return LookRunner(look, gpu::Backend::osmesa).color(capture);
+    };
+    const Image expected = picture(focused_at("1.5"));
+    for (const char* focus :
+         {R"("150 cm")", R"({"from": "depth", "uv": [0.5, 0.5]})", R"({"from": "depth", "object": 2})",
+          R"({"from": "camera.focus_distance"})", R"({"keys": {"1": 1, "3": 2}})"}) {
+        const Image image = picture(focused_at(focus));
+        EXPECT_TRUE(std::equal(expected.floats().begin(), expected.floats().end(), image.floats().begin()))
+            << focus;
+    }
+    const Image elsewhere = picture(focused_at("4"));
+    EXPECT_FALSE(std::equal(expected.floats().begin(), expected.floats().end(), elsewhere.floats().begin()));
+}
+
 // ---- against a renderer's lens ----
 
-/// captures/suzanne/README.md: the sharp input has 21.7 dB, Blender's own Defocus node 20.3 to 21.1.
+/// captures/suzanne/README.md: the sharp input has 21.7 dB.
 TEST(DofOnSuzanne, ComesCloseToTheRenderersLens) {
     AFTERSHADE_REQUIRE_CAPTURE(folder, "suzanne");
     Sequence sequence;
@@ -256,9 +285,9 @@ TEST(DofOnSuzanne, ComesCloseToTheRenderersLens) {
     const double fast_db = psnr("fast"), normal_db = psnr("normal"), exact_db = psnr("exact");
     fmt::print("PSNR against the lens: fast {:.2f}, normal {:.2f}, exact {:.2f} dB\n", fast_db, normal_db,
                exact_db);
-    EXPECT_GE(fast_db, 32.4);    // measured 32.66
-    EXPECT_GE(normal_db, 32.6);  // measured 32.87; the project asks for 31
-    EXPECT_GE(exact_db, 32.9);   // measured 33.14
+    EXPECT_GE(fast_db, 32.8);    // measured 33.04
+    EXPECT_GE(normal_db, 32.8);  // measured 33.11; the project asks for 31
+    EXPECT_GE(exact_db, 33.1);   // measured 33.20
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ void main() {
     Back surface = Back(own.color, 1.0);
     if (is_blurred) {
         int level = level_for(abs(own.coc), around_coc);
-        surface = gather_back(center / float(1 << level), own.coc, level);
+        surface = gather_back(center / float(1 << level), own, level);
     }
     // Light and opacity must agree to the last bit for what is even to stay even, and opacity is stored as a half.
     float opacity = unpackHalf2x16(packHalf2x16(vec2(over.opacity))).x;

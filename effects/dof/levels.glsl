@@ -3,7 +3,7 @@
 #if QUALITY == QUALITY_FAST
 const float kFullSizePx = 4.0, kTexels = 8.0, kEvenTexels = 6.0;
 #elif QUALITY == QUALITY_NORMAL
-const float kFullSizePx = 8.0, kTexels = 16.0, kEvenTexels = 8.0;
+const float kFullSizePx = 4.0, kTexels = 16.0, kEvenTexels = 8.0;
 #else
 const float kFullSizePx = 64.0, kTexels = 64.0, kEvenTexels = 64.0;
 #endif

@@ -2,23 +2,29 @@
 // before the others.
 #include <aperture.glsl>
 
+// Opposite edges of an even polygon share one.
+const int kNormals = BLADES % 2 == 0 ? BLADES / 2 : BLADES;
 #if BLADES >= 3
-vec2 edge_normals[BLADES];  // over the inradius
+vec2 edge_normals[kNormals];  // over the inradius
 #endif
 Aperture aperture;
-vec2 rim;  // middle of the lens's rim, in radii of the aperture
+vec2 rim;          // middle of the lens's rim, in radii of the aperture
+float open_area;   // of the outline within the rim, for a radius of 1
 
 void prepare_outline_at(vec2 pixel) {
-    aperture = make_aperture(BLADES, param.curvature, radians(param.rotation));
+    aperture = make_aperture(BLADES, CURVATURE, radians(param.rotation));
 #if BLADES >= 3
-    for (int i = 0; i < BLADES; ++i) {
+    for (int i = 0; i < kNormals; ++i) {
         float angle = radians(param.rotation) + 2.0 * kPi * float(i) / float(BLADES);
         edge_normals[i] = vec2(cos(angle), sin(angle)) / cos(kPi / float(BLADES));
     }
 #endif
     // Off the middle of the picture the rim of the lens hides the aperture's outer side.
     vec2 middle = 0.5 * vec2(frame.display_size);
-    rim = param.cat_eye * (middle - (pixel + vec2(frame.origin))) / length(middle);
+    rim = CAT_EYE * (middle - (pixel + vec2(frame.origin))) / length(middle);
+    // Two circles' common area, as a share of one.
+    float apart = min(length(rim), 2.0);
+    open_area = aperture.area * (2.0 * acos(0.5 * apart) - 0.5 * apart * sqrt(4.0 - apart * apart)) / kPi;
 }
 
 // offset: of the lit pixel from the light's own; a light in front of the focus plane is turned by 180 degrees.
@@ -27,10 +33,13 @@ float gauge(vec2 offset, float coc) {
     float distance = length(offset), outline = distance;
 #if BLADES >= 3
     float straight = 0.0;
-    for (int i = 0; i < BLADES; ++i) straight = max(straight, dot(edge_normals[i], offset));
-    outline = param.curvature == 0.0 ? straight : distance / mix(distance / max(straight, 1e-6), 1.0, param.curvature);
+    for (int i = 0; i < kNormals; ++i) {
+        float along = dot(edge_normals[i], offset);
+        straight = max(straight, BLADES % 2 == 0 ? abs(along) : along);
+    }
+    outline = CURVATURE == 0.0 ? straight : distance / mix(distance / max(straight, 1e-6), 1.0, CURVATURE);
 #endif
-    if (param.cat_eye > 0.0) {
+    if (CAT_EYE > 0.0) {
         // |offset / t - rim| = 1, solved for t.
         float along = dot(offset, rim), rest = 1.0 - dot(rim, rim);
         outline = max(outline, (sqrt(along * along + rest * distance * distance) - along) / rest);
@@ -38,14 +47,8 @@ float gauge(vec2 offset, float coc) {
     return outline;
 }
 
-// Of the open aperture within the rim: two circles' common area, as a share of one.
-float rim_share() {
-    float apart = min(length(rim), 2.0);
-    return (2.0 * acos(0.5 * apart) - 0.5 * apart * sqrt(4.0 - apart * apart)) / kPi;
-}
-
 // Area in px that a light of this CoC radius covers, at least a pixel.
-float spread_area(float radius_px) { return max(aperture.area * rim_share() * radius_px * radius_px, 1.0); }
+float spread_area(float radius_px) { return max(open_area * radius_px * radius_px, 1.0); }
 
 // Coverage of a pixel whose gauge is this by the outline of this radius: 1 inside, half on the outline.
 float cover(float radius_px, float gauge_px) {

@@ -22,7 +22,7 @@ void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     vec4 texel = texelFetch(color, p, 0);
     float coc_px = texelFetch(coc, p, 0).r;
-    vec2 around_amount = texelFetch(surround, p / 4, 0).rg;
+    vec2 around_amount = texelFetch(surround, p / 8, 0).rg;
     float share = highlight_share(dot(texel.rgb, vec3(1.0)), around_amount, abs(coc_px), vec2(p) + 0.5);
     out_is_highlight = share > 0.0 ? 1.0 : 0.0;
     out_light = pack_light(Light(vec4(texel.rgb * (1.0 - share), texel.a), coc_px));

@@ -315,7 +315,7 @@ TEST(DofSimpleOnSuzanne, IsBetterThanNoLensAndShortOfBokeh) {
     const double scheuermann_db = display_psnr_db(truth, color(capture, params));
     const double riguer_db = display_psnr_db(truth, color(capture, params + R"(, "weights": "riguer")"));
     fmt::print("PSNR against the lens: scheuermann {:.2f}, riguer {:.2f} dB\n", scheuermann_db, riguer_db);
-    EXPECT_GE(scheuermann_db, 23.9);  // measured 24.18; the sharp input has 21.7, bokeh 31.35
+    EXPECT_GE(scheuermann_db, 23.9);  // measured 24.18; the sharp input has 21.7, bokeh 31.42
     EXPECT_GE(riguer_db, 23.8);       // measured 24.03
 }
 

@@ -22,6 +22,7 @@ RADII = [2, 4, 8, 16, 32, 64]
 FRACTIONS = [0, 0.1, 0.25, 0.5, 0.75, 1]
 FOCUS_M, FOCAL_MM, SENSOR_MM = 2, 200, 36
 ENOUGH_IOU = 0.97  # DESIGN.md section 10
+SLOW_MS = 4000  # of one frame: such an effect is timed once, and no further than at R = 16
 
 
 def lens(radius_px, width, **more):
@@ -86,7 +87,7 @@ def counting_copy():
             continue
         text = file.read_text()
         code = re.sub(r"//.*", "", text)
-        other = set(re.findall(r"\b(texture\w*|texelFetch\w+)\s*\(", code)) - {"texture", "textureLod", "texelFetch", "textureSize"}
+        other = set(re.findall(r"\b(texture\w*|texelFetch\w+)\s*\(", code)) - {"texture", "textureLod", "texelFetch", "textureSize", "textureQueryLevels"}
         if other:
             raise SystemExit(f"{file}: {', '.join(sorted(other))} is not counted yet; extend PRELUDE")
         if file.suffix in PLACE and "#include <pass>" in text and re.search(r"\bvoid\s+main\s*\(", code):
@@ -106,9 +107,7 @@ def plots(family, by_radius, by_fraction):
             axes.plot(ticks, values[effect.id], marker="o", markersize=3, linewidth=1.2, label=effect.id)
         if name == "cost_radius":
             axes.set_xscale("log", base=2)
-            axes.set_yscale("log")
-        else:
-            axes.set_ylim(bottom=0)
+        axes.set_yscale("log")
         axes.set(xlabel=label, ylabel=f"ms, {SIZE[0]} x {SIZE[1]}", xticks=ticks, xticklabels=[f"{t:g}" for t in ticks])
         axes.grid(alpha=0.3)
         axes.legend(fontsize=7)
@@ -129,8 +128,8 @@ def point_iou(effect, radius, params):
     return iou(out >= 0.5 * out[size // 2, size // 2], coverage >= 0.5) if out.max() > 0 else 0.0
 
 
-def fewest_taps(gather, radius):
-    """(parameter, value, IoU) of the cheapest setting with a hexagon's IoU of ENOUGH_IOU."""
+def fewest_taps(gather, radius, more):
+    """(parameters, IoU) of the cheapest setting, beside `more`, with a hexagon's IoU of ENOUGH_IOU."""
     for name in ("taps", "samples", "rings"):
         spec = gather.params.get(name)
         if not spec or spec["type"] != "int":
@@ -138,8 +137,8 @@ def fewest_taps(gather, radius):
         low, high = max(spec.get("min", 1), 1), spec["max"]
         while low < high:  # more taps are never worse by much: a search by halves
             middle = (low + high) // 2
-            low, high = (low, middle) if point_iou(gather, radius, {name: middle}) >= ENOUGH_IOU else (middle + 1, high)
-        return name, low, point_iou(gather, radius, {name: low})
+            low, high = (low, middle) if point_iou(gather, radius, {name: middle} | more) >= ENOUGH_IOU else (middle + 1, high)
+        return {name: low} | more, point_iou(gather, radius, {name: low} | more)
     return None
 
 
@@ -147,15 +146,19 @@ def hexagon_against_gather(family):
     by_id = {e.id: e for e in family}
     if not {"bokeh_hexagon", "bokeh_gather"} <= by_id.keys():
         return "bokeh_hexagon against bokeh_gather: n/a, not both are in effects/"
-    found = fewest_taps(by_id["bokeh_gather"], 16)
+    gather = by_id["bokeh_gather"]
+    samplers = gather.params.get("sampler", {}).get("values", [])
+    found = [f for f in (fewest_taps(gather, 16, {"sampler": s}) for s in samplers) if f and f[1] >= ENOUGH_IOU]
     if not found:
-        return "bokeh_hexagon against bokeh_gather: n/a, bokeh_gather has no int parameter taps, samples or rings"
-    name, value, reached = found
-    cases = [case(by_id["bokeh_hexagon"], 16), case(by_id["bokeh_gather"], 16, **{name: value})]
+        return "bokeh_hexagon against bokeh_gather: n/a, no number of taps of bokeh_gather reaches the IoU"
+    cases = [case(by_id["bokeh_hexagon"], 16), *(case(gather, 16, **params) for params, _ in found)]
     times, counts = bench(cases), bench(cases, 1, True)
-    hexagon, gather = ((times[c["name"]]["ms"], counts[c["name"]]["fetches_per_pixel"]) for c in cases)
-    return (f"bokeh_hexagon {hexagon[0]:.0f} ms, {hexagon[1]:.1f} fetches a pixel; bokeh_gather with {name} {value} (IoU {reached:.3f}) "
-            f"{gather[0]:.0f} ms, {gather[1]:.1f} fetches: {gather[0] / hexagon[0]:.2f} times the time")
+    hexagon, *gathers = [(times[c["name"]]["ms"], counts[c["name"]]["fetches_per_pixel"]) for c in cases]
+    lines = [f"bokeh_hexagon {hexagon[0]:.0f} ms, {hexagon[1]:.1f} fetches a pixel"]
+    for (params, reached), (ms, fetches) in zip(found, gathers):
+        lines.append(f"bokeh_gather with " + ", ".join(f"{k} {v}" for k, v in params.items()) +
+                     f" (IoU {reached:.3f}) {ms:.0f} ms, {fetches:.1f} fetches: {ms / hexagon[0]:.2f} times the time")
+    return "; ".join(lines)
 
 
 def main():
@@ -169,7 +172,10 @@ def main():
     near = {e.id: case(e, 16, near=True) for e in family}
     ninety = {e.id: case(e, 16, blurred=0.1) for e in family}
     counts = bench([*full.values(), *near.values()], 1, True)
-    times = bench([*full.values(), *near.values(), *ninety.values()])
+    once = bench(list(full.values()), 1)
+    slow = {e.id for e in family if once[full[e.id]["name"]]["ms"] > SLOW_MS}
+    asked = [c for e in family for c in (full[e.id], near[e.id], ninety[e.id])]
+    times = bench([c for c in asked if c["effect"] in slow], 1) | bench([c for c in asked if c["effect"] not in slow])
     rows = []
     for e in family:
         ms = [times[c[e.id]["name"]]["ms"] for c in (full, near, ninety)]
@@ -180,9 +186,12 @@ def main():
         print("    " + ", ".join(f"{p['pass']} {p['ms']:.1f}" for p in times[full[e.id]["name"]]["passes"]))
     cases = [case(e, r) for r in RADII for e in family] + [case(e, 16, blurred=f) for f in FRACTIONS for e in family]
     unique = list({c["name"]: c for c in cases}.values())
-    sweep = bench(unique, max(1, REPETITIONS * 3 // 5))
-    by_radius = {e.id: [sweep[case(e, r)["name"]]["ms"] for r in RADII] for e in family}
-    by_fraction = {e.id: [sweep[case(e, 16, blurred=f)["name"]]["ms"] for f in FRACTIONS] for e in family}
+    too_slow = {case(e, r)["name"] for r in RADII if r > 16 for e in family if e.id in slow}
+    sweep = bench([c for c in unique if c["effect"] not in slow], max(1, REPETITIONS * 3 // 5))
+    sweep |= bench([c for c in unique if c["effect"] in slow and c["name"] not in too_slow], 1)
+    ms_of = lambda wanted: sweep[wanted["name"]]["ms"] if wanted["name"] in sweep else float("nan")
+    by_radius = {e.id: [ms_of(case(e, r)) for r in RADII] for e in family}
+    by_fraction = {e.id: [ms_of(case(e, 16, blurred=f)) for f in FRACTIONS] for e in family}
     plots(family, by_radius, by_fraction)
     for e in family:
         print(f"{e.id:14} ms at R {RADII}: " + " ".join(f"{v:.0f}" for v in by_radius[e.id])

@@ -14,6 +14,7 @@ IMAGES = ROOT / "docs/images/dof"
 # Measured once and cited: captures/suzanne/README.md.
 CITED = [("Blender's Defocus node at f-stops tried by hand, cited", "20.3 to 21.1"), ("30 depth layers by FFT in double precision, cited", "30.2")]
 SUZANNE = {"focus_distance": 6.4, "focal_length": 50, "f_number": 0.25, "sensor_width": 36, "lens_model": "pinhole"}
+UNSEEN = (slice(0, 20), slice(0, 60))  # rows, columns that a bulb beyond the frame's edge lights in the lens' picture
 CROPS = {"bulbs": (560, 40, 240, 150), "head": (300, 150, 240, 150)}  # x, y, w, h
 
 
@@ -73,18 +74,30 @@ def suzanne(family):
     for effect in family:
         pictures[effect.id] = run_effect(effect.id, capture, WORK / f"suzanne-{effect.id}.exr",
                                          SUZANNE | effect.closest_to_hexagon(), WORK)
-    values = {name: psnr_db(truth, picture) for name, picture in pictures.items()}
+    seen = numpy.ones(truth.shape[:2], dtype=bool)
+    seen[UNSEEN] = False
+    measure = lambda picture: (psnr_db(truth, picture), psnr_db(truth, picture, seen))
+    values = {name: measure(picture) for name, picture in pictures.items()}
     if shutil.which("blender"):
         defocused = WORK / "suzanne-blender.exr"
         if not defocused.exists():
             command(["blender", "-b", "--factory-startup", "--python-exit-code", "1", "--python", ROOT / "tests/bench/dof_blender.py",
                      "--", capture, defocused, 960, 540, os.cpu_count()])
-        values["Blender's Defocus node at the f-stop that gives the lens's radii"] = psnr_db(truth, read_exr(defocused, ["R", "G", "B"]))
+        values["Blender's Defocus node at the f-stop that gives the lens's radii"] = measure(read_exr(defocused, ["R", "G", "B"]))
     pictures["truth"] = truth
     for crop, (x, y, w, h) in CROPS.items():
         for name, picture in pictures.items():
             save(picture[y:y + h, x:x + w], f"suzanne_{crop}_{name}")
+    three(pictures["sharp"], pictures.get("dof", truth), truth)
     return values, list(pictures)
+
+
+def three(*pictures):
+    """The strip at the head of docs/depth-of-field.md, at half size."""
+    x, y, w, h = 330, 30, 630, 400
+    small = [p[y:y + h, x:x + w].reshape(h // 2, 2, w // 2, 2, 3).mean(axis=(1, 3)) for p in pictures]
+    gap = numpy.full((h // 2, 7, 3), 1.0)
+    save(numpy.concatenate([small[0], gap, small[1], gap, small[2]], axis=1), "three")
 
 
 def save(linear, name, exposure=1.6):
@@ -179,9 +192,10 @@ def document(family, on_suzanne, shown, on_scenes, bokeh_shapes):
     ids = [e.id for e in family]
     names = lambda name: f"`{name}`" if name in ids else name
     parts = [(ROOT / "scripts/dof/quality-head.md").read_text()]
-    best = max(on_suzanne[i] for i in ids)
+    best = [max(on_suzanne[i][k] for i in ids) for k in (0, 1)]
     parts.append("## A renderer's frame\n\n" + (ROOT / "scripts/dof/quality-suzanne.md").read_text() + "\n" + table(
-        ["", "PSNR, dB"], [[names(n), cell(v, best=best)] for n, v in on_suzanne.items()] + [list(row) for row in CITED]))
+        ["", "PSNR, dB", "without that corner, dB"],
+        [[names(n), *(cell(v, best=b) for v, b in zip(pair, best))] for n, pair in on_suzanne.items()] + [[*row, ""] for row in CITED]))
     for crop in CROPS:
         cells = [f"![{n}](images/dof/suzanne_{crop}_{n}.jpg)<br>{names(n)}" for n in shown]
         rows = [cells[i:i + 3] for i in range(0, len(cells), 3)]
@@ -222,8 +236,8 @@ def main():
     print("effects:", ", ".join(e.id for e in family), "| not here:",
           ", ".join(n for n in FAMILY if n not in [e.id for e in family]) or "none")
     on_suzanne, shown = suzanne(family)
-    for name, value in on_suzanne.items():
-        print(f"suzanne         {name:14} {value:6.2f} dB")
+    for name, pair in on_suzanne.items():
+        print("suzanne         %-14s %6.2f dB, %6.2f without the corner" % (name, *pair))
     on_scenes = {}
     for name, scene, frame, focused, what in scenes.all_scenes():
         on_scenes[name] = one_scene(name, scene, frame, focused, family) | {"for": what}

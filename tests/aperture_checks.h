@@ -1,0 +1,212 @@
+// What every depth of field with an aperture of blades must do, against closed forms: `effect` is its id.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "framework/compare/metrics.h"
+#include "framework/image/capture.h"
+#include "tests/lens.h"
+#include "tests/look_runner.h"
+#include "tests/polygon.h"
+#include "tests/real_captures.h"
+#include "tests/synthetic_capture.h"
+
+namespace aftershade::test {
+
+/// In front of the focus plane at half its distance, and at infinity, a pinhole lens has CoC of one radius.
+constexpr float kApertureFocusM = Lens::kFocusM, kApertureNearM = kApertureFocusM / 2;
+constexpr float kApertureFarM = std::numeric_limits<float>::infinity();
+
+/// `more` begins with a comma where it is not empty.
+inline std::string aperture_look(const std::string& effect, double radius_px, int width_px,
+                                 const std::string& more = "") {
+    return Lens{radius_px, width_px}.look(effect, more.empty() ? "" : more.substr(1));
+}
+
+inline Image through_aperture(const std::string& effect, const Capture& capture, double radius_px,
+                              const std::string& more = "", gpu::Backend backend = gpu::Backend::osmesa) {
+    const int width = capture.images.at("color").width();
+    return LookRunner(aperture_look(effect, radius_px, width, more), backend).color(capture);
+}
+
+struct AperturePoint {
+    int blades;
+    double radius_px;
+    double rotation_deg;
+    bool near;
+    double curvature = 0;
+};
+
+inline void PrintTo(const AperturePoint& p, std::ostream* out) {
+    *out << p.blades << " blades, R " << p.radius_px << ", rotation " << p.rotation_deg << ", curvature "
+         << p.curvature << (p.near ? ", near" : ", far");
+}
+
+/// One bright pixel on a black plane of one depth: its picture has all its energy, and from 8 px on the
+/// polygon's shape, turned by 180 degrees in front of the focus plane.
+inline void expect_point_is_the_aperture(const std::string& effect, const AperturePoint& p) {
+    const int center = int(std::ceil(p.radius_px)) + 3, size = 2 * center + 1;
+    const float intensity = 1000;
+    const Capture capture = make_capture({.width = size,
+                                          .height = size,
+                                          .background_depth_m = p.near ? kApertureNearM : kApertureFarM,
+                                          .points = {{center, center, intensity}}});
+    const Image out = through_aperture(effect, capture, p.radius_px,
+                                       fmt::format(R"(, "blades": {}, "rotation": {}, "curvature": {})",
+                                                   p.blades, p.rotation_deg, p.curvature));
+    double energy = 0;
+    for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x) energy += double(out.at(x, y, 0)) / double(intensity);
+    EXPECT_NEAR(energy, 1, 0.001);
+    if (p.radius_px < 8 || (p.curvature > 0 && p.curvature < 1)) return;
+    // 256 corners stand for a disk.
+    const int corners = p.blades < 3 || p.curvature == 1 ? 256 : p.blades;
+    const double turned_deg = p.rotation_deg + (p.near ? 180 : 0);
+    const Image polygon =
+        coverage(regular_polygon(corners, p.radius_px, turned_deg), size, size, center, center);
+    const double iou = shape_iou(out, double(out.at(center, center, 0)), polygon);
+    testing::Test::RecordProperty("iou", fmt::format("{:.4f}", iou));
+    EXPECT_GE(iou, 0.97);
+}
+
+inline Capture aperture_random_depths(const SyntheticScene& scene) {
+    Capture capture = make_capture(scene);
+    std::uint32_t state = 1;
+    for (float& depth_m : capture.images["depth"].floats()) {
+        state = state * 1664525u + 1013904223u;
+        depth_m = 0.5f + float(state >> 16) / 65536.0f * 10;
+    }
+    return capture;
+}
+
+inline void expect_uniform_stays_uniform(const std::string& effect, const std::string& more) {
+    const Capture capture =
+        aperture_random_depths({.width = 96, .height = 64, .background = {0.7f, 0.4f, 12.0f}, .alpha = 0.5f});
+    const Image out = through_aperture(effect, capture, 12, more);
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 96; ++x)
+            for (int c = 0; c < 4; ++c) {
+                const float source = capture.images.at("color").at(x, y, c);
+                ASSERT_NEAR(out.at(x, y, c), source, 2e-6f * source) << x << " " << y << " " << c;
+            }
+}
+
+inline void expect_focus_stays_bit_for_bit(const std::string& effect) {
+    Capture capture = make_capture({.width = 64, .height = 36, .background_depth_m = kApertureFocusM});
+    const auto floats = capture.images["color"].floats();
+    for (std::size_t i = 0; i < floats.size(); ++i) floats[i] = i % 4 == 3 ? 1.0f : float(i) * 0.37f;
+    // What is far cannot cover it, and what is near begins 13 px away.
+    for (int y = 0; y < 36; ++y)
+        for (int x = 40; x < 64; ++x)
+            capture.images["depth"].at(x, y, 0) = x < 53 ? kApertureFarM : kApertureNearM;
+    const Image out = through_aperture(effect, capture, 10);
+    for (int y = 0; y < 36; ++y)
+        for (int x = 0; x < 40; ++x)
+            for (int c = 0; c < 4; ++c)
+                ASSERT_EQ(out.at(x, y, c), capture.images.at("color").at(x, y, c)) << x << " " << y;
+}
+
+/// At most this much of a bright object in focus in the blur behind it.
+inline void expect_focus_leaks_at_most(const std::string& effect, float share) {
+    const SyntheticBox box{
+        .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kApertureFocusM, .color = {9, 9, 9}};
+    const Image out = through_aperture(effect, make_capture({.width = 96, .height = 48, .box = box}, 0), 12);
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 96; ++x) {
+            if (x >= 20 && x < 44 && y >= 10 && y < 30) continue;
+            ASSERT_LE(out.at(x, y, 0), share * 9) << x << " " << y;
+        }
+}
+
+constexpr float kApertureDark = 0.1f;
+
+/// A bright near box from x = 30 to 63 before a dark plane in focus.
+inline Image near_box_over_focus(const std::string& effect) {
+    const SyntheticBox box{
+        .x = 30, .y = -10, .width = 34, .height = 80, .depth_m = kApertureNearM, .color = {1, 1, 1}};
+    const Capture capture = make_capture({.width = 96,
+                                          .height = 48,
+                                          .background = {kApertureDark, kApertureDark, kApertureDark},
+                                          .background_depth_m = kApertureFocusM,
+                                          .box = box},
+                                         0);
+    return through_aperture(effect, capture, 12, R"(, "blades": 4)");
+}
+
+/// A square of circumradius 12 px reaches 8.485 px: the box's edge at x = 64 becomes a straight ramp, of
+/// which the centres of the pixels from `first` on are looked at.
+inline void expect_near_ramp(const Image& out, int first, float tolerance) {
+    const double reach_px = 12 / std::sqrt(2.0);
+    for (int x = first; x < 80; ++x) {
+        const double covered = std::clamp((64 + reach_px - (x + 0.5)) / (2 * reach_px), 0.0, 1.0);
+        const double expected = covered + (1 - covered) * double(kApertureDark);
+        EXPECT_NEAR(double(out.at(x, 24, 0)), expected, double(tolerance)) << x;
+    }
+}
+
+inline void expect_alpha_blurs_with_color(const std::string& effect) {
+    const SyntheticBox box{
+        .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kApertureFarM, .color = {1, 1, 1}};
+    const Image out =
+        through_aperture(effect, make_capture({.width = 96, .height = 48, .alpha = 0, .box = box}, 0), 6);
+    for (int x = 10; x < 56; ++x) ASSERT_NEAR(out.at(x, 20, 3), out.at(x, 20, 0), 1e-6f) << x;
+    EXPECT_GT(out.at(18, 20, 3), 0.05f);
+    EXPECT_LT(out.at(18, 20, 3), 0.95f);
+}
+
+inline Capture aperture_random_lights() {
+    Capture capture = aperture_random_depths({.width = 96, .height = 64, .background = {0.2f, 0.1f, 0.05f}});
+    for (std::size_t i = 0; i < 96 * 64; i += 37) capture.images["color"].floats()[i * 4] = float(i) * 1000;
+    return capture;
+}
+
+inline void expect_same_bits_on_both_backends(const std::string& effect) {
+    const Capture capture = aperture_random_lights();
+    const std::string more = R"(, "blades": 5, "rotation": 7)";
+    const Image egl = through_aperture(effect, capture, 12, more, gpu::Backend::egl_software);
+    const Image osmesa = through_aperture(effect, capture, 12, more, gpu::Backend::osmesa);
+    EXPECT_TRUE(std::equal(egl.floats().begin(), egl.floats().end(), osmesa.floats().begin()));
+}
+
+/// No darker than the darkest pixel and no brighter than the brightest, up to rounding; so nothing that is no
+/// number.
+inline void expect_no_light_is_made(const std::string& effect) {
+    const Capture capture = aperture_random_lights();
+    const Image out = through_aperture(effect, capture, 12);
+    const auto lights = capture.images.at("color").floats();
+    const float brightest = *std::max_element(lights.begin(), lights.end());
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 96; ++x) {
+            ASSERT_GE(out.at(x, y, 0), 0) << x << " " << y;
+            ASSERT_LE(out.at(x, y, 0), brightest * 1.0001f) << x << " " << y;
+            ASSERT_NEAR(out.at(x, y, 1), 0.1f, 1e-6f) << x << " " << y;
+        }
+}
+
+/// PSNR, dB, of frame 4 against the renderer's own lens; `folder` is captures/suzanne.
+inline double suzanne_through_aperture_db(const std::string& effect, const std::filesystem::path& folder) {
+    Sequence sequence;
+    sequence.files = FramePattern((folder / "large/gbuffer_####.exr").string());
+    sequence.profile = "blender";
+    Diagnostics diagnostics;
+    const CaptureReader reader(sequence, read_profiles(AFTERSHADE_SOURCE_DIR "/profiles", diagnostics), {});
+    const std::vector<std::string> roles{"color", "depth"};
+    const Capture capture = reader.read(4, roles);
+    const ExrFile truth_file(folder / "truth/dof_0004.exr");
+    const Image truth = truth_file.read_floats(0, std::vector<std::string>{"R", "G", "B"});
+    LookRunner runner(R"({"aftershade": 1, "steps": [{"effect": ")" + effect +
+                          R"(", "params": {"focus_distance": 6.4, "focal_length": 50, "f_number": 0.25,
+                             "sensor_width": 36, "lens_model": "pinhole"}}]})",
+                      gpu::Backend::osmesa);
+    const double db = display_psnr_db(truth, runner.color(capture));
+    fmt::print("PSNR of {} against the lens: {:.2f} dB\n", effect, db);
+    return db;
+}
+
+}  // namespace aftershade::test
