@@ -1,7 +1,7 @@
 // One skewed 1-D blur that spreads every texel by its own circle of confusion.
 #include <lens/packing.glsl>
 #include <lens/highlight.glsl>
-#include "tile.glsl"
+#include <near_reach/tile.glsl>
 #include "line.glsl"
 
 // Light gathered from one side of the centre.

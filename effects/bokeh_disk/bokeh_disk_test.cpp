@@ -7,32 +7,16 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "framework/compare/metrics.h"
-#include "framework/image/capture.h"
-#include "tests/lens.h"
-#include "tests/look_runner.h"
-#include "tests/polygon.h"
-#include "tests/real_captures.h"
-#include "tests/synthetic_capture.h"
+#include "tests/aperture_checks.h"
 
 namespace aftershade::test {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kFocusM = float(Lens::kFocusM);
-constexpr float kIntensity = 1000;
+constexpr float kIntensity = kPointIntensity;
 
 Image blur(const Capture& capture, double radius_px, const std::string& more = "",
            gpu::Backend backend = gpu::Backend::osmesa) {
-    const Lens lens{radius_px, capture.header.display_window.width()};
-    return LookRunner(lens.look("bokeh_disk", more), backend).color(capture);
-}
-
-Capture point_of_light(int size, bool is_near) {
-    return make_capture({.width = size,
-                         .height = size,
-                         .background_depth_m = is_near ? kFocusM / 2 : kInfinity,
-                         .points = {{size / 2, size / 2, kIntensity}}});
+    return through_aperture("bokeh_disk", capture, radius_px, more, backend);
 }
 
 /// Coverage of each pixel by a disk around the middle of pixel (center, center), by 8 x 8 samples.
@@ -43,13 +27,6 @@ Image disk(double radius_px, int size, int center) {
             if (std::hypot((x + 0.5) / 8 - 0.5 - center, (y + 0.5) / 8 - 0.5 - center) <= radius_px)
                 image.at(x / 8, y / 8, 0) += 1.0f / 64;
     return image;
-}
-
-double sum_of(const Image& image) {
-    double sum = 0;
-    for (int y = 0; y < image.height(); ++y)
-        for (int x = 0; x < image.width(); ++x) sum += image.at(x, y, 0);
-    return sum;
 }
 
 // ---- the shape of a light ----
@@ -104,21 +81,11 @@ INSTANTIATE_TEST_SUITE_P(All, BokehDiskShape, testing::ValuesIn(shapes()));
 
 // ---- what must not change ----
 
-Capture varied_depth(SyntheticScene scene) {
-    Capture capture = make_capture(scene);
-    std::uint32_t state = 1;
-    for (float& depth_m : capture.images["depth"].floats()) {
-        state = state * 1664525u + 1013904223u;
-        depth_m = 0.5f + float(state >> 16) / 65536.0f * 10;
-    }
-    return capture;
-}
-
 class BokehDiskSettings : public testing::TestWithParam<const char*> {};
 
 TEST_P(BokehDiskSettings, LeaveAUniformImageUnchanged) {
     const Capture capture =
-        varied_depth({.width = 96, .height = 62, .background = {0.7f, 0.4f, 12.0f}, .alpha = 0.5f});
+        aperture_random_depths({.width = 96, .height = 62, .background = {0.7f, 0.4f, 12.0f}, .alpha = 0.5f});
     const Image blurred = blur(capture, 12, GetParam());
     for (int y = 0; y < 62; ++y)
         for (int x = 0; x < 96; ++x)
@@ -133,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(All, BokehDiskSettings,
                          testing::Values(R"("components": 1)", R"("components": 2)", R"("components": 3)"));
 
 TEST(BokehDisk, CopiesPixelsInFocusBitForBit) {
-    Capture capture = make_capture({.width = 64, .height = 36, .background_depth_m = kFocusM});
+    Capture capture = make_capture({.width = 64, .height = 36, .background_depth_m = kApertureFocusM});
     for (std::size_t i = 0; i < capture.images["color"].floats().size(); ++i)
         capture.images["color"].floats()[i] = float(i) * 0.37f;
     const Image out = blur(capture, 20);
@@ -143,7 +110,7 @@ TEST(BokehDisk, CopiesPixelsInFocusBitForBit) {
 
 TEST(BokehDisk, KeepsAFocusedObjectOutOfTheBlurBehindIt) {
     const SyntheticBox box{
-        .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kFocusM, .color = {9, 9, 9}};
+        .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kApertureFocusM, .color = {9, 9, 9}};
     for (const double radius_px : {6, 12}) {
         const Image out = blur(make_capture({.width = 96, .height = 48, .box = box}, 0), radius_px);
         for (int y = 0; y < 48; ++y)
@@ -157,10 +124,13 @@ TEST(BokehDisk, KeepsAFocusedObjectOutOfTheBlurBehindIt) {
 /// A half plane at half the focus distance, with its edge at x = 63.5, before what is in focus.
 TEST(BokehDisk, SpreadsANearObjectSoftlyOverWhatIsInFocus) {
     const SyntheticBox box{
-        .x = 0, .y = -10, .width = 64, .height = 84, .depth_m = kFocusM / 2, .color = {1, 0, 0}};
-    const Capture capture = make_capture(
-        {.width = 96, .height = 64, .background = {0, 0.5f, 0}, .background_depth_m = kFocusM, .box = box},
-        0);
+        .x = 0, .y = -10, .width = 64, .height = 84, .depth_m = kApertureFocusM / 2, .color = {1, 0, 0}};
+    const Capture capture = make_capture({.width = 96,
+                                          .height = 64,
+                                          .background = {0, 0.5f, 0},
+                                          .background_depth_m = kApertureFocusM,
+                                          .box = box},
+                                         0);
     const double radius_px = 14;
     const Image out = blur(capture, radius_px);
     for (int x = 64; x < 84; ++x) {
@@ -179,7 +149,7 @@ TEST(BokehDisk, KeepsALightRoundBeforeMoreBlurredThings) {
     for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x) {
             capture.images["color"].at(center + x, center + y, 0) = kIntensity;
-            capture.images["depth"].at(center + x, center + y, 0) = 4 * kFocusM;  // 3/4 of the radius
+            capture.images["depth"].at(center + x, center + y, 0) = 4 * kApertureFocusM;  // 3/4 of the radius
         }
     const Image image = blur(capture, 16);
     EXPECT_GE(shape_iou(image, image.at(center, center, 0), disk(12, size, center)), 0.9);
@@ -188,16 +158,11 @@ TEST(BokehDisk, KeepsALightRoundBeforeMoreBlurredThings) {
 }
 
 TEST(BokehDisk, BlursAlphaWithTheColorThatItCovers) {
-    const SyntheticBox box{
-        .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kInfinity, .color = {1, 1, 1}};
-    const Image out = blur(make_capture({.width = 96, .height = 48, .alpha = 0, .box = box}, 0), 6);
-    for (int x = 10; x < 56; ++x) ASSERT_NEAR(out.at(x, 20, 3), out.at(x, 20, 0), 2e-3f) << x;
-    EXPECT_GT(out.at(18, 20, 3), 0.05f);
-    EXPECT_LT(out.at(18, 20, 3), 0.95f);
+    expect_alpha_blurs_with_color("bokeh_disk", 2e-3f);
 }
 
 TEST(BokehDisk, GivesTheSameBitsOnBothSoftwareBackends) {
-    Capture capture = varied_depth({.width = 96, .height = 64, .background = {0.2f, 0.1f, 0.05f}});
+    Capture capture = aperture_random_depths({.width = 96, .height = 64, .background = {0.2f, 0.1f, 0.05f}});
     for (int i = 0; i < 96 * 64; i += 37) capture.images["color"].floats()[std::size_t(i) * 4] = float(i);
     const std::string more = R"("components": 3)";
     const Image egl = blur(capture, 12, more, gpu::Backend::egl_software);
@@ -210,21 +175,7 @@ TEST(BokehDisk, GivesTheSameBitsOnBothSoftwareBackends) {
 /// captures/suzanne/README.md: the sharp input has 21.7 dB, a layered reference in double precision 30.2.
 TEST(BokehDiskOnSuzanne, ComesWithinReachOfTheRenderersLens) {
     AFTERSHADE_REQUIRE_CAPTURE(folder, "suzanne");
-    Sequence sequence;
-    sequence.files = FramePattern((*folder / "large/gbuffer_####.exr").string());
-    sequence.profile = "blender";
-    Diagnostics diagnostics;
-    const CaptureReader reader(sequence, read_profiles(AFTERSHADE_SOURCE_DIR "/profiles", diagnostics), {});
-    const std::vector<std::string> roles{"color", "depth"};
-    const Capture capture = reader.read(4, roles);
-    const ExrFile truth_file(*folder / "truth/dof_0004.exr");
-    const Image truth = truth_file.read_floats(0, std::vector<std::string>{"R", "G", "B"});
-    LookRunner runner(
-        R"({"aftershade": 1, "steps": [{"effect": "bokeh_disk", "params": {"focus_distance": 6.4,
-        "focal_length": 50, "f_number": 0.25, "sensor_width": 36, "lens_model": "pinhole"}}]})",
-        gpu::Backend::osmesa);
-    const double db = display_psnr_db(truth, runner.color(capture));
-    fmt::print("PSNR against the lens: {:.2f} dB\n", db);
+    const double db = suzanne_through_aperture_db("bokeh_disk", *folder);
     EXPECT_GE(db, 29.5);  // measured 30.0, although the lens has six blades
 }
 

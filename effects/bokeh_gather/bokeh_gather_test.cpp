@@ -7,39 +7,16 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "framework/compare/metrics.h"
-#include "framework/image/capture.h"
-#include "tests/lens.h"
-#include "tests/look_runner.h"
-#include "tests/polygon.h"
-#include "tests/real_captures.h"
-#include "tests/synthetic_capture.h"
+#include "tests/aperture_checks.h"
 
 namespace aftershade::test {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kFocusM = float(Lens::kFocusM);
-constexpr float kIntensity = 1000;
+constexpr float kIntensity = kPointIntensity;
 
 Image blur(const Capture& capture, double radius_px, const std::string& more = "",
            gpu::Backend backend = gpu::Backend::osmesa) {
-    const Lens lens{radius_px, capture.header.display_window.width()};
-    return LookRunner(lens.look("bokeh_gather", more), backend).color(capture);
-}
-
-Capture point_of_light(int size, bool is_near) {
-    return make_capture({.width = size,
-                         .height = size,
-                         .background_depth_m = is_near ? kFocusM / 2 : kInfinity,
-                         .points = {{size / 2, size / 2, kIntensity}}});
-}
-
-double sum_of(const Image& image) {
-    double sum = 0;
-    for (int y = 0; y < image.height(); ++y)
-        for (int x = 0; x < image.width(); ++x) sum += image.at(x, y, 0);
-    return sum;
+    return through_aperture("bokeh_gather", capture, radius_px, more, backend);
 }
 
 // ---- the shape of a light ----
@@ -143,21 +120,11 @@ TEST(BokehGather, TakesTheShapeOfAPictureOfTheAperture) {
 
 // ---- what must not change ----
 
-Capture varied_depth(SyntheticScene scene) {
-    Capture capture = make_capture(scene);
-    std::uint32_t state = 1;
-    for (float& depth_m : capture.images["depth"].floats()) {
-        state = state * 1664525u + 1013904223u;
-        depth_m = 0.5f + float(state >> 16) / 65536.0f * 10;
-    }
-    return capture;
-}
-
 class BokehGatherSettings : public testing::TestWithParam<const char*> {};
 
 TEST_P(BokehGatherSettings, LeaveAUniformImageUnchanged) {
     const Capture capture =
-        varied_depth({.width = 96, .height = 62, .background = {0.7f, 0.4f, 12.0f}, .alpha = 0.5f});
+        aperture_random_depths({.width = 96, .height = 62, .background = {0.7f, 0.4f, 12.0f}, .alpha = 0.5f});
     const Image blurred = blur(capture, 12, GetParam());
     for (int y = 0; y < 62; ++y)
         for (int x = 0; x < 96; ++x)
@@ -173,7 +140,7 @@ INSTANTIATE_TEST_SUITE_P(All, BokehGatherSettings,
                                          R"("taps": 32)"));
 
 TEST(BokehGather, CopiesPixelsInFocusBitForBit) {
-    Capture capture = make_capture({.width = 64, .height = 36, .background_depth_m = kFocusM});
+    Capture capture = make_capture({.width = 64, .height = 36, .background_depth_m = kApertureFocusM});
     for (std::size_t i = 0; i < capture.images["color"].floats().size(); ++i)
         capture.images["color"].floats()[i] = float(i) * 0.37f;
     const Image out = blur(capture, 20);
@@ -183,7 +150,7 @@ TEST(BokehGather, CopiesPixelsInFocusBitForBit) {
 
 TEST(BokehGather, KeepsAFocusedObjectOutOfTheBlurBehindIt) {
     const SyntheticBox box{
-        .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kFocusM, .color = {9, 9, 9}};
+        .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kApertureFocusM, .color = {9, 9, 9}};
     for (const char* settings : {R"("taps": 256)", R"("sampler": "mips", "taps": 32)"}) {
         const Image out = blur(make_capture({.width = 96, .height = 48, .box = box}, 0), 12, settings);
         for (int y = 0; y < 48; ++y)
@@ -197,10 +164,13 @@ TEST(BokehGather, KeepsAFocusedObjectOutOfTheBlurBehindIt) {
 /// A half plane at half the focus distance, with its edge at x = 63.5, before what is in focus.
 TEST(BokehGather, LetsHalfOfTheLightPastTheEdgeOfANearObject) {
     const SyntheticBox box{
-        .x = 0, .y = -10, .width = 64, .height = 84, .depth_m = kFocusM / 2, .color = {1, 0, 0}};
-    const Capture capture = make_capture(
-        {.width = 96, .height = 64, .background = {0, 0.5f, 0}, .background_depth_m = kFocusM, .box = box},
-        0);
+        .x = 0, .y = -10, .width = 64, .height = 84, .depth_m = kApertureFocusM / 2, .color = {1, 0, 0}};
+    const Capture capture = make_capture({.width = 96,
+                                          .height = 64,
+                                          .background = {0, 0.5f, 0},
+                                          .background_depth_m = kApertureFocusM,
+                                          .box = box},
+                                         0);
     // The half plane's share of a square's area, 14.142 px across, beyond x.
     const Image out = blur(capture, 10, R"("blades": 4, "taps": 1024)");
     for (int x = 64; x < 78; ++x) {
@@ -211,16 +181,11 @@ TEST(BokehGather, LetsHalfOfTheLightPastTheEdgeOfANearObject) {
 }
 
 TEST(BokehGather, BlursAlphaWithTheColorThatItCovers) {
-    const SyntheticBox box{
-        .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kInfinity, .color = {1, 1, 1}};
-    const Image out = blur(make_capture({.width = 96, .height = 48, .alpha = 0, .box = box}, 0), 6);
-    for (int x = 10; x < 56; ++x) ASSERT_NEAR(out.at(x, 20, 3), out.at(x, 20, 0), 2e-3f) << x;
-    EXPECT_GT(out.at(18, 20, 3), 0.05f);
-    EXPECT_LT(out.at(18, 20, 3), 0.95f);
+    expect_alpha_blurs_with_color("bokeh_gather", 2e-3f);
 }
 
 TEST(BokehGather, GivesTheSameBitsOnBothSoftwareBackends) {
-    Capture capture = varied_depth({.width = 96, .height = 64, .background = {0.2f, 0.1f, 0.05f}});
+    Capture capture = aperture_random_depths({.width = 96, .height = 64, .background = {0.2f, 0.1f, 0.05f}});
     for (int i = 0; i < 96 * 64; i += 37) capture.images["color"].floats()[std::size_t(i) * 4] = float(i);
     const std::string more = R"("blades": 5, "curvature": 0.3, "rotation": 7, "sampler": "mips", "taps": 64)";
     const Image egl = blur(capture, 12, more, gpu::Backend::egl_software);
@@ -233,22 +198,8 @@ TEST(BokehGather, GivesTheSameBitsOnBothSoftwareBackends) {
 /// captures/suzanne/README.md: the sharp input has 21.7 dB, a layered reference in double precision 30.2.
 TEST(BokehGatherOnSuzanne, ComesWithinReachOfTheRenderersLens) {
     AFTERSHADE_REQUIRE_CAPTURE(folder, "suzanne");
-    Sequence sequence;
-    sequence.files = FramePattern((*folder / "large/gbuffer_####.exr").string());
-    sequence.profile = "blender";
-    Diagnostics diagnostics;
-    const CaptureReader reader(sequence, read_profiles(AFTERSHADE_SOURCE_DIR "/profiles", diagnostics), {});
-    const std::vector<std::string> roles{"color", "depth"};
-    const Capture capture = reader.read(4, roles);
-    const ExrFile truth_file(*folder / "truth/dof_0004.exr");
-    const Image truth = truth_file.read_floats(0, std::vector<std::string>{"R", "G", "B"});
-    LookRunner runner(
-        R"({"aftershade": 1, "steps": [{"effect": "bokeh_gather", "params": {"focus_distance": 6.4,
-        "focal_length": 50, "f_number": 0.25, "sensor_width": 36, "lens_model": "pinhole"}}]})",
-        gpu::Backend::osmesa);
-    const double db = display_psnr_db(truth, runner.color(capture));
-    fmt::print("PSNR against the lens: {:.2f} dB\n", db);
-    EXPECT_GE(db, 31.5);  // measured 31.9
+    const double db = suzanne_through_aperture_db("bokeh_gather", *folder);
+    EXPECT_GE(db, 31.5);  // measured 32.06
 }
 
 }  // namespace

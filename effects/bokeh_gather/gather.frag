@@ -2,7 +2,7 @@
 #include <pass>
 #include <lens/packing.glsl>
 #include <aperture.glsl>
-#include "tile.glsl"
+#include <near_reach/tile.glsl>
 #if PICTURE
 #include "picture.glsl"
 #endif

@@ -26,7 +26,7 @@ INSTANTIATE_TEST_SUITE_P(Energy, DofLayeredPoint,
 
 TEST(DofLayered, LeavesAUniformImageUnchanged) {
     expect_uniform_stays_uniform(kEffect, "");
-    expect_uniform_stays_uniform(kEffect, R"(, "blades": 5, "rotation": 17, "curvature": 0.4)");
+    expect_uniform_stays_uniform(kEffect, R"("blades": 5, "rotation": 17, "curvature": 0.4)");
 }
 
 TEST(DofLayered, CopiesPixelsInFocusBitForBit) {
@@ -67,7 +67,7 @@ TEST(DofLayered, KeepsASurfaceAcrossLayersWhole) {
 /// captures/suzanne/README.md: the sharp input has 21.7 dB, a plain layered reference with 30 layers 30.2.
 TEST(DofLayeredOnSuzanne, ComesCloseToTheRenderersLens) {
     AFTERSHADE_REQUIRE_CAPTURE(folder, "suzanne");
-    EXPECT_GE(suzanne_through_aperture_db(kEffect, *folder), 32.5);  // measured 32.9
+    EXPECT_GE(suzanne_through_aperture_db(kEffect, *folder), 32.5);  // measured 33.09
 }
 
 }  // namespace

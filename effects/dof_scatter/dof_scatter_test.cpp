@@ -26,7 +26,7 @@ INSTANTIATE_TEST_SUITE_P(Energy, DofScatterPoint,
 
 TEST(DofScatter, LeavesAUniformImageUnchanged) {
     expect_uniform_stays_uniform(kEffect, "");
-    expect_uniform_stays_uniform(kEffect, R"(, "blades": 5, "rotation": 17, "curvature": 0.4)");
+    expect_uniform_stays_uniform(kEffect, R"("blades": 5, "rotation": 17, "curvature": 0.4)");
 }
 
 TEST(DofScatter, CopiesPixelsInFocusBitForBit) {
@@ -60,7 +60,7 @@ TEST(DofScatter, ShowsAFarPointOnlyWhereNothingInFocusCoversIt) {
     Capture capture = make_capture({.width = 64, .height = 48, .points = {{28, 24, 1000}}});
     for (int y = 0; y < 48; ++y)
         for (int x = 32; x < 64; ++x) capture.images["depth"].at(x, y, 0) = kApertureFocusM;
-    const Image out = through_aperture(kEffect, capture, 12, R"(, "blades": 4)");
+    const Image out = through_aperture(kEffect, capture, 12, R"("blades": 4)");
     // A square of 17 px a side, whose light is spread evenly; the pixels of the border fill in for those
     // without light.
     const double density = 1000 / (2 * 12.0 * 12.0);
@@ -72,7 +72,7 @@ TEST(DofScatter, ShowsAFarPointOnlyWhereNothingInFocusCoversIt) {
 /// captures/suzanne/README.md: the sharp input has 21.7 dB, a plain layered reference with 30 layers 30.2.
 TEST(DofScatterOnSuzanne, ComesCloseToTheRenderersLens) {
     AFTERSHADE_REQUIRE_CAPTURE(folder, "suzanne");
-    EXPECT_GE(suzanne_through_aperture_db(kEffect, *folder), 32.4);  // measured 32.86
+    EXPECT_GE(suzanne_through_aperture_db(kEffect, *folder), 32.4);  // measured 33.00
 }
 
 }  // namespace

@@ -1,2 +1,0 @@
-// Side in px of the tiles of near_tile and near, as effect.json declares it.
-const int kTile = 16;
