@@ -19,12 +19,16 @@ void prepare_outline_at(vec2 pixel) {
         edge_normals[i] = vec2(cos(angle), sin(angle)) / cos(kPi / float(BLADES));
     }
 #endif
-    // Off the middle of the picture the rim of the lens hides the aperture's outer side.
-    vec2 middle = 0.5 * vec2(frame.display_size);
-    rim = CAT_EYE * (middle - (pixel + vec2(frame.origin))) / length(middle);
-    // Two circles' common area, as a share of one.
-    float apart = min(length(rim), 2.0);
-    open_area = aperture.area * (2.0 * acos(0.5 * apart) - 0.5 * apart * sqrt(4.0 - apart * apart)) / kPi;
+    rim = vec2(0.0);
+    open_area = aperture.area;
+    if (CAT_EYE > 0.0) {
+        // Off the middle of the picture the rim of the lens hides the aperture's outer side.
+        vec2 middle = 0.5 * vec2(frame.display_size);
+        rim = CAT_EYE * (middle - (pixel + vec2(frame.origin))) / length(middle);
+        // Two circles' common area, as a share of one.
+        float apart = min(length(rim), 2.0);
+        open_area *= (2.0 * acos(0.5 * apart) - 0.5 * apart * sqrt(4.0 - apart * apart)) / kPi;
+    }
 }
 
 // offset: of the lit pixel from the light's own; a light in front of the focus plane is turned by 180 degrees.

@@ -3,3 +3,7 @@ float amount(vec3 rgb) { return rgb.r + rgb.g + rgb.b; }
 
 // A texel of light that outshines the rest this many times is a highlight.
 const float kHighlight = 4.0;
+// Neighbours whose CoC radii differ by no more are of one surface.
+const float kOneSurfacePx = 1.0;
+// Side in px of the tiles of coc_step, as module.json declares it.
+const int kRepairTile = 16;
