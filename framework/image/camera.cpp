@@ -14,6 +14,7 @@ const std::vector<CameraField>& camera_fields() {
         {"f_number", "", 0.01},
         {"blades", "", 0},
         {"rotation", "deg", -1e6},
+        {"shutter_angle", "deg", 0},
         {"near", "m", 0},
         {"far", "m", 0},
     };

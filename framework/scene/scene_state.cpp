@@ -91,6 +91,7 @@ Camera capture_camera(const Scene& scene, const SceneState& state, int width_px,
     camera.set("f_number", scene.camera.f_number, origin);
     camera.set("blades", scene.camera.blades, origin);
     camera.set("rotation", scene.camera.rotation_deg, origin);
+    camera.set("shutter_angle", scene.camera.shutter_angle_deg, origin);
     camera.set_lens_model("pinhole", origin);
     const double x_scale = 2 * state.camera.focal_length_mm / scene.camera.sensor_width_mm;
     glm::dmat4 clip_from_camera(0);
