@@ -1,0 +1,40 @@
+#version 450 core
+#include <pass>
+#include "motion.glsl"
+
+// How far the middle of a tile lies from the line between two points, in the norm in which tiles are circles.
+float distance_px(vec2 point, vec2 from, vec2 to) {
+    vec2 along = to - from;
+    float part = clamp(dot(point - from, along) / max(dot(along, along), 1e-6), 0.0, 1.0);
+    vec2 apart = abs(point - from - part * along);
+    return max(apart.x, apart.y);
+}
+
+// Guertin's off-axis rule, for every tile within reach: only what passes over this tile counts.
+bool passes_over(ivec2 offset, vec4 path) {
+    vec2 here = -float(kTile) * vec2(offset);
+    float nearest_px = min(distance_px(here, vec2(0.0), way_px(path, kOpens)), distance_px(here, vec2(0.0), way_px(path, kCloses)));
+    return nearest_px <= float(kTile) + 1.0;
+}
+
+void main() {
+    ivec2 last = ivec2(tile_path_size.xy) - 1, p = ivec2(gl_FragCoord.xy);
+    int range = int(ceil(param.max_blur / float(kTile)));
+    vec4 furthest = texelFetch(tile_path, p, 0), low = texelFetch(tile_low, p, 0), high = texelFetch(tile_high, p, 0);
+    float way = longest_way_px(furthest);
+    for (int y = max(p.y - range, 0); y <= min(p.y + range, last.y); ++y)
+        for (int x = max(p.x - range, 0); x <= min(p.x + range, last.x); ++x) {
+            vec4 path = texelFetch(tile_path, ivec2(x, y), 0);
+            ivec2 offset = ivec2(x, y) - p;
+            float its_way = longest_way_px(path), gap = float((max(max(abs(offset.x), abs(offset.y)), 1) - 1) * kTile);
+            if (its_way <= gap - 1.0 || !passes_over(offset, path)) continue;
+            low = min(low, texelFetch(tile_low, ivec2(x, y), 0));
+            high = max(high, texelFetch(tile_high, ivec2(x, y), 0));
+            furthest = its_way > way ? path : furthest;
+            way = max(way, its_way);
+        }
+    vec4 spread = high - low;
+    vec2 apart = (spread.xy + spread.zw * kFurthestTime) * kFurthestTime;
+    out_around_path = furthest;
+    out_around_way = vec2(way, max(apart.x, apart.y));
+}
