@@ -4,16 +4,23 @@
 struct Found {
     vec2 from;     // where it is at the frame's own time
     float depth_m;
-    float share;   // 1 where its path leads to the point, 0 where it misses it by more than a px
+    bool comes;    // its path leads to the point, within a px
 };
 
 // `path`: a first guess of its path. The motion found there is the next guess.
 Found what_comes(vec2 point, vec4 path, float t) {
-    vec2 from = point - way_px(motion_at(point - way_px(path, t)).path, t);
+    vec2 from = point - way_px(path, t);
     Motion m = motion_at(from);
     float miss_px = distance(vec2(texel_at(from)) + 0.5 + way_px(m.path, t), point);
-    return Found(from, m.depth_m, clamp(1.5 - miss_px, 0.0, 1.0));
+    return Found(point - way_px(m.path, t), m.depth_m, miss_px < 1.0);
 }
+
+// What lies behind the thing at the point. `beside` is where the pixel comes from that shows what is behind it now.
+#if BACKGROUND == BACKGROUND_NEIGHBOURS
+#include "neighbours.glsl"
+#else
+vec4 uncovered(vec2 point, vec2 beside, Motion own, float t, vec4 color_beside) { return color_beside; }
+#endif
 
 vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
     int taps = tap_count(furthest);
@@ -27,12 +34,12 @@ vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
             near = far;
             far = swap;
         }
-        // Where nothing comes, the thing here has moved away from what the frame does not show: what lies where it comes
-        // from continues behind it.
-        float rest = 1.0 - near.share, uncovered = rest * (1.0 - far.share);
-        vec2 behind = uncovered > 0.5 * rest ? point - way_px(own.path, t) : far.from;
-        if (near.share > 0.0) sum += near.share * color_at(near.from);
-        if (rest > 0.0) sum += rest * color_at(behind);
+        // Where nothing comes, the thing here has moved away from what the frame does not show. What lies where it comes
+        // from is beside that.
+        vec2 beside = point - way_px(own.path, t);
+        bool is_found = near.comes || far.comes;
+        vec4 seen = color_at(near.comes ? near.from : far.comes ? far.from : beside);
+        sum += is_found ? seen : uncovered(point, beside, own, t, seen);
     }
     return sum / float(taps);
 }

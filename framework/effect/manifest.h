@@ -15,6 +15,13 @@
 
 namespace aftershade {
 
+/// A condition on one parameter ("shape") or on an optional input ("has.velocity"): any of these values.
+struct WhenSpec {
+    std::string subject;
+    std::vector<ParamValue> values;
+    Place place;
+};
+
 /// An image that the effect takes. A shader reads it under its name; an optional one defines HAS_<NAME> when
 /// present.
 struct InputSpec {
@@ -23,6 +30,9 @@ struct InputSpec {
     bool optional = false;
     bool history = false;  ///< last frame's image may be read too, as "<name>.prev"; zero where there is none
     int frame = 0;         ///< -1, +1: the capture before or after, which must be optional: shots end
+    /// All must hold, or the input is absent and its image is not read. On parameters alone, of optional
+    /// inputs.
+    std::vector<WhenSpec> when;
     std::string doc;
     Place place;
 };
@@ -121,13 +131,6 @@ struct AccessSpec {
     Kind kind = Kind::read;
     Place place;
     std::string glsl_name() const { return previous ? name + "_prev" : name; }
-};
-
-/// A condition on one parameter ("shape") or on an optional input ("has.velocity"): any of these values.
-struct WhenSpec {
-    std::string subject;
-    std::vector<ParamValue> values;
-    Place place;
 };
 
 /// Limits that hold on every machine, so that an effect means the same everywhere (OpenGL 4.5 core, table 23.

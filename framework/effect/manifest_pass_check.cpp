@@ -36,6 +36,17 @@ public:
         }
     }
 
+    void check_inputs() {
+        for (const InputSpec& input : manifest_.inputs)
+            for (const WhenSpec& condition : input.when) {
+                if (condition.subject.starts_with(kHas))
+                    fault(condition.place,
+                          "whether an input is there is asked by passes; the conditions of an "
+                          "input are on parameters");
+                else check_when(condition);
+            }
+    }
+
     void check(const PassSpec& pass) {
         pass_ = &pass;
         if (!pass.name.empty() && !names_.insert(pass.name).second)
@@ -82,6 +93,10 @@ public:
 
 private:
     void fault(const Place& place, const std::string& text) {
+        if (!pass_) {
+            diagnostics_.error(place, text);
+            return;
+        }
         // A module is fine or not in an effect: what it reads may be missing there.
         const std::string origin =
             pass_->module.empty() ? "" : " of the module '" + pass_->module + "' in '" + manifest_.id + "'";
@@ -332,7 +347,6 @@ private:
     }
 
     void check_when(const WhenSpec& condition) {
-        constexpr std::string_view kHas = "has.";
         if (condition.subject.starts_with(kHas)) {
             const InputSpec* input = manifest_.find_input(condition.subject.substr(kHas.size()));
             if (!input || !input->optional)
@@ -362,6 +376,7 @@ private:
         return name && std::find(spec.values.begin(), spec.values.end(), *name) != spec.values.end();
     }
 
+    static constexpr std::string_view kHas = "has.";
     const EffectManifest& manifest_;
     Diagnostics& diagnostics_;
     const PassSpec* pass_ = nullptr;  // being checked
@@ -377,6 +392,7 @@ private:
 
 void check_passes(const EffectManifest& manifest, Diagnostics& diagnostics) {
     PassChecker checker(manifest, diagnostics);
+    checker.check_inputs();
     for (const PassSpec& pass : manifest.passes) checker.check(pass);
     checker.check_all_used();
 }

@@ -173,6 +173,11 @@ void ManifestParser::inputs(const Node& section) {
                 fault(place, "an input of another frame must be 'optional': shots begin and end");
             if (input.history) fault(place, "an input has 'frame' or 'history', not both");
         }
+        if (const Node* conditions = reader.object("when")) {
+            if (!input.optional)
+                fault(member.value.find("when")->place, "an input with 'when' must be 'optional'");
+            for (const Member& condition : conditions->members) input.when.push_back(when(condition));
+        }
         reader.finish();
         manifest_.inputs.push_back(std::move(input));
     }

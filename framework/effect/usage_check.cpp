@@ -207,6 +207,8 @@ private:
             add(buffer.count);
             if (buffer.grid) add(buffer.grid->tile);
         }
+        for (const InputSpec& input : manifest_.inputs)
+            for (const WhenSpec& condition : input.when) names.insert(condition.subject);
         for (const PassSpec& pass : manifest_.passes) {
             for (const WhenSpec& condition : pass.when) names.insert(condition.subject);
             if (pass.repeat) add(*pass.repeat);

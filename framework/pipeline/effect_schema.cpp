@@ -292,8 +292,12 @@ std::string effect_schema() {
                                  {"optional", kFlag},
                                  {"history", kFlag},
                                  {"frame", {{"enum", {-1, 1}}}},
+                                 {"when", when()},
                                  {"doc", kText}},
                                 {"role"});
+    input["properties"]["when"]["propertyNames"] = {{"pattern", "^(?!has\\.)"}};
+    input["dependentSchemas"]["when"] = {{"required", {"optional"}},
+                                         {"properties", {{"optional", {{"const", true}}}}}};
     input["if"] = {{"required", {"frame"}}};
     input["then"] = {{"required", {"optional"}},
                      {"properties", {{"optional", {{"const", true}}}, {"history", {{"const", false}}}}}};

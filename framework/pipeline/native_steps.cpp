@@ -40,7 +40,8 @@ NativeFrame frame_of(const PipelineStep& step, const FrameInputs& frame, const P
     for (const InputSpec& input : step.manifest->inputs) {
         const InputSource& source = step.inputs.at(input.name);
         const Capture* capture = frame.at(input.frame);
-        const bool present = source.step >= 0 || (capture && capture->images.contains(source.output));
+        const bool present = step.may_take(input) &&
+                             (source.step >= 0 || (capture && capture->images.contains(source.output)));
         native.images.push_back({input.name, input.role, native.width_px, native.height_px,
                                  find_role(input.role)->channels, present});
     }

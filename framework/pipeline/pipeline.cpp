@@ -37,12 +37,24 @@ std::vector<std::string> host_roles(const PipelineStep& step) {
 
 }  // namespace
 
+bool PipelineStep::may_take(const InputSpec& input) const {
+    return std::all_of(input.when.begin(), input.when.end(), [&](const WhenSpec& condition) {
+        const auto value = values.find(condition.subject);
+        const ParamSpec* spec = manifest->find_param(condition.subject);
+        if (value == values.end() && !spec->from.empty()) return true;
+        if (value != values.end() && !std::holds_alternative<ParamValue>(value->second)) return true;
+        const ParamValue& known =
+            value == values.end() ? spec->default_value : std::get<ParamValue>(value->second);
+        return std::find(condition.values.begin(), condition.values.end(), known) != condition.values.end();
+    });
+}
+
 std::vector<std::string> Pipeline::capture_roles() const {
     std::vector<std::string> roles{"color"};
     for (const PipelineStep& step : steps) {
         for (const InputSpec& input : step.manifest->inputs) {
             const InputSource& source = step.inputs.at(input.name);
-            if (source.step < 0 && input.frame == 0) add_once(roles, source.output);
+            if (source.step < 0 && input.frame == 0 && step.may_take(input)) add_once(roles, source.output);
         }
         for (const auto& [output, source] : step.before)
             if (source.step < 0) add_once(roles, source.output);
@@ -55,7 +67,8 @@ std::vector<std::string> Pipeline::neighbour_roles(int offset) const {
     std::vector<std::string> roles;
     for (const PipelineStep& step : steps)
         for (const InputSpec& input : step.manifest->inputs)
-            if (input.frame == offset) add_once(roles, step.inputs.at(input.name).output);
+            if (input.frame == offset && step.may_take(input))
+                add_once(roles, step.inputs.at(input.name).output);
     return roles;
 }
 
@@ -124,6 +137,7 @@ std::vector<std::string> present_inputs(const Pipeline& pipeline, int index, con
     for (const InputSpec& input : step.manifest->inputs) {
         const InputSource& source = step.inputs.at(input.name);
         const Capture* capture = frame.at(input.frame);
+        if (!step.may_take(input)) continue;
         if (source.step >= 0 || (capture && capture->images.contains(source.output)))
             present.push_back(input.name);
     }

@@ -36,6 +36,9 @@ struct PipelineStep {
     /// By output: the image of that role before the step, which `mix` and `mask` let through. Empty where the
     /// step has neither.
     std::map<std::string, InputSource> before;
+
+    /// Whether the input's conditions may hold: with values that differ from frame to frame they may.
+    bool may_take(const InputSpec& input) const;
 };
 
 /// "bokeh.coc": an intermediate to be written out.

@@ -1,0 +1,289 @@
+// What motion_blur must do, against closed forms and against renderers' own shutters.
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tests/motion_checks.h"
+#include "tests/real_captures.h"
+#include "tests/synthetic_capture.h"
+
+namespace aftershade::test {
+namespace {
+
+constexpr double kExposure = 0.5;  // frames, of the default shutter_angle
+
+Image blur(const Capture& capture, const std::string& params = "") {
+    LookRunner runner(look_of("motion_blur", params), gpu::Backend::osmesa);
+    return runner.color(capture);
+}
+
+void set_velocity(Capture& capture, int x, int y, float vx, float vy) {
+    for (const char* role : {"velocity", "velocity_next"}) {
+        capture.images[role].at(x, y, 0) = vx;
+        capture.images[role].at(x, y, 1) = vy;
+    }
+}
+
+template <typename Function>
+void each_pixel(const Image& image, Function function) {
+    for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x) function(x, y);
+}
+
+double largest_difference(const Image& a, const Image& b) { return compare_images(a, b, 3).max.value; }
+
+// ---- renderers' shutters ----
+
+TEST(MotionBlur, OnSuzanneIsNearHerRenderersShutterAndByDefaultTheNearestOfItsMethods) {
+    AFTERSHADE_REQUIRE_CAPTURE(folder, "suzanne");
+    const SuzanneInMotion suzanne(*folder);
+    const auto sharp = suzanne.psnr(suzanne.capture.images.at("color"));
+    EXPECT_NEAR(sharp.changed_db, 22.98, 0.05);
+    const auto standard = suzanne.through("motion_blur");
+    EXPECT_GE(standard.changed_db, 30);
+    EXPECT_GE(standard.all_db, sharp.all_db + 2);
+    for (const char* method : {"jimenez_2014", "guertin_2014", "mcguire_2012"}) {
+        const auto other = suzanne.through("motion_blur", fmt::format(R"("method": "{}")", method));
+        EXPECT_LT(other.changed_db, standard.changed_db) << method;
+        EXPECT_GT(other.changed_db, sharp.changed_db + 3) << method;
+        EXPECT_GE(other.all_db, sharp.all_db) << method;
+    }
+    EXPECT_GE(suzanne.through("motion_blur", R"("background": "neighbours")").changed_db,
+              standard.changed_db + 0.5);
+}
+
+TEST(MotionBlur, FollowsTheArcsOfAWheel) {
+    const ShutterScene wheel("wheel", 7, 480, 270);
+    const double curved = wheel.psnr_db(blur(wheel.capture));
+    const double straight = wheel.psnr_db(blur(wheel.capture, R"("curve": false)"));
+    fmt::print("wheel: {:.2f} dB, without curves {:.2f}\n", curved, straight);
+    EXPECT_GE(curved, straight + 3);
+    EXPECT_GE(curved, 30);
+}
+
+TEST(MotionBlur, OfAMovingCameraIsNearTheTruth) {
+    const ShutterScene checker("camera_checker", 7, 480, 270);
+    const double db = checker.psnr_db(blur(checker.capture));
+    fmt::print("camera_checker: {:.2f} dB\n", db);
+    EXPECT_GE(db, 35);
+}
+
+/// How much of each pixel of a row the box covers, by its red against that of the bare wall.
+std::vector<double> coverage_of_row(const Image& picture, const Image& wall, double box_red, int y) {
+    std::vector<double> coverage;
+    for (int x = 0; x < picture.width(); ++x)
+        coverage.push_back((picture.at(x, y, 0) - wall.at(x, y, 0)) / (box_red - wall.at(x, y, 0)));
+    return coverage;
+}
+
+/// Where the coverage passes a value between `from` and `to`, px from the left edge of the picture.
+double crossing(const std::vector<double>& coverage, double value, int from, int to) {
+    for (int x = from; x < to; ++x) {
+        const double a = coverage[std::size_t(x)], b = coverage[std::size_t(x) + 1];
+        if ((a - value) * (b - value) <= 0 && a != b) return x + 0.5 + (value - a) / (b - a);
+    }
+    return -1;
+}
+
+class MovingBox : public testing::TestWithParam<const char*> {};
+
+TEST_P(MovingBox, IsATrapezoidOfTheShuttersLength) {
+    const int frame = 7, row = 135, width = 480;
+    const ShutterScene scene("moving_box", frame, width, 270, 512);
+    const Image wall = scene::SceneRenderer(scene.source, width, 270, 2).render_capture(16).images.at("color");
+    const Image blurred = blur(scene.capture, GetParam());
+    const double speed_px = scene.capture.images.at("velocity").at(230, row, 0);
+    ASSERT_NEAR(speed_px, 0.1 / 3.9 * width, 0.01);
+    const auto measured = coverage_of_row(blurred, wall, 0.8, row), truth = coverage_of_row(scene.truth, wall, 0.8, row);
+    double sum = 0, true_sum = 0;
+    for (int x = 150; x < 300; ++x) sum += measured[std::size_t(x)], true_sum += truth[std::size_t(x)];
+    EXPECT_NEAR(sum / true_sum, 1, 0.02);
+    const double rise_px = (crossing(measured, 0.9, 150, 220) - crossing(measured, 0.1, 150, 220)) / 0.8;
+    const double fall_px = (crossing(measured, 0.1, 225, 300) - crossing(measured, 0.9, 225, 300)) / 0.8;
+    EXPECT_NEAR(rise_px, kExposure * speed_px, 1);
+    EXPECT_NEAR(fall_px, kExposure * speed_px, 1);
+    for (int x = 0; x < 175; ++x) EXPECT_NEAR(measured[std::size_t(x)], 0, 0.02) << x;
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, MovingBox,
+                         testing::Values("", R"("background": "neighbours")", R"("method": "jimenez_2014")"));
+
+// ---- closed forms ----
+
+/// Vertical stripes of different heights of light, over the whole picture.
+Capture stripes(int width, int height, double depth_m = 5) {
+    Capture capture = make_capture({.width = width, .height = height, .background_depth_m = float(depth_m)});
+    Image& color = capture.images["color"];
+    each_pixel(color, [&](int x, int y) {
+        for (int c = 0; c < 3; ++c) color.at(x, y, c) = 0.25f + 0.5f * float((x * 7 + c * 3) % 11) / 11;
+    });
+    return capture;
+}
+
+TEST(MotionBlur, OfAPictureThatMovesAsOneIsABoxAlongItsWay) {
+    const int speed_px = 20;  // 10 px while the shutter is open: as many samples, at the middles of pixels' tenths
+    Capture capture = stripes(128, 32);
+    const Image& color = capture.images["color"];
+    each_pixel(color, [&](int x, int y) { set_velocity(capture, x, y, speed_px, 0); });
+    const Image blurred = blur(capture);
+    for (int x = 16; x < 112; ++x) {
+        // The integral of the picture, read linearly, from -5 to +5 px, by its trapezoids.
+        double expected = 0;
+        for (int i = -5; i <= 5; ++i) expected += (std::abs(i) == 5 ? 0.5 : 1.0) * color.at(x + i, 16, 0) / 10;
+        EXPECT_NEAR(blurred.at(x, 16, 0), expected, 0.002) << x;
+    }
+}
+
+TEST(MotionBlur, LeavesAPictureAtRestAloneBitForBit) {
+    for (const char* method : {"bowles_2012", "jimenez_2014", "guertin_2014", "mcguire_2012"}) {
+        const Capture capture = stripes(96, 40);
+        const Image blurred = blur(capture, fmt::format(R"("method": "{}")", method));
+        EXPECT_EQ(largest_difference(blurred, capture.images.at("color")), 0) << method;
+    }
+}
+
+/// A thing at rest, 2 m away, before a background that moves.
+Capture pillar_before_moving_stripes(float speed_px) {
+    Capture capture = stripes(160, 48);
+    Image& color = capture.images["color"];
+    each_pixel(color, [&](int x, int y) {
+        const bool is_pillar = x >= 60 && x < 100;
+        set_velocity(capture, x, y, is_pillar ? 0 : speed_px, 0);
+        if (!is_pillar) return;
+        capture.images["depth"].at(x, y, 0) = 2;
+        capture.images["object_id"].uint_at(x, y, 0) = 2;
+        for (int c = 0; c < 3; ++c) color.at(x, y, c) = 0.9f;
+    });
+    return capture;
+}
+
+TEST(MotionBlur, KeepsAForegroundAtRestBeforeAMovingBackgroundSharp) {
+    const Capture capture = pillar_before_moving_stripes(30);
+    const Image blurred = blur(capture);
+    double worst = 0, moved = 0;
+    for (int x = 0; x < 160; ++x) {
+        const double change = std::abs(blurred.at(x, 24, 1) / capture.images.at("color").at(x, 24, 1) - 1);
+        if (x >= 60 && x < 100) worst = std::max(worst, change);
+        else moved = std::max(moved, change);
+    }
+    EXPECT_LT(worst, 0.01);
+    EXPECT_GT(moved, 0.1);
+}
+
+TEST(MotionBlur, OpensAtTheFramesTimeOrClosesThen) {
+    // A box of 16 px that moves right by 24 px a frame: 12 px while the shutter is open.
+    SyntheticScene scene{.width = 128, .height = 32, .background_depth_m = 5};
+    scene.box = SyntheticBox{.x = 32, .y = 0, .width = 16, .height = 32, .velocity_x = 24, .depth_m = 2};
+    const Capture capture = make_capture(scene, 1);  // from 56 to 72
+    const auto middle_px = [&](const char* phase) {
+        const Image blurred = blur(capture, fmt::format(R"("shutter_phase": "{}")", phase));
+        double sum = 0, moment = 0;
+        for (int x = 0; x < 128; ++x) sum += blurred.at(x, 16, 0), moment += (x + 0.5) * blurred.at(x, 16, 0);
+        EXPECT_NEAR(sum / 0.9, 16, 0.16) << phase;
+        return moment / sum;
+    };
+    EXPECT_NEAR(middle_px("center"), 64, 0.2);
+    EXPECT_NEAR(middle_px("start"), 70, 0.2);
+    EXPECT_NEAR(middle_px("end"), 58, 0.2);
+}
+
+TEST(MotionBlur, IsScaledByObject) {
+    SyntheticScene scene{.width = 128, .height = 32, .background_depth_m = 5};
+    scene.box = SyntheticBox{.x = 32, .y = 0, .width = 16, .height = 32, .velocity_x = 24, .depth_m = 2};
+    const Capture capture = make_capture(scene, 1);
+    const auto rows = [](double scale) {
+        return fmt::format(R"("objects": {{"rows": [{{"object": 2, "scale": {}}}]}})", scale);
+    };
+    EXPECT_EQ(largest_difference(blur(capture, rows(0)), capture.images.at("color")), 0);
+    EXPECT_EQ(largest_difference(blur(capture, rows(0.5)), blur(capture, R"("shutter_angle": 90)")), 0);
+    EXPECT_GT(largest_difference(blur(capture, rows(1)), capture.images.at("color")), 0.4);
+}
+
+TEST(MotionBlur, ShowsWhatNeighboursShowOfTheUncovered) {
+    // A box that covers half of a bright disc's place now, and none of it in the frames beside.
+    SyntheticScene scene{.width = 160, .height = 48, .background_depth_m = 5};
+    scene.box = SyntheticBox{.x = 60, .y = 0, .width = 24, .height = 48, .velocity_x = 32, .depth_m = 2, .color = {0, 0, 0}};
+    const auto frame_at = [&](int number) {
+        Capture capture = make_capture(scene, number);
+        each_pixel(capture.images["color"], [&](int x, int y) {
+            if (capture.images["object_id"].uint_at(x, y, 0) == 0)
+                for (int c = 0; c < 3; ++c) capture.images["color"].at(x, y, c) = x >= 96 && x < 112 ? 1.0f : 0.1f;
+        });
+        return capture;
+    };
+    const Capture before = frame_at(0), now = frame_at(1), after = frame_at(2);
+    FrameInputs frame;
+    frame.capture = &now;
+    frame.previous = &before;
+    frame.next = &after;
+    const auto error = [&](const char* background) {
+        LookRunner runner(look_of("motion_blur", fmt::format(R"("background": "{}")", background)), gpu::Backend::osmesa);
+        const Image blurred = runner.run(frame).images.at("color");
+        // The box's left edge moves from 84 to 100 while the shutter is open, its right one from 108 to 124.
+        double sum = 0;
+        for (int x = 80; x < 130; ++x) {
+            const double at = x + 0.5, light = x >= 96 && x < 112 ? 1.0 : 0.1;
+            const double covered = std::clamp((at - 84) / 16, 0.0, 1.0) - std::clamp((at - 108) / 16, 0.0, 1.0);
+            sum += std::abs(blurred.at(x, 24, 0) - light * (1 - covered));
+        }
+        return sum / 50;
+    };
+    EXPECT_LT(error("neighbours"), 0.02);
+    EXPECT_GT(error("estimate"), 2 * error("neighbours"));
+}
+
+// ---- hostile input ----
+
+TEST(MotionBlur, SlowsDownWhatIsFasterThanItsLimit) {
+    SyntheticScene scene{.width = 200, .height = 32, .background_depth_m = 5};
+    scene.box = SyntheticBox{.x = -210, .y = 0, .width = 20, .height = 32, .velocity_x = 300, .depth_m = 2};
+    const Capture capture = make_capture(scene, 1);  // from 90 to 110; 150 px while the shutter is open
+    for (const char* method : {"bowles_2012", "jimenez_2014", "guertin_2014", "mcguire_2012"}) {
+        const Image blurred = blur(capture, fmt::format(R"("max_blur": 24, "method": "{}")", method));
+        for (int x = 0; x < 200; ++x) {
+            if (x < 90 - 25 || x >= 110 + 25) {
+                EXPECT_EQ(blurred.at(x, 16, 0), 0) << method << " " << x;
+            }
+            EXPECT_TRUE(std::isfinite(blurred.at(x, 16, 0))) << method << " " << x;
+        }
+        EXPECT_GT(blurred.at(80, 16, 0), 0.05) << method;
+    }
+}
+
+TEST(MotionBlur, TakesWhatIsNoNumberForRest) {
+    const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+    Capture capture = pillar_before_moving_stripes(30), cleaned = capture;
+    for (int y = 0; y < 48; ++y)
+        for (int x = 10; x < 40; ++x) {
+            set_velocity(capture, x, y, y % 2 ? nan : infinity, y % 3 ? -infinity : nan);
+            set_velocity(cleaned, x, y, 0, 0);
+        }
+    const Image blurred = blur(capture);
+    EXPECT_EQ(largest_difference(blurred, blur(cleaned)), 0);
+    each_pixel(blurred, [&](int x, int y) { ASSERT_TRUE(std::isfinite(blurred.at(x, y, 0))) << x << " " << y; });
+}
+
+TEST(MotionBlur, AtTheEdgesOfThePictureStaysInIt) {
+    Capture capture = stripes(64, 64);
+    each_pixel(capture.images["color"], [&](int x, int y) {
+        set_velocity(capture, x, y, x < 32 ? -3000.0f : 1e30f, y < 32 ? 300.0f : -1e30f);
+        capture.images["depth"].at(x, y, 0) = (x + y) % 3 ? 2 : std::numeric_limits<float>::infinity();
+    });
+    const Image blurred = blur(capture, R"("max_blur": 256)");
+    each_pixel(blurred, [&](int x, int y) {
+        ASSERT_GE(blurred.at(x, y, 0), 0.2499f) << x << " " << y;
+        ASSERT_LE(blurred.at(x, y, 0), 0.75f) << x << " " << y;
+    });
+}
+
+TEST(MotionBlur, IsTheSameOnTheOtherSoftwareBackend) {
+    const Capture capture = pillar_before_moving_stripes(17);
+    LookRunner other(look_of("motion_blur"), gpu::Backend::egl_software);
+    EXPECT_EQ(largest_difference(blur(capture), other.color(capture)), 0);
+}
+
+}  // namespace
+}  // namespace aftershade::test
