@@ -1,16 +1,15 @@
 // How much of a pixel an arrow covers, from its edge's distance. Too short for a head, it is a dot.
 
 struct Arrow {
-    vec2 tail, tip;   // px
+    vec2 tail, way;   // where it begins, and from there to its tip, px
     float width;      // of the shaft, px
 };
 
 float arrow_head_width(Arrow arrow) { return 3.5 * arrow.width; }
 
 float arrow_cover(Arrow arrow, vec2 p) {
-    vec2 way = arrow.tip - arrow.tail;
-    float length_ = length(way), head = min(1.2 * arrow_head_width(arrow), 0.6 * length_);
-    vec2 along = length_ > 0.0 ? way / length_ : vec2(1.0, 0.0), offset = p - arrow.tail;
+    float length_ = length(arrow.way), head = min(1.2 * arrow_head_width(arrow), 0.6 * length_);
+    vec2 along = length_ > 0.0 ? arrow.way / length_ : vec2(1.0, 0.0), offset = p - arrow.tail;
     // Along the arrow, and beside it.
     vec2 q = vec2(dot(offset, along), abs(dot(offset, vec2(-along.y, along.x))));
     float shaft = length(vec2(q.x - clamp(q.x, 0.0, max(length_ - head, 0.0)), q.y)) - 0.5 * arrow.width;

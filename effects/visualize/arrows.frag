@@ -2,10 +2,10 @@
 #include <pass>
 #include "arrow.glsl"
 
-layout(location = 0) flat in vec4 ends;
+layout(location = 0) flat in vec4 tail_and_way;
 layout(location = 1) flat in vec4 paint;
 
 void main() {
-    float cover = arrow_cover(Arrow(ends.xy, ends.zw, paint.w), gl_FragCoord.xy);
+    float cover = arrow_cover(Arrow(tail_and_way.xy, tail_and_way.zw, paint.w), gl_FragCoord.xy);
     out_arrows = vec4(paint.rgb, 1.0) * cover;
 }

@@ -41,7 +41,7 @@ vec3 drawing(vec2 u, float px_per_unit) {
 #elif SHOW == SHOW_ARROWS
     vec2 tail = vec2(8.0, kTitleHeight + 4) * px_per_unit;
     float length_px = min(key_velocity(int(px_per_unit)) * param.scale, 64.0 * px_per_unit);
-    Arrow key = Arrow(tail, tail + vec2(length_px, 0.0), 1.5 * px_per_unit);
+    Arrow key = Arrow(tail, vec2(length_px, 0.0), 1.5 * px_per_unit);
     return mix(kPaper, wheel_color(vec2(1.0, 0.0)), arrow_cover(key, u * px_per_unit));
 #elif SHOW == SHOW_LIGHT
     return kPaper;

@@ -88,8 +88,8 @@ std::string fault_of_step(const WiringSpec& wiring, const InputSpec& input, cons
     }
     std::vector<std::string> all;
     const std::string known = known_names(maker, all);
-    return maker.id + " has no output or texture '" + wiring.output + "'" +
-           did_you_mean(wiring.output, all) + known;
+    return maker.id + " has no output or texture '" + wiring.output + "'" + did_you_mean(wiring.output, all) +
+           known;
 }
 
 }  // namespace

@@ -11,8 +11,9 @@ namespace {
 class Wiring : public testing::Test {
 protected:
     Wiring() {
-        effects_.add("maker",
-                     R"("inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
+        effects_.add(
+            "maker",
+            R"("inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
             "params": { "on": { "type": "bool", "default": true, "doc": "Whether." } },
             "textures": { "twice": { "format": "r32f", "doc": "Twice the red." },
                           "flow": { "format": "rg16f", "doc": "A vector." },
@@ -33,30 +34,34 @@ protected:
               { "name": "stack", "kind": "clear", "writes": [{ "stack": { "layer": 1 } }], "value": 1 },
               { "name": "maybe", "shader": "maybe.frag", "writes": ["sometimes"], "when": { "on": true } },
               { "name": "main", "shader": "main.frag", "reads": ["color"], "writes": ["color"] } ])",
-                     "void main() { out_color = texelFetch(color, ivec2(gl_FragCoord.xy), 0); }\n");
-        shader("full", "out_twice = 2.0 * texelFetch(color, ivec2(gl_FragCoord.xy), 0).r;\n"
-                       "out_flow = gl_FragCoord.xy; out_ids = 7u; out_signed_ids = -7;\n"
-                       "out_kept = texelFetch(kept_prev, ivec2(0), 0).r + 1.0;");
+            "void main() { out_color = texelFetch(color, ivec2(gl_FragCoord.xy), 0); }\n");
+        shader("full",
+               "out_twice = 2.0 * texelFetch(color, ivec2(gl_FragCoord.xy), 0).r;\n"
+               "out_flow = gl_FragCoord.xy; out_ids = 7u; out_signed_ids = -7;\n"
+               "out_kept = texelFetch(kept_prev, ivec2(0), 0).r + 1.0;");
         shader("smaller", "out_half_size = gl_FragCoord.x + 100.0 * gl_FragCoord.y;");
         shader("tile", "out_tiles = gl_FragCoord.xy;");
         shader("level", "out_levels = vec4(gl_FragCoord.xy, 3.0, 4.0);");
         shader("maybe", "out_sometimes = 1.0;");
         const std::string out = R"("outputs": { "color": { "role": "color" } },)";
-        effects_.add("show",
-                     R"("inputs": { "image": { "role": "aov:image", "optional": true },
+        effects_.add(
+            "show",
+            R"("inputs": { "image": { "role": "aov:image", "optional": true },
                                     "color": { "role": "color" } },)" +
-                         out + R"("passes": [ { "name": "main", "shader": "main.frag",
+                out + R"("passes": [ { "name": "main", "shader": "main.frag",
                                    "reads": ["image", "color"], "writes": ["color"] } ])",
-                     "void main() {\n#ifdef HAS_IMAGE\n"
-                     "    ivec2 p = ivec2(gl_FragCoord.xy), size = ivec2(image_size.xy);\n"
-                     "    out_color = all(lessThan(p, size)) ? texelFetch(image, p, 0) : vec4(image_size.xy, 0, 9);\n"
-                     "#else\n    out_color = -texelFetch(color, ivec2(gl_FragCoord.xy), 0);\n#endif\n}\n");
-        effects_.add("warp", R"("inputs": { "velocity": { "role": "velocity" },
+            "void main() {\n#ifdef HAS_IMAGE\n"
+            "    ivec2 p = ivec2(gl_FragCoord.xy), size = ivec2(image_size.xy);\n"
+            "    out_color = all(lessThan(p, size)) ? texelFetch(image, p, 0) : vec4(image_size.xy, 0, 9);\n"
+            "#else\n    out_color = -texelFetch(color, ivec2(gl_FragCoord.xy), 0);\n#endif\n}\n");
+        effects_.add(
+            "warp",
+            R"("inputs": { "velocity": { "role": "velocity" },
                                             "object_id": { "role": "object_id" } },)" +
-                                 out + R"("passes": [ { "name": "main", "shader": "main.frag",
+                out + R"("passes": [ { "name": "main", "shader": "main.frag",
                                    "reads": ["velocity", "object_id"], "writes": ["color"] } ])",
-                     "void main() { ivec2 p = ivec2(gl_FragCoord.xy);\n"
-                     "out_color = vec4(texelFetch(velocity, p, 0).xy, texelFetch(object_id, p, 0).r, 1); }\n");
+            "void main() { ivec2 p = ivec2(gl_FragCoord.xy);\n"
+            "out_color = vec4(texelFetch(velocity, p, 0).xy, texelFetch(object_id, p, 0).r, 1); }\n");
     }
 
     void shader(const std::string& name, const std::string& body) {
@@ -150,8 +155,9 @@ TEST_F(Wiring, RefusesAStepThatComesLater) {
 TEST_F(Wiring, SaysThatWholeNumbersAreNoFloats) {
     const std::string integers = faults("show", R"("image": "maker.ids")");
     EXPECT_NE(integers.find("error: texture 'ids' of maker ("), std::string::npos) << integers;
-    EXPECT_NE(integers.find("is r32ui, whole numbers; input 'image' of show reads floats (the role 'aov:image'"),
-              std::string::npos)
+    EXPECT_NE(
+        integers.find("is r32ui, whole numbers; input 'image' of show reads floats (the role 'aov:image'"),
+        std::string::npos)
         << integers;
     const std::string role = faults("show", R"("image": "capture.object_id")");
     EXPECT_NE(role.find("any image of floats will do, but 'object_id' has whole numbers"), std::string::npos)
@@ -186,8 +192,9 @@ TEST_F(Wiring, NamesTheTextureThatHasNoContentWithTheseParameters) {
         bench.color(capture());
         FAIL() << "read what nobody wrote";
     } catch (const Error& error) {
-        EXPECT_STREQ(error.what(), "step 'show': its input 'image' is 'maker.sometimes', which no pass "
-                                   "writes with these parameters");
+        EXPECT_STREQ(error.what(),
+                     "step 'show': its input 'image' is 'maker.sometimes', which no pass "
+                     "writes with these parameters");
     }
 }
 
