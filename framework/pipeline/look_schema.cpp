@@ -74,7 +74,7 @@ json wiring_of(const EffectManifest& effect) {
     for (const InputSpec& input : effect.inputs)
         inputs[input.name] = {
             {"type", "string"},
-            {"pattern", "^[a-z][a-z0-9_]*\\.[a-z][a-z0-9_:.]*$"},
+            {"pattern", "^([a-z][a-z0-9_]*\\.[a-z][a-z0-9_]*|capture\\.aov:.+)$"},
             {"description", "capture.<role>, <step>.<output> or <step>.<texture>; takes the role " +
                                 input.role + ". " + input.doc}};
     return schema::object(inputs);
