@@ -7,10 +7,8 @@ void main() {
     vec2 way = vec2(0.0);
     float most = 0.0;
     int all_faults = 0;
-    // A tile of more than 200 px has more pixels than llvmpipe has iterations: those of every second row and column, or third ...
-    int step_ = (param.tile_size + 199) / 200;
-    for (int y = first.y; y < end.y; y += step_)
-        for (int x = first.x; x < end.x; x += step_) {
+    for (int y = first.y; y < end.y; ++y)
+        for (int x = first.x; x < end.x; ++x) {
             vec4 data = data_at(ivec2(x, y));
             int faults = faults_of(data);
             all_faults |= faults;
