@@ -85,14 +85,6 @@ DisplayColor between(std::span<const std::uint32_t> stops, float t) {
     return color;
 }
 
-/// Neighbouring ids get hues far apart: multiples of the golden ratio (Knuth, TAOCP 3, 6.4).
-DisplayColor id_color(std::uint32_t id) {
-    if (id == 0) return {0, 0, 0};
-    const std::uint32_t hash = id * 2654435769u;
-    const float turns = float(hash) / 4294967296.0f;
-    return hue_color(turns, hash & 64 ? 0.55f : 0.85f, hash & 128 ? 0.95f : 0.7f);
-}
-
 }  // namespace
 
 std::string_view pixel_fault_name(PixelFault fault) {
@@ -102,14 +94,12 @@ std::string_view pixel_fault_name(PixelFault fault) {
 
 DisplayColor pixel_fault_color(PixelFault fault) {
     constexpr std::array<DisplayColor, 4> colors = {
-        {{0, 0, 0}, {0.0f, 1.0f, 1.0f}, {1.0f, 0.35f, 0.0f}, {1.0f, 0.0f, 1.0f}}};
+        {{0, 0, 0}, {FALSE_COLOR_NEGATIVE}, {FALSE_COLOR_INFINITE}, {FALSE_COLOR_NAN}}};
     return colors[std::size_t(fault)];
 }
 
 DisplayColor ramp_color(float t) {
-    // matplotlib's viridis at ninths (Smith and van der Walt 2015, CC0).
-    constexpr std::array<std::uint32_t, 10> stops = {0x440154, 0x482878, 0x3e4989, 0x31688e, 0x26828e,
-                                                     0x1f9e89, 0x35b779, 0x6ece58, 0xb5de2b, 0xfde725};
+    constexpr std::uint32_t stops[] = {FALSE_COLOR_RAMP};
     return between(stops, t);
 }
 
@@ -122,10 +112,15 @@ DisplayColor wheel_color(float x, float y) {
 }
 
 DisplayColor diverging_color(float t) {
-    // ColorBrewer's RdBu of nine classes from blue to red (Brewer 2002, Apache 2.0).
-    constexpr std::array<std::uint32_t, 9> stops = {0x2166ac, 0x4393c3, 0x92c5de, 0xd1e5f0, 0xf7f7f7,
-                                                    0xfddbc7, 0xf4a582, 0xd6604d, 0xb2182b};
+    constexpr std::uint32_t stops[] = {FALSE_COLOR_DIVERGING};
     return between(stops, std::clamp(t, -1.0f, 1.0f) * 0.5f + 0.5f);
+}
+
+DisplayColor id_color(std::uint32_t id) {
+    if (id == 0) return {0, 0, 0};
+    const std::uint32_t hash = id * 2654435769u;
+    const float turns = float(hash) / 4294967296.0f;
+    return hue_color(turns, hash & 64 ? 0.55f : 0.85f, hash & 128 ? 0.95f : 0.7f);
 }
 
 FalseColor::Kind FalseColor::kind_of(const std::string& role, const Image& image) {

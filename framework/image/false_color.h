@@ -1,4 +1,4 @@
-// A picture for people out of the image of any role.
+// A picture for people out of the image of any role. Shaders make the same colours: glsl/false_color.glsl.
 #pragma once
 
 #include <array>
@@ -10,6 +10,7 @@
 #include "framework/image/color_space.h"
 #include "framework/image/image.h"
 #include "framework/image/label_text.h"
+#include "glsl/false_color_tables.glsl"
 
 namespace aftershade {
 
@@ -20,7 +21,7 @@ std::string_view pixel_fault_name(PixelFault fault);
 DisplayColor pixel_fault_color(PixelFault fault);
 
 /// Depth where nothing was hit: a grey, which the ramp has not.
-inline constexpr DisplayColor kNothingHitColor = {0.45f, 0.45f, 0.45f};
+inline constexpr DisplayColor kNothingHitColor = {FALSE_COLOR_NOTHING_HIT};
 
 /// viridis, from dark to bright, t in 0..1.
 DisplayColor ramp_color(float t);
@@ -29,6 +30,8 @@ DisplayColor ramp_color(float t);
 DisplayColor wheel_color(float x, float y);
 /// Signed values t in -1..1: blue below 0, white at 0, red above.
 DisplayColor diverging_color(float t);
+/// Neighbouring ids get hues far apart: multiples of the golden ratio (Knuth, TAOCP 3, 6.4). 0 is black.
+DisplayColor id_color(std::uint32_t id);
 
 /// What explains the colours beside the words.
 enum class Legend { none, ramp, wheel };

@@ -6,6 +6,7 @@
 #include "framework/core/units.h"
 #include "framework/image/role.h"
 #include "framework/pipeline/pipeline.h"
+#include "framework/pipeline/wiring.h"
 
 namespace aftershade {
 
@@ -250,7 +251,8 @@ private:
             const InputSource source = input.frame == 0 ? nearest_source(input.role, pipeline_.steps.size())
                                                         : InputSource{-1, input.role};
             step.inputs.try_emplace(input.name, source);
-            if (input.role == "color" && pipeline_.writes_role("display"))
+            // Who can do without colour does not build on it: it may look at it to the side of the display.
+            if (input.role == "color" && !input.optional && pipeline_.writes_role("display"))
                 diagnostics_.error(
                     look_step.place,
                     "step '" + step.name + "' reads color after a step has made display; put it before");
@@ -274,8 +276,8 @@ private:
                                                  did_you_mean(wiring.input, names));
             return;
         }
-        std::string role = wiring.output;
-        InputSource source{-1, wiring.output};
+        const EffectManifest* maker = nullptr;
+        int index = -1;
         if (wiring.source != "capture") {
             const auto names = step_names(pipeline_);
             const auto found = std::find(names.begin(), names.end(), wiring.source);
@@ -285,39 +287,11 @@ private:
                                                      "'" + did_you_mean(wiring.source, names));
                 return;
             }
-            source.step = int(found - names.begin());
-            const EffectManifest& manifest = *pipeline_.steps[std::size_t(source.step)].manifest;
-            const OutputSpec* output = manifest.find_output(wiring.output);
-            if (!output) {
-                const auto outputs = output_names(manifest);
-                diagnostics_.error(wiring.place, manifest.id + " has no output '" + wiring.output + "'" +
-                                                     did_you_mean(wiring.output, outputs));
-                return;
-            }
-            role = output->role;
-        } else if (!find_role(wiring.output)) {
-            diagnostics_.error(wiring.place, "'" + wiring.output + "' is not a role" +
-                                                 did_you_mean(wiring.output, role_names()));
-            return;
+            index = int(found - names.begin());
+            maker = pipeline_.steps[std::size_t(index)].manifest;
         }
-        if (input->frame != 0 && source.step >= 0) {
-            diagnostics_.error(wiring.place, "input '" + input->name + "' of " + step.manifest->id +
-                                                 " is of another frame, which only the capture has");
-            return;
-        }
-        if (role != input->role) {
-            std::string made_at;
-            if (source.step >= 0) {
-                const EffectManifest& maker = *pipeline_.steps[std::size_t(source.step)].manifest;
-                made_at = ", which " + maker.id + " declares at " +
-                          to_string(maker.find_output(source.output)->place);
-            }
-            diagnostics_.error(wiring.place, "input '" + input->name + "' of " + step.manifest->id +
-                                                 " takes the role '" + input->role + "' (" +
-                                                 to_string(input->place) + "), not '" + role + "'" + made_at);
-            return;
-        }
-        step.inputs[input->name] = source;
+        if (auto source = wired_source(wiring, *input, *step.manifest, maker, index, diagnostics_))
+            step.inputs[input->name] = std::move(*source);
     }
 
     EffectRegistry& effects_;

@@ -96,9 +96,11 @@ void GraphBuilder::declare(StepBuild& build) {
         if (std::find(build.present.begin(), build.present.end(), input.name) == build.present.end())
             continue;
         const auto handle = resolve(build.step.inputs.at(input.name), input.frame);
+        require_written(build, input, handle);
         build.inputs[input.name] = handle;
         if (!input.history) continue;
-        const gpu::TextureDesc desc = graph.textures()[std::size_t(handle.texture)].desc;
+        gpu::TextureDesc desc = graph.textures()[std::size_t(handle.texture)].desc;
+        desc.mips = 1;
         const graph::TextureHistory history = graph.create_history(prefix + "in." + input.name, desc);
         build.previous[input.name] = history.previous;
         build.history_current[input.name] = history.current;
@@ -108,6 +110,20 @@ void GraphBuilder::declare(StepBuild& build) {
         build.textures[spec.name] =
             graph.create_texture(prefix + spec.name, {width_, height_, texture_format_of_role(spec.role)});
     for (const BufferSpec& spec : manifest.buffers) declare_buffer(build, spec);
+}
+
+/// Passes of an earlier step that did not run leave the textures that a look may have wired from it without
+/// content.
+void GraphBuilder::require_written(const StepBuild& build, const InputSpec& input,
+                                   graph::TextureHandle handle) const {
+    const auto& texture = graph.textures()[std::size_t(handle.texture)];
+    if (handle.version > 0 || texture.imported || texture.options.clear) return;
+    throw Error(ExitCode::effect, "step '" + build.step.name + "': its input '" + input.name + "' is '" +
+                                      texture.name + "', which no pass writes with these parameters");
+}
+
+int GraphBuilder::input_level(graph::TextureHandle handle) const {
+    return graph.textures()[std::size_t(handle.texture)].desc.mips > 1 ? 0 : -1;
 }
 
 void GraphBuilder::declare_texture(StepBuild& build, const TextureSpec& spec) {
@@ -203,7 +219,7 @@ void GraphBuilder::add_copy(StepBuild& build, const std::string& name, graph::Te
     pass.name = build.step.name + "." + name + ".keep";
     pass.program = &programs_.host(
         "copy.frag", is_integer ? std::vector<std::string>{"COPY_UINT"} : std::vector<std::string>{});
-    pass.reads.push_back({from, 0});
+    pass.reads.push_back({from, 0, gpu::Filter::nearest, gpu::Wrap::clamp, input_level(from)});
     pass.targets.push_back({to});
     (void)graph.add_pass(std::move(pass));
     passes.push_back({build.index, graph.pass_count() - 1, false, true});
@@ -215,7 +231,9 @@ void GraphBuilder::add_mix(StepBuild& build) {
         graph::Pass pass;
         pass.name = step.name + "." + name + ".mix";
         std::vector<std::string> defines;
-        pass.reads = {{resolve(source), 0}, {build.textures.at(name), 1}};
+        const graph::TextureHandle before = resolve(source);
+        pass.reads = {{before, 0, gpu::Filter::nearest, gpu::Wrap::clamp, input_level(before)},
+                      {build.textures.at(name), 1}};
         if (step.mask && !step.mask->role.empty()) {
             defines = {"MASK_IMAGE"};
             pass.reads.push_back({import(step.mask->role), 2});

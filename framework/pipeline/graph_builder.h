@@ -68,6 +68,9 @@ private:
     graph::TextureHandle import(const std::string& role, int offset = 0);
     graph::TextureHandle resolve(const InputSource& source, int offset = 0);
     void declare(StepBuild& build);
+    void require_written(const StepBuild& build, const InputSpec& input, graph::TextureHandle handle) const;
+    /// An input is level 0 of a texture that has more.
+    int input_level(graph::TextureHandle handle) const;
     void declare_texture(StepBuild& build, const TextureSpec& spec);
     void declare_buffer(StepBuild& build, const BufferSpec& spec);
     void declare_params(StepBuild& build);

@@ -18,8 +18,10 @@ std::vector<WiringSpec> parse_wiring(const Node& node, Diagnostics& diagnostics)
     for (const Member& member : node.members) {
         const std::size_t dot = member.value.is_string() ? member.value.string.find('.') : std::string::npos;
         if (dot == std::string::npos) {
-            diagnostics.error(member.value.place,
-                              "'" + member.key + "' comes from \"capture.<role>\" or \"<step>.<output>\"");
+            diagnostics.error(
+                member.value.place,
+                "'" + member.key +
+                    "' comes from \"capture.<role>\", \"<step>.<output>\" or \"<step>.<texture>\"");
             continue;
         }
         const std::string& text = member.value.string;

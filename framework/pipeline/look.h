@@ -17,7 +17,7 @@ namespace aftershade {
 struct WiringSpec {
     std::string input;
     std::string source;  ///< "capture", or the name of an earlier step
-    std::string output;  ///< a role of the capture, or an output of that step
+    std::string output;  ///< a role of the capture, or an output or a texture of that step
     Place place;
 };
 

@@ -72,10 +72,11 @@ json value_of(const ParamSpec& spec) {
 json wiring_of(const EffectManifest& effect) {
     json inputs = json::object();
     for (const InputSpec& input : effect.inputs)
-        inputs[input.name] = {{"type", "string"},
-                              {"pattern", "^[a-z][a-z0-9_]*\\.[a-z][a-z0-9_:.]*$"},
-                              {"description", "capture.<role> or <step>.<output>; takes the role " +
-                                                  input.role + ". " + input.doc}};
+        inputs[input.name] = {
+            {"type", "string"},
+            {"pattern", "^([a-z][a-z0-9_]*\\.[a-z][a-z0-9_]*|capture\\.aov:.+)$"},
+            {"description", "capture.<role>, <step>.<output> or <step>.<texture>; takes the role " +
+                                input.role + ". " + input.doc}};
     return schema::object(inputs);
 }
 

@@ -42,7 +42,11 @@ void bind_reads(const StepBuild& build, const PassSpec& spec, const PassBindings
             read.previous ? build.previous.at(read.name) : build.read_handle(read.name);
         const auto& texture = graph.textures()[std::size_t(handle.texture)];
         if (handle.version == 0 && !texture.options.clear) unwritten(build, spec, read.name);
-        const int level = read.level < 0 ? -1 : level_in_turn(read.level, turn);
+        const bool is_input = !read.previous && build.inputs.contains(read.name);
+        // An earlier step's texture may have levels, which an input has not.
+        const int level = read.level >= 0                     ? level_in_turn(read.level, turn)
+                          : is_input && texture.desc.mips > 1 ? 0
+                                                              : -1;
         pass.reads.push_back({handle, int(pass.reads.size()), read.filter, read.wrap, level});
         const auto size = size_of(texture.desc, level);
         sizes.add(std::span<const float>(size));

@@ -19,7 +19,7 @@ namespace aftershade {
 /// Where an input takes its image from.
 struct InputSource {
     int step = -1;       ///< index of an earlier step; -1: the capture
-    std::string output;  ///< that step's output; for the capture, the role
+    std::string output;  ///< that step's output or texture; for the capture, the role
 };
 
 /// One use of an effect. Values are, from the most to the least binding: --set, look, preset; below them come

@@ -101,7 +101,8 @@ std::vector<Fault> look_faults() {
               {"look\\.json:2:39: error: input 'depth' of bokeh takes the role 'depth' "
                "\\(.*effect\\.json:\\d+:\\d+\\), not 'color'.*"}),
         steps("WiringWithoutADot", R"({ "effect": "bokeh", "in": { "depth": "capture" } })",
-              {"look\\.json:2:39: error: 'depth' comes from \"capture\\.<role>\" or \"<step>\\.<output>\""}),
+              {"look\\.json:2:39: error: 'depth' comes from \"capture\\.<role>\", \"<step>\\.<output>\" or "
+               "\"<step>\\.<texture>\""}),
         steps(
             "SeveralFaultsAtOnce",
             "{ \"effect\": \"bokeh\", \"params\": { \"f_number\": 0, \"taps\": 2.5, \"shap\": \"disk\" } },\n"
