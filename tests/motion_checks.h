@@ -58,10 +58,13 @@ inline std::vector<bool> changed_pixels(const Image& sharp, const Image& truth) 
     // Sums over all that lies above and to the left, of the picture with 8 and 9 pixels around it.
     const int across = width + 18;
     std::vector<double> sums(std::size_t(across) * std::size_t(height + 18), 0.0);
-    const auto sum_at = [&](int x, int y) -> double& { return sums[std::size_t(y) * std::size_t(across) + std::size_t(x)]; };
+    const auto sum_at = [&](int x, int y) -> double& {
+        return sums[std::size_t(y) * std::size_t(across) + std::size_t(x)];
+    };
     for (int y = 1; y < height + 18; ++y)
         for (int x = 1; x < across; ++x)
-            sum_at(x, y) = difference(x - 9, y - 9) + sum_at(x - 1, y) + sum_at(x, y - 1) - sum_at(x - 1, y - 1);
+            sum_at(x, y) =
+                difference(x - 9, y - 9) + sum_at(x - 1, y) + sum_at(x, y - 1) - sum_at(x - 1, y - 1);
     std::vector<bool> changed;
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
@@ -71,14 +74,16 @@ inline std::vector<bool> changed_pixels(const Image& sharp, const Image& truth) 
     return changed;
 }
 
-inline double display_psnr_db_where(const std::vector<bool>& where, const Image& truth, const Image& picture) {
+inline double display_psnr_db_where(const std::vector<bool>& where, const Image& truth,
+                                    const Image& picture) {
     double sum = 0;
     std::size_t count = 0;
     for (int y = 0; y < truth.height(); ++y)
         for (int x = 0; x < truth.width(); ++x) {
             if (!where[std::size_t(y) * std::size_t(truth.width()) + std::size_t(x)]) continue;
             for (int c = 0; c < 3; ++c) {
-                const double error = srgb_of_clamped(truth.at(x, y, c)) - srgb_of_clamped(picture.at(x, y, c));
+                const double error =
+                    srgb_of_clamped(truth.at(x, y, c)) - srgb_of_clamped(picture.at(x, y, c));
                 sum += error * error;
             }
             count += 3;
@@ -93,7 +98,8 @@ struct SuzanneInMotion {
         sequence.files = FramePattern((folder / "large/gbuffer_####.exr").string());
         sequence.profile = "blender";
         Diagnostics diagnostics;
-        const CaptureReader reader(sequence, read_profiles(AFTERSHADE_SOURCE_DIR "/profiles", diagnostics), {});
+        const CaptureReader reader(sequence, read_profiles(AFTERSHADE_SOURCE_DIR "/profiles", diagnostics),
+                                   {});
         const std::vector<std::string> all{"color", "depth", "velocity", "velocity_next", "object_id"};
         const std::vector<std::string> seen{"color", "depth"};
         before = reader.read(3, seen);
@@ -118,7 +124,8 @@ struct SuzanneInMotion {
         frame.previous = &before;
         frame.next = &after;
         const Psnr result = psnr(runner.run(frame).images.at("color"));
-        fmt::print("{} {}: {:.2f} dB, in changed pixels {:.2f}\n", effect, params, result.all_db, result.changed_db);
+        fmt::print("{} {}: {:.2f} dB, in changed pixels {:.2f}\n", effect, params, result.all_db,
+                   result.changed_db);
         return result;
     }
 

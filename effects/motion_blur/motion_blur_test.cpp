@@ -33,7 +33,9 @@ void each_pixel(const Image& image, Function function) {
         for (int x = 0; x < image.width(); ++x) function(x, y);
 }
 
-double largest_difference(const Image& a, const Image& b) { return compare_images(a, b, 3).max.value; }
+double largest_difference(const Image& a, const Image& b) {
+    return compare_images(a, b, 3).max.value;
+}
 
 // ---- renderers' shutters ----
 
@@ -93,11 +95,13 @@ class MovingBox : public testing::TestWithParam<const char*> {};
 TEST_P(MovingBox, IsATrapezoidOfTheShuttersLength) {
     const int frame = 7, row = 135, width = 480;
     const ShutterScene scene("moving_box", frame, width, 270, 512);
-    const Image wall = scene::SceneRenderer(scene.source, width, 270, 2).render_capture(16).images.at("color");
+    const Image wall =
+        scene::SceneRenderer(scene.source, width, 270, 2).render_capture(16).images.at("color");
     const Image blurred = blur(scene.capture, GetParam());
     const double speed_px = scene.capture.images.at("velocity").at(230, row, 0);
     ASSERT_NEAR(speed_px, 0.1 / 3.9 * width, 0.01);
-    const auto measured = coverage_of_row(blurred, wall, 0.8, row), truth = coverage_of_row(scene.truth, wall, 0.8, row);
+    const auto measured = coverage_of_row(blurred, wall, 0.8, row),
+               truth = coverage_of_row(scene.truth, wall, 0.8, row);
     double sum = 0, true_sum = 0;
     for (int x = 150; x < 300; ++x) sum += measured[std::size_t(x)], true_sum += truth[std::size_t(x)];
     EXPECT_NEAR(sum / true_sum, 1, 0.02);
@@ -124,7 +128,8 @@ Capture stripes(int width, int height, double depth_m = 5) {
 }
 
 TEST(MotionBlur, OfAPictureThatMovesAsOneIsABoxAlongItsWay) {
-    const int speed_px = 20;  // 10 px while the shutter is open: as many samples, at the middles of pixels' tenths
+    const int speed_px =
+        20;  // 10 px while the shutter is open: as many samples, at the middles of pixels' tenths
     Capture capture = stripes(128, 32);
     const Image& color = capture.images["color"];
     each_pixel(color, [&](int x, int y) { set_velocity(capture, x, y, speed_px, 0); });
@@ -132,7 +137,8 @@ TEST(MotionBlur, OfAPictureThatMovesAsOneIsABoxAlongItsWay) {
     for (int x = 16; x < 112; ++x) {
         // The integral of the picture, read linearly, from -5 to +5 px, by its trapezoids.
         double expected = 0;
-        for (int i = -5; i <= 5; ++i) expected += (std::abs(i) == 5 ? 0.5 : 1.0) * color.at(x + i, 16, 0) / 10;
+        for (int i = -5; i <= 5; ++i)
+            expected += (std::abs(i) == 5 ? 0.5 : 1.0) * color.at(x + i, 16, 0) / 10;
         EXPECT_NEAR(blurred.at(x, 16, 0), expected, 0.002) << x;
     }
 }
@@ -205,12 +211,14 @@ TEST(MotionBlur, IsScaledByObject) {
 TEST(MotionBlur, ShowsWhatNeighboursShowOfTheUncovered) {
     // A box that covers half of a bright disc's place now, and none of it in the frames beside.
     SyntheticScene scene{.width = 160, .height = 48, .background_depth_m = 5};
-    scene.box = SyntheticBox{.x = 60, .y = 0, .width = 24, .height = 48, .velocity_x = 32, .depth_m = 2, .color = {0, 0, 0}};
+    scene.box = SyntheticBox{
+        .x = 60, .y = 0, .width = 24, .height = 48, .velocity_x = 32, .depth_m = 2, .color = {0, 0, 0}};
     const auto frame_at = [&](int number) {
         Capture capture = make_capture(scene, number);
         each_pixel(capture.images["color"], [&](int x, int y) {
             if (capture.images["object_id"].uint_at(x, y, 0) == 0)
-                for (int c = 0; c < 3; ++c) capture.images["color"].at(x, y, c) = x >= 96 && x < 112 ? 1.0f : 0.1f;
+                for (int c = 0; c < 3; ++c)
+                    capture.images["color"].at(x, y, c) = x >= 96 && x < 112 ? 1.0f : 0.1f;
         });
         return capture;
     };
@@ -220,13 +228,15 @@ TEST(MotionBlur, ShowsWhatNeighboursShowOfTheUncovered) {
     frame.previous = &before;
     frame.next = &after;
     const auto error = [&](const char* background) {
-        LookRunner runner(look_of("motion_blur", fmt::format(R"("background": "{}")", background)), gpu::Backend::osmesa);
+        LookRunner runner(look_of("motion_blur", fmt::format(R"("background": "{}")", background)),
+                          gpu::Backend::osmesa);
         const Image blurred = runner.run(frame).images.at("color");
         // The box's left edge moves from 84 to 100 while the shutter is open, its right one from 108 to 124.
         double sum = 0;
         for (int x = 80; x < 130; ++x) {
             const double at = x + 0.5, light = x >= 96 && x < 112 ? 1.0 : 0.1;
-            const double covered = std::clamp((at - 84) / 16, 0.0, 1.0) - std::clamp((at - 108) / 16, 0.0, 1.0);
+            const double covered =
+                std::clamp((at - 84) / 16, 0.0, 1.0) - std::clamp((at - 108) / 16, 0.0, 1.0);
             sum += std::abs(blurred.at(x, 24, 0) - light * (1 - covered));
         }
         return sum / 50;
@@ -254,7 +264,8 @@ TEST(MotionBlur, SlowsDownWhatIsFasterThanItsLimit) {
 }
 
 TEST(MotionBlur, TakesWhatIsNoNumberForRest) {
-    const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+    const float nan = std::numeric_limits<float>::quiet_NaN(),
+                infinity = std::numeric_limits<float>::infinity();
     Capture capture = pillar_before_moving_stripes(30), cleaned = capture;
     for (int y = 0; y < 48; ++y)
         for (int x = 10; x < 40; ++x) {
@@ -263,7 +274,8 @@ TEST(MotionBlur, TakesWhatIsNoNumberForRest) {
         }
     const Image blurred = blur(capture);
     EXPECT_EQ(largest_difference(blurred, blur(cleaned)), 0);
-    each_pixel(blurred, [&](int x, int y) { ASSERT_TRUE(std::isfinite(blurred.at(x, y, 0))) << x << " " << y; });
+    each_pixel(blurred,
+               [&](int x, int y) { ASSERT_TRUE(std::isfinite(blurred.at(x, y, 0))) << x << " " << y; });
 }
 
 TEST(MotionBlur, AtTheEdgesOfThePictureStaysInIt) {

@@ -253,5 +253,41 @@ void main() {
     EXPECT_EQ(bench.run(frame).images.at("color").at(1, 1, 0), 0.5f);
 }
 
+TEST_F(MixAndMask, AnInputIsReadOnlyWhereItsConditionsMayHold) {
+    effects_.add("ahead", R"(
+        "inputs": { "color": { "role": "color" },
+                    "later": { "role": "color", "frame": 1, "optional": true, "when": { "look": "ahead" } },
+                    "depth": { "role": "depth", "optional": true, "when": { "look": ["ahead", "down"] } } },
+        "outputs": { "color": { "role": "color" } },
+        "params": { "look": { "type": "enum", "values": ["here", "ahead", "down"], "default": "here", "doc": "." } },
+        "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color", "later", "depth"],
+                      "writes": ["color"] } ])",
+                 R"(
+void main() {
+    out_color = texelFetch(color, ivec2(gl_FragCoord.xy), 0);
+#ifdef HAS_LATER
+    out_color.r += 10.0 + 0.0 * texelFetch(later, ivec2(0), 0).r;
+#endif
+#ifdef HAS_DEPTH
+    out_color.r += texelFetch(depth, ivec2(0), 0).r > 0.0 ? 100.0 : 0.0;
+#endif
+})");
+    const Capture capture = scene();
+    FrameInputs frame;
+    frame.capture = frame.next = &capture;
+    const std::vector<std::string> none{}, color{"color"}, both{"color", "depth"};
+    const auto with = [&](const std::string& value) {
+        return look_of(R"({ "effect": "ahead", "params": { "look": )" + value + " } }");
+    };
+    const auto red = [&](const std::string& value) {
+        Bench bench(effects_, with(value));
+        return bench.run(frame).images.at("color").at(1, 1, 0);
+    };
+    EXPECT_EQ(red(R"("here")"), 0.25f);
+    EXPECT_EQ(red(R"("down")"), 100.25f);
+    EXPECT_EQ(red(R"("ahead")"), 110.25f);
+    EXPECT_EQ(red(R"({ "keys": { "1": "here", "9": "ahead" } })"), 110.25f) << "may hold in some frame";
+}
+
 }  // namespace
 }  // namespace aftershade::test
