@@ -30,8 +30,7 @@ struct CameraPose {
     /// means nothing.
     glm::dvec2 pixel_of(glm::dvec4 world, int width, int height) const {
         const glm::dvec4 view = glm::inverse(world_from_view()) * world;
-        return glm::dvec2(width, height) * 0.5 +
-               glm::dvec2(view.x, -view.y) / -view.z * focal_px(width);
+        return glm::dvec2(width, height) * 0.5 + glm::dvec2(view.x, -view.y) / -view.z * focal_px(width);
     }
 
     /// The point of the world that a place of the picture shows at a depth; at infinity its direction, w = 0.

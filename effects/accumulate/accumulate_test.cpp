@@ -1,4 +1,5 @@
-// The mean of sub-frames against weights in double precision, the renderer's truth, and what must stay as it is.
+// The mean of sub-frames against weights in double precision, the renderer's truth, and what must stay as it
+// is.
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -98,8 +99,8 @@ TEST(Accumulate, LeavesWhatIsAlikeInAllSubframesAsItIsBitForBit) {
     for (const std::string shape : kShapes)
         for (const int count : {3, 10, 13}) {
             const std::vector<Capture> captures(std::size_t(count), grey(0.1f));
-            EXPECT_TRUE(same_in_window(captures[0].images.at("color"), accumulated(shape, captures),
-                                       {0, 0, 15, 8}))
+            EXPECT_TRUE(
+                same_in_window(captures[0].images.at("color"), accumulated(shape, captures), {0, 0, 15, 8}))
                 << shape << " " << count;
         }
 }
@@ -144,9 +145,9 @@ TEST(Accumulate, OfSixtyFourSubframesFromTheCommandIsTheRenderersTruth) {
                             "--subframes", "64", "--truth", "shutter", "--samples", "64"},
                            folder.path());
         ASSERT_EQ(rendered.exit_code, 0) << rendered.err;
-        const CommandResult ran =
-            run_aftershade({"run", "look.json", scene, "-o", scene + "/out_####.exr", "--pixel-type", "float"},
-                           folder.path());
+        const CommandResult ran = run_aftershade(
+            {"run", "look.json", scene, "-o", scene + "/out_####.exr", "--pixel-type", "float"},
+            folder.path());
         ASSERT_EQ(ran.exit_code, 0) << ran.err;
         EXPECT_EQ(ran.out, scene + "/out_0004.exr\n" + scene + "/out_0005.exr\n");
         for (const std::string frame : {"0004", "0005"}) {

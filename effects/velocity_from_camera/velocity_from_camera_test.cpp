@@ -177,8 +177,13 @@ TEST(VelocityFromCamera, LeavesMaskedObjectsTheCapturesOwnMotion) {
     const CameraPose before, now{{0.1, 0, 0}, {0, 0, 0}};
     const auto capture = [](const CameraPose& pose, int frame) {
         Capture made = make_capture({.background_depth_m = 4,
-                                     .box = SyntheticBox{.x = 10, .y = 6, .width = 12, .height = 10,
-                                                         .velocity_x = 3, .velocity_y = -2, .depth_m = 2}},
+                                     .box = SyntheticBox{.x = 10,
+                                                         .y = 6,
+                                                         .width = 12,
+                                                         .height = 10,
+                                                         .velocity_x = 3,
+                                                         .velocity_y = -2,
+                                                         .depth_m = 2}},
                                     frame);
         set_pose(made.header.camera, pose, kWidth, kHeight);
         return made;
