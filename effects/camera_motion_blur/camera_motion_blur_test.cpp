@@ -1,4 +1,5 @@
-// A moving camera's blur against the renderer's shutter, closed forms of paths and coverage, and what must stay sharp.
+// A moving camera's blur against the renderer's shutter, closed forms of paths and coverage, and what must
+// stay sharp.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -93,7 +94,8 @@ TEST(CameraMotionBlur, ComesTo37DecibelsOfTheRenderersShutterInTheCheckeredHall)
 }
 
 /// A post before a wall, and a camera that goes sideways past them.
-constexpr const char* kPost = R"({ "aftershade": 1, "summary": "A test.", "frames": "1-12", "size": [480, 270],
+constexpr const char* kPost =
+    R"({ "aftershade": 1, "summary": "A test.", "frames": "1-12", "size": [480, 270],
   "camera": { "position": { "keys": { "0": [-1.8, 0, 3], "12": [1.8, 0, 3] } },
               "target": { "keys": { "0": [-1.8, 0, 0], "12": [1.8, 0, 0] } }, "focal_length": "28 mm" },
   "shutter": { "angle": 180 }, "ambient": 1,
@@ -121,7 +123,8 @@ TEST(CameraMotionBlur, OfADepthAloneIsTheMeanAlongTheCamerasVelocity) {
             ASSERT_NEAR(out.at(x, y, 0), expected, 0.006) << x << ", " << y;
         }
     // And velocity_from_camera says the same velocity.
-    LookRunner runner(R"({"aftershade": 1, "steps": [{"effect": "velocity_from_camera"}]})", gpu::Backend::osmesa);
+    LookRunner runner(R"({"aftershade": 1, "steps": [{"effect": "velocity_from_camera"}]})",
+                      gpu::Backend::osmesa);
     Capture first = wall(before, 3, waves), second = wall({}, 3, waves);
     second.header.frame = first.header.frame + 1;
     runner.run(first);
@@ -160,7 +163,8 @@ double mean_at(glm::dvec2 px, const Pattern& pattern, const std::function<Camera
 
 TEST(CameraMotionBlur, FollowsArcsOfARollWhereAStraightPathWouldBeWrong) {
     const auto pose_at = [](double t) { return CameraPose{.angles_deg = {0, 0, 60 * t}}; };
-    const Image out = blurred_wall(R"("samples": 128, "jitter": 0, "shutter_angle": 360)", pose_at(-1), pose_at(0), kInfinity, waves);
+    const Image out = blurred_wall(R"("samples": 128, "jitter": 0, "shutter_angle": 360)", pose_at(-1),
+                                   pose_at(0), kInfinity, waves);
     double straight_is_wrong_by = 0;
     for (int y = 16; y < kHeight - 16; ++y)
         for (int x = 24; x < kWidth - 24; ++x) {
@@ -187,23 +191,26 @@ TEST(CameraMotionBlur, OfTheBackgroundKnowsTurningAndZoomButNoWalking) {
     const Image out = blurred_wall(R"("samples": 128, "jitter": 0)", before, pose_at(0), kInfinity, waves);
     for (int y = 8; y < kHeight - 8; ++y)
         for (int x = 12; x < kWidth - 12; ++x)
-            ASSERT_NEAR(out.at(x, y, 0), mean_at({x + 0.5, y + 0.5}, waves, pose_at, 0.5), 0.012) << x << ", " << y;
+            ASSERT_NEAR(out.at(x, y, 0), mean_at({x + 0.5, y + 0.5}, waves, pose_at, 0.5), 0.012)
+                << x << ", " << y;
 }
 
 /// A white box at 3 m before black at 30 m, whose right edge is at x = 48.
 Capture box_before_wall(const CameraPose& pose) {
-    Capture capture = make_capture({.width = kWidth, .height = kHeight, .background_depth_m = 30,
-                                    .box = SyntheticBox{.x = 28, .y = 0, .width = 20, .height = kHeight,
-                                                        .depth_m = 3, .color = {1, 1, 1}}},
-                                   0);
+    Capture capture = make_capture(
+        {.width = kWidth,
+         .height = kHeight,
+         .background_depth_m = 30,
+         .box =
+             SyntheticBox{.x = 28, .y = 0, .width = 20, .height = kHeight, .depth_m = 3, .color = {1, 1, 1}}},
+        0);
     set_pose(capture.header.camera, pose, kWidth, kHeight);
     return capture;
 }
 
 TEST(CameraMotionBlur, SpreadsANearEdgeOverBothSidesByItsCoverageInTime) {
-    const Image out =
-        blurred(R"("samples": 32, "shutter_angle": 360)", box_before_wall(before_moving_by(16)),
-                box_before_wall({}));
+    const Image out = blurred(R"("samples": 32, "shutter_angle": 360)", box_before_wall(before_moving_by(16)),
+                              box_before_wall({}));
     for (int x = 0; x < kWidth; ++x) {
         // The box passes from 8 px to the left to 8 px to the right.
         const double left = std::clamp((x + 0.5 - 20) / 16, 0.0, 1.0);
@@ -243,10 +250,16 @@ TEST(CameraMotionBlur, LeavesThePictureAloneWhereTheMotionIsNotKnown) {
 
 TEST(CameraMotionBlur, NeitherBlursNorGathersObjectsThatAreFixedToTheCamera) {
     const auto capture = [](const CameraPose& pose) {
-        Capture made = make_capture({.width = kWidth, .height = kHeight, .background = {0.5f, 0.25f, 0.1f},
+        Capture made = make_capture({.width = kWidth,
+                                     .height = kHeight,
+                                     .background = {0.5f, 0.25f, 0.1f},
                                      .background_depth_m = 3,
-                                     .box = SyntheticBox{.x = 40, .y = 20, .width = 9, .height = 12,
-                                                         .depth_m = 0.5f, .color = {1e4f, 1e4f, 1e4f}}},
+                                     .box = SyntheticBox{.x = 40,
+                                                         .y = 20,
+                                                         .width = 9,
+                                                         .height = 12,
+                                                         .depth_m = 0.5f,
+                                                         .color = {1e4f, 1e4f, 1e4f}}},
                                     0);
         set_pose(made.header.camera, pose, kWidth, kHeight);
         return made;
@@ -266,15 +279,15 @@ TEST(CameraMotionBlur, NeitherBlursNorGathersObjectsThatAreFixedToTheCamera) {
 }
 
 TEST(CameraMotionBlur, IsFiniteWhateverTheCameraDoes) {
-    const CameraPose wild[] = {{{0, 0, 5}, {}},         {{0, 0, -5}, {}},     {{}, {0, 170, 0}},
-                               {{1e5, 0, 0}, {}},       {{}, {90, 90, 90}},   {{0, 0, 3}, {0, 0, 180}},
-                               {{}, {}, 5000, 36},      {{1e-9, 0, 0}, {}},   {{}, {0, 1e-7, 0}}};
+    const CameraPose wild[] = {{{0, 0, 5}, {}},    {{0, 0, -5}, {}},   {{}, {0, 170, 0}},
+                               {{1e5, 0, 0}, {}},  {{}, {90, 90, 90}}, {{0, 0, 3}, {0, 0, 180}},
+                               {{}, {}, 5000, 36}, {{1e-9, 0, 0}, {}}, {{}, {0, 1e-7, 0}}};
     for (const CameraPose& before : wild)
         for (const float depth_m : {1e-3f, 3.0f, 1e9f, kInfinity})
             for (const std::string occlusion : {"true", "false"}) {
                 const Image out =
-                    blurred_wall(R"("shutter_angle": 720, "max_blur": 512, "occlusion": )" + occlusion, before,
-                                 {}, depth_m, waves);
+                    blurred_wall(R"("shutter_angle": 720, "max_blur": 512, "occlusion": )" + occlusion,
+                                 before, {}, depth_m, waves);
                 for (const float value : out.floats()) ASSERT_TRUE(value >= 0 && value <= 1.001f) << depth_m;
             }
 }

@@ -25,24 +25,24 @@ struct Guess {
     bool agrees;
 };
 
-Guess guess(Motion motion, Sight sight, float t, float sought, float most_px, vec2 here) {
-    vec2 at = offset_at(motion, sight, t, sought, most_px);
+Guess guess(Moment moment, Sight sight, float sought, vec2 here) {
+    vec2 at = offset_at(moment, sight, sought);
     float found = texelFetch(surface, texel_at(here + at), 0).r;
-    vec2 better = offset_at(motion, sight, t, max(found, 0.0), most_px);
+    vec2 better = offset_at(moment, sight, max(found, 0.0));
     return Guess(better, found, found >= 0.0 && distance(better, at) < kAgree_px);
 }
 
 // Of what lies at the pixel's own depth and what may come over it, the nearest that agrees. Where neither does, what was hidden
 // comes out: what is known of it is the farther surface beside it.
-ivec2 visible(Motion motion, Sight sight, float t, float own, float nearest, float most_px, vec2 here) {
-    Guess back = guess(motion, sight, t, own, most_px, here), front = guess(motion, sight, t, nearest, most_px, here);
+ivec2 visible(Moment moment, Sight sight, float own, float nearest, vec2 here) {
+    Guess back = guess(moment, sight, own, here), front = guess(moment, sight, nearest, here);
     if (front.agrees && (!back.agrees || front.found > back.found)) return texel_at(here + front.better);
     ivec2 texel = texel_at(here + back.better);
     if (back.agrees) return texel;
     float beyond = texelFetch(surface, texel, 0).r;
-    vec2 best = offset_at(motion, sight, t, max(beyond, 0.0), most_px);
+    vec2 best = offset_at(moment, sight, max(beyond, 0.0));
     bool sound = beyond >= 0.0 && back.found >= 0.0 && (beyond < back.found || distance(best, back.better) < kAgree_px);
-    return sound ? texel : texel_at(here + offset_at(motion, sight, t, own, most_px));
+    return sound ? texel : texel_at(here + offset_at(moment, sight, own));
 }
 #endif
 
@@ -55,8 +55,8 @@ void main() {
 
     Motion motion = camera_motion();
     Sight sight = sight_of(gl_FragCoord.xy);
-    vec2 path = offset_at(motion, sight, span.y, own, share_px(span, span.y)) -
-                offset_at(motion, sight, span.x, own, share_px(span, span.x));
+    vec2 path = offset_at(moment_at(motion, sight, span, span.y), sight, own) -
+                offset_at(moment_at(motion, sight, span, span.x), sight, own);
     float spread = param.jitter * clamp(length(path) / float(param.samples) - 1.0, 0.0, 1.0);
     float phase = 0.5 + spread * (random_phase() - 0.5);
     // Samples lie up to half a pixel beside the path, so that nearest texels come to what a linear filter across it gives.
@@ -69,12 +69,12 @@ void main() {
     float count = 0.0;
     for (int i = 0; i < param.samples; ++i) {
         float t = mix(span.x, span.y, (float(i) + phase) / float(param.samples));
-        float most_px = share_px(span, t);
+        Moment moment = moment_at(motion, sight, span, t);
         vec2 here = sight.px + across * (fract(0.5 + 0.618034 * float(i)) - 0.5);
 #if OCCLUSION
-        ivec2 texel = visible(motion, sight, t, own, nearest, most_px, here);
+        ivec2 texel = visible(moment, sight, own, nearest, here);
 #else
-        ivec2 texel = texel_at(here + offset_at(motion, sight, t, own, most_px));
+        ivec2 texel = texel_at(here + offset_at(moment, sight, own));
 #endif
         if (texelFetch(surface, texel, 0).r < 0.0) continue;
         sum += texelFetch(color, texel, 0);

@@ -36,21 +36,28 @@ Sight sight_of(vec2 px) {
     return Sight(px, view_point(camera.clip_from_view, ndc, 0.0).xyz, before / -before.z);
 }
 
-// Where this frame's picture shows what the camera has in front of the pixel at time t, if that lies on the plane of depth
-// 1 / per_m, px from the pixel: Rodrigues' formula turns the line of sight back to this frame's view. At most share_px of it.
-vec2 offset_at(Motion motion, Sight sight, float t, float per_m, float share_px) {
+// What the camera has in front of a pixel at a time of the exposure: a line in this frame's view.
+struct Moment {
+    vec3 way;
+    vec3 from_m;
+    float most_px;  // of its way to this frame, out of max_blur for the whole path
+};
+
+// Rodrigues' formula turns the line of sight back to this frame's view.
+Moment moment_at(Motion motion, Sight sight, vec2 span, float t) {
     vec3 line = mix(sight.now, sight.before, -t);
-    float angle = t * motion.angle;
-    float cosine = cos(angle);
-    vec3 way = line * cosine + cross(motion.axis, line) * sin(angle) + motion.axis * (dot(motion.axis, line) * (1.0 - cosine));
-    vec3 camera_at = -t * per_m * motion.before_m;  // times 1 / depth, as the point below
-    float along = (1.0 + camera_at.z) / -way.z;
-    vec4 clip = camera.clip_from_view * vec4(camera_at + along * way, per_m);
-    // Behind the camera, now or then, nothing is seen: no motion.
-    if (!(way.z < 0.0 && along > 0.0 && clip.w > 0.0)) return vec2(0.0);
-    vec2 offset = pixel_of_clip(clip) - camera.jitter_px - sight.px;
-    return offset * min(1.0, share_px / max(length(offset), 1e-6));
+    float cosine = cos(t * motion.angle), sine = sin(t * motion.angle);
+    vec3 way = line * cosine + cross(motion.axis, line) * sine + motion.axis * (dot(motion.axis, line) * (1.0 - cosine));
+    return Moment(way, -t * motion.before_m, param.max_blur * abs(t) / (span.y - span.x));
 }
 
-// What the length of a whole path leaves to the way from this frame to time t.
-float share_px(vec2 span, float t) { return param.max_blur * abs(t) / (span.y - span.x); }
+// Where this frame's picture shows what the line meets on the plane of depth 1 / per_m, px from the pixel.
+vec2 offset_at(Moment moment, Sight sight, float per_m) {
+    vec3 from = moment.from_m * per_m;  // times 1 / depth, as the point below
+    float along = (1.0 + from.z) / -moment.way.z;
+    vec4 clip = camera.clip_from_view * vec4(from + along * moment.way, per_m);
+    // Behind the camera, now or then, nothing is seen: no motion.
+    if (!(moment.way.z < 0.0 && along > 0.0 && clip.w > 0.0)) return vec2(0.0);
+    vec2 offset = pixel_of_clip(clip) - camera.jitter_px - sight.px;
+    return offset * min(1.0, moment.most_px / max(length(offset), 1e-6));
+}

@@ -18,8 +18,8 @@ void main() {
     // Where it goes is the other way than where a pixel finds it.
     Motion motion = camera_motion();
     Sight sight = sight_of(vec2(corner) + 0.5 * float(kTile));
-    vec2 a = -offset_at(motion, sight, span.x, nearest, share_px(span, span.x));
-    vec2 b = -offset_at(motion, sight, span.y, nearest, share_px(span, span.y));
+    vec2 a = -offset_at(moment_at(motion, sight, span, span.x), sight, nearest);
+    vec2 b = -offset_at(moment_at(motion, sight, span, span.y), sight, nearest);
     // Within a tile the motion differs a little.
     vec2 margin = 2.0 + 0.1 * abs(a - b);
     out_tile_reach = vec4(min(min(a, b), 0.0) - margin, max(max(a, b), 0.0) + margin);
