@@ -3,6 +3,7 @@
 // goldens.
 //
 // AFTERSHADE_MAKE_GOLDENS=1 (scripts/make-case-goldens) writes the goldens of the cases instead of comparing.
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -22,6 +23,7 @@
 #include "framework/image/png_file.h"
 #include "framework/image/profile.h"
 #include "framework/image/role.h"
+#include "tests/camera_pose.h"
 #include "tests/effect_case.h"
 #include "tests/look_runner.h"
 #include "tests/synthetic_capture.h"
@@ -118,6 +120,17 @@ Capture small_capture() {
     // Something in every role that a formula leaves black.
     for (const char* role : {"specular", "emission"})
         for (float& value : capture.images.at(role).floats()) value = 0.1f;
+    set_pose(capture.header.camera, {}, color.width(), color.height());
+    return capture;
+}
+
+/// The frame before small_capture's, in which the camera stood and looked elsewhere.
+Capture capture_before() {
+    Capture capture = small_capture();
+    capture.header.frame -= 1;
+    const CameraPose pose{.position_m = {-0.1, 0.05, 0.2}, .angles_deg = {1, -3, 2}};
+    set_pose(capture.header.camera, pose, capture.images.at("color").width(),
+             capture.images.at("color").height());
     return capture;
 }
 
@@ -156,7 +169,11 @@ protected:
     const EffectManifest& manifest() const { return *manifest_; }
 
     FrameResult run(const Values& values, gpu::Backend backend, const Capture& capture) const {
-        return LookRunner(look_of(GetParam(), values), backend).run(capture);
+        const Capture before = capture_before();
+        FrameInputs frame;
+        frame.capture = &capture;
+        frame.previous = &before;
+        return LookRunner(look_of(GetParam(), values), backend).run(frame);
     }
 
 private:
@@ -326,7 +343,7 @@ void write_golden(const fs::path& path, const std::string& role, const Image& im
     Image display(image.width(), image.height(), 3);
     for (int y = 0; y < image.height(); ++y)
         for (int x = 0; x < image.width(); ++x)
-            for (int c = 0; c < 3; ++c)
+            for (int c = 0; c < std::min(image.channels(), 3); ++c)
                 display.at(x, y, c) =
                     role == "display" ? image.at(x, y, c) : float(srgb_of_clamped(image.at(x, y, c)));
     const fs::path folder = kRoot / "build/case-goldens" / path.parent_path().parent_path().filename();
@@ -346,6 +363,25 @@ void compare_golden(const EffectCase& test, const std::string& role, int frame, 
     EXPECT_EQ(difference(golden, rounded_to_half(image), test.tolerance), "") << path;
 }
 
+/// A frame of a case's capture, from its first sub-frame to its last.
+FrameResult run_frame(LookRunner& runner, const CaptureReader& reader, const Sequence& sequence, int number) {
+    std::vector<Capture> captures;
+    for (int subframe = 0; subframe < sequence.subframes; ++subframe) {
+        captures.push_back(reader.read(sequence.file_number(number, subframe), role_names()));
+        captures.back().header.frame = number;
+    }
+    FrameInputs frame;
+    frame.subframe_count = sequence.subframes;
+    frame.centre = &captures[captures.size() / 2];
+    FrameResult result;
+    for (const Capture& capture : captures) {
+        frame.capture = &capture;
+        result = runner.run(frame);
+        ++frame.subframe;
+    }
+    return result;
+}
+
 void run_case(const EffectCase& test, gpu::Backend backend) {
     Diagnostics diagnostics;
     const auto sequence = open_sequence(test.capture.string(), diagnostics);
@@ -353,7 +389,7 @@ void run_case(const EffectCase& test, gpu::Backend backend) {
     const CaptureReader reader(*sequence, read_profiles(kRoot / "profiles", diagnostics), {});
     LookRunner runner(test.look, backend);
     for (const int frame : test.frames) {
-        const FrameResult result = runner.run(reader.read(frame, role_names()));
+        const FrameResult result = run_frame(runner, reader, *sequence, frame);
         for (const std::string& role : test.outputs) {
             ASSERT_TRUE(result.images.contains(role)) << test.file << ": no step makes '" << role << "'";
             if (making_goldens())

@@ -184,6 +184,8 @@ std::string_view camera_block_glsl() {
            "    mat4 world_from_clip;\n"
            "    mat4 prev_clip_from_world;\n"
            "    mat4 prev_view_from_world;\n"
+           "    mat4 prev_clip_from_view;\n"
+           "    mat4 prev_view_from_view;\n"
            "    vec3 position_m;\n"
            "    vec2 jitter_px;\n"
            "    vec2 prev_jitter_px;\n"

@@ -149,6 +149,8 @@ struct CameraBlock {
     ColumnMatrix world_from_clip = kIdentityMatrix;
     ColumnMatrix prev_clip_from_world = kIdentityMatrix;
     ColumnMatrix prev_view_from_world = kIdentityMatrix;
+    ColumnMatrix prev_clip_from_view = kIdentityMatrix;  ///< from this frame's view: no far world's rounding
+    ColumnMatrix prev_view_from_view = kIdentityMatrix;
     float position_m[3] = {0, 0, 0};  ///< in the world
     float padding = 0;
     float jitter_px[2] = {0, 0};  ///< offset of the sample from the pixel's centre, +y down
@@ -169,9 +171,9 @@ static_assert(offsetof(FrameBlock, origin_px) == 8 && offsetof(FrameBlock, numbe
 static_assert(offsetof(FrameBlock, fps) == 24 && offsetof(FrameBlock, history_valid) == 28);
 static_assert(offsetof(FrameBlock, rec709_from_color) == 32 && offsetof(FrameBlock, size_px) == 80);
 static_assert(offsetof(FrameBlock, scale) == 96 && sizeof(FrameBlock) == 112);
-static_assert(offsetof(CameraBlock, clip_from_world) == 256 && offsetof(CameraBlock, position_m) == 512);
-static_assert(offsetof(CameraBlock, jitter_px) == 528 && offsetof(CameraBlock, focal_length_mm) == 544);
-static_assert(offsetof(CameraBlock, has_matrices) == 560 && sizeof(CameraBlock) == 576);
+static_assert(offsetof(CameraBlock, clip_from_world) == 256 && offsetof(CameraBlock, position_m) == 640);
+static_assert(offsetof(CameraBlock, jitter_px) == 656 && offsetof(CameraBlock, focal_length_mm) == 672);
+static_assert(offsetof(CameraBlock, has_matrices) == 688 && sizeof(CameraBlock) == 704);
 static_assert(sizeof(PassBlock) == 16);
 
 }  // namespace aftershade

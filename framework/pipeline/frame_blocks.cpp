@@ -121,6 +121,11 @@ CameraBlock camera_block(const FrameInputs& frame, const FrameBefore& before) {
     if (const auto previous = known ? projection_of(*known) : std::nullopt) {
         block.prev_clip_from_world = columns_of(previous->clip_from_world);
         block.prev_view_from_world = columns_of(previous->view_from_world);
+        if (const auto current = projection_of(camera)) {
+            const glm::dmat4 world_from_view = glm::inverse(current->view_from_world);
+            block.prev_clip_from_view = columns_of(previous->clip_from_world * world_from_view);
+            block.prev_view_from_view = columns_of(previous->view_from_world * world_from_view);
+        }
         block.has_prev_matrices = 1;
     }
     const auto set_jitter = [](const Camera& from, float(&jitter_px)[2]) {

@@ -227,8 +227,9 @@ TEST_P(HostBlocksOn, MeanInGlslWhatTheHostPutIn) {
     ColumnMatrix* const matrices[] = {&camera.view_from_world,      &camera.world_from_view,
                                       &camera.clip_from_view,       &camera.view_from_clip,
                                       &camera.clip_from_world,      &camera.world_from_clip,
-                                      &camera.prev_clip_from_world, &camera.prev_view_from_world};
-    for (int i = 0; i < 8; ++i) (*matrices[i])[13] = float(20 + i);  // column 3, row 1: a move along y
+                                      &camera.prev_clip_from_world, &camera.prev_view_from_world,
+                                      &camera.prev_clip_from_view,  &camera.prev_view_from_view};
+    for (int i = 0; i < 10; ++i) (*matrices[i])[13] = float(20 + i);  // column 3, row 1: a move along y
     const auto in_camera = [&](const std::string& expression) {
         return seen(camera_block_glsl(), kCameraBinding, camera, expression);
     };
@@ -244,7 +245,9 @@ TEST_P(HostBlocksOn, MeanInGlslWhatTheHostPutIn) {
     EXPECT_EQ(in_camera("camera.jitter_px, camera.prev_jitter_px"), (Floats{4, 5, 6, 7}));
     EXPECT_EQ(in_camera("camera.focal_length, camera.sensor_width, camera.focus_distance, camera.f_number"),
               (Floats{50, 36, 2.5F, 2.8F}));
-    EXPECT_EQ(in_camera("camera.has_prev_matrices, 0, 0, 0"), (Floats{1, 0, 0, 0}));
+    EXPECT_EQ(in_camera("camera.has_prev_matrices, 0, camera.prev_clip_from_view[3][1], "
+                        "camera.prev_view_from_view[3][1]"),
+              (Floats{1, 0, 28, 29}));
 }
 
 }  // namespace

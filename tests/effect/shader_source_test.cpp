@@ -55,6 +55,8 @@ TEST(ShaderInterface, DeclaresWhatThePassSees) {
         "    mat4 world_from_clip;",
         "    mat4 prev_clip_from_world;",
         "    mat4 prev_view_from_world;",
+        "    mat4 prev_clip_from_view;",
+        "    mat4 prev_view_from_view;",
         "    vec3 position_m;",
         "    vec2 jitter_px;",
         "    vec2 prev_jitter_px;",
