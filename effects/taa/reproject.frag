@@ -5,7 +5,12 @@
 // Below this the picture stands still: over static_frames it drifts by a fraction of a pixel, and rounding does not count as
 // motion.
 const float kStillPx = 1.0 / 256.0;
-const float kOutside = 1.0, kOtherDepth = 2.0, kOtherObject = 3.0;
+// For a motion that is no number: outside every picture.
+const float kNowherePx = 1e9;
+// Motions that differ by less are one motion.
+const float kOtherMotionPx = 0.5;
+// What became of history.
+const float kTaken = 1.0, kOutside = 2.0, kOtherDepth = 3.0, kOtherObject = 4.0, kOtherMotion = 5.0;
 
 // What the 3 x 3 px show. Jitter moves an edge by less than a pixel, so what was at this place in the frame before is among it.
 struct Surroundings {
@@ -33,28 +38,36 @@ Surroundings surroundings(ivec2 p) {
     return found;
 }
 
-vec2 motion_px(Ray ray, Surroundings around) {
+vec2 motion_px(Ray ray, ivec2 p, float depth_m) {
 #ifdef HAS_VELOCITY
-    vec2 motion = texelFetch(velocity, around.closest, 0).xy;
+    vec2 motion = texelFetch(velocity, p, 0).xy;
 #else
-    vec2 motion = camera_motion_px(ray, gl_FragCoord.xy, around.near_m);
+    vec2 motion = camera_motion_px(ray, gl_FragCoord.xy, depth_m);
 #endif
+    if (any(isnan(motion)) || any(isinf(motion))) return vec2(kNowherePx);
     return max(abs(motion.x), abs(motion.y)) < kStillPx ? vec2(0.0) : motion;
 }
 
-// Why the history at `q` shows something else; 0 where it does not.
-float other_surface(Ray ray, Surroundings around, ivec2 q) {
+// Whether the history at `q` shows something else, and how that is seen.
+float surface_verdict(Ray ray, Surroundings around, ivec2 q) {
 #if DISOCCLUSION != DISOCCLUSION_NONE
     float depth_m = texelFetch(depth_prev, q, 0).r;
     float near_m = previous_depth_m(ray, around.near_m) * (1.0 - param.depth_tolerance);
     float far_m = previous_depth_m(ray, around.far_m) * (1.0 + param.depth_tolerance);
-    if (!(depth_m >= near_m && depth_m <= far_m)) return kOtherDepth;
+    if (depth_m < near_m || depth_m > far_m) return kOtherDepth;
 #if defined(HAS_OBJECT_ID) && DISOCCLUSION == DISOCCLUSION_DEPTH_AND_ID
     uint id = texelFetch(object_id_prev, q, 0).r;
     if (id < around.least_id || id > around.greatest_id) return kOtherObject;
 #endif
 #endif
-    return 0.0;
+    return kTaken;
+}
+
+// Beside an edge history follows the object in front. Where that has gone on, what it brought along does not belong.
+float motion_verdict(vec2 motion, ivec2 q) {
+    vec4 before = texelFetch(motion_prev, q, 0);
+    bool borrowed = before.w < 0.0;
+    return borrowed && distance(motion, before.xy) > kOtherMotionPx ? kOtherMotion : kTaken;
 }
 
 // Frames of history that may count, so that it counts n / (n + 1).
@@ -64,16 +77,19 @@ float most_frames(vec2 motion) {
 }
 
 void main() {
-    Surroundings around = surroundings(ivec2(gl_FragCoord.xy));
+    ivec2 p = ivec2(gl_FragCoord.xy);
+    Surroundings around = surroundings(p);
     Ray ray = camera_ray(ndc_of(gl_FragCoord.xy));
-    vec2 motion = motion_px(ray, around);
+    vec2 motion = motion_px(ray, around.closest, around.near_m);
+    vec2 own_motion = motion_px(ray, p, texelFetch(depth, p, 0).r);
     vec2 before = gl_FragCoord.xy - motion;
-    // A motion that is no number is in no picture, either.
     bool inside = all(greaterThanEqual(before, vec2(0.0))) && all(lessThan(before, depth_size.xy));
+    bool borrowed = distance(motion, own_motion) > kOtherMotionPx;
     if (!inside) motion = vec2(0.0);
-    ivec2 q = inside ? ivec2(before) : ivec2(gl_FragCoord.xy);
-    float fault = inside ? other_surface(ray, around, q) : kOutside;
-    bool usable = frame.history_valid && fault == 0.0;
+    ivec2 q = inside ? ivec2(before) : p;
+    float verdict = inside ? surface_verdict(ray, around, q) : kOutside;
+    if (verdict == kTaken) verdict = motion_verdict(motion, q);
+    bool usable = frame.history_valid && verdict == kTaken;
     float frames = usable ? min(texelFetch(age_prev, q, 0).r, most_frames(motion)) : 0.0;
-    out_motion = vec4(motion, frames, frame.history_valid ? fault : 0.0);
+    out_motion = vec4(motion, frames, borrowed ? -verdict : verdict);
 }

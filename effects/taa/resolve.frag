@@ -6,7 +6,13 @@
 // Beyond this, squares leave the range of float.
 const float kMostLight = 1e15;
 
-bool is_light(vec4 texel) { return all(lessThan(abs(texel), vec4(kMostLight))); }
+// What differs by this part of the luma is the same: rounding shall not drop history.
+const float kSlack = 1.0 / 1024.0;
+
+// Asked in so many words: compilers may turn comparisons around as if there was no NaN.
+bool is_light(vec4 texel) {
+    return !any(isnan(texel)) && !any(isinf(texel)) && all(lessThan(abs(texel), vec4(kMostLight)));
+}
 
 struct Samples {
     vec4 light[9];
@@ -27,7 +33,8 @@ Samples samples_around(ivec2 p) {
 float bell(float distance) {
     float x = distance / param.filter_width;
 #if RECONSTRUCTION == RECONSTRUCTION_BLACKMAN_HARRIS
-    float c = abs(x) < 0.5 ? cos(6.283185307 * x) : -1.0;
+    if (abs(x) >= 0.5) return 0.0;
+    float c = cos(6.283185307 * x);
     // Harris 1978, minimum 4 terms, with the cosines of two and three times the angle as powers of c.
     return 0.35875 - 0.14128 + (0.48829 - 3.0 * 0.01168) * c + 2.0 * 0.14128 * c * c + 4.0 * 0.01168 * c * c * c;
 #else
@@ -100,7 +107,8 @@ Box box_of(Samples samples, vec4 current) {
         box.high = max(box.high, value);
     }
 #endif
-    return box;
+    vec4 slack = vec4(kSlack * max(abs(box.low.x), abs(box.high.x)));
+    return Box(box.low - slack, box.high + slack);
 }
 
 // How much of the way from the box's middle to `value` lies in the box.
