@@ -37,8 +37,12 @@ double farthest(const Image& image, Expected expected) {
     return most;
 }
 
-double luma(const Light& light) { return 0.25 * light[0] + 0.5 * light[1] + 0.25 * light[2]; }
-double karis_weight(const Light& light) { return 1 / (1 + std::max(luma(light), 0.0)); }
+double luma(const Light& light) {
+    return 0.25 * light[0] + 0.5 * light[1] + 0.25 * light[2];
+}
+double karis_weight(const Light& light) {
+    return 1 / (1 + std::max(luma(light), 0.0));
+}
 
 const std::string kPlain = R"("reconstruction": "none", "disocclusion": "none")";
 
@@ -209,9 +213,8 @@ TEST_P(TaaHistory, IsFoundWhereMotionSaysAndNotTakenFromOutsideThePicture) {
     const Capture a = noise(width, height, 5, 1, 1);
     Capture b = noise(width, height, 6, 1, 2);
     set_velocity(b, test.x_px, test.y_px);
-    TaaRun run(kPlain +
-               fmt::format(R"(, "rejection": "none", "history_weight": 0.5, "history_filter": "{}")",
-                           test.filter));
+    TaaRun run(kPlain + fmt::format(R"(, "rejection": "none", "history_weight": 0.5, "history_filter": "{}")",
+                                    test.filter));
     run.next(a);
     const Image out = run.color(b);
     int outside = 0;
@@ -281,8 +284,8 @@ Light held(const Light& history, const Range& range, bool clamped, bool hdr) {
     if (part >= 1) return history;
     for (std::size_t c = 0; c < kChannels; ++c) {
         const double middle = 0.5 * (range.low[c] + range.high[c]);
-        value[c] = clamped ? std::clamp(value[c], range.low[c], range.high[c])
-                           : middle + part * (value[c] - middle);
+        value[c] =
+            clamped ? std::clamp(value[c], range.low[c], range.high[c]) : middle + part * (value[c] - middle);
     }
     return from_ycocg(value, hdr);
 }

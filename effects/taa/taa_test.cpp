@@ -1,4 +1,5 @@
-// What the antialiasing promises: on the renderer's scenes against their truth, and on what a capture may do wrong.
+// What the antialiasing promises: on the renderer's scenes against their truth, and on what a capture may do
+// wrong.
 #include "effects/taa/taa_test.h"
 
 #include <limits>
@@ -80,8 +81,7 @@ TEST_P(TaaAtRest, GainsWithEveryFourfoldOfFramesAndSixDbBySixteen) {
 }
 
 class TaaStatic : public testing::TestWithParam<std::tuple<std::string, bool>> {};
-INSTANTIATE_TEST_SUITE_P(Modes, TaaStatic,
-                         testing::Combine(testing::ValuesIn(rejections()), testing::Bool()),
+INSTANTIATE_TEST_SUITE_P(Modes, TaaStatic, testing::Combine(testing::ValuesIn(rejections()), testing::Bool()),
                          [](const auto& test) {
                              return std::get<0>(test.param) + (std::get<1>(test.param) ? "_hdr" : "");
                          });
@@ -196,7 +196,8 @@ TEST(TaaInMotion, FollowsTheCameraWhereThereIsNoVelocity) {
     double most_px = 0;
     for (std::size_t i = 0; i < with.tap("motion").floats().size(); i += 4)
         for (std::size_t axis = 0; axis < 2; ++axis) {
-            const auto [v, w] = std::pair(with.tap("motion").floats()[i + axis], without.tap("motion").floats()[i + axis]);
+            const auto [v, w] =
+                std::pair(with.tap("motion").floats()[i + axis], without.tap("motion").floats()[i + axis]);
             // Places that came into the picture have no motion.
             if (v != 0 && w != 0) most_px = std::max(most_px, double(std::abs(v - w)));
         }
@@ -293,7 +294,8 @@ TEST(TaaFaults, ColorThatIsNoNumberAnywhereGivesNumbersInEveryMode) {
                 Capture capture = noise(24, 16, std::uint32_t(number), 1, number);
                 for (int i = 0; i < 24 * 16; ++i)
                     if (i % 3 == number % 3 || number == 2)
-                        capture.images["color"].floats()[std::size_t(4 * i + i % 4)] = i % 2 ? kNan : kInfinity;
+                        capture.images["color"].floats()[std::size_t(4 * i + i % 4)] =
+                            i % 2 ? kNan : kInfinity;
                 ASSERT_TRUE(is_finite(run.color(capture))) << mode << " " << filter << " " << number;
             }
         }

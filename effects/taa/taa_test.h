@@ -46,7 +46,9 @@ inline const std::vector<std::string>& rejections() {
     return names;
 }
 
-inline std::string rejection(const std::string& name) { return fmt::format(R"("rejection": "{}")", name); }
+inline std::string rejection(const std::string& name) {
+    return fmt::format(R"("rejection": "{}")", name);
+}
 
 inline bool same_bits(const Image& a, const Image& b) {
     return a.floats().size() == b.floats().size() &&
@@ -70,7 +72,9 @@ inline Capture noise(int width, int height, std::uint32_t seed, float brightest 
     return capture;
 }
 
-inline void set_jitter(Capture& capture, std::array<double, 2> px) { capture.header.camera.jitter_px = px; }
+inline void set_jitter(Capture& capture, std::array<double, 2> px) {
+    capture.header.camera.jitter_px = px;
+}
 
 inline void set_velocity(Capture& capture, float x, float y) {
     Image& velocity = capture.images.at("velocity");
