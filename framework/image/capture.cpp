@@ -38,13 +38,18 @@ Window grid_of(const FrameFile& file, const FoundChannels& channels, const std::
     return channels.empty() ? file.merged().data_window : file.window_of(channels[0][0]);
 }
 
+std::vector<std::string> present_of(const std::vector<std::string>& names) {
+    std::vector<std::string> present;
+    for (const std::string& name : names)
+        if (!name.empty()) present.push_back(name);
+    return present;
+}
+
 /// One layer over the grid, in the role's channel order. Of a component that the file lacks, alpha is 1 and
 /// others 0.
 Image read_layer(const FrameFile& file, const std::vector<std::string>& names, const Window& grid,
                  float outside) {
-    std::vector<std::string> present;
-    for (const std::string& name : names)
-        if (!name.empty()) present.push_back(name);
+    const std::vector<std::string> present = present_of(names);
     if (present.empty()) return Image(grid.width(), grid.height(), int(names.size()));
     Image stored = file.read_floats(present, grid, outside);
     if (present.size() == names.size()) return stored;
@@ -250,6 +255,22 @@ Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, c
     return image;
 }
 
+void CaptureReader::prefetch(const OpenFrame& open, std::span<const std::string> roles) const {
+    std::map<const FrameFile*, std::vector<FrameFile::Request>> requests;
+    for (const std::string& role : roles) {
+        const auto found = open.roles.find(role);
+        if (found == open.roles.end()) continue;
+        const RoleSource& source = found->second;
+        if (source.from_cryptomatte || !source.luminance.empty()) continue;
+        const bool reads_uints = find_role(role)->type == ComponentType::uint32 &&
+                                 source.file->type_of(source.channels[0][0]) == PixelType::uint32;
+        for (const std::vector<std::string>& layer : source.channels)
+            requests[source.file].push_back(
+                {present_of(layer), reads_uints ? ComponentType::uint32 : ComponentType::float32});
+    }
+    for (const auto& [file, wanted] : requests) file->prefetch(wanted);
+}
+
 Capture CaptureReader::read(int frame, std::span<const std::string> roles) const {
     OpenFrame open = this->open(frame);
     Capture capture;
@@ -259,6 +280,7 @@ Capture CaptureReader::read(int frame, std::span<const std::string> roles) const
     const auto is_premultiplied = [&](const auto& entry) {
         return entry.second.decoding.premultiplied && wants(entry.first);
     };
+    prefetch(open, roles);
     Image color;
     const bool needs_color = std::any_of(open.roles.begin(), open.roles.end(), is_premultiplied);
     if (open.roles.contains("color") && (wants("color") || needs_color))

@@ -48,6 +48,13 @@ std::vector<StoredChannel> CaptureReader::read_stored_channels(
 
     std::vector<StoredChannel> channels;
     const Window& grid = open.header.data_window;
+    std::vector<FrameFile::Request> unchanged;
+    for (const ExrChannel& channel : open.main->merged().channels)
+        if (!encoded.contains(channel.name))
+            unchanged.push_back(
+                {{channel.name},
+                 channel.type == PixelType::uint32 ? ComponentType::uint32 : ComponentType::float32});
+    open.main->prefetch(unchanged);
     for (const ExrChannel& channel : open.main->merged().channels) {
         StoredChannel stored{channel.name, channel.type, {}};
         const std::vector<std::string> one{channel.name};

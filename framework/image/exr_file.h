@@ -67,6 +67,14 @@ struct ExrPart {
     ExrMetadata metadata;
 };
 
+/// What one call of read_floats or read_uints asks for.
+struct ExrRequest {
+    int part = 0;
+    std::vector<std::string> channels;
+    ComponentType type = ComponentType::float32;
+    bool operator==(const ExrRequest&) const = default;
+};
+
 /// An open file. Headers are read and held against the limits on construction; nothing larger than a header
 /// is allocated before. Every failure is Error(ExitCode::capture) that begins with the path. [one thread at a
 /// time]
@@ -86,6 +94,11 @@ public:
     /// files and channels that do not exist are errors.
     Image read_floats(int part, std::span<const std::string> channels) const;
     Image read_uints(int part, std::span<const std::string> channels) const;
+    /// Unpacks what these reads will ask for in one pass over each part, instead of one for each read: all
+    /// channels of a block are compressed together. The next read of exactly a request's channels takes what
+    /// is kept for it. Never fails: what cannot be read, or would be more than the limits allow, is left to
+    /// the reads, which tell; so is a request that shares a channel with one before it.
+    void prefetch(std::span<const ExrRequest> requests) const;
     /// RGBA of a part that stores luminance Y, or Y with subsampled RY and BY, as OpenEXR's own RgbaInputFile
     /// converts it, to half precision.
     Image read_luminance_chroma(int part) const;

@@ -18,7 +18,9 @@
 #include <cassert>
 #include <cerrno>
 #include <cstring>
+#include <iterator>
 #include <mutex>
+#include <set>
 
 namespace aftershade {
 
@@ -46,6 +48,11 @@ std::string list_channels(const ExrPart& part) {
     for (std::size_t i = 0; i < shown; ++i) list += (i == 0 ? "" : ", ") + part.channels[i].name;
     if (part.channels.size() > shown) list += fmt::format(" and {} more", part.channels.size() - shown);
     return list;
+}
+
+char* bytes_of(Image& image) {
+    return image.type() == ComponentType::float32 ? reinterpret_cast<char*>(image.floats().data())
+                                                  : reinterpret_cast<char*>(image.uints().data());
 }
 
 /// Fills the components whose name comes again later from the last one of that name.
@@ -132,7 +139,16 @@ struct ExrFile::Impl {
     std::vector<ExrPart> parts;
 
     Impl(const fs::path& file_path, const ReadLimits& file_limits);
-    Image read(int part, std::span<const std::string> names, ComponentType type);
+    /// Unpacked ahead of the reads that will ask for it.
+    struct Kept {
+        ExrRequest request;
+        Image image;
+    };
+    std::vector<Kept> kept;
+
+    Image read(const ExrRequest& request);
+    void prefetch(int part, std::span<const ExrRequest> requests);
+    Image add_slices(Imf::FrameBuffer& frame, const ExrRequest& request) const;
     void check_type(int part) const;
     void check_channels(int part, std::span<const std::string> names, ComponentType type) const;
     void check_bytes(int part, std::size_t count) const;
@@ -220,30 +236,68 @@ void ExrFile::Impl::read_pixels(int part, const Imf::FrameBuffer& frame) {
     }
 }
 
-Image ExrFile::Impl::read(int part, std::span<const std::string> names, ComponentType type) {
+/// An image for the request, and the slices that fill it: one a name, so that of names asked for twice the
+/// last is filled.
+Image ExrFile::Impl::add_slices(Imf::FrameBuffer& frame, const ExrRequest& request) const {
+    const Window& window = parts[std::size_t(request.part)].data_window;
+    const std::vector<std::string>& names = request.channels;
+    Image image(window.width(), window.height(), int(names.size()), request.type);
+    const std::size_t x_stride = names.size() * sizeof(float);
+    const std::size_t y_stride = x_stride * std::size_t(window.width());
+    const Imf::PixelType type = request.type == ComponentType::float32 ? Imf::FLOAT : Imf::UINT;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        frame.insert(names[i], Imf::Slice::Make(type, bytes_of(image) + i * sizeof(float),
+                                                exr::to_box(window), x_stride, y_stride));
+    return image;
+}
+
+Image ExrFile::Impl::read(const ExrRequest& request) {
+    const int part = request.part;
     assert(part >= 0 && std::size_t(part) < parts.size());
+    const auto ahead = std::ranges::find(kept, request, &Kept::request);
+    if (ahead != kept.end()) {
+        Image image = std::move(ahead->image);
+        kept.erase(ahead);
+        return image;
+    }
     check_type(part);
-    check_channels(part, names, type);
-    check_bytes(part, names.size());
+    check_channels(part, request.channels, request.type);
+    check_bytes(part, request.channels.size());
     return exr::translate_errors(path, ExitCode::capture, "damaged pixel data", [&] {
         exr::check_blocks(*stream, path, layout, part);
-        const Window& window = parts[std::size_t(part)].data_window;
-        Image image(window.width(), window.height(), int(names.size()), type);
-        if (names.empty()) return image;
-        const bool floats = type == ComponentType::float32;
-        char* base = floats ? reinterpret_cast<char*>(image.floats().data())
-                            : reinterpret_cast<char*>(image.uints().data());
-        const std::size_t x_stride = names.size() * sizeof(float);
-        const std::size_t y_stride = x_stride * std::size_t(window.width());
-        Imf::FrameBuffer frame;  // one slice a name: of names asked for twice the last is filled
-        for (std::size_t i = 0; i < names.size(); ++i) {
-            frame.insert(names[i], Imf::Slice::Make(floats ? Imf::FLOAT : Imf::UINT, base + i * sizeof(float),
-                                                    exr::to_box(window), x_stride, y_stride));
-        }
+        Imf::FrameBuffer frame;
+        Image image = add_slices(frame, request);
+        if (request.channels.empty()) return image;
         read_pixels(part, frame);
-        copy_repeated(base, names, image);
+        copy_repeated(bytes_of(image), request.channels, image);
         return image;
     });
+}
+
+void ExrFile::Impl::prefetch(int part, std::span<const ExrRequest> requests) {
+    std::vector<Kept> together;
+    Imf::FrameBuffer frame;
+    std::set<std::string> channels;
+    std::size_t count = 0;
+    for (const ExrRequest& request : requests) {
+        const std::set<std::string> its(request.channels.begin(), request.channels.end());
+        const auto is_taken = [&](const std::string& name) { return channels.contains(name); };
+        if (request.part != part || its.size() != request.channels.size() ||
+            std::ranges::any_of(its, is_taken))
+            continue;
+        check_channels(part, request.channels, request.type);
+        check_bytes(part, count += its.size());
+        channels.insert(its.begin(), its.end());
+        together.push_back({request, {}});
+    }
+    if (together.size() < 2) return;
+    check_type(part);
+    exr::translate_errors(path, ExitCode::capture, "damaged pixel data", [&] {
+        exr::check_blocks(*stream, path, layout, part);
+        for (Kept& entry : together) entry.image = add_slices(frame, entry.request);
+        read_pixels(part, frame);
+    });
+    std::ranges::move(together, std::back_inserter(kept));
 }
 
 ExrFile::ExrFile(const fs::path& path, const ReadLimits& limits)
@@ -260,11 +314,22 @@ const std::vector<ExrPart>& ExrFile::parts() const {
 }
 
 Image ExrFile::read_floats(int part, std::span<const std::string> channels) const {
-    return impl_->read(part, channels, ComponentType::float32);
+    return impl_->read({part, {channels.begin(), channels.end()}, ComponentType::float32});
 }
 
 Image ExrFile::read_uints(int part, std::span<const std::string> channels) const {
-    return impl_->read(part, channels, ComponentType::uint32);
+    return impl_->read({part, {channels.begin(), channels.end()}, ComponentType::uint32});
+}
+
+void ExrFile::prefetch(std::span<const ExrRequest> requests) const {
+    impl_->kept.clear();
+    for (std::size_t part = 0; part < impl_->parts.size(); ++part) {
+        try {
+            impl_->prefetch(int(part), requests);
+        } catch (const Error&) {
+            // The read that asks for it fails in the same way, and says what it wanted.
+        }
+    }
 }
 
 Image ExrFile::read_luminance_chroma(int part) const {

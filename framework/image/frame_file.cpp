@@ -132,6 +132,18 @@ Image FrameFile::read_uints(std::span<const std::string> channels, const Window&
                            part_of(channels.front()).data_window, grid, 0);
 }
 
+void FrameFile::prefetch(std::span<const Request> requests) const {
+    std::vector<ExrRequest> stored_requests;
+    for (const Request& request : requests) {
+        if (request.channels.empty()) continue;
+        ExrRequest one{stored(request.channels.front()).part, {}, request.type};
+        for (const std::string& channel : request.channels)
+            if (stored(channel).part == one.part) one.channels.push_back(stored(channel).name);
+        if (one.channels.size() == request.channels.size()) stored_requests.push_back(std::move(one));
+    }
+    file_.prefetch(stored_requests);
+}
+
 Image FrameFile::read_luminance_chroma(const std::string& luminance, const Window& grid) const {
     const int part = stored(luminance).part;
     return place_in_window(file_.read_luminance_chroma(part), part_of(luminance).data_window, grid, 0);

@@ -37,6 +37,13 @@ public:
     /// `outside`.
     Image read_floats(std::span<const std::string> channels, const Window& grid, float outside) const;
     Image read_uints(std::span<const std::string> channels, const Window& grid) const;
+    /// Channels as read_floats or read_uints will ask for them.
+    struct Request {
+        std::vector<std::string> channels;
+        ComponentType type = ComponentType::float32;
+    };
+    /// Unpacks them together: see ExrFile::prefetch.
+    void prefetch(std::span<const Request> requests) const;
     /// RGBA of a part stored as luminance (and chroma), over `grid`. `luminance` is the name of its Y
     /// channel.
     Image read_luminance_chroma(const std::string& luminance, const Window& grid) const;
