@@ -1,18 +1,11 @@
 #version 450 core
 #include <pass>
-#include <hash.glsl>
+#include <shutter/random_phase.glsl>
 #include "path.glsl"
 
 // Within which a guess and the better one that it led to are one place, px.
 const float kAgree_px = 0.5;
 const int kTile = 16;
-
-// In (0, 1), another for each pixel at full scale, frame and step.
-float random_phase() {
-    ivec2 full = ivec2(floor((gl_FragCoord.xy + vec2(frame.origin)) / frame.scale));
-    uvec3 key = pcg3d(uvec3(uint(frame.number), frame.step_seed, 0u));
-    return unit_float(pcg3d(uvec3(uvec2(full), key.x)).x);
-}
 
 ivec2 texel_at(vec2 px) { return clamp(ivec2(floor(px)), ivec2(0), frame.size - 1); }
 

@@ -24,7 +24,7 @@ vec4 uncovered(vec2 point, vec2 beside, Motion own, float t, vec4 color_beside) 
 
 vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
     int taps = tap_count(furthest);
-    float shift = time_shift(p, furthest, taps);
+    float shift = time_shift(furthest, taps);
     vec4 sum = vec4(0.0);
     for (int i = 0; i < taps; ++i) {
         float t = tap_time(i, shift, taps);

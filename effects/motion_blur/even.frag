@@ -8,7 +8,7 @@ void main() {
     vec2 point = vec2(p) + 0.5;
     vec4 path = motion_at(point).path, sum = vec4(0.0);
     int taps = tap_count(path);
-    float shift = time_shift(p, path, taps);
+    float shift = time_shift(path, taps);
     for (int i = 0; i < taps; ++i) sum += color_at(point - way_px(path, tap_time(i, shift, taps)));
     out_color = sum / float(taps);
 }

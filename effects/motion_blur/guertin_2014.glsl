@@ -12,7 +12,7 @@ vec2 direction_of(vec4 path, vec2 instead) {
 
 vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
     int taps = tap_count(furthest);
-    float shift = time_shift(p, furthest, taps);
+    float shift = time_shift(furthest, taps);
     vec2 main_direction = direction_of(furthest, vec2(1.0, 0.0)), across = vec2(-main_direction.y, main_direction.x);
     vec2 own_direction = direction_of(own.path, across);
     across = dot(across, own_direction) < 0.0 ? -across : across;

@@ -3,7 +3,7 @@
 
 vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
     int taps = tap_count(furthest);
-    float shift = time_shift(p, furthest, taps);
+    float shift = time_shift(furthest, taps);
     vec4 sum = vec4(0.0), behind = vec4(0.0);
     float weight = 0.0, behind_weight = 0.0;
     for (int i = 0; i < taps; ++i) {

@@ -2,7 +2,7 @@
 
 vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
     int taps = tap_count(furthest);
-    float shift = time_shift(p, furthest, taps);
+    float shift = time_shift(furthest, taps);
     float weight = 1.0 / max(own.way_px, 0.5);
     vec4 sum = weight * texelFetch(color, p, 0);
     for (int i = 0; i < taps; ++i) {

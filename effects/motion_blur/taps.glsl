@@ -1,15 +1,14 @@
 // When a pixel looks, and where.
-#include <hash.glsl>
+#include <shutter/random_phase.glsl>
 #include "motion.glsl"
 
 // One a px of the sweep, at least two.
 int tap_count(vec4 path) { return clamp(int(ceil(distance(way_px(path, kOpens), way_px(path, kCloses)))), 2, param.samples); }
 
 // How far this pixel's times are moved, in their distance: nothing where there is a time for each px.
-float time_shift(ivec2 p, vec4 path, int taps) {
+float time_shift(vec4 path, int taps) {
     float apart_px = distance(way_px(path, kOpens), way_px(path, kCloses)) / float(taps);
-    uvec3 hash = pcg3d(uvec3(p + frame.origin, uint(frame.number) ^ frame.step_seed));
-    return (unit_float(hash.x) - 0.5) * param.jitter * clamp(apart_px - 1.0, 0.0, 1.0);
+    return (random_phase() - 0.5) * param.jitter * clamp(apart_px - 1.0, 0.0, 1.0);
 }
 
 float tap_time(int i, float shift, int taps) { return kOpens + (float(i) + 0.5 + shift) / float(taps); }

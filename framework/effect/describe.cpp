@@ -1,6 +1,7 @@
 #include "framework/effect/describe.h"
 
 #include <algorithm>
+#include <set>
 #include <sstream>
 
 #include "framework/core/units.h"
@@ -207,7 +208,9 @@ std::string index_markdown(const std::vector<const EffectManifest*>& manifests) 
            "|\n|---|---|---|---|\n";
     const auto roles = [](const auto& list) {
         std::string text;
-        for (const auto& item : list) text += (text.empty() ? "" : ", ") + item.role;
+        std::set<std::string> named;  // a neighbouring frame's role is its own again
+        for (const auto& item : list)
+            if (named.insert(item.role).second) text += (text.empty() ? "" : ", ") + item.role;
         return text;
     };
     for (const EffectManifest* manifest : manifests)

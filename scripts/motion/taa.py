@@ -162,7 +162,7 @@ def section(work, images):
         "mean over the scenes. In motion: dB of frames 6, 9 and 12. Trail: how far behind the box the picture differs from that of "
         f"the wall alone by more than {TRAIL_TOLERANCE}. In moving_box single frames are near their truth but for the box: the "
         "wall's edges lie between pixels.", "", *lines, "",
-        f"![One frame, 16 frames, the truth]({images.name}/taa_static.png)", "",
+        f"![One frame, 16 frames, the truth](images/motion/taa_static.png)", "",
         "One frame, 16 frames, the truth: camera_checker at rest.", ""])
 
 

@@ -12,9 +12,9 @@ WORK = ROOT / "build/motion-against-blender"
 PASS = re.compile(r"^(upload|readback|motion_blur\.\w+)\s+([\d.]+)", re.M)
 
 
-def effect_ms(said):
-    """All that the run's table of passes has, ms."""
-    return sum(float(ms) for _, ms in PASS.findall(said))
+def effect_ms(said, with_transfers=True):
+    """All that the run's table of passes has, ms; else without upload and readback."""
+    return sum(float(ms) for name, ms in PASS.findall(said) if with_transfers or name.startswith("motion_blur"))
 
 
 def run_words(source, target):
@@ -36,6 +36,10 @@ def flat(name, speed_px):
     return path
 
 
+def passes_ms(file, target):
+    return float(numpy.median([effect_ms(seconds(run_words(file, target))[2], False) for _ in range(3)]))
+
+
 def main():
     source = suzanne_1080p(WORK)
     ours, theirs = WORK / "aftershade.exr", WORK / "blender.exr"
@@ -44,20 +48,21 @@ def main():
                             "blender": blender_words("motion_blender.py", "whole", source, theirs, 32),
                             "node": blender_words("motion_blender.py", "node", source, theirs, 32)})
     truth = read_exr(CAPTURES / "suzanne/truth/motion_0004.exr", ["R", "G", "B"])
-    for label, file in ("aftershade", ours), ("blender", theirs):
-        print(f"{label:10} against the renderer's shutter, at 960x540: {psnr_db(truth, halved(read_exr(file, ['R', 'G', 'B']))):.2f} dB")
-    print(f"suzanne frame 4 at 1920x1080, whole process, EXR to EXR: `motion_blur` {walls['aftershade']:.2f} s, Blender's Vector Blur "
-          f"{walls['blender']:.2f} s: {walls['blender'] / walls['aftershade']:.1f} times as fast")
+    db = {name: psnr_db(truth, halved(read_exr(file, ["R", "G", "B"]))) for name, file in (("aftershade", ours), ("blender", theirs))}
     effect = numpy.median([effect_ms(s) for s in said["aftershade"]]) / 1000
     spent = [tuple(map(float, re.search(r"compositor: ([\d.]+) s with the node, ([\d.]+) s without", s).groups())) for s in said["node"]]
     node = numpy.median([with_node - without for with_node, without in spent])
-    print(f"upload to readback {effect:.3f} s, the node alone {node:.2f} s: {node / effect:.1f} times as fast")
-    speeds = {}
-    for name, speed_px in ("still", 0), ("moving", 40):
-        file = flat(name, speed_px)
-        speeds[name] = float(numpy.median([effect_ms(seconds(run_words(file, ours))[2]) for _ in range(3)]))
-    print(f"a frame at rest {speeds['still']:.0f} ms, one that moves everywhere by 20 px {speeds['moving']:.0f} ms: "
-          f"{100 * speeds['still'] / speeds['moving']:.1f} %")
+    lines = ["| | `motion_blur` | Vector Blur, 32 samples | times as fast |", "|---|---|---|---|",
+             f"| whole process, EXR to EXR, s | {walls['aftershade']:.2f} | {walls['blender']:.2f} | {walls['blender'] / walls['aftershade']:.1f} |",
+             f"| upload to readback; the node alone, s | {effect:.3f} | {node:.2f} | {node / effect:.1f} |",
+             f"| all pixels at 960x540, dB | {db['aftershade']:.2f} | {db['blender']:.2f} | |", ""]
+    still = passes_ms(flat("still", 0), ours)
+    for speed_px in 40, 80:
+        moving = passes_ms(flat(f"moving_{speed_px}", speed_px), ours)
+        lines.append(f"A frame at rest {still:.0f} ms, one that moves everywhere by {speed_px // 2} px while the shutter is open {moving:.0f} ms: "
+                     f"{100 * still / moving:.1f} % (passes alone).")
+    (ROOT / "scripts/motion/cost-table.md").write_text("\n".join(lines) + "\n")
+    print("\n".join(lines))
 
 
 main()
