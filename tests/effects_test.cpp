@@ -209,7 +209,11 @@ TEST_P(EveryEffect, CompilesInEveryVariantOnEachBackend) {
             }
         }
         for (const InputSpec& input : manifest().inputs) {
-            if (!input.optional) continue;
+            const auto is_required = [&](const InputSpec& other) {
+                return !other.optional && other.role == input.role;
+            };
+            // A neighbouring frame's image may be absent where this frame's is needed.
+            if (!input.optional || std::ranges::any_of(manifest().inputs, is_required)) continue;
             Capture without = small_capture();
             remove_role(without, input.role);
             EXPECT_NO_THROW(run({}, backend, without))

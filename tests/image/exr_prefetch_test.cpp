@@ -33,8 +33,7 @@ protected:
     ExrPrefetch() {
         Image light(64, 40, 3), ids(64, 40, 1, ComponentType::uint32);
         for (std::size_t i = 0; i < light.floats().size(); ++i) light.floats()[i] = float((i * 7919) % 1001);
-        for (std::size_t i = 0; i < ids.uints().size(); ++i)
-            ids.uints()[i] = std::uint32_t(i * 2654435761U);
+        for (std::size_t i = 0; i < ids.uints().size(); ++i) ids.uints()[i] = std::uint32_t(i * 2654435761U);
         const std::vector<ExrOutputChannel> channels = {{"B", PixelType::float32, &light, 2},
                                                         {"G", PixelType::half, &light, 1},
                                                         {"R", PixelType::float32, &light, 0},
@@ -71,12 +70,15 @@ TEST_F(ExrPrefetch, ReadsTheFileNoMore) {
 
 TEST_F(ExrPrefetch, LeavesWhatItCannotReadToTheReads) {
     const ExrFile file(path_);
-    file.prefetch(std::vector<ExrRequest>{{0, rg_, ComponentType::float32}, {0, {"nothing"}, ComponentType::float32}});
-    EXPECT_NE(capture_error([&] { file.read_floats(0, Names{"nothing"}); }).find("nothing"), std::string::npos);
+    file.prefetch(
+        std::vector<ExrRequest>{{0, rg_, ComponentType::float32}, {0, {"nothing"}, ComponentType::float32}});
+    EXPECT_NE(capture_error([&] { file.read_floats(0, Names{"nothing"}); }).find("nothing"),
+              std::string::npos);
     EXPECT_EQ(file.read_floats(0, rg_).width(), 64);
 
     const ExrFile small(path_, {.max_image_bytes = 64 * 40 * 4 * 2});
-    small.prefetch(std::vector<ExrRequest>{{0, rg_, ComponentType::float32}, {0, b_, ComponentType::float32}});
+    small.prefetch(
+        std::vector<ExrRequest>{{0, rg_, ComponentType::float32}, {0, b_, ComponentType::float32}});
     EXPECT_EQ(small.read_floats(0, rg_).width(), 64) << "each within the limit, together beyond it";
     EXPECT_EQ(small.read_floats(0, b_).width(), 64);
 }
@@ -86,8 +88,7 @@ TEST_F(ExrPrefetch, TakesEachChannelOnce) {
     const Names gr{"G", "R"};
     file.prefetch(std::vector<ExrRequest>{
         {0, rg_, ComponentType::float32}, {0, gr, ComponentType::float32}, {0, b_, ComponentType::float32}});
-    for (const Names& names : {rg_, gr, b_})
-        EXPECT_EQ(floats(file, names), floats(one_by_one, names));
+    for (const Names& names : {rg_, gr, b_}) EXPECT_EQ(floats(file, names), floats(one_by_one, names));
 }
 
 }  // namespace
