@@ -115,6 +115,18 @@ TEST_P(SssCombine, LeavesWhatDidNotScatterBitForBit) {
     }
 }
 
+TEST_P(SssCombine, TakesItsTexturingFromTheVariableThatPrepareHas) {
+    const Capture capture = varied();
+    const std::string texturing = R"("params": { "texturing": { "var": "texturing" } })";
+    const std::string look = R"({ "aftershade": 1, "vars": { "texturing": "pre" }, "steps": [
+        { "effect": "sss_prepare", )" +
+                             texturing + " }" + kScatter + R"({ "effect": "sss_combine", )" + texturing +
+                             " } ] }";
+    const Image got = Bench(effects_, look, {}, GetParam()).color(capture);
+    const Image same = color(with("sss_prepare", "pre") + kScatter + with("sss_combine", "pre"), capture);
+    EXPECT_EQ(std::memcmp(got.floats().data(), same.floats().data(), got.floats().size_bytes()), 0);
+}
+
 TEST_P(SssCombine, LeavesLightAsItIsInAPictureWithoutAScatteringStep) {
     const Capture capture = varied();
     const Image got = color(R"({ "effect": "sss_combine" })", capture);

@@ -36,7 +36,9 @@ TEST(SssPrepare, MultipliesLightByThePartOfTheAlbedoThatScatters) {
                     const double expected =
                         std::pow(double(capture.images.at("albedo").at(x, y, c)), power) * own;
                     ASSERT_NEAR(light.at(x, y, c), expected, 1e-6) << texturing << " " << x << " " << y;
-                    if (power == 0) ASSERT_EQ(light.at(x, y, c), float(own));
+                    if (power == 0) {
+                        ASSERT_EQ(light.at(x, y, c), float(own));
+                    }
                 }
     }
 }
