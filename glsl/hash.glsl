@@ -1,5 +1,6 @@
 // Random numbers without state. Jarzynski and Olano 2020, Hash Functions for GPU Rendering, Journal of Computer Graphics
-// Techniques 9(3), listing of pcg3d.
+// Techniques 9(3), listings of pcg3d and
+// pcg3d16.
 
 uvec3 pcg3d(uvec3 v) {
     v = v * 1664525u + 1013904223u;
@@ -11,6 +12,18 @@ uvec3 pcg3d(uvec3 v) {
     v.y += v.z * v.x;
     v.z += v.x * v.y;
     return v;
+}
+
+// Three numbers of 16 bits.
+uvec3 pcg3d16(uvec3 v) {
+    v = v * 12829u + 47989u;
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    return v >> 16u;
 }
 
 // In (0, 1): the upper 23 bits, so that every value and its distance from 1 are exact in a float.

@@ -36,7 +36,7 @@ public:
         return run(frame);
     }
     FrameResult run(const FrameInputs& frame) {
-        return renderer_->render(frame, {"color", "display", "velocity"}, false);
+        return renderer_->render(frame, {"color", "display", "irradiance", "velocity"}, false);
     }
     Image color(const Capture& capture) { return run(capture).images.at("color"); }
 

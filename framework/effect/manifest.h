@@ -30,6 +30,7 @@ struct InputSpec {
     bool optional = false;
     bool history = false;  ///< last frame's image may be read too, as "<name>.prev"; zero where there is none
     int frame = 0;         ///< -1, +1: the capture before or after, which must be optional: shots end
+    bool from_capture = false;  ///< the capture's image even where an earlier step makes that role
     /// All must hold, or the input is absent and its image is not read. On parameters alone, of optional
     /// inputs.
     std::vector<WhenSpec> when;

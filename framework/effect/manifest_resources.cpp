@@ -173,6 +173,11 @@ void ManifestParser::inputs(const Node& section) {
                 fault(place, "an input of another frame must be 'optional': shots begin and end");
             if (input.history) fault(place, "an input has 'frame' or 'history', not both");
         }
+        static const std::vector<std::string> sources{"capture"};
+        input.from_capture = reader.choice("from", sources).has_value();
+        if (input.from_capture && input.frame != 0)
+            fault(member.value.find("from")->place,
+                  "an input has 'frame' or 'from', not both: other frames are the capture's anyway");
         if (const Node* conditions = reader.object("when")) {
             if (!input.optional)
                 fault(member.value.find("when")->place, "an input with 'when' must be 'optional'");

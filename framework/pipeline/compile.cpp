@@ -168,7 +168,8 @@ private:
             }
             InputSource source = nearest_source(output.role, index);
             for (const InputSpec& input : step.manifest->inputs)
-                if (input.role == output.role && input.frame == 0) source = step.inputs.at(input.name);
+                if (input.role == output.role && input.frame == 0 && !input.from_capture)
+                    source = step.inputs.at(input.name);
             if (source.step < 0 && output.role == "display")
                 diagnostics_.error(
                     place,
@@ -248,8 +249,9 @@ private:
     void wire(const LookStep& look_step, PipelineStep& step) {
         for (const WiringSpec& wiring : look_step.wiring) wire_input(wiring, step);
         for (const InputSpec& input : step.manifest->inputs) {
-            const InputSource source = input.frame == 0 ? nearest_source(input.role, pipeline_.steps.size())
-                                                        : InputSource{-1, input.role};
+            const bool of_capture = input.frame != 0 || input.from_capture;
+            const InputSource source =
+                of_capture ? InputSource{-1, input.role} : nearest_source(input.role, pipeline_.steps.size());
             step.inputs.try_emplace(input.name, source);
             // Who can do without colour does not build on it: it may look at it to the side of the display.
             if (input.role == "color" && !input.optional && pipeline_.writes_role("display"))

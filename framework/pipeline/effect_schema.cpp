@@ -292,6 +292,7 @@ std::string effect_schema() {
                                  {"optional", kFlag},
                                  {"history", kFlag},
                                  {"frame", {{"enum", {-1, 1}}}},
+                                 {"from", {{"const", "capture"}}},
                                  {"when", when()},
                                  {"doc", kText}},
                                 {"role"});
@@ -299,8 +300,9 @@ std::string effect_schema() {
     input["dependentSchemas"]["when"] = {{"required", {"optional"}},
                                          {"properties", {{"optional", {{"const", true}}}}}};
     input["if"] = {{"required", {"frame"}}};
-    input["then"] = {{"required", {"optional"}},
-                     {"properties", {{"optional", {{"const", true}}}, {"history", {{"const", false}}}}}};
+    input["then"] = {
+        {"required", {"optional"}},
+        {"properties", {{"optional", {{"const", true}}}, {"history", {{"const", false}}}, {"from", false}}}};
     json outputs = schema::named(schema::object({{"role", schema::role()}, {"doc", kText}}, {"role"}));
     outputs["minProperties"] = 1;
     const std::string number = "(0|[1-9][0-9]*)";

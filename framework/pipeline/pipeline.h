@@ -85,7 +85,8 @@ struct PipelineOptions {
 };
 
 /// Binds a look. Each input takes its role from the nearest earlier step that outputs it, else from the
-/// capture, unless the step's "in" says otherwise. Faults go to `diagnostics`, all of them; the result is
+/// capture (from the capture alone where the manifest has "from": "capture"), unless the step's "in" says
+/// otherwise. Faults go to `diagnostics`, all of them; the result is
 /// usable if there was none.
 Pipeline compile_pipeline(const Look& look, EffectRegistry& effects, const PipelineOptions& options,
                           Diagnostics& diagnostics);

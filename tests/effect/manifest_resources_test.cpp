@@ -15,7 +15,7 @@ using test::Lines;
 
 const std::string kAllInputs = R"("inputs": {
     "color": {"role": "color", "history": true, "doc": "c"},
-    "depth": {"role": "depth", "optional": true},
+    "depth": {"role": "depth", "optional": true, "from": "capture"},
     "after": {"role": "color", "optional": true, "frame": 1}, "before": {"role": "color", "optional": true, "frame": -1}})";
 
 TEST(ManifestResources, KeepsAllThatTheySay) {
@@ -45,6 +45,8 @@ TEST(ManifestResources, KeepsAllThatTheySay) {
     const EffectManifest manifest = folder.sound_manifest();
     ASSERT_EQ(manifest.inputs.size(), 4U);
     EXPECT_TRUE(manifest.find_input("color")->history);
+    EXPECT_TRUE(manifest.find_input("depth")->from_capture);
+    EXPECT_FALSE(manifest.find_input("color")->from_capture);
     EXPECT_EQ(manifest.find_input("after")->frame, 1);
     EXPECT_EQ(manifest.find_input("before")->frame, -1);
     EXPECT_TRUE(manifest.accumulates_subframes);
@@ -143,6 +145,9 @@ TEST(ManifestResources, SayWhatIsWrongWithAnInput) {
     test::expect_faults({{kInputs, inputs(R"("frame": 1, "optional": true, "history": true)")}},
                         {"2: an input has 'frame' or 'history', not both",
                          "2: the input 'depth' has 'history', but no pass reads 'depth.prev'"});
+    test::expect_faults(
+        {{kInputs, inputs(R"("frame": 1, "optional": true, "from": "capture")")}},
+        {"2: an input has 'frame' or 'from', not both: other frames are the capture's anyway"});
 }
 
 std::string buffer(const std::string& fields) {

@@ -198,6 +198,32 @@ TEST_F(Wiring, NamesTheTextureThatHasNoContentWithTheseParameters) {
     }
 }
 
+TEST_F(Wiring, GivesTheCapturesOwnImageToAnInputThatIsFromTheCapture) {
+    const std::string out = R"("outputs": { "color": { "role": "color" } },)";
+    effects_.add("darken",
+                 R"("inputs": { "color": { "role": "color" } },)" + out + R"("passes": [ { "name": "main",
+                    "shader": "main.frag", "reads": ["color"], "writes": ["color"] } ])",
+                 "void main() { out_color = 0.5 * texelFetch(color, ivec2(gl_FragCoord.xy), 0); }\n");
+    effects_.add(
+        "compare",
+        R"("inputs": { "color": { "role": "color" }, "own": { "role": "color", "from": "capture" } },)" +
+            out + R"("passes": [ { "name": "main", "shader": "main.frag", "reads": ["color", "own"],
+                              "writes": ["color"] } ])",
+        "void main() { ivec2 p = ivec2(gl_FragCoord.xy);\n"
+        "out_color = vec4(texelFetch(color, p, 0).r, texelFetch(own, p, 0).r, 0, 1); }\n");
+    const std::string darken = R"({ "effect": "darken" }, { "effect": "compare")";
+    const Image image = Bench(effects_, look_of(darken + " }")).color(capture());
+    EXPECT_EQ(image.at(3, 3, 0), 0.125f);
+    EXPECT_EQ(image.at(3, 3, 1), 0.25f);
+    const Image wired =
+        Bench(effects_, look_of(darken + R"(, "in": { "own": "darken.color" } })")).color(capture());
+    EXPECT_EQ(wired.at(3, 3, 1), 0.125f);
+    // What the step is mixed with is the picture before it, not the capture's.
+    const Image mixed = Bench(effects_, look_of(darken + R"(, "mix": 0 })")).color(capture());
+    EXPECT_EQ(mixed.at(3, 3, 1), 0.25f);
+    EXPECT_EQ(mixed.at(3, 3, 2), 0.375f);
+}
+
 TEST_F(Wiring, LetsAStepThatCanDoWithoutColorFollowTheDisplay) {
     effects_.add("view", R"("inputs": { "color": { "role": "color" } },
                             "outputs": { "display": { "role": "display" } },
