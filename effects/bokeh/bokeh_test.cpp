@@ -10,6 +10,7 @@
 #include "framework/compare/metrics.h"
 #include "framework/core/document.h"
 #include "framework/image/capture.h"
+#include "tests/aperture_checks.h"
 #include "tests/look_runner.h"
 #include "tests/real_captures.h"
 #include "tests/synthetic_capture.h"
@@ -63,21 +64,11 @@ TEST(BokehCoc, IsCutToTheLargestRadius) {
 
 // ---- what must not change ----
 
-Capture varied_depth(SyntheticScene scene) {
-    Capture capture = make_capture(scene);
-    std::uint32_t state = 1;
-    for (float& depth_m : capture.images["depth"].floats()) {
-        state = state * 1664525u + 1013904223u;
-        depth_m = 0.5f + float(state >> 16) / 65536.0f * 10;
-    }
-    return capture;
-}
-
 class BokehSettings : public testing::TestWithParam<const char*> {};
 
 TEST_P(BokehSettings, LeaveAUniformImageUnchanged) {
     const Capture capture =
-        varied_depth({.width = 96, .height = 64, .background = {0.7f, 0.4f, 12.0f}, .alpha = 0.5f});
+        aperture_random_depths({.width = 96, .height = 64, .background = {0.7f, 0.4f, 12.0f}, .alpha = 0.5f});
     const std::string params = fmt::format("{}, {}", lens(12, 96), GetParam());
     const Image blurred = LookRunner(look(params), gpu::Backend::osmesa).color(capture);
     for (int y = 0; y < 64; ++y)
@@ -164,7 +155,7 @@ TEST(Bokeh, BlursAlphaWithTheColorThatItCovers) {
 }
 
 TEST(Bokeh, GivesTheSameBitsOnBothSoftwareBackends) {
-    Capture capture = varied_depth({.width = 96, .height = 64, .background = {0.2f, 0.1f, 0.05f}});
+    Capture capture = aperture_random_depths({.width = 96, .height = 64, .background = {0.2f, 0.1f, 0.05f}});
     for (int i = 0; i < 96 * 64; i += 37) capture.images["color"].floats()[std::size_t(i) * 4] = float(i);
     const std::string params = lens(12, 96) + R"(, "shape": "custom", "rotation": 7, "highlight_gain": 1)";
     const Image egl = LookRunner(look(params), gpu::Backend::egl_software).color(capture);

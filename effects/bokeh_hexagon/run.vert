@@ -1,5 +1,6 @@
 #version 450 core
 #include <pass>
+#include <tile_runs.glsl>
 #include "tile.glsl"
 #include "make_grid.glsl"
 
@@ -11,8 +12,5 @@ void main() {
     Grid grid = make_grid(1.0);
     grid_axes = vec4(grid.a, grid.b);
     grid_shear_sign = vec3(grid.shear, float(grid.sign));
-    uvec4 run = RUNS[gl_InstanceID];
-    vec2 p = float(kTile) * vec2((gl_VertexID & 1) == 0 ? run.x : run.z, run.y + uint(gl_VertexID >> 1));
-    vec2 size = vec2(target_size());
-    gl_Position = vec4(2.0 * p.x / size.x - 1.0, 1.0 - 2.0 * p.y / size.y, 0.0, 1.0);
+    gl_Position = run_position(RUNS[gl_InstanceID], kTile, vec2(target_size()));
 }
