@@ -9,6 +9,7 @@ matplotlib.use("svg")
 from matplotlib import pyplot
 
 from family import AFTERSHADE, CAPTURES, ROOT, command, read_exr, srgb
+from point_light import found_light
 from techniques import EXACT, psnr_db, present, scale_of, scatter
 
 WORK = ROOT / "build/quality-sss"
@@ -97,20 +98,32 @@ def on_closed_forms():
 
 # ---- Cycles' head ----
 
+def head_capture(file, light, where):
+    """With the light that sss_preintegrated must know: the file does not say, so it is found from the picture."""
+    vector = lambda kind: read_exr(file, [f"ViewLayer.{kind}.{c}" for c in "XYZ"]).astype(numpy.float64)[where]
+    position_m, intensity, _ = found_light(light[where], vector("Position"), vector("Normal"))
+    print("Cycles' light at", position_m, "m, W/sr", intensity, flush=True)
+    document = WORK / "head.json"
+    document.write_text(json.dumps({
+        "aftershade": 1, "frames": str((file.parent / "gbuffer_####.exr").resolve()), "range": "1", "profile": "blender",
+        "lights": [{"type": "point", "name": "found", "position": list(position_m), "intensity": list(intensity)}]}))
+    return document
+
+
 def on_head():
-    capture = CAPTURES / "head/gbuffer_0001.exr"
+    file = CAPTURES / "head/gbuffer_0001.exr"
     names = lambda kind: [f"ViewLayer.{kind}.{c}" for c in RGB]
     light = lambda file: sum(read_exr(file, names(kind)).astype(numpy.float64) for kind in ("DiffDir", "DiffInd"))
     truth_file = CAPTURES / "head/truth_sss_0001.exr"
     # The truth has the albedo twice.
-    truth = light(truth_file) * read_exr(truth_file, names("DiffCol")) / numpy.maximum(read_exr(capture, names("DiffCol")), 1e-9)
-    before = light(capture)
-    where = numpy.round(read_exr(capture, ["ViewLayer.IndexOB.X"])) == 1
+    truth = light(truth_file) * read_exr(truth_file, names("DiffCol")) / numpy.maximum(read_exr(file, names("DiffCol")), 1e-9)
+    before = light(file)
+    where = numpy.round(read_exr(file, ["ViewLayer.IndexOB.X"])) == 1
+    capture = head_capture(file, before, where)
     scale = scale_of(before, where)
-    made = {t[0]: scatter(capture, WORK / f"head_{file_name(t[0])}.exr", t, HEAD_PROFILE, {"object_ids": [1]}, ["--profile", "blender"])
+    made = {t[0]: scatter(capture, WORK / f"head_{file_name(t[0])}.exr", t, HEAD_PROFILE, {"object_ids": [1]})
             for t in present()}
-    wider = {t[0]: scatter(capture, WORK / f"head08_{file_name(t[0])}.exr", t, HEAD_PROFILE_08, {"object_ids": [1]},
-                           ["--profile", "blender"])
+    wider = {t[0]: scatter(capture, WORK / f"head08_{file_name(t[0])}.exr", t, HEAD_PROFILE_08, {"object_ids": [1]})
              for t in present() if t[1] != "sss_exact" or "normalize" not in t[2]}
     rows = [["what came in", f"{psnr_db(truth, before, where, scale):.2f}", "", f"{psnr_db(made['sss_exact'], before, where, scale):.2f}"]]
     for label, picture in made.items():
@@ -120,13 +133,13 @@ def on_head():
         print(rows[-1], flush=True)
     dark = numpy.where(where[..., None], 1.0, 0.0)
     shown = [before, truth, wider["sss_exact, axes"]] + [made[n] for n in (
-        "sss_exact", "sss_exact, axes", "sss_burley, 64 samples", "sss_separable, preintegrated", "sss_separable, artist", "sss_gaussian")
+        "sss_exact", "sss_exact, axes", "sss_burley, 64 samples", "sss_separable, preintegrated", "sss_separable, artist", "sss_gaussian", "sss_preintegrated")
         if n in made]
     save_strip(IMAGES / "head.jpg", [p * dark for p in shown], scale, (60, 60, 370, 250), 3)
     errors = []
     for count in COUNTS:
         technique = (f"sss_burley, {count}", "sss_burley", {"samples": count})
-        picture = scatter(capture, WORK / f"head_count_{count}.exr", technique, HEAD_PROFILE, {"object_ids": [1]}, ["--profile", "blender"])
+        picture = scatter(capture, WORK / f"head_count_{count}.exr", technique, HEAD_PROFILE, {"object_ids": [1]})
         errors.append(psnr_db(made[EXACT[0]], picture, where, scale))
     rmse = 10 ** (-numpy.array(errors) / 20)
     figure, axes = pyplot.subplots(figsize=(5.4, 3.2))

@@ -23,6 +23,7 @@ ALL = [
     ("sss_separable, gaussian_fit", "sss_separable", {"kernel": "gaussian_fit"}),
     ("sss_separable, artist", "sss_separable", {"kernel": "artist"}),
     ("sss_gaussian", "sss_gaussian", {}),
+    ("sss_preintegrated", "sss_preintegrated", {}),
 ]
 LUMINANCE = numpy.array([0.2126, 0.7152, 0.0722])
 
