@@ -12,7 +12,6 @@ ALL = [
     EXACT,
     ("sss_exact, axes", "sss_exact", {"geometry": "axes"}),
     ("sss_exact, normalize all", "sss_exact", {"normalize": "all"}),
-    ("sss_exact, normalize none", "sss_exact", {"normalize": "none"}),
     ("sss_burley, 16 samples", "sss_burley", {"samples": 16}),
     ("sss_burley, 64 samples", "sss_burley", {"samples": 64}),
     ("sss_burley, 64 samples, axes", "sss_burley", {"samples": 64, "geometry": "axes"}),
