@@ -1,15 +1,17 @@
 #version 450 core
 #include <pass>
 #include <scattering/facet.glsl>
+#include "mark.glsl"
 
 // Widest mean, 32 px: beyond it light of other surface would come in.
 const float kMostLevel = 5.0;
 
-// Mean over about the area that the sample stands for (Krivanek and Colbert 2008; area in px^2 is 4 to the level).
+// Mean over about the area that the sample stands for (Krivanek and Colbert 2008; area in px^2 is 4 to the level), where that
+// is all of one object.
 vec3 light_of_sample(Facet there, vec2 place, float area_px) {
 #if PREFILTER
     vec4 mean = textureLod(light, place * light_size.zw, clamp(0.5 * log2(area_px), 0.0, kMostLevel));
-    return mean.a > 0.0 ? mean.rgb / mean.a : there.light;
+    return abs(mean.a - mark_of(there.key)) < 1e-4 ? mean.rgb : there.light;
 #else
     return there.light;
 #endif

@@ -1,5 +1,6 @@
-// The arithmetic over frames by itself: windows and moving means, and the control variates of Xie and Olano 2021 on their own
-// one-dimensional example, the integral of 1 / (1 + y) over 0..1 with 1 - y as its variate, under light T = 3 sin + 1.
+// The arithmetic over frames by itself: windows and moving means, and the control variates of Xie and Olano
+// 2021 on their own one-dimensional example, the integral of 1 / (1 + y) over 0..1 with 1 - y as its variate,
+// under light T = 3 sin + 1.
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -77,7 +78,8 @@ TEST(ControlVariates, HaveTheFactorsOfTheirExample) {
     EXPECT_NEAR(covariance / variance, 0.477, 5e-4);
     // Of the light alone, constant within a frame: F over G.
     EXPECT_NEAR(kLn2 / 0.5, 1.386, 5e-4);
-    // Over frames of n samples both are in it, E[T] = 1 and E[T^2] = 5.5: the more samples, the more of it is the light.
+    // Over frames of n samples both are in it, E[T] = 1 and E[T^2] = 5.5: the more samples, the more of it is
+    // the light.
     const auto factor = [&](double n) {
         return (5.5 * (kLn2 / 2 + covariance / n) - kLn2 / 2) / (5.5 * (0.25 + variance / n) - 0.25);
     };

@@ -1,5 +1,5 @@
-// Double-precision twins of what sss_adaptive does over frames: how many samples a pixel takes next, and which part of its
-// light a control variate explains. Pure; may be called from any thread.
+// Double-precision twins of what sss_adaptive does over frames: how many samples a pixel takes next, and
+// which part of its light a control variate explains. Pure; may be called from any thread.
 #pragma once
 
 #include <algorithm>
@@ -34,11 +34,12 @@ private:
     std::deque<double> values_;
 };
 
-/// Exponentially moving mean and variance (Finch 2009). Its mean has the variance of a window of 2 / weight - 1 frames:
-/// weight = 2 / (k + 1) for k frames.
+/// Exponentially moving mean and variance (Finch 2009). Its mean has the variance of a window of 2 / weight -
+/// 1 frames: weight = 2 / (k + 1) for k frames.
 class MovingMoments {
 public:
-    MovingMoments(double weight, double mean, double variance) : weight_(weight), mean_(mean), variance_(variance) {}
+    MovingMoments(double weight, double mean, double variance)
+        : weight_(weight), mean_(mean), variance_(variance) {}
 
     void add(double value) {
         const double off = value - mean_;
@@ -52,23 +53,26 @@ private:
     double weight_, mean_, variance_;
 };
 
-/// Samples so that k frames have the wanted variance together, k-frame sums as published (Xie and others 2020): sum of the
-/// last k counts times variance over target, less what the frames that stay give already.
+/// Samples so that k frames have the wanted variance together, k-frame sums as published (Xie and others
+/// 2020): sum of the last k counts times variance over target, less what the frames that stay give already.
 inline double next_count_of_window(const std::deque<double>& last_counts, double variance, double target) {
     double sum = 0;
     for (const double count : last_counts) sum += count;
     return (variance / target - 1) * sum + last_counts.front();
 }
 
-/// The same with a moving mean in place of the counts: sums of k are k means, and the oldest count is a mean one.
-inline double next_count_by_difference(double mean_count, double history_weight, double variance, double target) {
+/// The same with a moving mean in place of the counts: sums of k are k means, and the oldest count is a mean
+/// one.
+inline double next_count_by_difference(double mean_count, double history_weight, double variance,
+                                       double target) {
     return mean_count * (1 + (2 / history_weight - 1) * (variance / target - 1));
 }
 
 /// Moving covariance matrix of a value and its control variate (Xie and Olano 2021).
 class MovingCovariance {
 public:
-    MovingCovariance(double weight, double value, double variate) : weight_(weight), mean_x_(value), mean_y_(variate) {}
+    MovingCovariance(double weight, double value, double variate)
+        : weight_(weight), mean_x_(value), mean_y_(variate) {}
 
     void add(double value, double variate) {
         const double x = value - mean_x_, y = variate - mean_y_;
