@@ -1,5 +1,5 @@
-// What every effect that scatters irradiance must do, on captures from formulas: a plane that faces the camera, 1 m away,
-// under light whose scattering has a closed form.
+// What every effect that scatters irradiance must do, on captures from formulas: a plane that faces the
+// camera, 1 m away, under light whose scattering has a closed form.
 #pragma once
 
 #include <algorithm>
@@ -24,8 +24,8 @@ namespace aftershade::test {
 
 using Light = std::function<float(int x, int y, int channel)>;
 
-/// Millimetres of a plane 1 m away under a pixel, with the lens that a capture without a camera is taken to have: 50 mm on
-/// a sensor of 36 mm.
+/// Millimetres of a plane 1 m away under a pixel, with the lens that a capture without a camera is taken to
+/// have: 50 mm on a sensor of 36 mm.
 inline double mm_per_px(int width) {
     return 1000.0 * 36 / 50 / width;
 }
@@ -46,14 +46,16 @@ inline Capture lit_plane(int width, int height, const Light& light) {
 /// A Burley profile whose d are so many pixels of lit_plane(), as a look has it.
 inline std::string burley_of_px(double r, double g, double b, int width) {
     const double mm = mm_per_px(width);
-    return R"({ "type": "burley", "d_mm": [)" + std::to_string(r * mm) + ", " + std::to_string(g * mm) + ", " +
-           std::to_string(b * mm) + "] }";
+    return R"({ "type": "burley", "d_mm": [)" + std::to_string(r * mm) + ", " + std::to_string(g * mm) +
+           ", " + std::to_string(b * mm) + "] }";
 }
 
 /// One step; `more` are further parameters: "\"samples\": 16".
-inline std::string scattering_step(const std::string& effect, const std::string& profile, const std::string& more = "") {
-    return R"({ "aftershade": 1, "steps": [ { "effect": ")" + effect + R"(", "params": { "scattering_profile": )" +
-           profile + (more.empty() ? "" : ", ") + more + " } } ] }";
+inline std::string scattering_step(const std::string& effect, const std::string& profile,
+                                   const std::string& more = "") {
+    return R"({ "aftershade": 1, "steps": [ { "effect": ")" + effect +
+           R"(", "params": { "scattering_profile": )" + profile + (more.empty() ? "" : ", ") + more +
+           " } } ] }";
 }
 
 inline Image scattered(const std::string& look, const Capture& capture) {
@@ -68,8 +70,8 @@ inline double row_mean(const Image& image, int x, int channel, int rows) {
     return sum / rows;
 }
 
-/// Largest distance from the edge response of Burley's profile, across an edge of light in the middle of a square picture,
-/// within `reach_px` of the edge. `d_px` of the channels.
+/// Largest distance from the edge response of Burley's profile, across an edge of light in the middle of a
+/// square picture, within `reach_px` of the edge. `d_px` of the channels.
 inline double edge_error(const Image& image, const std::array<double, 3>& d_px, int reach_px, int rows) {
     double worst = 0;
     for (int c = 0; c < 3; ++c)
@@ -93,7 +95,8 @@ inline Light cosine_light(int width, double period_px) {
 
 /// The cosine's amplitude, twice, over `periods` of them in the middle.
 inline double cosine_amplitude(const Image& image, int channel, double period_px, int periods, int rows) {
-    const int width = image.width(), count = int(std::lround(period_px * periods)), first = (width - count) / 2;
+    const int width = image.width(), count = int(std::lround(period_px * periods)),
+              first = (width - count) / 2;
     double sum = 0;
     for (int x = first; x < first + count; ++x)
         sum += row_mean(image, x, channel, rows) *
@@ -135,7 +138,8 @@ inline void expect_even_light_stays(const std::string& effect, const std::string
     const Capture capture = lit_plane(96, 64, [](int, int, int c) { return 0.25f + 0.25f * float(c); });
     const Image& before = capture.images.at("irradiance");
     for (const double d : {0.05, 0.7, 3.0, 9.0}) {
-        const Image after = scattered(scattering_step(effect, burley_of_px(d, d / 2, d / 4, 96), more), capture);
+        const Image after =
+            scattered(scattering_step(effect, burley_of_px(d, d / 2, d / 4, 96), more), capture);
         EXPECT_LT(largest_change(before, after), tolerance) << "d " << d << " px";
     }
 }
@@ -164,7 +168,8 @@ inline void expect_nothing_crosses_silhouettes(const std::string& effect, const 
         for (int x = 0; x < 40; ++x) ASSERT_TRUE(same_bits_at(dark, bright, x, y)) << x << " " << y;
 }
 
-/// Objects that are not listed, what is infinitely far away, and what the mask leaves out keep their bits; and give no light.
+/// Objects that are not listed, what is infinitely far away, and what the mask leaves out keep their bits;
+/// and give no light.
 inline void expect_the_rest_keeps_its_bits(const std::string& effect, const std::string& more) {
     const auto light = [](int x, int y, int c) { return 0.5f + 0.4f * std::sin(float(x * 7 + y * 3 + c)); };
     Capture capture = two_objects(80, 48, light);
@@ -189,12 +194,14 @@ inline void expect_the_rest_keeps_its_bits(const std::string& effect, const std:
     EXPECT_GT(changed, 40 * 32 * 9 / 10);
 }
 
-/// The right half has a profile of its own, by a row of the table: each half is what it is where its profile is everyone's.
+/// The right half has a profile of its own, by a row of the table: each half is what it is where its profile
+/// is everyone's.
 inline void expect_profiles_by_object(const std::string& effect, const std::string& more) {
     const auto light = [](int x, int y, int) { return (x / 10 + y / 10) % 2 ? 1.0f : 0.2f; };
     const Capture capture = two_objects(80, 48, light);
     const std::string wide = burley_of_px(6, 4, 2, 80), narrow = burley_of_px(1, 2, 3, 80);
-    const std::string both = R"({ "default": )" + wide + R"(, "rows": [ { "object": 2, "profile": )" + narrow + " } ] }";
+    const std::string both =
+        R"({ "default": )" + wide + R"(, "rows": [ { "object": 2, "profile": )" + narrow + " } ] }";
     const Image got = scattered(scattering_step(effect, both, more), capture);
     const Image left = scattered(scattering_step(effect, wide, more), capture);
     const Image right = scattered(scattering_step(effect, narrow, more), capture);
@@ -207,9 +214,10 @@ inline void expect_profiles_by_object(const std::string& effect, const std::stri
 inline void expect_world_unit_scales(const std::string& effect, const std::string& more) {
     const Capture capture = lit_plane(80, 48, edge_light(80));
     const Image one = scattered(scattering_step(effect, burley_of_px(6, 4, 2, 80), more), capture);
-    const Image other = scattered(scattering_step(effect, burley_of_px(0.6, 0.4, 0.2, 80),
-                                                  (more.empty() ? "" : more + ", ") + std::string(R"("world_unit": 100)")),
-                                  capture);
+    const Image other =
+        scattered(scattering_step(effect, burley_of_px(0.6, 0.4, 0.2, 80),
+                                  (more.empty() ? "" : more + ", ") + std::string(R"("world_unit": 100)")),
+                  capture);
     EXPECT_LT(largest_change(one, other), 2e-5);
 }
 
@@ -226,7 +234,8 @@ inline void expect_no_number_stays_alone(const std::string& effect, const std::s
             }
 }
 
-inline Capture read_blender_capture(const std::filesystem::path& pattern, int frame, const std::vector<std::string>& roles) {
+inline Capture read_blender_capture(const std::filesystem::path& pattern, int frame,
+                                    const std::vector<std::string>& roles) {
     Sequence sequence;
     sequence.files = FramePattern(pattern.string());
     sequence.profile = "blender";
@@ -240,10 +249,12 @@ inline void expect_the_head_of_suzanne_alone_changes(const std::string& effect, 
     const std::vector<std::string> roles{"color", "depth", "irradiance", "albedo", "object_id", "normal"};
     const Capture capture =
         read_blender_capture(AFTERSHADE_SOURCE_DIR "/scenes/suzanne/gbuffer_####.exr", 4, roles);
-    const std::string look = R"({ "aftershade": 1, "steps": [ { "effect": ")" + effect +
-                             R"(", "params": { "object_ids": [1], "scattering_profile": { "type": "burley", "d_mm": [60, 25, 15] } )" +
-                             (more.empty() ? "" : ", ") + more + R"( } }, { "effect": "sss_combine" } ] })";
-    const Image before = capture.images.at("color"), after = LookRunner(look, gpu::Backend::osmesa).color(capture);
+    const std::string look =
+        R"({ "aftershade": 1, "steps": [ { "effect": ")" + effect +
+        R"(", "params": { "object_ids": [1], "scattering_profile": { "type": "burley", "d_mm": [60, 25, 15] } )" +
+        (more.empty() ? "" : ", ") + more + R"( } }, { "effect": "sss_combine" } ] })";
+    const Image before = capture.images.at("color"),
+                after = LookRunner(look, gpu::Backend::osmesa).color(capture);
     const Image& ids = capture.images.at("object_id");
     int head = 0, changed = 0;
     for (int y = 0; y < before.height(); ++y)
@@ -260,22 +271,26 @@ inline void expect_the_head_of_suzanne_alone_changes(const std::string& effect, 
 }
 
 /// captures/head: PSNR, as its README measures it, against Cycles' own Burley scattering with 4096 samples.
-inline double cycles_head_db(const std::filesystem::path& folder, const std::string& effect, const std::string& more) {
+inline double cycles_head_db(const std::filesystem::path& folder, const std::string& effect,
+                             const std::string& more) {
     const std::vector<std::string> roles{"irradiance", "depth", "object_id", "normal"};
     const Capture capture = read_blender_capture(folder / "gbuffer_####.exr", 1, roles);
     const std::string profile = R"({ "type": "burley", "albedo": [0.8, 0.5, 0.4], "mapping": "diffuse",
         "mean_free_path_mm": [79.577, 31.831, 19.894] })";
     const Image got = scattered(
-        scattering_step(effect, profile, R"("object_ids": [1])" + (more.empty() ? "" : ", " + more)), capture);
+        scattering_step(effect, profile, R"("object_ids": [1])" + (more.empty() ? "" : ", " + more)),
+        capture);
     const auto channels = [](const char* kind) {
         std::vector<std::string> names;
         for (const char* c : {"R", "G", "B"}) names.push_back("ViewLayer." + std::string(kind) + "." + c);
         return names;
     };
     const ExrFile truth_file(folder / "truth_sss_0001.exr"), file(folder / "gbuffer_0001.exr");
-    const Image direct = truth_file.read_floats(0, channels("DiffDir")), indirect = truth_file.read_floats(0, channels("DiffInd"));
+    const Image direct = truth_file.read_floats(0, channels("DiffDir")),
+                indirect = truth_file.read_floats(0, channels("DiffInd"));
     // The truth has its albedo twice.
-    const Image twice = truth_file.read_floats(0, channels("DiffCol")), once = file.read_floats(0, channels("DiffCol"));
+    const Image twice = truth_file.read_floats(0, channels("DiffCol")),
+                once = file.read_floats(0, channels("DiffCol"));
     const Image& before = capture.images.at("irradiance");
     std::vector<float> lit;
     for (int y = 0; y < got.height(); ++y)
@@ -291,10 +306,11 @@ inline double cycles_head_db(const std::filesystem::path& folder, const std::str
             if (capture.images.at("object_id").uint_at(x, y, 0) != 1) continue;
             double error = 0;
             for (int c = 0; c < 3; ++c) {
-                const double truth = (direct.at(x, y, c) + indirect.at(x, y, c)) * twice.at(x, y, c) / once.at(x, y, c);
+                const double truth =
+                    (direct.at(x, y, c) + indirect.at(x, y, c)) * twice.at(x, y, c) / once.at(x, y, c);
                 const double luminance[] = {0.2126, 0.7152, 0.0722};
-                error += luminance[c] *
-                         (std::clamp(truth * scale, 0.0, 1.0) - std::clamp(double(got.at(x, y, c)) * scale, 0.0, 1.0));
+                error += luminance[c] * (std::clamp(truth * scale, 0.0, 1.0) -
+                                         std::clamp(double(got.at(x, y, c)) * scale, 0.0, 1.0));
             }
             sum += error * error;
         }

@@ -19,7 +19,8 @@ std::string samples(int count, const std::string& more = "") {
 TEST(SssBurley, HasTheEdgeResponseOfEachChannel) {
     const int size = 480;
     const Capture capture = lit_plane(size, size, edge_light(size));
-    const Image image = scattered(scattering_step(kEffect, burley_of_px(16, 12, 8, size), samples(256)), capture);
+    const Image image =
+        scattered(scattering_step(kEffect, burley_of_px(16, 12, 8, size), samples(256)), capture);
     EXPECT_LT(edge_error(image, {16, 12, 8}, 60, 96), 0.01);
 }
 
@@ -42,19 +43,33 @@ TEST(SssBurley, LeavesEvenLightEven) {
     for (const char* sampling : {"channels", "widest", "widest_fit", "widest_fit_unbiased"})
         for (const char* normalize : {"missing", "all"})
             expect_even_light_stays(kEffect,
-                                    samples(16, R"("sampling": ")" + std::string(sampling) + R"(", "normalize": ")" +
-                                                    normalize + "\""),
+                                    samples(16, R"("sampling": ")" + std::string(sampling) +
+                                                    R"(", "normalize": ")" + normalize + "\""),
                                     1e-3);
 }
 
-TEST(SssBurley, KeepsTheEnergyOfLightFarInsideTheSilhouette) { expect_energy_kept(kEffect, samples(256), 0.005); }
-TEST(SssBurley, LetsNothingCrossSilhouettes) { expect_nothing_crosses_silhouettes(kEffect, ""); }
-TEST(SssBurley, LeavesTheBitsOfWhatDoesNotScatter) { expect_the_rest_keeps_its_bits(kEffect, ""); }
-TEST(SssBurley, TakesEachObjectsProfile) { expect_profiles_by_object(kEffect, ""); }
-TEST(SssBurley, KnowsTheWorldsUnit) { expect_world_unit_scales(kEffect, ""); }
-TEST(SssBurley, LeavesLightThatIsNoNumberAlone) { expect_no_number_stays_alone(kEffect, ""); }
+TEST(SssBurley, KeepsTheEnergyOfLightFarInsideTheSilhouette) {
+    expect_energy_kept(kEffect, samples(256), 0.005);
+}
+TEST(SssBurley, LetsNothingCrossSilhouettes) {
+    expect_nothing_crosses_silhouettes(kEffect, "");
+}
+TEST(SssBurley, LeavesTheBitsOfWhatDoesNotScatter) {
+    expect_the_rest_keeps_its_bits(kEffect, "");
+}
+TEST(SssBurley, TakesEachObjectsProfile) {
+    expect_profiles_by_object(kEffect, "");
+}
+TEST(SssBurley, KnowsTheWorldsUnit) {
+    expect_world_unit_scales(kEffect, "");
+}
+TEST(SssBurley, LeavesLightThatIsNoNumberAlone) {
+    expect_no_number_stays_alone(kEffect, "");
+}
 
-TEST(SssBurley, ChangesTheHeadOfSuzanneAlone) { expect_the_head_of_suzanne_alone_changes(kEffect, ""); }
+TEST(SssBurley, ChangesTheHeadOfSuzanneAlone) {
+    expect_the_head_of_suzanne_alone_changes(kEffect, "");
+}
 
 /// What came in has 22.2 dB; a throw-away sum in double, normalised, 27.5.
 TEST(SssBurley, IsAsNearToCyclesAsTheSumOverTheVisibleSurfaceCanBe) {
@@ -83,17 +98,20 @@ Capture rough_surface(int width, int height) {
     return capture;
 }
 
-/// The promise of a sampled mean of the same sum: the error falls at least as the root of the number of samples.
+/// The promise of a sampled mean of the same sum: the error falls at least as the root of the number of
+/// samples.
 TEST(SssBurley, ConvergesToTheSumOverAllFacets) {
     const Capture capture = rough_surface(120, 80);
     const std::string profile = burley_of_px(5, 3, 1.5, 120);
     for (const char* geometry : {"space", "axes"})
         for (const char* normalize : {"none", "missing", "all"}) {
-            const std::string same = R"("geometry": ")" + std::string(geometry) + R"(", "normalize": ")" + normalize + "\"";
+            const std::string same =
+                R"("geometry": ")" + std::string(geometry) + R"(", "normalize": ")" + normalize + "\"";
             const Image exact = scattered(scattering_step("sss_exact", profile, same), capture);
             std::vector<double> errors;
             for (const int count : {16, 64, 256, 1024})
-                errors.push_back(rmse(scattered(scattering_step(kEffect, profile, samples(count, same)), capture), exact));
+                errors.push_back(
+                    rmse(scattered(scattering_step(kEffect, profile, samples(count, same)), capture), exact));
             for (std::size_t i = 1; i < errors.size(); ++i)
                 EXPECT_LE(errors[i], 0.5 * errors[i - 1] + 2e-4) << same << " step " << i;
             EXPECT_LT(errors.back(), 0.006) << same;
@@ -106,7 +124,8 @@ TEST(SssBurley, ConvergesWhicheverWayItDrawsUnbiasedSamples) {
     const Image exact = scattered(scattering_step("sss_exact", profile), capture);
     for (const char* sampling : {"channels", "widest", "widest_fit_unbiased"}) {
         const std::string drawn = R"("sampling": ")" + std::string(sampling) + "\"";
-        EXPECT_LT(rmse(scattered(scattering_step(kEffect, profile, samples(1024, drawn)), capture), exact), 0.007)
+        EXPECT_LT(rmse(scattered(scattering_step(kEffect, profile, samples(1024, drawn)), capture), exact),
+                  0.007)
             << sampling;
     }
 }
@@ -127,7 +146,8 @@ TEST(SssBurley, ConvergesForGaussiansToo) {
     const Capture capture = lit_plane(size, size, edge_light(size));
     const std::string unit = R"("world_unit": )" + std::to_string(1000 * 0.43 / (2 * mm_per_px(size)));
     const Image exact = scattered(scattering_step("sss_exact", "\"skin\"", unit), capture);
-    EXPECT_LT(rmse(scattered(scattering_step(kEffect, "\"skin\"", samples(1024, unit)), capture), exact), 0.005);
+    EXPECT_LT(rmse(scattered(scattering_step(kEffect, "\"skin\"", samples(1024, unit)), capture), exact),
+              0.005);
 }
 
 }  // namespace

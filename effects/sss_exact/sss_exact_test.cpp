@@ -1,4 +1,5 @@
-// The sum over all facets: against closed forms, a sum in double over curved surface, and what holds at silhouettes.
+// The sum over all facets: against closed forms, a sum in double over curved surface, and what holds at
+// silhouettes.
 #include <cmath>
 #include <vector>
 
@@ -11,11 +12,12 @@ namespace {
 
 constexpr const char* kEffect = "sss_exact";
 
-/// 192 px across are 12 d and more to each side of the edge: 1 % of the light of the widest channel lies beyond.
+/// 192 px across are 12 d and more to each side of the edge: 1 % of the light of the widest channel lies
+/// beyond.
 TEST(SssExact, HasTheEdgeResponseOfEachChannel) {
     const int size = 192;
-    const Image image =
-        scattered(scattering_step(kEffect, burley_of_px(8, 9, 10, size)), lit_plane(size, size, edge_light(size)));
+    const Image image = scattered(scattering_step(kEffect, burley_of_px(8, 9, 10, size)),
+                                  lit_plane(size, size, edge_light(size)));
     EXPECT_LT(edge_error(image, {8, 9, 10}, 40, 2), 0.01);
 }
 
@@ -38,12 +40,24 @@ TEST(SssExact, LeavesEvenLightEven) {
         expect_even_light_stays(kEffect, R"("normalize": ")" + std::string(normalize) + "\"", 1e-3);
 }
 
-TEST(SssExact, KeepsTheEnergyOfLightFarInsideTheSilhouette) { expect_energy_kept(kEffect, "", 0.005); }
-TEST(SssExact, LetsNothingCrossSilhouettes) { expect_nothing_crosses_silhouettes(kEffect, ""); }
-TEST(SssExact, LeavesTheBitsOfWhatDoesNotScatter) { expect_the_rest_keeps_its_bits(kEffect, ""); }
-TEST(SssExact, TakesEachObjectsProfile) { expect_profiles_by_object(kEffect, ""); }
-TEST(SssExact, KnowsTheWorldsUnit) { expect_world_unit_scales(kEffect, ""); }
-TEST(SssExact, LeavesLightThatIsNoNumberAlone) { expect_no_number_stays_alone(kEffect, ""); }
+TEST(SssExact, KeepsTheEnergyOfLightFarInsideTheSilhouette) {
+    expect_energy_kept(kEffect, "", 0.005);
+}
+TEST(SssExact, LetsNothingCrossSilhouettes) {
+    expect_nothing_crosses_silhouettes(kEffect, "");
+}
+TEST(SssExact, LeavesTheBitsOfWhatDoesNotScatter) {
+    expect_the_rest_keeps_its_bits(kEffect, "");
+}
+TEST(SssExact, TakesEachObjectsProfile) {
+    expect_profiles_by_object(kEffect, "");
+}
+TEST(SssExact, KnowsTheWorldsUnit) {
+    expect_world_unit_scales(kEffect, "");
+}
+TEST(SssExact, LeavesLightThatIsNoNumberAlone) {
+    expect_no_number_stays_alone(kEffect, "");
+}
 
 TEST(SssExact, ChangesTheHeadOfSuzanneAlone) {
     // A twentieth of the profile's width keeps the sum small.
@@ -65,14 +79,16 @@ TEST(SssExact, SumsTheGaussiansOfSkin) {
     const double mm = mm_per_px(size);
     // Of a skin so large that the third Gaussian's deviation, sqrt(0.187) mm, has 3 px.
     const double unit = 1000 * 0.43 / (3 * mm);
-    const Image image = scattered(scattering_step(kEffect, "\"skin\"", R"("world_unit": )" + std::to_string(unit)),
-                                  lit_plane(size, size, edge_light(size)));
+    const Image image =
+        scattered(scattering_step(kEffect, "\"skin\"", R"("world_unit": )" + std::to_string(unit)),
+                  lit_plane(size, size, edge_light(size)));
     const double variance[] = {0.0064, 0.0484, 0.187, 0.567, 1.99, 7.41};
     const double weight[] = {0.233, 0.100, 0.118, 0.113, 0.358, 0.078};
     for (int off = -40; off < 40; ++off) {
         const double x_mm = (off + 0.5) * mm * unit / 1000;
         double expected = 0;
-        for (int k = 0; k < 6; ++k) expected += weight[k] * 0.5 * std::erfc(-x_mm / std::sqrt(2 * variance[k]));
+        for (int k = 0; k < 6; ++k)
+            expected += weight[k] * 0.5 * std::erfc(-x_mm / std::sqrt(2 * variance[k]));
         EXPECT_NEAR(image.at(size / 2 + off, size / 2, 0), expected, 0.01) << off;
     }
 }
@@ -86,10 +102,12 @@ TEST(SssExact, IsTheSumByDistanceInSpaceOverATiltedSurface) {
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) capture.images.at("depth").at(x, y, 0) = float(depth_of(x));
     const double d_mm = 3 * mm_per_px(width);
-    const Image image = scattered(scattering_step(kEffect, burley_of_px(3, 3, 3, width), R"("normalize": "all")"), capture);
+    const Image image =
+        scattered(scattering_step(kEffect, burley_of_px(3, 3, 3, width), R"("normalize": "all")"), capture);
     const auto position = [&](int x, int y) {
         const double z = 1000 * depth_of(x);
-        return std::array<double, 3>{z * per_px * (x + 0.5 - width / 2.0), z * per_px * (y + 0.5 - height / 2.0), z};
+        return std::array<double, 3>{z * per_px * (x + 0.5 - width / 2.0),
+                                     z * per_px * (y + 0.5 - height / 2.0), z};
     };
     // Along x the plane's normal is the same everywhere: areas differ by the cube of depth.
     for (int x = 12; x < width - 12; x += 3) {
@@ -98,11 +116,13 @@ TEST(SssExact, IsTheSumByDistanceInSpaceOverATiltedSurface) {
         double sum = 0, share = 0;
         for (int v = 0; v < height; ++v)
             for (int u = 0; u < width; ++u) {
-                const double side = 1000 * depth_of(u) * per_px, spread = std::sqrt(1 + 1.5 * 1.5) * depth_of(u);
+                const double side = 1000 * depth_of(u) * per_px,
+                             spread = std::sqrt(1 + 1.5 * 1.5) * depth_of(u);
                 const double area = side * side * spread;
                 const auto there = position(u, v);
                 const double r = std::hypot(at[0] - there[0], at[1] - there[1], at[2] - there[2]);
-                // The mean over a grid of the facet's places would be better still; to second order it is this.
+                // The mean over a grid of the facet's places would be better still; to second order it is
+                // this.
                 double weight = reference::burley_within(0.5611 * std::sqrt(area), d_mm);
                 if (r > 0) {
                     weight = 0;
@@ -120,7 +140,9 @@ TEST(SssExact, IsTheSumByDistanceInSpaceOverATiltedSurface) {
 /// A step of depth by 40 d within one object: what lies behind is too far away in space.
 TEST(SssExact, CountsDistanceInSpaceNotInThePicture) {
     const int width = 80, height = 48;
-    const auto light = [](float right) { return [right](int x, int, int) { return x >= 40 ? right : 0.5f; }; };
+    const auto light = [](float right) {
+        return [right](int x, int, int) { return x >= 40 ? right : 0.5f; };
+    };
     const auto capture_of = [&](float right) {
         Capture capture = lit_plane(width, height, light(right));
         const float back_m = 1 + float(40 * 3 * mm_per_px(width) / 1000);
