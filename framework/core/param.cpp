@@ -16,7 +16,7 @@ using Presence = ObjectReader::Presence;
 
 namespace {
 
-constexpr std::array<std::pair<ParamType, std::string_view>, 12> kTypeNames = {{
+constexpr std::array<std::pair<ParamType, std::string_view>, 14> kTypeNames = {{
     {ParamType::float_, "float"},
     {ParamType::int_, "int"},
     {ParamType::bool_, "bool"},
@@ -29,6 +29,8 @@ constexpr std::array<std::pair<ParamType, std::string_view>, 12> kTypeNames = {{
     {ParamType::curve, "curve"},
     {ParamType::file, "file"},
     {ParamType::table, "table"},
+    {ParamType::objects, "objects"},
+    {ParamType::scattering_profile, "scattering_profile"},
 }};
 
 std::vector<std::string> type_names(SpecOwner owner) {
@@ -46,8 +48,8 @@ ParamType type_of_name(const std::string& name) {
 
 /// Has a unit and a range: numbers, and the y of curves.
 bool is_numeric(ParamType type) {
-    return type != ParamType::bool_ && type != ParamType::enum_ && type != ParamType::file &&
-           type != ParamType::table;
+    return type == ParamType::curve ||
+           (is_block_type(type) && type != ParamType::bool_ && type != ParamType::enum_);
 }
 
 bool is_numeric_scalar(ParamType type) {
@@ -180,6 +182,14 @@ void read_manifest_keys(ObjectReader& reader, const Node& node, ParamSpec& spec,
                               "buffer");
 }
 
+ParamSpec listed_column() {
+    ParamSpec spec;
+    spec.name = "listed";
+    spec.type = ParamType::bool_;
+    spec.default_value = false;
+    return spec;
+}
+
 /// A manifest's own files lie in its effect's folder.
 bool check_default_path(const ParamSpec& spec, const Node& node, const std::string& label,
                         Diagnostics& diagnostics) {
@@ -195,7 +205,15 @@ bool check_default_path(const ParamSpec& spec, const Node& node, const std::stri
 }  // namespace
 
 bool is_block_type(ParamType type) {
-    return type != ParamType::curve && type != ParamType::file && type != ParamType::table;
+    return type < ParamType::curve;
+}
+
+bool is_param_texture(ParamType type) {
+    return type == ParamType::curve || type == ParamType::scattering_profile;
+}
+
+bool is_param_buffer(ParamType type) {
+    return type == ParamType::table || type == ParamType::objects || type == ParamType::scattering_profile;
 }
 
 int component_count(ParamType type) {
@@ -240,6 +258,8 @@ std::optional<ParamSpec> parse_spec(const std::string& name, const std::string& 
     } else if (node.find("columns")) {
         diagnostics.error(reader.any("columns")->place, "only a table has 'columns'");
     }
+    if (spec.type == ParamType::scattering_profile) spec.columns = scattering_columns();
+    if (spec.type == ParamType::objects) spec.columns = {listed_column()};
     spec.doc = reader.text("doc", Presence::required).value_or("");
     const Node* identity_node = nullptr;
     if (owner == SpecOwner::manifest) {

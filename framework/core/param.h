@@ -14,10 +14,26 @@
 
 #include "framework/core/diagnostics.h"
 #include "framework/core/document.h"
+#include "framework/core/scattering_profile.h"
 
 namespace aftershade {
 
-enum class ParamType { float_, int_, bool_, enum_, angle, color, vec2, vec3, vec4, curve, file, table };
+enum class ParamType {
+    float_,
+    int_,
+    bool_,
+    enum_,
+    angle,
+    color,
+    vec2,
+    vec3,
+    vec4,
+    curve,
+    file,
+    table,
+    objects,            ///< which objects: a list of ids, ranges of ids and names; empty for all
+    scattering_profile  ///< how light scatters, by object
+};
 
 /// A function of one variable through points, x rising; constant before the first and after the last.
 struct CurveValue {
@@ -47,10 +63,26 @@ struct TableValue {
     bool operator==(const TableValue&) const = default;
 };
 
+/// Profiles by object; an object that no row names has the usual one.
+struct ScatteringValue {
+    ScatteringProfile usual;
+    std::vector<std::pair<TableKey, ScatteringProfile>> rows;  ///< no id and no name twice
+    bool operator==(const ScatteringValue&) const = default;
+};
+inline constexpr std::size_t kMaxScatteringRows = 1024;
+
+/// The different profiles of a value, the usual one first.
+std::vector<ScatteringProfile> scattering_profiles_of(const ScatteringValue& value);
+/// Whether each of them is Burley's: shaders then compute it without tables.
+bool is_burley(const ScatteringValue& value);
+/// What shaders look up by object: rows of the type's columns (index among scattering_profiles_of(); d and
+/// falloff, mm, own or fitted; direct; reach, mm).
+TableValue scattering_table(const ScatteringValue& value);
+
 /// float_ and angle hold a double, in the declared unit; color and vec2..4 hold that many doubles; enum_ a
-/// string; file a path, "" for none.
-using ParamValue =
-    std::variant<bool, std::int64_t, double, std::string, std::vector<double>, CurveValue, TableValue>;
+/// string; file a path, "" for none; objects a table of one column, 1 for what is listed.
+using ParamValue = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, CurveValue,
+                                TableValue, ScatteringValue>;
 
 /// What a file parameter names: a picture (EXR, PNG), or a colour table (.cube, Adobe Cube LUT 1.0).
 enum class FileKind { image, lut };
@@ -84,12 +116,18 @@ struct ParamSpec {
     FileKind file_kind = FileKind::image;  ///< file
     bool file_is_data = false;             ///< image, "space": "data": a PNG's numbers as they are stored
     std::array<double, 2> domain = {0.0, 1.0};  ///< curve: the range of x
-    std::vector<ParamSpec> columns;             ///< table: each a scalar or vector with its own default
+    std::vector<ParamSpec> columns;  ///< table: each a scalar or vector with its own default; objects and
+                                     ///< scattering_profile: what their type has
     Place place;
 };
 
 /// float_ ... vec4: a value that a uniform block holds and a table's column may have.
 bool is_block_type(ParamType type);
+
+/// Reaches shaders through a texture: curve and scattering_profile; a file where there is one.
+bool is_param_texture(ParamType type);
+/// Reaches shaders through a storage block, looked up by object: table, objects and scattering_profile.
+bool is_param_buffer(ParamType type);
 
 /// Components of a value of this type: 1 for scalars, 3 for color.
 int component_count(ParamType type);

@@ -32,6 +32,7 @@ struct PixelScaler {
         return v;
     }
     ParamValue operator()(const TableValue& v) const { return v; }
+    ParamValue operator()(const ScatteringValue& v) const { return v; }
 };
 
 void scale_row(const ParamSpec& table, TableValue::Row& row, double factor) {

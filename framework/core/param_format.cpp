@@ -66,6 +66,27 @@ std::string text_of(const TableValue& table, const std::vector<ParamSpec>* colum
            "]}";
 }
 
+std::string text_of_list(const TableValue& objects) {
+    std::string items;
+    for (const auto& [key, row] : objects.rows) {
+        items += items.empty() ? "" : ", ";
+        if (!key.name.empty()) items += quoted(key.name);
+        else if (key.first == key.last) items += std::to_string(key.first);
+        else items += "\"" + std::to_string(key.first) + "-" + std::to_string(key.last) + "\"";
+    }
+    return "[" + items + "]";
+}
+
+std::string text_of(const ScatteringValue& value) {
+    const std::string usual = format_scattering_profile(value.usual);
+    if (value.rows.empty()) return usual;
+    std::string rows;
+    for (const auto& [key, profile] : value.rows)
+        rows += (rows.empty() ? "{" : ", {") + text_of_key(key) +
+                ", \"profile\": " + format_scattering_profile(profile) + "}";
+    return "{\"default\": " + usual + ", \"rows\": [" + rows + "]}";
+}
+
 }  // namespace
 
 std::string format_value(const ParamValue& value) {
@@ -77,11 +98,13 @@ std::string format_value(const ParamValue& value) {
         std::string operator()(const std::vector<double>& v) const { return array_of(v); }
         std::string operator()(const CurveValue& v) const { return text_of(v); }
         std::string operator()(const TableValue& v) const { return text_of(v, nullptr); }
+        std::string operator()(const ScatteringValue& v) const { return text_of(v); }
     };
     return std::visit(Visitor{}, value);
 }
 
 std::string format_value(const ParamSpec& spec, const ParamValue& value) {
+    if (spec.type == ParamType::objects) return text_of_list(std::get<TableValue>(value));
     if (const auto* table = std::get_if<TableValue>(&value)) return text_of(*table, &spec.columns);
     return format_value(value);
 }

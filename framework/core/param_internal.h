@@ -25,6 +25,8 @@ struct ValueReader {
     std::optional<ParamValue> curve(const Node& node) const;
     std::optional<ParamValue> file(const Node& node) const;
     std::optional<ParamValue> table(const Node& node) const;
+    std::optional<ParamValue> objects(const Node& node) const;
+    std::optional<ParamValue> scattering(const Node& node) const;
 
 private:
     std::optional<double> in_range(const Node& node, double value) const;
@@ -33,8 +35,41 @@ private:
 /// "40 mm", or "40" where the unit is "".
 std::string with_unit(double value, const std::string& unit);
 
+/// Reads which objects rows and lists are for, and finds those that are named twice.
+class TableKeyReader {
+public:
+    explicit TableKeyReader(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
+
+    static bool is_key(std::string_view word);
+    /// Of a row: one of 'object', 'objects' and 'name'. `label` is the row's.
+    std::vector<TableKey> read_row(ObjectReader& reader, const Node& node, const std::string& label);
+    /// Of a list: 3, "3-7" or "Wheel".
+    std::vector<TableKey> read_item(const Node& node, const std::string& label);
+    /// Reports what more than one of those read is for. Call once, last.
+    void check_overlaps();
+
+private:
+    struct Found {
+        TableKey key;
+        std::string label;
+        Place place;
+    };
+
+    std::vector<TableKey> kept(std::vector<TableKey> keys, const Node& node, const std::string& label);
+    std::vector<TableKey> row_keys(ObjectReader& reader, const Node& node, const std::string& label);
+    std::vector<TableKey> id_key(std::int64_t id, const Node& node, const std::string& label);
+    std::vector<TableKey> range_keys(std::string_view text, const Node& node, const std::string& label);
+    void report_overlap(std::size_t later, std::size_t earlier);
+
+    Diagnostics& diagnostics_;
+    std::vector<Found> found_;
+};
+
 /// The declaration of a table's columns, into spec.columns.
 void read_columns(const Node& node, ParamSpec& spec, Diagnostics& diagnostics);
+
+/// The columns that shaders have of a scattering_profile.
+std::vector<ParamSpec> scattering_columns();
 
 /// parse_param_spec for what messages call `thing` ("parameter 'taps'") and `label` ("taps"). A column is of
 /// a block type, a uniform, and has no relation to anything else.

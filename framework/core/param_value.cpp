@@ -101,6 +101,8 @@ std::optional<ParamValue> parse_param_value(const ParamSpec& spec, const Node& n
         case ParamType::curve: return reader.curve(node);
         case ParamType::file: return reader.file(node);
         case ParamType::table: return reader.table(node);
+        case ParamType::objects: return reader.objects(node);
+        case ParamType::scattering_profile: return reader.scattering(node);
     }
     return std::nullopt;
 }
@@ -117,6 +119,7 @@ std::vector<double> numbers_of(const ParamSpec& spec, const ParamValue& value) {
         std::vector<double> operator()(const std::vector<double>& v) const { return v; }
         std::vector<double> operator()(const CurveValue&) const { return {}; }
         std::vector<double> operator()(const TableValue&) const { return {}; }
+        std::vector<double> operator()(const ScatteringValue&) const { return {}; }
     };
     assert(is_block_type(spec.type));
     return std::visit(Visitor{spec}, value);

@@ -120,6 +120,7 @@ std::string type_text(const ParamSpec& spec) {
         for (std::size_t i = 0; i < spec.values.size(); ++i) text += (i ? ", " : " ") + spec.values[i];
     }
     if (spec.type == ParamType::table) text += " by object";
+    if (spec.type == ParamType::scattering_profile) text = "scattering profile, by object too";
     if (spec.type == ParamType::file) text += spec.file_kind == FileKind::lut ? ": .cube" : ": EXR or PNG";
     return text + (spec.unit.empty() ? "" : ", " + spec.unit);
 }

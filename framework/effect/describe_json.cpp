@@ -25,6 +25,7 @@ json param_json(const ParamSpec& spec) {
     if (is_block_type(spec.type)) entry["bind"] = spec.bind == ParamBind::define ? "define" : "uniform";
     if (spec.type == ParamType::file) entry["kind"] = spec.file_kind == FileKind::lut ? "lut" : "image";
     if (spec.type == ParamType::curve) entry["domain"] = spec.domain;
+    if (spec.type != ParamType::table) return entry;
     for (const ParamSpec& column : spec.columns) entry["columns"][column.name] = param_json(column);
     return entry;
 }

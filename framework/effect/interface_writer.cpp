@@ -23,7 +23,9 @@ std::string_view glsl_type(const ParamSpec& spec) {
         case ParamType::vec4: return "vec4";
         case ParamType::curve:
         case ParamType::file:
-        case ParamType::table: break;
+        case ParamType::table:
+        case ParamType::objects:
+        case ParamType::scattering_profile: break;
     }
     return "float";
 }
@@ -103,6 +105,9 @@ private:
             const std::string name = upper_case(spec.name);
             for (std::size_t i = 0; i < spec.values.size(); ++i)
                 text_ << "#define " << name << "_" << upper_case(spec.values[i]) << " " << i << "\n";
+            if (spec.type == ParamType::scattering_profile)
+                text_ << "#define " << name << "_IS_BURLEY "
+                      << int(is_burley(std::get<ScatteringValue>(context_.params->get(spec.name)))) << "\n";
             if (spec.bind == ParamBind::define)
                 text_ << "#define " << name << " " << define_value(spec, context_.params->get(spec.name))
                       << "\n";
@@ -145,7 +150,9 @@ private:
     void param_resources() {
         int binding = bindings_.first_param_sampler;
         for (const ParamSpec* spec : bindings_.param_samplers)
-            text_ << param_resource_glsl(*spec, context_.file_of(spec->name), binding++);
+            text_ << (spec->type == ParamType::scattering_profile
+                          ? scattering_sampler_glsl(*spec, binding++)
+                          : param_resource_glsl(*spec, context_.file_of(spec->name), binding++));
         binding = bindings_.first_param_buffer;
         for (const ParamSpec* spec : bindings_.param_buffers)
             text_ << param_resource_glsl(*spec, {}, binding++);

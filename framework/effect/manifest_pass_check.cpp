@@ -336,8 +336,8 @@ private:
         };
         std::size_t samplers = pass_->reads.size(), blocks = pass_->buffers.size();
         for (const ParamSpec& param : manifest_.params) {
-            samplers += param.type == ParamType::curve || param.type == ParamType::file;
-            blocks += param.type == ParamType::table;
+            samplers += is_param_texture(param.type) || param.type == ParamType::file;
+            blocks += is_param_buffer(param.type);
         }
         if (manifest_.native) samplers += manifest_.native->tables.size();
         at_most(pass_->writes.size(), kMaxTargets, "targets");

@@ -179,7 +179,7 @@ $row $name(uint object_id) {
 }
 )";
 
-std::string table_glsl(const ParamSpec& spec, int binding) {
+std::string table_glsl(const ParamSpec& spec, const std::string& function, int binding) {
     std::string defines, columns;
     for (const ParamSpec& column : spec.columns) {
         columns += "    " + std::string(column_type(column)) + " " + column.name + ";\n";
@@ -193,17 +193,50 @@ std::string table_glsl(const ParamSpec& spec, int binding) {
                            {"entry", type_name(spec.name) + "Entry"},
                            {"block", type_name(spec.name) + "Table"},
                            {"binding", std::to_string(binding)},
-                           {"name", spec.name},
+                           {"name", function},
                            {"count", spec.name + "_count"},
                            {"default", spec.name + "_default"},
                            {"entries", spec.name + "_entries"}});
 }
 
+constexpr std::string_view kScattering = R"(#define $upper_GAUSSIANS $gaussians
+vec3 $sample($row row, int kind, float r) {
+    float at = sqrt(clamp(r / row.reach, 0.0, 1.0)) * $last;
+    int i = min(int(at), int($last) - 1), line = 4 * row.index + kind;
+    return mix(texelFetch($curves, ivec2(i, line), 0).rgb, texelFetch($curves, ivec2(i + 1, line), 0).rgb, at - float(i));
+}
+vec3 $radial($row row, float r) { return r > row.reach ? vec3(0.0) : $sample(row, 0, r); }
+vec3 $within($row row, float r) { return $sample(row, 1, r); }
+vec3 $line($row row, float x) { return $sample(row, 2, x); }
+vec3 $variance($row row, int k) { return texelFetch($curves, ivec2(2 * k, 4 * row.index + 3), 0).rgb; }
+vec3 $weight($row row, int k) { return texelFetch($curves, ivec2(2 * k + 1, 4 * row.index + 3), 0).rgb; }
+)";
+
+std::string scattering_glsl(const ParamSpec& spec) {
+    std::map<std::string, std::string> values = {
+        {"upper_GAUSSIANS", upper(spec.name) + "_GAUSSIANS"},
+        {"gaussians", std::to_string(ScatteringProfile::kMaxGaussians)},
+        {"row", type_name(spec.name) + "Row"},
+        {"last", literal(kScatteringSamples - 1)}};
+    for (const char* part : {"curves", "sample", "radial", "within", "line", "variance", "weight"})
+        values[part] = spec.name + "_" + part;
+    return filled(kScattering, values);
+}
+
 }  // namespace
+
+std::string scattering_sampler_glsl(const ParamSpec& spec, int binding) {
+    return "layout(binding = " + std::to_string(binding) + ") uniform sampler2D " + spec.name + "_curves;\n";
+}
 
 std::string param_resource_glsl(const ParamSpec& spec, const ParamFile& file, int binding) {
     if (spec.type == ParamType::curve) return curve_glsl(spec, binding);
-    if (spec.type == ParamType::table) return table_glsl(spec, binding);
+    if (spec.type == ParamType::table) return table_glsl(spec, spec.name, binding);
+    if (spec.type == ParamType::objects)
+        return table_glsl(spec, spec.name + "_row", binding) + "bool " + spec.name +
+               "(uint object_id) { return " + spec.name + "_row(object_id).listed; }\n";
+    if (spec.type == ParamType::scattering_profile)
+        return table_glsl(spec, spec.name, binding) + scattering_glsl(spec);
     if (const auto* lut = std::get_if<Lut>(&file)) return lut_glsl(spec, *lut, binding);
     return std::holds_alternative<Image>(file) ? image_glsl(spec, binding) : "";
 }

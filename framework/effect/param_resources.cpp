@@ -168,6 +168,36 @@ ParamTexture file_texture(const ParamFile& file) {
     return image_texture(std::get<Image>(file));
 }
 
+ParamTexture scattering_texture(const ScatteringValue& value) {
+    const std::vector<ScatteringProfile> profiles = scattering_profiles_of(value);
+    ParamTexture texture{
+        kScatteringSamples, kScatteringRows * int(profiles.size()), 1, gpu::TextureFormat::rgba32f, {}};
+    constexpr std::size_t kRow = std::size_t(kScatteringSamples) * 4;
+    texture.texels.resize(profiles.size() * kScatteringRows * kRow);
+    const auto put = [&](std::size_t row, std::size_t column, const Rgb& rgb) {
+        for (std::size_t c = 0; c < 3; ++c) texture.texels[row * kRow + column * 4 + c] = float(rgb[c]);
+    };
+    for (std::size_t i = 0; i < profiles.size(); ++i) {
+        const ScatteringCurves curves = scattering_curves(profiles[i]);
+        for (std::size_t k = 0; k < kScatteringSamples; ++k) {
+            put(4 * i, k, curves.radial[k]);
+            put(4 * i + 1, k, curves.within[k]);
+            put(4 * i + 2, k, curves.line[k]);
+        }
+        const auto gaussians = profiles[i].as_gaussians();
+        for (std::size_t k = 0; k < ScatteringProfile::kMaxGaussians; ++k) {
+            put(4 * i + 3, 2 * k, k < gaussians.size() ? gaussians[k].variance_mm2 : Rgb{1, 1, 1});
+            put(4 * i + 3, 2 * k + 1, k < gaussians.size() ? gaussians[k].weight : Rgb{});
+        }
+    }
+    return texture;
+}
+
+TableValue table_of(const ParamValue& value) {
+    if (const auto* scattering = std::get_if<ScatteringValue>(&value)) return scattering_table(*scattering);
+    return std::get<TableValue>(value);
+}
+
 std::vector<std::byte> table_buffer(const ParamSpec& spec, const TableValue& table, const ObjectIds& ids) {
     const std::vector<Entry> entries = sorted_entries(table, ids);
     TableWriter writer(spec, entries.size());

@@ -51,10 +51,30 @@ inline constexpr int kLutRow = 4096;
 ///     lut     vec3 grade(vec3 rgb)              clamped to its domain, tetrahedral; HAS_GRADE
 ///     table   ScalesRow scales(uint object_id)  with the columns as members; enums are ints, and
 ///                                               SCALES_MODE_SOFT their values' names
+///     objects bool skin(uint object_id)         whether the list has it; of an empty list true
 ///
 /// "" for a file parameter without a file. Of a LUT the text holds size, dimension and domain, so that it
 /// differs between LUTs of different shape.
 std::string param_resource_glsl(const ParamSpec& spec, const ParamFile& file, int binding);
+
+/// Of a scattering_profile at `binding` of a sampler: sampler2D scattering_profile_curves, which what
+/// param_resource_glsl has for it at its storage block's binding reads:
+///
+///     ScatteringProfileRow scattering_profile(uint object_id)       index, d, direct, falloff, reach; mm
+///     vec3 scattering_profile_radial(ScatteringProfileRow, float r) 2 pi r R(r), 1/mm; 0 beyond its reach
+///     vec3 scattering_profile_within(ScatteringProfileRow, float r) share within r
+///     vec3 scattering_profile_line(ScatteringProfileRow, float x)   edge response, x >= 0 into the lit side
+///     vec3 scattering_profile_variance(ScatteringProfileRow, int k) of its Gaussian k, mm^2
+///     vec3 scattering_profile_weight(ScatteringProfileRow, int k)   0 for those that it lacks
+///     SCATTERING_PROFILE_GAUSSIANS                                  how many k there are
+///     SCATTERING_PROFILE_IS_BURLEY                                  1: each profile is Burley's with its d,
+///     else 0
+///
+/// Interpolation is linear between kScatteringSamples radii.
+std::string scattering_sampler_glsl(const ParamSpec& spec, int binding);
+/// rgba32f, kScatteringSamples wide; kScatteringRows rows for each of the value's profiles.
+inline constexpr int kScatteringRows = 4;
+ParamTexture scattering_texture(const ScatteringValue& value);
 
 /// kCurveSamples x 1, r32f.
 ParamTexture curve_texture(const ParamSpec& spec, const CurveValue& curve);
@@ -64,6 +84,9 @@ ParamTexture file_texture(const ParamFile& file);
 
 /// The id of an object by its name; nullopt for a name that there is not.
 using ObjectIds = std::function<std::optional<std::uint32_t>(const std::string&)>;
+
+/// Of a table, objects and a scattering_profile what shaders look up by object.
+TableValue table_of(const ParamValue& value);
 
 /// The bytes of a table's storage block, std430. Rows whose name `ids` does not know are left out: the caller
 /// has been asked and reports them. A row by name goes before one by id; of two names for one id the first.

@@ -53,8 +53,8 @@ PassBindings pass_bindings(const ShaderContext& context) {
     for (const ParamSpec& spec : manifest.params) {
         const bool has_file = spec.type == ParamType::file &&
                               !std::holds_alternative<std::monostate>(context.file_of(spec.name));
-        if (spec.type == ParamType::curve || has_file) bindings.param_samplers.push_back(&spec);
-        if (spec.type == ParamType::table) bindings.param_buffers.push_back(&spec);
+        if (has_file || is_param_texture(spec.type)) bindings.param_samplers.push_back(&spec);
+        if (is_param_buffer(spec.type)) bindings.param_buffers.push_back(&spec);
     }
     if (manifest.native)
         for (const NativeTableSpec& table : manifest.native->tables) bindings.native_tables.push_back(&table);
@@ -114,7 +114,9 @@ void add_param(Std140Writer& block, const ParamSpec& spec, const ParamValue& val
         }
         case ParamType::curve:
         case ParamType::file:
-        case ParamType::table: break;  // samplers and storage blocks
+        case ParamType::table:
+        case ParamType::objects:
+        case ParamType::scattering_profile: break;  // samplers and storage blocks
     }
 }
 

@@ -32,6 +32,10 @@ void add_step_key(std::string& key, const EffectManifest& manifest, const ParamS
         if (spec.bind == ParamBind::define || spec.type == ParamType::file) key += " " + format_value(value);
         if (const auto* table = std::get_if<TableValue>(&value))
             key += " " + std::to_string(table->rows.size());
+        if (const auto* scattering = std::get_if<ScatteringValue>(&value))
+            key += " " + std::to_string(scattering->rows.size()) + "/" +
+                   std::to_string(scattering_profiles_of(*scattering).size()) +
+                   (is_burley(*scattering) ? "b" : "");
     }
     for (const TextureSpec& texture : manifest.textures) add_grid(key, texture.grid, params);
     for (const BufferSpec& buffer : manifest.buffers) {

@@ -60,10 +60,11 @@ json rules_of(ParamType type, bool column) {
     ParamSpec any;
     any.type = type;
     any.domain = {-std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
-    const bool has_unit = type != ParamType::bool_ && type != ParamType::enum_ && type != ParamType::file;
+    const bool has_unit = type == ParamType::curve ||
+                          (is_block_type(type) && type != ParamType::bool_ && type != ParamType::enum_);
     if (has_unit) any.unit = schema::kAnyUnit;
     std::vector<std::string> absent;
-    if (!has_unit || type == ParamType::table) absent = {"unit", "min", "max", "ui"};
+    if (!has_unit) absent = {"unit", "min", "max", "ui"};
     if (type != ParamType::enum_) absent.push_back("values");
     if (!column) {
         if (type != ParamType::curve) absent.push_back("domain");
@@ -90,9 +91,10 @@ json rules_of(ParamType type, bool column) {
 json param(bool column) {
     std::vector<std::string> types;
     json rules = json::array();
-    for (const ParamType type : {ParamType::float_, ParamType::int_, ParamType::bool_, ParamType::enum_,
-                                 ParamType::angle, ParamType::color, ParamType::vec2, ParamType::vec3,
-                                 ParamType::vec4, ParamType::curve, ParamType::file, ParamType::table}) {
+    for (const ParamType type :
+         {ParamType::float_, ParamType::int_, ParamType::bool_, ParamType::enum_, ParamType::angle,
+          ParamType::color, ParamType::vec2, ParamType::vec3, ParamType::vec4, ParamType::curve,
+          ParamType::file, ParamType::table, ParamType::objects, ParamType::scattering_profile}) {
         if (column && !is_block_type(type)) continue;
         types.emplace_back(param_type_name(type));
         rules.push_back(where("type", types.back(), rules_of(type, column)));

@@ -179,11 +179,16 @@ void GraphBuilder::declare_params(StepBuild& build) {
     for (const ParamSpec& spec : build.manifest().params) {
         const std::string name = build.prefix() + spec.name;
         BoundParam bound{build.index, &spec, {}, {}};
-        if (spec.type == ParamType::table) {
-            const auto& table = std::get<TableValue>(build.params.get(spec.name));
+        const ParamValue& value = build.params.get(spec.name);
+        if (is_param_buffer(spec.type)) {
             const auto no_names = [](const std::string&) { return std::optional<std::uint32_t>(0); };
             bound.buffer = build.param_buffers[spec.name] =
-                graph.import_buffer(name, {table_buffer(spec, table, no_names).size()});
+                graph.import_buffer(name, {table_buffer(spec, table_of(value), no_names).size()});
+        }
+        if (const auto* scattering = std::get_if<ScatteringValue>(&value)) {
+            const int rows = kScatteringRows * int(scattering_profiles_of(*scattering).size());
+            bound.texture = build.param_textures[spec.name] = graph.import_texture(
+                name + ".curves", {kScatteringSamples, rows, gpu::TextureFormat::rgba32f});
         } else if (spec.type == ParamType::curve) {
             bound.texture = build.param_textures[spec.name] =
                 graph.import_texture(name, {kCurveSamples, 1, gpu::TextureFormat::r32f});
@@ -192,7 +197,7 @@ void GraphBuilder::declare_params(StepBuild& build) {
             const ParamTexture texture = file_texture(files.at(spec.name));
             bound.texture = build.param_textures[spec.name] =
                 graph.import_texture(name, {texture.width, texture.height, texture.format, texture.layers});
-        } else {
+        } else if (!is_param_buffer(spec.type)) {
             continue;
         }
         bound_params.push_back(bound);

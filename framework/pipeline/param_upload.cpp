@@ -25,13 +25,17 @@ void upload_texture(const ParamTexture& source, gpu::Texture& texture) {
 
 void upload_param(const BoundParam& bound, const ParamValue& value, StepFiles& files,
                   const PipelineStep& step, const ParamSet& params, graph::Executor& executor) {
-    if (bound.spec->type == ParamType::table) {
-        const auto bytes = table_buffer(*bound.spec, std::get<TableValue>(value), object_id_of_name);
+    if (is_param_buffer(bound.spec->type)) {
+        const auto bytes = table_buffer(*bound.spec, table_of(value), object_id_of_name);
         if (gpu::Buffer* buffer = executor.buffer(bound.buffer)) buffer->write(bytes);
-        return;
+        if (bound.spec->type != ParamType::scattering_profile) return;
     }
     gpu::Texture* texture = executor.texture(bound.texture);
     if (!texture) return;
+    if (const auto* scattering = std::get_if<ScatteringValue>(&value)) {
+        upload_texture(scattering_texture(*scattering), *texture);
+        return;
+    }
     if (bound.spec->type == ParamType::curve)
         upload_texture(curve_texture(*bound.spec, std::get<CurveValue>(value)), *texture);
     else upload_texture(file_texture(files.of_step(bound.step, step, params).at(bound.spec->name)), *texture);

@@ -84,11 +84,8 @@ double ray_cylinder(const Ray& ray, const dvec3& half_size, double low, double h
 }
 
 /// Moller and Trumbore 1997; both sides.
-double ray_triangle(const Ray& ray, const Mesh& mesh, std::uint32_t index, double low, double high,
-                    dvec2& barycentric) {
-    const auto& corner = mesh.triangles[index];
-    const dvec3& a = mesh.vertices[corner[0]].position;
-    const dvec3 ab = mesh.vertices[corner[1]].position - a, ac = mesh.vertices[corner[2]].position - a;
+double ray_triangle(const Ray& ray, const Sides& sides, double low, double high, dvec2& barycentric) {
+    const dvec3 &a = sides.corner, &ab = sides.to_second, &ac = sides.to_third;
     const dvec3 p = glm::cross(ray.direction, ac);
     const double inverse = 1 / glm::dot(ab, p);
     const dvec3 s = ray.origin - a;
@@ -115,10 +112,9 @@ bool intersect_mesh(const MeshTree& tree, const Ray& ray, double low, double hig
         }
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
             dvec2 barycentric;
-            const std::uint32_t triangle = tree.bvh.items[i];
-            const double t = ray_triangle(ray, *tree.mesh, triangle, low, hit.t, barycentric);
+            const double t = ray_triangle(ray, tree.sides[i], low, hit.t, barycentric);
             if (t == kNone) continue;
-            hit = {t, triangle, barycentric};
+            hit = {t, tree.bvh.items[i], barycentric};
             found = true;
             if (any) return true;
         }
@@ -198,11 +194,12 @@ MeshTree::MeshTree(const Mesh& of) : mesh(&of) {
     for (std::size_t i = 0; i < bounds.size(); ++i)
         for (const std::uint32_t corner : of.triangles[i]) bounds[i].add(of.vertices[corner].position);
     bvh = build_bvh(bounds, 4);
-}
-
-bool meets(const Ray& ray, const dvec3& inverse_direction, const Bounds& bounds, double low, double high) {
-    const Span span = ray_slabs(ray, inverse_direction, bounds.low, bounds.high);
-    return span.enter <= span.leave && span.leave > low && span.enter < high;
+    sides.reserve(bvh.items.size());
+    for (const std::uint32_t item : bvh.items) {
+        const auto& corner = of.triangles[item];
+        const dvec3& a = of.vertices[corner[0]].position;
+        sides.push_back({a, of.vertices[corner[1]].position - a, of.vertices[corner[2]].position - a});
+    }
 }
 
 bool intersect(const Shape& shape, const MeshTree* mesh, const Ray& ray, double low, double high, bool any,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <limits>
 
 #include "framework/scene/mesh.h"
 #include "framework/scene/scene.h"
@@ -28,16 +29,38 @@ struct ShapePoint {
     glm::dvec2 uv{0};                      ///< as make_surface_map says
 };
 
+/// A triangle by one corner and the two sides that leave it, m.
+struct Sides {
+    glm::dvec3 corner{0};
+    glm::dvec3 to_second{0};
+    glm::dvec3 to_third{0};
+};
+
 /// A mesh with its hierarchy, whose leaves hold up to four triangles.
 struct MeshTree {
     explicit MeshTree(const Mesh& of);
     const Mesh* mesh;  ///< must outlive this
     Bvh bvh;
+    std::vector<Sides> sides;  ///< of each of bvh.items, so that a leaf's triangles lie side by side
 };
 
-/// Whether the ray meets the box between low and high.
-bool meets(const Ray& ray, const glm::dvec3& inverse_direction, const Bounds& bounds, double low,
-           double high);
+/// Whether the ray meets the box between low and high (Kay and Kajiya 1986). Here, since most of the time of
+/// rays among triangles goes by in it.
+inline bool meets(const Ray& ray, const glm::dvec3& inverse_direction, const Bounds& bounds, double low,
+                  double high) {
+    const glm::dvec3* const corners[] = {&bounds.low, &bounds.high};
+    double enter = -std::numeric_limits<double>::infinity(), leave = -enter;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double origin = ray.origin[axis], inverse = inverse_direction[axis];
+        const bool back = inverse < 0;
+        const double near = ((*corners[back])[axis] - origin) * inverse;
+        const double far = ((*corners[!back])[axis] - origin) * inverse;
+        // Not a number along a face, and then no bound: a ray along a slab's face is inside it.
+        enter = near > enter ? near : enter;
+        leave = far < leave ? far : leave;
+    }
+    return enter <= leave && leave > low && enter < high;
+}
 
 /// The first point of the shape with low < t < high; false where there is none. `mesh` is that of a mesh.
 /// With `any` the first that is found will do.
