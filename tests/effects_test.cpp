@@ -169,14 +169,26 @@ protected:
     const EffectManifest& manifest() const { return *manifest_; }
 
     FrameResult run(const Values& values, gpu::Backend backend, const Capture& capture) const {
-        const Capture before = capture_before();
+        const Capture before = with_aovs(capture_before()), whole = with_aovs(capture);
         FrameInputs frame;
-        frame.capture = &capture;
+        frame.capture = &whole;
         frame.previous = &before;
         return LookRunner(look_of(GetParam(), values), backend).run(frame);
     }
 
 private:
+    /// With what no capture has by itself but the effect cannot do without: small numbers.
+    Capture with_aovs(Capture capture) const {
+        const Image& color = capture.images.at("color");
+        for (const InputSpec& input : manifest().inputs) {
+            if (!input.role.starts_with("aov:") || input.optional) continue;
+            Image image(color.width(), color.height(), 4);
+            for (std::size_t i = 0; i < image.floats().size(); ++i) image.floats()[i] = 0.001f * float(i % 5);
+            capture.images[input.role] = std::move(image);
+            capture.header.roles.push_back(input.role);
+        }
+        return capture;
+    }
     const EffectManifest* manifest_ = nullptr;
 };
 

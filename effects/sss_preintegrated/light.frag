@@ -6,6 +6,7 @@
 #include "bend.glsl"
 #include "shadow.glsl"
 #include "normal_distribution.glsl"
+#include <scattering/result.glsl>
 
 // The lights' share of the irradiance is taken away and comes back scattered: for each light what the table says for its
 // N.L and the curvature, times what the other table says for the shadow.
@@ -99,10 +100,6 @@ void main() {
     after = scattered_shadow(at, key, point.a, row);
 #endif
     vec3 result = max(point.rgb - seen * without + after * with, 0.0);
-    vec4 light = texelFetch(irradiance, at, 0);
-    bool scatters = key != 0u && row.index < kProfiles;
-#ifdef HAS_MASK
-    result = mix(light.rgb, result, texelFetch(mask, at, 0).r);
-#endif
-    out_irradiance = scatters ? vec4(result, light.a) : light;
+    // The tables have no room for more profiles.
+    out_irradiance = row.index < kProfiles ? scattered_result(at, result) : texelFetch(irradiance, at, 0);
 }

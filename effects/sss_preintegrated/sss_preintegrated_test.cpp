@@ -1,5 +1,5 @@
-// Scattering by lookup: on balls against the integrals in double and the renderer's scattering, beside shadows
-// against the profile's edge response, and what must not change.
+// Scattering by lookup: on balls against the integrals in double and the renderer's scattering, beside
+// shadows against the profile's edge response, and what must not change.
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -47,12 +47,12 @@ double worst(const Capture& capture, const Image& a, const Image& b, int channel
     for (int y = 0; y < a.height(); ++y)
         for (int x = 0; x < a.width(); ++x)
             if (capture.images.at("object_id").uint_at(x, y, 0) == 1)
-                result =
-                    std::max(result, std::abs(double(a.at(x, y, channel)) - b.at(x, y, channel)));
+                result = std::max(result, std::abs(double(a.at(x, y, channel)) - b.at(x, y, channel)));
     return result;
 }
 
-/// A plane 5 m away of which 480 px show 3.6 m, under a light that shines straight at it: its irradiance is 1.
+/// A plane 5 m away of which 480 px show 3.6 m, under a light that shines straight at it: its irradiance
+/// is 1.
 Capture plane(int width = 480, int height = 8) {
     const scene::Scene scene = scene::scene_of(R"({ "aftershade": 1,
         "camera": { "position": [0, 0, 5], "focal_length": 50 }, "materials": { "wax": {} },
@@ -69,7 +69,8 @@ void shade(Capture& capture, const std::function<double(double x, double y)>& sh
     for (int y = 0; y < light.height(); ++y)
         for (int x = 0; x < light.width(); ++x)
             for (int c = 0; c < 3; ++c)
-                light.at(x, y, c) *= float(share(x + 0.5 - light.width() / 2.0, y + 0.5 - light.height() / 2.0));
+                light.at(x, y, c) *=
+                    float(share(x + 0.5 - light.width() / 2.0, y + 0.5 - light.height() / 2.0));
 }
 
 const std::array<double, 3> kEdgeD{120, 90, 60};  // mm: 16, 12 and 8 px
@@ -129,8 +130,8 @@ TEST(SssPreintegrated, ApproachesTheLightThatCameInAsTheProfileNarrows) {
     const Capture capture = ball();
     double last = 1;
     for (const double d_mm : {100.0, 30.0, 10.0, 3.0, 0.1}) {
-        const double change =
-            worst(capture, scattered(capture, burley({d_mm, d_mm, d_mm})), capture.images.at("irradiance"), 0);
+        const double change = worst(capture, scattered(capture, burley({d_mm, d_mm, d_mm})),
+                                    capture.images.at("irradiance"), 0);
         EXPECT_LT(change, last) << d_mm;
         EXPECT_LT(change, 1.2 * d_mm / 1000) << d_mm;
         last = change;
@@ -140,6 +141,8 @@ TEST(SssPreintegrated, ApproachesTheLightThatCameInAsTheProfileNarrows) {
 
 TEST(SssPreintegrated, DoesNotTouchABitOfWhatDoesNotScatter) {
     Capture capture = ball();
+    capture.images["mask"] = Image(64, 64, 1);
+    capture.header.roles.push_back("mask");
     for (int y = 0; y < 64; ++y)
         for (int x = 0; x < 64; ++x) {
             if (y < 32) capture.images.at("object_id").uint_at(x, y, 0) *= 2;
@@ -209,8 +212,8 @@ double on_ball(const Density& density, int c, double cosine, double radius_mm) {
         const double share = density(2 * radius_mm * std::sin(x / 2), c) * std::sin(x) * at;
         double light = 0;
         for (int k = 0; k < kRound; ++k)
-            light += std::max(cosine * std::cos(x) + sine * std::sin(x) * std::cos((k + 0.5) / kRound * kPi),
-                              0.0);
+            light +=
+                std::max(cosine * std::cos(x) + sine * std::sin(x) * std::cos((k + 0.5) / kRound * kPi), 0.0);
         sum += share * light / kRound;
         all += share;
     }
@@ -236,8 +239,8 @@ TEST(SssPreintegrated, IsThePublishedRingIntegralOnABall) {
     const Capture capture = ball(96);
     for (const double radius_mm : {1.0, 5.0, 25.0}) {
         const Image light = scattered(
-            capture, fmt::format(R"("integral": "ring", "scattering_profile": "skin", "world_unit": {})",
-                                 radius_mm));
+            capture,
+            fmt::format(R"("integral": "ring", "scattering_profile": "skin", "world_unit": {})", radius_mm));
         double off = 0;
         for (int x = 8; x < 88; ++x)
             for (int c = 0; c < 3; ++c) {
@@ -246,7 +249,7 @@ TEST(SssPreintegrated, IsThePublishedRingIntegralOnABall) {
                 off = std::max(off, std::abs(light.at(x, 48, c) - on_ring(skin, c, cosine, radius_mm)));
             }
         RecordProperty(fmt::format("ring_{}mm", radius_mm), fmt::format("{:.5f}", off));
-        EXPECT_LT(off, 0.004) << radius_mm;
+        EXPECT_LT(off, 0.001) << radius_mm;
     }
 }
 
@@ -262,7 +265,7 @@ TEST(SssPreintegrated, IsTheSurfaceIntegralOnABall) {
             off = std::max(off, std::abs(light.at(x, 48, 0) - on_ball(density, 0, cosine, 1000)));
         }
         RecordProperty(fmt::format("sphere_{}mm", d_mm), fmt::format("{:.5f}", off));
-        EXPECT_LT(off, 0.006) << d_mm;
+        EXPECT_LT(off, 0.001) << d_mm;
     }
 }
 
@@ -279,14 +282,15 @@ TEST(SssPreintegrated, IsNearTheRenderersScatteringOnABall) {
     capture.header.lights = {sun({-1, 0, 0})};
     const scene::ScatteringTruth truth = renderer.render_scattering(1, {2048, false});
     for (const char* integral : {"sphere", "ring"}) {
-        const Image light = scattered(
-            capture, burley({200, 100, 50}) + fmt::format(R"(, "integral": "{}")", integral));
+        const Image light =
+            scattered(capture, burley({200, 100, 50}) + fmt::format(R"(, "integral": "{}")", integral));
         for (int c = 0; c < 3; ++c) {
             const double off = worst(capture, light, truth.irradiance, c);
             RecordProperty(fmt::format("{}_{}", integral, c), fmt::format("{:.4f}", off));
+            // The ring is no part of a ball's surface, and Burley's profile is none for a line.
             if (std::strcmp(integral, "sphere") == 0) {
-                EXPECT_LT(off, 0.02) << c;
-                EXPECT_LT(off, worst(capture, capture.images.at("irradiance"), truth.irradiance, c) / 4);
+                EXPECT_LT(off, 0.002) << c;
+                EXPECT_GT(worst(capture, capture.images.at("irradiance"), truth.irradiance, c), 0.02);
             }
         }
     }
@@ -297,8 +301,9 @@ TEST(SssPreintegrated, TakesTheLooksLightWhereTheCaptureHasNone) {
     const Image expected = scattered(capture, burley({200, 100, 50}));
     capture.header.lights.clear();
     const Image light = scattered(
-        capture, burley({200, 100, 50}) +
-                     R"(, "light_direction": [-3, 0, 0], "light_intensity": [3.14159265, 3.14159265, 3.14159265])");
+        capture,
+        burley({200, 100, 50}) +
+            R"(, "light_direction": [-3, 0, 0], "light_intensity": [3.14159265, 3.14159265, 3.14159265])");
     for (int c = 0; c < 3; ++c) EXPECT_LT(worst(capture, light, expected, c), 1e-5);
     EXPECT_GT(worst(capture, expected, capture.images.at("irradiance"), 0), 0.05);
 }
@@ -306,13 +311,14 @@ TEST(SssPreintegrated, TakesTheLooksLightWhereTheCaptureHasNone) {
 // ---- Into shadows
 
 /// Largest distance from the expected light at x mm from the picture's middle, in its middle line.
-std::array<double, 3> off_line(const Image& light, const std::function<double(double x_mm, double d_mm)>& expected) {
+std::array<double, 3> off_line(const Image& light,
+                               const std::function<double(double x_mm, double d_mm)>& expected) {
     std::array<double, 3> result{};
     for (int x = 0; x < light.width(); ++x)
         for (std::size_t c = 0; c < 3; ++c) {
             const double x_mm = (x + 0.5 - light.width() / 2.0) * kMmPerPx;
-            result[c] = std::max(result[c], std::abs(light.at(x, light.height() / 2, int(c)) -
-                                                     expected(x_mm, kEdgeD[c])));
+            result[c] = std::max(
+                result[c], std::abs(light.at(x, light.height() / 2, int(c)) - expected(x_mm, kEdgeD[c])));
         }
     return result;
 }
@@ -333,12 +339,11 @@ TEST(SssPreintegrated, FindsAnEdgeThatRunsAslant) {
     Capture capture = plane(480, 320);
     shade(capture, [](double x, double y) { return 0.8 * x + 0.6 * y > 0 ? 1.0 : 0.0; });
     const Image light = scattered(capture, burley(kEdgeD) + R"(, "max_shadow_radius": 160)");
-    const auto off = off_line(light, [](double x, double d) {
-        return edge(0.8 * x + 0.6 * 0.5 * kMmPerPx, d);
-    });
+    const auto off =
+        off_line(light, [](double x, double d) { return edge(0.8 * x + 0.6 * 0.5 * kMmPerPx, d); });
     for (std::size_t c = 0; c < 3; ++c) {
         RecordProperty(fmt::format("worst_{}", c), fmt::format("{:.5f}", off[c]));
-        EXPECT_LT(off[c], 0.02) << kEdgeD[c];
+        EXPECT_LT(off[c], 0.01) << kEdgeD[c];
     }
 }
 
@@ -355,7 +360,7 @@ TEST(SssPreintegrated, WidensPenumbraeByTheirWidth) {
         });
         for (std::size_t c = 0; c < 3; ++c) {
             RecordProperty(fmt::format("worst_{}_{}", width_mm, c), fmt::format("{:.5f}", off[c]));
-            EXPECT_LT(off[c], 0.03) << width_mm << " " << kEdgeD[c];
+            EXPECT_LT(off[c], 0.035) << width_mm << " " << kEdgeD[c];
         }
     }
 }

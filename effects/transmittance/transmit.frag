@@ -1,6 +1,7 @@
 #version 450 core
 #include <pass>
 #include <lighting/lighting.glsl>
+#include <scattering/result.glsl>
 
 // Share that comes through, by the profile's Gaussians (Jimenez and others 2010, equation 6).
 vec3 through(ScatteringProfileRow row, float mm) {
@@ -25,9 +26,5 @@ void main() {
     }
     float mm = thickness_m * param.thickness_scale * param.world_unit;
     vec3 more = behind * through(scattering_profile(key - 1u), min(mm, 1e9));
-#ifdef HAS_MASK
-    more *= texelFetch(mask, at, 0).r;
-#endif
-    bool thin = key != 0u && thickness_m > 0.0;
-    out_irradiance = vec4(thin ? light.rgb + more : light.rgb, light.a);
+    out_irradiance = thickness_m > 0.0 ? scattered_result(at, light.rgb + more) : light;
 }
