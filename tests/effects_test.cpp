@@ -176,7 +176,6 @@ protected:
         return LookRunner(look_of(GetParam(), values), backend).run(frame);
     }
 
-private:
     /// With what no capture has by itself but the effect cannot do without: small numbers.
     Capture with_aovs(Capture capture) const {
         const Image& color = capture.images.at("color");
@@ -189,6 +188,8 @@ private:
         }
         return capture;
     }
+
+private:
     const EffectManifest* manifest_ = nullptr;
 };
 
@@ -281,13 +282,13 @@ TEST_P(EveryEffect, DeclaresWhatItsShadersUseAndUsesWhatItDeclares) {
 
 /// What came before a cut, a gap or another size must leave no trace.
 TEST_P(EveryEffect, BeginsAnewAtACutAGapAndAnotherSize) {
-    const auto frame_of = [](int number, int width) {
-        return make_capture({.width = width,
-                             .height = 20,
-                             .background = {0.1f * float(number), 0.5f, 0.2f},
-                             .background_depth_m = 5,
-                             .box = SyntheticBox{4, 4, 8, 6, 2, 0, 2}},
-                            number);
+    const auto frame_of = [&](int number, int width) {
+        return with_aovs(make_capture({.width = width,
+                                       .height = 20,
+                                       .background = {0.1f * float(number), 0.5f, 0.2f},
+                                       .background_depth_m = 5,
+                                       .box = SyntheticBox{4, 4, 8, 6, 2, 0, 2}},
+                                      number));
     };
     const auto run_one = [](LookRunner& runner, const Capture& capture, bool cut) {
         FrameInputs frame;

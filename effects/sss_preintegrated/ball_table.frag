@@ -66,6 +66,6 @@ void main() {
     ScatteringProfileRow row = profile_of(profile);
     // Loops that nobody needs do not turn.
     int samples = profile < profile_count() && line > 0 ? kSamples : 0;
-    vec3 more = scattered(row, cosine, widest(row.d) / max(curvature, 1e-6), samples) - max(cosine, 0.0);
+    vec3 more = scattered(row, cosine, max(row.d.r, max(row.d.g, row.d.b)) / max(curvature, 1e-6), samples) - max(cosine, 0.0);
     out_ball_table = samples == 0 ? vec4(0.0) : vec4((1.0 - row.direct) * more, 1.0);
 }

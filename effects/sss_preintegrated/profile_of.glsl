@@ -8,5 +8,3 @@ ScatteringProfileRow profile_of(int index) {
         if (scattering_profile_entries[i].row.index == index) row = scattering_profile_entries[i].row;
     return row;
 }
-
-float widest(vec3 d) { return max(d.r, max(d.g, d.b)); }

@@ -1,13 +1,12 @@
 #version 450 core
 #include <pass>
-#include "place.glsl"
 #include <lighting/lighting.glsl>
 #include "shadow.glsl"
 
 // The share of the lights' light that arrives: what came in over what would come without anything in the way.
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
-    uint key = key_at(at);
+    uint key = texelFetch(facet, at, 0).r;
     vec4 point = texelFetch(surface, at, 0);
     vec3 n = texelFetch(normal, at, 0).xyz;
     vec3 position_m = world_position_m(gl_FragCoord.xy, point.a);

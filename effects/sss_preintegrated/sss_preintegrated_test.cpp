@@ -296,6 +296,36 @@ TEST(SssPreintegrated, IsNearTheRenderersScatteringOnABall) {
     }
 }
 
+/// Waves of 6 px in the normals, against d of 16, 12 and 8 px: their light and dark sides are one.
+TEST(SssPreintegrated, LevelsBumpsThatAreSmallAgainstTheProfile) {
+    Capture capture = plane(480, 64);
+    capture.header.lights = {sun({-1, 0, -1})};
+    Image& normal = capture.images.at("normal");
+    Image& irradiance = capture.images.at("irradiance");
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 480; ++x) {
+            const double turn = 0.3 * std::sin(2 * kPi * (x + 0.5) / 6);
+            normal.at(x, y, 0) = float(std::sin(turn));
+            normal.at(x, y, 2) = float(std::cos(turn));
+            for (int c = 0; c < 3; ++c)
+                irradiance.at(x, y, c) = float((std::sin(turn) + std::cos(turn)) / std::sqrt(2.0));
+        }
+    const Image light = scattered(capture, burley(kEdgeD) + R"(, "max_shadow_radius": 160)");
+    for (int c = 0; c < 3; ++c) {
+        double least = 9, most = 0, least_before = 9, most_before = 0;
+        for (int x = 160; x < 320; ++x) {
+            least = std::min<double>(least, light.at(x, 32, c));
+            most = std::max<double>(most, light.at(x, 32, c));
+            least_before = std::min<double>(least_before, irradiance.at(x, 32, c));
+            most_before = std::max<double>(most_before, irradiance.at(x, 32, c));
+        }
+        RecordProperty(fmt::format("left_{}", c),
+                       fmt::format("{:.3f}", (most - least) / (most_before - least_before)));
+        EXPECT_LT(most - least, 0.5 * (most_before - least_before)) << kEdgeD[std::size_t(c)];
+        EXPECT_NEAR((least + most) / 2, (least_before + most_before) / 2, 0.1);
+    }
+}
+
 TEST(SssPreintegrated, TakesTheLooksLightWhereTheCaptureHasNone) {
     Capture capture = ball();
     const Image expected = scattered(capture, burley({200, 100, 50}));

@@ -16,7 +16,8 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr int kWidth = 32, kHeight = 24;
 
-/// Lines of normals that turn from the light to away from it, columns of thickness from 0 to 31 tenths of a mm.
+/// Lines of normals that turn from the light to away from it, columns of thickness from 0 to 31 tenths of a
+/// mm.
 Capture thin() {
     Capture capture = make_capture({.width = kWidth, .height = kHeight, .background_depth_m = 2});
     capture.images["aov:thickness"] = Image(kWidth, kHeight, 4);
