@@ -30,7 +30,8 @@ struct Dipole {
         const double way = std::hypot(radius_mm, depth_mm);
         return depth_mm * (transport * way + 1) * std::exp(-transport * way) / (way * way * way);
     }
-    /// What remains beyond a radius of one source: -exp(-s d) / d is the integral of (s d + 1) exp(-s d) / d^2.
+    /// What remains beyond a radius of one source: -exp(-s d) / d is the integral of (s d + 1) exp(-s d) /
+    /// d^2.
     double source_beyond(double depth_mm, double radius_mm) const {
         const double way = std::hypot(radius_mm, depth_mm);
         return depth_mm * std::exp(-transport * way) / way;
@@ -73,7 +74,8 @@ double radius_beyond(const ScatteringProfile& profile, int channel, double share
     return high;
 }
 
-/// One channel's Gaussians of least Kullback-Leibler distance to radii of equal shares, as (variance, weight).
+/// One channel's Gaussians of least Kullback-Leibler distance to radii of equal shares, as (variance,
+/// weight).
 std::vector<std::array<double, 2>> fit_gaussians(const std::vector<double>& square_radii_mm2) {
     constexpr int kRounds = 200;
     const std::size_t count = ScatteringProfile::kFittedGaussians, radii = square_radii_mm2.size();
@@ -190,7 +192,9 @@ std::vector<ScatteringGaussian> ScatteringProfile::as_gaussians() const {
 ScatteringCurves scattering_curves(const ScatteringProfile& profile) {
     ScatteringCurves curves;
     const double reach = profile.reach_mm();
-    const auto radius = [&](double i) { return reach * (i / (kScatteringSamples - 1)) * (i / (kScatteringSamples - 1)); };
+    const auto radius = [&](double i) {
+        return reach * (i / (kScatteringSamples - 1)) * (i / (kScatteringSamples - 1));
+    };
     // Below it 2 pi r density(r) has come to its limit, to float's precision.
     const double least_mm = 1e-9 * reach;
     for (int i = 0; i < kScatteringSamples; ++i) {
@@ -221,8 +225,11 @@ ScatteringCurves scattering_curves(const ScatteringProfile& profile) {
 
 const std::vector<std::array<double, 2>>& artist_gaussians() {
     constexpr double kSum = 0.100 + 0.118 + 0.113 + 0.358 + 0.078;
-    static const std::vector<std::array<double, 2>> gaussians = {
-        {0.0484, 0.100 / kSum}, {0.187, 0.118 / kSum}, {0.567, 0.113 / kSum}, {1.99, 0.358 / kSum}, {7.41, 0.078 / kSum}};
+    static const std::vector<std::array<double, 2>> gaussians = {{0.0484, 0.100 / kSum},
+                                                                 {0.187, 0.118 / kSum},
+                                                                 {0.567, 0.113 / kSum},
+                                                                 {1.99, 0.358 / kSum},
+                                                                 {7.41, 0.078 / kSum}};
     return gaussians;
 }
 

@@ -1,5 +1,5 @@
-// How one material scatters light: the share of the light that enters at a point and comes out around it, by distance,
-// for red, green and blue. The albedo is not in it: all shares of a channel sum to 1.
+// How one material scatters light: the share of the light that enters at a point and comes out around it, by
+// distance, for red, green and blue. The albedo is not in it: all shares of a channel sum to 1.
 #pragma once
 
 #include <array>
@@ -44,7 +44,8 @@ struct ScatteringProfile {
 
     bool operator==(const ScatteringProfile&) const = default;
 
-    /// Share per mm^2 at a distance above 0; without what is `direct`. Its integral over the plane is 1 - direct.
+    /// Share per mm^2 at a distance above 0; without what is `direct`. Its integral over the plane is 1 -
+    /// direct.
     double density(int channel, double radius_mm) const;
     /// Share within a distance, `direct` included: the CDF of the radius.
     double within(int channel, double radius_mm) const;
@@ -58,8 +59,9 @@ struct ScatteringProfile {
     double reach_mm() const;
     static constexpr double kBeyondReach = 1e-4;
 
-    /// Its own Gaussians; of burley and dipole kFittedGaussians fitted to each channel by expectation maximization
-    /// (Dempster, Laird, Rubin 1977), which keeps the sum of weights and the mean square distance.
+    /// Its own Gaussians; of burley and dipole kFittedGaussians fitted to each channel by expectation
+    /// maximization (Dempster, Laird, Rubin 1977), which keeps the sum of weights and the mean square
+    /// distance.
     std::vector<ScatteringGaussian> as_gaussians() const;
     static constexpr int kFittedGaussians = 6;
     static constexpr std::size_t kMaxGaussians = 8;
@@ -68,23 +70,24 @@ struct ScatteringProfile {
 /// "burley", "gaussians", "dipole", "artist".
 const std::vector<std::string>& scattering_type_names();
 
-/// Jimenez' artist profile at radii over falloff: the five wider Gaussians of skin with their weights for red, over
-/// their sum; variances over falloff^2.
+/// Jimenez' artist profile at radii over falloff: the five wider Gaussians of skin with their weights for
+/// red, over their sum; variances over falloff^2.
 const std::vector<std::array<double, 2>>& artist_gaussians();
 
-/// Samples of a profile for shaders, at radii reach * (i / (kScatteringSamples - 1))^2. Each is kScatteringSamples long.
+/// Samples of a profile for shaders, at radii reach * (i / (kScatteringSamples - 1))^2. Each is
+/// kScatteringSamples long.
 struct ScatteringCurves {
     std::vector<Rgb> radial;  ///< 2 pi r density(r), 1/mm: share per radius; its limit at r = 0
     std::vector<Rgb> within;
-    std::vector<Rgb> line;  ///< edge response: the light at a distance x into the lit side of a straight edge, the limit at 0,
-                            ///< (1 + direct) / 2, to 1
+    std::vector<Rgb> line;  ///< edge response: the light at a distance x into the lit side of a straight
+                            ///< edge, the limit at 0, (1 + direct) / 2, to 1
 };
 inline constexpr int kScatteringSamples = 1024;
 ScatteringCurves scattering_curves(const ScatteringProfile& profile);
 
-/// Reads a profile: the name of a shipped one ("skin": profiles/scattering/skin.json of the data folder), the path of a
-/// file that ends in .json, relative to `folder`, or the profile itself as an object. `label` names it in messages.
-/// nullopt after errors, which name all that is wrong.
+/// Reads a profile: the name of a shipped one ("skin": profiles/scattering/skin.json of the data folder), the
+/// path of a file that ends in .json, relative to `folder`, or the profile itself as an object. `label` names
+/// it in messages. nullopt after errors, which name all that is wrong.
 std::optional<ScatteringProfile> parse_scattering_profile(const Node& node, const std::string& label,
                                                           const std::filesystem::path& folder,
                                                           Diagnostics& diagnostics);
@@ -93,9 +96,9 @@ std::string format_scattering_profile(const ScatteringProfile& profile);
 /// Names of the shipped profiles, sorted.
 std::vector<std::string> scattering_profile_names();
 
-/// Burley's d of one channel: mean free path / s(albedo) (Christensen and Burley 2015; glsl/burley.glsl says the same).
-/// searchlight and diffuse: the path is the mean free path, for light that enters at right angles or from all around; dmfp:
-/// the diffuse mean free path in the volume.
+/// Burley's d of one channel: mean free path / s(albedo) (Christensen and Burley 2015; glsl/burley.glsl says
+/// the same). searchlight and diffuse: the path is the mean free path, for light that enters at right angles
+/// or from all around; dmfp: the diffuse mean free path in the volume.
 enum class BurleyMapping { searchlight, diffuse, dmfp };
 double burley_d_mm(BurleyMapping mapping, double albedo, double mean_free_path_mm);
 

@@ -26,7 +26,10 @@ fs::path shipped_folder() {
 class ProfileReader {
 public:
     ProfileReader(const Node& node, std::string label, Diagnostics& diagnostics)
-        : node_(node), label_(std::move(label)), reader_(node, label_, diagnostics), diagnostics_(diagnostics) {}
+        : node_(node),
+          label_(std::move(label)),
+          reader_(node, label_, diagnostics),
+          diagnostics_(diagnostics) {}
 
     std::optional<ScatteringProfile> read(bool is_file) {
         const int errors_before = diagnostics_.error_count();
@@ -52,13 +55,16 @@ public:
     }
 
 private:
-    void fault(const Node& node, const std::string& text) { diagnostics_.error(node.place, label_ + ": " + text); }
+    void fault(const Node& node, const std::string& text) {
+        diagnostics_.error(node.place, label_ + ": " + text);
+    }
 
     std::optional<double> number(const Node& node, const std::string& what, double min, double max) {
-        if (!node.is_number()) fault(node, what + ": expected a number, not " + std::string(kind_name(node.kind)));
+        if (!node.is_number())
+            fault(node, what + ": expected a number, not " + std::string(kind_name(node.kind)));
         else if (node.number < min || node.number > max)
-            fault(node, what + ": " + format_number(node.number) + " is not within " + format_number(min) + " and " +
-                            format_number(max));
+            fault(node, what + ": " + format_number(node.number) + " is not within " + format_number(min) +
+                            " and " + format_number(max));
         else return node.number;
         return std::nullopt;
     }
@@ -95,7 +101,8 @@ private:
             for (const char* key : {"albedo", "mean_free_path_mm", "mapping"})
                 if (const Node* other = node_.find(key)) {
                     reader_.any(key);
-                    fault(*other, "'d_mm' says it all; '" + std::string(key) + "' belongs to 'mean_free_path_mm'");
+                    fault(*other,
+                          "'d_mm' says it all; '" + std::string(key) + "' belongs to 'mean_free_path_mm'");
                 }
             profile_.d_mm = rgb("d_mm", kLeastLength_mm, kMostLength_mm, Presence::required);
             return;
@@ -103,7 +110,8 @@ private:
         const Rgb path = rgb("mean_free_path_mm", kLeastLength_mm, kMostLength_mm, Presence::required);
         const Rgb albedo = rgb("albedo", 0, 1, Presence::required);
         const std::string mapping = reader_.choice("mapping", kMappings).value_or("dmfp");
-        const auto kind = BurleyMapping(std::find(kMappings.begin(), kMappings.end(), mapping) - kMappings.begin());
+        const auto kind =
+            BurleyMapping(std::find(kMappings.begin(), kMappings.end(), mapping) - kMappings.begin());
         for (std::size_t c = 0; c < 3; ++c) profile_.d_mm[c] = burley_d_mm(kind, albedo[c], path[c]);
     }
 
@@ -111,8 +119,8 @@ private:
         const Node* list = reader_.array("gaussians", Presence::required);
         if (!list) return;
         if (list->items.empty() || list->items.size() > ScatteringProfile::kMaxGaussians) {
-            fault(*list, "'gaussians' holds 1 to " + std::to_string(ScatteringProfile::kMaxGaussians) + " Gaussians, not " +
-                             std::to_string(list->items.size()));
+            fault(*list, "'gaussians' holds 1 to " + std::to_string(ScatteringProfile::kMaxGaussians) +
+                             " Gaussians, not " + std::to_string(list->items.size()));
             return;
         }
         Rgb sum{};
@@ -133,8 +141,8 @@ private:
         }
         for (std::size_t c = 0; c < 3; ++c) {
             if (std::abs(sum[c] - 1) > kSumTolerance)
-                fault(*list, "the weights of " + std::string(kChannels[c]) + " sum to " + format_number(sum[c]) +
-                                 ", not to 1: a profile has no albedo");
+                fault(*list, "the weights of " + std::string(kChannels[c]) + " sum to " +
+                                 format_number(sum[c]) + ", not to 1: a profile has no albedo");
             for (ScatteringGaussian& gaussian : profile_.gaussians) gaussian.weight[c] /= sum[c];
         }
     }
@@ -143,7 +151,8 @@ private:
         // Below the least absorption light would go on for ever: its mean square distance has no end.
         profile_.absorption = rgb("absorption_per_mm", 1e-5, 1e3, Presence::required);
         profile_.scattering = rgb("reduced_scattering_per_mm", 1e-5, 1e4, Presence::required);
-        if (const Node* ior = reader_.any("ior")) profile_.ior = number(*ior, "ior", 1, 3).value_or(profile_.ior);
+        if (const Node* ior = reader_.any("ior"))
+            profile_.ior = number(*ior, "ior", 1, 3).value_or(profile_.ior);
     }
 
     void read_artist() {
@@ -158,7 +167,8 @@ private:
             profile_.direct[c] = 1 - strength[c];
             for (std::size_t k = 0; k < profile_.gaussians.size(); ++k) {
                 const auto& [variance, weight] = artist_gaussians()[k];
-                profile_.gaussians[k].variance_mm2[c] = variance * profile_.falloff_mm[c] * profile_.falloff_mm[c];
+                profile_.gaussians[k].variance_mm2[c] =
+                    variance * profile_.falloff_mm[c] * profile_.falloff_mm[c];
                 profile_.gaussians[k].weight[c] = strength[c] * weight;
             }
         }
@@ -176,7 +186,8 @@ private:
 };
 
 std::string text_of(const Rgb& values) {
-    return "[" + format_number(values[0]) + ", " + format_number(values[1]) + ", " + format_number(values[2]) + "]";
+    return "[" + format_number(values[0]) + ", " + format_number(values[1]) + ", " +
+           format_number(values[2]) + "]";
 }
 
 }  // namespace
@@ -199,10 +210,11 @@ std::optional<ScatteringProfile> parse_scattering_profile(const Node& node, cons
                                                           const fs::path& folder, Diagnostics& diagnostics) {
     if (node.is_object()) return ProfileReader(node, label, diagnostics).read(false);
     if (!node.is_string()) {
-        diagnostics.error(node.place, label +
-                                          ": expected the name of a scattering profile, the path of its file or an object "
-                                          "with 'type', not " +
-                                          std::string(kind_name(node.kind)));
+        diagnostics.error(
+            node.place, label +
+                            ": expected the name of a scattering profile, the path of its file or an object "
+                            "with 'type', not " +
+                            std::string(kind_name(node.kind)));
         return std::nullopt;
     }
     const bool is_path = node.string.ends_with(".json");
@@ -210,11 +222,11 @@ std::optional<ScatteringProfile> parse_scattering_profile(const Node& node, cons
     std::error_code failure;
     if (!fs::is_regular_file(path, failure)) {
         const auto names = scattering_profile_names();
-        diagnostics.error(node.place,
-                          is_path ? label + ": no file '" + path.string() + "'"
-                                  : label + ": no scattering profile '" + node.string + "'" +
-                                        did_you_mean(node.string, names) + "; shipped: " + list_of_names(names, "and") +
-                                        "; a file's name ends in .json");
+        diagnostics.error(node.place, is_path ? label + ": no file '" + path.string() + "'"
+                                              : label + ": no scattering profile '" + node.string + "'" +
+                                                    did_you_mean(node.string, names) +
+                                                    "; shipped: " + list_of_names(names, "and") +
+                                                    "; a file's name ends in .json");
         return std::nullopt;
     }
     const auto document = read_document(path, diagnostics);
@@ -243,8 +255,8 @@ std::string format_scattering_profile(const ScatteringProfile& profile) {
     }
     std::string list;
     for (const ScatteringGaussian& gaussian : profile.gaussians)
-        list += (list.empty() ? "" : ", ") + std::string("{\"variance_mm2\": ") + text_of(gaussian.variance_mm2) +
-                ", \"weight\": " + text_of(gaussian.weight) + "}";
+        list += (list.empty() ? "" : ", ") + std::string("{\"variance_mm2\": ") +
+                text_of(gaussian.variance_mm2) + ", \"weight\": " + text_of(gaussian.weight) + "}";
     return type + "\"gaussians\": [" + list + "]}";
 }
 

@@ -1,27 +1,34 @@
-// The visible surface as facets: each pixel's square is flat, in the plane of its normal, and evenly lit. Needs the
-// textures surface and facet.
+// The visible surface as facets: each pixel's square is flat and evenly lit. Needs the textures surface and facet.
 #include <scattering/lines.glsl>
 
 struct Facet {
-    vec3 light;       // irradiance / pi
-    float depth_m;    // at the pixel's middle; +inf where nothing scatters
-    uint key;         // 0 where nothing scatters
-    vec2 slope;       // depth's change over a pixel, in units of a pixel's width there
+    vec3 light;      // irradiance / pi
+    float depth_m;   // at the pixel's middle; +inf where nothing scatters
+    uint key;        // 0 where nothing scatters
+    vec3 position;   // of the pixel's middle in view space, mm
+    vec3 normal;     // view space, unit length, towards the camera
+    float area_mm2;  // of the surface
 };
 
-Facet read_facet(ivec2 pixel) {
+// What a facet's own plane has at another pixel; without area where that looks past the plane.
+Facet facet_on_plane(ViewLines lines, Facet here, ivec2 pixel) {
+    vec3 line = view_line(lines, vec2(pixel) + 0.5);
+    float facing = dot(here.normal, line);
+    bool seen = facing < -1e-3;
+    float depth_mm = dot(here.normal, here.position) / (seen ? facing : -1.0), side_mm = depth_mm * lines.slope.x;
+    return Facet(here.light, depth_mm / param.world_unit, here.key, depth_mm * line, here.normal,
+                 seen ? side_mm * side_mm / -facing : 0.0);
+}
+
+// With the slopes s of depth a facet's plane has, up to its length, the normal (s_x, -s_y, 1 + s_x X - s_y Y), where
+// (X, Y, -1) is the line through the pixel; that length is the facet's area over that of its pixel face-on.
+Facet read_facet(ViewLines lines, ivec2 pixel) {
     vec4 texel = texelFetch(surface, pixel, 0);
     uvec2 rest = texelFetch(facet, pixel, 0).rg;
-    return Facet(texel.rgb, texel.a, rest.x, unpackHalf2x16(rest.y));
-}
-
-// Area of the facet over the area that its pixel has face-on at its depth: 1 / |n . L|.
-float spread_of(vec2 slope, vec3 line) {
-    return length(vec3(slope, 1.0 + slope.x * line.x - slope.y * line.y));
-}
-
-// Point of the facet at a place in px within its pixel's square, mm.
-vec3 facet_position(ViewLines lines, Facet facet, ivec2 pixel, vec2 place) {
-    float depth_m = facet.depth_m / (1.0 - lines.slope.x * dot(facet.slope, place - vec2(pixel) - 0.5));
-    return view_position(lines, place, depth_m);
+    vec2 slope = unpackHalf2x16(rest.y);
+    vec3 line = view_line(lines, vec2(pixel) + 0.5);
+    vec3 steep = vec3(slope.x, -slope.y, 1.0 + slope.x * line.x - slope.y * line.y);
+    float spread = length(steep), side_mm = param.world_unit * texel.a * lines.slope.x;
+    return Facet(texel.rgb, texel.a, rest.x, param.world_unit * texel.a * line, steep / spread,
+                 side_mm * side_mm * spread);
 }
