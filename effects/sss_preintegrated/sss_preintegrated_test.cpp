@@ -338,6 +338,36 @@ TEST(SssPreintegrated, TakesTheLooksLightWhereTheCaptureHasNone) {
     EXPECT_GT(worst(capture, expected, capture.images.at("irradiance"), 0), 0.05);
 }
 
+/// Where the surface is comes from the camera's matrices or from the image of positions; without both nobody
+/// can tell what arrives of a near light, and its light stays as it is.
+TEST(SssPreintegrated, KnowsWhereNearLightsAreByMatricesOrPositions) {
+    const scene::Scene scene = scene::scene_of(R"({ "aftershade": 1,
+        "camera": { "position": [0, 0, 6], "focal_length": 90 }, "materials": { "wax": {} },
+        "objects": [ { "id": 1, "shape": "sphere", "radius": 1, "material": "wax" } ],
+        "lights": [ { "type": "point", "position": [1.5, 0.5, 1], "intensity": 5 } ] })");
+    Capture capture = scene::SceneRenderer(scene, 64, 64, 2).render_capture(1);
+    CaptureLight lamp;
+    lamp.position_m = {1.5, 0.5, 1};
+    lamp.intensity = {5, 5, 5};
+    capture.header.lights = {lamp};
+    const std::string params = burley({200, 100, 50});
+    Image position = capture.images.at("position");
+    capture.images.erase("position");
+    std::erase(capture.header.roles, "position");
+    const Image by_matrices = scattered(capture, params);
+    EXPECT_GT(worst(capture, by_matrices, capture.images.at("irradiance"), 0), 0.1);
+    capture.header.camera.camera_from_world.reset();
+    const Image by_nothing = scattered(capture, params);
+    EXPECT_LT(worst(capture, by_nothing, capture.images.at("irradiance"), 0), 1e-6);
+    capture.images["position"] = std::move(position);
+    capture.header.roles.push_back("position");
+    const Image by_positions = scattered(capture, params);
+    // Near the silhouette the normals' own bend is not known without the matrices.
+    for (int y = 20; y < 44; ++y)
+        for (int x = 20; x < 44; ++x)
+            ASSERT_NEAR(by_positions.at(x, y, 0), by_matrices.at(x, y, 0), 0.02) << x << " " << y;
+}
+
 // ---- Into shadows
 
 /// Largest distance from the expected light at x mm from the picture's middle, in its middle line.
