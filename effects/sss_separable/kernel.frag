@@ -85,7 +85,8 @@ vec4 binned(ScatteringProfileRow profile, int tap, int outermost) {
 // Weight of a place on the line as the published code has it: amplitudes over the plane, but as a function of one
 // dimension; the five wider Gaussians of skin with the weights of red, for all channels over their falloff.
 vec3 artist_amplitude(vec3 radius) {
-    const vec2 kGaussians[5] = vec2[5](vec2(0.100, 0.0484), vec2(0.118, 0.187), vec2(0.113, 0.567), vec2(0.358, 1.99), vec2(0.078, 7.41));
+    const vec2 kGaussians[5] = vec2[5](vec2(0.100, 0.0484), vec2(0.118, 0.187), vec2(0.113, 0.567), vec2(0.358, 1.99),
+                                       vec2(0.078, 7.41));
     vec3 sum = vec3(0.0);
     for (int k = 0; k < 5; ++k)
         sum += kGaussians[k].x / (2.0 * kBurleyPi * kGaussians[k].y) * exp(-radius * radius / (2.0 * kGaussians[k].y));
