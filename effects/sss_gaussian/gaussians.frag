@@ -9,12 +9,13 @@ ScatteringProfileRow profile_at(int index) {
     return profile;
 }
 
-// One channel's Gaussians that have weight, from narrow to wide: number `rank` among them, as (variance, weight); (0, 0)
-// where there are fewer.
+// One channel's Gaussians that have weight, from narrow to wide: number `rank` among them, as (variance, weight);
+// (0, 0) where there are fewer.
 vec2 ranked(ScatteringProfileRow profile, int channel, int rank) {
     vec2 found = vec2(0.0);
     for (int k = 0; k < SCATTERING_PROFILE_GAUSSIANS; ++k) {
-        float variance = scattering_profile_variance(profile, k)[channel], weight = scattering_profile_weight(profile, k)[channel];
+        float variance = scattering_profile_variance(profile, k)[channel];
+        float weight = scattering_profile_weight(profile, k)[channel];
         int narrower = 0;
         for (int i = 0; i < SCATTERING_PROFILE_GAUSSIANS; ++i) {
             float other = scattering_profile_variance(profile, i)[channel];

@@ -3,9 +3,9 @@
 #include <scattering/profile.glsl>
 
 const float kReached = 0.999;  // edge response where the outermost bin ends
-// How much bins are spread evenly over the square root of distance rather than over the light. With 63 taps and d of 8, 12
-// and 16 px edges are off by 0.009 and amplitudes of waves by less than 0.01; only over the light waves would be off by 0.03,
-// only over distance edges by 0.016.
+// How much bins are spread evenly over the square root of distance rather than over the light. With 63 taps and d of
+// 8, 12 and 16 px edges are off by 0.009 and amplitudes of waves by less than 0.01; only over the light waves would
+// be off by 0.03, only over distance edges by 0.016.
 const float kOverDistance = 0.35;
 
 // Of Abramowitz and Stegun 7.1.26: within 1.5e-7.
@@ -70,7 +70,8 @@ float where_progress_is(ScatteringProfileRow profile, float value, float end) {
     return 0.5 * (low + high);
 }
 
-// The share of bin `tap`, from the middle outwards, where the bin has its median: a hard edge is wrong by half a bin at most.
+// The share of bin `tap`, from the middle outwards, where the bin has its median: a hard edge is wrong by half a bin
+// at most.
 vec4 binned(ScatteringProfileRow profile, int tap, int outermost) {
     float end = where_least_channel_is(profile, 2.0 * kReached - 1.0), bins = float(outermost) + 0.5;
     float high = tap == outermost ? end : where_progress_is(profile, (float(tap) + 0.5) / bins, end);
