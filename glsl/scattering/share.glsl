@@ -13,11 +13,13 @@ vec3 own_share(ScatteringProfileRow profile, Facet here) {
 // Mean of 1 / r over a facet that a slant draws out: of a segment through its middle along the slant, as long as makes a
 // square drawn out to the facet's length, sqrt(spread^2 - 1); for a facet face-on 1 / r. `way` goes from here to its middle.
 float mean_inverse_distance(Facet there, vec3 way, float r) {
-    vec3 line = normalize(there.position), along = line - dot(line, there.normal) * there.normal;
-    float slant = length(along), half_length = 0.5 * there.side_mm * sqrt(max(there.spread * there.spread - 1.0, 1e-4));
-    float off = slant > 1e-4 ? abs(dot(way, along)) / slant : 0.0;
-    float beside = sqrt(max(r * r - off * off, 0.0025 * there.side_mm * there.side_mm));
-    return (asinh((off + half_length) / beside) - asinh((off - half_length) / beside)) / (2.0 * half_length);
+    vec3 along = there.position - dot(there.position, there.normal) * there.normal;
+    float off = dot(way, along), square = there.side_mm * there.side_mm;
+    off = abs(off) * inversesqrt(max(dot(along, along), 1e-8 * dot(there.position, there.position)));
+    float half_length = 0.5 * sqrt(square * max(there.spread * there.spread - 1.0, 1e-2));
+    float beside = max(r * r - off * off, 0.0025 * square), a = off - half_length, b = off + half_length;
+    // asinh(b / beside) - asinh(a / beside), with beside squared.
+    return log((b + sqrt(b * b + beside)) / (a + sqrt(a * a + beside))) / (2.0 * half_length);
 }
 
 // Two unit vectors at right angles to a unit vector and each other. Duff and others 2017, Building an Orthonormal Basis,
