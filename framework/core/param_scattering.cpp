@@ -39,7 +39,8 @@ std::vector<ParamSpec> scattering_columns() {
 std::vector<ScatteringProfile> scattering_profiles_of(const ScatteringValue& value) {
     std::vector<ScatteringProfile> profiles = {value.usual};
     for (const auto& [key, profile] : value.rows)
-        if (std::find(profiles.begin(), profiles.end(), profile) == profiles.end()) profiles.push_back(profile);
+        if (std::find(profiles.begin(), profiles.end(), profile) == profiles.end())
+            profiles.push_back(profile);
     return profiles;
 }
 
@@ -54,7 +55,8 @@ bool is_burley(const ScatteringValue& value) {
 TableValue scattering_table(const ScatteringValue& value) {
     const std::vector<ScatteringProfile> profiles = scattering_profiles_of(value);
     const auto row = [&](const ScatteringProfile& profile) {
-        return row_of(profile, std::size_t(std::find(profiles.begin(), profiles.end(), profile) - profiles.begin()));
+        return row_of(profile,
+                      std::size_t(std::find(profiles.begin(), profiles.end(), profile) - profiles.begin()));
     };
     TableValue table;
     table.default_row = row(value.usual);
@@ -86,14 +88,15 @@ std::optional<ParamValue> ValueReader::scattering(const Node& node) const {
                 if (!row_reader.is_object()) continue;
                 const Node* at = row_reader.any(std::string(kRowKey), ObjectReader::Presence::required);
                 const ScatteringProfile profile = profile_at(at, where);
-                for (const TableKey& key : keys.read_row(row_reader, row, where)) value.rows.emplace_back(key, profile);
+                for (const TableKey& key : keys.read_row(row_reader, row, where))
+                    value.rows.emplace_back(key, profile);
                 row_reader.finish();
             }
         reader.finish();
         keys.check_overlaps();
         if (value.rows.size() > kMaxScatteringRows)
-            diagnostics.error(node.place, label + ": " + std::to_string(value.rows.size()) + " rows are more than " +
-                                              std::to_string(kMaxScatteringRows));
+            diagnostics.error(node.place, label + ": " + std::to_string(value.rows.size()) +
+                                              " rows are more than " + std::to_string(kMaxScatteringRows));
     }
     if (diagnostics.error_count() > errors_before) return std::nullopt;
     return value;

@@ -47,12 +47,14 @@ bool TableKeyReader::is_key(std::string_view word) {
     return std::find(std::begin(kKeys), std::end(kKeys), word) != std::end(kKeys);
 }
 
-std::vector<TableKey> TableKeyReader::kept(std::vector<TableKey> keys, const Node& node, const std::string& label) {
+std::vector<TableKey> TableKeyReader::kept(std::vector<TableKey> keys, const Node& node,
+                                           const std::string& label) {
     for (const TableKey& key : keys) found_.push_back({key, label, node.place});
     return keys;
 }
 
-std::vector<TableKey> TableKeyReader::read_row(ObjectReader& reader, const Node& node, const std::string& label) {
+std::vector<TableKey> TableKeyReader::read_row(ObjectReader& reader, const Node& node,
+                                               const std::string& label) {
     return kept(row_keys(reader, node, label), node, label);
 }
 
@@ -60,13 +62,15 @@ std::vector<TableKey> TableKeyReader::read_item(const Node& node, const std::str
     std::vector<TableKey> keys;
     if (node.kind == Node::Kind::integer) keys = id_key(node.integer, node, label);
     else if (!node.is_string() || node.string.empty())
-        diagnostics_.error(node.place, label + ": expected an object's id, a range of ids such as \"3-7\" or a name");
+        diagnostics_.error(node.place,
+                           label + ": expected an object's id, a range of ids such as \"3-7\" or a name");
     else if (const auto range = parse_range(node.string)) keys = {*range};
     else keys = {TableKey{0, 0, node.string}};
     return kept(std::move(keys), node, label);
 }
 
-std::vector<TableKey> TableKeyReader::row_keys(ObjectReader& reader, const Node& node, const std::string& label) {
+std::vector<TableKey> TableKeyReader::row_keys(ObjectReader& reader, const Node& node,
+                                               const std::string& label) {
     const auto id = reader.integer("object");
     const auto ranges = reader.text("objects");
     const auto name = reader.text("name");
@@ -92,7 +96,8 @@ std::vector<TableKey> TableKeyReader::id_key(std::int64_t id, const Node& node, 
     return {};
 }
 
-std::vector<TableKey> TableKeyReader::range_keys(std::string_view text, const Node& node, const std::string& label) {
+std::vector<TableKey> TableKeyReader::range_keys(std::string_view text, const Node& node,
+                                                 const std::string& label) {
     std::vector<TableKey> keys;
     for (std::size_t start = 0; start <= text.size();) {
         const std::size_t comma = std::min(text.find(',', start), text.size());
@@ -116,15 +121,13 @@ void TableKeyReader::check_overlaps() {
         else if (const auto [other, fresh] = by_name.emplace(key.name, i); !fresh)
             report_overlap(i, other->second);
     }
-    std::stable_sort(by_id.begin(), by_id.end(), [&](std::size_t a, std::size_t b) {
-        return found_[a].key.first < found_[b].key.first;
-    });
+    std::stable_sort(by_id.begin(), by_id.end(),
+                     [&](std::size_t a, std::size_t b) { return found_[a].key.first < found_[b].key.first; });
     // The row that reaches furthest so far is the one that a later one may run into.
     for (std::size_t i = 1, reach = 0; i < by_id.size(); ++i) {
         const std::size_t before = by_id[reach], row = by_id[i];
         const std::uint32_t end = found_[before].key.last;
-        if (found_[row].key.first <= end)
-            report_overlap(std::max(row, before), std::min(row, before));
+        if (found_[row].key.first <= end) report_overlap(std::max(row, before), std::min(row, before));
         if (found_[row].key.last > end) reach = i;
     }
 }
@@ -132,10 +135,9 @@ void TableKeyReader::check_overlaps() {
 void TableKeyReader::report_overlap(std::size_t later, std::size_t earlier) {
     const Found& here = found_[later];
     const Found& there = found_[earlier];
-    diagnostics_.error(here.place, here.label + ": " + text_of(here.key) +
-                                       " is taken already by " + text_of(there.key) +
-                                       " of " + there.label + ", " + to_string(there.place));
+    diagnostics_.error(here.place, here.label + ": " + text_of(here.key) + " is taken already by " +
+                                       text_of(there.key) + " of " + there.label + ", " +
+                                       to_string(there.place));
 }
-
 
 }  // namespace aftershade
