@@ -16,28 +16,35 @@ public:
         json length = rgb(number(ScatteringProfile::kLeastLength_mm, ScatteringProfile::kMostLength_mm));
         const json share = number(0, 1);
         return any_of({
-            form("burley", {{"d_mm", said(length, "Burley's d of red, green and blue, mm.")}}, {"d_mm"}, head_required),
+            form("burley", {{"d_mm", said(length, "Burley's d of red, green and blue, mm.")}}, {"d_mm"},
+                 head_required),
             form("burley",
                  {{"albedo", said(rgb(share), "Of the surface.")},
                   {"mean_free_path_mm", said(length, "Of red, green and blue, mm.")},
-                  {"mapping", said(part(one_of({"searchlight", "diffuse", "dmfp"})),
-                                   "What the path is: of light that enters at right angles, from all around, or the "
-                                   "diffuse mean free path in the volume (the usual).")}},
+                  {"mapping",
+                   said(part(one_of({"searchlight", "diffuse", "dmfp"})),
+                        "What the path is: of light that enters at right angles, from all around, or the "
+                        "diffuse mean free path in the volume (the usual).")}},
                  {"albedo", "mean_free_path_mm"}, head_required),
-            form("gaussians", {{"gaussians", part(array_of(part(gaussian()), 1, int(ScatteringProfile::kMaxGaussians)))}},
+            form("gaussians",
+                 {{"gaussians", part(array_of(part(gaussian()), 1, int(ScatteringProfile::kMaxGaussians)))}},
                  {"gaussians"}, head_required),
             form("dipole",
-                 {{"absorption_per_mm", said(rgb(number(ScatteringProfile::kLeastAbsorption, ScatteringProfile::kMostAbsorption)), "sigma_a, 1/mm.")},
+                 {{"absorption_per_mm",
+                   said(rgb(number(ScatteringProfile::kLeastAbsorption, ScatteringProfile::kMostAbsorption)),
+                        "sigma_a, 1/mm.")},
                   {"reduced_scattering_per_mm",
-                   said(rgb(number(ScatteringProfile::kLeastAbsorption, ScatteringProfile::kMostScattering)), "sigma_s', 1/mm.")},
+                   said(rgb(number(ScatteringProfile::kLeastAbsorption, ScatteringProfile::kMostScattering)),
+                        "sigma_s', 1/mm.")},
                   {"ior", said(part(number(1, 3)), "Index of refraction, 1.3 unless told.")}},
                  {"absorption_per_mm", "reduced_scattering_per_mm"}, head_required),
             form("artist",
                  {{"falloff", said(rgb(share), "How far each channel's light goes, of the width.")},
                   {"strength", said(rgb(number(ScatteringProfile::kLeastStrength, 1)),
                                     "The share of the light that is scattered at all.")},
-                  {"width_mm", said(part(number(ScatteringProfile::kLeastLength_mm, ScatteringProfile::kMostLength_mm)),
-                                    "What a falloff of 1 is, mm.")}},
+                  {"width_mm",
+                   said(part(number(ScatteringProfile::kLeastLength_mm, ScatteringProfile::kMostLength_mm)),
+                        "What a falloff of 1 is, mm.")}},
                  {}, head_required),
         });
     }
@@ -47,7 +54,9 @@ private:
         return variables_ == Variables::yes ? any_of({std::move(form), variable()}) : form;
     }
 
-    static json number(double min, double max) { return {{"type", "number"}, {"minimum", min}, {"maximum", max}}; }
+    static json number(double min, double max) {
+        return {{"type", "number"}, {"minimum", min}, {"maximum", max}};
+    }
 
     static json said(json form, const char* description) {
         form["description"] = description;

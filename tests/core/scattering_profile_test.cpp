@@ -19,8 +19,8 @@ using Type = ScatteringProfile::Type;
 
 constexpr double kPi = std::numbers::pi;
 
-/// The integral of f(r) dr over all r > 0, lengths in units of `scale`: the trapezium rule over ln r, exact to rounding
-/// for what is analytic and falls off at both ends.
+/// The integral of f(r) dr over all r > 0, lengths in units of `scale`: the trapezium rule over ln r, exact
+/// to rounding for what is analytic and falls off at both ends.
 double integral(const std::function<double(double)>& f, double scale) {
     constexpr double kStep = 1.0 / 64;
     double sum = 0;
@@ -70,7 +70,8 @@ TEST(ScatteringProfile, OfEveryTypeHasTheIntegralOfItsDensityWithinARadius) {
             for (const double share : {0.01, 0.2, 1.0, 3.0}) {
                 const double end = share * rms_mm(profile, c);
                 const auto radial = [&](double r) { return 2 * kPi * r * profile.density(c, r); };
-                EXPECT_NEAR(profile.within(c, end), profile.direct[std::size_t(c)] + integral_to(end, radial), 1e-9)
+                EXPECT_NEAR(profile.within(c, end), profile.direct[std::size_t(c)] + integral_to(end, radial),
+                            1e-9)
                     << name_of(profile) << " " << c << " " << end;
             }
 }
@@ -81,7 +82,8 @@ TEST(ScatteringProfile, OfEveryTypeHasTheMeanSquareOfItsDensity) {
             const double rms = rms_mm(profile, c);
             const auto moment = [&](double r) { return 2 * kPi * r * r * r * profile.density(c, r); };
             const double scattered = 1 - profile.direct[std::size_t(c)];
-            EXPECT_NEAR(integral(moment, rms) / scattered, rms * rms, 1e-11 * rms * rms) << name_of(profile) << " " << c;
+            EXPECT_NEAR(integral(moment, rms) / scattered, rms * rms, 1e-11 * rms * rms)
+                << name_of(profile) << " " << c;
             EXPECT_NEAR(profile.fitted_d_mm()[std::size_t(c)], rms / std::sqrt(14.0), 1e-12 * rms);
         }
 }
@@ -106,7 +108,8 @@ TEST(ScatteringProfile, OfBurleyHasTheThreeMappingsFromAlbedoAndPath) {
         {{4.151, 1.539, 1.05, 0.906}, {3.515, 1.715, 1.10, 1.04}, {3.780, 3.584, 8.380, 23.651}}};
     for (std::size_t m = 0; m < 3; ++m)
         for (std::size_t i = 0; i < 4; ++i) {
-            EXPECT_NEAR(2 / burley_d_mm(BurleyMapping(m), albedos[i], 2), shapes[m][i], 6e-4) << m << " " << albedos[i];
+            EXPECT_NEAR(2 / burley_d_mm(BurleyMapping(m), albedos[i], 2), shapes[m][i], 6e-4)
+                << m << " " << albedos[i];
             EXPECT_NEAR(burley_d_mm(BurleyMapping(m), albedos[i], 2),
                         2 / reference::burley_shape(reference::BurleyMapping(m), albedos[i]), 1e-15);
         }
@@ -116,7 +119,8 @@ TEST(ScatteringProfile, HasTheRadiusWithinWhichAShareComesOut) {
     for (const ScatteringProfile& profile : one_of_each())
         for (int c = 0; c < 3; ++c)
             for (const double share : {0.75, 0.9, 0.99})
-                EXPECT_NEAR(profile.within(c, profile.radius_mm(c, share)), share, 1e-8) << name_of(profile) << " " << c;
+                EXPECT_NEAR(profile.within(c, profile.radius_mm(c, share)), share, 1e-8)
+                    << name_of(profile) << " " << c;
     EXPECT_NEAR(one_of_each()[0].radius_mm(0, 0.5), 0.7 * 1.5522, 1e-4);
     EXPECT_EQ(one_of_each()[3].radius_mm(0, 0.5), 0) << "0.52 is direct";
 }
@@ -131,7 +135,8 @@ TEST(ScatteringProfile, SpreadsALineAsItsClosedForms) {
             const double y = share * rms_mm(profiles[1], int(c));
             double sum = 0;
             for (const ScatteringGaussian& g : profiles[1].gaussians)
-                sum += g.weight[c] * std::exp(-y * y / (2 * g.variance_mm2[c])) / std::sqrt(2 * kPi * g.variance_mm2[c]);
+                sum += g.weight[c] * std::exp(-y * y / (2 * g.variance_mm2[c])) /
+                       std::sqrt(2 * kPi * g.variance_mm2[c]);
             EXPECT_NEAR(profiles[1].line_spread(int(c), y), sum, 1e-10 * sum);
         }
 }
@@ -155,7 +160,8 @@ TEST(ScatteringProfile, OfADipoleIsJensensOverItsTotal) {
     for (std::size_t c = 0; c < 3; ++c) {
         const Jensen jensen{profile.absorption[c], profile.scattering[c], profile.ior};
         const double rms = rms_mm(profile, int(c));
-        EXPECT_NEAR(integral([&](double r) { return 2 * kPi * r * jensen.profile(r); }, rms), jensen.total(), 1e-12);
+        EXPECT_NEAR(integral([&](double r) { return 2 * kPi * r * jensen.profile(r); }, rms), jensen.total(),
+                    1e-12);
         for (const double r : {1e-3, 0.1, 1.0, 5.0, 20.0}) {
             const double density = jensen.profile(r) / jensen.total();
             EXPECT_NEAR(profile.density(int(c), r), density, 1e-12 * density) << c << " at " << r;
@@ -163,14 +169,15 @@ TEST(ScatteringProfile, OfADipoleIsJensensOverItsTotal) {
     }
 }
 
-/// As SeparableSSS.cpp of Jimenez' published code has it: amplitudes of red for all channels, radii over 0.001 + falloff.
+/// As SeparableSSS.cpp of Jimenez' published code has it: amplitudes of red for all channels, radii over
+/// 0.001 + falloff.
 double jimenez_profile(double r, double falloff) {
     const auto gaussian = [&](double variance) {
         const double rr = r / (0.001 + falloff);
         return std::exp(-(rr * rr) / (2 * variance)) / (2 * kPi * variance);
     };
-    return 0.100 * gaussian(0.0484) + 0.118 * gaussian(0.187) + 0.113 * gaussian(0.567) + 0.358 * gaussian(1.99) +
-           0.078 * gaussian(7.41);
+    return 0.100 * gaussian(0.0484) + 0.118 * gaussian(0.187) + 0.113 * gaussian(0.567) +
+           0.358 * gaussian(1.99) + 0.078 * gaussian(7.41);
 }
 
 TEST(ScatteringProfile, OfAnArtistIsThePublishedOneOverItsIntegral) {
@@ -196,7 +203,8 @@ TEST(ScatteringProfile, OfAnotherTypeHasTheArtistsFalloffOfItsMeanSquare) {
     for (const ScatteringProfile& profile : one_of_each())
         for (std::size_t c = 0; c < 3; ++c) {
             const double ratio = profile.fitted_falloff_mm()[c] / artist.falloff_mm[c];
-            EXPECT_NEAR(rms_mm(profile, int(c)), ratio * rms_mm(artist, int(c)), 1e-12 * rms_mm(profile, int(c)));
+            EXPECT_NEAR(rms_mm(profile, int(c)), ratio * rms_mm(artist, int(c)),
+                        1e-12 * rms_mm(profile, int(c)));
         }
 }
 
@@ -231,12 +239,14 @@ TEST(ScatteringProfile, IsFittedByGaussiansThatKeepAllLightAndItsMeanSquare) {
                 sum += gaussian.weight[c];
                 mean_square += 2 * gaussian.weight[c] * gaussian.variance_mm2[c];
             }
-            const double scattered = 1 - profile.direct[c], expected = scattered * profile.mean_square_mm2(int(c));
+            const double scattered = 1 - profile.direct[c],
+                         expected = scattered * profile.mean_square_mm2(int(c));
             EXPECT_NEAR(sum, scattered, 1e-12) << name_of(profile);
             EXPECT_NEAR(mean_square, expected, 1e-10 * expected) << name_of(profile);
             if (profile.direct[c] == 0) {
                 EXPECT_LT(distance(profile, fit, c), 0.006) << name_of(profile) << " " << c;
-                RecordProperty(name_of(profile) + std::to_string(c), std::to_string(distance(profile, fit, c)));
+                RecordProperty(name_of(profile) + std::to_string(c),
+                               std::to_string(distance(profile, fit, c)));
             }
         }
     }
@@ -248,7 +258,8 @@ TEST(ScatteringProfile, IsFittedByTheSameGaussiansAtEveryScale) {
     ASSERT_EQ(small.size(), std::size_t(ScatteringProfile::kFittedGaussians));
     for (std::size_t k = 0; k < small.size(); ++k) {
         EXPECT_NEAR(small[k].weight[0], large[k].weight[0], 1e-6);
-        EXPECT_NEAR(small[k].variance_mm2[0] * 1e10, large[k].variance_mm2[0], 1e-5 * large[k].variance_mm2[0]);
+        EXPECT_NEAR(small[k].variance_mm2[0] * 1e10, large[k].variance_mm2[0],
+                    1e-5 * large[k].variance_mm2[0]);
     }
 }
 
@@ -273,7 +284,8 @@ TEST(ScatteringCurves, AreTheTwinsOfBurley) {
             const auto at = std::size_t(i);
             EXPECT_NEAR(curves.radial[at][c], reference::burley_radial_density(r, d), 1e-12 / d) << i;
             EXPECT_NEAR(curves.within[at][c], reference::burley_within(r, d), 1e-14) << i;
-            EXPECT_NEAR(curves.line[at][c], reference::burley_edge_response(r, d), 1e-13) << i << " " << r / d;
+            EXPECT_NEAR(curves.line[at][c], reference::burley_edge_response(r, d), 1e-13)
+                << i << " " << r / d;
         }
     }
 }
@@ -286,7 +298,8 @@ TEST(ScatteringCurves, OfGaussiansAreErrorFunctionsAcrossAnEdge) {
                 const double x = sample_radius(profile, i);
                 double line = profile.direct[c];
                 for (const ScatteringGaussian& gaussian : profile.gaussians)
-                    line += gaussian.weight[c] * (0.5 + 0.5 * std::erf(x / std::sqrt(2 * gaussian.variance_mm2[c])));
+                    line += gaussian.weight[c] *
+                            (0.5 + 0.5 * std::erf(x / std::sqrt(2 * gaussian.variance_mm2[c])));
                 EXPECT_NEAR(curves.line[std::size_t(i)][c], line, 1e-13) << name_of(profile) << " " << i;
             }
     }

@@ -30,14 +30,15 @@ TEST(ShippedScatteringProfiles, AreAllSound) {
     }
 }
 
-// The paper prints the diffuse reflectance beside the coefficients; it follows from them by the dipole's total, so that a
-// coefficient that was copied wrongly shows. Its own two digits differ from that by 0.008 at most, but for one.
+// The paper prints the diffuse reflectance beside the coefficients; it follows from them by the dipole's
+// total, so that a coefficient that was copied wrongly shows. Its own two digits differ from that by 0.008 at
+// most, but for one.
 TEST(ShippedScatteringProfiles, OfJensensTableHaveThePublishedReflectance) {
     const std::map<std::string, Rgb> reflectances = {
-        {"apple", {0.85, 0.84, 0.53}},     {"chicken1", {0.31, 0.15, 0.10}},  {"chicken2", {0.32, 0.16, 0.10}},
-        {"cream", {0.98, 0.90, 0.73}},     {"ketchup", {0.16, 0.01, 0.00}},   {"marble", {0.83, 0.79, 0.75}},
-        {"potato", {0.77, 0.62, 0.21}},    {"skim_milk", {0.81, 0.81, 0.69}}, {"skin1", {0.44, 0.22, 0.13}},
-        {"skin2", {0.63, 0.44, 0.34}},     {"whole_milk", {0.91, 0.88, 0.76}}};
+        {"apple", {0.85, 0.84, 0.53}},  {"chicken1", {0.31, 0.15, 0.10}},  {"chicken2", {0.32, 0.16, 0.10}},
+        {"cream", {0.98, 0.90, 0.73}},  {"ketchup", {0.16, 0.01, 0.00}},   {"marble", {0.83, 0.79, 0.75}},
+        {"potato", {0.77, 0.62, 0.21}}, {"skim_milk", {0.81, 0.81, 0.69}}, {"skin1", {0.44, 0.22, 0.13}},
+        {"skin2", {0.63, 0.44, 0.34}},  {"whole_milk", {0.91, 0.88, 0.76}}};
     for (const auto& [name, reflectance] : reflectances) {
         const ScatteringProfile profile = shipped(name);
         ASSERT_EQ(profile.type, ScatteringProfile::Type::dipole) << name;
@@ -51,7 +52,8 @@ TEST(ShippedScatteringProfiles, OfJensensTableHaveThePublishedReflectance) {
 }
 
 TEST(ShippedScatteringProfiles, OfSkinAsBurleyAreAsWideAsTheirSources) {
-    const ScatteringProfile six = shipped("skin"), one = shipped("skin_burley"), unreal = shipped("skin_unreal");
+    const ScatteringProfile six = shipped("skin"), one = shipped("skin_burley"),
+                            unreal = shipped("skin_unreal");
     // 2.6748 mm times the path's colour, over 3.5 + 100 (albedo - 0.33)^4.
     const Rgb unreal_mm = {0.1800, 0.0680, 0.0551};
     for (std::size_t c = 0; c < 3; ++c) {
