@@ -169,11 +169,24 @@ protected:
     const EffectManifest& manifest() const { return *manifest_; }
 
     FrameResult run(const Values& values, gpu::Backend backend, const Capture& capture) const {
-        const Capture before = capture_before();
+        const Capture before = with_aovs(capture_before()), whole = with_aovs(capture);
         FrameInputs frame;
-        frame.capture = &capture;
+        frame.capture = &whole;
         frame.previous = &before;
         return LookRunner(look_of(GetParam(), values), backend).run(frame);
+    }
+
+    /// With what no capture has by itself but the effect cannot do without: small numbers.
+    Capture with_aovs(Capture capture) const {
+        const Image& color = capture.images.at("color");
+        for (const InputSpec& input : manifest().inputs) {
+            if (!input.role.starts_with("aov:") || input.optional) continue;
+            Image image(color.width(), color.height(), 4);
+            for (std::size_t i = 0; i < image.floats().size(); ++i) image.floats()[i] = 0.001f * float(i % 5);
+            capture.images[input.role] = std::move(image);
+            capture.header.roles.push_back(input.role);
+        }
+        return capture;
     }
 
 private:
@@ -269,13 +282,13 @@ TEST_P(EveryEffect, DeclaresWhatItsShadersUseAndUsesWhatItDeclares) {
 
 /// What came before a cut, a gap or another size must leave no trace.
 TEST_P(EveryEffect, BeginsAnewAtACutAGapAndAnotherSize) {
-    const auto frame_of = [](int number, int width) {
-        return make_capture({.width = width,
-                             .height = 20,
-                             .background = {0.1f * float(number), 0.5f, 0.2f},
-                             .background_depth_m = 5,
-                             .box = SyntheticBox{4, 4, 8, 6, 2, 0, 2}},
-                            number);
+    const auto frame_of = [&](int number, int width) {
+        return with_aovs(make_capture({.width = width,
+                                       .height = 20,
+                                       .background = {0.1f * float(number), 0.5f, 0.2f},
+                                       .background_depth_m = 5,
+                                       .box = SyntheticBox{4, 4, 8, 6, 2, 0, 2}},
+                                      number));
     };
     const auto run_one = [](LookRunner& runner, const Capture& capture, bool cut) {
         FrameInputs frame;

@@ -1,5 +1,6 @@
 #version 450 core
 #include <pass>
+#include <scattering/filled.glsl>
 #include <scattering/result.glsl>
 
 void main() {

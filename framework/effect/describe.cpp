@@ -140,6 +140,7 @@ std::string describe_text(const EffectManifest& manifest) {
     for (const std::string& source : manifest.sources) out << "  source: " << source << "\n";
     for (const ModuleSpec& module : manifest.modules)
         out << "  module " << module.name << ": " << module.summary << "\n";
+    if (manifest.uses_lights) out << "  takes the capture's lights\n";
     out << "\ninputs\n";
     TextTable inputs("  ");
     for (const InputSpec& input : manifest.inputs)
@@ -183,6 +184,7 @@ std::string describe_markdown(const EffectManifest& manifest) {
     for (const ModuleSpec& module : manifest.modules)
         out << "\nTakes the module `" << module.name << "` (glsl/" << module.name << "): " << module.summary
             << "\n";
+    if (manifest.uses_lights) out << "\nTakes the capture's [lights](../captures.md).\n";
     out << "\n## Images\n\n| | name | role | |\n|---|---|---|---|\n";
     for (const InputSpec& input : manifest.inputs)
         out << "| in | `" << input.name << "` | " << input.role << input_flags(input) << " | "

@@ -38,6 +38,7 @@ std::string describe_json(const EffectManifest& manifest) {
                    {"inputs", json::object()},    {"outputs", json::object()},
                    {"params", json::object()},    {"textures", json::object()},
                    {"passes", json::array()},     {"presets", json::object()}};
+    if (manifest.uses_lights) result["uses"] = {"lights"};
     for (const InputSpec& input : manifest.inputs) {
         json entry = {{"role", input.role}, {"optional", input.optional}, {"doc", input.doc}};
         if (input.history) entry["history"] = true;

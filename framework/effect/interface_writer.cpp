@@ -81,6 +81,7 @@ public:
         defines();
         if (bindings_.has_param_block) params();
         text_ << frame_block_glsl() << camera_block_glsl();
+        if (manifest_.uses_lights) text_ << lights_block_glsl();
         if (bindings_.has_pass_block)
             text_ << "layout(std140, binding = " << kPassBinding << ") uniform PassBlock {\n"
                   << "    int index;\n    int count;\n} pass;\n";

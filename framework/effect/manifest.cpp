@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <regex>
+#include <set>
 #include <utility>
 
 #include "framework/core/text.h"
@@ -48,6 +49,23 @@ void ManifestParser::identity(ObjectReader& reader, const Node& node) {
     manifest_.sources = reader.texts("sources");
     static const std::vector<std::string> accumulated{"subframes"};
     manifest_.accumulates_subframes = reader.choice("accumulates", accumulated).has_value();
+}
+
+void ManifestParser::uses(const Node& section) {
+    static const std::vector<std::string> known{"lights"};
+    std::set<std::string> named;
+    for (const Node& item : section.items) {
+        if (!item.is_string()) {
+            fault(item.place, "'uses' holds names, not " + std::string(kind_name(item.kind)));
+        } else if (item.string != known[0]) {
+            fault(item.place, "'" + item.string + "' is nothing that shaders can use" +
+                                  did_you_mean(item.string, known) +
+                                  " (known: " + list_of_names(known, "and") + ")");
+        } else {
+            if (!named.insert(item.string).second) fault(item.place, "'" + item.string + "' is named twice");
+            if (!manifest_.uses_lights) manifest_.uses_lights = item.place;
+        }
+    }
 }
 
 void ManifestParser::params(const Node& section) {
@@ -152,6 +170,7 @@ std::optional<EffectManifest> parse_manifest(const Node& node, const fs::path& f
     if (const Node* section = reader.array("modules")) parser.modules(*section, glsl_folder);
     if (const Node* section = reader.object("inputs", Presence::required)) parser.inputs(*section);
     if (const Node* section = reader.object("outputs", Presence::required)) parser.outputs(*section);
+    parser.declarations("uses", reader.array("uses"), &ManifestParser::uses);
     parser.declarations("params", reader.object("params"), &ManifestParser::params);
     check_relation_declarations(manifest.params, diagnostics);
     parser.declarations("textures", reader.object("textures"), &ManifestParser::textures);

@@ -228,6 +228,8 @@ struct EffectManifest {
     std::string summary;
     std::vector<std::string> sources;
     std::vector<ModuleSpec> modules;
+    std::optional<Place>
+        uses_lights;  ///< "uses": ["lights"]: its shaders have the block `lights`; where it says so
     std::vector<InputSpec> inputs;
     std::vector<OutputSpec> outputs;
     std::vector<ParamSpec> params;

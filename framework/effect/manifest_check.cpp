@@ -53,6 +53,9 @@ public:
         : manifest_(manifest), diagnostics_(diagnostics) {}
 
     void check() {
+        if (manifest_.uses_lights)
+            for (const char* name : {"lights", "Light", "LIGHT_POINT", "LIGHT_DIRECTIONAL", "LIGHT_AREA"})
+                claim(name, "block 'lights'", *manifest_.uses_lights);
         for (const InputSpec& input : manifest_.inputs) {
             sampled("input", input);
             if (input.optional)

@@ -74,7 +74,7 @@ std::map<std::string, const Node*> ManifestParser::module_sections(Module& modul
     module.spec.summary = reader.text("summary", Presence::required).value_or("");
     std::map<std::string, const Node*> sections;
     for (const char* key : {"params", "textures", "buffers"}) sections[key] = reader.object(key);
-    sections["passes"] = reader.array("passes");
+    for (const char* key : {"uses", "passes"}) sections[key] = reader.array(key);
     reader.finish();
     return sections;
 }

@@ -29,6 +29,7 @@ public:
     void declarations(const std::string& key, const Node* own, SectionReader section_reader);
     void inputs(const Node& section);
     void outputs(const Node& section);
+    void uses(const Node& section);
     void params(const Node& section);  ///< before everything that may count by one
     void textures(const Node& section);
     void buffers(const Node& section);

@@ -200,4 +200,22 @@ std::string_view camera_block_glsl() {
            "} camera;\n";
 }
 
+std::string_view lights_block_glsl() {
+    static_assert(kMaxShaderLights == 16, "the text below says how many");
+    return "#define LIGHT_POINT 0\n"
+           "#define LIGHT_DIRECTIONAL 1\n"
+           "#define LIGHT_AREA 2\n"
+           "struct Light {\n"
+           "    vec3 position_m;\n"
+           "    int kind;\n"
+           "    vec3 direction;\n"
+           "    vec3 intensity;\n"
+           "    vec2 size_m;\n"
+           "};\n"
+           "layout(std140, binding = 6) uniform LightsBlock {\n"
+           "    int count;\n"
+           "    Light light[16];\n"
+           "} lights;\n";
+}
+
 }  // namespace aftershade

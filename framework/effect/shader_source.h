@@ -1,9 +1,9 @@
 // From an effect's shader file to the text that GL compiles, with a table back to the author's lines.
 //
 // A shader begins `#version 450 core` and `#include <pass>`. The host generates what <pass> stands for:
-// samplers, images, storage blocks, outputs and the blocks `param`, `frame`, `camera`, `pass` and `native`
-// (docs/shaders.md). `#include <x.glsl>` takes a file of glsl/, `#include <module/x.glsl>` one of a module's
-// folder there, `#include "x.glsl"` one of the including file's own folder; each is included once.
+// samplers, images, storage blocks, outputs and the blocks `param`, `frame`, `camera`, `lights`, `pass` and
+// `native` (docs/shaders.md). `#include <x.glsl>` takes a file of glsl/, `#include <module/x.glsl>` one of a
+// module's folder there, `#include "x.glsl"` one of the including file's own folder; each is included once.
 #pragma once
 
 #include <array>
@@ -29,6 +29,7 @@ inline constexpr int kSizeBinding = 2;  ///< a vec4 (w, h, 1/w, 1/h) for each of
 inline constexpr int kCameraBinding = 3;
 inline constexpr int kPassBinding = 4;  ///< only in passes with `repeat`
 inline constexpr int kNativeBinding = 5;
+inline constexpr int kLightsBinding = 6;  ///< only of effects with "uses": ["lights"]
 
 /// What one pass sees, resolved for one set of parameters and inputs.
 struct ShaderContext {
@@ -165,6 +166,27 @@ struct CameraBlock {
 };
 std::string_view camera_block_glsl();
 
+/// One light of the block `lights`; what its kind does not have is 0.
+struct LightEntry {
+    float position_m[3] = {0, 0, 0};  ///< world; of an area light its centre
+    std::int32_t kind = 0;            ///< LIGHT_POINT, LIGHT_DIRECTIONAL, LIGHT_AREA: 0, 1, 2
+    float direction[3] = {0, 0, 0};   ///< world, unit length, the way the light shines
+    float padding = 0;
+    float intensity[3] = {0, 0, 0};  ///< W/sr of a point, W/m^2 of a directional, W/(m^2 sr) of an area light
+    float end_padding = 0;
+    float size_m[2] = {0, 0};
+    float array_padding[2] = {0, 0};
+};
+/// Most lights that shaders get.
+inline constexpr std::size_t kMaxShaderLights = 16;
+/// The block `lights` of effects with "uses": ["lights"].
+struct LightsBlock {
+    std::int32_t count = 0;
+    std::int32_t padding[3] = {0, 0, 0};
+    LightEntry light[kMaxShaderLights];
+};
+std::string_view lights_block_glsl();
+
 // std140 (OpenGL 4.5 core, section 7.6.2.2): scalars align to 4 bytes, vec2 to 8, vec3, vec4 and matrices to
 // 16, and a scalar may fill the fourth place of a vec3, which jitter_px cannot.
 static_assert(offsetof(FrameBlock, origin_px) == 8 && offsetof(FrameBlock, number) == 16);
@@ -174,6 +196,9 @@ static_assert(offsetof(FrameBlock, scale) == 96 && sizeof(FrameBlock) == 112);
 static_assert(offsetof(CameraBlock, clip_from_world) == 256 && offsetof(CameraBlock, position_m) == 640);
 static_assert(offsetof(CameraBlock, jitter_px) == 656 && offsetof(CameraBlock, focal_length_mm) == 672);
 static_assert(offsetof(CameraBlock, has_matrices) == 688 && sizeof(CameraBlock) == 704);
+static_assert(offsetof(LightEntry, kind) == 12 && offsetof(LightEntry, direction) == 16);
+static_assert(offsetof(LightEntry, intensity) == 32 && offsetof(LightEntry, size_m) == 48);
+static_assert(offsetof(LightsBlock, light) == 16 && sizeof(LightEntry) == 64);
 static_assert(sizeof(PassBlock) == 16);
 
 }  // namespace aftershade

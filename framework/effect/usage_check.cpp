@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -20,9 +21,10 @@ using Uses = std::map<std::string, Place>;  // by name, with its first place
 /// What one shader uses.
 struct ShaderUses {
     std::set<std::string> words;
-    Uses params;   // x of param.x
-    Uses natives;  // x of native.x
-    Uses outputs;  // x of out_x, but for names that the shader declares itself
+    Uses params;                  // x of param.x
+    Uses natives;                 // x of native.x
+    Uses outputs;                 // x of out_x, but for names that the shader declares itself
+    std::optional<Place> lights;  // first place of lights.count or lights.light
 
     explicit ShaderUses(const std::vector<Token>& tokens) {
         std::set<std::string> own;
@@ -35,6 +37,9 @@ struct ShaderUses {
             if (i + 2 < tokens.size() && tokens[i + 1].text == ".") {
                 if (token.text == "param") params.emplace(tokens[i + 2].text, token.place);
                 if (token.text == "native") natives.emplace(tokens[i + 2].text, token.place);
+                const std::string& member = tokens[i + 2].text;
+                if (token.text == "lights" && (member == "count" || member == "light") && !lights)
+                    lights = token.place;
             }
             if (!token.text.starts_with(kOut)) continue;
             // "vec3 out_direction": a type before it makes it the shader's own.
@@ -65,6 +70,7 @@ public:
         for (const PassSpec& pass : manifest_.passes) check_pass(pass);
         for (const auto& [file, uses] : shaders_) check_shader(file, uses);
         check_params();
+        check_lights();
         if (manifest_.native) check_native(*manifest_.native);
     }
 
@@ -218,6 +224,18 @@ private:
             if (pass.instances->grid) add(pass.instances->grid->tile);
         }
         return names;
+    }
+
+    void check_lights() {
+        bool used = false;
+        for (const auto& [file, uses] : shaders_) {
+            if (!uses.lights) continue;
+            used = true;
+            if (!manifest_.uses_lights)
+                once(*uses.lights, "'lights' is there only for effects with \"uses\": [\"lights\"]");
+        }
+        if (manifest_.uses_lights && !used)
+            diagnostics_.error(*manifest_.uses_lights, "no shader uses 'lights'");
     }
 
     void check_native(const NativeSpec& native) {

@@ -120,6 +120,19 @@ Capture make_test_capture(int width, int height, int frame) {
     return capture;
 }
 
+/// What no capture has by itself but the effect cannot do without: small numbers.
+void add_required_aovs(const EffectManifest& manifest, Capture& capture) {
+    const Image& depth = capture.images.at("depth");
+    for (const InputSpec& input : manifest.inputs) {
+        if (!input.role.starts_with("aov:") || input.optional || capture.images.contains(input.role))
+            continue;
+        Image image(depth.width(), depth.height(), find_role(input.role)->channels);
+        for (std::size_t i = 0; i < image.floats().size(); ++i) image.floats()[i] = 0.001f * float(i % 7);
+        capture.images[input.role] = std::move(image);
+        capture.header.roles.push_back(input.role);
+    }
+}
+
 /// "" where all is well.
 std::string fault_of(gpu::Context& context, const EffectManifest& manifest, const Setting& setting,
                      const std::filesystem::path& data_folder, NativeSources natives) {
@@ -129,9 +142,9 @@ std::string fault_of(gpu::Context& context, const EffectManifest& manifest, cons
     PipelineRenderer renderer(context, pipeline, data_folder, natives);
     // Two frames, so that history is read.
     for (const int number : {1, 2}) {
-        const Capture previous = make_test_capture(64, 36, number - 1),
-                      capture = make_test_capture(64, 36, number),
-                      next = make_test_capture(64, 36, number + 1);
+        Capture previous = make_test_capture(64, 36, number - 1), capture = make_test_capture(64, 36, number),
+                next = make_test_capture(64, 36, number + 1);
+        for (Capture* each : {&previous, &capture, &next}) add_required_aovs(manifest, *each);
         FrameInputs frame;
         frame.capture = &capture;
         frame.previous = &previous;

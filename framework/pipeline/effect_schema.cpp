@@ -287,6 +287,12 @@ json native() {
                         {"element", "count", "doc"}))}});
 }
 
+json uses() {
+    json names = schema::array_of(schema::one_of({"lights"}));
+    names["uniqueItems"] = true;
+    return names;
+}
+
 }  // namespace
 
 std::string effect_schema() {
@@ -320,6 +326,7 @@ std::string effect_schema() {
                              {"sources", schema::array_of(kText)},
                              {"accumulates", {{"const", "subframes"}}},
                              {"modules", modules},
+                             {"uses", uses()},
                              {"inputs", schema::named(input)},
                              {"outputs", outputs},
                              {"params", schema::named(param(false))},
@@ -337,6 +344,7 @@ std::string module_schema() {
     return schema::document("Aftershade module",
                             {{"module", schema::snake_case()},
                              {"summary", kText},
+                             {"uses", uses()},
                              {"params", schema::named(param(false))},
                              {"textures", schema::named(texture())},
                              {"buffers", schema::named(buffer())},

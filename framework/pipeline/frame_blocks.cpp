@@ -140,6 +140,30 @@ CameraBlock camera_block(const FrameInputs& frame, const FrameBefore& before) {
     return block;
 }
 
+LightsBlock lights_block(const FrameInputs& frame, const std::string& step) {
+    const CaptureHeader& header = frame.capture->header;
+    LightsBlock block;
+    if (header.lights.size() > kMaxShaderLights)
+        throw Error(ExitCode::capture, header.path.string() + ": step '" + step +
+                                           "' uses the capture's lights, of which there are " +
+                                           std::to_string(header.lights.size()) + "; effects take " +
+                                           std::to_string(kMaxShaderLights) +
+                                           ". Name those that count in \"lights\" of capture.json");
+    block.count = std::int32_t(header.lights.size());
+    for (std::size_t i = 0; i < header.lights.size(); ++i) {
+        const CaptureLight& light = header.lights[i];
+        LightEntry& entry = block.light[i];
+        entry.kind = light.kind == CaptureLight::Kind::point         ? 0
+                     : light.kind == CaptureLight::Kind::directional ? 1
+                                                                     : 2;
+        std::copy(light.position_m.begin(), light.position_m.end(), entry.position_m);
+        std::copy(light.direction.begin(), light.direction.end(), entry.direction);
+        std::copy(light.intensity.begin(), light.intensity.end(), entry.intensity);
+        std::copy(light.size_m.begin(), light.size_m.end(), entry.size_m);
+    }
+    return block;
+}
+
 std::vector<std::byte> mix_block(const PipelineStep& step, const FrameInputs& frame) {
     MixBlock block;
     block.amount =

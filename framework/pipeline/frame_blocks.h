@@ -26,6 +26,10 @@ FrameBlock frame_block(const FrameInputs& frame, const std::string& step, bool h
 /// The block `camera`; `before` gives the prev_ matrices, unless the capture before is at hand.
 CameraBlock camera_block(const FrameInputs& frame, const FrameBefore& before);
 
+/// The block `lights` of a step that uses it. Throws Error(ExitCode::capture) where the capture has more than
+/// kMaxShaderLights.
+LightsBlock lights_block(const FrameInputs& frame, const std::string& step);
+
 /// The block of a step's "mix" and "mask" (glsl/host/mix.frag). Throws Error(ExitCode::capture) where the mix
 /// comes from the capture and does not fit.
 std::vector<std::byte> mix_block(const PipelineStep& step, const FrameInputs& frame);

@@ -113,6 +113,8 @@ void GraphBuilder::add_turn(StepBuild& build, const PassSpec& spec, int turn, in
         pass.uniforms.push_back({kParamBinding, param_block(manifest, build.params)});
     pass.uniforms.push_back({kFrameBinding, std::vector<std::byte>(sizeof(FrameBlock))});
     pass.uniforms.push_back({kCameraBinding, std::vector<std::byte>(sizeof(CameraBlock))});
+    if (manifest.uses_lights)
+        pass.uniforms.push_back({kLightsBinding, std::vector<std::byte>(sizeof(LightsBlock))});
     if (const NativeResult* native = natives_.result(build.index); native && has_native_block(manifest))
         pass.uniforms.push_back({kNativeBinding, native_block(manifest, native_values(*native))});
     if (spec.repeat) pass.uniforms.push_back({kPassBinding, bytes_of(PassBlock{turn, turns})});

@@ -137,6 +137,8 @@ double PipelineRenderer::feed(const FrameInputs& frame, const FrameBefore& befor
         executor.set_uniforms(pass.pass, kFrameBinding,
                               bytes_of(frame_block(frame, step.name, before.history_valid)));
         executor.set_uniforms(pass.pass, kCameraBinding, camera);
+        if (step.manifest->uses_lights)
+            executor.set_uniforms(pass.pass, kLightsBinding, bytes_of(lights_block(frame, step.name)));
         if (const NativeResult* native = natives_.result(pass.step);
             native && has_native_block(*step.manifest))
             executor.set_uniforms(pass.pass, kNativeBinding,

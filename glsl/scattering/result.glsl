@@ -9,16 +9,3 @@ vec4 scattered_result(ivec2 pixel, vec3 scattered) {
 #endif
     return texelFetch(facet, pixel, 0).r == 0u ? before : vec4(after, before.a);
 }
-
-#ifdef NORMALIZE
-// Light found over the share of the profile that it was found in; see the parameter normalize.
-vec3 filled(vec3 sum, vec3 share) {
-#if NORMALIZE == NORMALIZE_ALL
-    return sum / max(share, 1e-20);
-#elif NORMALIZE == NORMALIZE_MISSING
-    return sum / clamp(share, 1e-20, 1.0);
-#else
-    return sum;
-#endif
-}
-#endif

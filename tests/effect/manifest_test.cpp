@@ -152,6 +152,15 @@ const std::vector<Broken> kBrokenSections = {
     {test::kPresets,
      R"("presets": {}, "pases": [])",
      {"7: the manifest has no key 'pases'; did you mean 'passes'?"}},
+    {test::kMore, R"("uses": "lights")", {"8: 'uses' must be an array, not a string"}},
+    {test::kMore,
+     R"("uses": ["ligths", 3, "lights", "lights"])",
+     {"8: 'ligths' is nothing that shaders can use; did you mean 'lights'? (known: 'lights')",
+      "8: 'lights' is named twice", "8: 'uses' holds names, not an integer"}},
+    {test::kMore,
+     R"("uses": ["lights"], "buffers": {"lights": {"element": "uint", "count": 4, "clear": 0, "doc": "."}})",
+     {"8: buffer 'lights' needs the GLSL name 'lights', which the block 'lights' has",
+      "8: no pass uses the buffer 'lights'"}},
 };
 
 // The text after the known values of the capture changes with the camera's fields; the beginning tells the

@@ -161,6 +161,16 @@ TEST_F(Modules, MayHaveParametersOnlyAndBeMany) {
     EXPECT_EQ(sound(R"([])").modules.size(), 0U);
 }
 
+TEST_F(Modules, MayUseLightsForTheEffectsThatTakeThem) {
+    EXPECT_FALSE(sound().uses_lights);
+    write_module("tone", tone_module({{kModuleMore, R"("uses": ["lights"])"}}));
+    const EffectManifest manifest = sound();
+    ASSERT_TRUE(manifest.uses_lights);
+    EXPECT_EQ(manifest.uses_lights->file, (glsl_ / "tone/module.json").string());
+    // The effect may say so too.
+    EXPECT_EQ(faults(nullptr, R"(["tone"], "uses": ["lights"])"), Lines{});
+}
+
 TEST_F(Modules, ThatAreNotThereAreNamedWithTheNearest) {
     EXPECT_EQ(faults(nullptr, R"(["toen", 3, "tone", "tone"])"),
               (Lines{"demo/effect.json:8: error: no module 'toen' in glsl; did you mean 'tone'?",

@@ -245,6 +245,25 @@ TEST_P(HostBlocksOn, MeanInGlslWhatTheHostPutIn) {
     EXPECT_EQ(in_camera("camera.jitter_px, camera.prev_jitter_px"), (Floats{4, 5, 6, 7}));
     EXPECT_EQ(in_camera("camera.focal_length, camera.sensor_width, camera.focus_distance, camera.f_number"),
               (Floats{50, 36, 2.5F, 2.8F}));
+    LightsBlock lights{.count = 2, .padding = {}, .light = {}};
+    lights.light[0] = {.position_m = {1, 2, 3},
+                       .kind = 2,
+                       .direction = {4, 5, 6},
+                       .intensity = {7, 8, 9},
+                       .size_m = {10, 11}};
+    lights.light[15] = {.kind = 1, .intensity = {0, 0, 12}, .size_m = {0, 13}};
+    const auto in_lights = [&](const std::string& expression) {
+        return seen(lights_block_glsl(), kLightsBinding, lights, expression);
+    };
+    EXPECT_EQ(in_lights("lights.light[0].position_m, lights.count"), (Floats{1, 2, 3, 2}));
+    EXPECT_EQ(in_lights("lights.light[0].direction, lights.light[0].kind == LIGHT_AREA"),
+              (Floats{4, 5, 6, 1}));
+    EXPECT_EQ(in_lights("lights.light[0].intensity, lights.light[15].kind == LIGHT_DIRECTIONAL"),
+              (Floats{7, 8, 9, 1}));
+    EXPECT_EQ(in_lights("lights.light[0].size_m, lights.light[15].size_m.y, lights.light[15].intensity.b"),
+              (Floats{10, 11, 13, 12}));
+    EXPECT_EQ(in_lights("lights.light[1].kind == LIGHT_POINT, lights.light.length(), 0, 0"),
+              (Floats{1, 16, 0, 0}));
     EXPECT_EQ(in_camera("camera.has_prev_matrices, 0, camera.prev_clip_from_view[3][1], "
                         "camera.prev_view_from_view[3][1]"),
               (Floats{1, 0, 28, 29}));

@@ -116,6 +116,29 @@ TEST(UsageCheck, NamesThePlaceOfWhatIsNotUsed) {
     EXPECT_TRUE(lines[1].ends_with("error: no shader uses 'MODE'")) << lines[1];
 }
 
+TEST(UsageCheck, HoldsEffectsToWhetherTheyUseTheLights) {
+    const auto faults = [](const std::string& shader, const std::string& uses) {
+        Sound effect(uses.empty() ? test::Sections{} : test::Sections{{test::kMore, uses}});
+        effect.folder.write("a.frag", shader);
+        return effect.faults();
+    };
+    const std::string uses = R"("uses": ["lights"])";
+    EXPECT_EQ(faults(kFirst, ""), Lines{});
+    const Lines unused = faults(kFirst, uses);
+    ASSERT_EQ(unused.size(), 1U);
+    EXPECT_TRUE(unused[0].starts_with("effect.json:8:") && unused[0].ends_with("no shader uses 'lights'"))
+        << unused[0];
+    const std::string counts = std::string(kFirst) + "int more() {\n    return lights.count;\n}\n";
+    EXPECT_EQ(faults(counts, uses), Lines{});
+    const Lines undeclared = faults(counts, "");
+    ASSERT_EQ(undeclared.size(), 1U);
+    EXPECT_TRUE(
+        undeclared[0].ends_with(":12: error: 'lights' is there only for effects with \"uses\": [\"lights\"]"))
+        << undeclared[0];
+    // A thing of the shader's own may have that name.
+    EXPECT_EQ(faults(std::string(kFirst) + "vec3 more(vec3 lights) { return lights.xxx; }\n", ""), Lines{});
+}
+
 TEST(UsageCheck, CountsWhatTheManifestItselfUses) {
     // taps sizes a texture, flag and mode decide on a pass: no shader need speak of them.
     Sound effect(

@@ -245,6 +245,54 @@ TEST_F(Renderer, TellsTheShaderOfThisFramesAndTheLastFramesJitter) {
     EXPECT_EQ(second.at(0, 0, 3), -0.5f);
 }
 
+/// An effect from color to color that uses the capture's lights.
+void add_lit(EffectFolder& effects, const std::string& expression) {
+    effects.add("lit", std::string(kColorOnly) + R"("uses": ["lights"],)" + kOnePass,
+                "void main() { out_color = " + expression + " + 0 * texelFetch(color, ivec2(0), 0); }\n");
+}
+
+TEST_F(Renderer, GivesEffectsThatUseThemTheCapturesLights) {
+    add_lit(effects_,
+            "vec4(lights.light[0].position_m, lights.count) * float(lights.light[0].kind == LIGHT_AREA) + "
+            "vec4(10 * lights.light[1].direction, lights.light[1].intensity.b) * "
+            "float(lights.light[1].kind == LIGHT_DIRECTIONAL)");
+    Bench bench(effects_, look_of(R"({ "effect": "lit" })"));
+    Capture capture = plain();
+    expect_everywhere(bench.color(capture), {0, 0, 0});
+    capture.header.lights = {{CaptureLight::Kind::area, "key", {1, 2, 3}, {0, -1, 0}, {0.5, 0.25}, {4, 5, 6}},
+                             {CaptureLight::Kind::directional, "", {}, {0, 0.5, 1}, {}, {7, 8, 9}}};
+    const Image two = bench.color(capture);
+    expect_everywhere(two, {1, 7, 13});
+    EXPECT_EQ(two.at(0, 0, 3), 11);
+    // Another frame's lights are its own.
+    capture.header.lights = {{CaptureLight::Kind::area, "", {-4, 0, 0}, {0, 0, 1}, {1, 1}, {}}};
+    capture.header.frame += 1;
+    expect_everywhere(bench.color(capture), {-4, 0, 0});
+}
+
+TEST_F(Renderer, RefusesMoreLightsThanShadersTakeOnlyForEffectsThatUseThem) {
+    add_lit(effects_, "vec4(lights.light[15].intensity, lights.count)");
+    effects_.add_color("plain", "source");
+    Capture capture = plain();
+    capture.header.path = "many.exr";
+    capture.header.lights.assign(16, {CaptureLight::Kind::point, "", {}, {}, {}, {1, 2, 3}});
+    Bench lit(effects_, look_of(R"({ "effect": "lit", "name": "relight" })"));
+    const Image color = lit.color(capture);
+    expect_everywhere(color, {1, 2, 3});
+    EXPECT_EQ(color.at(0, 0, 3), 16);
+    capture.header.lights.resize(17);
+    expect_everywhere(Bench(effects_, look_of(R"({ "effect": "plain" })")).color(capture), {0.25f, 0.5f, 1});
+    try {
+        lit.color(capture);
+        FAIL() << "17 lights were taken";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.exit_code(), ExitCode::capture);
+        EXPECT_EQ(std::string(error.what()),
+                  "many.exr: step 'relight' uses the capture's lights, of which there are 17; effects take "
+                  "16. Name those that count in \"lights\" of capture.json");
+    }
+}
+
 TEST_F(Renderer, GivesEachStepASeedThatAnotherStepDoesNotChange) {
     effects_.add_color("seed", "source + vec4(float(frame.step_seed >> 8u), 0, 0, 0)");
     const Capture black = plain(2, 2, {});

@@ -16,7 +16,7 @@ constexpr unsigned kSkin = 1;
 
 struct SkinScene {
     const char* id;
-    double red_d_px;       ///< at 480 px and the median depth of what scatters
+    double red_d_px;        ///< at 480 px and the median depth of what scatters
     double unscattered_db;  ///< luminance of the color, against the truth
 };
 
@@ -88,7 +88,8 @@ TEST_P(SkinScenes, AreFarFromTheirTruthByTheStatedAndElsewhereAreIt) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shipped, SkinScenes,
-                         testing::Values(SkinScene{"skin_patch", 8.2, 29.4}, SkinScene{"skin_ear", 2.55, 34.7},
+                         testing::Values(SkinScene{"skin_patch", 8.2, 29.4},
+                                         SkinScene{"skin_ear", 2.55, 34.7},
                                          SkinScene{"skin_front", 0.89, 39.7}),
                          [](const auto& scene) { return std::string(scene.param.id); });
 

@@ -1,5 +1,6 @@
-// Times effects on pictures of known CoC, or counts their texel fetches. scripts/bench-dof says which, as
-// JSON on stdin, and reads JSON from stdout; the figures are of its making, the measuring is here.
+// Times effects on pictures of known CoC or surface, or counts their texel fetches. scripts/bench-dof and
+// scripts/bench-sss say which, as JSON on stdin, and read JSON from stdout; the figures are of their making,
+// the measuring is here.
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -23,7 +24,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Where the counting shaders of scripts/dof/bench.py add up, in as many words as pixels would crowd.
+/// Where the counting shaders of scripts/dof/effect_bench.py add up, in as many words as pixels would crowd.
 constexpr unsigned kCountBinding = 15;
 constexpr std::size_t kCountWords = 4096;
 
@@ -52,6 +53,29 @@ Capture make_capture(const json& job, const json& test) {
             }
             color.at(x, y, 3) = 1;
             z.at(x, y, 0) = x < edge ? blurred_m : focus_m;
+        }
+    return capture;
+}
+
+/// Object 1, at `depth_m` all over, under light that no filter could leave as it is: the job's "role" is
+/// "irradiance".
+Capture make_surface(const json& job, const json& test) {
+    const int width = job.at("size").at(0), height = job.at("size").at(1);
+    Capture capture;
+    CaptureHeader& header = capture.header;
+    header.frame = 1;
+    header.path = "bench";
+    header.profile = "native";
+    header.roles = {"irradiance", "depth", "object_id"};
+    header.data_window = header.display_window = {0, 0, width - 1, height - 1};
+    Image& light = capture.images["irradiance"] = Image(width, height, 3);
+    Image& z = capture.images["depth"] = Image(width, height, 1);
+    Image& id = capture.images["object_id"] = Image(width, height, 1, ComponentType::uint32);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            for (int c = 0; c < 3; ++c) light.at(x, y, c) = (x / 40 + y / 30) % 2 ? 1.0f : 0.1f * float(c);
+            z.at(x, y, 0) = test.at("depth_m");
+            id.uint_at(x, y, 0) = 1;
         }
     return capture;
 }
@@ -85,14 +109,15 @@ std::uint64_t sum(const gpu::Buffer& counts) {
 json measure(gpu::Context& context, gpu::Buffer& counts, const json& job, const json& test,
              EffectRegistry& effects) {
     const Pipeline pipeline = bind(test, effects);
-    const Capture capture = make_capture(job, test);
+    const std::string role = job.value("role", "color");
+    const Capture capture = role == "irradiance" ? make_surface(job, test) : make_capture(job, test);
     PipelineRenderer renderer(context, pipeline, job.at("data").get<std::string>());
     FrameInputs frame;
     frame.capture = &capture;
-    renderer.render(frame, {"color"}, false);
+    renderer.render(frame, {role}, false);
     counts.clear(0);
     context.gl().BindBufferBase(GL_SHADER_STORAGE_BUFFER, kCountBinding, counts.handle());
-    const FrameResult result = renderer.render(frame, {"color"}, true);
+    const FrameResult result = renderer.render(frame, {role}, true);
     json passes = json::array();
     double ms = 0;
     for (const graph::PassTime& pass : result.times) {
@@ -133,7 +158,7 @@ int main() {
     try {
         return aftershade::run();
     } catch (const std::exception& error) {
-        std::cerr << "dof_bench: " << error.what() << "\n";
+        std::cerr << "effect_bench: " << error.what() << "\n";
         return 1;
     }
 }

@@ -1,0 +1,8 @@
+#version 450 core
+#include <pass>
+#include <scattering/result.glsl>
+
+void main() {
+    ivec2 p = ivec2(gl_FragCoord.xy);
+    out_irradiance = scattered_result(p, texelFetch(RESULT, p, 0).rgb);
+}

@@ -1,0 +1,31 @@
+#version 450 core
+#include <pass>
+#include <scattering/facet.glsl>
+#include "mark.glsl"
+
+// Widest mean, 32 px: beyond it light of other surface would come in.
+const float kMostLevel = 5.0;
+
+// Mean over about the area that the sample stands for (Krivanek and Colbert 2008; area in px^2 is 4 to the level), where that
+// is all of one object.
+vec3 light_of_sample(Facet there, vec2 place, float area_px) {
+#if PREFILTER
+    vec4 mean = textureLod(light, place * light_size.zw, clamp(0.5 * log2(area_px), 0.0, kMostLevel));
+    return abs(mean.a - mark_of(there.key)) < 1e-4 ? mean.rgb : there.light;
+#else
+    return there.light;
+#endif
+}
+
+#include <scattering/gather.glsl>
+
+void main() {
+    ivec2 p = ivec2(gl_FragCoord.xy);
+    ViewLines lines = view_lines();
+    Facet here = read_facet(lines, p);
+    vec4 planned = texelFetch(plan, p, 0);
+    int count = here.key == 0u ? 0 : int(planned.x);
+    vec3 scattered = here.light;
+    if (count > 0) scattered = mix(here.light, gathered_light(lines, p, here, samples_start(param.seed), count), planned.z);
+    out_estimate = vec4(scattered, float(count));
+}

@@ -1,0 +1,18 @@
+// What a pixel remembers of its luminance. Exponentially moving mean of weight a, and variance: Finch 2009, Incremental
+// calculation of weighted mean and variance.
+#include <luminance.glsl>
+#include "past.glsl"
+
+float exposed(vec3 light) { return exp2(param.exposure) * luminance(light); }
+
+// The history after a frame whose luminance, less its control variate, was `value`.
+vec4 updated_history(vec4 past, bool known, float count, float value, uint key) {
+    // Without history the wanted variance is taken to be met.
+    if (!known)
+        return vec4(0.5 * float(param.min_samples + param.max_samples), sqrt(param.target_variance), value, key_of(key));
+    float weight = param.history_weight, mean_count = mix(past.x, count, weight);
+    if (count < 0.5) return vec4(mean_count, past.yz, key_of(key));
+    float off = value - past.z;
+    float variance = (1.0 - weight) * (past.y * past.y + weight * off * off);
+    return vec4(mean_count, sqrt(variance), past.z + weight * off, key_of(key));
+}

@@ -1,0 +1,24 @@
+#version 450 core
+#include <pass>
+#include <scattering/facet.glsl>
+#include "moments.glsl"
+
+// The control variate's factor is what followed the light best so far, Cov / Var (Xie and Olano 2021), with the moving
+// covariance matrix of the luminance after and before scattering; 1 while that before has not changed yet.
+void main() {
+    ivec2 p = ivec2(gl_FragCoord.xy), q;
+    past_pixel(q);
+    Facet here = read_facet(view_lines(), p);
+    vec4 planned = texelFetch(plan, p, 0), drawn = texelFetch(estimate, p, 0), moments = texelFetch(covariance_prev, q, 0);
+    bool known = planned.y > 0.0;
+    vec2 light = vec2(exposed(drawn.rgb), exposed(here.light));
+    if (!known) moments = vec4(0.0, 0.0, light);
+    bool varied = moments.y > 1e-6 * (1.0 + moments.w * moments.w);
+    float factor = varied ? clamp(moments.x / moments.y, 0.0, 2.0) : 1.0;
+    vec2 off = light - moments.zw;
+    float weight = param.history_weight;
+    vec4 moved = vec4((1.0 - weight) * (moments.xy + weight * off * off.y), moments.zw + weight * off);
+    vec4 after = updated_history(texelFetch(history_prev, q, 0), known, drawn.a, light.x - factor * light.y, here.key);
+    out_history = here.key == 0u ? vec4(0.0) : after;
+    out_covariance = here.key == 0u ? vec4(0.0) : drawn.a < 0.5 ? moments : moved;
+}
