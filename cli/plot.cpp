@@ -1,5 +1,6 @@
-// Written out by hand: the plotting libraries of Debian 12 (PLplot, plotutils, MathGL; sciplot and gnuplot-iostream start
-// gnuplot) draw in fixed colours, which are not legible on both a light and a dark page, and none is smaller than this file.
+// Written out by hand: the plotting libraries of Debian 12 (PLplot, plotutils, MathGL; sciplot and
+// gnuplot-iostream start gnuplot) draw in fixed colours, which are not legible on both a light and a dark
+// page, and none is smaller than this file.
 #include "cli/plot.h"
 
 #include <fmt/format.h>
@@ -10,7 +11,7 @@ namespace aftershade::cli {
 
 namespace {
 
-constexpr double kWidth = 380, kHeight = 240;              // of a panel's box, px
+constexpr double kWidth = 380, kHeight = 240;                       // of a panel's box, px
 constexpr double kLeft = 58, kTop = 38, kRight = 18, kBottom = 48;  // around it
 constexpr double kHead = 78;
 
@@ -45,17 +46,20 @@ public:
     PanelWriter(const PlotPanel& panel, double x, double y) : panel_(panel), x_(x), y_(y) {}
 
     std::string text() {
-        out_ += fmt::format("<text class=\"head\" x=\"{}\" y=\"{}\">{}</text>\n", x_, y_ - 12, escaped(panel_.title));
+        out_ += fmt::format("<text class=\"head\" x=\"{}\" y=\"{}\">{}</text>\n", x_, y_ - 12,
+                            escaped(panel_.title));
         out_ += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n", x_ + kWidth / 2,
                             y_ + kHeight + 38, escaped(panel_.x_label));
         for (const double tick : plot_ticks(panel_.x_range, 6)) add_x_tick(tick);
         if (panel_.log_y) {
             const double low = std::log10(panel_.y_range[0]), high = std::log10(panel_.y_range[1]);
-            for (double power = std::ceil(low - 1e-9); power <= high + 1e-9; ++power) add_y_tick(std::pow(10, power));
+            for (double power = std::ceil(low - 1e-9); power <= high + 1e-9; ++power)
+                add_y_tick(std::pow(10, power));
         } else {
             for (const double tick : plot_ticks(panel_.y_range, 5)) add_y_tick(tick);
         }
-        out_ += fmt::format("<rect class=\"box\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n", x_, y_, kWidth, kHeight);
+        out_ += fmt::format("<rect class=\"box\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n", x_, y_,
+                            kWidth, kHeight);
         for (std::size_t i = 0; i < panel_.lines.size(); ++i) add_line(i);
         return std::move(out_);
     }
@@ -71,15 +75,17 @@ private:
     }
 
     void add_x_tick(double tick) {
-        out_ += fmt::format("<path class=\"grid\" d=\"M{0:.2f} {1}v{2}\"/><text x=\"{0:.2f}\" y=\"{3}\" "
-                            "text-anchor=\"middle\">{4:.4g}</text>\n",
-                            across(tick), y_, kHeight, y_ + kHeight + 17, tick);
+        out_ += fmt::format(
+            "<path class=\"grid\" d=\"M{0:.2f} {1}v{2}\"/><text x=\"{0:.2f}\" y=\"{3}\" "
+            "text-anchor=\"middle\">{4:.4g}</text>\n",
+            across(tick), y_, kHeight, y_ + kHeight + 17, tick);
     }
 
     void add_y_tick(double tick) {
-        out_ += fmt::format("<path class=\"grid\" d=\"M{0} {1:.2f}h{2}\"/><text x=\"{3}\" y=\"{4:.2f}\" "
-                            "text-anchor=\"end\">{5:.4g}</text>\n",
-                            x_, along(tick), kWidth, x_ - 6, along(tick) + 4.5, tick);
+        out_ += fmt::format(
+            "<path class=\"grid\" d=\"M{0} {1:.2f}h{2}\"/><text x=\"{3}\" y=\"{4:.2f}\" "
+            "text-anchor=\"end\">{5:.4g}</text>\n",
+            x_, along(tick), kWidth, x_ - 6, along(tick) + 4.5, tick);
     }
 
     /// What lies outside the ranges is left out: a line that leaves the box ends there.
@@ -104,8 +110,9 @@ std::string legend(const std::vector<PlotLine>& lines) {
     std::string out;
     double x = kLeft;
     for (std::size_t i = 0; i < lines.size(); ++i) {
-        out += fmt::format("<path class=\"line line{}\" d=\"M{} 64h26\"/><text x=\"{}\" y=\"68.5\">{}</text>\n", i, x, x + 32,
-                           escaped(lines[i].name));
+        out +=
+            fmt::format("<path class=\"line line{}\" d=\"M{} 64h26\"/><text x=\"{}\" y=\"68.5\">{}</text>\n",
+                        i, x, x + 32, escaped(lines[i].name));
         x += 62 + 7.2 * double(lines[i].name.size());
     }
     return out;
@@ -122,19 +129,24 @@ std::vector<double> plot_ticks(const std::array<double, 2>& range, int count) {
     return ticks;
 }
 
-std::string plot_svg(const std::string& title, const std::string& caption, const std::vector<PlotPanel>& panels) {
+std::string plot_svg(const std::string& title, const std::string& caption,
+                     const std::vector<PlotPanel>& panels) {
     const double column = kLeft + kWidth + kRight, row = kTop + kHeight + kBottom;
-    const double width = column * (panels.size() > 1 ? 2 : 1), height = kHead + row * double((panels.size() + 1) / 2);
-    std::string out = fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} "
-                                  "{1}\" role=\"img\">\n<title>{2}</title>\n{3}<rect class=\"page\" width=\"{0}\" "
-                                  "height=\"{1}\"/>\n",
-                                  width, height, escaped(title), kStyle);
-    out += fmt::format("<text class=\"title\" x=\"{0}\" y=\"26\">{1}</text>\n<text class=\"small\" x=\"{0}\" "
-                       "y=\"46\">{2}</text>\n",
-                       kLeft, escaped(title), escaped(caption));
+    const double width = column * (panels.size() > 1 ? 2 : 1),
+                 height = kHead + row * double((panels.size() + 1) / 2);
+    std::string out = fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} "
+        "{1}\" role=\"img\">\n<title>{2}</title>\n{3}<rect class=\"page\" width=\"{0}\" "
+        "height=\"{1}\"/>\n",
+        width, height, escaped(title), kStyle);
+    out += fmt::format(
+        "<text class=\"title\" x=\"{0}\" y=\"26\">{1}</text>\n<text class=\"small\" x=\"{0}\" "
+        "y=\"46\">{2}</text>\n",
+        kLeft, escaped(title), escaped(caption));
     if (!panels.empty()) out += legend(panels[0].lines);
     for (std::size_t i = 0; i < panels.size(); ++i)
-        out += PanelWriter(panels[i], kLeft + column * double(i % 2), kHead + kTop + row * double(i / 2)).text();
+        out +=
+            PanelWriter(panels[i], kLeft + column * double(i % 2), kHead + kTop + row * double(i / 2)).text();
     return out + "</svg>\n";
 }
 

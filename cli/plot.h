@@ -21,10 +21,11 @@ struct PlotPanel {
     std::vector<PlotLine> lines;
 };
 
-/// At most kPlotLines lines a panel; each has its own colour and dashes, the same in every panel, named under the
-/// title by the first panel's legend. Panels stand two in a row.
+/// At most kPlotLines lines a panel; each has its own colour and dashes, the same in every panel, named under
+/// the title by the first panel's legend. Panels stand two in a row.
 inline constexpr std::size_t kPlotLines = 3;
-std::string plot_svg(const std::string& title, const std::string& caption, const std::vector<PlotPanel>& panels);
+std::string plot_svg(const std::string& title, const std::string& caption,
+                     const std::vector<PlotPanel>& panels);
 
 /// Numbers 1, 2 or 5 times a power of ten apart, at most about `count`, within a range.
 std::vector<double> plot_ticks(const std::array<double, 2>& range, int count);

@@ -30,14 +30,16 @@ Rgb radii_mm(const ScatteringProfile& profile, double share) {
 }
 
 std::string row(const std::string& name, const Rgb& values, const std::string& unit) {
-    return fmt::format("  {:<22} {:>9.4g} {:>9.4g} {:>9.4g}  {}\n", name, values[0], values[1], values[2], unit);
+    const std::string numbers = fmt::format("{:>9.4g} {:>9.4g} {:>9.4g}", values[0], values[1], values[2]);
+    return fmt::format("  {:<22} {}{}\n", name, numbers, unit.empty() ? "" : "  " + unit);
 }
 
 /// The type's own numbers, as the document has them.
 std::string own_rows(const ScatteringProfile& profile) {
     using Type = ScatteringProfile::Type;
     if (profile.type == Type::dipole)
-        return row("absorption", profile.absorption, "1/mm") + row("reduced scattering", profile.scattering, "1/mm") +
+        return row("absorption", profile.absorption, "1/mm") +
+               row("reduced scattering", profile.scattering, "1/mm") +
                fmt::format("  {:<22} {:>9.4g}\n", "index of refraction", profile.ior);
     if (profile.type == Type::artist)
         return row("falloff", profile.falloff_mm, "mm") +
@@ -56,7 +58,8 @@ const std::string& type_of(const ScatteringProfile& profile) {
 using Curve = std::function<double(int channel, double r_mm)>;
 
 /// Samples closest where r is least.
-PlotPanel panel(const std::string& title, const std::string& x_label, double end_mm, const Curve& curve, bool mirrored = false) {
+PlotPanel panel(const std::string& title, const std::string& x_label, double end_mm, const Curve& curve,
+                bool mirrored = false) {
     constexpr int kSamples = 240;
     PlotPanel panel{title, x_label, {mirrored ? -end_mm : 0, end_mm}, {0, 0}, false, {}};
     for (int c = 0; c < 3; ++c) {
@@ -99,8 +102,10 @@ std::optional<ScatteringProfile> find_profile(const std::string& what, Diagnosti
 std::string profile_text(const ScatteringProfile& profile) {
     std::string text = profile.name.empty() ? type_of(profile) : profile.name + ": " + type_of(profile);
     if (!profile.summary.empty()) text += "\n" + profile.summary;
-    text += fmt::format("\n\n  {:<22} {:>9} {:>9} {:>9}\n", "", kChannels[0], kChannels[1], kChannels[2]) + own_rows(profile);
-    text += row(profile.type == ScatteringProfile::Type::burley ? "d" : "d of equal rms", profile.fitted_d_mm(), "mm");
+    text += fmt::format("\n\n  {:<22} {:>9} {:>9} {:>9}\n", "", kChannels[0], kChannels[1], kChannels[2]) +
+            own_rows(profile);
+    text += row(profile.type == ScatteringProfile::Type::burley ? "d" : "d of equal rms",
+                profile.fitted_d_mm(), "mm");
     if (profile.direct != Rgb{}) text += row("direct", profile.direct, "out where it went in");
     text += row("rms radius", rms_mm(profile), "mm");
     for (const double share : kShares)
@@ -112,14 +117,10 @@ std::string profile_text(const ScatteringProfile& profile) {
 std::string profile_json(const ScatteringProfile& profile) {
     nlohmann::ordered_json radii;
     for (const double share : kShares) radii[fmt::format("{:g}", share)] = radii_mm(profile, share);
-    nlohmann::ordered_json document = {{"name", profile.name},
-                                       {"summary", profile.summary},
-                                       {"sources", profile.sources},
-                                       {"type", type_of(profile)},
-                                       {"d_mm", profile.fitted_d_mm()},
-                                       {"direct", profile.direct},
-                                       {"rms_mm", rms_mm(profile)},
-                                       {"radius_mm", radii},
+    nlohmann::ordered_json document = {{"name", profile.name},          {"summary", profile.summary},
+                                       {"sources", profile.sources},    {"type", type_of(profile)},
+                                       {"d_mm", profile.fitted_d_mm()}, {"direct", profile.direct},
+                                       {"rms_mm", rms_mm(profile)},     {"radius_mm", radii},
                                        {"reach_mm", profile.reach_mm()}};
     return document.dump(2);
 }
@@ -135,8 +136,9 @@ std::string profile_plot(const ScatteringProfile& profile) {
               [&](int c, double r) { return 2 * std::numbers::pi * r * profile.density(c, r); }),
         panel("Share within a radius", "r [mm]", end, [&](int c, double r) { return profile.within(c, r); }),
         panel("R(r) [1/mm\u00b2]", "r [mm]", end, [&](int c, double r) { return profile.density(c, r); }),
-        panel("Light of a line, the 1-D kernel [1/mm]", "x [mm]", widest(0.9),
-              [&](int c, double x) { return profile.line_spread(c, x); }, true)};
+        panel(
+            "Light of a line, the 1-D kernel [1/mm]", "x [mm]", widest(0.9),
+            [&](int c, double x) { return profile.line_spread(c, x); }, true)};
     panels[1].y_range = {0, 1};
     make_logarithmic(panels[2]);
     // Burley's kernel has no end at 0; what a hundredth of its width lets through is the top of the picture.
@@ -149,9 +151,10 @@ std::string profile_plot(const ScatteringProfile& profile) {
         panels[0].lines[c].name = fmt::format("{}: d {:.3g} mm, rms {:.3g} mm", kChannels[c], d[c], rms[c]);
     std::string caption = profile.summary;
     if (profile.direct != Rgb{})
-        caption += fmt::format(" At r = 0, not drawn: {:.3g}, {:.3g} and {:.3g}.", profile.direct[0], profile.direct[1],
-                               profile.direct[2]);
-    return plot_svg("Scattering profile " + (profile.name.empty() ? type_of(profile) : profile.name), caption, panels);
+        caption += fmt::format(" At r = 0, not drawn: {:.3g}, {:.3g} and {:.3g}.", profile.direct[0],
+                               profile.direct[1], profile.direct[2]);
+    return plot_svg("Scattering profile " + (profile.name.empty() ? type_of(profile) : profile.name), caption,
+                    panels);
 }
 
 }  // namespace aftershade::cli

@@ -8,8 +8,8 @@
 
 namespace aftershade::cli {
 
-/// A shipped profile by its name, or one by the path of its file, which ends in .json. nullopt for any other word, and
-/// after errors.
+/// A shipped profile by its name, or one by the path of its file, which ends in .json. nullopt for any other
+/// word, and after errors.
 std::optional<ScatteringProfile> find_profile(const std::string& what, Diagnostics& diagnostics);
 std::string profile_text(const ScatteringProfile& profile);
 std::string profile_json(const ScatteringProfile& profile);
