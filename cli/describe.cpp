@@ -2,34 +2,72 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-#include <iostream>
+#include <algorithm>
+#include <fstream>
 #include <memory>
 
 #include "cli/capture_options.h"
 #include "cli/effect_options.h"
+#include "cli/profile_report.h"
 #include "cli/verbs.h"
+#include "framework/core/atomic_file.h"
+#include "framework/core/error.h"
 
 namespace aftershade::cli {
 
 namespace {
 
 struct DescribeOptions {
-    std::string effect;
+    std::string what;
     std::vector<std::string> effect_paths;
     bool json = false;
+    std::string plot;
 };
+
+/// The default of the effect's first scattering_profile parameter.
+ScatteringProfile profile_of(const EffectManifest& manifest, Diagnostics& diagnostics) {
+    for (const ParamSpec& spec : manifest.params)
+        if (const auto* value = std::get_if<ScatteringValue>(&spec.default_value)) return value->usual;
+    diagnostics.error({"--plot"}, "the effect '" + manifest.id + "' has no scattering_profile to plot");
+    stop_at_errors(diagnostics);
+    return {};
+}
+
+void write_plot(const ScatteringProfile& profile, const std::string& path) {
+    AtomicFile atomic(path);
+    std::ofstream out(atomic.temporary_path(), std::ios::binary);
+    out << profile_plot(profile);
+    out.close();
+    if (!out) throw Error(ExitCode::output, path + ": cannot be written");
+    atomic.commit();
+    fmt::print("{}\n", path);
+}
 
 ExitCode describe(const DescribeOptions& options) {
     Diagnostics diagnostics;
     EffectRegistry effects = find_effects(options.effect_paths, diagnostics);
-    if (!effects.contains(options.effect)) {
-        const auto ids = effects.ids();
-        diagnostics.error({"EFFECT"},
-                          "no effect '" + options.effect + "'" + did_you_mean(options.effect, ids));
+    if (!effects.contains(options.what)) {
+        if (const auto profile = find_profile(options.what, diagnostics)) {
+            if (!options.plot.empty()) write_plot(*profile, options.plot);
+            else
+                fmt::print("{}{}", options.json ? profile_json(*profile) : profile_text(*profile),
+                           options.json ? "\n" : "");
+            return ExitCode::done;
+        }
+        stop_at_errors(diagnostics);
+        auto known = effects.ids();
+        const auto shipped = scattering_profile_names();
+        known.insert(known.end(), shipped.begin(), shipped.end());
+        diagnostics.error({"WHAT"}, "no effect or scattering profile '" + options.what + "'" +
+                                        did_you_mean(options.what, known) +
+                                        "; a profile's file ends in .json");
     }
-    const EffectManifest* manifest = effects.find(options.effect, diagnostics);
+    const EffectManifest* manifest = effects.find(options.what, diagnostics);
     stop_at_errors(diagnostics);
+    if (!options.plot.empty()) {
+        write_plot(profile_of(*manifest, diagnostics), options.plot);
+        return ExitCode::done;
+    }
     fmt::print("{}{}", options.json ? describe_json(*manifest) : describe_text(*manifest),
                options.json ? "\n" : "");
     return ExitCode::done;
@@ -39,9 +77,14 @@ ExitCode describe(const DescribeOptions& options) {
 
 Verb add_describe(CLI::App& app) {
     auto options = std::make_shared<DescribeOptions>();
-    app.add_option("effect", options->effect, "Id of an effect")->required();
+    app.add_option("what", options->what,
+                   "Id of an effect, name of a scattering profile or path of one's .json")
+        ->required();
     add_effect_path_option(app, options->effect_paths);
-    app.add_flag("--json", options->json, "Machine-readable output");
+    auto* json = app.add_flag("--json", options->json, "Machine-readable output");
+    app.add_option("--plot", options->plot, "Draw the scattering profile, an effect's default one, as SVG")
+        ->type_name("FILE")
+        ->excludes(json);
     return [options] { return describe(*options); };
 }
 

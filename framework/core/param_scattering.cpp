@@ -65,7 +65,9 @@ TableValue scattering_table(const ScatteringValue& value) {
 }
 
 std::optional<ParamValue> ValueReader::scattering(const Node& node) const {
-    const std::filesystem::path folder = std::filesystem::path(node.place.file).parent_path();
+    // Of a value of the command line, which has no line, from where the program runs.
+    const std::filesystem::path folder =
+        node.place.line > 0 ? std::filesystem::path(node.place.file).parent_path() : std::filesystem::path();
     const bool has_rows = node.is_object() && (node.find("rows") || node.find("default"));
     const int errors_before = diagnostics.error_count();
     ScatteringValue value;

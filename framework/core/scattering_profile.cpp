@@ -63,6 +63,21 @@ double beyond(const ScatteringProfile& profile, int channel, double radius_mm) {
     return sum;
 }
 
+/// The light at x >= 0 into the lit side of a straight edge. Of what goes in the direction at an angle a to
+/// the normal of the edge, half of what goes farther than x / cos a comes from the dark side; cos a = 1 /
+/// cosh t makes an integrand for which the trapezium rule is exact to rounding (Trefethen and Weideman 2014).
+double edge_response(const ScatteringProfile& profile, int channel, double x_mm) {
+    constexpr double kStep = 1.0 / 8, kEnd = 40;
+    double dark = beyond(profile, channel, x_mm) / 2;
+    for (int i = 1; i * kStep < kEnd; ++i) {
+        const double cosh = std::cosh(i * kStep);
+        const double term = beyond(profile, channel, x_mm * cosh) / cosh;
+        dark += term;
+        if (term < 1e-17) break;
+    }
+    return 1 - dark * kStep / kPi;
+}
+
 /// The radius beyond which `share` of a channel's light lies, by bisection.
 double radius_beyond(const ScatteringProfile& profile, int channel, double share) {
     double low = 0, high = 1e-6;
@@ -125,6 +140,21 @@ double ScatteringProfile::density(int channel, double radius_mm) const {
 
 double ScatteringProfile::within(int channel, double radius_mm) const {
     return 1 - beyond(*this, channel, radius_mm);
+}
+
+double ScatteringProfile::radius_mm(int channel, double share) const {
+    return 1 - share >= beyond(*this, channel, 0) ? 0 : radius_beyond(*this, channel, 1 - share);
+}
+
+double ScatteringProfile::line_spread(int channel, double x_mm) const {
+    // Along the line y = x sinh t, so that r = x cosh t: the trapezium rule as in edge_response().
+    constexpr double kStep = 1.0 / 16, kEnd = 40;
+    double sum = x_mm * density(channel, x_mm) / 2;
+    for (int i = 1; i * kStep < kEnd; ++i) {
+        const double r = x_mm * std::cosh(i * kStep);
+        sum += r * density(channel, r);
+    }
+    return 2 * kStep * sum;
 }
 
 double ScatteringProfile::mean_square_mm2(int channel) const {
@@ -198,26 +228,15 @@ ScatteringCurves scattering_curves(const ScatteringProfile& profile) {
     // Below it 2 pi r density(r) has come to its limit, to float's precision.
     const double least_mm = 1e-9 * reach;
     for (int i = 0; i < kScatteringSamples; ++i) {
-        Rgb radial{}, within{};
+        Rgb radial{}, within{}, line{};
         for (int c = 0; c < 3; ++c) {
             const double r = std::max(radius(i), least_mm);
             radial[std::size_t(c)] = 2 * kPi * r * profile.density(c, r);
             within[std::size_t(c)] = profile.within(c, radius(i));
+            line[std::size_t(c)] = edge_response(profile, c, radius(i));
         }
         curves.radial.push_back(radial);
         curves.within.push_back(within);
-    }
-    // Of light from distance r in all directions the share 2/pi asin(x/r) lies within |x| of a line.
-    for (int i = 0; i < kScatteringSamples; ++i) {
-        const double x = radius(i);
-        Rgb line = curves.within[0];
-        for (int k = 0; k + 1 < kScatteringSamples; ++k) {
-            const double r = radius(k + 0.5);
-            const double near = r > x ? 2 / kPi * std::asin(x / r) : 1;
-            for (std::size_t c = 0; c < 3; ++c)
-                line[c] += near * (curves.within[std::size_t(k) + 1][c] - curves.within[std::size_t(k)][c]);
-        }
-        for (double& share : line) share = 0.5 + 0.5 * share;
         curves.line.push_back(line);
     }
     return curves;

@@ -22,7 +22,7 @@ struct ScatteringGaussian {
     bool operator==(const ScatteringGaussian&) const = default;
 };
 
-/// A material's profile. Values are mm, mm^2 and 1/mm. Everything but `name` depends on the document alone.
+/// A material's profile. Values are mm, mm^2 and 1/mm. Channels are 0 to 2.
 struct ScatteringProfile {
     enum class Type {
         burley,     ///< normalized diffusion: Christensen and Burley 2015, Pixar technical memo 15-04
@@ -31,7 +31,9 @@ struct ScatteringProfile {
         artist      ///< falloff and strength: Jimenez et al. 2015, doi:10.1111/cgf.12529, his published code
     };
 
-    std::string name;  ///< as written: "skin", a path; "" of one that stands in the document itself
+    std::string name;     ///< as written: "skin", a path; "" of one that stands in the document itself
+    std::string summary;  ///< of a file
+    std::vector<std::string> sources;
     Type type = Type::burley;
     Rgb d_mm{};                                 ///< burley
     std::vector<ScatteringGaussian> gaussians;  ///< gaussians and artist
@@ -49,6 +51,11 @@ struct ScatteringProfile {
     double density(int channel, double radius_mm) const;
     /// Share within a distance, `direct` included: the CDF of the radius.
     double within(int channel, double radius_mm) const;
+    /// The distance within which a share, 0 to below 1, comes out; 0 where so much is direct.
+    double radius_mm(int channel, double share) const;
+    /// The light of a line at a distance above 0 from it, 1/mm; without what is direct. Its integral over
+    /// both sides is 1 - direct.
+    double line_spread(int channel, double x_mm) const;
     /// Mean square distance of what is not direct, mm^2.
     double mean_square_mm2(int channel) const;
     /// d of the Burley profile with that mean square distance, 14 d^2; its own d for burley.
@@ -65,6 +72,12 @@ struct ScatteringProfile {
     std::vector<ScatteringGaussian> as_gaussians() const;
     static constexpr int kFittedGaussians = 6;
     static constexpr std::size_t kMaxGaussians = 8;
+
+    // What documents may write: d, mean free paths and widths; both coefficients of a dipole, 1/mm, below
+    // which light would go on for ever; and an artist's strength.
+    static constexpr double kLeastLength_mm = 1e-6, kMostLength_mm = 1e6;
+    static constexpr double kLeastAbsorption = 1e-5, kMostAbsorption = 1e3, kMostScattering = 1e4;
+    static constexpr double kLeastStrength = 0.001;
 };
 
 /// "burley", "gaussians", "dipole", "artist".
@@ -80,7 +93,7 @@ struct ScatteringCurves {
     std::vector<Rgb> radial;  ///< 2 pi r density(r), 1/mm: share per radius; its limit at r = 0
     std::vector<Rgb> within;
     std::vector<Rgb> line;  ///< edge response: the light at a distance x into the lit side of a straight
-                            ///< edge, the limit at 0, (1 + direct) / 2, to 1
+                            ///< edge, the limit at 0, (1 + direct) / 2, to almost 1
 };
 inline constexpr int kScatteringSamples = 1024;
 ScatteringCurves scattering_curves(const ScatteringProfile& profile);

@@ -36,8 +36,8 @@ public:
         if (is_file) {
             check_document_version(reader_, node_, diagnostics_);
             reader_.text("$schema");
-            reader_.text("summary", Presence::required);
-            reader_.texts("sources");
+            profile_.summary = reader_.text("summary", Presence::required).value_or("");
+            profile_.sources = reader_.texts("sources");
         }
         const auto type = reader_.choice("type", scattering_type_names(), Presence::required);
         if (!type) return std::nullopt;
@@ -99,11 +99,8 @@ private:
     void read_burley() {
         if (node_.find("d_mm")) {
             for (const char* key : {"albedo", "mean_free_path_mm", "mapping"})
-                if (const Node* other = node_.find(key)) {
-                    reader_.any(key);
-                    fault(*other,
-                          "'d_mm' says it all; '" + std::string(key) + "' belongs to 'mean_free_path_mm'");
-                }
+                if (const Node* other = reader_.any(key))
+                    fault(*other, "'" + std::string(key) + "' cannot stand beside 'd_mm', which says it all");
             profile_.d_mm = rgb("d_mm", kLeastLength_mm, kMostLength_mm, Presence::required);
             return;
         }
@@ -124,21 +121,25 @@ private:
             return;
         }
         Rgb sum{};
-        for (const Node& item : list->items) {
-            ObjectReader reader(item, label_ + ".gaussians", diagnostics_);
+        const int errors_before = diagnostics_.error_count();
+        for (std::size_t i = 0; i < list->items.size(); ++i) {
+            const std::string which = "gaussians[" + std::to_string(i) + "]";
+            ObjectReader reader(list->items[i], label_ + "." + which, diagnostics_);
             if (!reader.is_object()) continue;
             ScatteringGaussian gaussian;
             const Node* variance = reader.any("variance_mm2", Presence::required);
             const Node* weight = reader.any("weight", Presence::required);
+            if (variance)
+                gaussian.variance_mm2 =
+                    rgb(*variance, which + ".variance_mm2", kLeastLength_mm * kLeastLength_mm,
+                        kMostLength_mm * kMostLength_mm)
+                        .value_or(Rgb{1, 1, 1});
+            if (weight) gaussian.weight = rgb(*weight, which + ".weight", 0, 1).value_or(Rgb{});
             reader.finish();
-            if (!variance || !weight) continue;
-            gaussian.variance_mm2 = rgb(*variance, "variance_mm2", kLeastLength_mm * kLeastLength_mm,
-                                        kMostLength_mm * kMostLength_mm)
-                                        .value_or(Rgb{1, 1, 1});
-            gaussian.weight = rgb(*weight, "weight", 0, 1).value_or(Rgb{});
             for (std::size_t c = 0; c < 3; ++c) sum[c] += gaussian.weight[c];
             profile_.gaussians.push_back(gaussian);
         }
+        if (diagnostics_.error_count() > errors_before) return;
         for (std::size_t c = 0; c < 3; ++c) {
             if (std::abs(sum[c] - 1) > kSumTolerance)
                 fault(*list, "the weights of " + std::string(kChannels[c]) + " sum to " +
@@ -148,16 +149,19 @@ private:
     }
 
     void read_dipole() {
-        // Below the least absorption light would go on for ever: its mean square distance has no end.
-        profile_.absorption = rgb("absorption_per_mm", 1e-5, 1e3, Presence::required);
-        profile_.scattering = rgb("reduced_scattering_per_mm", 1e-5, 1e4, Presence::required);
+        const double least = ScatteringProfile::kLeastAbsorption;
+        profile_.absorption =
+            rgb("absorption_per_mm", least, ScatteringProfile::kMostAbsorption, Presence::required);
+        profile_.scattering =
+            rgb("reduced_scattering_per_mm", least, ScatteringProfile::kMostScattering, Presence::required);
         if (const Node* ior = reader_.any("ior"))
             profile_.ior = number(*ior, "ior", 1, 3).value_or(profile_.ior);
     }
 
     void read_artist() {
         const Rgb falloff = rgb("falloff", 0, 1, Presence::optional, {1, 0.37, 0.3});
-        const Rgb strength = rgb("strength", 0.001, 1, Presence::optional, {0.48, 0.41, 0.28});
+        const Rgb strength =
+            rgb("strength", ScatteringProfile::kLeastStrength, 1, Presence::optional, {0.48, 0.41, 0.28});
         if (const Node* width = reader_.any("width_mm"))
             profile_.width_mm = number(*width, "width_mm", kLeastLength_mm, kMostLength_mm).value_or(1);
         profile_.gaussians.assign(artist_gaussians().size(), {});
@@ -174,7 +178,8 @@ private:
         }
     }
 
-    static constexpr double kLeastLength_mm = 1e-6, kMostLength_mm = 1e6;
+    static constexpr double kLeastLength_mm = ScatteringProfile::kLeastLength_mm;
+    static constexpr double kMostLength_mm = ScatteringProfile::kMostLength_mm;
     static constexpr double kSumTolerance = 0.01;
     static constexpr const char* kChannels[] = {"red", "green", "blue"};
 
@@ -184,6 +189,11 @@ private:
     Diagnostics& diagnostics_;
     ScatteringProfile profile_;
 };
+
+/// A number from 0 to 1 without what arithmetic has left behind its twelfth digit.
+double as_written(double value) {
+    return std::round(value * 1e12) / 1e12;
+}
 
 std::string text_of(const Rgb& values) {
     return "[" + format_number(values[0]) + ", " + format_number(values[1]) + ", " +
@@ -200,8 +210,12 @@ const std::vector<std::string>& scattering_type_names() {
 std::vector<std::string> scattering_profile_names() {
     std::vector<std::string> names;
     std::error_code failure;
-    for (const fs::directory_entry& entry : fs::directory_iterator(shipped_folder(), failure))
-        if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
+    for (const fs::directory_entry& entry : fs::directory_iterator(shipped_folder(), failure)) {
+        const fs::path file = entry.path().filename();
+        // profile.schema.json is no profile.
+        if (file.extension() == ".json" && is_snake_case(file.stem().string()))
+            names.push_back(file.stem().string());
+    }
     std::sort(names.begin(), names.end());
     return names;
 }
@@ -231,7 +245,7 @@ std::optional<ScatteringProfile> parse_scattering_profile(const Node& node, cons
     }
     const auto document = read_document(path, diagnostics);
     if (!document) return std::nullopt;
-    auto profile = ProfileReader(*document, "scattering profile", diagnostics).read(true);
+    auto profile = ProfileReader(*document, "the scattering profile", diagnostics).read(true);
     if (profile) profile->name = node.string;
     return profile;
 }
@@ -247,8 +261,8 @@ std::string format_scattering_profile(const ScatteringProfile& profile) {
     if (profile.type == Type::artist) {
         Rgb falloff{}, strength{};
         for (std::size_t c = 0; c < 3; ++c) {
-            falloff[c] = profile.falloff_mm[c] / profile.width_mm - 0.001;
-            strength[c] = 1 - profile.direct[c];
+            falloff[c] = as_written(profile.falloff_mm[c] / profile.width_mm - 0.001);
+            strength[c] = as_written(1 - profile.direct[c]);
         }
         return type + "\"falloff\": " + text_of(falloff) + ", \"strength\": " + text_of(strength) +
                ", \"width_mm\": " + format_number(profile.width_mm) + "}";

@@ -105,48 +105,18 @@ private:
     }
 
     json scattering() const {
-        const json profile = part(any_of({text(), scattering_profile()}));
-        json rows = object({{"default", profile}, {"rows", array_of(keyed_row({{"profile", profile}}))}},
-                           {"default"});
-        return any_of({text(), scattering_profile(), std::move(rows)});
+        const json profile = part(any_of({text(), scattering_profile(variables_)}));
+        json row = keyed_row({{"profile", profile}});
+        row["required"] = {"profile"};
+        json rows =
+            object({{"default", profile}, {"rows", part(array_of(part(std::move(row))))}}, {"default"});
+        return any_of({text(), scattering_profile(variables_), std::move(rows)});
     }
 
     Variables variables_;
 };
 
 }  // namespace
-
-json scattering_profile() {
-    const auto positive = [](double max) {
-        return json{{"type", "number"}, {"exclusiveMinimum", 0}, {"maximum", max}};
-    };
-    const auto rgb = [](const json& each) { return any_of({each, array_of(each, 3, 3)}); };
-    const json share = {{"type", "number"}, {"minimum", 0}, {"maximum", 1}};
-    const json length = rgb(positive(1e6));
-    json gaussian =
-        object({{"variance_mm2", rgb(positive(1e12))}, {"weight", rgb(share)}}, {"variance_mm2", "weight"});
-    const auto type = [](const char* name) { return json{{"const", name}}; };
-    return any_of(
-        {object({{"type", type("burley")}, {"d_mm", length}}, {"type", "d_mm"}),
-         object({{"type", type("burley")},
-                 {"albedo", rgb(share)},
-                 {"mean_free_path_mm", length},
-                 {"mapping", one_of({"searchlight", "diffuse", "dmfp"})}},
-                {"type", "albedo", "mean_free_path_mm"}),
-         object({{"type", type("gaussians")},
-                 {"gaussians", array_of(std::move(gaussian), 1, int(ScatteringProfile::kMaxGaussians))}},
-                {"type", "gaussians"}),
-         object({{"type", type("dipole")},
-                 {"absorption_per_mm", rgb(positive(1e3))},
-                 {"reduced_scattering_per_mm", rgb(positive(1e4))},
-                 {"ior", {{"type", "number"}, {"minimum", 1}, {"maximum", 3}}}},
-                {"type", "absorption_per_mm", "reduced_scattering_per_mm"}),
-         object({{"type", type("artist")},
-                 {"falloff", rgb(share)},
-                 {"strength", rgb(share)},
-                 {"width_mm", positive(1e6)}},
-                {"type"})});
-}
 
 json object(json properties, std::vector<std::string> required) {
     json result = {

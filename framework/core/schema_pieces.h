@@ -36,8 +36,10 @@ json variable();
 void define_variable(json& definitions);
 /// A literal of the parameter's type. With variables, one may stand for it and for any part of it.
 json literal(const ParamSpec& spec, Variables variables = Variables::no);
-/// A scattering profile as an object.
-json scattering_profile();
+/// A scattering profile as an object, within another document.
+json scattering_profile(Variables variables = Variables::no);
+/// Of a scattering profile's own file, with its head.
+json scattering_profile_file();
 /// Id of an object, or its Cryptomatte name.
 json object_key();
 /// Head of a document: "$schema" of the schema itself, title, and "aftershade": 1 among the properties.

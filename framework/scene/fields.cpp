@@ -152,7 +152,7 @@ const Block& material_block() {
          number("specular", "", 0.04, 0, 1,
                 "Reflectance at normal incidence, by Schlick; 0 for no highlight."),
          color("emission", 0, 1e9, "Radiance that it gives off.")},
-        {{"scattering_profile", Form::object, "scattering_profile", "Light goes in and comes out nearby."}}};
+        {{"scattering_profile", Form::scattering, "", "Light goes in and comes out nearby."}}};
     return block;
 }
 
@@ -162,15 +162,6 @@ const Block& checker_block() {
         "Squares of two colours over the texture coordinates.",
         {required(vector(ParamType::vec2, "cells", "", {8, 8}, 1e-6, 65536, "Squares along u and v."))},
         {{"checker", Form::values, "albedo", "The two colours.", true, 2, 2}}};
-    return block;
-}
-
-const Block& scattering_block() {
-    static const Block block = {"scattering_profile",
-                                "How far light goes under the surface (Christensen and Burley 2015).",
-                                {required(choice("type", {"burley"}, "The profile's formula.")),
-                                 required(vector(ParamType::vec3, "d_mm", "", {1, 1, 1}, 1e-6, 1e6,
-                                                 "Burley's d of red, green and blue, in millimetres."))}};
     return block;
 }
 

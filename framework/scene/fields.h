@@ -42,6 +42,7 @@ struct Part {
         list,         ///< of such objects
         by_name,      ///< such objects by name
         values,       ///< a list of values of the material's field `of`
+        scattering,   ///< a scattering profile: a name, a path, an object
         frame_range,  ///< "1-24", or one number
         frames,       ///< a list of numbers of frames
     };
@@ -67,7 +68,6 @@ const Block& camera_block();
 const Block& shutter_block();
 const Block& material_block();
 const Block& checker_block();
-const Block& scattering_block();
 const Block& mesh_block();  ///< has one of its parts
 const Block& height_field_block();
 const Block& wave_block();

@@ -11,6 +11,12 @@ double burley_density(double radius_m, double d_m) {
            (8 * std::numbers::pi * d_m * radius_m);
 }
 
+double scattering_density(const Scattering& scattering, int channel, double radius_m) {
+    if (scattering.profile.type == ScatteringProfile::Type::burley)
+        return burley_density(radius_m, scattering.d_m[channel]);
+    return 1e6 * scattering.profile.density(channel, 1e3 * radius_m);
+}
+
 double burley_radius(double u) {
     const double rest = 1 - u;
     const double g = 1 + 4 * rest * (2 * rest + std::sqrt(1 + 4 * rest * rest));

@@ -14,6 +14,9 @@ double burley_density(double radius_m, double d_m);
 /// 1 - exp(-x) / 4 - 3/4 exp(-x / 3) (Golubev, "Sampling Burley's Normalized Diffusion Profiles", 2019).
 double burley_radius(double u);
 
+/// Share per m^2 at a distance above 0, over the albedo and without what is direct.
+double scattering_density(const Scattering& scattering, int channel, double radius_m);
+
 /// A point around another, in the plane of its surface.
 struct ScatterPoint {
     double radius_m = 0;
@@ -21,7 +24,7 @@ struct ScatterPoint {
     double area_m2 = 0;  ///< that it stands for
 };
 
-/// About `count` points, for each width of the profile's channels on a spiral of its own: the radii divide
+/// About `count` points, for each d of the profile's channels on a spiral of its own: the radii divide
 /// the channel's distribution, its tail most finely, the angles go on by the golden ratio of a turn (Vogel
 /// 1979), so that no edge meets many points at once. The balance heuristic (Veach and Guibas 1995) brings the
 /// spirals together.

@@ -58,8 +58,12 @@ public:
             else if (round) add_on_sphere(centre, along, point.radius_m, point.area_m2);
             else add_by_probe(along, point.radius_m, point.area_m2);
         }
-        return {weights_.x > 0 ? sum_.x / weights_.x : 0, weights_.y > 0 ? sum_.y / weights_.y : 0,
-                weights_.z > 0 ? sum_.z / weights_.z : 0};
+        dvec3 light(0);
+        for (int c = 0; c < 3; ++c)
+            if (weights_[c] > 0) light[c] = sum_[c] / weights_[c];
+        const Rgb& direct = scattering_.profile.direct;
+        if (direct == Rgb{}) return light;
+        return glm::mix(light, world_.irradiance(here_), dvec3(direct[0], direct[1], direct[2]));
     }
 
 private:
@@ -67,7 +71,7 @@ private:
         // From a little before the point, so that it does not hide itself.
         if (visible_only_ && world_.is_hidden(eye_, glm::mix(there.position, eye_, 1e-6), false)) return;
         dvec3 weight;
-        for (int c = 0; c < 3; ++c) weight[c] = burley_density(radius_m, scattering_.d_m[c]) * area_m2;
+        for (int c = 0; c < 3; ++c) weight[c] = scattering_density(scattering_, c, radius_m) * area_m2;
         sum_ += weight * world_.irradiance(there);
         weights_ += weight;
     }

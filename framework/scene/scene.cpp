@@ -139,12 +139,11 @@ void SceneReader::read_checker(const Node& node, FieldReader& fields, const std:
 }
 
 std::optional<Scattering> SceneReader::read_scattering(const Node& node, const std::string& label) {
-    ObjectReader reader(node, "the scattering profile", diagnostics_);
-    FieldReader fields(reader, label + "scattering_profile.", diagnostics_);
-    fields.choice(scattering_block(), "type");
-    const glm::dvec3 d_mm = fields.vec3(scattering_block(), "d_mm");
-    reader.finish();
-    return Scattering{d_mm * 1e-3};
+    auto profile =
+        parse_scattering_profile(node, label + "scattering_profile", scene_.path.parent_path(), diagnostics_);
+    if (!profile) return std::nullopt;
+    const Rgb d_mm = profile->fitted_d_mm();
+    return Scattering{glm::dvec3(d_mm[0], d_mm[1], d_mm[2]) * 1e-3, std::move(*profile)};
 }
 
 void SceneReader::read_materials(const Node& node) {
@@ -158,7 +157,7 @@ void SceneReader::read_materials(const Node& node) {
         material.roughness = fields.number(material_block(), "roughness");
         material.specular = fields.number(material_block(), "specular");
         material.emission = fields.vec3(material_block(), "emission");
-        if (const Node* scattering = reader.object("scattering_profile"))
+        if (const Node* scattering = reader.any("scattering_profile"))
             material.scattering = read_scattering(*scattering, label);
         reader.finish();
         materials_[member.key] = int(scene_.materials.size());

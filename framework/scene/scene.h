@@ -9,6 +9,7 @@
 
 #include "framework/core/diagnostics.h"
 #include "framework/core/document.h"
+#include "framework/core/scattering_profile.h"
 #include "framework/scene/animated.h"
 #include "framework/scene/mesh.h"
 
@@ -32,9 +33,11 @@ struct Shape {
     int mesh = -1;              ///< index into Scene::meshes
 };
 
-/// Burley's normalized diffusion (Christensen and Burley 2015), R(r) of one channel with its d.
+/// How light goes under the surface: Burley's normalized diffusion with d_m (Christensen and Burley 2015),
+/// unless the profile is of another type; then d_m is of Burley's with the same mean square distance.
 struct Scattering {
     glm::dvec3 d_m{0};
+    ScatteringProfile profile = {};
 };
 
 struct Material {

@@ -27,6 +27,7 @@ std::string type_of(const Part& part) {
         case Part::Form::file: return "path from the document's folder";
         case Part::Form::name: return "name of a declared " + link(part.of);
         case Part::Form::object: return link(part.of);
+        case Part::Form::scattering: return "[scattering profile](params.md#scattering-profiles)";
         case Part::Form::list: return "list of " + link(part.of);
         case Part::Form::by_name: return link(part.of) + " by name";
         case Part::Form::values: return "list of values as " + part.of + " has";
@@ -107,7 +108,7 @@ std::string scene_reference() {
                  {"$schema", "text", "", "", "", "", "Where an editor finds the schema."}},
                 out);
     for (const Block* block : {&camera_block(), &shutter_block(), &material_block(), &checker_block(),
-                               &scattering_block(), &mesh_block(), &height_field_block(), &wave_block()})
+                               &mesh_block(), &height_field_block(), &wave_block()})
         write(*block);
     write_kinds(object_block(), "shape", shape_blocks(), out);
     write(repeat_block());

@@ -64,6 +64,7 @@ json form_of(const Part& part) {
         case Part::Form::file:
         case Part::Form::name: return schema::text();
         case Part::Form::object: return reference(part.of);
+        case Part::Form::scattering: return schema::any_of({schema::text(), schema::scattering_profile()});
         case Part::Form::list: return schema::array_of(reference(part.of), part.min_items, part.max_items);
         case Part::Form::by_name: return {{"type", "object"}, {"additionalProperties", reference(part.of)}};
         case Part::Form::values:
@@ -147,9 +148,8 @@ std::string scene_schema() {
     json document = schema::document("Aftershade scene", keys.properties, keys.required);
     require_materials(document);
     json definitions = json::object();
-    for (const Block* block :
-         {&camera_block(), &shutter_block(), &material_block(), &checker_block(), &scattering_block(),
-          &height_field_block(), &wave_block(), &repeat_block(), &pattern_block()})
+    for (const Block* block : {&camera_block(), &shutter_block(), &material_block(), &checker_block(),
+                               &height_field_block(), &wave_block(), &repeat_block(), &pattern_block()})
         definitions[block->name] = object_of(*block);
     definitions[mesh_block().name] = one_part_of(mesh_block());
     definitions[object_block().name] = kinds_of(object_block(), "shape", shape_blocks());

@@ -55,7 +55,7 @@ protected:
 
     std::vector<std::string> verdicts(const std::vector<Document>& documents) {
         json task = {{"schemas", json::object()}, {"documents", json::array()}};
-        for (const char* name : {"look", "capture", "effect", "module", "scene"})
+        for (const char* name : {"look", "capture", "effect", "module", "scene", "scattering_profile"})
             task["schemas"][name] = schema(name);
         for (const Document& document : documents)
             task["documents"].push_back({{"schema", document.schema}, {"document", document.content}});
@@ -77,12 +77,15 @@ TEST_F(Schemas, TakeEveryShippedDocument) {
         const fs::path path = entry.path();
         const std::string text = path.lexically_relative(kRoot).string();
         if (path.extension() != ".json" || text.starts_with("build") || text.starts_with(".")) continue;
-        const std::string kind = path.filename() == "effect.json"           ? "effect"
-                                 : path.filename() == "module.json"         ? "module"
-                                 : path.filename() == "capture.json"        ? "capture"
-                                 : path.filename() == "scene.json"          ? "scene"
-                                 : path.parent_path().filename() == "looks" ? "look"
-                                                                            : "";
+        const std::string kind =
+            path.filename() == "effect.json"           ? "effect"
+            : path.filename() == "module.json"         ? "module"
+            : path.filename() == "capture.json"        ? "capture"
+            : path.filename() == "scene.json"          ? "scene"
+            : path.parent_path().filename() == "looks" ? "look"
+            : text.starts_with("profiles/scattering/") && path.filename() != "profile.schema.json"
+                ? "scattering_profile"
+                : "";
         if (!kind.empty()) documents.push_back({kind, text, parsed(read_text(path))});
     }
     ASSERT_GE(documents.size(), 28U);
@@ -91,13 +94,16 @@ TEST_F(Schemas, TakeEveryShippedDocument) {
     for (std::size_t i = 0; i < seen.size(); ++i) EXPECT_EQ(seen[i], "valid") << documents[i].name;
 }
 
-TEST_F(Schemas, OfEffectsAndModulesAreThoseThatArePublished) {
+TEST_F(Schemas, OfEffectsModulesAndProfilesAreThoseThatArePublished) {
     const CommandResult result = run_aftershade({"schema", "effect"}, folder_.path());
     EXPECT_EQ(result.out, read_text(kRoot / "effects/effect.schema.json"))
         << "run: aftershade schema effect > effects/effect.schema.json";
     EXPECT_EQ(run_aftershade({"schema", "module"}, folder_.path()).out,
               read_text(kRoot / "glsl/module.schema.json"))
         << "run: aftershade schema module > glsl/module.schema.json";
+    EXPECT_EQ(run_aftershade({"schema", "scattering_profile"}, folder_.path()).out,
+              read_text(kRoot / "profiles/scattering/profile.schema.json"))
+        << "run: aftershade schema scattering_profile > profiles/scattering/profile.schema.json";
 }
 
 TEST_F(Schemas, TakeEveryFormOfAValue) {

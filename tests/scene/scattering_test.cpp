@@ -11,6 +11,7 @@
 #include "framework/scene/scatter_points.h"
 #include "tests/reference/burley.h"
 #include "tests/scene/scene_text.h"
+#include "tests/temporary_folder.h"
 
 namespace aftershade::scene {
 namespace {
@@ -52,6 +53,74 @@ TEST(ScatteringTruth, OfAnEdgeIsTheEdgeResponse) {
         }
     RecordProperty("worst", fmt::format("{:.5f}", worst));
     EXPECT_LT(worst, 0.005) << worst;
+}
+
+/// A plane close to the camera with half of it lit, made of `profile`.
+Scene lit_half(const std::string& profile) {
+    return scene_of(R"({ "aftershade": 1, "size": [480, 2],
+        "camera": { "position": [0, 0, 0.05], "focal_length": "50 mm", "near": 0.001 },
+        "materials": { "wax": { "albedo": 0.8, "specular": 0, "scattering_profile": )" +
+                    profile + R"( } },
+        "objects": [ { "shape": "plane", "size": [0.4, 0.4], "material": "wax" } ],
+        "lights": [ { "type": "directional", "position": [0, 0, 1], "intensity": 3.14159265, "shadows": false,
+                      "pattern": { "type": "edge", "axis": [1, 0, 0], "offset": 0 } } ] })");
+}
+
+/// What a lit half lets come out at x_mm into it: the Gaussians' own integral.
+double edge_of_gaussians(const ScatteringProfile& profile, std::size_t c, double x_mm) {
+    double light = x_mm > 0 ? profile.direct[c] : 0;
+    for (const ScatteringGaussian& gaussian : profile.gaussians)
+        light += gaussian.weight[c] * (0.5 + 0.5 * std::erf(x_mm / std::sqrt(2 * gaussian.variance_mm2[c])));
+    return light;
+}
+
+TEST(ScatteringTruth, OfGaussiansAcrossAnEdgeIsTheSumOfErrorFunctions) {
+    for (const char* name : {R"("skin")", R"("skin_artist")"}) {
+        const Scene scene = lit_half(name);
+        const ScatteringTruth truth = SceneRenderer(scene, 480, 2, 2).render_scattering(1, {4096, false});
+        double worst = 0;
+        for (int x = 0; x < 480; ++x)
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double x_mm = (x + 0.5 - 240) * 36 / 480;
+                const double expected = edge_of_gaussians(scene.materials[0].scattering->profile, c, x_mm);
+                worst = std::max(worst, std::abs(double(truth.irradiance.at(x, 0, int(c))) - expected));
+            }
+        RecordProperty(std::string("worst_") + (name + 1), fmt::format("{:.5f}", worst));
+        EXPECT_LT(worst, 0.005) << name;
+    }
+}
+
+TEST(ScatteringTruth, OfADipoleAcrossAnEdgeIsItsEdgeResponse) {
+    const Scene scene = lit_half(R"({ "type": "dipole", "absorption_per_mm": [0.032, 0.17, 0.48],
+                                      "reduced_scattering_per_mm": [0.74, 0.88, 1.01] })");
+    const ScatteringTruth truth = SceneRenderer(scene, 480, 2, 2).render_scattering(1, {4096, false});
+    const ScatteringProfile& profile = scene.materials[0].scattering->profile;
+    const ScatteringCurves curves = scattering_curves(profile);
+    double worst = 0;
+    for (int i = 1; i < kScatteringSamples; ++i) {
+        const double t = double(i) / (kScatteringSamples - 1), x_mm = profile.reach_mm() * t * t;
+        const double at = x_mm * 480 / 36 + 240 - 0.5;
+        if (at >= 479) break;
+        for (int c = 0; c < 3; ++c) {
+            const double between = std::lerp(double(truth.irradiance.at(int(at), 0, c)),
+                                             double(truth.irradiance.at(int(at) + 1, 0, c)), at - int(at));
+            worst = std::max(worst, std::abs(between - curves.line[std::size_t(i)][std::size_t(c)]));
+        }
+    }
+    RecordProperty("worst", fmt::format("{:.5f}", worst));
+    EXPECT_LT(worst, 0.005);
+}
+
+TEST(ScatteringTruth, TakesAProfilesFileFromTheScenesFolder) {
+    const test::TemporaryFolder folder;
+    test::write_text(folder / "wax.json",
+                     R"({"aftershade": 1, "summary": "Wax.", "type": "burley", "d_mm": [3, 2, 1]})");
+    test::write_text(folder / "scene.json", R"({"aftershade": 1, "camera": {}, "objects": [],
+        "materials": {"wax": {"scattering_profile": "wax.json"}}})");
+    Diagnostics diagnostics;
+    const auto scene = read_scene(folder / "scene.json", diagnostics);
+    ASSERT_TRUE(scene) << faults_of(diagnostics);
+    EXPECT_EQ(scene->materials[0].scattering->d_m, dvec3(3, 2, 1) * 1e-3);
 }
 
 TEST(ScatteringTruth, OfACosineKeepsItWithTheProfilesModulation) {

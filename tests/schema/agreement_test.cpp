@@ -1,4 +1,4 @@
-// The schemas against the program that they speak for: five documents with every key that there is, changed
+// The schemas against the program that they speak for: documents with every key that there is, changed
 // in every place and every way, and judged by both.
 #include <gtest/gtest.h>
 
@@ -14,6 +14,8 @@
 
 #include "framework/core/document.h"
 #include "framework/core/error.h"
+#include "framework/core/scattering_profile.h"
+#include "framework/core/schema_pieces.h"
 #include "framework/effect/registry.h"
 #include "framework/image/sequence.h"
 #include "framework/pipeline/look.h"
@@ -145,6 +147,14 @@ std::string judge_scene(const std::string& text) {
     return first_fault(diagnostics);
 }
 
+std::string judge_profile(const std::string& text) {
+    static const TemporaryFolder folder;
+    write_text(folder / "profile.json", text);
+    Diagnostics diagnostics;
+    parse_scattering_profile(parsed("\"profile.json\""), "profile", folder.path(), diagnostics);
+    return first_fault(diagnostics);
+}
+
 class SchemaAgreement : public testing::Test {
 protected:
     void SetUp() override {
@@ -228,6 +238,8 @@ TEST_F(SchemaAgreement, OfALookChangedEverywhere) {
              "\"1 m\"\n.* is above the maximum",   // numbers within strings
              "is taken already by",                // two values against each other
              "must lie above the x of the point",  //
+             "weights of .* sum to",               //
+             "no scattering profile '",            // what is shipped
          });
 }
 
@@ -247,6 +259,7 @@ TEST_F(SchemaAgreement, OfAManifestChangedEverywhere) {
              "is (above|below) |'min' of at least|must rise|has a unit, but|cannot be (compared|converted)",
              "must lie above|taken already|twice|differ in size|in one turn|but it has|holds|whole number",
              "words, more than|writes no image|outside the domain|is not a value of '|level",
+             "no scattering profile '",            // what is shipped
              "^/presets/|^/params/skins/default",  // as the parameters and columns say
          });
 }
@@ -263,11 +276,19 @@ TEST_F(SchemaAgreement, OfAModuleChangedEverywhere) {
          });
 }
 
+TEST_F(SchemaAgreement, OfAScatteringProfileChangedEverywhere) {
+    for (const char* file :
+         {"burley.json", "burley_path.json", "gaussians.json", "dipole.json", "artist.json"})
+        hold(std::string("profiles/") + file, schema::scattering_profile_file().dump(), judge_profile,
+             {"weights of .* sum to"});  // several values together
+}
+
 TEST_F(SchemaAgreement, OfASceneChangedEverywhere) {
     hold(
         "scene.json", scene::scene_schema(), judge_scene,
         {
             "there is no (material|mesh|earlier object) '",  // names of what stands elsewhere in the document
+            "no scattering profile '",                       // what is shipped
             "^/meshes/quad/file ",                           // what lies on the disk
             "count: makes .* objects, more than",            // a product
             "are one point, which gives no direction",       // two values against each other
