@@ -93,47 +93,67 @@ TEST(SssExact, SumsTheGaussiansOfSkin) {
     }
 }
 
-/// A ramp in depth and two lit stripes: the same sum in double, from the same depths, at the pixels' middles.
-TEST(SssExact, IsTheSumByDistanceInSpaceOverATiltedSurface) {
+/// A ramp in depth under lit stripes: the integral in double, each pixel's facet cut into a grid, the pixel's
+/// own finely.
+TEST(SssExact, IsTheIntegralByDistanceInSpaceOverASlantedPlane) {
     const int width = 64, height = 40;
-    Capture capture = lit_plane(width, height, [](int x, int, int) { return x % 16 < 4 ? 1.0f : 0.0f; });
-    const double per_px = 36.0 / 50 / width;  // of depth
-    const auto depth_of = [&](double x) { return 1 / (1 - 1.5 * per_px * (x + 0.5 - width / 2.0)); };
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) capture.images.at("depth").at(x, y, 0) = float(depth_of(x));
-    const double d_mm = 3 * mm_per_px(width);
-    const Image image =
-        scattered(scattering_step(kEffect, burley_of_px(3, 3, 3, width), R"("normalize": "all")"), capture);
-    const auto position = [&](int x, int y) {
-        const double z = 1000 * depth_of(x);
-        return std::array<double, 3>{z * per_px * (x + 0.5 - width / 2.0),
-                                     z * per_px * (y + 0.5 - height / 2.0), z};
-    };
-    // Along x the plane's normal is the same everywhere: areas differ by the cube of depth.
-    for (int x = 12; x < width - 12; x += 3) {
-        const int y = height / 2;
-        const auto at = position(x, y);
-        double sum = 0, share = 0;
-        for (int v = 0; v < height; ++v)
-            for (int u = 0; u < width; ++u) {
-                const double side = 1000 * depth_of(u) * per_px,
-                             spread = std::sqrt(1 + 1.5 * 1.5) * depth_of(u);
-                const double area = side * side * spread;
-                const auto there = position(u, v);
-                const double r = std::hypot(at[0] - there[0], at[1] - there[1], at[2] - there[2]);
-                // The mean over a grid of the facet's places would be better still; to second order it is
-                // this.
-                double weight = reference::burley_within(0.5611 * std::sqrt(area), d_mm);
-                if (r > 0) {
-                    weight = 0;
-                    for (const double per : {1 / d_mm, 1 / (3 * d_mm)})
-                        weight += area * std::exp(-per * r) / (8 * std::numbers::pi * d_mm * r) *
-                                  (1 + area / 24 * (per * per + per / r + 1 / (r * r)));
+    const double per_px = 36.0 / 50 / width;
+    for (const double slope : {0.5, 1.5, 3.0}) {
+        Capture capture = lit_plane(width, height, [](int x, int, int) { return x % 16 < 4 ? 1.0f : 0.0f; });
+        const auto depth_of = [&](double x) { return 1 / (1 - slope * per_px * (x - width / 2.0)); };
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) capture.images.at("depth").at(x, y, 0) = float(depth_of(x + 0.5));
+        const double d_mm = 3 * mm_per_px(width);
+        const Image image = scattered(
+            scattering_step(kEffect, burley_of_px(3, 3, 3, width), R"("normalize": "all")"), capture);
+        const auto position = [&](double x, double y) {
+            const double z = 1000 * depth_of(x);
+            return std::array<double, 3>{z * per_px * (x - width / 2.0), z * per_px * (y - height / 2.0), z};
+        };
+        for (int x = 16; x < width - 16; x += 5) {
+            const int y = height / 2;
+            const auto at = position(x + 0.5, y + 0.5);
+            double sum = 0, share = 0;
+            for (int v = 0; v < height; ++v)
+                for (int u = 0; u < width; ++u) {
+                    const int grid = u == x && v == y                             ? 64
+                                     : std::abs(u - x) < 4 && std::abs(v - y) < 8 ? 8
+                                                                                  : 2;
+                    double weight = 0;
+                    for (int k = 0; k < grid * grid; ++k) {
+                        const double px = u + (k % grid + 0.5) / grid, py = v + (k / grid + 0.5) / grid;
+                        const auto there = position(px, py);
+                        // Surface over the picture's area goes as depth cubed, with the plane's own slope a
+                        // constant.
+                        weight += std::pow(depth_of(px), 3) / (grid * grid) *
+                                  reference::burley_profile(
+                                      std::hypot(at[0] - there[0], at[1] - there[1], at[2] - there[2]), d_mm);
+                    }
+                    sum += weight * capture.images.at("irradiance").at(u, v, 0);
+                    share += weight;
                 }
-                sum += weight * capture.images.at("irradiance").at(u, v, 0);
-                share += weight;
-            }
-        EXPECT_NEAR(image.at(x, y, 0), sum / share, 2e-3) << x;
+            EXPECT_NEAR(image.at(x, y, 0), sum / share, 0.01) << x << " slope " << slope;
+        }
+    }
+}
+
+/// However steep a plane, what is seen of it never has more than the whole profile.
+TEST(SssExact, FindsNoMoreThanTheWholeProfileOnASlantedPlane) {
+    const int width = 64, height = 40;
+    const double per_px = 36.0 / 50 / width;
+    Capture capture = lit_plane(width, height, [](int, int, int) { return 1.0f; });
+    for (const auto& [across, down] : {std::pair(0.0, 0.0), {1.5, 0.0}, {0.0, 4.0}, {3.0, 3.0}, {9.0, 0.0}}) {
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x)
+                capture.images.at("depth").at(x, y, 0) =
+                    float(1 / (1 - per_px * 0.2 *
+                                       (across * (x + 0.5 - width / 2.0) + down * (y + 0.5 - height / 2.0))));
+        for (const double d : {0.5, 1.0, 3.0}) {
+            const Image image = scattered(
+                scattering_step(kEffect, burley_of_px(d, d, d, width), R"("normalize": "none")"), capture);
+            EXPECT_LT(image.at(width / 2, height / 2, 0), 1.03) << across << " " << down << " d " << d;
+            EXPECT_GT(image.at(width / 2, height / 2, 0), 0.8) << across << " " << down << " d " << d;
+        }
     }
 }
 

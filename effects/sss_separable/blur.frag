@@ -15,8 +15,8 @@ const ivec2 kStep = ivec2(0, 1);
 const vec3 kAlong = vec3(0.0, -1.0, 0.0);
 #endif
 
-// The surface's plane through the pixel's middle, cut along the row or column. A step along it changes the depth by
-// `slope` times what it goes across; from t to the side, as wide as the view is there, it goes `stretch` t.
+// The surface's plane through the pixel's middle, cut along the row or column. A step along it that goes t across the
+// view goes slope * t in depth and stretch * t in all.
 struct Cut {
     float depth_mm;
     float slope;
@@ -56,7 +56,9 @@ void main() {
         for (int i = 1; i <= param.samples / 2; ++i) {
             vec4 tap = texelFetch(half_kernel, ivec2(i, profile.index), 0);
             for (int side = -1; side <= 1; side += 2) {
-                float pixels = floor(pixels_to(lines, cut, float(side) * tap.a) + 0.5);
+                // The nearest pixel, whose light is that of its square. Mixed from two, edges at 25 taps would be off
+                // by 0.020 instead of 0.024, for twice the fetches.
+                float pixels = clamp(floor(pixels_to(lines, cut, float(side) * tap.a) + 0.5), -32768.0, 32768.0);
                 ivec2 q_free = p + int(pixels) * kStep, q = clamp(q_free, ivec2(0), frame.size - 1);
                 Lit there = unpack(texelFetch(SOURCE, q, 0));
                 float farther = detour(lines, cut, pixels, param.world_unit * there.depth_m);

@@ -3,9 +3,9 @@
 #include <scattering/profile.glsl>
 
 const float kReached = 0.999;  // edge response where the outermost bin ends
-// How much bins are spread evenly over the square root of distance rather than over the light. With 63 taps and d of 8, 12
-// and 16 px edges are off by 0.009 and amplitudes of waves by less than 0.01; only over the light waves would be off by 0.03,
-// only over distance edges by 0.016.
+// How much bins are spread evenly over the square root of distance rather than over the light. With 63 taps and d of
+// 8, 12 and 16 px edges are off by 0.009 and amplitudes of waves by less than 0.01; only over the light waves would
+// be off by 0.03, only over distance edges by 0.016.
 const float kOverDistance = 0.35;
 
 // Of Abramowitz and Stegun 7.1.26: within 1.5e-7.
@@ -70,7 +70,8 @@ float where_progress_is(ScatteringProfileRow profile, float value, float end) {
     return 0.5 * (low + high);
 }
 
-// The share of bin `tap`, from the middle outwards, where the bin has its median: a hard edge is wrong by half a bin at most.
+// The share of bin `tap`, from the middle outwards, where the bin has its median: a hard edge is wrong by half a bin
+// at most.
 vec4 binned(ScatteringProfileRow profile, int tap, int outermost) {
     float end = where_least_channel_is(profile, 2.0 * kReached - 1.0), bins = float(outermost) + 0.5;
     float high = tap == outermost ? end : where_progress_is(profile, (float(tap) + 0.5) / bins, end);
@@ -85,7 +86,8 @@ vec4 binned(ScatteringProfileRow profile, int tap, int outermost) {
 // Weight of a place on the line as the published code has it: amplitudes over the plane, but as a function of one
 // dimension; the five wider Gaussians of skin with the weights of red, for all channels over their falloff.
 vec3 artist_amplitude(vec3 radius) {
-    const vec2 kGaussians[5] = vec2[5](vec2(0.100, 0.0484), vec2(0.118, 0.187), vec2(0.113, 0.567), vec2(0.358, 1.99), vec2(0.078, 7.41));
+    const vec2 kGaussians[5] = vec2[5](vec2(0.100, 0.0484), vec2(0.118, 0.187), vec2(0.113, 0.567), vec2(0.358, 1.99),
+                                       vec2(0.078, 7.41));
     vec3 sum = vec3(0.0);
     for (int k = 0; k < 5; ++k)
         sum += kGaussians[k].x / (2.0 * kBurleyPi * kGaussians[k].y) * exp(-radius * radius / (2.0 * kGaussians[k].y));

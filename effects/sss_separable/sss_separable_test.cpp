@@ -252,6 +252,38 @@ TEST(SssSeparable, LeavesObjectsThatDoNotScatterBitForBit) {
     EXPECT_GT(scattered, 2000);
 }
 
+TEST(SssSeparable, ScattersEachObjectByItsOwnProfile) {
+    Capture capture = two_objects(0.7f, 3.3f);
+    Image& light = capture.images.at("irradiance");
+    for (int y = 0; y < 96; ++y)
+        for (int x = 0; x < 128; ++x) light.at(x, y, 1) = std::sin(0.9f * float(x)) + 1.5f;
+    const std::string wide = burley(9), narrow = burley(2);
+    const Image both =
+        scatter(R"({ "default": )" + wide + R"(, "rows": [ { "object": 2, "profile": )" + narrow + " } ] }",
+                "", capture);
+    const Image all_wide = scatter(wide, "", capture), all_narrow = scatter(narrow, "", capture);
+    for (int y = 0; y < 96; ++y)
+        for (int x = 0; x < 128; ++x) {
+            const bool ball = capture.images.at("object_id").uint_at(x, y, 0) == 2;
+            ASSERT_EQ(both.at(x, y, 1), (ball ? all_narrow : all_wide).at(x, y, 1)) << x << " " << y;
+        }
+    EXPECT_NE(all_narrow.at(50, 48, 1), all_wide.at(50, 48, 1));
+}
+
+TEST(SssSeparable, MixesByTheMask) {
+    Capture capture = plane(64, 16, [](double x, double) { return x > 0 ? 2.0 : 0.0; });
+    const Image whole = scatter(burley(9), "", capture);
+    // Light goes on to come from all that the mask has at all.
+    for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 64; ++x) capture.images.at("mask").at(x, y, 0) = 0.25f;
+    const Image quarter = scatter(burley(9), "", capture);
+    for (int x = 0; x < 64; ++x) {
+        const double before = capture.images.at("irradiance").at(x, 8, 0);
+        EXPECT_NEAR(quarter.at(x, 8, 0), 0.75 * before + 0.25 * whole.at(x, 8, 0), 1e-6) << x;
+    }
+    EXPECT_GT(std::abs(quarter.at(33, 8, 0) - 2), 0.05);
+}
+
 TEST(SssSeparable, KeepsTheLightOfASpotWithinThePlane) {
     for (const char* more : {R"(, "samples": 25)", R"(, "samples": 63)", R"(, "kernel": "artist")",
                              R"(, "kernel": "gaussian_fit")"})

@@ -7,7 +7,8 @@ struct Facet {
     uint key;        // 0 where nothing scatters
     vec3 position;   // of the pixel's middle in view space, mm
     vec3 normal;     // view space, unit length, towards the camera
-    float area_mm2;  // of the surface
+    float side_mm;   // of the pixel's square, face-on at its depth
+    float spread;    // surface over that square: 1 face-on, more at a slant
 };
 
 // What a facet's own plane has at another pixel; without area where that looks past the plane.
@@ -16,8 +17,8 @@ Facet facet_on_plane(ViewLines lines, Facet here, ivec2 pixel) {
     float facing = dot(here.normal, line);
     bool seen = facing < -1e-3;
     float depth_mm = dot(here.normal, here.position) / (seen ? facing : -1.0), side_mm = depth_mm * lines.slope.x;
-    return Facet(here.light, depth_mm / param.world_unit, here.key, depth_mm * line, here.normal,
-                 seen ? side_mm * side_mm / -facing : 0.0);
+    return Facet(here.light, depth_mm / param.world_unit, here.key, depth_mm * line, here.normal, side_mm,
+                 seen ? -1.0 / facing : 0.0);
 }
 
 // With the slopes s of depth a facet's plane has, up to its length, the normal (s_x, -s_y, 1 + s_x X - s_y Y), where
@@ -29,6 +30,5 @@ Facet read_facet(ViewLines lines, ivec2 pixel) {
     vec3 line = view_line(lines, vec2(pixel) + 0.5);
     vec3 steep = vec3(slope.x, -slope.y, 1.0 + slope.x * line.x - slope.y * line.y);
     float spread = length(steep), side_mm = param.world_unit * texel.a * lines.slope.x;
-    return Facet(texel.rgb, texel.a, rest.x, param.world_unit * texel.a * line, steep / spread,
-                 side_mm * side_mm * spread);
+    return Facet(texel.rgb, texel.a, rest.x, param.world_unit * texel.a * line, steep / spread, side_mm, spread);
 }

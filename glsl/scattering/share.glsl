@@ -2,12 +2,24 @@
 #include <scattering/facet.glsl>
 #include <scattering/profile.glsl>
 
-// Mean distance of a unit square's edge from its middle: 2 / pi * ln(1 + sqrt(2)). Burley's R is infinite in the middle, but
-// what a square keeps is what lies within about this distance: on a plane all shares sum to 1 within 5e-4 for d of a pixel.
-const float kSquareRadius = 0.5611;
-
+// Burley's R is infinite in the middle, but what a facet keeps is what lies within the mean distance of its edge: of a
+// rectangle of sides 1 and a that is (asinh(a) + a asinh(1 / a)) / pi. On a plane face-on all shares sum to 1 within 5e-4 for
+// d of a pixel.
 vec3 own_share(ScatteringProfileRow profile, Facet here) {
-    return profile_within(profile, kSquareRadius * sqrt(here.area_mm2));
+    float a = max(here.spread, 1.0);
+    return profile_within(profile, here.side_mm * (asinh(a) + a * asinh(1.0 / a)) / kBurleyPi);
+}
+
+// Mean of 1 / r over a facet that a slant draws out: of a segment through its middle along the slant, as long as makes a
+// square drawn out to the facet's length, sqrt(spread^2 - 1); for a facet face-on 1 / r. `way` goes from here to its middle.
+float mean_inverse_distance(Facet there, vec3 way, float r) {
+    vec3 along = there.position - dot(there.position, there.normal) * there.normal;
+    float off = dot(way, along), square = there.side_mm * there.side_mm;
+    off = abs(off) * inversesqrt(max(dot(along, along), 1e-8 * dot(there.position, there.position)));
+    float half_length = 0.5 * sqrt(square * max(there.spread * there.spread - 1.0, 1e-2));
+    float beside = max(r * r - off * off, 0.0025 * square), a = off - half_length, b = off + half_length;
+    // asinh(b / beside) - asinh(a / beside), with beside squared.
+    return log((b + sqrt(b * b + beside)) / (a + sqrt(a * a + beside))) / (2.0 * half_length);
 }
 
 // Two unit vectors at right angles to a unit vector and each other. Duff and others 2017, Building an Orthonormal Basis,
@@ -29,7 +41,7 @@ float inverse_distance(Facet here, Facet there, vec3 way, float r) {
     vec3 facing = vec3(0.5, 0.25, 0.25) *
         abs(vec3(dot(here.normal, there.normal), dot(tangent, there.normal), dot(bitangent, there.normal)));
     vec3 along = vec3(dot(here.normal, way), dot(tangent, way), dot(bitangent, way));
-    vec3 on_disk = sqrt(max(r * r - along * along, 0.25 * there.area_mm2));
+    vec3 on_disk = sqrt(max(r * r - along * along, 0.25 * there.side_mm * there.side_mm * there.spread));
     vec3 weight = facing * facing;
     return dot(weight, 1.0 / on_disk) / max(weight.x + weight.y + weight.z, 1e-12);
 }
@@ -37,15 +49,16 @@ float inverse_distance(Facet here, Facet there, vec3 way, float r) {
 float inverse_distance(Facet here, Facet there, vec3 way, float r) { return 1.0 / r; }
 #endif
 
-// Share of the light of another facet that comes to this one's middle. Of Burley's profile the mean over the facet to second
-// order: its Laplacian over 24 times the area is added.
+// Share of the light of another facet that comes to this one's middle. Of Burley's profile the mean over the pixel's square to
+// second order: its Laplacian over 24 times the square is added.
 vec3 share_of(ScatteringProfileRow profile, Facet here, Facet there) {
     vec3 way = there.position - here.position;
-    float r = max(length(way), 1e-6);
-    float nearness = there.area_mm2 * inverse_distance(here, there, way, r);
+    float distance = max(length(way), 1e-6), square = there.side_mm * there.side_mm;
+    float mean = mean_inverse_distance(there, way, distance), r = 1.0 / mean;
+    float nearness = square * there.spread * inverse_distance(here, there, way, distance) * (mean * distance);
 #if SCATTERING_PROFILE_IS_BURLEY
     vec3 per = 1.0 / profile.d;
-    float area = there.area_mm2 / 24.0;
+    float area = square / 24.0;
     vec3 near = exp(-r * per) * (1.0 + area * (per * per + per / r + 1.0 / (r * r)));
     vec3 far = exp(-r * per / 3.0) * (1.0 + area * (per * per / 9.0 + per / (3.0 * r) + 1.0 / (r * r)));
     vec3 share = nearness / (8.0 * kBurleyPi) * per * (near + far);
