@@ -40,11 +40,12 @@ int main(int argc, char** argv) {
     add("render", "Render a scene: captures, and the true pictures that effects approximate",
         aftershade::cli::add_render);
     add("list", "List the effects that there are", aftershade::cli::add_list);
-    add("describe", "Tell what an effect takes, makes and can be told", aftershade::cli::add_describe);
+    add("describe", "Tell what an effect takes, makes and can be told; what a scattering profile is",
+        aftershade::cli::add_describe);
     add("new", "Make the folder of a new effect, which runs at once", aftershade::cli::add_new);
     add("check", "Check an effect or a look: documents, shaders, values; exit 1: no",
         aftershade::cli::add_check);
-    add("schema", "Print the JSON Schema of looks, captures, effects or scenes, for editors",
+    add("schema", "Print the JSON Schema of looks, captures, effects, scenes or profiles, for editors",
         aftershade::cli::add_schema);
     add("docs", "Write the page of each effect from its manifest, and the scene reference",
         aftershade::cli::add_docs);

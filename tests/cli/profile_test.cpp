@@ -79,7 +79,7 @@ TEST_F(Profiles, ArePlottedByChannel) {
     command({"describe", "skin_burley", "--plot", "out.svg"});
     const std::string svg = read_text(folder_ / "out.svg");
     for (const char* part :
-         {"prefers-color-scheme: dark", "r [mm]", "x [mm]", "Share within a radius", ">red: d 0.444 mm"})
+         {"prefers-color-scheme: dark", "r [mm]", "x [mm]", "Share within a radius", ">red: d 0.445 mm"})
         EXPECT_NE(svg.find(part), std::string::npos) << part;
     EXPECT_EQ(svg.find("nan"), std::string::npos);
     EXPECT_EQ(svg.find("inf"), std::string::npos);
