@@ -47,7 +47,7 @@ TEST(SssAdaptive, HasTheMeanOfTheExactSumWhateverDecidesTheNumberOfSamples) {
     const Image exact =
         scattered(scattering_step("sss_exact", profile(), R"("normalize": "none")"), shadow_edge(1));
     // difference swings between the limits: its few frames of one sample have long tails.
-    for (const auto& [controller, frames] : {std::pair("ratio", 250), {"sqrt", 250}, {"difference", 5000}}) {
+    for (const auto& [controller, frames] : {std::pair("ratio", 500), {"sqrt", 500}, {"difference", 5000}}) {
         LookRunner look = runner(std::string(kUnbiased) + R"(, "controller": ")" + controller + "\"");
         std::vector<PixelMoments> pixels(std::size_t(kWidth) * kHeight);
         double image_sum = 0, image_squares = 0, exact_mean = 0;

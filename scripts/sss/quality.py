@@ -38,6 +38,7 @@ def save_strip(path, pictures, scale, crop, columns=None):
     x, y, w, h = crop
     cut = [(srgb(p[y:y + h, x:x + w] * scale * 1.2) * 255 + 0.5).astype(numpy.uint8) for p in pictures]
     columns = columns or len(cut)
+    cut += [numpy.zeros_like(cut[0])] * (-len(cut) % columns)
     rows = [numpy.concatenate(cut[i:i + columns], axis=1) for i in range(0, len(cut), columns)]
     Image.fromarray(numpy.concatenate(rows, axis=0)).save(path, quality=88)
 
