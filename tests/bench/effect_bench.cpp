@@ -66,16 +66,23 @@ Capture make_surface(const json& job, const json& test) {
     header.frame = 1;
     header.path = "bench";
     header.profile = "native";
-    header.roles = {"irradiance", "depth", "object_id"};
+    header.roles = {"irradiance", "depth", "object_id", "normal"};
+    CaptureLight sun;
+    sun.kind = CaptureLight::Kind::directional;
+    sun.direction = {0, 0, -1};
+    sun.intensity = {3.14159, 3.14159, 3.14159};
+    header.lights = {sun};
     header.data_window = header.display_window = {0, 0, width - 1, height - 1};
     Image& light = capture.images["irradiance"] = Image(width, height, 3);
     Image& z = capture.images["depth"] = Image(width, height, 1);
+    Image& normal = capture.images["normal"] = Image(width, height, 3);
     Image& id = capture.images["object_id"] = Image(width, height, 1, ComponentType::uint32);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             for (int c = 0; c < 3; ++c) light.at(x, y, c) = (x / 40 + y / 30) % 2 ? 1.0f : 0.1f * float(c);
             z.at(x, y, 0) = test.at("depth_m");
             id.uint_at(x, y, 0) = 1;
+            normal.at(x, y, 2) = 1;
         }
     return capture;
 }
