@@ -58,6 +58,7 @@ bool is_numeric_scalar(ParamType type) {
 
 /// "a bool", "an enum", for messages.
 std::string a_type(ParamType type) {
+    if (type == ParamType::objects) return "a list of objects";
     const std::string name(param_type_name(type));
     return (std::string_view("aeiou").find(name[0]) == std::string_view::npos ? "a " : "an ") + name;
 }

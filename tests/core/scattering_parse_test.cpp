@@ -395,9 +395,9 @@ TEST(Objects, HaveNoColumnsNoUnitAndNoSource) {
     EXPECT_EQ(
         spec_faults(
             R"({"type": "objects", "columns": {}, "unit": "mm", "from": "camera.x", "default": [], "doc": "."})"),
-        (Lines{"doc.json:1:44: error: an objects has no unit",
+        (Lines{"doc.json:1:44: error: a list of objects has no unit",
                "doc.json:1:32: error: only a table has 'columns'",
-               "doc.json:1:58: error: an objects has no 'from'"}));
+               "doc.json:1:58: error: a list of objects has no 'from'"}));
 }
 
 }  // namespace
