@@ -1,4 +1,4 @@
-# Sourced by scripts/quality-dof, scripts/bench-dof and tests/bench/dof-against-blender: Python with numpy, OpenEXR, Pillow and
+# Sourced by scripts/quality-*, scripts/bench-* and tests/bench/*-against-blender: Python with numpy, OpenEXR, Pillow and
 # matplotlib in build/dof-venv. Needs Debian's python3-venv, and PyPI the first time.
 dof_python=build/dof-venv/bin/python
 if [ ! -e build/dof-venv/complete ]; then
