@@ -60,8 +60,9 @@ TEST(SssBurley, LeavesTheBitsOfWhatDoesNotScatter) {
 TEST(SssBurley, TakesEachObjectsProfile) {
     expect_profiles_by_object(kEffect, "");
 }
+/// A sample on the border of two pixels may fall on the other one by a rounding.
 TEST(SssBurley, KnowsTheWorldsUnit) {
-    expect_world_unit_scales(kEffect, "");
+    expect_world_unit_scales(kEffect, "", 5e-5);
 }
 TEST(SssBurley, LeavesLightThatIsNoNumberAlone) {
     expect_no_number_stays_alone(kEffect, "");

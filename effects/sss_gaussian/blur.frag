@@ -1,5 +1,6 @@
 #version 450 core
 #include <pass>
+#include <erf.glsl>
 
 struct Place {
     vec3 position;  // mm
@@ -20,13 +21,6 @@ const float kReach = 3.0;  // standard deviations
 // A tap stands for the surface from the one before on: where that is steeper than in the middle, for more. Not for what
 // lies behind a step in depth: with 2 a head comes nearest to sss_exact.
 const float kMostLength = 2.0;
-
-// Of Abramowitz and Stegun 7.1.26: within 1.5e-7.
-vec3 erf_of(vec3 x) {
-    vec3 t = 1.0 / (1.0 + 0.3275911 * x);
-    return 1.0 -
-        t * (0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429)))) * exp(-x * x);
-}
 
 // Millimetres from a pixel to its neighbour; the nearer one's, for beyond an edge of the surface it is far.
 float spacing_at(ivec2 p, ivec2 along, Place here) {

@@ -1,13 +1,6 @@
 #version 450 core
 #include <pass>
-
-// The table is by object; of one profile all rows are the same.
-ScatteringProfileRow profile_at(int index) {
-    ScatteringProfileRow profile = scattering_profile_default;
-    for (uint i = 0u; i < min(scattering_profile_count, 16384u) && profile.index != index; ++i)
-        profile = scattering_profile_entries[i].row;
-    return profile;
-}
+#include <scattering/by_index.glsl>
 
 // One channel's Gaussians that have weight, from narrow to wide: number `rank` among them, as (variance, weight);
 // (0, 0) where there are fewer.
@@ -31,7 +24,7 @@ void main() {
     int rank = int(gl_FragCoord.x) % 8, index = int(gl_FragCoord.y);
     bool weights = gl_FragCoord.x > 8.0;
     out_gaussians = vec4(0.0);
-    if (4 * index >= textureSize(scattering_profile_curves, 0).y) return;
+    if (index >= profile_count()) return;
     ScatteringProfileRow profile = profile_at(index);
     vec3 weight = vec3(0.0), variance = vec3(0.0);
     float before = 1e30;

@@ -1,14 +1,7 @@
 #version 450 core
 #include <pass>
+#include <scattering/key.glsl>
 #include <scattering/lines.glsl>
-
-uint id_at(ivec2 p) {
-#ifdef HAS_OBJECT_ID
-    return texelFetch(object_id, p, 0).r;
-#else
-    return 0u;
-#endif
-}
 
 // mm; the flag says whether there is surface.
 vec4 place_at(ivec2 p) {
@@ -27,15 +20,6 @@ void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     vec3 light = texelFetch(irradiance, p, 0).rgb;
     vec4 here = place_at(p);
-    uint id = id_at(p);
-    bool scatters = here.w > 0.0 && object_ids(id) && !any(isnan(light)) && !any(isinf(light));
-#ifdef HAS_MASK
-    scatters = scatters && texelFetch(mask, p, 0).r > 0.0;
-#endif
-#ifdef HAS_OBJECT_ID
-    uint key = min(id, 0xFFFFFFFEu) + 1u;
-#else
-    uint key = 1u;
-#endif
-    out_place = scatters ? uvec4(floatBitsToUint(here.xyz), key) : uvec4(0u);
+    bool scatters = here.w > 0.0 && may_scatter(p, light);
+    out_place = scatters ? uvec4(floatBitsToUint(here.xyz), key_at(p)) : uvec4(0u);
 }

@@ -12,6 +12,7 @@
 #include "framework/image/exr_file.h"
 #include "tests/cli/command.h"
 #include "tests/look_runner.h"
+#include "tests/scattering_checks.h"
 #include "tests/synthetic_capture.h"
 
 namespace aftershade::test {
@@ -124,18 +125,7 @@ TEST(SssGaussian, OrdersGaussiansByWidth) {
 /// A ball before a slanted wall.
 Capture two_objects(float light_of_ball, float light_of_wall) {
     Capture capture = plane(128, 96, [&](double, double) { return light_of_wall; });
-    for (int y = 0; y < 96; ++y)
-        for (int x = 0; x < 128; ++x) {
-            const double across = (x - 50) / 30.0, down = (y - 48) / 30.0,
-                         square = across * across + down * down;
-            capture.images["depth"].at(x, y, 0) = 1.2f + 0.003f * float(x);
-            capture.images["object_id"].uint_at(x, y, 0) = 1;
-            if (square > 1) continue;
-            capture.images["depth"].at(x, y, 0) = float(1 - 0.06 * std::sqrt(1 - square));
-            capture.images["object_id"].uint_at(x, y, 0) = 2;
-            detail::set_rgb(capture.images["irradiance"], x, y,
-                            {light_of_ball, light_of_ball, light_of_ball});
-        }
+    put_ball_before_wall(capture, light_of_ball);
     return capture;
 }
 
@@ -153,39 +143,20 @@ TEST(SssGaussian, KeepsEvenLightOnEachObject) {
 
 TEST(SssGaussian, LeavesObjectsThatDoNotScatterBitForBit) {
     Capture capture = two_objects(0.7f, 3.3f);
-    Image& light = capture.images.at("irradiance");
-    for (int y = 0; y < 96; ++y)
-        for (int x = 0; x < 128; ++x) light.at(x, y, 1) = std::sin(0.9f * float(x)) + 1.5f;
+    put_waves(capture);
     const Image image = scatter(kWax, R"(, "object_ids": [2])", capture);
-    int scattered = 0;
-    for (int y = 0; y < 96; ++y)
-        for (int x = 0; x < 128; ++x) {
-            const bool ball = capture.images.at("object_id").uint_at(x, y, 0) == 2;
-            for (int c = 0; c < 3; ++c) {
-                const float before = light.at(x, y, c), after = image.at(x, y, c);
-                if (ball) scattered += before != after;
-                else ASSERT_EQ(std::memcmp(&before, &after, sizeof before), 0) << x << " " << y;
-            }
-        }
-    EXPECT_GT(scattered, 2000);
+    expect_object_2_alone_changed(capture, image);
 }
 
 TEST(SssGaussian, ScattersEachObjectByItsOwnProfile) {
     Capture capture = two_objects(0.7f, 3.3f);
-    Image& light = capture.images.at("irradiance");
-    for (int y = 0; y < 96; ++y)
-        for (int x = 0; x < 128; ++x) light.at(x, y, 1) = std::sin(0.9f * float(x)) + 1.5f;
+    put_waves(capture);
     const std::string wide = kWax, narrow = R"("skin")";
     const Image both =
         scatter(R"({ "default": )" + wide + R"(, "rows": [ { "object": 2, "profile": )" + narrow + " } ] }",
                 "", capture);
     const Image all_wide = scatter(wide, "", capture), all_narrow = scatter(narrow, "", capture);
-    for (int y = 0; y < 96; ++y)
-        for (int x = 0; x < 128; ++x) {
-            const bool ball = capture.images.at("object_id").uint_at(x, y, 0) == 2;
-            ASSERT_EQ(both.at(x, y, 1), (ball ? all_narrow : all_wide).at(x, y, 1)) << x << " " << y;
-        }
-    EXPECT_NE(all_narrow.at(50, 48, 1), all_wide.at(50, 48, 1));
+    expect_object_2_alone_is_narrow(capture, both, all_wide, all_narrow);
 }
 
 TEST(SssGaussian, MixesByTheMask) {

@@ -1,7 +1,7 @@
 #version 450 core
 #include <pass>
+#include <scattering/by_index.glsl>
 #include "tables.glsl"
-#include "profile_of.glsl"
 
 // How much more light than N.L a place on a ball gets from scattering, under one light from far away (Penner and Borshukov
 // 2011). The difference, so that a plane keeps its light to the bit.
@@ -63,7 +63,7 @@ void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
     int profile = at.y / kBallLines, line = at.y % kBallLines;
     float cosine = ball_cosine(at.x), curvature = ball_curvature(line);
-    ScatteringProfileRow row = profile_of(profile);
+    ScatteringProfileRow row = profile_at(profile);
     // Loops that nobody needs do not turn.
     int samples = profile < profile_count() && line > 0 ? kSamples : 0;
     vec3 more = scattered(row, cosine, max(row.d.r, max(row.d.g, row.d.b)) / max(curvature, 1e-6), samples) - max(cosine, 0.0);

@@ -1,7 +1,7 @@
 #version 450 core
 #include <pass>
+#include <scattering/by_index.glsl>
 #include "tables.glsl"
-#include "profile_of.glsl"
 
 // Light at a distance into the lit side of a straight edge of a shadow, for each channel by its own d: the profile's edge
 // response, blurred by the edge's own width. The other side is 1 minus it.
@@ -17,7 +17,7 @@ float channel(ScatteringProfileRow row, int c, float x) {
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
     int profile = at.y / kEdgeLines, line = at.y % kEdgeLines;
-    ScatteringProfileRow row = profile_of(profile);
+    ScatteringProfileRow row = profile_at(profile);
     int samples = profile >= profile_count() ? 0 : line == 0 ? 1 : kSamples;
     float width = edge_width(line), distance = edge_distance(at.x, width);
     vec3 sum = vec3(0.0);

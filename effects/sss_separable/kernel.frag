@@ -1,5 +1,7 @@
 #version 450 core
 #include <pass>
+#include <erf.glsl>
+#include <scattering/by_index.glsl>
 #include <scattering/profile.glsl>
 
 const float kReached = 0.999;  // edge response where the outermost bin ends
@@ -7,13 +9,6 @@ const float kReached = 0.999;  // edge response where the outermost bin ends
 // 8, 12 and 16 px edges are off by 0.009 and amplitudes of waves by less than 0.01; only over the light waves would
 // be off by 0.03, only over distance edges by 0.016.
 const float kOverDistance = 0.35;
-
-// Of Abramowitz and Stegun 7.1.26: within 1.5e-7.
-float erf_of(float x) {
-    float t = 1.0 / (1.0 + 0.3275911 * x);
-    return 1.0 -
-        t * (0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429)))) * exp(-x * x);
-}
 
 // Share of the light from within x mm of a straight line on both sides, for each channel: 0 to 1.
 vec3 within_line(ScatteringProfileRow profile, float x) {
@@ -23,7 +18,7 @@ vec3 within_line(ScatteringProfileRow profile, float x) {
     vec3 sum = profile.direct;
     for (int k = 0; k < SCATTERING_PROFILE_GAUSSIANS; ++k) {
         vec3 far = x * inversesqrt(2.0 * max(scattering_profile_variance(profile, k), 1e-20));
-        sum += scattering_profile_weight(profile, k) * vec3(erf_of(far.r), erf_of(far.g), erf_of(far.b));
+        sum += scattering_profile_weight(profile, k) * erf_of(far);
     }
     return sum;
 #endif
@@ -115,18 +110,10 @@ vec4 artist_tap(ScatteringProfileRow profile, int tap, int outermost) {
     return vec4(strength * own / sum + (tap == 0 ? profile.direct : vec3(0.0)), unit * artist_offset(tap, outermost));
 }
 
-// The table is by object; of one profile all rows are the same.
-ScatteringProfileRow profile_at(int index) {
-    ScatteringProfileRow profile = scattering_profile_default;
-    for (uint i = 0u; i < min(scattering_profile_count, 16384u) && profile.index != index; ++i)
-        profile = scattering_profile_entries[i].row;
-    return profile;
-}
-
 void main() {
     int tap = int(gl_FragCoord.x), index = int(gl_FragCoord.y), outermost = param.samples / 2;
     out_half_kernel = vec4(0.0);
-    if (4 * index >= textureSize(scattering_profile_curves, 0).y || tap > outermost) return;
+    if (index >= profile_count() || tap > outermost) return;
     ScatteringProfileRow profile = profile_at(index);
 #if KERNEL == KERNEL_ARTIST
     out_half_kernel = artist_tap(profile, tap, outermost);

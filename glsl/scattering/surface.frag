@@ -1,37 +1,19 @@
 #version 450 core
 #include <pass>
+#include <scattering/key.glsl>
 #include <scattering/lines.glsl>
 
 // Surface is spread over its pixels at most ten times: what is nearer to edge-on has no reliable slope.
 const float kMostSlope = 9.95;
 
-bool scatters_at(ivec2 p) {
-    uint id = 0u;
-#ifdef HAS_OBJECT_ID
-    id = texelFetch(object_id, p, 0).r;
-#endif
-    float depth_m = texelFetch(depth, p, 0).r;
-    bool scatters = depth_m > 0.0 && depth_m < 1e30 && object_ids(id);
-#ifdef HAS_MASK
-    scatters = scatters && texelFetch(mask, p, 0).r > 0.0;
-#endif
-    return scatters;
-}
-
-uint key_at(ivec2 p) {
-#ifdef HAS_OBJECT_ID
-    return min(texelFetch(object_id, p, 0).r, 0xFFFFFFFEu) + 1u;
-#else
-    return 1u;
-#endif
-}
+bool is_surface(float depth_m) { return depth_m > 0.0 && depth_m < 1e30; }
 
 // Depth's change from a pixel to its neighbour over their distance, for small steps: large where the neighbour is another
 // object, so that the other side's is taken.
 float step_to(ivec2 p, ivec2 neighbour, float depth_m, float px) {
     ivec2 q = clamp(neighbour, ivec2(0), frame.size - 1);
     float there_m = texelFetch(depth, q, 0).r;
-    bool same = q == neighbour && there_m > 0.0 && there_m < 1e30 && key_at(q) == key_at(p);
+    bool same = q == neighbour && is_surface(there_m) && key_at(q) == key_at(p);
     return same ? (there_m - depth_m) / (px * 0.5 * (depth_m + there_m)) : 1e30;
 }
 
@@ -48,7 +30,7 @@ void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     vec3 light = texelFetch(irradiance, p, 0).rgb;
     float depth_m = texelFetch(depth, p, 0).r, px = view_lines().slope.x;
-    bool scatters = scatters_at(p) && !any(isnan(light)) && !any(isinf(light));
+    bool scatters = is_surface(depth_m) && may_scatter(p, light);
     vec2 slope = vec2(
         slope_between(step_to(p, p - ivec2(1, 0), depth_m, px), step_to(p, p + ivec2(1, 0), depth_m, px)),
         slope_between(step_to(p, p - ivec2(0, 1), depth_m, px), step_to(p, p + ivec2(0, 1), depth_m, px)));
