@@ -2,6 +2,7 @@
 // under light that changes.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -174,6 +175,78 @@ TEST(SssAdaptive, BeginsItsAverageAnewWhereTheLightChanges) {
         after = look.run(shadow_edge(21, 0.1f)).images.at("irradiance");
         for (int c = 0; c < 3; ++c)
             EXPECT_NEAR(sum_of(after, c) / sum_of(before, c), 0.1, 0.002) << prefilter;
+    }
+}
+
+double rmse(const Image& a, const Image& b, double times) {
+    double sum = 0;
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) sum += std::pow(a.at(x, y, 0) - times * b.at(x, y, 0), 2);
+    return std::sqrt(sum / (kWidth * kHeight));
+}
+
+/// The same light, a tenth as bright: the average over frames is made a tenth as bright, and stays smooth.
+TEST(SssAdaptive, TakesItsAverageAlongWhereLightIsOnlyDarker) {
+    const Image exact = scattered(scattering_step("sss_exact", profile(), ""), shadow_edge(1));
+    LookRunner look(scattering_step(kEffect, profile(), R"("guiding_weight": 0.05, "prefilter": true)"),
+                    gpu::Backend::osmesa, {"sss_adaptive.estimate", "sss_adaptive.guided"});
+    for (int frame = 1; frame <= 20; ++frame) look.run(shadow_edge(frame));
+    const FrameResult result = look.run(shadow_edge(21, 0.1f));
+    const double guided = rmse(result.images.at("irradiance"), exact, 0.1),
+                 alone = rmse(result.taps.at("sss_adaptive.estimate"), exact, 0.1);
+    EXPECT_LT(guided, 0.5 * alone);
+    EXPECT_EQ(result.taps.at("sss_adaptive.guided").at(10, 10, 3), 20) << "frames";
+}
+
+/// A shadow that moves is other light: where it went the average is of this frame alone.
+TEST(SssAdaptive, BeginsItsAverageAnewWhereAShadowMoves) {
+    LookRunner look(scattering_step(kEffect, profile(), R"("guiding_weight": 0.05)"), gpu::Backend::osmesa,
+                    {"sss_adaptive.guided"});
+    for (int frame = 1; frame <= 20; ++frame) look.run(shadow_edge(frame));
+    Capture moved = shadow_edge(21);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x)
+            for (int c = 0; c < 3; ++c)
+                moved.images.at("irradiance").at(x, y, c) = x < 32 ? 0.1f : 1.0f - 0.2f * float(c);
+    const Image guided = look.run(moved).taps.at("sss_adaptive.guided");
+    for (int y = 4; y < kHeight - 4; ++y) EXPECT_EQ(guided.at(27, y, 3), 1) << "was lit, is in shadow";
+}
+
+/// shadow_edge() as a camera sees it whose samples lie elsewhere in the pixels in each frame, as taa wants
+/// it: Halton.
+Capture jittered(int frame) {
+    const auto halton = [](int index, int base) {
+        double value = 0, part = 1;
+        for (; index > 0; index /= base) value += index % base * (part /= base);
+        return value - 0.5;
+    };
+    const double dx = halton(frame % 16 + 1, 2), dy = halton(frame % 16 + 1, 3);
+    Capture capture = lit_plane(kWidth, kHeight, [&](int x, int y, int c) {
+        return x + dx + (y + dy) / 4 < 24 ? 0.1f : 1.0f - 0.2f * float(c);
+    });
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x)
+            capture.images.at("depth").at(x, y, 0) =
+                float(1 + 0.02 * std::sin((x + dx) * 0.3) * std::cos((y + dy) * 0.2));
+    capture.header.frame = frame;
+    return capture;
+}
+
+TEST(SssAdaptive, SettlesUnderJitterWithEveryControlVariate) {
+    for (const char* variate : {"none", "constant", "online"}) {
+        LookRunner look = runner(R"("control_variate": ")" + std::string(variate) + "\"");
+        std::vector<double> means;
+        for (int frame = 1; frame <= 96; ++frame) {
+            const double mean = mean_count(look.run(jittered(frame)));
+            if (frame > 32) means.push_back(mean);
+        }
+        const auto [least, most] = std::minmax_element(means.begin(), means.end());
+        EXPECT_LT(*most / *least, 1.1) << variate << ": pumps";
+        const auto half = means.begin() + 32;
+        const double early = std::accumulate(means.begin(), half, 0.0) / 32,
+                     late = std::accumulate(half, means.end(), 0.0) / 32;
+        EXPECT_NEAR(late / early, 1, 0.03) << variate << ": grows";
+        EXPECT_LT(late, 32) << variate << ": stays at the limit";
     }
 }
 

@@ -1,6 +1,6 @@
 #version 450 core
 #include <pass>
-#include "packing.glsl"
+#include <scattering/lit.glsl>
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);

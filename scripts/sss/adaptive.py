@@ -44,6 +44,10 @@ def still(file, profile, frames):
     return document
 
 
+# Textures of fewer than four channels.
+TAP_CHANNELS = {"sampled": ["Y"], "tile_class": ["R", "G"], "tile_range": ["Y"]}
+
+
 def run(name, capture, profile, params, frames, effect="sss_adaptive", taps=("estimate", "history", "plan"), after=(), roles="irradiance"):
     """Pictures and taps of all frames: {"irradiance": frames x h x w x 3, "estimate": ... x 4}."""
     folder = WORK / "adaptive" / name
@@ -59,7 +63,8 @@ def run(name, capture, profile, params, frames, effect="sss_adaptive", taps=("es
     names = [f"irradiance.{c}" for c in RGB] if roles == "irradiance" else list(RGB)
     result = {roles: numpy.stack([read_exr(folder / f"out_{i:04}.exr", names) for i in range(1, frames + 1)])}
     for tap in taps:
-        result[tap] = numpy.stack([read_exr(folder / f"out.{effect}.{tap}.{i:04}.exr", list("RGBA")) for i in range(1, frames + 1)])
+        result[tap] = numpy.stack([read_exr(folder / f"out.{effect}.{tap}.{i:04}.exr", TAP_CHANNELS.get(tap, list("RGBA")))
+                                   for i in range(1, frames + 1)])
     shutil.rmtree(folder)
     return result
 

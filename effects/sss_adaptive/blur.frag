@@ -1,0 +1,16 @@
+#version 450 core
+#include <pass>
+#define TAPS param.blur_samples
+#define KEEPS_OWN 0
+#include <scattering/blur.glsl>
+
+void main() {
+    ivec2 p = ivec2(gl_FragCoord.xy);
+    Lit here = unpack(texelFetch(SOURCE, p, 0));
+    vec3 light = blurred_light(view_lines(), p, here);
+#if ALONG_ROWS
+    out_rows = pack(Lit(light, here.depth_m, here.key));
+#else
+    out_blurred = vec4(light, 1.0);
+#endif
+}

@@ -1,0 +1,59 @@
+// The average over frames within the step.
+#include <scattering/facet.glsl>
+#include <burley.glsl>
+#include <luminance.glsl>
+#include "mark.glsl"
+#include "past.glsl"
+
+const float kLightChange = 0.1;
+const float kMostChange = 64.0;  // of what an average can be made brighter or darker by
+const float kMostLevel = 5.0;
+
+// Light that came in where the pixel's scattered light comes from, within the mean radius of the profile, 2.5 d, with the mean
+// mark of its objects; and the luminance of what came in nearer.
+vec4 light_around(ViewLines lines, Facet here, out float near) {
+#if PREFILTER
+    vec3 d = scattering_profile(here.key - 1u).d;
+    float radius_px = 2.5 * max(d.r, max(d.g, d.b)) * pixels_per_mm(lines, here.depth_m);
+    float level = clamp(log2(max(2.0 * radius_px, 1.0)), 0.0, kMostLevel);
+    vec2 place = gl_FragCoord.xy * light_size.zw;
+    near = luminance(textureLod(light, place, max(level - 2.0, 0.0)).rgb);
+    return textureLod(light, place, level);
+#else
+    near = luminance(here.light);
+    return vec4(here.light, mark_of(here.key));
+#endif
+}
+
+// Whether `now` is `then` but for kLightChange.
+bool alike(float now, float then) { return abs(now - then) <= kLightChange * max(now, then); }
+
+// Whether light is what it was in the frame before, or only brighter or darker, `times` as bright; if not, the average is of
+// no use. Where objects came or went, brighter may be what they are.
+bool same_light(vec4 now, vec4 then, float near_now, float near_then, out vec3 times) {
+    times = vec3(1.0);
+    float far_now = luminance(now.rgb), far_then = luminance(then.rgb);
+    if (alike(far_now, far_then)) return true;
+#if PREFILTER
+    times = now.rgb / max(then.rgb, now.rgb / kMostChange + 1e-20);
+    return abs(now.a - then.a) < 1e-3 && alike(near_now * far_then, near_then * far_now);
+#else
+    // The pixel's own light does not tell how that around it changed.
+    return false;
+#endif
+}
+
+// The textures guided, lit and lit_near of a pixel that scatters, whose light in this frame is `now`.
+vec4 guided_light(vec3 now, Facet here, out vec4 lit_now, out float near_now) {
+    ivec2 q;
+    vec3 times;
+    bool inside = past_pixel(q);
+    lit_now = light_around(view_lines(), here, near_now);
+    vec4 past = texelFetch(guided_prev, q, 0);
+    bool known = inside && past.a > 0.0 && texelFetch(plan, ivec2(gl_FragCoord.xy), 0).y > 0.0 &&
+        same_light(lit_now, texelFetch(lit_prev, q, 0), near_now, texelFetch(lit_near_prev, q, 0).r, times);
+    // Frames count alike until the newest would count less than its weight.
+    float frames = known ? past.a + 1.0 : 1.0;
+    float weight = max(1.0 / frames, param.guiding_weight);
+    return vec4(known ? mix(past.rgb * times, now, weight) : now, 1.0 / weight);
+}

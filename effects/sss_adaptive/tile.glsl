@@ -1,0 +1,1 @@
+const int kTile = 8;  // px
