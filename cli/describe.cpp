@@ -34,12 +34,7 @@ ScatteringProfile profile_of(const EffectManifest& manifest, Diagnostics& diagno
 }
 
 void write_plot(const ScatteringProfile& profile, const std::string& path) {
-    AtomicFile atomic(path);
-    std::ofstream out(atomic.temporary_path(), std::ios::binary);
-    out << profile_plot(profile);
-    out.close();
-    if (!out) throw Error(ExitCode::output, path + ": cannot be written");
-    atomic.commit();
+    write_text_file(path, profile_plot(profile));
     fmt::print("{}\n", path);
 }
 

@@ -55,15 +55,6 @@ std::string text_of(const fs::path& file) {
     return text.str();
 }
 
-void write(const fs::path& file, const std::string& text) {
-    AtomicFile atomic(file);
-    std::ofstream out(atomic.temporary_path(), std::ios::binary);
-    out << text;
-    out.close();
-    if (!out) throw Error(ExitCode::output, file.string() + ": cannot be written");
-    atomic.commit();
-}
-
 ExitCode docs(const DocsOptions& options) {
     Diagnostics diagnostics;
     EffectRegistry effects = find_effects(options.effect_paths, diagnostics);
@@ -76,7 +67,7 @@ ExitCode docs(const DocsOptions& options) {
         const fs::path file = (fs::path(options.folder) / name).lexically_normal();
         if (text_of(file) == text) continue;
         same = false;
-        if (!options.check) write(file, text);
+        if (!options.check) write_text_file(file, text);
         fmt::print("{}{}\n", file.string(),
                    options.check ? ": is not what is declared; run aftershade docs" : "");
     }

@@ -15,8 +15,10 @@
 #include "cli/plugin_options.h"
 #include "cli/render_options.h"
 #include "cli/run_report.h"
+#include "cli/telemetry_plot.h"
 #include "cli/verbs.h"
 #include "cli/watch.h"
+#include "framework/core/atomic_file.h"
 #include "framework/core/data_path.h"
 #include "framework/gpu/timer.h"
 #include "framework/pipeline/look.h"
@@ -40,6 +42,8 @@ struct RunArguments {
     bool audit = false;
     bool explain = false;
     bool watch = false;
+    std::string telemetry;
+    std::string telemetry_plot;
     PipelineOptions pipeline;
     CaptureOptions capture;
     RenderOptions render;
@@ -80,6 +84,11 @@ void add_options(CLI::App& app, RunArguments& options) {
                  "Print every parameter's value and where it is from, and run nothing");
     app.add_flag("--audit", options.audit,
                  "Tell which pass first writes NaN or infinite values, where and how many; slow");
+    app.add_option(
+        "--telemetry", options.telemetry,
+        "Write each frame's numbers: the effects' statistics, memory by format, time by pass (.json)");
+    app.add_option("--telemetry-plot", options.telemetry_plot,
+                   "Plot the effects' statistics over the frames (.svg)");
     add_effect_path_option(app, options.effect_paths);
     app.add_option("--progress", options.progress, "auto, none or plain")->capture_default_str();
     app.add_flag("--watch", options.watch,
@@ -98,6 +107,7 @@ OutputOptions output_options(const RunArguments& options) {
     outputs.crop_to_display = options.crop == "display";
     outputs.compression = options.compression;
     outputs.look = options.look;
+    outputs.telemetry = options.telemetry;
     for (const std::string& tap : options.pipeline.taps)
         if (const std::size_t equals = tap.find('='); equals != std::string::npos)
             outputs.tap_patterns[tap.substr(0, equals)] = tap.substr(equals + 1);
@@ -137,6 +147,10 @@ ExitCode render(const Job& job, const Pipeline& pipeline, const std::atomic<bool
     const RunReport report = run_frames(job.context, pipeline, job.sequence, job.reader, job.run, job.outputs,
                                         data_path(), reporter.observer(), stop);
     if (!job.arguments.render.graph.empty()) write_graph(job.arguments.render.graph, report.graph_dot);
+    if (!job.arguments.telemetry_plot.empty())
+        write_text_file(
+            job.arguments.telemetry_plot,
+            telemetry_plot(report.telemetry, std::filesystem::path(job.arguments.look).filename().string()));
     const gpu::ContextInfo& gl = job.context.info();
     if (job.progress != ProgressStyle::none)
         std::cerr << gpu::backend_name(gl.backend) << ": " << gl.renderer << ", " << gl.version << "\n";
@@ -208,6 +222,8 @@ ExitCode run(const RunArguments& options) {
     if (options.keep_channels && changes_window(options.render))
         diagnostics.error({"--keep-channels"},
                           "keeps the source's channels, which --scale and --region change");
+    if (!options.telemetry_plot.empty() && !options.telemetry_plot.ends_with(".svg"))
+        diagnostics.error({"--telemetry-plot " + options.telemetry_plot}, "must end in .svg");
     stop_at_errors(diagnostics);
     diagnostics.print(std::cerr);
 
@@ -219,6 +235,7 @@ ExitCode run(const RunArguments& options) {
     require_output_folders(outputs, *sequence);
     require_output_folder(options.render.history_out);
     require_output_folder(options.render.graph);
+    require_output_folder(options.telemetry_plot);
     if (const auto code = run_in_worker(options.plugins, bound->pipeline, stop)) return *code;
 
     set_exr_threads(int(std::thread::hardware_concurrency()));
@@ -230,6 +247,7 @@ ExitCode run(const RunArguments& options) {
     run_options.frames = sequence->frames;
     run_options.missing = missing_frame(options.missing);
     run_options.audit = options.audit;
+    run_options.telemetry = !options.telemetry.empty() || !options.telemetry_plot.empty();
     run_options.natives = {&natives, &status};
     const Job job{options, *sequence, reader, context, run_options, outputs, progress};
     const ExitCode code = render(job, bound->pipeline, stop);

@@ -2,15 +2,12 @@
 #include <pass>
 #include <scattering/facet.glsl>
 #include "mark.glsl"
+#include "mip_level.glsl"
 
-// Widest mean, 32 px: beyond it light of other surface would come in.
-const float kMostLevel = 5.0;
-
-// Mean over about the area that the sample stands for (Krivanek and Colbert 2008; area in px^2 is 4 to the level), where that
-// is all of one object.
+// Mean over about the area that the sample stands for, where that is all of one object.
 vec3 light_of_sample(Facet there, vec2 place, float area_px) {
 #if PREFILTER
-    vec4 mean = textureLod(light, place * light_size.zw, clamp(0.5 * log2(area_px), 0.0, kMostLevel));
+    vec4 mean = textureLod(light, place * light_size.zw, mip_level(area_px));
     return abs(mean.a - mark_of(there.key)) < 1e-4 ? mean.rgb : there.light;
 #else
     return there.light;

@@ -3,11 +3,11 @@
 #include <burley.glsl>
 #include <luminance.glsl>
 #include "mark.glsl"
+#include "mip_level.glsl"
 #include "past.glsl"
 
 const float kLightChange = 0.1;
 const float kMostChange = 64.0;  // of what an average can be made brighter or darker by
-const float kMostLevel = 5.0;
 
 // Light that came in where the pixel's scattered light comes from, within the mean radius of the profile, 2.5 d, with the mean
 // mark of its objects; and the luminance of what came in nearer.

@@ -15,12 +15,13 @@ constexpr int kWidth = 96, kHeight = 64;
 
 /// A wall with waves: dark on the left, lit on the right; a ball of another object before it.
 Capture wall(int frame) {
-    Capture capture =
-        lit_plane(kWidth, kHeight, [](int x, int y, int c) { return x + y / 4 < 24 ? 0.1f : 1.0f - 0.2f * float(c); });
+    Capture capture = lit_plane(
+        kWidth, kHeight, [](int x, int y, int c) { return x + y / 4 < 24 ? 0.1f : 1.0f - 0.2f * float(c); });
     for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x) {
             capture.images.at("depth").at(x, y, 0) = float(1 + 0.02 * std::sin(x * 0.3) * std::cos(y * 0.2));
-            const double across = (x - 74) / 12.0, down = (y - 40) / 12.0, square = across * across + down * down;
+            const double across = (x - 74) / 12.0, down = (y - 40) / 12.0,
+                         square = across * across + down * down;
             if (square > 1) continue;
             capture.images.at("depth").at(x, y, 0) = float(0.9 - 0.06 * std::sqrt(1 - square));
             capture.images.at("object_id").uint_at(x, y, 0) = 2;
@@ -60,8 +61,7 @@ TEST(SssAdaptiveHybrid, HasTheBitsOfSamplesAloneWhereNoLightIsCalm) {
 }
 
 TEST(SssAdaptiveHybrid, HasTheBitsOfTheTwoBlursWhereAllIsBlurred) {
-    const Image blurred =
-        scattered(scattering_step("sss_separable", profile(), R"("samples": 17)"), wall(1));
+    const Image blurred = scattered(scattering_step("sss_separable", profile(), R"("samples": 17)"), wall(1));
     for (const char* who :
          {R"("hybrid": "separable")", R"("hybrid": "separable", "guiding": false)",
           R"("hybrid": "auto", "sampled_ids": [9])", R"("hybrid": "auto", "calm_range": 1)"}) {
@@ -71,15 +71,18 @@ TEST(SssAdaptiveHybrid, HasTheBitsOfTheTwoBlursWhereAllIsBlurred) {
     }
 }
 
-/// What the tiles' lists draw is what their classes say, and the classes are those of a count over all pixels here.
+/// What the tiles' lists draw is what their classes say, and the classes are those of a count over all pixels
+/// here.
 TEST(SssAdaptiveHybrid, DrawsTheTilesThatItsClassesSay) {
     const FrameResult result =
         runner(R"("hybrid": "auto", "guiding": false)",
-               {"sss_adaptive.tile_class", "sss_adaptive.tile_range", "sss_adaptive.sampled", "sss_adaptive.estimate",
-                "sss_adaptive.blurred", "sss_adaptive.plan"})
+               {"sss_adaptive.tile_class", "sss_adaptive.tile_range", "sss_adaptive.sampled",
+                "sss_adaptive.estimate", "sss_adaptive.blurred", "sss_adaptive.plan"})
             .run(wall(1));
-    const Image &classes = result.taps.at("sss_adaptive.tile_class"), &sampled = result.taps.at("sss_adaptive.sampled"),
-                &estimate = result.taps.at("sss_adaptive.estimate"), &blurred = result.taps.at("sss_adaptive.blurred"),
+    const Image &classes = result.taps.at("sss_adaptive.tile_class"),
+                &sampled = result.taps.at("sss_adaptive.sampled"),
+                &estimate = result.taps.at("sss_adaptive.estimate"),
+                &blurred = result.taps.at("sss_adaptive.blurred"),
                 &plan = result.taps.at("sss_adaptive.plan");
     ASSERT_EQ(classes.width(), kWidth / 8);
     int sampled_tiles = 0, blurred_tiles = 0, both = 0;
@@ -107,7 +110,9 @@ TEST(SssAdaptiveHybrid, DrawsTheTilesThatItsClassesSay) {
 /// The range of each tile as its doc says, counted here from the pixels: 5 d are 15 px, so two tiles on.
 TEST(SssAdaptiveHybrid, TakesTheRangeOfTheLightWithinFiveD) {
     const Capture capture = wall(1);
-    const Image ranges = runner(R"("hybrid": "auto")", {"sss_adaptive.tile_range"}).run(capture).taps.at("sss_adaptive.tile_range");
+    const Image ranges = runner(R"("hybrid": "auto")", {"sss_adaptive.tile_range"})
+                             .run(capture)
+                             .taps.at("sss_adaptive.tile_range");
     const Image& light = capture.images.at("irradiance");
     for (int ty = 0; ty < kHeight / 8; ++ty)
         for (int tx = 0; tx < kWidth / 8; ++tx) {
@@ -115,11 +120,13 @@ TEST(SssAdaptiveHybrid, TakesTheRangeOfTheLightWithinFiveD) {
             // The ball is nearer than the wall: 5 d are more than 16 px.
             bool ball = false;
             for (int y = 8 * ty; y < 8 * ty + 8; ++y)
-                for (int x = 8 * tx; x < 8 * tx + 8; ++x) ball |= capture.images.at("object_id").uint_at(x, y, 0) == 2;
+                for (int x = 8 * tx; x < 8 * tx + 8; ++x)
+                    ball |= capture.images.at("object_id").uint_at(x, y, 0) == 2;
             const int reach = ball ? 3 : 2;
             for (int y = std::max(0, 8 * (ty - reach)); y < std::min(kHeight, 8 * (ty + reach + 1)); ++y)
                 for (int x = std::max(0, 8 * (tx - reach)); x < std::min(kWidth, 8 * (tx + reach + 1)); ++x) {
-                    const double own = 0.2126 * light.at(x, y, 0) + 0.7152 * light.at(x, y, 1) + 0.0722 * light.at(x, y, 2);
+                    const double own =
+                        0.2126 * light.at(x, y, 0) + 0.7152 * light.at(x, y, 1) + 0.0722 * light.at(x, y, 2);
                     least = std::min(least, own);
                     most = std::max(most, own);
                 }
@@ -127,10 +134,12 @@ TEST(SssAdaptiveHybrid, TakesTheRangeOfTheLightWithinFiveD) {
         }
 }
 
-/// Against the sum over all pixels, averaged over many frames: near to samples alone, better than blurs alone.
+/// Against the sum over all pixels, averaged over many frames: near to samples alone, better than blurs
+/// alone.
 TEST(SssAdaptiveHybrid, LiesBetweenSamplesAndBlursAndHasNoSeams) {
     const Image exact = scattered(scattering_step("sss_exact", profile(), R"("normalize": "all")"), wall(1));
-    const std::string calm = R"("prefilter": false, "normalize": "all", "target_variance": 0.0001, "guiding_weight": 0.01)";
+    const std::string calm =
+        R"("prefilter": false, "normalize": "all", "target_variance": 0.0001, "guiding_weight": 0.01)";
     std::vector<double> errors;
     Image last;
     for (const char* hybrid : {"off", "auto", "separable"}) {
@@ -166,18 +175,22 @@ TEST(SssAdaptiveHybrid, LeavesTheBitsOfWhatDoesNotScatter) {
 
 /// Samples that come to a pixel which was blurred before begin without history of their own.
 TEST(SssAdaptiveHybrid, FollowsLightThatBecomesLively) {
-    LookRunner look = runner(R"("hybrid": "auto")", {"sss_adaptive.plan", "sss_adaptive.history", "sss_adaptive.sampled"});
+    LookRunner look =
+        runner(R"("hybrid": "auto")", {"sss_adaptive.plan", "sss_adaptive.history", "sss_adaptive.sampled"});
     for (int frame = 1; frame <= 6; ++frame) {
         Capture capture = wall(frame);
         if (frame < 4)
             for (float& value : capture.images.at("irradiance").floats()) value = 0.5f;
         const FrameResult result = look.run(capture);
-        const Image &history = result.taps.at("sss_adaptive.history"), &sampled = result.taps.at("sss_adaptive.sampled");
+        const Image &history = result.taps.at("sss_adaptive.history"),
+                    &sampled = result.taps.at("sss_adaptive.sampled");
         const double share = sampled.at(20, 20, 0);
         EXPECT_EQ(share, frame < 4 ? 0 : 1) << frame;
         EXPECT_EQ(history.at(20, 20, 3) > 0, frame >= 4) << frame;
         EXPECT_EQ(result.taps.at("sss_adaptive.plan").at(20, 20, 1), frame > 4 ? 1 : 0) << frame;
-        if (frame == 4) { EXPECT_EQ(result.taps.at("sss_adaptive.plan").at(20, 20, 0), 36); }
+        if (frame == 4) {
+            EXPECT_EQ(result.taps.at("sss_adaptive.plan").at(20, 20, 0), 36);
+        }
     }
 }
 

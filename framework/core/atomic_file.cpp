@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <utility>
 
 #include "framework/core/error.h"
@@ -39,6 +40,15 @@ void AtomicFile::commit() {
     if (flushed != 0) fail("cannot flush to disk");
     if (std::rename(temporary_path_.c_str(), final_path_.c_str()) != 0) fail("cannot rename into place");
     committed_ = true;
+}
+
+void write_text_file(const fs::path& path, std::string_view text) {
+    AtomicFile file(path);
+    std::ofstream out(file.temporary_path(), std::ios::binary);
+    out << text;
+    out.close();
+    if (!out) throw Error(ExitCode::output, path.string() + ": cannot be written");
+    file.commit();
 }
 
 }  // namespace aftershade

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 namespace aftershade {
 
@@ -23,5 +24,8 @@ private:
     std::filesystem::path temporary_path_;
     bool committed_ = false;
 };
+
+/// Replaces the file by this text. Throws Error(ExitCode::output) naming the path.
+void write_text_file(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace aftershade

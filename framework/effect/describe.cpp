@@ -45,6 +45,16 @@ std::string input_flags(const InputSpec& input) {
     return flags;
 }
 
+/// "estimate.a where history.a, 8 bins from 0 to 64".
+std::string telemetry_text(const TelemetrySpec& spec) {
+    std::string text = spec.of.text() + (spec.squared ? " squared" : "");
+    if (spec.where) text += " where " + spec.where->text();
+    if (spec.bins > 0)
+        text += ", " + std::to_string(spec.bins) + " bins from " + format_number(spec.from) + " to " +
+                format_number(spec.to);
+    return text;
+}
+
 std::string texture_text(const TextureSpec& texture) {
     std::string text{gpu::texture_format_name(texture.format)};
     const GridSpec& grid = texture.grid;
@@ -169,6 +179,11 @@ std::string describe_text(const EffectManifest& manifest) {
     for (const TextureSpec& texture : manifest.textures)
         textures.add({texture.name, texture_text(texture), texture.doc});
     textures.print(out);
+    if (!manifest.telemetry.empty()) out << "\ntelemetry (--telemetry FILE.json)\n";
+    TextTable telemetry("  ");
+    for (const TelemetrySpec& spec : manifest.telemetry)
+        telemetry.add({spec.name, telemetry_text(spec), spec.doc});
+    telemetry.print(out);
     out << "\npasses\n";
     TextTable passes("  ");
     for (const PassSpec& pass : manifest.passes) passes.add({pass.name, shader_text(pass), flow_text(pass)});
@@ -201,6 +216,11 @@ std::string describe_markdown(const EffectManifest& manifest) {
     for (const TextureSpec& texture : manifest.textures)
         out << "| `" << texture.name << "` | " << texture_text(texture) << " | " << cell(texture.doc)
             << " |\n";
+    if (!manifest.telemetry.empty())
+        out << "\n## Telemetry\n\nNumbers of each frame, written by `--telemetry FILE.json`.\n\n| name | of "
+               "| |\n|---|---|---|\n";
+    for (const TelemetrySpec& spec : manifest.telemetry)
+        out << "| `" << spec.name << "` | " << telemetry_text(spec) << " | " << cell(spec.doc) << " |\n";
     if (!manifest.sources.empty()) out << "\n## Sources\n\n";
     for (const std::string& source : manifest.sources) out << "- " << source << "\n";
     return out.str();

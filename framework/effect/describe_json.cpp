@@ -53,6 +53,8 @@ std::string describe_json(const EffectManifest& manifest) {
         result["textures"][texture.name] = {{"format", gpu::texture_format_name(texture.format)},
                                             {"history", texture.history},
                                             {"doc", texture.doc}};
+    for (const TelemetrySpec& spec : manifest.telemetry)
+        result["telemetry"][spec.name] = {{"of", spec.of.text()}, {"doc", spec.doc}};
     for (const PassSpec& pass : manifest.passes)
         result["passes"].push_back({{"name", pass.name}, {"shader", pass.shader}, {"module", pass.module}});
     for (const PresetSpec& preset : manifest.presets) {

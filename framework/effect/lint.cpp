@@ -35,7 +35,7 @@ public:
     }
 
 private:
-    /// A texture that nobody reads can only be tapped: no output depends on it.
+    /// A texture that nobody reads, and no statistic is of, can only be tapped: no output depends on it.
     void unused_textures() {
         for (const TextureSpec& texture : manifest_.textures) {
             const auto reads = [&](const PassSpec& pass) {
@@ -45,7 +45,11 @@ private:
                            return names(use) && use.kind != AccessSpec::Kind::write;
                        });
             };
-            if (std::none_of(manifest_.passes.begin(), manifest_.passes.end(), reads))
+            const auto tells = [&](const TelemetrySpec& spec) {
+                return spec.of.texture == texture.name || (spec.where && spec.where->texture == texture.name);
+            };
+            if (std::none_of(manifest_.passes.begin(), manifest_.passes.end(), reads) &&
+                std::none_of(manifest_.telemetry.begin(), manifest_.telemetry.end(), tells))
                 diagnostics_.warning(texture.place, "no pass reads the texture '" + texture.name +
                                                         "': it is only written where it is tapped");
         }

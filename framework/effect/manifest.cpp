@@ -177,6 +177,8 @@ std::optional<EffectManifest> parse_manifest(const Node& node, const fs::path& f
     parser.declarations("buffers", reader.object("buffers"), &ManifestParser::buffers);
     if (const Node* section = reader.object("native")) parser.native(*section);
     parser.declarations("passes", reader.array("passes", Presence::required), &ManifestParser::passes);
+    const Node* telemetry = reader.object("telemetry");
+    if (telemetry && parser.has_all_modules()) parser.telemetry(*telemetry);
     const Node* presets = reader.object("presets");
     if (presets && parser.has_all_modules()) parser.presets(*presets);
     reader.finish();

@@ -222,6 +222,25 @@ struct PresetSpec {
     std::map<std::string, ParamValue> values;
 };
 
+/// A number for each frame out of a texture: what `run --telemetry` writes.
+struct TelemetrySpec {
+    /// One channel of a texture: "history.a".
+    struct Channel {
+        std::string texture;
+        int channel = 0;
+        std::string text() const { return texture + "." + "rgba"[channel]; }
+    };
+    std::string name;
+    Channel of;
+    std::optional<Channel> where;  ///< only texels where this is above 0; a texture of the same size
+    bool squared = false;          ///< a deviation is told as variance
+    double from = 0;               ///< of the histogram: `bins` of one width; what lies outside goes to the
+    double to = 0;                 ///< first and last
+    int bins = 0;                  ///< 0: no histogram
+    std::string doc;               ///< one sentence with the unit
+    Place place;
+};
+
 struct EffectManifest {
     std::string id;
     std::string version;
@@ -239,6 +258,7 @@ struct EffectManifest {
     std::optional<NativeSpec> native;
     bool accumulates_subframes = false;  ///< "accumulates": "subframes": runs for each, emits at the last
     std::vector<PresetSpec> presets;
+    std::vector<TelemetrySpec> telemetry;
     std::filesystem::path folder;
 
     const InputSpec* find_input(const std::string& name) const;

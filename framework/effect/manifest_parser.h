@@ -36,6 +36,7 @@ public:
     void passes(const Node& section);
     void native(const Node& section);
     void presets(const Node& section);
+    void telemetry(const Node& section);  ///< after textures
 
 private:
     /// Limits of a count: of a number, and the least `min` that a parameter may have.
@@ -60,6 +61,9 @@ private:
     std::string role(ObjectReader& reader, const Node& node);
     void check_from(const ParamSpec& spec, const Place& place);
     void preset(const Member& member);
+    void statistic(const Member& member);
+    std::optional<TelemetrySpec::Channel> channel(const Node& node, const std::string& label);
+    void histogram(const Node& node, TelemetrySpec& spec);
 
     CountSpec count(const Node& node, const std::string& key, const CountLimits& limits);
     void count_by_param(const Node& node, const std::string& key, const CountLimits& limits);

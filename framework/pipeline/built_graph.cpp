@@ -57,7 +57,25 @@ void keep_taps(const Pipeline& pipeline, const GraphBuilder& builder, graph::Fra
         }
 }
 
+void keep_statistics(const Pipeline& pipeline, const std::vector<GraphBuilder::Textures>& textures,
+                     graph::FrameGraph& graph) {
+    for (std::size_t i = 0; i < pipeline.steps.size(); ++i)
+        for (const TelemetrySpec& spec : pipeline.steps[i].manifest->telemetry)
+            if (const auto found = find_textures(textures[i], spec)) {
+                graph.keep(found->of);
+                if (found->where) graph.keep(*found->where);
+            }
+}
+
 }  // namespace
+
+std::optional<StatisticTextures> find_textures(const GraphBuilder::Textures& textures,
+                                               const TelemetrySpec& spec) {
+    StatisticTextures found{textures.at(spec.of.texture), std::nullopt};
+    if (spec.where) found.where = textures.at(spec.where->texture);
+    if (found.of.version == 0 || (found.where && found.where->version == 0)) return std::nullopt;
+    return found;
+}
 
 std::string graph_key(const Pipeline& pipeline, const FrameInputs& frame, const std::vector<ParamSet>& params,
                       const std::vector<std::string>& roles) {
@@ -75,7 +93,7 @@ std::string graph_key(const Pipeline& pipeline, const FrameInputs& frame, const 
 std::unique_ptr<BuiltGraph> build_graph(gpu::Context& context, ProgramCache& programs, StepFiles& files,
                                         const NativeSteps& natives, const Pipeline& pipeline,
                                         const FrameInputs& frame, const std::vector<ParamSet>& params,
-                                        const std::vector<std::string>& roles) {
+                                        const std::vector<std::string>& roles, bool telemetry) {
     auto built = std::make_unique<BuiltGraph>();
     GraphBuilder builder(programs, files, natives, pipeline, frame);
     const int accumulating = pipeline.last_accumulating_step();
@@ -90,6 +108,7 @@ std::unique_ptr<BuiltGraph> build_graph(gpu::Context& context, ProgramCache& pro
         if (const auto result = built->results.find(role); result != built->results.end())
             builder.graph.keep(result->second);
     keep_taps(pipeline, builder, builder.graph);
+    if (telemetry) keep_statistics(pipeline, built->textures, builder.graph);
     built->imports = std::move(builder.imports);
     built->mask_files = std::move(builder.mask_files);
     built->passes = std::move(builder.passes);

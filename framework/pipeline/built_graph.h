@@ -31,10 +31,19 @@ struct BuiltGraph {
 std::string graph_key(const Pipeline& pipeline, const FrameInputs& frame, const std::vector<ParamSet>& params,
                       const std::vector<std::string>& roles);
 
-/// Throws Error(ExitCode::effect); Error(ExitCode::usage) for a tap that no pass writes.
+/// `telemetry`: keeps the textures of the steps' statistics. Throws Error(ExitCode::effect);
+/// Error(ExitCode::usage) for a tap that no pass writes.
 std::unique_ptr<BuiltGraph> build_graph(gpu::Context& context, ProgramCache& programs, StepFiles& files,
                                         const NativeSteps& natives, const Pipeline& pipeline,
                                         const FrameInputs& frame, const std::vector<ParamSet>& params,
-                                        const std::vector<std::string>& roles);
+                                        const std::vector<std::string>& roles, bool telemetry);
+
+/// The textures of a statistic; without value where no pass writes one of them with the step's parameters.
+struct StatisticTextures {
+    graph::TextureHandle of;
+    std::optional<graph::TextureHandle> where;
+};
+std::optional<StatisticTextures> find_textures(const GraphBuilder::Textures& textures,
+                                               const TelemetrySpec& spec);
 
 }  // namespace aftershade

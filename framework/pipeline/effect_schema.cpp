@@ -317,6 +317,14 @@ std::string effect_schema() {
     const json version = {{"type", "string"},
                           {"pattern", "^" + number + "\\." + number + "\\." + number + "$"}};
     const json presets = {{"type", "object"}, {"additionalProperties", {{"type", "object"}}}};
+    const json channel = {{"type", "string"}, {"pattern", "^[a-z][a-z0-9_]*\\.[rgba]$"}};
+    const json number_node = {{"type", "number"}};
+    const json statistic = schema::object({{"of", channel},
+                                           {"where", channel},
+                                           {"squared", kFlag},
+                                           {"bins", schema::array_of(number_node, 3, 3)},
+                                           {"doc", kText}},
+                                          {"of"});
     json modules = schema::array_of(schema::snake_case());
     modules["uniqueItems"] = true;
     return schema::document("Aftershade effect",
@@ -334,6 +342,7 @@ std::string effect_schema() {
                              {"buffers", schema::named(buffer())},
                              {"passes", schema::array_of(pass(), 1)},
                              {"native", native()},
+                             {"telemetry", schema::named(statistic)},
                              {"presets", presets}},
                             {"id", "version", "summary", "inputs", "outputs", "passes"})
                .dump(2) +

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
 #include "framework/image/false_color.h"
 #include "framework/image/png_file.h"
@@ -123,13 +124,25 @@ void write_tap(const fs::path& path, const Image& image, const OutputOptions& op
     write_exr(path, channels, write);
 }
 
-/// Every file name that was written down, with where.
-std::vector<std::pair<Place, std::string>> all_patterns(const OutputOptions& options) {
-    std::vector<std::pair<Place, std::string>> patterns;
-    for (const std::string& text : options.patterns) patterns.push_back({{"-o " + text}, text});
-    for (const auto& [tap, text] : options.tap_patterns)
-        patterns.push_back({{"--tap " + tap + "=" + text}, text});
-    return patterns;
+/// A file name that was written down.
+struct OutputName {
+    Place place;
+    std::string text;
+    bool is_telemetry = false;
+};
+
+std::vector<OutputName> all_names(const OutputOptions& options) {
+    std::vector<OutputName> names;
+    const auto add = [&](const std::string& option, const std::string& text, bool is_telemetry) {
+        OutputName& name = names.emplace_back();
+        name.place.file = option;
+        name.text = text;
+        name.is_telemetry = is_telemetry;
+    };
+    for (const std::string& text : options.patterns) add("-o " + text, text, false);
+    for (const auto& [tap, text] : options.tap_patterns) add("--tap " + tap + "=" + text, text, false);
+    if (!options.telemetry.empty()) add("--telemetry " + options.telemetry, options.telemetry, true);
+    return names;
 }
 
 }  // namespace
@@ -143,7 +156,7 @@ void require_output_folder(const fs::path& file) {
 }
 
 void require_output_folders(const OutputOptions& options, const Sequence& sequence) {
-    for (const auto& [place, text] : all_patterns(options))
+    for (const auto& [place, text, is_telemetry] : all_names(options))
         for (const int frame : sequence.frames) require_output_folder(FramePattern(text).path(frame));
 }
 
@@ -159,11 +172,13 @@ void check_outputs(const OutputOptions& options, const Sequence& sequence, Diagn
     std::set<fs::path> named;
     if (options.patterns.empty())
         diagnostics.error({"-o"}, "no output; name at least one file, such as -o out_####.exr");
-    for (const auto& [place, text] : all_patterns(options)) {
+    for (const auto& [place, text, is_telemetry] : all_names(options)) {
         const FramePattern pattern(text);
         const std::string type = extension(text);
-        if (type != ".exr" && type != ".png")
-            diagnostics.error(place, "the format '" + type + "' is not known; outputs end in .exr or .png");
+        if (is_telemetry ? type != ".json" : type != ".exr" && type != ".png")
+            diagnostics.error(place,
+                              "the format '" + type + "' is not known; " +
+                                  (is_telemetry ? "telemetry ends in .json" : "outputs end in .exr or .png"));
         if (sequence.frames.size() > 1 && !pattern.has_frame())
             diagnostics.error(place, std::to_string(sequence.frames.size()) +
                                          " frames cannot share one file; write the number as #### or %04d");
@@ -218,6 +233,10 @@ std::vector<fs::path> write_outputs(const OutputOptions& options, const FrameRes
         if (extension(path) == ".png") write_false_color(path, image, capture.header);
         else write_tap(path, image, options, capture.header);
         written.push_back(path);
+    }
+    if (result.telemetry && !options.telemetry.empty()) {
+        written.push_back(FramePattern(options.telemetry).path(frame));
+        write_text_file(written.back(), telemetry_json(*result.telemetry));
     }
     return written;
 }

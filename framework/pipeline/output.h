@@ -22,6 +22,7 @@ struct OutputOptions {
     std::string compression = "zip";  ///< EXR
     std::string look{};               ///< written as attribute aftershade/look
     std::string renderer{};           ///< GL_RENDERER, written as attribute aftershade/renderer
+    std::string telemetry{};          ///< "stats_####.json": numbers of each frame; "" for none
     std::map<std::string, std::string> tap_patterns{};  ///< by "step.texture"; else beside the first pattern
 };
 

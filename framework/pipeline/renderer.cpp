@@ -106,7 +106,7 @@ void PipelineRenderer::prepare(const FrameInputs& frame, const std::vector<std::
     // The old textures go before the new ones come, unless what they hold lives on.
     std::unique_ptr<BuiltGraph> old = std::move(built_);
     if (!pipeline_.has_history()) old.reset();
-    built_ = build_graph(context_, programs_, files_, natives_, pipeline_, frame, params_, roles);
+    built_ = build_graph(context_, programs_, files_, natives_, pipeline_, frame, params_, roles, telemetry_);
     built_->key = key;
     if (old) built_->executor->take_history_from(*old->executor);
 }
@@ -191,7 +191,39 @@ FrameResult PipelineRenderer::render(const FrameInputs& frame, const std::vector
     run_passes(timed, {first_pass, -1}, result);
     read_results(roles, timed, result);
     if (timed) result.times.insert(result.times.begin(), {"upload", upload_ms});
+    if (telemetry_) {
+        result.telemetry = read_telemetry(header.frame);
+        result.telemetry->passes = result.times;
+    }
     return result;
+}
+
+FrameTelemetry PipelineRenderer::read_telemetry(int frame) const {
+    FrameTelemetry telemetry;
+    telemetry.frame = frame;
+    graph::Executor& executor = *built_->executor;
+    std::map<std::pair<int, int>, Image> read;  // by handle
+    const auto image = [&](const graph::TextureHandle& handle) -> const Image& {
+        const auto [found, is_new] = read.try_emplace({handle.texture, handle.version});
+        const gpu::Texture& texture = *executor.texture(handle);
+        if (is_new) found->second = read_back(texture, gpu::channel_count(texture.desc().format));
+        return found->second;
+    };
+    for (std::size_t i = 0; i < pipeline_.steps.size(); ++i)
+        for (const TelemetrySpec& spec : pipeline_.steps[i].manifest->telemetry)
+            if (const auto textures = find_textures(built_->textures[i], spec))
+                telemetry.steps[pipeline_.steps[i].name][spec.name] = statistic_of(
+                    spec, image(textures->of), textures->where ? &image(*textures->where) : nullptr);
+    const graph::CompiledGraph& compiled = executor.compiled();
+    for (const gpu::TextureDesc& slot : compiled.slots) {
+        FormatMemory& format = telemetry.textures[std::string(gpu::texture_format_name(slot.format))];
+        ++format.textures;
+        format.bytes += gpu::byte_size(slot);
+    }
+    for (const graph::BufferDesc& slot : compiled.buffer_slots) telemetry.buffer_bytes += slot.bytes;
+    telemetry.bytes = compiled.bytes;
+    telemetry.bytes_unaliased = compiled.bytes_unaliased;
+    return telemetry;
 }
 
 void PipelineRenderer::read_results(const std::vector<std::string>& roles, bool timed, FrameResult& result) {

@@ -16,17 +16,19 @@
 #include "framework/pipeline/native_steps.h"
 #include "framework/pipeline/param_upload.h"
 #include "framework/pipeline/pipeline.h"
+#include "framework/pipeline/telemetry.h"
 
 namespace aftershade {
 
 struct FrameResult {
-    std::map<std::string, Image> images;  ///< by role: what the steps made of the roles asked for
-    std::map<std::string, Image> taps;    ///< by "step.texture"
-    std::vector<graph::PassTime> times;   ///< upload, each pass, readback; empty unless timed
-    std::vector<AuditFinding> audit;      ///< in the order of the passes; empty unless audited
-    std::optional<Window> region;         ///< the part of the display window that was asked for
-    std::vector<std::string> messages;    ///< what native code logged
-    std::string history_reset;            ///< why history began anew: "a cut"; "" where it went on or is none
+    std::map<std::string, Image> images;      ///< by role: what the steps made of the roles asked for
+    std::map<std::string, Image> taps;        ///< by "step.texture"
+    std::vector<graph::PassTime> times;       ///< upload, each pass, readback; empty unless timed
+    std::vector<AuditFinding> audit;          ///< in the order of the passes; empty unless audited
+    std::optional<Window> region;             ///< the part of the display window that was asked for
+    std::vector<std::string> messages;        ///< what native code logged
+    std::optional<FrameTelemetry> telemetry;  ///< where it was asked for
+    std::string history_reset;  ///< why history began anew: "a cut"; "" where it went on or is none
 };
 
 /// A frame graph for one size and one choice of passes (framework/pipeline/built_graph.h).
@@ -49,6 +51,9 @@ public:
     FrameResult render(const FrameInputs& frame, const std::vector<std::string>& roles, bool timed);
     /// Reads every input and every float texture back after its pass and looks for NaN and infinities. Slow.
     void set_audit(bool audit) { audit_ = audit; }
+    /// Reads the textures of the effects' telemetry back after each frame; they share no memory then.
+    /// [before the first frame]
+    void set_telemetry(bool telemetry) { telemetry_ = telemetry; }
 
     /// What the next frame would read of this one (framework/pipeline/history_file.h). Throws
     /// Error(ExitCode::output).
@@ -73,6 +78,7 @@ private:
     std::string history_fault(const FrameInputs& frame) const;
     double feed(const FrameInputs& frame, const FrameBefore& before, int first_pass);
     void run_passes(bool timed, graph::PassRange range, FrameResult& result);
+    FrameTelemetry read_telemetry(int frame) const;
     void read_results(const std::vector<std::string>& roles, bool timed, FrameResult& result);
     void begin_from_saved(const FrameInputs& frame);
     void restore(const SavedHistory& saved);
@@ -89,6 +95,7 @@ private:
     std::string frame_fault_;              // why this frame began history anew
     std::unique_ptr<SavedHistory> saved_;  // loaded and not yet taken up
     bool audit_ = false;
+    bool telemetry_ = false;
 };
 
 }  // namespace aftershade

@@ -176,6 +176,7 @@ RunReport run_frames(gpu::Context& context, const Pipeline& pipeline, const Sequ
     const std::vector<std::string> result_roles = wanted_roles(outputs);
     PipelineRenderer renderer(context, pipeline, data_folder, run.natives);
     renderer.set_audit(run.audit);
+    renderer.set_telemetry(run.telemetry);
     if (!run.history_in.empty()) renderer.load_history(run.history_in);
     FrameLoader loader(sequence, reader, pipeline, run, roles_to_read(pipeline, outputs));
     FrameRun frame_run(renderer, loader, sequence, run);
@@ -203,6 +204,7 @@ RunReport run_frames(gpu::Context& context, const Pipeline& pipeline, const Sequ
         tell(frame.capture->header, *frame.result, !any_rendered, run, observer);
         any_rendered = true;
         add_times(report.passes, frame.result->times);
+        if (frame.result->telemetry) report.telemetry.push_back(*frame.result->telemetry);
         finish_write(pending_write, report, observer);
         pending_write = std::async(std::launch::async, [frame, &outputs, &reader] {
             return write_outputs(outputs, *frame.result, *frame.capture, reader);

@@ -35,6 +35,7 @@ struct RunOptions {
     std::vector<int> frames;
     MissingFrame missing = MissingFrame::error;
     bool audit = false;
+    bool telemetry = false;
     int scale_divisor = 1;              ///< frames are rendered at 1/this of their size
     std::optional<Window> region;       ///< px of the display window at full scale, from its top left
     int region_margin_px = 64;          ///< rendered around the region, and not written
@@ -52,9 +53,10 @@ struct RunReport {
     double write_ms = 0;                 ///< waiting for files to be written
     double wall_ms = 0;
     bool interrupted = false;
-    std::string graph_dot;              ///< of the last frame, in Graphviz's language
-    std::uint64_t bytes = 0;            ///< of its textures and buffers
-    std::uint64_t bytes_unaliased = 0;  ///< what these would take if none shared memory
+    std::vector<FrameTelemetry> telemetry;  ///< of every frame, where it was asked for
+    std::string graph_dot;                  ///< of the last frame, in Graphviz's language
+    std::uint64_t bytes = 0;                ///< of its textures and buffers
+    std::uint64_t bytes_unaliased = 0;      ///< what these would take if none shared memory
     ExitCode exit_code() const;
 };
 

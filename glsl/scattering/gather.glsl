@@ -5,6 +5,7 @@
 #include <scattering/filled.glsl>
 #include <scattering/sampling.glsl>
 #include <scattering/share.glsl>
+#include <scattering/start.glsl>
 #include <sequence.glsl>
 
 // Each sample falls on the plane and counts for the pixel that it falls on, as far as that pixel's facet gives its light here:
@@ -37,10 +38,4 @@ vec3 gathered_light(ViewLines lines, ivec2 p, Facet here, uvec2 start, int count
     share /= whole;
 #endif
     return filled(sum, share);
-}
-
-// Where the pixel's own sequence of samples begins in this frame.
-uvec2 samples_start(int seed) {
-    uvec2 full = uvec2(floor((gl_FragCoord.xy + vec2(frame.origin)) / frame.scale));
-    return r2_start(full, pcg3d(uvec3(frame.number, frame.step_seed, seed)).x);
 }
