@@ -22,5 +22,5 @@ void main() {
     if (here.key == 0u) return;
     out_plan = planned(lines, here);
     out_sampled = sampled_ids(here.key - 1u) ? share_of_range(range_around()) : 0.0;
-    if (out_sampled == 0.0) out_plan = vec4(0.0, 0.0, out_plan.z, -1.0);
+    if (out_sampled == 0.0) out_plan = vec4(0.0, -1.0, out_plan.zw);
 }

@@ -187,7 +187,10 @@ TEST(SssAdaptiveHybrid, FollowsLightThatBecomesLively) {
         const double share = sampled.at(20, 20, 0);
         EXPECT_EQ(share, frame < 4 ? 0 : 1) << frame;
         EXPECT_EQ(history.at(20, 20, 3) > 0, frame >= 4) << frame;
-        EXPECT_EQ(result.taps.at("sss_adaptive.plan").at(20, 20, 1), frame > 4 ? 1 : 0) << frame;
+        EXPECT_EQ(result.taps.at("sss_adaptive.plan").at(20, 20, 1), frame < 4   ? -1
+                                                                     : frame > 4 ? 1
+                                                                                 : 0)
+            << frame;
         if (frame == 4) {
             EXPECT_EQ(result.taps.at("sss_adaptive.plan").at(20, 20, 0), 36);
         }

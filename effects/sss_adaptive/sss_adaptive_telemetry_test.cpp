@@ -1,5 +1,5 @@
-// What the program tells of a run: numbers of each frame that agree with the textures they are of, and a sequence in
-// chunks that is the whole one.
+// What the program tells of a run: numbers of each frame that agree with the textures they are of, and a
+// sequence in chunks that is the whole one.
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -11,7 +11,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kLook = R"({ "aftershade": 1, "steps": [ { "effect": "sss_adaptive", "params": { "hybrid": "auto",
+constexpr const char* kLook =
+    R"({ "aftershade": 1, "steps": [ { "effect": "sss_adaptive", "params": { "hybrid": "auto",
     "scattering_profile": { "type": "burley", "d_mm": [3.67, 1.37, 0.68] }, "object_ids": [1] } } ] })";
 
 class SssAdaptiveRun : public testing::Test {
@@ -26,8 +27,9 @@ protected:
         ASSERT_EQ(result.exit_code, 0) << result.err;
     }
     void render(const std::string& frames, const std::string& out, std::vector<std::string> more) {
-        std::vector<std::string> words{"run", "look.json", "in/capture.json", "--frames", frames, "-o", out,
-                                       "--output-roles", "irradiance", "--pixel-type", "float"};
+        std::vector<std::string> words{"run",  "look.json", "in/capture.json", "--frames",   frames,
+                                       "-o",   out,         "--output-roles",  "irradiance", "--pixel-type",
+                                       "float"};
         words.insert(words.end(), more.begin(), more.end());
         run(words);
     }

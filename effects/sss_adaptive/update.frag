@@ -13,6 +13,6 @@ void main() {
     value -= exposed(here.light);
 #endif
     vec4 after = updated_history(texelFetch(history_prev, q, 0), planned.y > 0.0, drawn.a, value, here.key);
-    bool followed = here.key != 0u && planned.a >= 0.0;
+    bool followed = here.key != 0u && planned.y >= 0.0;
     out_history = followed ? after : vec4(0.0);
 }

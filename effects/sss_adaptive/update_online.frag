@@ -19,7 +19,7 @@ void main() {
     float weight = param.history_weight;
     vec4 moved = vec4((1.0 - weight) * (moments.xy + weight * off * off.y), moments.zw + weight * off);
     vec4 after = updated_history(texelFetch(history_prev, q, 0), known, drawn.a, light.x - factor * light.y, here.key);
-    bool followed = here.key != 0u && planned.a >= 0.0;
+    bool followed = here.key != 0u && planned.y >= 0.0;
     out_history = followed ? after : vec4(0.0);
     out_covariance = !followed ? vec4(0.0) : drawn.a < 0.5 ? moments : moved;
 }

@@ -155,7 +155,15 @@ private:
                           : param_resource_glsl(*spec, context_.file_of(spec->name), binding++));
         binding = bindings_.first_param_buffer;
         for (const ParamSpec* spec : bindings_.param_buffers)
-            text_ << param_resource_glsl(*spec, {}, binding++);
+            text_ << param_resource_glsl(*spec, {}, binding++, has_rows(*spec));
+    }
+
+    /// Of a table by object, of a list of objects, of scattering profiles.
+    bool has_rows(const ParamSpec& spec) const {
+        const ParamValue& value = context_.params->get(spec.name);
+        if (const auto* scattering = std::get_if<ScatteringValue>(&value)) return !scattering->rows.empty();
+        const auto* table = std::get_if<TableValue>(&value);
+        return table && !table->rows.empty();
     }
 
     void native_tables() {

@@ -28,7 +28,8 @@ void ManifestParser::telemetry(const Node& section) {
 
 std::optional<TelemetrySpec::Channel> ManifestParser::channel(const Node& node, const std::string& label) {
     const std::size_t dot = node.string.rfind('.');
-    const std::string name = node.string.substr(0, dot), letter = dot == std::string::npos ? "" : node.string.substr(dot + 1);
+    const std::string name = node.string.substr(0, dot),
+                      letter = dot == std::string::npos ? "" : node.string.substr(dot + 1);
     std::vector<std::string> known;
     const std::string list = list_of_textures(manifest_, known);
     if (std::find(known.begin(), known.end(), name) == known.end()) {
@@ -40,7 +41,8 @@ std::optional<TelemetrySpec::Channel> ManifestParser::channel(const Node& node, 
     const std::size_t place = letter.size() == 1 ? kChannels.find(letter[0]) : std::string_view::npos;
     if (place == std::string_view::npos || int(place) >= channels) {
         fault(node.place, label + ": '" + node.string + "' must end in a channel of '" + name + "', one of " +
-                              std::string(kChannels.substr(0, std::size_t(channels))) + ": \"" + name + ".r\"");
+                              std::string(kChannels.substr(0, std::size_t(channels))) + ": \"" + name +
+                              ".r\"");
         return std::nullopt;
     }
     return TelemetrySpec::Channel{name, int(place)};
@@ -56,7 +58,8 @@ void ManifestParser::histogram(const Node& node, TelemetrySpec& spec) {
     spec.from = node.items[0].number;
     spec.to = node.items[1].number;
     const double count = node.items[2].number;
-    if (spec.from >= spec.to) fault(node.place, "'bins' must go up: its second number is not above its first");
+    if (spec.from >= spec.to)
+        fault(node.place, "'bins' must go up: its second number is not above its first");
     if (count < 1 || count > kMaxBins || count != double(int(count)))
         fault(node.items[2].place, "'bins' has " + format_number(count) + " bins, but an integer from 1 to " +
                                        std::to_string(kMaxBins) + " is needed");

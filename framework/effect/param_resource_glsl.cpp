@@ -168,18 +168,22 @@ layout(std430, binding = $binding) readonly buffer $block {
     $entry $entries[];
 };
 $row $name(uint object_id) {
-    uint low = 0u, high = $count;
+$search    return $default;
+}
+)";
+
+/// Left out where there are no rows: llvmpipe would load both what it finds and the default, lane by lane,
+/// for every pixel.
+constexpr std::string_view kSearch = R"(    uint low = 0u, high = $count;
     while (low < high) {
         uint middle = (low + high) / 2u;
         if ($entries[middle].last < object_id) low = middle + 1u;
         else high = middle;
     }
     if (low < $count && $entries[low].first <= object_id) return $entries[low].row;
-    return $default;
-}
 )";
 
-std::string table_glsl(const ParamSpec& spec, const std::string& function, int binding) {
+std::string table_glsl(const ParamSpec& spec, const std::string& function, int binding, bool has_rows) {
     std::string defines, columns;
     for (const ParamSpec& column : spec.columns) {
         columns += "    " + std::string(column_type(column)) + " " + column.name + ";\n";
@@ -187,16 +191,19 @@ std::string table_glsl(const ParamSpec& spec, const std::string& function, int b
             defines += "#define " + upper(spec.name + "_" + column.name + "_" + column.values[i]) + " " +
                        std::to_string(i) + "\n";
     }
+    const std::string count = spec.name + "_count", entries = spec.name + "_entries";
+    const std::string search = has_rows ? filled(kSearch, {{"count", count}, {"entries", entries}}) : "";
     return filled(kTable, {{"defines", defines},
                            {"columns", columns},
+                           {"search", search},
                            {"row", type_name(spec.name) + "Row"},
                            {"entry", type_name(spec.name) + "Entry"},
                            {"block", type_name(spec.name) + "Table"},
                            {"binding", std::to_string(binding)},
                            {"name", function},
-                           {"count", spec.name + "_count"},
+                           {"count", count},
                            {"default", spec.name + "_default"},
-                           {"entries", spec.name + "_entries"}});
+                           {"entries", entries}});
 }
 
 constexpr std::string_view kScattering = R"(#define $upper_GAUSSIANS $gaussians
@@ -229,14 +236,14 @@ std::string scattering_sampler_glsl(const ParamSpec& spec, int binding) {
     return "layout(binding = " + std::to_string(binding) + ") uniform sampler2D " + spec.name + "_curves;\n";
 }
 
-std::string param_resource_glsl(const ParamSpec& spec, const ParamFile& file, int binding) {
+std::string param_resource_glsl(const ParamSpec& spec, const ParamFile& file, int binding, bool has_rows) {
     if (spec.type == ParamType::curve) return curve_glsl(spec, binding);
-    if (spec.type == ParamType::table) return table_glsl(spec, spec.name, binding);
+    if (spec.type == ParamType::table) return table_glsl(spec, spec.name, binding, has_rows);
     if (spec.type == ParamType::objects)
-        return table_glsl(spec, spec.name + "_row", binding) + "bool " + spec.name +
+        return table_glsl(spec, spec.name + "_row", binding, has_rows) + "bool " + spec.name +
                "(uint object_id) { return " + spec.name + "_row(object_id).listed; }\n";
     if (spec.type == ParamType::scattering_profile)
-        return table_glsl(spec, spec.name, binding) + scattering_glsl(spec);
+        return table_glsl(spec, spec.name, binding, has_rows) + scattering_glsl(spec);
     if (const auto* lut = std::get_if<Lut>(&file)) return lut_glsl(spec, *lut, binding);
     return std::holds_alternative<Image>(file) ? image_glsl(spec, binding) : "";
 }

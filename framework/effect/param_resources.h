@@ -54,8 +54,9 @@ inline constexpr int kLutRow = 4096;
 ///     objects bool skin(uint object_id)         whether the list has it; of an empty list true
 ///
 /// "" for a file parameter without a file. Of a LUT the text holds size, dimension and domain, so that it
-/// differs between LUTs of different shape.
-std::string param_resource_glsl(const ParamSpec& spec, const ParamFile& file, int binding);
+/// differs between LUTs of different shape. Without `has_rows` a table gives its default and does not search.
+std::string param_resource_glsl(const ParamSpec& spec, const ParamFile& file, int binding,
+                                bool has_rows = true);
 
 /// Of a scattering_profile at `binding` of a sampler: sampler2D scattering_profile_curves, which what
 /// param_resource_glsl has for it at its storage block's binding reads:

@@ -32,7 +32,8 @@ TEST(ManifestTelemetry, SaysWhatIsWrong) {
     const std::vector<std::pair<std::string, Lines>> broken = {
         {R"("doc": ".")", {"8: statistic 'reach' needs the key 'of'"}},
         {R"("of": "smal.r")",
-         {"8: statistic 'reach', of: 'smal' is not a texture of the effect with one layer of floats; did you mean "
+         {"8: statistic 'reach', of: 'smal' is not a texture of the effect with one layer of floats; did you "
+          "mean "
           "'small'? (known: small)"}},
         {R"("of": "small.x")",
          {"8: statistic 'reach', of: 'small.x' must end in a channel of 'small', one of rgba: \"small.r\""}},
@@ -43,8 +44,7 @@ TEST(ManifestTelemetry, SaysWhatIsWrong) {
          {"8: 'bins' has 0.5 bins, but an integer from 1 to 1024 is needed"}},
         {R"("of": "small.r", "mean": true)", {"8: statistic 'reach' has no key 'mean'"}},
     };
-    for (const auto& [fields, messages] : broken)
-        test::expect_faults({{kMore, statistic(fields)}}, messages);
+    for (const auto& [fields, messages] : broken) test::expect_faults({{kMore, statistic(fields)}}, messages);
 }
 
 }  // namespace

@@ -1,0 +1,59 @@
+"""Cost at equal quality: sss_adaptive beside sss_burley with 64 samples; part of scripts/quality-sss-adaptive."""
+import os
+
+import numpy
+
+from family import AFTERSHADE, ROOT, command, read_exr
+from quality import WORK
+from sequences import RGB, run, scene_profile, still
+from techniques import psnr_db, scale_of, scatter
+
+SCENE, SIZE = "skin_front", os.environ.get("SIZE", "1920x1080")
+FRAMES, SETTLED = 32, 24  # times are medians of the frames after SETTLED
+COLUMNS = {"setup": ["surface", "plan", "plan_hybrid", "kernel", "tile_light", "tile_range", "tile_class", "tile_rows", "sampled_runs", "row_runs",
+                     "blurred_runs", "clear_estimate"],
+           "pre-filtering": ["light"], "sampling": ["gather", "gather_hybrid", "lit_pixels", "rows", "columns", "gather_plain", "gather_plain_hybrid"],
+           "update": ["update", "guide", "guide_hybrid", "guide_plain", "guide_plain_hybrid"],
+           "combine": ["finish", "finish_guided", "finish_hybrid", "finish_hybrid_guided"]}
+FIXED = ("`sss_burley`, 64 samples", "sss_burley", {"samples": 64})
+WAYS = [FIXED, ("adaptive", "sss_adaptive", {"guiding_weight": 0.05}), ("adaptive, `hybrid` auto", "sss_adaptive", {"guiding_weight": 0.05, "hybrid": "auto"}),
+        ("adaptive, no prefilter, `hybrid` auto", "sss_adaptive", {"guiding_weight": 0.05, "hybrid": "auto", "prefilter": False})]
+
+
+def passes_of(told, effect):
+    times = {}
+    for frame in told[SETTLED:]:
+        for name, ms in frame["passes_ms"].items():
+            if name.startswith(effect + "."):
+                times.setdefault(name.split(".")[1], []).append(ms)
+    return {name: float(numpy.median(ms)) for name, ms in times.items()}
+
+
+def cost():
+    folder = WORK / f"{SCENE}_{SIZE}"
+    if not (folder / "capture.json").exists():
+        command([AFTERSHADE, "render", ROOT / "scenes" / SCENE, "-o", folder, "--size", SIZE, "--frames", "1", "--quiet"])
+    file, profile = folder / "gbuffer_0001.exr", scene_profile(SCENE)
+    sequence = still(file, "native", FRAMES)
+    where = read_exr(file, ["object_id.I"]) == 1
+    scale = scale_of(read_exr(file, [f"irradiance.{c}" for c in RGB]).astype(numpy.float64), where)
+    reference = scatter(sequence, WORK / f"{SCENE}_{SIZE}_ref.exr", ("", "sss_burley", {"samples": 4096}), profile, {"object_ids": [1]}, ["--frames", "1"])
+    rows, fixed = [], None
+    for label, effect, params in WAYS:
+        # The pictures of 32 frames of this size would not fit into memory: the last alone.
+        last, told = settled(label, effect, params, sequence, profile)
+        times = passes_of(told, effect)
+        sums = {column: sum(times.get(name, 0) for name in names) for column, names in COLUMNS.items()}
+        total = sum(sums.values())
+        fixed = fixed or total
+        statistic = told[-1]["steps"].get("sss_adaptive", {}).get("samples")
+        rows.append([label, f"{statistic['mean']:.1f}" if statistic else "64", f"{psnr_db(reference, last, where, scale):.2f}",
+                     *[f"{ms:.0f}" for ms in sums.values()], f"{total:.0f}", f"{fixed / total:.2f}"])
+        print("cost", rows[-1], flush=True)
+    return rows
+
+
+def settled(label, effect, params, sequence, profile):
+    frames = FRAMES if effect == "sss_adaptive" else SETTLED + 4
+    result = run("cost", sequence, profile, params, frames, effect, (), telemetry=True, keep=[frames])
+    return result["irradiance"][-1], result["telemetry"]
