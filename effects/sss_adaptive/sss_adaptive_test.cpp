@@ -311,6 +311,22 @@ TEST(SssAdaptive, KeepsLightAsItIsWhereItDoesNotLeaveItsPixel) {
     }
 }
 
+/// Where the switch falls, what a pixel keeps is what it would be but for a twentieth of the contrast around.
+TEST(SssAdaptive, JumpsByNoMoreThanTheShareThatItKeepsWhereItSwitches) {
+    const std::string narrow = burley_of_px(2, 1, 0.5, kWidth);
+    Capture capture = lit_plane(kWidth, kHeight, [](int x, int, int) { return x % 2 == 0 ? 1.0f : 0.2f; });
+    // The depth of the switch, 8.129 * 2 / 0.5 m.
+    for (float& depth_m : capture.images.at("depth").floats()) depth_m = float(8.129 * 2 / 0.5);
+    const Image all = scattered(scattering_step("sss_exact", narrow, ""), capture);
+    double most = 0;
+    for (int y = 4; y < kHeight - 4; ++y)
+        for (int x = 4; x < kWidth - 4; ++x)
+            most = std::max(most,
+                            std::abs(double(all.at(x, y, 0)) - capture.images.at("irradiance").at(x, y, 0)));
+    EXPECT_LE(most, 0.05 * (1.0 - 0.2));
+    EXPECT_GT(most, 0.01) << "some light does leave";
+}
+
 TEST(SssAdaptive, LetsNothingCrossSilhouettes) {
     expect_nothing_crosses_silhouettes(kEffect, R"("prefilter": false)");
 }

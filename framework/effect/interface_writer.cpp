@@ -160,6 +160,7 @@ private:
 
     /// Of a table by object, of a list of objects, of scattering profiles.
     bool has_rows(const ParamSpec& spec) const {
+        if (!context_.params->has(spec.name)) return true;
         const ParamValue& value = context_.params->get(spec.name);
         if (const auto* scattering = std::get_if<ScatteringValue>(&value)) return !scattering->rows.empty();
         const auto* table = std::get_if<TableValue>(&value);

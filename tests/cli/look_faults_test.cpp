@@ -152,6 +152,10 @@ std::vector<Fault> word_faults() {
             "\\.png"),
         words("ATapIntoTheOutput", {"--tap", "bokeh.coc=out.exr"},
               "--tap bokeh\\.coc=out\\.exr: error: another output has this name"),
+        words("TelemetryThatIsNoJson", {"--telemetry", "told.csv"},
+              "--telemetry told\\.csv: error: the format '\\.csv' is not known; telemetry ends in \\.json"),
+        words("ATelemetryPlotThatIsNoSvg", {"--telemetry-plot", "told.png"},
+              "--telemetry-plot told\\.png: error: must end in \\.svg"),
         words("AnUnknownProfile", {"--profile", "blendr"},
               "--profile blendr: error: no profile 'blendr'; did you mean 'blender'\\? \\(known: "
               ".*'native'.*\\)"),
