@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace aftershade::scene {
+namespace aftershade {
 
 /// Calls work(row) for each row, on `threads` threads, in no order; rows must not depend on each other.
 /// Rethrows the first exception.
@@ -31,4 +31,4 @@ void for_each_row(int rows, int threads, const Work& work) {
     if (failure) std::rethrow_exception(failure);
 }
 
-}  // namespace aftershade::scene
+}  // namespace aftershade
