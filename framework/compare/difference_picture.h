@@ -29,6 +29,7 @@ struct SideBySideRow {
     std::array<Image, 3> pictures;  ///< three display channels, at most kSideBySideWidth_px wide
     std::array<std::string, 3> captions;
     std::array<std::string, 2> title;
+    Verdict verdict = Verdict::same;
 };
 inline constexpr int kSideBySideWidth_px = 640;
 SideBySideRow side_by_side_row(const LayerComparison& layer, const LayerImages& images);

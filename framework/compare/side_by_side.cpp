@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "framework/compare/difference_picture.h"
 #include "framework/image/false_color.h"
@@ -49,8 +51,13 @@ std::string false_color_role(const LayerComparison& layer, const Image& image) {
         case LayerRole::alpha: return "mask";
         case LayerRole::depth: return image.channels() == 1 ? "depth" : std::string(kDataRole);
         case LayerRole::velocity: return image.channels() >= 2 ? "velocity" : std::string(kDataRole);
-        default: return std::string(kDataRole);
+        default: break;
     }
+    std::string name = layer.label;
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    for (const char* role : {"normal", "position"})
+        if (image.channels() == 3 && name.find(role) != std::string::npos) return role;
+    return std::string(kDataRole);
 }
 
 using ColorAt = std::function<DisplayColor(int x, int y)>;
@@ -78,6 +85,11 @@ Image tile(int width, int height, const ColorAt& color, bool brightest) {
     return picture;
 }
 
+DisplayColor verdict_color(Verdict verdict) {
+    if (verdict == Verdict::same) return {0.45f, 0.85f, 0.5f};
+    return verdict == Verdict::warning ? DisplayColor{1, 0.8f, 0.3f} : DisplayColor{1, 0.45f, 0.4f};
+}
+
 std::string measures_of(const LayerComparison& layer) {
     const PixelDifferences& d = layer.differences;
     std::string text =
@@ -92,6 +104,20 @@ std::string measures_of(const LayerComparison& layer) {
     return text;
 }
 
+/// What is shown brightest: a few pixels that lost their surface must not take the scale from all others.
+double bright_difference(const LayerComparison& layer, const LayerImages& images) {
+    std::vector<double> differences;
+    for (int y = 0; y < images.reference.height(); ++y)
+        for (int x = 0; x < images.reference.width(); ++x) {
+            const double difference = pixel_difference(images.reference, images.test, x, y, layer.role, true);
+            if (difference > 0 && std::isfinite(difference)) differences.push_back(difference);
+        }
+    if (differences.empty()) return 1;
+    const auto most = differences.begin() + std::ptrdiff_t(double(differences.size()) * 0.98);
+    std::nth_element(differences.begin(), most, differences.end());
+    return *most;
+}
+
 void add_difference(const LayerComparison& layer, const LayerImages& images, SideBySideRow& row) {
     const int width = images.reference.width(), height = images.reference.height();
     const std::optional<FlipResult>& flip = layer.hdr_flip ? layer.hdr_flip : layer.ldr_flip;
@@ -101,8 +127,7 @@ void add_difference(const LayerComparison& layer, const LayerImages& images, Sid
         row.captions[2] = layer.hdr_flip ? "HDR-FLIP, bright is 1" : "LDR-FLIP, bright is 1";
         return;
     }
-    const double largest = layer.differences.largest_pixel;
-    const double bright = std::isfinite(largest) && largest > 0 ? largest : 1;
+    const double bright = bright_difference(layer, images);
     row.pictures[2] = tile(
         width, height,
         [&](int x, int y) {
@@ -114,7 +139,7 @@ void add_difference(const LayerComparison& layer, const LayerImages& images, Sid
                        : layer.role == LayerRole::velocity ? "end-point error, px"
                                                            : "difference";
     row.captions[2] = layer.role == LayerRole::id ? "other ids are bright"
-                                                  : fmt::format("{}, bright is {:.4g}", what, bright);
+                                                  : fmt::format("{}, bright is {:.4g} or more", what, bright);
 }
 
 }  // namespace
@@ -161,7 +186,7 @@ Image draw_side_by_side(const std::vector<SideBySideRow>& rows, const std::strin
     draw_text(sheet, kMargin_px, kMargin_px, title, kTextScale, text_px, kBright);
     int y = 2 * kMargin_px + kLine_px;
     for (const SideBySideRow& row : rows) {
-        draw_text(sheet, kMargin_px, y, row.title[0], kTextScale, text_px, kBright);
+        draw_text(sheet, kMargin_px, y, row.title[0], kTextScale, text_px, verdict_color(row.verdict));
         draw_text(sheet, kMargin_px, y + kLine_px, row.title[1], kTextScale, text_px, kQuiet);
         for (std::size_t i = 0; i < 3; ++i) {
             const int x = kMargin_px + int(i) * (column_px + kMargin_px);
