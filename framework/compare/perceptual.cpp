@@ -120,8 +120,9 @@ void measure_perceptually(const Image& reference, const Image& test, const Compa
         return;
     }
     const auto [r, t] = encoded_pair(reference, test, comparison.role, rules.threads);
-    comparison.ssim = ssim(r, t, rules.threads);
-    comparison.ms_ssim = ms_ssim(r, t, rules.threads);
+    const SsimFigures figures = ssim_figures(r, t, rules.threads);
+    comparison.ssim = figures.ssim;
+    comparison.ms_ssim = figures.ms_ssim;
 }
 
 }  // namespace aftershade

@@ -63,19 +63,22 @@ AFTERSHADE_INLINE Triple lab_of_xyz(Triple xyz) {
     return {116.0f * y - 16.0f, 500.0f * (x - y), 200.0f * (y - z)};
 }
 
-AFTERSHADE_INLINE void convolve_body(const float* in, const float* weights, int taps, float* out, int width) {
+template <class Number>
+AFTERSHADE_INLINE void convolve_body(const Number* in, const Number* weights, int taps, Number* out,
+                                     int width) {
     for (int x = 0; x < width; x += kLanes) {
-        float sum[kLanes] = {};
+        Number sum[kLanes] = {};
         for (int i = 0; i < taps; ++i)
             for (int lane = 0; lane < kLanes; ++lane) sum[lane] += weights[i] * in[x + i + lane];
         for (int lane = 0; lane < kLanes; ++lane) out[x + lane] = sum[lane];
     }
 }
 
-AFTERSHADE_INLINE void convolve_down_body(const float* const* in, const float* weights, int taps, float* out,
-                                          int width) {
+template <class Number>
+AFTERSHADE_INLINE void convolve_down_body(const Number* const* in, const Number* weights, int taps,
+                                          Number* out, int width) {
     for (int x = 0; x < width; x += kLanes) {
-        float sum[kLanes] = {};
+        Number sum[kLanes] = {};
         for (int i = 0; i < taps; ++i)
             for (int lane = 0; lane < kLanes; ++lane) sum[lane] += weights[i] * in[i][x + lane];
         for (int lane = 0; lane < kLanes; ++lane) out[x + lane] = sum[lane];
@@ -165,6 +168,15 @@ AFTERSHADE_WIDE void convolve(const float* in, std::span<const float> weights, f
 }
 
 AFTERSHADE_WIDE void convolve_down(const float* const* in, std::span<const float> weights, float* out,
+                                   int width) {
+    convolve_down_body(in, weights.data(), int(weights.size()), out, width);
+}
+
+AFTERSHADE_WIDE void convolve(const double* in, std::span<const double> weights, double* out, int width) {
+    convolve_body(in, weights.data(), int(weights.size()), out, width);
+}
+
+AFTERSHADE_WIDE void convolve_down(const double* const* in, std::span<const double> weights, double* out,
                                    int width) {
     convolve_down_body(in, weights.data(), int(weights.size()), out, width);
 }

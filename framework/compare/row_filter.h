@@ -1,4 +1,4 @@
-// The inner loops of FLIP over one row of floats, each compiled for AVX2 too and chosen at run time. Without
+// The inner loops of FLIP and SSIM over one row, each compiled for AVX2 too and chosen at run time. Without
 // fused multiply-add both give the same bits.
 #pragma once
 
@@ -6,7 +6,7 @@
 
 namespace aftershade::rows {
 
-/// Rows are allocated as multiples of this many floats, so that loops need no remainder.
+/// Rows are allocated as multiples of this many values, so that loops need no remainder.
 inline constexpr int kLanes = 16;
 constexpr int padded(int width) {
     return (width + kLanes - 1) / kLanes * kLanes;
@@ -15,8 +15,10 @@ constexpr int padded(int width) {
 /// out[x] = sum of weights[i] * in[x + i], for x below padded(width). `in` begins weights.size() / 2 values
 /// left of the row.
 void convolve(const float* in, std::span<const float> weights, float* out, int width);
+void convolve(const double* in, std::span<const double> weights, double* out, int width);
 /// out[x] = sum of weights[i] * rows[i][x].
 void convolve_down(const float* const* rows, std::span<const float> weights, float* out, int width);
+void convolve_down(const double* const* rows, std::span<const double> weights, double* out, int width);
 
 /// Three planes of one row.
 struct Planes {

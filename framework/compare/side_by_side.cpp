@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cctype>
 #include <cmath>
 #include <functional>
@@ -24,23 +25,37 @@ constexpr DisplayColor kPaper = {0.11f, 0.11f, 0.12f};
 constexpr DisplayColor kBright = {1, 1, 1};
 constexpr DisplayColor kQuiet = {0.72f, 0.72f, 0.74f};
 
+/// Renderers write ids as floats; hashes of names are floats that are no integers.
+std::uint32_t id_at(const Image& image, std::size_t index) {
+    if (image.type() == ComponentType::uint32) return image.uints()[index];
+    const float value = image.floats()[index];
+    const bool whole = value >= 0 && value < 4294967040.0f && value == std::floor(value);
+    return whole ? std::uint32_t(value) : std::bit_cast<std::uint32_t>(value);
+}
+
 /// Both images in one, the test image below, so that one scale of colours is fitted to both. Grey light gets
 /// three channels, which FalseColor exposes.
 Image stacked(const LayerImages& images, LayerRole role) {
     const Image& r = images.reference;
-    if (r.type() == ComponentType::uint32) {
-        Image both(r.width(), 2 * r.height(), r.channels(), r.type());
-        std::ranges::copy(r.uints(), both.uints().begin());
-        std::ranges::copy(images.test.uints(), both.uints().begin() + std::ptrdiff_t(r.uints().size()));
+    if (role == LayerRole::id && r.channels() == 1) {
+        Image both(r.width(), 2 * r.height(), 1, ComponentType::uint32);
+        const std::size_t pixels = both.uints().size() / 2;
+        for (std::size_t i = 0; i < pixels; ++i) {
+            both.uints()[i] = id_at(r, i);
+            both.uints()[pixels + i] = id_at(images.test, i);
+        }
         return both;
     }
+    const bool integers = r.type() == ComponentType::uint32;
     const bool widen = role == LayerRole::color && r.channels() < 3;
     Image both(r.width(), 2 * r.height(), widen ? 3 : r.channels());
     for (int y = 0; y < both.height(); ++y)
         for (int x = 0; x < r.width(); ++x)
             for (int c = 0; c < both.channels(); ++c) {
                 const Image& source = y < r.height() ? r : images.test;
-                both.at(x, y, c) = source.at(x, y % r.height(), std::min(c, r.channels() - 1));
+                const int channel = std::min(c, r.channels() - 1), line = y % r.height();
+                both.at(x, y, c) =
+                    integers ? float(source.uint_at(x, line, channel)) : source.at(x, line, channel);
             }
     return both;
 }
@@ -136,10 +151,10 @@ void add_difference(const LayerComparison& layer, const LayerImages& images, Sid
         },
         true);
     const char* what = layer.role == LayerRole::depth      ? "relative difference"
-                       : layer.role == LayerRole::velocity ? "end-point error, px"
+                       : layer.role == LayerRole::velocity ? "end-point error in px"
                                                            : "difference";
     row.captions[2] = layer.role == LayerRole::id ? "other ids are bright"
-                                                  : fmt::format("{}, bright is {:.4g} or more", what, bright);
+                                                  : fmt::format("{}, bright >= {:.4g}", what, bright);
 }
 
 }  // namespace
@@ -165,12 +180,14 @@ SideBySideRow side_by_side_row(const LayerComparison& layer, const LayerImages& 
     row.pictures[0] = tile(width, height, color, false);
     row.pictures[1] = tile(
         width, height, [&](int x, int y) { return color(x, y + height); }, false);
-    row.captions[0] = "reference" + (colors ? ": " + colors->label()[0] : std::string());
-    row.captions[1] = "test" + (colors ? ": " + colors->label()[1] : std::string());
+    row.captions[0] = "reference";
+    row.captions[1] = "test";
     add_difference(layer, images, row);
+    row.verdict = layer.verdict;
     row.title = {
         fmt::format("{} ({}): {}", layer.label, layer_role_name(layer.role), verdict_name(layer.verdict)),
         measures_of(layer)};
+    if (colors) row.title[1] += fmt::format("   (shown: {}, {})", colors->label()[0], colors->label()[1]);
     return row;
 }
 

@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "framework/compare/row_filter.h"
 #include "framework/core/parallel.h"
 
 namespace aftershade {
@@ -82,10 +83,12 @@ class Band {
 public:
     Band(const Plane& reference, const Plane& test, const Window11& weights)
         : reference_(reference), test_(test), weights_(weights), columns_(reference.width) {
-        for (auto& rows : across_) rows.resize(kSsimWindow_px * std::size_t(columns_.count()));
-        padded_.resize(5);
-        for (auto& row : padded_) row.resize(std::size_t(reference.width + 2 * kRadius_px));
-        for (auto& row : sums_) row.resize(std::size_t(columns_.count()));
+        const auto row = std::size_t(rows::padded(columns_.count()));
+        for (std::size_t m = 0; m < kMoments; ++m) {
+            ring_[m].resize(kSsimWindow_px * row);
+            padded_[m].resize(row + 2 * kRadius_px);
+            means_[m].resize(row);
+        }
     }
 
     /// Sums over the rows of the band.
@@ -102,42 +105,36 @@ public:
 private:
     enum Moment { kR, kT, kRR, kTT, kRT, kMoments };
 
-    std::size_t slot(int y) const {
-        return std::size_t((y + kSsimWindow_px) % kSsimWindow_px) * std::size_t(columns_.count());
+    double* ring_row(std::size_t moment, int y) {
+        const auto slot = std::size_t((y + kSsimWindow_px) % kSsimWindow_px);
+        return ring_[moment].data() + slot * std::size_t(rows::padded(columns_.count()));
     }
 
     void filter_across(int y) {
-        const int row = reflected(y, reference_.height), width = reference_.width;
-        const int left = columns_.first - kRadius_px;
-        const int taken = columns_.count() + 2 * kRadius_px;
-        for (int i = 0; i < taken; ++i) {
-            const int x = reflected(left + i, width);
-            const double r = reference_.at(x, row), t = test_.at(x, row);
+        const int row = reflected(y, reference_.height), left = columns_.first - kRadius_px;
+        for (int i = 0; i < columns_.count() + 2 * kRadius_px; ++i) {
+            const int x = left + i;
+            const bool inside = x >= 0 && x < reference_.width;
+            const int column = inside ? x : reflected(x, reference_.width);
+            const double r = reference_.at(column, row), t = test_.at(column, row);
             const std::array<double, kMoments> moments = {r, t, r * r, t * t, r * t};
             for (std::size_t m = 0; m < kMoments; ++m) padded_[m][std::size_t(i)] = moments[m];
         }
-        for (std::size_t m = 0; m < kMoments; ++m) {
-            double* out = across_[m].data() + slot(y);
-            std::fill_n(out, columns_.count(), 0.0);
-            for (std::size_t k = 0; k < kSsimWindow_px; ++k)
-                for (int x = 0; x < columns_.count(); ++x)
-                    out[x] += weights_[k] * padded_[m][std::size_t(x) + k];
-        }
+        for (std::size_t m = 0; m < kMoments; ++m)
+            rows::convolve(padded_[m].data(), weights_, ring_row(m, y), columns_.count());
     }
 
     void add_row(int y, Means& total) {
+        std::array<const double*, kSsimWindow_px> taps;
         for (std::size_t m = 0; m < kMoments; ++m) {
-            std::ranges::fill(sums_[m], 0.0);
-            for (int k = -kRadius_px; k <= kRadius_px; ++k) {
-                const double* in = across_[m].data() + slot(y + k);
-                const double weight = weights_[std::size_t(k + kRadius_px)];
-                for (std::size_t x = 0; x < sums_[m].size(); ++x) sums_[m][x] += weight * in[x];
-            }
+            for (int k = -kRadius_px; k <= kRadius_px; ++k)
+                taps[std::size_t(k + kRadius_px)] = ring_row(m, y + k);
+            rows::convolve_down(taps.data(), weights_, means_[m].data(), columns_.count());
         }
-        for (std::size_t x = 0; x < sums_[0].size(); ++x) {
-            const double r = sums_[kR][x], t = sums_[kT][x];
-            const double variance = sums_[kRR][x] - r * r + sums_[kTT][x] - t * t;
-            const double covariance = sums_[kRT][x] - r * t;
+        for (std::size_t x = 0; x < std::size_t(columns_.count()); ++x) {
+            const double r = means_[kR][x], t = means_[kT][x];
+            const double variance = means_[kRR][x] - r * r + means_[kTT][x] - t * t;
+            const double covariance = means_[kRT][x] - r * t;
             const double contrast = (2 * covariance + kSsimC2) / (variance + kSsimC2);
             total.contrast += contrast;
             total.ssim += contrast * (2 * r * t + kSsimC1) / (r * r + t * t + kSsimC1);
@@ -148,9 +145,7 @@ private:
     const Plane& test_;
     const Window11& weights_;
     Extent columns_;
-    std::array<std::vector<double>, kMoments> across_;  // a ring of rows
-    std::vector<std::vector<double>> padded_;
-    std::array<std::vector<double>, kMoments> sums_;
+    std::array<std::vector<double>, kMoments> ring_, padded_, means_;
 };
 
 Means means_of(const Plane& reference, const Plane& test, int threads) {
@@ -175,31 +170,28 @@ int thread_count(int asked) {
 
 }  // namespace
 
-double ssim(const Image& reference, const Image& test, int threads) {
+SsimFigures ssim_figures(const Image& reference, const Image& test, int threads) {
     assert(reference.width() == test.width() && reference.height() == test.height());
     assert(reference.channels() == test.channels() && !reference.empty());
-    double sum = 0;
-    for (int c = 0; c < reference.channels(); ++c)
-        sum += means_of(plane_of(reference, c), plane_of(test, c), thread_count(threads)).ssim;
-    return sum / reference.channels();
-}
-
-std::optional<double> ms_ssim(const Image& reference, const Image& test, int threads) {
-    assert(reference.width() == test.width() && reference.height() == test.height());
-    if (std::min(reference.width(), reference.height()) < kMsSsimMinSide_px) return std::nullopt;
-    double sum = 0;
+    const bool scales = std::min(reference.width(), reference.height()) >= kMsSsimMinSide_px;
+    double sum = 0, multi_scale_sum = 0;
     for (int c = 0; c < reference.channels(); ++c) {
         Plane r = plane_of(reference, c), t = plane_of(test, c);
+        Means means = means_of(r, t, thread_count(threads));
+        sum += means.ssim;
+        if (!scales) continue;
         double product = 1;
-        for (std::size_t scale = 0; scale < kMsSsimScales; ++scale) {
-            const Means means = means_of(r, t, thread_count(threads));
-            const bool last = scale + 1 == kMsSsimScales;
-            product *= std::pow(std::max(last ? means.ssim : means.contrast, 0.0), kScaleWeights[scale]);
-            if (!last) r = halved(r), t = halved(t);
+        for (std::size_t scale = 0; scale + 1 < kMsSsimScales; ++scale) {
+            product *= std::pow(std::max(means.contrast, 0.0), kScaleWeights[scale]);
+            r = halved(r), t = halved(t);
+            means = means_of(r, t, thread_count(threads));
         }
-        sum += product;
+        multi_scale_sum += product * std::pow(std::max(means.ssim, 0.0), kScaleWeights.back());
     }
-    return sum / reference.channels();
+    SsimFigures figures;
+    figures.ssim = sum / reference.channels();
+    if (scales) figures.ms_ssim = multi_scale_sum / reference.channels();
+    return figures;
 }
 
 }  // namespace aftershade

@@ -77,7 +77,7 @@ def main():
             slower = slower or (kind == "ldr" and a > b)
             if kind == "ldr":
                 milliseconds = statistics.median(ours("ssim", *paths)[0] for _ in range(min(runs, 3)))
-                print(f"SSIM {width}x{height}: aftershade {milliseconds:.0f} ms")
+                print(f"SSIM and MS-SSIM {width}x{height}: aftershade {milliseconds:.0f} ms")
     if slower:
         sys.exit("LDR-FLIP is slower than flip-evaluator")
 

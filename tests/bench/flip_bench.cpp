@@ -1,5 +1,5 @@
-// FLIP and SSIM of two files in memory, one line of milliseconds each: flip_bench ldr|hdr|ssim REFERENCE TEST RUNS
-// Reading is not counted; the decoding of sRGB is, as in NVIDIA's evaluate().
+// FLIP, or SSIM with MS-SSIM, of two files in memory, one line of milliseconds each: flip_bench ldr|hdr|ssim
+// REFERENCE TEST RUNS Reading is not counted; the decoding of sRGB is, as in NVIDIA's evaluate().
 #include <fmt/format.h>
 
 #include <chrono>
@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
         const auto begin = std::chrono::steady_clock::now();
         double figure = 0;
         if (what == "ssim") {
-            figure = ssim(reference, test);
+            figure = ssim_figures(reference, test).ssim;
         } else {
             const Image r = linear_rgb(reference, layer.role, 0), t = linear_rgb(test, layer.role, 0);
             figure = what == "hdr" ? hdr_flip(r, t).mean : ldr_flip(r, t).mean;

@@ -69,7 +69,8 @@ std::map<std::string, Pair> make_pairs() {
     const Image room = scene(200, 180, 0.5f, 0), sun = scene(200, 180, 300, 0);
     const Image noise1 = picture(64, 48, 3, [](int x, int y, int c) { return hashed(x, y, c, 1); });
     const Image noise2 = picture(64, 48, 3, [](int x, int y, int c) { return hashed(x, y, c, 2); });
-    const Image checks = picture(96, 96, 3, [](int x, int y, int) { return (x / 4 + y / 4) % 2 ? 0.9f : 0.1f; });
+    const Image checks =
+        picture(96, 96, 3, [](int x, int y, int) { return (x / 4 + y / 4) % 2 ? 0.9f : 0.1f; });
     // .png
     pairs["ldr_room_shifted"] = {display(room), display(scene(200, 180, 0.5f, 1))};
     pairs["ldr_room_noisy"] = {display(room), display(noisy(room, 0.05f, 3))};
@@ -101,7 +102,8 @@ protected:
         folder_ = chosen ? fs::path(chosen) : temporary_->path();
         for (const auto& [name, pair] : make_pairs()) {
             names_.push_back(name);
-            for (const auto& [which, image] : {std::pair{"ref", &pair.reference}, std::pair{"test", &pair.test}})
+            for (const auto& [which, image] :
+                 {std::pair{"ref", &pair.reference}, std::pair{"test", &pair.test}})
                 if (name.starts_with("ldr")) write_png(file(name, which), *image);
                 else test::write_rgb(file(name, which), *image);
         }
@@ -182,8 +184,9 @@ TEST_F(CompareOracle, FiguresAreThoseStored) {
 TEST_F(CompareOracle, FiguresAreThoseOfTheInstalledTools) {
     const fs::path python = AFTERSHADE_SOURCE_DIR "/build/compare-venv/bin/python";
     if (!fs::exists(python.parent_path().parent_path() / "complete"))
-        GTEST_SKIP() << "SKIPPED: no flip-evaluator in build/compare-venv; AFTERSHADE_TEST_ORACLES=1 scripts/test "
-                        "installs it";
+        GTEST_SKIP()
+            << "SKIPPED: no flip-evaluator in build/compare-venv; AFTERSHADE_TEST_ORACLES=1 scripts/test "
+               "installs it";
     const test::TemporaryFolder out;
     const std::string command =
         fmt::format("'{}' '{}/tests/compare/oracle.py' '{}' > '{}'", python.string(), AFTERSHADE_SOURCE_DIR,

@@ -18,6 +18,14 @@ Image noise(int width, int height, int channels, int seed) {
     return picture(width, height, channels, [=](int x, int y, int c) { return hashed(x, y, c, seed); });
 }
 
+double ssim(const Image& reference, const Image& test, int threads = 1) {
+    return ssim_figures(reference, test, threads).ssim;
+}
+
+std::optional<double> ms_ssim(const Image& reference, const Image& test, int threads = 1) {
+    return ssim_figures(reference, test, threads).ms_ssim;
+}
+
 /// Wang et al. 2004, equations 6, 13 to 16, in two dimensions and pixel by pixel.
 double definition(const Image& a, const Image& b, int channel) {
     double total = 0;
