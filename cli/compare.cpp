@@ -64,7 +64,8 @@ Verdict compare(const CompareOptions& options, const CompareRules& rules) {
     else if (!options.quiet) for_people << text_of(comparison, rules) << std::flush;
     if (options.json) std::cout << json_text(comparison, rules) << std::flush;
     if (!options.csv.empty()) write_text_file(options.csv, csv_header() + csv_rows(comparison));
-    if (comparison.verdict != Verdict::file_error) write_pictures(options, pictures, comparison);
+    const bool draw = comparison.verdict != Verdict::same || !options.only_different;
+    if (draw && comparison.verdict != Verdict::file_error) write_pictures(options, pictures, comparison);
     return comparison.verdict;
 }
 

@@ -154,6 +154,8 @@ void add_compare_options(CLI::App& app, CompareOptions& options) {
     app.add_option("--heat-map", options.heat_map, "Write FLIP's errors: .png in magma, .exr as they are");
     app.add_option("--side-by-side", options.side_by_side,
                    "Write reference, test and difference of every layer, with labels, to this .png");
+    app.add_flag("--only-different", options.only_different,
+                 "Write pictures only where the verdict is not `same` (idiff's -od)");
     app.add_flag("--json", options.json, "Everything for machines on stdout; for people on stderr");
     app.add_option("--csv", options.csv, "Write a line for each layer to this file");
     app.add_flag("-q,--quiet", options.quiet, "Nothing for people but errors");

@@ -53,12 +53,12 @@ public:
         for (const LayerInfo& layer : reference_.layers()) {
             const auto match = std::ranges::find(test_.layers(), layer.key(), &LayerInfo::key);
             if (match != test_.layers().end()) compare(layer, *match);
-            else miss(layer, "reference");
+            else miss(reference_, layer, "reference");
         }
         for (const LayerInfo& layer : test_.layers())
             if (std::ranges::find(reference_.layers(), layer.key(), &LayerInfo::key) ==
                 reference_.layers().end())
-                miss(layer, "test image");
+                miss(test_, layer, "test image");
         if (result_.layers.empty() && result_.faults.empty())
             fault("there is no layer to compare: the roles leave none");
     }
@@ -83,9 +83,12 @@ private:
         return role != rules_.roles.end() && !role->second;
     }
 
-    void miss(const LayerInfo& layer, const char* where) {
-        if (is_ignored(layer) || missing_parts_.contains(layer.part)) return;
-        fault(fmt::format("layer '{}' is only in the {}", layer.label(), where));
+    void miss(const LayerFile& file, const LayerInfo& layer, const char* where) {
+        if (is_ignored(layer)) return;
+        if (!missing_parts_.contains(layer.part))
+            fault(fmt::format("layer '{}' is only in the {}", layer.label(), where));
+        // For the verdict: that a file is damaged says more than that it lacks a layer.
+        file.read(layer, layer.channels);
     }
 
     void compare_parts() {
@@ -152,6 +155,9 @@ private:
             images.reference = read(reference_, reference, comparison);
             images.test = read(test_, test, comparison);
             compare_layer(images.reference, images.test, rules_, comparison);
+        } else {
+            reference_.read(reference, comparison.channels);
+            test_.read(test, comparison.channels);
         }
         result_.verdict = std::max(result_.verdict, comparison.verdict);
         if (visit_) visit_(comparison, images);

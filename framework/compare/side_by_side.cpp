@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -20,6 +21,10 @@ constexpr int kTextScale = 2;
 constexpr int kLine_px = kTextLineHeight_px * kTextScale;
 constexpr int kMinColumn_px = 320;  // for the captions, where pictures are narrower
 constexpr int kMaxEnlargement = 16;
+
+// Blender writes 1e10 m, and others more; no scene is that deep, and its surfaces are to be told apart.
+constexpr float kNothingHit = 1e9f;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 constexpr DisplayColor kPaper = {0.11f, 0.11f, 0.12f};
 constexpr DisplayColor kBright = {1, 1, 1};
@@ -54,8 +59,9 @@ Image stacked(const LayerImages& images, LayerRole role) {
             for (int c = 0; c < both.channels(); ++c) {
                 const Image& source = y < r.height() ? r : images.test;
                 const int channel = std::min(c, r.channels() - 1), line = y % r.height();
-                both.at(x, y, c) =
+                const float value =
                     integers ? float(source.uint_at(x, line, channel)) : source.at(x, line, channel);
+                both.at(x, y, c) = role == LayerRole::depth && value >= kNothingHit ? kInfinity : value;
             }
     return both;
 }
@@ -187,7 +193,7 @@ SideBySideRow side_by_side_row(const LayerComparison& layer, const LayerImages& 
     row.title = {
         fmt::format("{} ({}): {}", layer.label, layer_role_name(layer.role), verdict_name(layer.verdict)),
         measures_of(layer)};
-    if (colors) row.title[1] += fmt::format("   (shown: {}, {})", colors->label()[0], colors->label()[1]);
+    if (colors) row.title[0] += fmt::format("   (shown: {}, {})", colors->label()[0], colors->label()[1]);
     return row;
 }
 

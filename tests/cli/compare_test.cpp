@@ -220,6 +220,15 @@ TEST_F(CompareCommand, LeavesOldFilesWholeWhereANewOneCannotBeWritten) {
     EXPECT_FALSE(std::filesystem::exists(folder_ / "h.png"));
 }
 
+TEST_F(CompareCommand, DrawsOnlyWhatDiffersWhenAsked) {
+    EXPECT_EQ(compare({"r.exr", "r.exr", "--side-by-side", "s.png", "--only-different"}).exit_code, 0);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "s.png"));
+    EXPECT_EQ(compare({"r.exr", "t.exr", "--side-by-side", "s.png", "--only-different"}).exit_code, 2);
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "s.png"));
+    EXPECT_EQ(compare({"r.exr", "r.exr", "--side-by-side", "same.png"}).exit_code, 0);
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "same.png"));
+}
+
 TEST_F(CompareCommand, SaysNothingWhenQuiet) {
     const CommandResult result = compare({"r.exr", "t.exr", "-q"});
     EXPECT_EQ(result.exit_code, 2);

@@ -258,6 +258,28 @@ TEST_F(CompareFiles, ThatCannotBeReadAreFileErrors) {
     EXPECT_EQ(compare_files(folder_ / "r.png", folder_ / "t.png", {}).verdict, Verdict::file_error);
 }
 
+TEST_F(CompareFiles, ThatAreDamagedAreFileErrorsThoughNoLayerMatches) {
+    write("r.exr", {{{"V"}, constant(8, 8, {1})}});
+    write("t.exr",
+          {{{"W"}, test::picture(64, 64, 1, [](int x, int y, int c) { return test::hashed(x, y, c, 1); })}});
+    EXPECT_EQ(files().verdict, Verdict::different_size);
+    const std::string whole = test::read_text(folder_ / "t.exr");
+    test::write_text(folder_ / "t.exr", whole.substr(0, whole.size() - 100));
+    EXPECT_EQ(files().verdict, Verdict::file_error);
+}
+
+TEST_F(CompareFiles, ThatAreDamagedEndCleanly) {
+    AFTERSHADE_REQUIRE_CAPTURE(folder, "exr-damaged");
+    test::write_rgb(folder_ / "r.exr", constant(8, 8, {1, 1, 1}));
+    int files = 0;
+    for (const auto& entry : fs::directory_iterator(*folder)) {
+        const Comparison comparison = compare_files(folder_ / "r.exr", entry.path(), {});
+        EXPECT_GE(comparison.verdict, Verdict::different_size) << entry.path();
+        files += comparison.verdict == Verdict::file_error;
+    }
+    EXPECT_GT(files, 150);
+}
+
 TEST_F(CompareFiles, OfThePartsOfAMultiPartFileMatchByName) {
     AFTERSHADE_REQUIRE_CAPTURE(captures, "beachball");
     CompareRules rules;

@@ -32,7 +32,8 @@ TEST(DifferencePicture, IsNoneOfEqualInfinitiesAndNanOfNan) {
 }
 
 TEST(DifferencePicture, OfIdsMarksTheOthers) {
-    const Image difference = difference_image(test::ids({1, 2, 3}), test::ids({1, 200, 3}), LayerRole::id, {});
+    const Image difference =
+        difference_image(test::ids({1, 2, 3}), test::ids({1, 200, 3}), LayerRole::id, {});
     EXPECT_EQ(difference.at(0, 0, 0), 0);
     EXPECT_EQ(difference.at(1, 0, 0), 1);
     EXPECT_EQ(difference.at(2, 0, 0), 0);
