@@ -132,6 +132,8 @@ void add_compare_options(CLI::App& app, CompareOptions& options) {
     add_tolerance(app, "fail", "failure, exit 2", options.fail);
     add_tolerance(app, "warn", "warning, exit 1", options.warn);
     app.add_flag("--nan-equal", options.nan_equal, "NaN equals NaN (else a pixel with one fails)");
+    app.add_flag("--fill-outside", options.fill_outside,
+                 "Data windows may differ: outside, depth is infinite and all else 0");
     app.add_option("--role", options.roles,
                    "LAYER=ROLE: color, display, alpha, depth, velocity, id, data or ignore; repeatable")
         ->allow_extra_args(false);
@@ -173,6 +175,7 @@ CompareRules rules_of(const CompareOptions& options) {
     const Tolerance warn = tolerance_of(options.warn, "warn", as_fail, diagnostics);
     if (options.warn.any()) rules.warn = warn;
     rules.nan_equal = options.nan_equal;
+    rules.fill_outside = options.fill_outside;
     rules.fail_flip = options.fail.flip, rules.fail_ssim = options.fail.ssim;
     rules.warn_flip = options.warn.flip, rules.warn_ssim = options.warn.ssim;
     rules.ssim = !options.no_ssim;

@@ -27,7 +27,7 @@ struct CompareOptions {
     std::string reference, test;
     ToleranceOptions fail, warn;
     bool nan_equal = false, absolute = false, json = false, quiet = false, no_ssim = false,
-         only_different = false;
+         only_different = false, fill_outside = false;
     double scale = 1;
     std::string output, heat_map, side_by_side, csv;
     std::string flip = "auto", tone_mapper = "aces";

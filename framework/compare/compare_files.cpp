@@ -15,6 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr float kNothingHit = std::numeric_limits<float>::infinity();
+
 Window intersection(const Window& a, const Window& b) {
     return {std::max(a.min_x, b.min_x), std::max(a.min_y, b.min_y), std::min(a.max_x, b.max_x),
             std::min(a.max_y, b.max_y)};
@@ -167,8 +169,9 @@ private:
     }
 
     Image read(const LayerFile& file, const LayerInfo& layer, const LayerComparison& comparison) const {
+        const float outside = comparison.role == LayerRole::depth ? kNothingHit : 0;
         return place_in_window(file.read(layer, comparison.channels), layer.data_window, comparison.window,
-                               0);
+                               outside);
     }
 
     void compare_windows(const LayerInfo& reference, const LayerInfo& test, LayerComparison& comparison) {
@@ -176,16 +179,32 @@ private:
             comparison.verdict = Verdict::different_size;
             comparison.reasons.push_back(std::move(reason));
         };
+        if (!(reference.display_window == test.display_window))
+            say(fmt::format("different display window: {} in the reference, {} in the test image",
+                            text_of(reference.display_window), text_of(test.display_window)));
         comparison.window = intersection(reference.data_window, test.data_window);
         const std::uint64_t common = area(comparison.window);
         comparison.absent_in_reference = area(test.data_window) - common;
         comparison.absent_in_test = area(reference.data_window) - common;
-        if (!(reference.data_window == test.data_window))
-            say(fmt::format("different size: {} in the reference, {} in the test image",
-                            text_of(reference.data_window), text_of(test.data_window)));
-        if (!(reference.display_window == test.display_window))
-            say(fmt::format("different display window: {} in the reference, {} in the test image",
-                            text_of(reference.display_window), text_of(test.display_window)));
+        if (reference.data_window == test.data_window) return;
+        if (const auto both = hull(reference.data_window, test.data_window);
+            rules_.fill_outside && both && reference.display_window == test.display_window) {
+            comparison.window = *both;
+            return;
+        }
+        say(fmt::format("different size: {} in the reference, {} in the test image",
+                        text_of(reference.data_window), text_of(test.data_window)));
+    }
+
+    /// nullopt where it would be larger than a file may be.
+    std::optional<Window> hull(const Window& a, const Window& b) const {
+        const Window both = {std::min(a.min_x, b.min_x), std::min(a.min_y, b.min_y),
+                             std::max(a.max_x, b.max_x), std::max(a.max_y, b.max_y)};
+        const auto fits = [&](int first, int last) {
+            return std::int64_t(last) - first < rules_.limits.max_side_px;
+        };
+        if (!fits(both.min_x, both.max_x) || !fits(both.min_y, both.max_y)) return std::nullopt;
+        return both;
     }
 
     const LayerFile& reference_;

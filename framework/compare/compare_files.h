@@ -42,6 +42,9 @@ struct CompareRules {
     /// idiff's.
     std::optional<Tolerance> warn;
     bool nan_equal = false;
+    /// Where data windows differ in one display window: outside of its own, a file has +inf of depth and 0 of
+    /// all else, as docs/conventions.md says; both windows are compared. Else that is a different size.
+    bool fill_outside = false;
     std::optional<double> fail_flip, warn_flip;  ///< exceeded by the mean of a layer's FLIP, LDR or HDR
     std::optional<double> fail_ssim, warn_ssim;  ///< exceeded where a layer's SSIM is below
     FlipChoice flip_choice = FlipChoice::automatic;
@@ -60,7 +63,7 @@ struct LayerComparison {
     std::string label;
     LayerRole role = LayerRole::data;
     std::vector<std::string> channels;  ///< compared; LargestDifference::channel counts in these
-    Window window;                      ///< compared: what both data windows cover; places add its corner
+    Window window;  ///< compared: what both data windows cover, or either; places add its corner
     std::uint64_t absent_in_reference = 0, absent_in_test = 0;  ///< pixels that only the other image has
     PixelDifferences differences;
     std::optional<FlipResult> ldr_flip, hdr_flip;

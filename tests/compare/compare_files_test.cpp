@@ -14,6 +14,7 @@ namespace fs = std::filesystem;
 using test::constant;
 using test::kNan;
 
+constexpr float kInfinityF = std::numeric_limits<float>::infinity();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 class CompareFiles : public testing::Test {
@@ -132,6 +133,26 @@ TEST_F(CompareFiles, LineUpDataWindows) {
     EXPECT_EQ(layer.differences.failing.count, 0);
     EXPECT_EQ(layer.absent_in_test, 200 - 30);
     EXPECT_EQ(layer.absent_in_reference, 0);
+}
+
+TEST_F(CompareFiles, OfCroppedDataWindowsAreTheSameWhereOutsideIsFilled) {
+    Image rgb(10, 10, 3), depth = constant(10, 10, {kInfinityF});
+    for (int c = 0; c < 3; ++c) rgb.at(4, 5, c) = 1;
+    depth.at(4, 5, 0) = 3;
+    const Image one = constant(1, 1, {1, 1, 1}), near = constant(1, 1, {3});
+    write("r.exr", {{{"R", "G", "B"}, rgb}, {{"Z"}, depth}});
+    write("t.exr", {{{"R", "G", "B"}, one}, {{"Z"}, near}}, {4, 5, 4, 5}, {0, 0, 9, 9});
+    EXPECT_EQ(files().verdict, Verdict::different_size);
+    CompareRules rules;
+    rules.fill_outside = true;
+    const Comparison comparison = files(rules);
+    EXPECT_EQ(comparison.verdict, Verdict::same);
+    EXPECT_EQ(comparison.layers.at(0).differences.pixels, 100);
+    EXPECT_EQ(comparison.layers.at(0).absent_in_test, 99);
+    write("t.exr", {{{"R", "G", "B"}, one}, {{"Z"}, near}}, {5, 5, 5, 5}, {0, 0, 9, 9});
+    EXPECT_EQ(files(rules).verdict, Verdict::failure) << "the pixel is elsewhere";
+    write("t.exr", {{{"R", "G", "B"}, one}, {{"Z"}, near}}, {1000000000, 5, 1000000000, 5}, {0, 0, 9, 9});
+    EXPECT_GE(files(rules).verdict, Verdict::different_size) << "too far away to be filled";
 }
 
 TEST_F(CompareFiles, WithoutACommonPixelAreOfDifferentSize) {
