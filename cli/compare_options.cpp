@@ -24,8 +24,8 @@ void add_tolerance(CLI::App& app, const std::string& word, const char* verdict, 
     add(std::string("allow") + (fails ? "failures" : "warnings"), options.allowed,
         fails ? "Pixels that may differ by any amount (0)" : "The same (as --allowfailures)")
         ->check(CLI::NonNegativeNumber);  // strtoull takes -1 for a number of its own
-    add(word + "-flip", options.flip, "The mean FLIP of a layer may be this");
-    add(word + "-ssim", options.ssim, "The SSIM of a layer must be this");
+    add(word + "-flip", options.flip, "... where a layer's mean FLIP is above this");
+    add(word + "-ssim", options.ssim, "... where a layer's SSIM is below this");
 }
 
 void check_number(const std::string& word, const std::optional<double>& value, double max,

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <numbers>
 #include <span>
-#include <thread>
 
 #include "framework/compare/flip_band.h"
 #include "framework/core/parallel.h"
@@ -66,10 +65,6 @@ Luminances luminances_of(const Image& image) {
     std::erase_if(values, [](float y) { return !(y > 0); });
     result.median = median();
     return result;
-}
-
-int thread_count(int asked) {
-    return asked > 0 ? asked : std::max(1, int(std::thread::hardware_concurrency()));
 }
 
 FlipResult evaluate(const Image& reference, const Image& test, std::span<const FlipExposure> exposures,

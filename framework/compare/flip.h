@@ -55,9 +55,9 @@ FlipResult ldr_flip(const Image& reference, const Image& test, const FlipOptions
 /// exposures run from log2(x / largest luminance) to log2(x / median luminance) of the reference.
 ///
 /// The published definition has no stop where the median is not above 0, and neither start nor stop for a
-/// black reference (version 1.6 does not end then). Here the median is then that of the luminances above 0;
-/// of a reference without any, exposures come from the test by the same rules; and where that has none
-/// either, both are 0. [thread-safe]
+/// black reference (version 1.6 has no defined number of exposures then). Here the median is then that of the
+/// luminances above 0; of a reference without any, exposures come from the test by the same rules; and where
+/// that has none either, both are 0. [thread-safe]
 FlipResult hdr_flip(const Image& reference, const Image& test, const FlipOptions& options = {});
 
 /// The exposures that hdr_flip takes.

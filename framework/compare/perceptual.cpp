@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <thread>
 
 #include "framework/compare/ssim.h"
 #include "framework/core/parallel.h"
@@ -31,16 +30,12 @@ float encoded(float value, LayerRole role) {
     return clamped <= 0.0031308f ? 12.92f * clamped : 1.055f * std::pow(clamped, 1 / 2.4f) - 0.055f;
 }
 
-int cores(int asked) {
-    return asked > 0 ? asked : std::max(1, int(std::thread::hardware_concurrency()));
-}
-
 /// What SSIM sees of both images.
 std::array<Image, 2> encoded_pair(const Image& reference, const Image& test, LayerRole role, int threads) {
     std::array<Image, 2> pair = {Image(reference.width(), reference.height(), reference.channels()),
                                  Image(reference.width(), reference.height(), reference.channels())};
     const std::size_t row = std::size_t(reference.width()) * std::size_t(reference.channels());
-    for_each_row(reference.height(), cores(threads), [&](int y) {
+    for_each_row(reference.height(), thread_count(threads), [&](int y) {
         for (std::size_t i = std::size_t(y) * row; i < std::size_t(y + 1) * row; ++i) {
             const float r = reference.floats()[i], t = test.floats()[i];
             const bool same = r == t || (std::isnan(r) && std::isnan(t));
@@ -74,7 +69,7 @@ void measure_flip(const Image& reference, const Image& test, const CompareRules&
     const Choice choice(rules.flip_choice, comparison.role);
     if (!choice.ldr && !choice.hdr) return;
     FlipOptions options = rules.flip;
-    options.threads = cores(rules.threads);
+    options.threads = thread_count(rules.threads);
     const bool equal = comparison.differences.bits_equal;
     const Image r = linear_rgb(reference, comparison.role, rules.threads);
     const Image t = linear_rgb(test, comparison.role, rules.threads);
@@ -97,7 +92,7 @@ Image linear_rgb(const Image& image, LayerRole role, int threads) {
     Image rgb(image.width(), image.height(), 3);
     const auto stored = std::size_t(image.channels());
     const auto width = std::size_t(image.width());
-    for_each_row(image.height(), cores(threads), [&](int y) {
+    for_each_row(image.height(), thread_count(threads), [&](int y) {
         for (std::size_t i = std::size_t(y) * width; i < std::size_t(y + 1) * width; ++i)
             for (std::size_t c = 0; c < 3; ++c) {
                 const float value = image.floats()[i * stored + std::min(c, stored - 1)];

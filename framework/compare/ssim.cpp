@@ -4,7 +4,6 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <thread>
 #include <vector>
 
 #include "framework/compare/row_filter.h"
@@ -162,10 +161,6 @@ Means means_of(const Plane& reference, const Plane& test, int threads) {
     for (const Means& sum : sums) means.ssim += sum.ssim, means.contrast += sum.contrast;
     const double pixels = double(rows.count()) * columns.count();
     return {means.ssim / pixels, means.contrast / pixels};
-}
-
-int thread_count(int asked) {
-    return asked > 0 ? asked : std::max(1, int(std::thread::hardware_concurrency()));
 }
 
 }  // namespace

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <thread>
 
 #include "framework/compare/compare_files.h"
 #include "framework/compare/perceptual.h"
+#include "framework/core/parallel.h"
 
 namespace aftershade {
 
@@ -73,10 +73,8 @@ double LayerComparison::failing_percent() const {
 
 void compare_layer(const Image& reference, const Image& test, const CompareRules& rules,
                    LayerComparison& comparison) {
-    const int threads =
-        rules.threads > 0 ? rules.threads : std::max(1, int(std::thread::hardware_concurrency()));
-    comparison.differences =
-        pixel_differences(reference, test, comparison.role, rules.difference_rules(), threads);
+    comparison.differences = pixel_differences(reference, test, comparison.role, rules.difference_rules(),
+                                               thread_count(rules.threads));
     measure_perceptually(reference, test, rules, comparison);
     const PixelDifferences& d = comparison.differences;
     judge({"fail", Verdict::failure, rules.fail, d.failing, d.hard_failing, rules.fail_flip, rules.fail_ssim},

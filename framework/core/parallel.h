@@ -1,6 +1,7 @@
 // The rows of a picture on all cores.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <exception>
 #include <mutex>
@@ -8,6 +9,11 @@
 #include <vector>
 
 namespace aftershade {
+
+/// What 0, "as many as there are cores", stands for.
+inline int thread_count(int asked) {
+    return asked > 0 ? asked : std::max(1, int(std::thread::hardware_concurrency()));
+}
 
 /// Calls work(row) for each row, on `threads` threads, in no order; rows must not depend on each other.
 /// Rethrows the first exception.
