@@ -207,7 +207,9 @@ void finish(RowSums& total, LayerRole role) {
     figures.mean_pixel = total.pixel_sum / double(std::max<std::uint64_t>(total.finite_pixels, 1));
     const bool of_peak_one = role == LayerRole::display || role == LayerRole::alpha || total.peak == 0;
     figures.psnr_peak = of_peak_one ? 1 : total.peak;
-    figures.psnr_db = figures.rmse == 0 ? kInfinity : 20 * std::log10(figures.psnr_peak / figures.rmse);
+    figures.psnr_db = 20 * std::log10(figures.psnr_peak / figures.rmse);
+    if (figures.rmse == 0)
+        figures.psnr_db = figures.incomparable == 0 ? kInfinity : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace

@@ -59,7 +59,8 @@ struct PixelDifferences {
     double mean_absolute = 0;
     double rmse = 0;
     double relative_mse = 0;
-    /// 20 log10(peak / rmse), +inf for equal images. Peak: 1 for display and alpha, else the largest finite
+    /// 20 log10(peak / rmse), +inf for equal images, NaN where what can be compared is equal and the rest
+    /// cannot be. Peak: 1 for display and alpha, else the largest finite
     /// magnitude in the reference (1 where that is 0).
     double psnr_db = std::numeric_limits<double>::infinity();
     double psnr_peak = 1;

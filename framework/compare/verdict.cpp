@@ -21,6 +21,15 @@ struct Level {
     std::optional<double> flip, ssim;
 };
 
+std::string not_comparable(const PixelDifferences& differences) {
+    if (differences.incomparable == 0) return "";
+    return fmt::format(" ({} values cannot be compared: NaN{}, or another infinity)",
+                       differences.incomparable,
+                       differences.reference_counts.nan > 0 && differences.test_counts.nan > 0
+                           ? ", which equals NaN only with nan-equal"
+                           : "");
+}
+
 void judge(const Level& level, LayerComparison& comparison) {
     const auto say = [&](std::string reason) {
         comparison.verdict = std::max(comparison.verdict, level.verdict);
@@ -32,7 +41,8 @@ void judge(const Level& level, LayerComparison& comparison) {
     if (double(level.above.count) > let_pass)
         say(fmt::format("{} pixels ({:.6g} %) differ by more than {} {:.6g}{}", level.above.count,
                         100 * double(level.above.count) / pixels, level.word, tolerance.limit,
-                        let_pass > 0 ? fmt::format(", {:.6g} may", std::floor(let_pass)) : ""));
+                        let_pass > 0 ? fmt::format(", {:.6g} may", std::floor(let_pass)) : "") +
+            not_comparable(comparison.differences));
     if (level.hard.count > tolerance.allowed)
         say(fmt::format("{} pixels differ by more than hard{} {:.6g}{}", level.hard.count, level.word,
                         tolerance.hard,

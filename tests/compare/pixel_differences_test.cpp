@@ -119,6 +119,12 @@ TEST(PixelDifferences, TakeMeansOverWhatIsFiniteInBoth) {
     EXPECT_EQ(d.test_counts, (NonFiniteCounts{0, 0}));
 }
 
+TEST(PixelDifferences, HaveNoPsnrWhereOnlyWhatCannotBeComparedDiffers) {
+    EXPECT_TRUE(std::isnan(differences(row({1, 2}), row({1, kNan})).psnr_db))
+        << "infinite is of equal images";
+    EXPECT_TRUE(std::isfinite(differences(row({1, 2, 3}), row({1, kNan, 4})).psnr_db));
+}
+
 TEST(PixelDifferences, OfDepthAreRelativeToTheReference) {
     DifferenceRules rules;
     rules.fail = 0.015;
