@@ -46,8 +46,9 @@ struct NonFiniteCounts {
     bool operator==(const NonFiniteCounts&) const = default;
 };
 
-/// Constant eps of relMSE = mean((test - reference)^2 / (reference^2 + eps)); Rousselle et al. 2011 use it
-/// with 1e-2, doi:10.1145/2070781.2024193.
+/// Constant eps of relMSE = mean((test - reference)^2 / (reference^2 + eps)), which keeps black pixels from
+/// ruling it. Relative error: Rousselle et al. 2011, doi:10.1145/2070781.2024193; figures of other papers
+/// compare only where their eps is this.
 inline constexpr double kRelativeMseEpsilon = 1e-2;
 
 /// Means run over the values that are finite in both images (`values` of them), in double precision.
