@@ -12,6 +12,7 @@ using Verb = std::function<ExitCode()>;
 
 Verb add_run(CLI::App& app);
 Verb add_check(CLI::App& app);
+Verb add_compare(CLI::App& app);
 Verb add_describe(CLI::App& app);
 Verb add_docs(CLI::App& app);
 Verb add_list(CLI::App& app);

@@ -10,11 +10,15 @@
 
 namespace aftershade::test {
 
-/// $AFTERSHADE_CAPTURES, else ../shared/captures beside the repository. Absent ones skip a test, but fail it
-/// on CI.
-inline std::optional<std::filesystem::path> find_captures(const std::string& inside) {
+/// $AFTERSHADE_CAPTURES, else ../shared/captures beside the repository.
+inline std::filesystem::path captures_folder() {
     const char* set = std::getenv("AFTERSHADE_CAPTURES");
-    const std::filesystem::path root = set ? set : AFTERSHADE_SOURCE_DIR "/../shared/captures";
+    return set ? set : AFTERSHADE_SOURCE_DIR "/../shared/captures";
+}
+
+/// Absent ones skip a test, but fail it on CI.
+inline std::optional<std::filesystem::path> find_captures(const std::string& inside) {
+    const std::filesystem::path root = captures_folder();
     if (std::filesystem::exists(root / inside)) return root / inside;
     const char* ci = std::getenv("CI");
     if (ci && std::string(ci) == "true")

@@ -4,9 +4,9 @@
 #include <limits>
 #include <vector>
 
+#include "framework/core/parallel.h"
 #include "framework/image/role.h"
 #include "framework/scene/capture_images.h"
-#include "framework/scene/parallel.h"
 #include "framework/scene/samples.h"
 
 namespace aftershade::scene {

@@ -1,7 +1,7 @@
 #include <algorithm>
 
+#include "framework/core/parallel.h"
 #include "framework/scene/capture_images.h"
-#include "framework/scene/parallel.h"
 #include "framework/scene/renderer.h"
 #include "framework/scene/surface_map.h"
 

@@ -1,13 +1,19 @@
 // The rows of a picture on all cores.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <exception>
 #include <mutex>
 #include <thread>
 #include <vector>
 
-namespace aftershade::scene {
+namespace aftershade {
+
+/// What 0, "as many as there are cores", stands for.
+inline int thread_count(int asked) {
+    return asked > 0 ? asked : std::max(1, int(std::thread::hardware_concurrency()));
+}
 
 /// Calls work(row) for each row, on `threads` threads, in no order; rows must not depend on each other.
 /// Rethrows the first exception.
@@ -31,4 +37,4 @@ void for_each_row(int rows, int threads, const Work& work) {
     if (failure) std::rethrow_exception(failure);
 }
 
-}  // namespace aftershade::scene
+}  // namespace aftershade

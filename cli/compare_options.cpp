@@ -1,0 +1,198 @@
+#include "cli/compare_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+
+namespace aftershade::cli {
+
+namespace {
+
+void add_tolerance(CLI::App& app, const std::string& word, const char* verdict, ToleranceOptions& options) {
+    const std::string group = std::string("Tolerance: ") + verdict;
+    const auto add = [&](const std::string& name, auto& target, const std::string& help) {
+        return app.add_option("--" + name, target, help)->group(group);
+    };
+    const bool fails = word == "fail";
+    add(word, options.limit,
+        fails ? "A pixel fails above this difference (1e-6)" : "A pixel warns above it (as --fail)");
+    add(word + "percent", options.percent, "Percent of a layer's pixels that may (0)");
+    add("hard" + word, options.hard, "No pixel may differ by more (inf)");
+    add(std::string("allow") + (fails ? "failures" : "warnings"), options.allowed,
+        fails ? "Pixels that may differ by any amount (0)" : "The same (as --allowfailures)")
+        ->check(CLI::NonNegativeNumber);  // strtoull takes -1 for a number of its own
+    add(word + "-flip", options.flip, "... where a layer's mean FLIP is above this");
+    add(word + "-ssim", options.ssim, "... where a layer's SSIM is below this");
+}
+
+void check_number(const std::string& word, const std::optional<double>& value, double max,
+                  Diagnostics& diagnostics) {
+    if (!value || (*value >= 0 && *value <= max)) return;
+    const std::string limit = std::isinf(max) ? "at least 0" : fmt::format("from 0 to {:g}", max);
+    diagnostics.error({"--" + word}, fmt::format("{:g} is not a number {}", *value, limit));
+}
+
+Tolerance tolerance_of(const ToleranceOptions& options, const std::string& word, const Tolerance& defaults,
+                       Diagnostics& diagnostics) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    check_number(word, options.limit, kInfinity, diagnostics);
+    check_number(word + "percent", options.percent, 100, diagnostics);
+    check_number("hard" + word, options.hard, kInfinity, diagnostics);
+    check_number(word + "-flip", options.flip, 1, diagnostics);
+    check_number(word + "-ssim", options.ssim, 1, diagnostics);
+    return {options.limit.value_or(defaults.limit), options.percent.value_or(defaults.percent),
+            options.hard.value_or(defaults.hard), options.allowed.value_or(defaults.allowed)};
+}
+
+void read_roles(const CompareOptions& options, CompareRules& rules, Diagnostics& diagnostics) {
+    std::vector<std::string> names = layer_role_names();
+    names.push_back("ignore");
+    for (const std::string& text : options.roles) {
+        const std::size_t equals = text.rfind('=');
+        const std::string role = equals == std::string::npos ? "" : text.substr(equals + 1);
+        if (equals == std::string::npos || equals == 0)
+            diagnostics.error({"--role " + text}, "expected LAYER=ROLE, such as Z=data");
+        else if (role != "ignore" && !find_layer_role(role))
+            diagnostics.error({"--role " + text}, "'" + role + "' is no role; there are " +
+                                                      list_of_names(names, "and") +
+                                                      did_you_mean(role, names));
+        else rules.roles[text.substr(0, equals)] = find_layer_role(role);
+    }
+}
+
+void read_flip(const CompareOptions& options, CompareRules& rules, Diagnostics& diagnostics) {
+    const std::vector<std::string> choices = {"auto", "ldr", "hdr", "both", "none"};
+    const auto choice = std::ranges::find(choices, options.flip);
+    if (choice == choices.end())
+        diagnostics.error({"--flip " + options.flip},
+                          "expected " + list_of_names(choices) + did_you_mean(options.flip, choices));
+    else rules.flip_choice = FlipChoice(choice - choices.begin());
+    const std::vector<std::string> mappers = tone_mapper_names();
+    if (const auto mapper = find_tone_mapper(options.tone_mapper)) rules.flip.tone_mapper = *mapper;
+    else
+        diagnostics.error({"--tone-mapper " + options.tone_mapper},
+                          "expected " + list_of_names(mappers) + did_you_mean(options.tone_mapper, mappers));
+    if (!options.viewing.empty())
+        rules.flip.pixels_per_degree =
+            pixels_per_degree(options.viewing[0], options.viewing[1], options.viewing[2]);
+    if (options.pixels_per_degree) rules.flip.pixels_per_degree = *options.pixels_per_degree;
+    // Filters grow with it; beyond, they are wider than any picture.
+    if (!(rules.flip.pixels_per_degree >= 1 && rules.flip.pixels_per_degree <= 1000))
+        diagnostics.error({"--ppd"}, fmt::format("{:g} pixels per degree are not from 1 to 1000",
+                                                 rules.flip.pixels_per_degree));
+    rules.flip.start_exposure = options.start_exposure;
+    rules.flip.stop_exposure = options.stop_exposure;
+    rules.flip.exposures = options.exposures;
+    for (const auto& [word, value] : {std::pair{"--start-exposure", options.start_exposure},
+                                      std::pair{"--stop-exposure", options.stop_exposure}})
+        if (value && !(std::abs(*value) <= 100))
+            diagnostics.error({word}, fmt::format("{:g} is not from -100 to 100 stops", *value));
+    if (options.start_exposure && options.stop_exposure && *options.start_exposure > *options.stop_exposure)
+        diagnostics.error({"--start-exposure"}, fmt::format("{:g} is above --stop-exposure {:g}",
+                                                            *options.start_exposure, *options.stop_exposure));
+    if (options.exposures && (*options.exposures < 1 || *options.exposures > 1000))
+        diagnostics.error({"--exposures"}, fmt::format("{} is not from 1 to 1000", *options.exposures));
+}
+
+void check_outputs(const CompareOptions& options, Diagnostics& diagnostics) {
+    std::vector<std::pair<std::string, std::string>> outputs = {{"-o", options.output},
+                                                                {"--heat-map", options.heat_map},
+                                                                {"--side-by-side", options.side_by_side},
+                                                                {"--csv", options.csv}};
+    std::erase_if(outputs, [](const auto& output) { return output.second.empty(); });
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+        const auto& [word, path] = outputs[i];
+        const bool png = path.ends_with(".png"), exr = path.ends_with(".exr");
+        if (word == "--side-by-side" && !png)
+            diagnostics.error({word + " " + path}, "the picture is a .png file");
+        if ((word == "-o" || word == "--heat-map") && !png && !exr)
+            diagnostics.error({word + " " + path}, "expected a .exr or .png file");
+        std::error_code error;
+        for (const std::string& input : {options.reference, options.test})
+            if (std::filesystem::equivalent(path, input, error))
+                diagnostics.error({word + " " + path}, "an output may not be an input");
+        for (std::size_t j = 0; j < i; ++j)
+            if (outputs[j].second == path) diagnostics.error({word + " " + path}, "two outputs in one file");
+    }
+    if (options.scale == 0 || !std::isfinite(options.scale))
+        diagnostics.error({"--scale"}, fmt::format("{:g} is no factor", options.scale));
+}
+
+}  // namespace
+
+void add_compare_options(CLI::App& app, CompareOptions& options) {
+    app.footer(
+        "Exit codes: 0 same, 1 warning, 2 failure, 3 different size, channels or parts, 4 a file cannot be "
+        "read or\nwritten, 64 wrong usage.");
+    app.add_option("reference", options.reference, "What it should be: .exr, .png or .hdr")->required();
+    app.add_option("test", options.test, "What it is")->required();
+    add_tolerance(app, "fail", "failure, exit 2", options.fail);
+    add_tolerance(app, "warn", "warning, exit 1", options.warn);
+    app.add_flag("--nan-equal", options.nan_equal, "NaN equals NaN (else a pixel with one fails)");
+    app.add_flag("--fill-outside", options.fill_outside,
+                 "Data windows may differ: outside, depth is infinite and all else 0");
+    app.add_option("--role", options.roles,
+                   "LAYER=ROLE: color, display, alpha, depth, velocity, id, data or ignore; repeatable")
+        ->allow_extra_args(false);
+    app.add_option("--flip", options.flip,
+                   "auto (LDR of encoded colours, HDR of light), ldr, hdr, both or none");
+    app.add_flag("--no-ssim", options.no_ssim, "Leave SSIM and MS-SSIM out");
+    auto* ppd = app.add_option("--ppd", options.pixels_per_degree,
+                               "FLIP: pixels per degree of visual angle (67.0206)");
+    app.add_option("--viewing", options.viewing, "FLIP: distance m, width px and width m of the display")
+        ->expected(3)
+        ->excludes(ppd);
+    app.add_option("--tone-mapper", options.tone_mapper, "HDR-FLIP: aces, reinhard or hable");
+    app.add_option("--start-exposure", options.start_exposure, "HDR-FLIP: stops (from the reference)");
+    app.add_option("--stop-exposure", options.stop_exposure, "HDR-FLIP: stops (from the reference)");
+    app.add_option("--exposures", options.exposures, "HDR-FLIP: how many (one a stop)");
+    app.add_option("-o,--output", options.output,
+                   "Write reference - test: .exr every layer, .png the first as |difference|");
+    app.add_flag("--abs", options.absolute, "-o: the absolute value");
+    app.add_option("--scale", options.scale, "-o: times this factor (1)");
+    app.add_option("--heat-map", options.heat_map, "Write FLIP's errors: .png in magma, .exr as they are");
+    app.add_option("--side-by-side", options.side_by_side,
+                   "Write reference, test and difference of every layer, with labels, to this .png");
+    app.add_flag("--only-different", options.only_different,
+                 "Write pictures only where the verdict is not `same` (idiff's -od)");
+    app.add_flag("--json", options.json, "Everything for machines on stdout; for people on stderr");
+    app.add_option("--csv", options.csv, "Write a line for each layer to this file");
+    app.add_flag("-q,--quiet", options.quiet, "Nothing for people but errors");
+    app.add_option("--threads", options.threads, "At most so many (as there are cores); changes no figure")
+        ->check(CLI::Range(0, 1024));
+}
+
+CompareRules rules_of(const CompareOptions& options) {
+    Diagnostics diagnostics;
+    CompareRules rules;
+    rules.fail = tolerance_of(options.fail, "fail", {}, diagnostics);
+    Tolerance as_fail;
+    as_fail.limit = rules.fail.limit;
+    as_fail.allowed = rules.fail.allowed;
+    const Tolerance warn = tolerance_of(options.warn, "warn", as_fail, diagnostics);
+    if (options.warn.any()) rules.warn = warn;
+    rules.nan_equal = options.nan_equal;
+    rules.fill_outside = options.fill_outside;
+    rules.fail_flip = options.fail.flip, rules.fail_ssim = options.fail.ssim;
+    rules.warn_flip = options.warn.flip, rules.warn_ssim = options.warn.ssim;
+    rules.ssim = !options.no_ssim;
+    rules.threads = options.threads;
+    read_roles(options, rules, diagnostics);
+    read_flip(options, rules, diagnostics);
+    check_outputs(options, diagnostics);
+    if ((rules.fail_flip || rules.warn_flip) && rules.flip_choice == FlipChoice::none)
+        diagnostics.error({"--flip none"}, "--fail-flip and --warn-flip need FLIP");
+    if ((rules.fail_ssim || rules.warn_ssim) && !rules.ssim)
+        diagnostics.error({"--no-ssim"}, "--fail-ssim and --warn-ssim need SSIM");
+    if (!diagnostics.has_errors()) return rules;
+    std::ostringstream text;
+    diagnostics.print(text);
+    std::string message = text.str();
+    if (message.ends_with('\n')) message.pop_back();
+    throw Error(kCompareUsage, message);
+}
+
+}  // namespace aftershade::cli

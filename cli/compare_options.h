@@ -1,0 +1,46 @@
+// The words of `aftershade compare`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/compare/compare_files.h"
+#include "framework/core/diagnostics.h"
+#include "framework/core/error.h"
+
+namespace aftershade::cli {
+
+/// Wrong usage of `compare`, whose other codes are idiff's; idiff's own code for it is that of a warning.
+inline constexpr ExitCode kCompareUsage = ExitCode(64);
+
+/// As idiff has them.
+struct ToleranceOptions {
+    std::optional<double> limit, percent, hard, flip, ssim;
+    std::optional<std::uint64_t> allowed;
+    bool any() const { return limit || percent || hard || allowed; }
+};
+
+struct CompareOptions {
+    std::string reference, test;
+    ToleranceOptions fail, warn;
+    bool nan_equal = false, absolute = false, json = false, quiet = false, no_ssim = false,
+         only_different = false, fill_outside = false;
+    double scale = 1;
+    std::string output, heat_map, side_by_side, csv;
+    std::string flip = "auto", tone_mapper = "aces";
+    std::optional<double> pixels_per_degree, start_exposure, stop_exposure;
+    std::vector<double> viewing;
+    std::optional<int> exposures;
+    std::vector<std::string> roles;
+    int threads = 0;
+};
+
+void add_compare_options(CLI::App& app, CompareOptions& options);
+
+/// Throws Error(kCompareUsage) with every fault of the words.
+CompareRules rules_of(const CompareOptions& options);
+
+}  // namespace aftershade::cli

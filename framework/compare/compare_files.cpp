@@ -1,0 +1,248 @@
+#include "framework/compare/compare_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <span>
+
+#include "framework/core/error.h"
+#include "framework/image/window.h"
+
+namespace aftershade {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr float kNothingHit = std::numeric_limits<float>::infinity();
+
+Window intersection(const Window& a, const Window& b) {
+    return {std::max(a.min_x, b.min_x), std::max(a.min_y, b.min_y), std::min(a.max_x, b.max_x),
+            std::min(a.max_y, b.max_y)};
+}
+
+bool is_empty(const Window& window) {
+    return window.width() <= 0 || window.height() <= 0;
+}
+
+std::uint64_t area(const Window& window) {
+    return is_empty(window) ? 0 : std::uint64_t(window.width()) * std::uint64_t(window.height());
+}
+
+std::string text_of(const Window& window) {
+    return fmt::format("{} x {} px from ({}, {})", window.width(), window.height(), window.min_x,
+                       window.min_y);
+}
+
+std::set<std::string> parts_of(const LayerFile& file) {
+    std::set<std::string> parts;
+    for (const LayerInfo& layer : file.layers()) parts.insert(layer.part);
+    return parts;
+}
+
+class FileComparison {
+public:
+    FileComparison(const LayerFile& reference, const LayerFile& test, const CompareRules& rules,
+                   const LayerVisitor& visit, Comparison& result)
+        : reference_(reference), test_(test), rules_(rules), visit_(visit), result_(result) {}
+
+    void run() {
+        check_roles();
+        compare_parts();
+        reference_.prefetch();
+        test_.prefetch();
+        for (const LayerInfo& layer : reference_.layers()) {
+            const auto match = std::ranges::find(test_.layers(), layer.key(), &LayerInfo::key);
+            if (match != test_.layers().end()) compare(layer, *match);
+            else miss(reference_, layer, "reference");
+        }
+        for (const LayerInfo& layer : test_.layers())
+            if (std::ranges::find(reference_.layers(), layer.key(), &LayerInfo::key) ==
+                reference_.layers().end())
+                miss(test_, layer, "test image");
+        if (result_.layers.empty() && result_.faults.empty())
+            fault("there is no layer to compare: the roles leave none");
+    }
+
+private:
+    void fault(std::string text) {
+        result_.verdict = std::max(result_.verdict, Verdict::different_size);
+        result_.faults.push_back(std::move(text));
+    }
+
+    void check_roles() {
+        std::set<std::string> labels;
+        for (const LayerFile* file : {&reference_, &test_})
+            for (const LayerInfo& layer : file->layers()) labels.insert(layer.label());
+        result_.labels = {labels.begin(), labels.end()};
+        for (const auto& [label, role] : rules_.roles)
+            if (!labels.contains(label)) result_.unknown_roles.push_back(label);
+    }
+
+    bool is_ignored(const LayerInfo& layer) const {
+        const auto role = rules_.roles.find(layer.label());
+        return role != rules_.roles.end() && !role->second;
+    }
+
+    void miss(const LayerFile& file, const LayerInfo& layer, const char* where) {
+        if (is_ignored(layer)) return;
+        if (!missing_parts_.contains(layer.part))
+            fault(fmt::format("layer '{}' is only in the {}", layer.label(), where));
+        // For the verdict: that a file is damaged says more than that it lacks a layer.
+        file.read(layer, layer.channels);
+    }
+
+    void compare_parts() {
+        const std::set<std::string> ours = parts_of(reference_), theirs = parts_of(test_);
+        const auto tell = [&](const std::set<std::string>& some, const std::set<std::string>& others,
+                              const char* where) {
+            for (const std::string& part : some) {
+                if (others.contains(part)) continue;
+                missing_parts_.insert(part);
+                fault(part.empty()
+                          ? fmt::format("the {} has one part, the other has {}", where, others.size())
+                          : fmt::format("part '{}' is only in the {}", part, where));
+            }
+        };
+        tell(ours, theirs, "reference");
+        tell(theirs, ours, "test image");
+    }
+
+    std::optional<LayerRole> role_of(const LayerInfo& reference, const LayerInfo& test) {
+        const auto given = rules_.roles.find(reference.label());
+        if (given != rules_.roles.end()) return given->second;
+        if (reference.role == test.role) return reference.role;
+        fault(
+            fmt::format("layer '{}' is '{}' in the reference ({}), '{}' in the test image ({}); compare "
+                        "like with like, or give it a role for both",
+                        reference.label(), layer_role_name(reference.role), reference_.format(),
+                        layer_role_name(test.role), test_.format()));
+        return std::nullopt;
+    }
+
+    std::vector<std::string> common_channels(const LayerInfo& reference, const LayerInfo& test) {
+        std::vector<std::string> common;
+        const auto has = [](const LayerInfo& layer, const std::string& channel) {
+            return std::ranges::find(layer.channels, channel) != layer.channels.end();
+        };
+        for (const std::string& channel : reference.channels) {
+            if (has(test, channel)) common.push_back(channel);
+            else fault(fmt::format("channel '{}' is only in the reference", channel));
+        }
+        for (const std::string& channel : test.channels)
+            if (!has(reference, channel))
+                fault(fmt::format("channel '{}' is only in the test image", channel));
+        return common;
+    }
+
+    void compare(const LayerInfo& reference, const LayerInfo& test) {
+        if (is_ignored(reference)) return;
+        const std::optional<LayerRole> role = role_of(reference, test);
+        if (!role) return;
+        LayerComparison comparison;
+        comparison.label = reference.label();
+        comparison.role = *role;
+        comparison.channels = common_channels(reference, test);
+        if (comparison.channels.empty()) return;
+        if (reference.type != test.type) {
+            fault(fmt::format("layer '{}' holds {} in the reference, {} in the test image", comparison.label,
+                              reference.type == ComponentType::uint32 ? "integers" : "floats",
+                              test.type == ComponentType::uint32 ? "integers" : "floats"));
+            return;
+        }
+        compare_windows(reference, test, comparison);
+        LayerImages images;
+        if (!is_empty(comparison.window)) {
+            images.reference = read(reference_, reference, comparison);
+            images.test = read(test_, test, comparison);
+            compare_layer(images.reference, images.test, rules_, comparison);
+        } else {
+            reference_.read(reference, comparison.channels);
+            test_.read(test, comparison.channels);
+        }
+        result_.verdict = std::max(result_.verdict, comparison.verdict);
+        if (visit_) visit_(comparison, images);
+        for (std::optional<FlipResult>* flip : {&comparison.ldr_flip, &comparison.hdr_flip})
+            if (*flip) (*flip)->error = Image();
+        result_.layers.push_back(std::move(comparison));
+    }
+
+    Image read(const LayerFile& file, const LayerInfo& layer, const LayerComparison& comparison) const {
+        const float outside = comparison.role == LayerRole::depth ? kNothingHit : 0;
+        return place_in_window(file.read(layer, comparison.channels), layer.data_window, comparison.window,
+                               outside);
+    }
+
+    void compare_windows(const LayerInfo& reference, const LayerInfo& test, LayerComparison& comparison) {
+        const auto say = [&](std::string reason) {
+            comparison.verdict = Verdict::different_size;
+            comparison.reasons.push_back(std::move(reason));
+        };
+        if (!(reference.display_window == test.display_window))
+            say(fmt::format("different display window: {} in the reference, {} in the test image",
+                            text_of(reference.display_window), text_of(test.display_window)));
+        comparison.window = intersection(reference.data_window, test.data_window);
+        const std::uint64_t common = area(comparison.window);
+        comparison.absent_in_reference = area(test.data_window) - common;
+        comparison.absent_in_test = area(reference.data_window) - common;
+        if (reference.data_window == test.data_window) return;
+        if (const auto both = hull(reference.data_window, test.data_window);
+            rules_.fill_outside && both && reference.display_window == test.display_window) {
+            comparison.window = *both;
+            return;
+        }
+        say(fmt::format("different size: {} in the reference, {} in the test image",
+                        text_of(reference.data_window), text_of(test.data_window)));
+    }
+
+    /// nullopt where it would be larger than a file may be.
+    std::optional<Window> hull(const Window& a, const Window& b) const {
+        const Window both = {std::min(a.min_x, b.min_x), std::min(a.min_y, b.min_y),
+                             std::max(a.max_x, b.max_x), std::max(a.max_y, b.max_y)};
+        const auto fits = [&](int first, int last) {
+            return std::int64_t(last) - first < rules_.limits.max_side_px;
+        };
+        if (!fits(both.min_x, both.max_x) || !fits(both.min_y, both.max_y)) return std::nullopt;
+        return both;
+    }
+
+    const LayerFile& reference_;
+    const LayerFile& test_;
+    const CompareRules& rules_;
+    const LayerVisitor& visit_;
+    Comparison& result_;
+    std::set<std::string> missing_parts_;
+};
+
+std::optional<LayerFile> open(const fs::path& path, const CompareRules& rules, Comparison& result) {
+    try {
+        return LayerFile(path, rules.limits);
+    } catch (const Error& error) {
+        result.verdict = Verdict::file_error;
+        result.faults.push_back(error.what());
+        return std::nullopt;
+    }
+}
+
+}  // namespace
+
+Comparison compare_files(const fs::path& reference, const fs::path& test, const CompareRules& rules,
+                         const LayerVisitor& visit) {
+    Comparison result;
+    result.reference = reference;
+    result.test = test;
+    const std::optional<LayerFile> first = open(reference, rules, result);
+    const std::optional<LayerFile> second = open(test, rules, result);
+    if (!first || !second) return result;
+    try {
+        FileComparison(*first, *second, rules, visit, result).run();
+    } catch (const Error& error) {
+        if (error.exit_code() != ExitCode::capture) throw;  // of the visitor
+        result.verdict = Verdict::file_error;
+        result.faults.push_back(error.what());
+    }
+    return result;
+}
+
+}  // namespace aftershade

@@ -1,0 +1,156 @@
+#include "framework/compare/layer.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <map>
+#include <set>
+
+namespace aftershade {
+
+namespace {
+
+constexpr std::array<std::string_view, 7> kRoleNames = {"color",    "display", "alpha", "depth",
+                                                        "velocity", "id",      "data"};
+
+std::string lower(std::string_view text) {
+    std::string result(text);
+    for (char& c : result) c = char(std::tolower(static_cast<unsigned char>(c)));
+    return result;
+}
+
+std::string component_of(const std::string& channel) {
+    return channel.substr(channel.rfind('.') + 1);  // npos + 1 is 0
+}
+
+std::string prefix_of(const std::string& channel) {
+    const std::size_t dot = channel.rfind('.');
+    return dot == std::string::npos ? "" : channel.substr(0, dot);
+}
+
+/// Whether one of the words between dots is among `words`: views and view layers stand before or after the
+/// name of the pass ("ViewLayer.Vector", "forward.left").
+bool has_word(const std::string& name, const std::set<std::string>& words) {
+    std::size_t begin = 0;
+    while (begin <= name.size()) {
+        const std::size_t end = std::min(name.find('.', begin), name.size());
+        if (words.contains(lower(name.substr(begin, end - begin)))) return true;
+        begin = end + 1;
+    }
+    return false;
+}
+
+const std::set<std::string> kVelocityWords = {
+    "velocity",      "velocity_next", "velocity_prev",  "vector",  "vectors",  "motion", "motionvector",
+    "motionvectors", "motion_vector", "motion_vectors", "forward", "backward", "speed",  "mv"};
+const std::set<std::string> kDepthWords = {"depth", "z"};
+const std::set<std::string> kIdWords = {"id", "object_id", "objectid", "material_id", "indexob", "indexma"};
+const std::set<std::string> kDataWords = {"normal",   "normals", "n",  "position",
+                                          "worldpos", "p",       "uv", "mask"};
+
+bool is_cryptomatte(const std::string& name) {
+    return lower(name).find("crypto") != std::string::npos;
+}
+
+/// Where the component stands in its layer; those that are not in the list keep the file's order.
+std::size_t rank(const std::string& channel) {
+    static const std::vector<std::string> order = {"r", "red", "x",    "u", "g", "green", "y",
+                                                   "v", "b",   "blue", "z", "a", "alpha", "w"};
+    return std::size_t(std::ranges::find(order, lower(component_of(channel))) - order.begin());
+}
+
+bool is_color_component(const std::string& component) {
+    static const std::set<std::string> names = {"r", "g", "b", "red", "green", "blue"};
+    return names.contains(lower(component));
+}
+
+bool is_alpha_component(const std::string& component) {
+    const std::string name = lower(component);
+    return name == "a" || name == "alpha";
+}
+
+/// Which layer of its prefix a channel belongs to.
+std::string group_of(const ExrChannel& channel, const std::string& prefix, bool has_color) {
+    const std::string component = component_of(channel.name);
+    if (is_cryptomatte(prefix)) return "id";
+    if (channel.type == PixelType::uint32) return "id";
+    if (is_color_component(component)) return "color";
+    if (is_alpha_component(component) && (has_color || prefix.empty())) return "alpha";
+    if (!prefix.empty()) return "";
+    const std::string name = lower(component);
+    if (name == "z") return "depth";
+    if (name == "y" && !has_color) return "color";  // luminance alone
+    return component;
+}
+
+LayerRole role_of(const LayerInfo& layer) {
+    if (layer.group == "alpha") return LayerRole::alpha;
+    if (layer.group == "depth") return LayerRole::depth;
+    if (layer.group == "id") return LayerRole::id;
+    const std::string& name = layer.name.empty() ? layer.group : layer.name;
+    const std::size_t count = layer.channels.size();
+    if (has_word(name, kVelocityWords) && count >= 2) return LayerRole::velocity;
+    if (has_word(name, kDepthWords) && count == 1) return LayerRole::depth;
+    if (has_word(name, kIdWords) && count == 1) return LayerRole::id;
+    if (layer.group != "color" || has_word(name, kDataWords)) return LayerRole::data;
+    return has_word(name, {"display"}) ? LayerRole::display : LayerRole::color;
+}
+
+}  // namespace
+
+std::string_view layer_role_name(LayerRole role) {
+    return kRoleNames[std::size_t(role)];
+}
+
+std::optional<LayerRole> find_layer_role(std::string_view name) {
+    const auto found = std::ranges::find(kRoleNames, name);
+    if (found == kRoleNames.end()) return std::nullopt;
+    return LayerRole(found - kRoleNames.begin());
+}
+
+std::vector<std::string> layer_role_names() {
+    return {kRoleNames.begin(), kRoleNames.end()};
+}
+
+bool is_perceptual(LayerRole role) {
+    return role == LayerRole::color || role == LayerRole::display;
+}
+
+std::string LayerInfo::label() const {
+    std::string text = part.empty() ? "" : part + ":";
+    if (!name.empty()) text += name + ".";
+    const auto is_short = [](const std::string& channel) { return component_of(channel).size() == 1; };
+    const bool joined = std::ranges::all_of(channels, is_short);
+    for (std::size_t i = 0; i < channels.size(); ++i)
+        text += (joined || i == 0 ? "" : ",") + component_of(channels[i]);
+    return text;
+}
+
+std::vector<LayerInfo> layers_of_channels(const std::string& part, std::span<const ExrChannel> channels,
+                                          const Window& data_window, const Window& display_window) {
+    std::set<std::string> with_color;
+    for (const ExrChannel& channel : channels)
+        if (is_color_component(component_of(channel.name))) with_color.insert(prefix_of(channel.name));
+    std::vector<LayerInfo> layers;
+    for (const ExrChannel& channel : channels) {
+        LayerInfo layer;
+        layer.part = part;
+        layer.name = prefix_of(channel.name);
+        layer.group = group_of(channel, layer.name, with_color.contains(layer.name));
+        layer.data_window = data_window;
+        layer.display_window = display_window;
+        layer.type = channel.type == PixelType::uint32 ? ComponentType::uint32 : ComponentType::float32;
+        const auto known = std::ranges::find(layers, layer.key(), &LayerInfo::key);
+        LayerInfo& target = known == layers.end() ? layers.emplace_back(std::move(layer)) : *known;
+        target.channels.push_back(channel.name);
+        // Integers beside floats are read as floats.
+        if (channel.type != PixelType::uint32) target.type = ComponentType::float32;
+    }
+    for (LayerInfo& layer : layers) {
+        std::ranges::stable_sort(layer.channels, {}, rank);
+        layer.role = role_of(layer);
+    }
+    return layers;
+}
+
+}  // namespace aftershade

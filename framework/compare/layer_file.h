@@ -1,0 +1,39 @@
+// A picture file of any kind that is compared, as layers.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "framework/compare/layer.h"
+
+namespace aftershade {
+
+/// OpenEXR, PNG or Radiance, told by its first bytes. OpenEXR: every part, level 0 of tiles; parts with
+/// subsampled chroma as R, G, B, A of half precision. PNG: `display`, value / maximum. Radiance: `color`.
+/// Headers are read on construction. [one thread at a time]
+class LayerFile {
+public:
+    /// Throws Error(ExitCode::capture) that begins with the path: missing, no such format, deep, damaged.
+    explicit LayerFile(const std::filesystem::path& path, const ReadLimits& limits = {});
+    ~LayerFile();
+    LayerFile(LayerFile&&) noexcept;
+    LayerFile& operator=(LayerFile&&) noexcept;
+
+    const std::filesystem::path& path() const;
+    /// "OpenEXR", "PNG" or "Radiance HDR".
+    const std::string& format() const;
+    const std::vector<LayerInfo>& layers() const;
+    /// Some channels of a layer, in the order asked for, over its own data window. Cut-off and damaged pixels
+    /// throw Error(ExitCode::capture).
+    Image read(const LayerInfo& layer, const std::vector<std::string>& channels) const;
+    /// Unpacks what will be asked for in one pass, where that fits into the limits. Never fails.
+    void prefetch() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace aftershade

@@ -1,0 +1,123 @@
+#include "framework/compare/perceptual.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "framework/compare/ssim.h"
+#include "framework/core/parallel.h"
+#include "framework/image/srgb.h"
+
+namespace aftershade {
+
+namespace {
+
+/// Most encoded pictures have 8 bits, whose powers are soon told.
+float decoded(float value) {
+    static const std::array<float, 256> of_bytes = [] {
+        std::array<float, 256> table{};
+        for (std::size_t i = 0; i < table.size(); ++i) table[i] = float(decode_srgb(double(i) / 255));
+        return table;
+    }();
+    const float byte = std::round(value * 255);
+    if (byte >= 0 && byte <= 255 && byte / 255.0f == value) return of_bytes[std::size_t(byte)];
+    return float(decode_srgb(std::clamp(value, 0.0f, 1.0f)));
+}
+
+float encoded(float value, LayerRole role) {
+    const float clamped = std::clamp(value, 0.0f, 1.0f);
+    if (role == LayerRole::display) return clamped;
+    return clamped <= 0.0031308f ? 12.92f * clamped : 1.055f * std::pow(clamped, 1 / 2.4f) - 0.055f;
+}
+
+/// What SSIM sees of both images.
+std::array<Image, 2> encoded_pair(const Image& reference, const Image& test, LayerRole role, int threads) {
+    std::array<Image, 2> pair = {Image(reference.width(), reference.height(), reference.channels()),
+                                 Image(reference.width(), reference.height(), reference.channels())};
+    const std::size_t row = std::size_t(reference.width()) * std::size_t(reference.channels());
+    for_each_row(reference.height(), thread_count(threads), [&](int y) {
+        for (std::size_t i = std::size_t(y) * row; i < std::size_t(y + 1) * row; ++i) {
+            const float r = reference.floats()[i], t = test.floats()[i];
+            const bool same = r == t || (std::isnan(r) && std::isnan(t));
+            const bool finite = std::isfinite(r) && std::isfinite(t);
+            pair[0].floats()[i] = finite ? encoded(r, role) : 0;
+            pair[1].floats()[i] = finite ? encoded(t, role) : (same ? 0.0f : 1.0f);
+        }
+    });
+    return pair;
+}
+
+struct Choice {
+    bool ldr = false, hdr = false;
+    Choice(FlipChoice choice, LayerRole role) {
+        const bool light = role == LayerRole::color;
+        ldr = choice == FlipChoice::ldr || choice == FlipChoice::both ||
+              (choice == FlipChoice::automatic && !light);
+        hdr = choice == FlipChoice::hdr || choice == FlipChoice::both ||
+              (choice == FlipChoice::automatic && light);
+    }
+};
+
+FlipResult no_difference(const Image& image) {
+    FlipResult result;
+    result.error = Image(image.width(), image.height(), 1);
+    return result;
+}
+
+void measure_flip(const Image& reference, const Image& test, const CompareRules& rules,
+                  LayerComparison& comparison) {
+    const Choice choice(rules.flip_choice, comparison.role);
+    if (!choice.ldr && !choice.hdr) return;
+    FlipOptions options = rules.flip;
+    options.threads = thread_count(rules.threads);
+    const bool equal = comparison.differences.bits_equal;
+    const Image r = linear_rgb(reference, comparison.role, rules.threads);
+    const Image t = linear_rgb(test, comparison.role, rules.threads);
+    if (choice.ldr) comparison.ldr_flip = equal ? no_difference(r) : ldr_flip(r, t, options);
+    if (!choice.hdr) return;
+    if (!equal) {
+        comparison.hdr_flip = hdr_flip(r, t, options);
+        return;
+    }
+    const FlipExposures exposures = flip_exposures(r, t, options);
+    comparison.hdr_flip = no_difference(r);
+    comparison.hdr_flip->start_exposure = exposures.start;
+    comparison.hdr_flip->stop_exposure = exposures.stop;
+    comparison.hdr_flip->exposures = exposures.count;
+}
+
+}  // namespace
+
+Image linear_rgb(const Image& image, LayerRole role, int threads) {
+    Image rgb(image.width(), image.height(), 3);
+    const auto stored = std::size_t(image.channels());
+    const auto width = std::size_t(image.width());
+    for_each_row(image.height(), thread_count(threads), [&](int y) {
+        for (std::size_t i = std::size_t(y) * width; i < std::size_t(y + 1) * width; ++i)
+            for (std::size_t c = 0; c < 3; ++c) {
+                const float value = image.floats()[i * stored + std::min(c, stored - 1)];
+                const bool decode = role == LayerRole::display && std::isfinite(value);
+                rgb.floats()[i * 3 + c] = decode ? decoded(value) : value;
+            }
+    });
+    return rgb;
+}
+
+void measure_perceptually(const Image& reference, const Image& test, const CompareRules& rules,
+                          LayerComparison& comparison) {
+    const bool picture = reference.channels() == 1 || reference.channels() == 3;
+    if (!is_perceptual(comparison.role) || !picture || reference.type() != ComponentType::float32) return;
+    measure_flip(reference, test, rules, comparison);
+    if (!rules.ssim) return;
+    if (comparison.differences.bits_equal) {
+        comparison.ssim = 1;
+        if (std::min(reference.width(), reference.height()) >= kMsSsimMinSide_px) comparison.ms_ssim = 1;
+        return;
+    }
+    const auto [r, t] = encoded_pair(reference, test, comparison.role, rules.threads);
+    const SsimFigures figures = ssim_figures(r, t, rules.threads);
+    comparison.ssim = figures.ssim;
+    comparison.ms_ssim = figures.ms_ssim;
+}
+
+}  // namespace aftershade
