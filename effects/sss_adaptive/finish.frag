@@ -4,5 +4,5 @@
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
-    out_irradiance = scattered_result(p, texelFetch(RESULT, p, 0).rgb);
+    out_irradiance = scattered_result(p, texelFetch(estimate, p, 0).rgb);
 }

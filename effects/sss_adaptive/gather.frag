@@ -22,7 +22,11 @@ void main() {
     Facet here = read_facet(lines, p);
     vec4 planned = texelFetch(plan, p, 0);
     int count = here.key == 0u ? 0 : int(planned.x);
-    vec3 scattered = here.light;
-    if (count > 0) scattered = mix(here.light, gathered_light(lines, p, here, samples_start(param.seed), count), planned.z);
+    vec3 scattered = here.light, share = vec3(1.0);
+    if (count > 0) {
+        vec3 gathered = gathered_light(lines, p, here, samples_start(param.seed), count, share);
+        scattered = mix(here.light, gathered, planned.z);
+    }
     out_estimate = vec4(scattered, float(count));
+    out_share = vec4(share, 0.0);
 }

@@ -1,5 +1,6 @@
 // The average over frames within the step.
 #include <scattering/facet.glsl>
+#include <scattering/filled.glsl>
 #include <burley.glsl>
 #include <luminance.glsl>
 #include "mark.glsl"
@@ -43,17 +44,30 @@ bool same_light(vec4 now, vec4 then, float near_now, float near_then, out vec3 t
 #endif
 }
 
-// The textures guided, lit and lit_near of a pixel that scatters, whose light in this frame is `now`.
-vec4 guided_light(vec3 now, Facet here, out vec4 lit_now, out float near_now) {
+// What a pixel that scatters comes to after this frame.
+struct Guided {
+    vec4 light;   // the texture guided
+    vec4 share;   // the texture guided_share
+    vec4 lit;
+    float lit_near;
+};
+
+// `now` is the frame's light, filled by its share. Light before that and shares are averaged apart: of a share that samples
+// made noisy, filled() of each frame would be brighter in the mean.
+Guided guided_light(vec3 now, vec3 share_now, Facet here) {
     ivec2 q;
     vec3 times;
     bool inside = past_pixel(q);
-    lit_now = light_around(view_lines(), here, near_now);
+    float near_now;
+    vec4 lit_now = light_around(view_lines(), here, near_now);
     vec4 past = texelFetch(guided_prev, q, 0);
     bool known = inside && past.a > 0.0 && texelFetch(plan, ivec2(gl_FragCoord.xy), 0).y > 0.0 &&
         same_light(lit_now, texelFetch(lit_prev, q, 0), near_now, texelFetch(lit_near_prev, q, 0).r, times);
     // Frames count alike until the newest would count less than its weight.
     float frames = known ? past.a + 1.0 : 1.0;
     float weight = max(1.0 / frames, param.guiding_weight);
-    return vec4(known ? mix(past.rgb * times, now, weight) : now, 1.0 / weight);
+    vec3 sum = now * filling(share_now);
+    vec3 light = known ? mix(past.rgb * times, sum, weight) : sum;
+    vec3 share = known ? mix(texelFetch(guided_share_prev, q, 0).rgb, share_now, weight) : share_now;
+    return Guided(vec4(light, 1.0 / weight), vec4(share, 0.0), lit_now, near_now);
 }

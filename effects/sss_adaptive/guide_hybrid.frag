@@ -6,10 +6,14 @@
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     Facet here = read_facet(view_lines(), p);
-    out_guided = vec4(0.0);
-    out_lit = vec4(0.0);
-    out_lit_near = 0.0;
-    if (here.key == 0u) return;
-    out_guided = guided_light(texelFetch(estimate, p, 0).rgb, here, out_lit, out_lit_near);
-    if (texelFetch(sampled, p, 0).r == 0.0) out_guided = vec4(texelFetch(blurred, p, 0).rgb, 1.0 / param.guiding_weight);
+    Guided after = guided_light(texelFetch(estimate, p, 0).rgb, texelFetch(share, p, 0).rgb, here);
+    if (texelFetch(sampled, p, 0).r == 0.0) {
+        after.light = vec4(texelFetch(blurred, p, 0).rgb, 1.0 / param.guiding_weight);
+        after.share = vec4(1.0);
+    }
+    bool scatters = here.key != 0u;
+    out_guided = scatters ? after.light : vec4(0.0);
+    out_guided_share = scatters ? after.share : vec4(0.0);
+    out_lit = scatters ? after.lit : vec4(0.0);
+    out_lit_near = scatters ? after.lit_near : 0.0;
 }

@@ -13,5 +13,7 @@ void main() {
     Facet here = read_facet(lines, p);
     out_irradiance = texelFetch(irradiance, p, 0);
     if (here.key == 0u) return;
-    out_irradiance = scattered_result(p, gathered_light(lines, p, here, samples_start(param.seed), param.samples));
+    vec3 share;
+    vec3 scattered = gathered_light(lines, p, here, samples_start(param.seed), param.samples, share);
+    out_irradiance = scattered_result(p, scattered);
 }

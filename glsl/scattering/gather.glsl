@@ -8,13 +8,14 @@
 #include <scattering/start.glsl>
 #include <sequence.glsl>
 
-// Each sample falls on the plane and counts for the pixel that it falls on, as far as that pixel's facet gives its light here:
+// `share`: of the profile, how much was found for each channel. Each sample falls on the plane and counts for the pixel that it falls on, as far as that pixel's facet gives its light here:
 // the mean over all samples is the sum over all facets.
-vec3 gathered_light(ViewLines lines, ivec2 p, Facet here, uvec2 start, int count) {
+vec3 gathered_light(ViewLines lines, ivec2 p, Facet here, uvec2 start, int count, out vec3 share) {
     ScatteringProfileRow profile = scattering_profile(here.key - 1u);
     float per_mm = pixels_per_mm(lines, here.depth_m), inner = 0.5 / per_mm;
     vec3 beyond_inner = max(burley_beyond(inner, profile.d), 1e-30);
-    vec3 share = own_share(profile, here), sum = share * here.light, whole = share;
+    share = own_share(profile, here);
+    vec3 sum = share * here.light, whole = share;
     for (int i = 0; i < count; ++i) {
         vec2 u = r2_point(start, uint(i));
         Sample drawn = draw_sample(profile.d, beyond_inner, u.y);
