@@ -3,7 +3,6 @@
 #include <scattering/filled.glsl>
 #include <burley.glsl>
 #include <luminance.glsl>
-#include "mark.glsl"
 #include "mip_level.glsl"
 #include "past.glsl"
 
@@ -13,17 +12,12 @@ const float kMostChange = 64.0;  // of what an average can be made brighter or d
 // Light that came in where the pixel's scattered light comes from, within the mean radius of the profile, 2.5 d, with the mean
 // mark of its objects; and the luminance of what came in nearer.
 vec4 light_around(ViewLines lines, Facet here, out float near) {
-#if PREFILTER
     vec3 d = scattering_profile(here.key - 1u).d;
     float radius_px = 2.5 * max(d.r, max(d.g, d.b)) * pixels_per_mm(lines, here.depth_m);
     float level = clamp(log2(max(2.0 * radius_px, 1.0)), 0.0, kMostLevel);
     vec2 place = gl_FragCoord.xy * light_size.zw;
     near = luminance(textureLod(light, place, max(level - 2.0, 0.0)).rgb);
     return textureLod(light, place, level);
-#else
-    near = luminance(here.light);
-    return vec4(here.light, mark_of(here.key));
-#endif
 }
 
 // Whether `now` is `then` but for kLightChange.
@@ -35,13 +29,8 @@ bool same_light(vec4 now, vec4 then, float near_now, float near_then, out vec3 t
     times = vec3(1.0);
     float far_now = luminance(now.rgb), far_then = luminance(then.rgb);
     if (alike(far_now, far_then)) return true;
-#if PREFILTER
     times = now.rgb / max(then.rgb, now.rgb / kMostChange + 1e-20);
     return abs(now.a - then.a) < 1e-3 && alike(near_now * far_then, near_then * far_now);
-#else
-    // The pixel's own light does not tell how that around it changed.
-    return false;
-#endif
 }
 
 // What a pixel that scatters comes to after this frame.

@@ -31,8 +31,9 @@ vec4 planned(ViewLines lines, Facet here) {
     float variance = known ? past.y * past.y : param.target_variance;
     // A count of 0 would stay 0, whatever the variance.
     float wanted = wanted_samples(max(mean_count, 0.5), variance);
-    uvec2 full = uvec2(floor((gl_FragCoord.xy + vec2(frame.origin)) / frame.scale));
-    uvec3 hash = pcg3d(uvec3(full, pcg3d(uvec3(frame.number, frame.step_seed, param.seed + 65536)).x));
+    // One of 4 x 4 px, which a processor draws together: all wait for the one that takes most.
+    uvec2 block = uvec2(floor((gl_FragCoord.xy + vec2(frame.origin)) / frame.scale)) / 4u;
+    uvec3 hash = pcg3d(uvec3(block, pcg3d(uvec3(frame.number, frame.step_seed, param.seed + 65536)).x));
     float count = floor(clamp(wanted, least, most) + unit_float(hash.x));
 #if CONTROL_VARIATE != CONTROL_VARIATE_NONE
     // A pixel that takes none learns nothing of what changed.

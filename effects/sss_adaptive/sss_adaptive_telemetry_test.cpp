@@ -12,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kLook =
-    R"({ "aftershade": 1, "steps": [ { "effect": "sss_adaptive", "params": { "hybrid": "auto",
+    R"({ "aftershade": 1, "steps": [ { "effect": "sss_adaptive", "params": { "hybrid": "auto", "prefilter": true,
     "scattering_profile": { "type": "burley", "d_mm": [3.67, 1.37, 0.68] }, "object_ids": [1] } } ] })";
 
 class SssAdaptiveRun : public testing::Test {

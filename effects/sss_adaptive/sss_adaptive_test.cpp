@@ -94,7 +94,8 @@ TEST(SssAdaptive, DrawsTheSamePictureWithAnyControlVariateInSteadyLight) {
 }
 
 TEST(SssAdaptive, FallsToTheFewestSamplesInFlatLightAndRisesAtEdges) {
-    LookRunner look = runner(R"("guiding": false, "target_variance": 0.0002, "max_samples": 128)");
+    LookRunner look =
+        runner(R"("guiding": false, "prefilter": true, "target_variance": 0.0002, "max_samples": 128)");
     Image counts;
     for (int frame = 1; frame <= 40; ++frame)
         counts = look.run(shadow_edge(frame)).taps.at("sss_adaptive.history");

@@ -10,14 +10,17 @@ from techniques import psnr_db, scale_of, scatter
 
 SCENE, SIZE = "skin_front", os.environ.get("SIZE", "1920x1080")
 FRAMES, SETTLED = 32, 24  # times are medians of the frames after SETTLED
-COLUMNS = {"setup": ["surface", "plan", "plan_hybrid", "kernel", "tile_light", "tile_range", "tile_class", "tile_rows", "sampled_runs", "row_runs",
-                     "blurred_runs", "clear_estimate"],
-           "pre-filtering": ["light"], "sampling": ["gather", "gather_hybrid", "lit_pixels", "rows", "columns", "gather_plain", "gather_plain_hybrid"],
-           "update": ["update", "guide", "guide_hybrid", "guide_plain", "guide_plain_hybrid"],
+COLUMNS = {"setup": ["surface", "tile_scatters", "lit_runs", "plan", "plan_hybrid", "kernel", "tile_light", "tile_range", "tile_class", "tile_rows",
+                     "sampled_runs", "row_runs", "blurred_runs"],
+           "pre-filtering": ["light", "light_around"],
+           "sampling": ["gather", "gather_plain", "gather_hybrid", "gather_plain_hybrid", "lit_pixels", "rows", "columns"],
+           "update": ["update", "guide", "guide_hybrid"],
            "combine": ["finish", "finish_guided", "finish_hybrid", "finish_hybrid_guided"]}
 FIXED = ("`sss_burley`, 64 samples", "sss_burley", {"samples": 64})
-WAYS = [FIXED, ("adaptive", "sss_adaptive", {"guiding_weight": 0.05}), ("adaptive, `hybrid` auto", "sss_adaptive", {"guiding_weight": 0.05, "hybrid": "auto"}),
-        ("adaptive, no prefilter, `hybrid` auto", "sss_adaptive", {"guiding_weight": 0.05, "hybrid": "auto", "prefilter": False})]
+LONG = {"guiding_weight": 0.05}
+FEW = LONG | {"min_samples": 4, "target_variance": 0.004}
+WAYS = [FIXED, ("adaptive", "sss_adaptive", LONG), ("adaptive, `min_samples` 4, `target_variance` 0.004", "sss_adaptive", FEW),
+        ("the same, `hybrid` auto", "sss_adaptive", FEW | {"hybrid": "auto"}), ("adaptive, prefilter", "sss_adaptive", LONG | {"prefilter": True})]
 
 
 def passes_of(told, effect):

@@ -71,7 +71,7 @@ def on_head():
     exact = scatter(sequence, WORK / "head_exact_still.exr", EXACT, HEAD_PROFILE, {"object_ids": [1]}, ["--frames", "1"])
     fixed = run("head_fixed", sequence, HEAD_PROFILE, {"samples": 64}, frames, "sss_burley", ())["irradiance"]
     rows.append(["`sss_burley`, 64 samples", "64", f"{psnr_db(exact, fixed[-1], where, scale):.2f}"])
-    for label, params in (("as published: no guiding, target 0.001", {"guiding": False}), ("guiding, target 0.001", {}),
+    for label, params in (("no guiding, target 0.001", {"guiding": False}), ("guiding, target 0.001", {}),
                           ("guiding, target 0.0005", {"target_variance": 0.0005}), ("guiding, target 0.0003", {"target_variance": 0.0003})):
         result = run("head", sequence, HEAD_PROFILE, params, frames)
         mean = result["estimate"][-1][..., 3][where].mean()
