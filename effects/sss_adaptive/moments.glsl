@@ -5,6 +5,9 @@
 
 float exposed(vec3 light) { return exp2(param.exposure) * luminance(light); }
 
+// The history of a pixel that was not sampled: whose it is, and no moments.
+vec4 unsampled_history(uint key) { return vec4(-1.0, 0.0, 0.0, key_of(key)); }
+
 // The history after a frame whose luminance, less its control variate, was `value`.
 vec4 updated_history(vec4 past, bool known, float count, float value, uint key) {
     // Without history the wanted variance is taken to be met.

@@ -27,8 +27,9 @@ vec4 planned(ViewLines lines, Facet here) {
     bool known = inside && past.a == key_of(here.key);
     float most = float(param.max_samples), least = min(float(param.min_samples), most);
     // Without history the wanted variance is taken to be met.
-    float mean_count = known ? past.x : 0.5 * (least + most);
-    float variance = known ? past.y * past.y : param.target_variance;
+    bool counted = known && past.x >= 0.0;
+    float mean_count = counted ? past.x : 0.5 * (least + most);
+    float variance = counted ? past.y * past.y : param.target_variance;
     // A count of 0 would stay 0, whatever the variance.
     float wanted = wanted_samples(max(mean_count, 0.5), variance);
     // One of 4 x 4 px, which a processor draws together: all wait for the one that takes most.

@@ -173,7 +173,7 @@ TEST(SssAdaptiveHybrid, LeavesTheBitsOfWhatDoesNotScatter) {
     expect_the_rest_keeps_its_bits(kEffect, R"("hybrid": "separable")");
 }
 
-/// Samples that come to a pixel which was blurred before begin without history of their own.
+/// Samples that come to a pixel which was blurred before begin in the middle.
 TEST(SssAdaptiveHybrid, FollowsLightThatBecomesLively) {
     LookRunner look =
         runner(R"("hybrid": "auto")", {"sss_adaptive.plan", "sss_adaptive.history", "sss_adaptive.sampled"});
@@ -186,15 +186,31 @@ TEST(SssAdaptiveHybrid, FollowsLightThatBecomesLively) {
                     &sampled = result.taps.at("sss_adaptive.sampled");
         const double share = sampled.at(20, 20, 0);
         EXPECT_EQ(share, frame < 4 ? 0 : 1) << frame;
-        EXPECT_EQ(history.at(20, 20, 3) > 0, frame >= 4) << frame;
-        EXPECT_EQ(result.taps.at("sss_adaptive.plan").at(20, 20, 1), frame < 4   ? -1
-                                                                     : frame > 4 ? 1
-                                                                                 : 0)
-            << frame;
+        EXPECT_EQ(history.at(20, 20, 0) >= 0, frame >= 4) << frame;
+        EXPECT_GT(history.at(20, 20, 3), 0) << "whose pixel it is, always";
+        EXPECT_EQ(result.taps.at("sss_adaptive.plan").at(20, 20, 1), frame < 4 ? -1 : 1) << frame;
         if (frame == 4) {
             EXPECT_EQ(result.taps.at("sss_adaptive.plan").at(20, 20, 0), 36);
         }
     }
+}
+
+/// A pixel whose light becomes lively only beside it keeps the average that the blurs began.
+TEST(SssAdaptiveHybrid, GoesOnFromTheBlursWithItsAverage) {
+    LookRunner look =
+        runner(R"("hybrid": "auto", "guiding_weight": 0.1)", {"sss_adaptive.guided", "sss_adaptive.sampled"});
+    FrameResult result;
+    for (int frame = 1; frame <= 4; ++frame) {
+        Capture capture = wall(frame);
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x)
+                for (int c = 0; c < 3; ++c)
+                    capture.images.at("irradiance").at(x, y, c) =
+                        frame == 4 && x == 40 && y == 20 ? 0.6f : 0.5f;
+        result = look.run(capture);
+        EXPECT_EQ(result.taps.at("sss_adaptive.sampled").at(36, 24, 0), frame < 4 ? 0 : 1) << frame;
+    }
+    EXPECT_EQ(result.taps.at("sss_adaptive.guided").at(36, 24, 3), 10) << "1 / guiding_weight";
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ void main() {
 #if CONTROL_VARIATE == CONTROL_VARIATE_CONSTANT
     value -= exposed(here.light);
 #endif
-    vec4 after = updated_history(texelFetch(history_prev, q, 0), planned.y > 0.0, drawn.a, value, here.key);
-    bool followed = here.key != 0u && planned.y >= 0.0;
-    out_history = followed ? after : vec4(0.0);
+    vec4 past = texelFetch(history_prev, q, 0);
+    vec4 after = updated_history(past, planned.y > 0.0 && past.x >= 0.0, drawn.a, value, here.key);
+    out_history = here.key == 0u ? vec4(0.0) : planned.y < 0.0 ? unsampled_history(here.key) : after;
 }

@@ -10,7 +10,8 @@ void main() {
     past_pixel(q);
     Facet here = read_facet(view_lines(), p);
     vec4 planned = texelFetch(plan, p, 0), drawn = texelFetch(estimate, p, 0), moments = texelFetch(covariance_prev, q, 0);
-    bool known = planned.y > 0.0;
+    vec4 past = texelFetch(history_prev, q, 0);
+    bool known = planned.y > 0.0 && past.x >= 0.0;
     vec2 light = vec2(exposed(drawn.rgb), exposed(here.light));
     if (!known) moments = vec4(0.0, 0.0, light);
     bool varied = moments.y > 1e-6 * (1.0 + moments.w * moments.w);
@@ -18,8 +19,8 @@ void main() {
     vec2 off = light - moments.zw;
     float weight = param.history_weight;
     vec4 moved = vec4((1.0 - weight) * (moments.xy + weight * off * off.y), moments.zw + weight * off);
-    vec4 after = updated_history(texelFetch(history_prev, q, 0), known, drawn.a, light.x - factor * light.y, here.key);
+    vec4 after = updated_history(past, known, drawn.a, light.x - factor * light.y, here.key);
     bool followed = here.key != 0u && planned.y >= 0.0;
-    out_history = followed ? after : vec4(0.0);
+    out_history = here.key == 0u ? vec4(0.0) : followed ? after : unsampled_history(here.key);
     out_covariance = !followed ? vec4(0.0) : drawn.a < 0.5 ? moments : moved;
 }
