@@ -10,19 +10,11 @@
 #include "cli/verbs.h"
 #include "framework/compare/comparison_report.h"
 #include "framework/compare/difference_picture.h"
-#include "framework/image/output_stream.h"
+#include "framework/core/atomic_file.h"
 
 namespace aftershade::cli {
 
 namespace {
-
-namespace fs = std::filesystem;
-
-void write_text_file(const fs::path& path, const std::string& text) {
-    OutputStream stream(path);
-    stream.write(text.data(), text.size());
-    stream.commit();
-}
 
 std::string title_of(const Comparison& comparison) {
     return comparison.reference.filename().string() + " | " + comparison.test.filename().string() + ": " +
