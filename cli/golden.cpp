@@ -94,7 +94,7 @@ ExitCode approve(const GoldenOptions& options) {
     const GoldenApproval approval = approve_goldens(
         job.suite, approve_options,
         [](const GoldenCaseResult& test, int done, int all) {
-            std::cerr << line_of(test, done, all) << "\n";
+            std::cerr << line_of(test, done, all, "Drawn ") << "\n";
         },
         stop);
     if (approval.interrupted) {

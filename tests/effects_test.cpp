@@ -339,8 +339,10 @@ TEST_P(EveryEffect, HasCasesWhoseGoldensAreSmallAndSayWhatMadeThem) {
     EXPECT_FALSE(cases.empty()) << "no case in " << manifest().folder / "cases";
     for (const GoldenCase& test : cases) {
         EXPECT_TRUE(fs::is_regular_file(test.capture)) << test.capture;
+        const std::vector<int> frames = parse_frame_range(test.frames).value_or(std::vector<int>{});
+        ASSERT_FALSE(frames.empty()) << test.file;
         for (const std::string& stem : test.image_stems())
-            for (const int frame : *parse_frame_range(test.frames)) {
+            for (const int frame : frames) {
                 const fs::path path = test.goldens / (golden_image_name(stem, frame) + ".exr");
                 ASSERT_TRUE(fs::exists(path)) << "aftershade golden approve tests/golden makes " << path;
                 EXPECT_LE(fs::file_size(path), kMaxBytes) << path;

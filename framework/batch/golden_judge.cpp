@@ -52,14 +52,16 @@ private:
     std::optional<SideBySideRow> row_;
 };
 
-/// So that the largest difference of what difference.png shows is white.
-double difference_scale(const GoldenImage& result) {
+/// Eight times what `fail` lets pass is white, or the largest difference where that is smaller: of light a
+/// few pixels would leave all others black.
+double difference_scale(const GoldenImage& result, const CompareRules& rules) {
     double largest = 0;
     if (result.comparison)
         for (const LayerComparison& layer : result.comparison->layers)
             if (largest == 0 || is_perceptual(layer.role))
                 largest = std::max(largest, layer.differences.largest.value);
-    return largest > 0 && std::isfinite(largest) ? 1 / largest : 1;
+    const double white = std::min(largest, 8 * rules.fail.limit);
+    return white > 0 && std::isfinite(white) ? 1 / white : 1;
 }
 
 void copy_into(const fs::path& from, const fs::path& to) {
@@ -85,7 +87,7 @@ void write_pictures(const GoldenCase& test, const RenderedImage& rendered, const
     // Without an approved image the new one stands for both; there is no difference to be seen.
     const fs::path reference = result.approved ? result.approved->file : rendered.file;
     PictureTaker taker;
-    pictures.difference_scale = difference_scale(result);
+    pictures.difference_scale = difference_scale(result, test.rules);
     ComparisonPictures all({true, pictures.difference_scale}, true, true, true);
     const Comparison comparison = compare_files(reference, rendered.file, test.rules,
                                                 [&](const LayerComparison& layer, LayerImages& images) {

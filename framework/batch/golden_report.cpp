@@ -32,10 +32,10 @@ Counts count(const GoldenSuiteResult& result) {
     return counts;
 }
 
-const char* word_of(const GoldenCaseResult& test) {
+std::string word_of(const GoldenCaseResult& test, const char* good) {
     if (test.verdict >= Verdict::failure) return "***Failed ";
     if (!test.skipped.empty()) return "***Skipped";
-    return test.verdict == Verdict::warning ? "***Warning" : "   Passed ";
+    return test.verdict == Verdict::warning ? "***Warning" : "   " + std::string(good) + " ";
 }
 
 /// Why a case has its verdict, an image a line.
@@ -164,12 +164,12 @@ std::string approve_command(const GoldenReportContext& context, const std::vecto
     return shell_line(words) + context.with_options;
 }
 
-std::string line_of(const GoldenCaseResult& test, int done, int all) {
+std::string line_of(const GoldenCaseResult& test, int done, int all, const char* good) {
     std::string name = test.test->name + " ";
     name.resize(std::max(name.size(), kNameWidth), '.');
     const int digits = int(std::to_string(all).size());
-    return fmt::format("{:>{}}/{} {} {} {:7.2f} s{}", done, digits, all, name, word_of(test), test.seconds,
-                       test.skipped.empty() ? "" : "  (" + test.skipped + ")");
+    return fmt::format("{:>{}}/{} {} {} {:7.2f} s{}", done, digits, all, name, word_of(test, good),
+                       test.seconds, test.skipped.empty() ? "" : "  (" + test.skipped + ")");
 }
 
 std::string summary_of(const GoldenSuiteResult& result, const GoldenReportContext& context) {

@@ -21,8 +21,8 @@ struct GoldenReportContext {
 /// A command for a shell that approves these cases' images; "" for none.
 std::string approve_command(const GoldenReportContext& context, const std::vector<std::string>& cases);
 
-/// " 3/42 bloom/lamps ........   Passed    0.41 s"
-std::string line_of(const GoldenCaseResult& test, int done, int all);
+/// " 3/42 bloom/lamps ........   Passed    0.41 s"; `good` has six letters.
+std::string line_of(const GoldenCaseResult& test, int done, int all, const char* good = "Passed");
 /// Failures and warnings again with their reasons, what approves them, and one line of sums.
 std::string summary_of(const GoldenSuiteResult& result, const GoldenReportContext& context);
 
