@@ -22,6 +22,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr const char* kInterrupted = "interrupted";
+
 /// A folder that goes away with everything in it.
 class WorkFolder {
 public:
@@ -61,6 +63,7 @@ void run_case(const GoldenRunOptions& options, const fs::path& work, const std::
     interrupted = rendered.interrupted;
     if (!rendered.absent.empty()) return skip(result, rendered.absent, options);
     result.command = rendered.command;
+    if (interrupted) return;
     result.verdict = rendered.verdict;
     result.messages = rendered.messages;
     const fs::path pictures = options.report.empty() ? fs::path() : options.report / "images";
@@ -121,6 +124,7 @@ GoldenSuiteResult run_golden_suite(const GoldenSuite& suite, const GoldenRunOpti
         result.cases.emplace_back();
         result.cases.back().test = cases[i];
         result.cases.back().look_hash = hashes[i];
+        result.cases.back().skipped = kInterrupted;  // until it has run
     }
     std::mutex telling;
     int done = 0;
@@ -128,7 +132,9 @@ GoldenSuiteResult run_golden_suite(const GoldenSuite& suite, const GoldenRunOpti
         if (interrupt) return;
         const auto begin = Clock::now();
         bool interrupted = false;
+        result.cases[i].skipped.clear();
         run_case(options, work, interrupt, result.cases[i], interrupted);
+        if (interrupted) result.cases[i].skipped = kInterrupted;
         result.cases[i].seconds = seconds_since(begin);
         const std::scoped_lock lock(telling);
         if (!interrupted && listener) listener(result.cases[i], ++done, int(cases.size()));

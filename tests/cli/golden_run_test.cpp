@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <regex>
 #include <set>
+#include <thread>
 
 #include "framework/image/png_file.h"
 #include "tests/cli/golden_suite.h"
@@ -239,6 +240,18 @@ TEST_F(GoldenRun, TakesTheCasesOfEffectsInAFolder) {
     ASSERT_EQ(document["cases"].size(), 1u);
     EXPECT_EQ(document["cases"][0]["name"], "tone_edge/plain");
     EXPECT_EQ(document["exit_code"], 0);
+}
+
+TEST_F(GoldenRun, CountsNoCaseAsPassedThatAnInterruptKeptFromRunning) {
+    Command command(aftershade_words({"golden", "run", "golden.json", "-j", "1", "--junit", "out.xml"}),
+                    folder_.path());
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));
+    command.send(SIGINT);
+    const CommandResult result = command.wait();
+    ASSERT_EQ(result.exit_code, 130) << result.err;
+    EXPECT_NE(result.err.find("0 passed"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("interrupted\n"), std::string::npos) << result.err;
+    EXPECT_FALSE(fs::exists(folder_ / "out.xml")) << "half a report says less than none";
 }
 
 // ---- reports ----
