@@ -113,6 +113,8 @@ ExitCode with_own_codes(const std::function<ExitCode()>& work) {
         if (error.exit_code() == kCompareUsage) throw;
         const bool usage = error.exit_code() == ExitCode::usage;
         throw Error(usage ? kCompareUsage : ExitCode(int(Verdict::file_error)), error.what());
+    } catch (const fs::filesystem_error& error) {
+        throw Error(ExitCode(int(Verdict::file_error)), error.what());
     }
 }
 

@@ -144,6 +144,14 @@ TEST_F(GoldenApprove, LeavesTheGoldensOfACaseThatDoesNotRender) {
     EXPECT_EQ(read_text(image("lens.color.0001")), lens);
 }
 
+TEST_F(GoldenApprove, EndsWith4WhereNothingCanBeWritten) {
+    write_text(folder_ / "goldens", "a file where the folder should be");
+    const CommandResult result = golden({"approve", "golden.json"});
+    EXPECT_EQ(result.exit_code, 4) << result.err;
+    EXPECT_NE(result.err.find("goldens"), std::string::npos) << result.err;
+    EXPECT_EQ(golden({"run", "golden.json"}, {{"TMPDIR", "/nowhere"}}).exit_code, 4);
+}
+
 TEST_F(GoldenApprove, LeavesOldOrNewFilesWholeWhereverItIsKilled) {
     approve();
     const auto old_files = contents(folder_ / "goldens");
