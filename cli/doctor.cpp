@@ -1,25 +1,17 @@
 #include <fmt/format.h>
 
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 
 #include "cli/verbs.h"
+#include "framework/batch/approved_image.h"
 #include "framework/gpu/context.h"
 
 namespace aftershade::cli {
 
 namespace {
-
-/// "model name" of /proc/cpuinfo: pictures are bit-identical on one kind of CPU, so reports name it.
-std::string cpu_model() {
-    std::ifstream info("/proc/cpuinfo");
-    for (std::string line; std::getline(info, line);)
-        if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-    return "unknown";
-}
 
 void print_table(const std::vector<gpu::BackendReport>& reports) {
     fmt::print("{:<13} {:<7} {:<45} {}\n", "backend", "usable", "renderer", "version");

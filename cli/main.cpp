@@ -29,8 +29,8 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     app.footer(
         "Exit codes: 0 done, 1 some frames failed, 2 wrong words or documents, 3 no readable frame or role,\n"
-        "4 no usable GL, 5 an effect failed, 6 an output could not be written, 130 interrupted; compare has "
-        "its own.");
+        "4 no usable GL, 5 an effect failed, 6 an output could not be written, 130 interrupted; compare "
+        "and golden have their own.");
     std::map<CLI::App*, aftershade::cli::Verb> verbs;
     const auto add = [&](const char* name, const char* help, auto add_options) {
         CLI::App* verb = app.add_subcommand(name, help);
@@ -41,6 +41,8 @@ int main(int argc, char** argv) {
         aftershade::cli::add_inspect);
     add("compare", "Compare two pictures, layer by layer: how different, how visible, a verdict for scripts",
         aftershade::cli::add_compare);
+    add("golden", "Render a suite of cases and compare them with approved images; approve new ones",
+        aftershade::cli::add_golden);
     add("render", "Render a scene: captures, and the true pictures that effects approximate",
         aftershade::cli::add_render);
     add("list", "List the effects that there are", aftershade::cli::add_list);
@@ -62,7 +64,8 @@ int main(int argc, char** argv) {
         return app.exit(asked_for_help);
     } catch (const CLI::ParseError& error) {
         app.exit(error);
-        return int(app.got_subcommand("compare") ? aftershade::cli::kCompareUsage : ExitCode::usage);
+        const bool as_idiff = app.got_subcommand("compare") || app.got_subcommand("golden");
+        return int(as_idiff ? aftershade::cli::kCompareUsage : ExitCode::usage);
     }
     try {
         return int(verbs.at(app.get_subcommands().front())());

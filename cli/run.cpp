@@ -29,6 +29,7 @@ namespace {
 
 struct RunArguments {
     std::string look;
+    std::string look_folder;
     std::vector<std::string> outputs;
     std::vector<std::string> roles;
     std::vector<std::string> effect_paths;
@@ -89,6 +90,8 @@ void add_options(CLI::App& app, RunArguments& options) {
         "Write each frame's numbers: the effects' statistics, memory by format, time by pass (.json)");
     app.add_option("--telemetry-plot", options.telemetry_plot,
                    "Plot the effects' statistics over the frames (.svg)");
+    app.add_option("--look-folder", options.look_folder,
+                   "Folder that files named in the look lie in (default: the look's own)");
     add_effect_path_option(app, options.effect_paths);
     app.add_option("--progress", options.progress, "auto, none or plain")->capture_default_str();
     app.add_flag("--watch", options.watch,
@@ -122,9 +125,19 @@ struct BoundLook {
     Pipeline pipeline;
 };
 
+std::optional<Look> look_of(const RunArguments& options, Diagnostics& diagnostics) {
+    const LookVariables variables = parse_variables(options.render, diagnostics);
+    if (options.look_folder.empty()) return read_look(options.look, diagnostics, variables);
+    std::optional<Node> node = read_document(options.look, diagnostics);
+    if (!node) return std::nullopt;
+    const std::filesystem::path name = std::filesystem::path(options.look).filename();
+    node->place.file = (std::filesystem::path(options.look_folder) / name).string();
+    return parse_look(*node, diagnostics, variables);
+}
+
 std::unique_ptr<BoundLook> bind_look(const RunArguments& options, Diagnostics& diagnostics) {
     auto bound = std::make_unique<BoundLook>(find_effects(options.effect_paths, diagnostics));
-    bound->look = read_look(options.look, diagnostics, parse_variables(options.render, diagnostics));
+    bound->look = look_of(options, diagnostics);
     PipelineOptions pipeline = options.pipeline;
     for (std::string& tap : pipeline.taps) tap = tap.substr(0, tap.find('='));  // the files are the output's
     if (bound->look) bound->pipeline = compile_pipeline(*bound->look, bound->effects, pipeline, diagnostics);

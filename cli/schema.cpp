@@ -6,6 +6,7 @@
 #include "cli/capture_options.h"
 #include "cli/effect_options.h"
 #include "cli/verbs.h"
+#include "framework/batch/golden_suite.h"
 #include "framework/core/schema_pieces.h"
 #include "framework/scene/scene_schema.h"
 
@@ -22,6 +23,7 @@ std::string schema_of(const SchemaOptions& options) {
     if (options.document == "capture") return capture_schema();
     if (options.document == "effect") return effect_schema();
     if (options.document == "module") return module_schema();
+    if (options.document == "golden") return golden_schema();
     if (options.document == "scene") return scene::scene_schema();
     if (options.document == "scattering_profile") return schema::scattering_profile_file().dump(2) + "\n";
     Diagnostics diagnostics;
@@ -38,8 +40,9 @@ std::string schema_of(const SchemaOptions& options) {
 Verb add_schema(CLI::App& app) {
     auto options = std::make_shared<SchemaOptions>();
     app.add_option("document", options->document,
-                   "look, capture, effect, module, scene or scattering_profile")
-        ->check(CLI::IsMember({"look", "capture", "effect", "module", "scene", "scattering_profile"}))
+                   "look, capture, effect, module, scene, scattering_profile or golden")
+        ->check(
+            CLI::IsMember({"look", "capture", "effect", "module", "scene", "scattering_profile", "golden"}))
         ->capture_default_str();
     add_effect_path_option(app, options->effect_paths);
     return [options] {

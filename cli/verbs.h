@@ -15,6 +15,7 @@ Verb add_check(CLI::App& app);
 Verb add_compare(CLI::App& app);
 Verb add_describe(CLI::App& app);
 Verb add_docs(CLI::App& app);
+Verb add_golden(CLI::App& app);
 Verb add_list(CLI::App& app);
 Verb add_new(CLI::App& app);
 Verb add_render(CLI::App& app);

@@ -1,8 +1,6 @@
 // What holds for every effect, found by its folder: it compiles in every variant, its output is finite over
-// the range of every parameter, its identity is one, both software backends agree, and its cases give their
-// goldens.
-//
-// AFTERSHADE_MAKE_GOLDENS=1 (scripts/make-case-goldens) writes the goldens of the cases instead of comparing.
+// the range of every parameter, its identity is one, both software backends agree, and it has cases, whose
+// goldens the suite of tests/golden holds.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -16,7 +14,8 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/compare/metrics.h"
+#include "framework/batch/approved_image.h"
+#include "framework/batch/golden_case.h"
 #include "framework/core/units.h"
 #include "framework/effect/usage_check.h"
 #include "framework/image/capture.h"
@@ -24,7 +23,6 @@
 #include "framework/image/profile.h"
 #include "framework/image/role.h"
 #include "tests/camera_pose.h"
-#include "tests/effect_case.h"
 #include "tests/look_runner.h"
 #include "tests/synthetic_capture.h"
 
@@ -331,140 +329,30 @@ TEST_P(EveryEffect, GivesTheSameBitsOnBothSoftwareBackends) {
 
 // ---- cases ----
 
-bool making_goldens() {
-    const char* set = std::getenv("AFTERSHADE_MAKE_GOLDENS");
-    return set && std::string(set) == "1";
-}
-
-std::string cpu_name() {
-    std::ifstream in("/proc/cpuinfo");
-    for (std::string line; std::getline(in, line);)
-        if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-    return "unknown";
-}
-
-/// The image, a sidecar that tells what made it, and a PNG in build/ to look at.
-void write_golden(const fs::path& path, const std::string& role, const Image& image, gpu::Backend backend) {
-    const ChannelRole contract = *find_role(role);
-    std::vector<ExrOutputChannel> channels;
-    for (int c = 0; c < image.channels(); ++c)
-        channels.push_back({contract.native_channels[std::size_t(c)], PixelType::half, &image, c});
-    ExrWriteOptions options;
-    options.data_window = options.display_window = {0, 0, image.width() - 1, image.height() - 1};
-    write_exr(path, channels, options);
-    gpu::Context context(backend);
-    const gpu::ContextInfo& info = context.info();
-    std::ofstream(fs::path(path).replace_extension(".json"))
-        << "{ \"backend\": \"" << gpu::backend_name(info.backend) << "\", \"renderer\": \"" << info.renderer
-        << "\",\n  \"version\": \"" << info.version << "\", \"cpu\": \"" << cpu_name() << "\" }\n";
-
-    Image display(image.width(), image.height(), 3);
-    for (int y = 0; y < image.height(); ++y)
-        for (int x = 0; x < image.width(); ++x)
-            for (int c = 0; c < std::min(image.channels(), 3); ++c)
-                display.at(x, y, c) =
-                    role == "display" ? image.at(x, y, c) : float(srgb_of_clamped(image.at(x, y, c)));
-    const fs::path folder = kRoot / "build/case-goldens" / path.parent_path().parent_path().filename();
-    fs::create_directories(folder);
-    write_png(folder / path.filename().replace_extension(".png"), display);
-}
-
-void compare_golden(const EffectCase& test, const std::string& role, int frame, const Image& image) {
+/// What they give, `aftershade golden run tests/golden` tells.
+TEST_P(EveryEffect, HasCasesWhoseGoldensAreSmallAndSayWhatMadeThem) {
     constexpr int kMaxWidthPx = 256;
     constexpr std::uintmax_t kMaxBytes = 200'000;
-    const fs::path path = test.golden(role, frame);
-    ASSERT_TRUE(fs::exists(path)) << "no golden " << path << "; scripts/make-case-goldens makes it";
-    EXPECT_TRUE(fs::exists(fs::path(path).replace_extension(".json"))) << "no sidecar beside " << path;
-    EXPECT_LE(fs::file_size(path), kMaxBytes) << path;
-    const Image golden = ExrFile(path).read_floats(0, find_role(role)->native_channels);
-    EXPECT_LE(golden.width(), kMaxWidthPx) << path;
-    EXPECT_EQ(difference(golden, rounded_to_half(image), test.tolerance), "") << path;
-}
-
-/// A frame of a case's capture, from its first sub-frame to its last.
-FrameResult run_frame(LookRunner& runner, const CaptureReader& reader, const Sequence& sequence, int number) {
-    std::vector<Capture> captures;
-    for (int subframe = 0; subframe < sequence.subframes; ++subframe) {
-        captures.push_back(reader.read(sequence.file_number(number, subframe), role_names()));
-        captures.back().header.frame = number;
-    }
-    FrameInputs frame;
-    frame.subframe_count = sequence.subframes;
-    frame.centre = &captures[captures.size() / 2];
-    FrameResult result;
-    for (const Capture& capture : captures) {
-        frame.capture = &capture;
-        result = runner.run(frame);
-        ++frame.subframe;
-    }
-    return result;
-}
-
-void run_case(const EffectCase& test, gpu::Backend backend) {
     Diagnostics diagnostics;
-    const auto sequence = open_sequence(test.capture.string(), diagnostics);
-    ASSERT_TRUE(sequence) << faults_of(diagnostics);
-    const CaptureReader reader(*sequence, read_profiles(kRoot / "profiles", diagnostics), {});
-    LookRunner runner(test.look, backend);
-    for (const int frame : test.frames) {
-        const FrameResult result = run_frame(runner, reader, *sequence, frame);
-        for (const std::string& role : test.outputs) {
-            ASSERT_TRUE(result.images.contains(role)) << test.file << ": no step makes '" << role << "'";
-            if (making_goldens())
-                write_golden(test.golden(role, frame), role, result.images.at(role), backend);
-            else compare_golden(test, role, frame, result.images.at(role));
-        }
-    }
-}
-
-TEST_P(EveryEffect, GivesTheGoldensOfItsCases) {
-    Diagnostics diagnostics;
-    const auto cases = read_cases(manifest().folder, kRoot, diagnostics);
+    const auto cases = read_effect_cases(manifest().folder, kRoot, diagnostics);
     ASSERT_FALSE(diagnostics.has_errors()) << faults_of(diagnostics);
     EXPECT_FALSE(cases.empty()) << "no case in " << manifest().folder / "cases";
-    for (const EffectCase& test : cases) EXPECT_NO_THROW(run_case(test, backends().front())) << test.file;
-}
-
-// ---- the reader and the measure of cases ----
-
-TEST(EffectCase, TellsEveryFaultOfADocument) {
-    Diagnostics diagnostics;
-    const auto node =
-        parse_document(R"({"aftershade": 1, "capture": "nowhere.json", "frames": "a-b", "steps": [],
-        "outputs": ["color"], "tolerance": {"fail": 0.1, "fail_percent": 101, "hard_fail": 0.01}, "tgas": []})",
-                       "case.json", diagnostics);
-    ASSERT_TRUE(node);
-    EXPECT_FALSE(parse_case(*node, "case.json", kRoot, diagnostics));
-    const std::string faults = faults_of(diagnostics);
-    for (const char* part :
-         {"nowhere.json", "'a-b' is no range", "fail_percent", "'hard_fail' at least", "tgas"})
-        EXPECT_NE(faults.find(part), std::string::npos) << part << " in\n" << faults;
-    EXPECT_EQ(diagnostics.error_count(), 5) << faults;
-}
-
-TEST(EffectCase, GivesTheStepsOnAsTheyStand) {
-    Diagnostics diagnostics;
-    const std::string text = R"([{"effect": "a\"b", "x": [1, -0.25, true, null], "y": {}}])";
-    EXPECT_EQ(to_json(*parse_document(text, "steps", diagnostics)), text);
-}
-
-TEST(EffectCase, CountsPixelsAboveFailAndStopsAtHardFail) {
-    Image golden(10, 10, 1), image(10, 10, 1);
-    const CaseTolerance tolerance{.fail = 0.1, .fail_percent = 2, .hard_fail = 0.5};
-    image.at(1, 1, 0) = 0.3f;
-    image.at(2, 2, 0) = 0.3f;
-    image.at(3, 3, 0) = 0.05f;
-    EXPECT_EQ(difference(golden, image, tolerance), "");
-    image.at(4, 4, 0) = 0.2f;
-    EXPECT_NE(difference(golden, image, tolerance).find("3 % of the pixels"), std::string::npos);
-    image.at(4, 4, 0) = 0;
-    image.at(2, 2, 0) = 0.6f;
-    EXPECT_NE(difference(golden, image, tolerance).find("at (2, 2)"), std::string::npos);
-    image.at(2, 2, 0) = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_NE(difference(golden, image, tolerance), "");
-    golden.at(2, 2, 0) = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_EQ(difference(golden, image, tolerance), "");
-    EXPECT_NE(difference(Image(10, 9, 1), image, tolerance), "");
+    for (const GoldenCase& test : cases) {
+        EXPECT_TRUE(fs::is_regular_file(test.capture)) << test.capture;
+        const std::vector<int> frames = parse_frame_range(test.frames).value_or(std::vector<int>{});
+        ASSERT_FALSE(frames.empty()) << test.file;
+        for (const std::string& stem : test.image_stems())
+            for (const int frame : frames) {
+                const fs::path path = test.goldens / (golden_image_name(stem, frame) + ".exr");
+                ASSERT_TRUE(fs::exists(path)) << "aftershade golden approve tests/golden makes " << path;
+                EXPECT_LE(fs::file_size(path), kMaxBytes) << path;
+                const Window window = ExrFile(path).parts().front().data_window;
+                EXPECT_LE(window.max_x - window.min_x + 1, kMaxWidthPx) << path;
+                const auto approved = approved_images(test.goldens, path.stem().string(), {});
+                for (const ApprovedImage& image : approved)
+                    EXPECT_TRUE(image.sidecar) << "no sidecar of its own beside " << image.file;
+            }
+    }
 }
 
 }  // namespace

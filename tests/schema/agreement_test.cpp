@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/batch/golden_suite.h"
 #include "framework/core/document.h"
 #include "framework/core/error.h"
 #include "framework/core/scattering_profile.h"
@@ -155,6 +156,16 @@ std::string judge_profile(const std::string& text) {
     return first_fault(diagnostics);
 }
 
+std::string judge_golden(const std::string& text) {
+    static const TemporaryFolder folder;
+    write_text(folder / "look.json", R"({"aftershade": 1, "steps": []})");
+    fs::create_directories(folder / "own/effects");
+    write_text(folder / "golden.json", text);
+    Diagnostics diagnostics;
+    read_golden_suite((folder / "golden.json").string(), diagnostics);
+    return first_fault(diagnostics);
+}
+
 class SchemaAgreement : public testing::Test {
 protected:
     void SetUp() override {
@@ -293,6 +304,18 @@ TEST_F(SchemaAgreement, OfASceneChangedEverywhere) {
             "count: makes .* objects, more than",            // a product
             "are one point, which gives no direction",       // two values against each other
         });
+}
+
+TEST_F(SchemaAgreement, OfAGoldenSuiteChangedEverywhere) {
+    hold("golden.json", golden_schema(), judge_golden,
+         {
+             "no file '|no folder '",                // what lies on the disk
+             "a second case named",                  // names of what stands elsewhere in the document
+             "'hard_(fail|warn)' must be at least",  // two values against each other
+             "/steps",                               // as the schema of looks says
+             "'outputs' must name a role",           // or 'taps' a texture
+             "needs 'cases'",                        // or 'cases_of_effects'
+         });
 }
 
 }  // namespace

@@ -1,0 +1,152 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/compare_options.h"
+#include "cli/golden_options.h"
+#include "cli/interrupt.h"
+#include "cli/verbs.h"
+#include "framework/batch/golden_approve.h"
+#include "framework/core/atomic_file.h"
+
+namespace aftershade::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+void print_head(const GoldenReportContext& context) {
+    const GoldenEnvironment& environment = context.options.environment;
+    std::cerr << fmt::format("{}: {} cases, {} at a time, {}: {}, {}, {}\n", context.suite->argument,
+                             context.suite->cases.size(), context.options.jobs, environment.backend,
+                             environment.renderer, environment.version, environment.cpu);
+}
+
+void write_reports(const GoldenOptions& options, const GoldenSuiteResult& result,
+                   const GoldenReportContext& context) {
+    if (!options.junit.empty()) write_text_file(options.junit, junit_of(result, context));
+    if (!options.json && options.report.empty()) return;
+    const std::string json =
+        json_of(result, context).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    if (!options.report.empty()) write_text_file(fs::path(options.report) / "report.json", json);
+    if (options.json) std::fwrite(json.data(), 1, json.size(), stdout);
+}
+
+ExitCode run(const GoldenOptions& options) {
+    const std::atomic<bool>& stop = watch_for_interrupt();
+    GoldenJob job = prepare_golden(options);
+    job.context.suite = &job.suite;
+    if (!options.report.empty()) {
+        std::error_code failure;
+        fs::create_directories(fs::path(options.report) / "images", failure);
+        if (failure) throw Error(ExitCode::output, "--report " + options.report + ": " + failure.message());
+    }
+    print_head(job.context);
+    const GoldenSuiteResult result = run_golden_suite(
+        job.suite, job.context.options,
+        [](const GoldenCaseResult& test, int done, int all) {
+            std::cerr << line_of(test, done, all) << "\n";
+        },
+        stop);
+    std::cerr << summary_of(result, job.context);
+    if (result.interrupted) return ExitCode::interrupted;
+    write_reports(options, result, job.context);
+    return ExitCode(int(result.verdict));
+}
+
+void print_approval(const GoldenApproval& approval) {
+    for (const GoldenCaseResult& test : approval.cases)
+        if (test.verdict != Verdict::same) {
+            std::cerr << fmt::format("\nFAILED {}: not rendered, its goldens are as they were\n",
+                                     test.test->name);
+            for (const std::string& message : test.messages) std::cerr << "    " << message << "\n";
+        }
+    std::cerr << "\n";
+    for (const fs::path& path : approval.written) std::cout << path.string() << "\n";
+    for (const fs::path& path : approval.renewed) std::cout << path.string() << "\n";
+    std::cout << std::flush;
+    for (const fs::path& path : approval.outdated)
+        std::cerr << fmt::format(
+            "{}: warning: approved too, by another renderer for another look or other effects; "
+            "approve it anew there, or remove it\n",
+            path.string());
+    std::cerr << fmt::format("{} images written, {} sidecars renewed, {} unchanged\n",
+                             approval.written.size(), approval.renewed.size(), approval.unchanged);
+}
+
+ExitCode approve(const GoldenOptions& options) {
+    const std::atomic<bool>& stop = watch_for_interrupt();
+    GoldenJob job = prepare_golden(options);
+    job.context.suite = &job.suite;
+    print_head(job.context);
+    if (!options.any_renderer)
+        if (const std::string why = foreign_goldens(job.suite, job.context.options); !why.empty())
+            throw Error(kCompareUsage, why);
+    GoldenApproveOptions approve_options;
+    approve_options.run = job.context.options;
+    approve_options.add = options.add;
+    approve_options.renew_sidecars = options.renew_sidecars;
+    approve_options.command =
+        shell_line({"aftershade", "golden", "approve", options.suite}) + job.context.with_options;
+    const GoldenApproval approval = approve_goldens(
+        job.suite, approve_options,
+        [](const GoldenCaseResult& test, int done, int all) {
+            std::cerr << line_of(test, done, all, "Drawn ") << "\n";
+        },
+        stop);
+    if (approval.interrupted) {
+        std::cerr << "interrupted; nothing was written\n";
+        return ExitCode::interrupted;
+    }
+    print_approval(approval);
+    return ExitCode(int(approval.verdict));
+}
+
+/// The codes of this verb are idiff's: what cannot be read, drawn or written is a file error.
+ExitCode with_own_codes(const std::function<ExitCode()>& work) {
+    try {
+        return work();
+    } catch (const Error& error) {
+        if (error.exit_code() == kCompareUsage) throw;
+        const bool usage = error.exit_code() == ExitCode::usage;
+        throw Error(usage ? kCompareUsage : ExitCode(int(Verdict::file_error)), error.what());
+    } catch (const fs::filesystem_error& error) {
+        throw Error(ExitCode(int(Verdict::file_error)), error.what());
+    }
+}
+
+}  // namespace
+
+Verb add_golden(CLI::App& app) {
+    app.require_subcommand(1);
+    app.footer(
+        "Exit codes: 0 same, 1 warning, 2 failure, 3 different size or channels, 4 a file cannot be read or "
+        "written\n(or no GL), 64 wrong usage, 130 interrupted.");
+    auto options = std::make_shared<GoldenOptions>();
+    auto* run_verb = app.add_subcommand("run", "Render every case and compare it with its goldens");
+    add_shared_golden_options(*run_verb, *options);
+    run_verb->add_flag("--no-skip", options->no_skip, "A case that is skipped fails");
+    run_verb->add_option("--junit", options->junit, "Write JUnit XML to this file");
+    run_verb->add_option("--report", options->report,
+                         "Write report.json and pictures of every image to this folder");
+    run_verb->add_flag("--json", options->json, "The same report.json on stdout");
+    auto* approve_verb = app.add_subcommand(
+        "approve", "Render every case and keep what is new as its goldens; prints their paths");
+    add_shared_golden_options(*approve_verb, *options);
+    approve_verb->add_flag(
+        "--add", options->add,
+        "Keep goldens of other renderers: the new image is another one, named by this renderer");
+    approve_verb->add_flag("--any-renderer", options->any_renderer,
+                           "Also where the goldens are of hardware and this is software, or the other way");
+    approve_verb->add_flag(
+        "--renew-sidecars", options->renew_sidecars,
+        "Where the bits are equal: write what gives them now (renderer, hash of look and effects)");
+    return [options, approve_verb] {
+        return with_own_codes([&] { return approve_verb->parsed() ? approve(*options) : run(*options); });
+    };
+}
+
+}  // namespace aftershade::cli

@@ -1,0 +1,127 @@
+#include "cli/golden_options.h"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <sstream>
+#include <thread>
+
+#include "cli/compare_options.h"
+#include "cli/gl_options.h"
+#include "framework/batch/worker.h"
+
+namespace aftershade::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+[[noreturn]] void refuse(const Diagnostics& diagnostics) {
+    std::ostringstream text;
+    diagnostics.print(text);
+    std::string message = text.str();
+    if (message.ends_with('\n')) message.pop_back();
+    throw Error(kCompareUsage, message);
+}
+
+/// "" where git is absent or the folder is in no repository.
+std::string commit_of(const fs::path& folder) {
+    WorkerCommand command;
+    command.arguments = {"/usr/bin/git", "-C", fs::absolute(folder).string(), "rev-parse", "HEAD"};
+    command.limits.wall_time = std::chrono::seconds(10);
+    std::string commit;
+    WorkerListener listener;
+    listener.on_stdout = [&](std::string_view line) { commit = line; };
+    try {
+        return run_worker(command, listener).succeeded() ? commit : "";
+    } catch (const Error&) {
+        return "";
+    }
+}
+
+gpu::Backend backend_of(const GoldenOptions& options) {
+    const char* environment = std::getenv("AFTERSHADE_BACKEND");
+    // Goldens are made on OSMesa unless someone says otherwise, not on what is at hand.
+    if (options.backend.empty() && !(environment && *environment)) return gpu::Backend::osmesa;
+    try {
+        return chosen_backend(options.backend);
+    } catch (const Error& error) {
+        throw Error(kCompareUsage, error.what());
+    }
+}
+
+void check_words(const GoldenOptions& options, const GoldenSuite& suite, Diagnostics& diagnostics) {
+    for (const std::string& path : options.effect_paths)
+        if (!fs::is_directory(path)) diagnostics.error({"--effect-path " + path}, "no such folder");
+    for (const std::string& filter : options.filters) {
+        const auto fits = [&](const GoldenCase& test) { return fits_filter(test, {filter}); };
+        if (std::ranges::any_of(suite.cases, fits)) continue;
+        std::vector<std::string> words;
+        for (const GoldenCase& test : suite.cases) {
+            words.push_back(test.name);
+            words.insert(words.end(), test.tags.begin(), test.tags.end());
+        }
+        diagnostics.error({"--filter " + filter}, "fits no case's name or tag" + did_you_mean(filter, words));
+    }
+    if (!options.report.empty() && fs::exists(options.report) && !fs::is_directory(options.report))
+        diagnostics.error({"--report " + options.report}, "is no folder");
+}
+
+}  // namespace
+
+void add_shared_golden_options(CLI::App& app, GoldenOptions& options) {
+    app.add_option("suite", options.suite, "A golden.json, or the folder of one")->required();
+    app.add_option("--filter", options.filters,
+                   "Only cases whose name fits this glob, or that have this tag; repeatable")
+        ->allow_extra_args(false);
+    app.add_option("-j,--jobs", options.jobs, "Cases at a time (as many as there are cores)")
+        ->check(CLI::Range(0, 1024));
+    app.add_option("--timeout", options.timeout_s, "Seconds that one case may take")
+        ->check(CLI::Range(0.1, 1e6))
+        ->capture_default_str();
+    app.add_option("--effect-path", options.effect_paths,
+                   "Folder of effects, searched before the suite's and the shipped ones; repeatable")
+        ->allow_extra_args(false);
+    app.add_option("--plugin-path", options.plugin_paths, "Folder of native plug-ins; repeatable")
+        ->allow_extra_args(false);
+    app.add_option("--backend", options.backend,
+                   "auto, egl, egl-software or osmesa (default: $AFTERSHADE_BACKEND, else osmesa)");
+}
+
+GoldenJob prepare_golden(const GoldenOptions& options) {
+    Diagnostics diagnostics;
+    GoldenJob job;
+    std::optional<GoldenSuite> suite = read_golden_suite(options.suite, diagnostics);
+    check_words(options, suite.value_or(GoldenSuite{}), diagnostics);
+    if (!suite || diagnostics.has_errors()) refuse(diagnostics);
+    job.suite = std::move(*suite);
+    const gpu::Backend backend = backend_of(options);
+
+    GoldenRunOptions& run = job.context.options;
+    const int cores = std::max(1, int(std::thread::hardware_concurrency()));
+    run.jobs = options.jobs > 0 ? options.jobs : cores;
+    run.filters = options.filters;
+    run.no_skip = options.no_skip;
+    run.report = options.report;
+    run.render.timeout = std::chrono::milliseconds(std::int64_t(options.timeout_s * 1000));
+    run.render.threads = std::max(1, cores / run.jobs);
+    run.render.plugin_paths = options.plugin_paths;
+    run.render.effect_paths = options.effect_paths;
+    for (const fs::path& path : job.suite.effect_paths) run.render.effect_paths.push_back(path.string());
+    {
+        const gpu::Context context(backend);
+        run.environment = environment_of(context.info());
+    }
+    run.render.backend = run.environment.backend;
+
+    std::vector<std::string> same;
+    for (const std::string& path : options.effect_paths) same.insert(same.end(), {"--effect-path", path});
+    for (const std::string& path : options.plugin_paths) same.insert(same.end(), {"--plugin-path", path});
+    if (!options.backend.empty()) same.insert(same.end(), {"--backend", options.backend});
+    job.context.with_options = same.empty() ? "" : " " + shell_line(same);
+    job.context.version = AFTERSHADE_VERSION;
+    job.context.commit = commit_of(job.suite.file.parent_path().empty() ? "." : job.suite.file.parent_path());
+    return job;
+}
+
+}  // namespace aftershade::cli

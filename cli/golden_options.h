@@ -1,0 +1,35 @@
+// The words of `aftershade golden`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "framework/batch/golden_report.h"
+
+namespace aftershade::cli {
+
+struct GoldenOptions {
+    std::string suite;
+    std::vector<std::string> filters, effect_paths, plugin_paths;
+    std::string backend;
+    int jobs = 0;  ///< 0: as many as there are cores
+    double timeout_s = 600;
+    // run
+    bool json = false, no_skip = false;
+    std::string junit, report;
+    // approve
+    bool any_renderer = false, add = false, renew_sidecars = false;
+};
+
+void add_shared_golden_options(CLI::App& app, GoldenOptions& options);
+
+/// The suite, what its workers will draw with, and what reports tell of both. Throws Error(kCompareUsage)
+/// with every fault of documents and words, Error(ExitCode::gl) without a usable backend.
+struct GoldenJob {
+    GoldenSuite suite;
+    GoldenReportContext context;
+};
+GoldenJob prepare_golden(const GoldenOptions& options);
+
+}  // namespace aftershade::cli

@@ -1,0 +1,67 @@
+// Approved images on disk: <case>.<output>.<frame>.exr, <case>.<output>.<frame>@<key>.exr for further
+// renderers, and beside each a sidecar .json that tells what made it.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/gpu/context.h"
+
+namespace aftershade {
+
+/// What pictures depend on besides the look: on one renderer, Mesa and CPU the same input gives the same
+/// bits.
+struct GoldenEnvironment {
+    std::string backend;
+    std::string renderer;  ///< GL_RENDERER
+    std::string version;   ///< GL_VERSION
+    std::string cpu;       ///< "model name" of /proc/cpuinfo
+    bool software = false;
+
+    std::string mesa() const;  ///< "22.3.6"; "" of other drivers
+    std::string llvm() const;  ///< "15.0.6"; "" where the renderer names none
+    /// Names a renderer in files: "llvmpipe-256-bits-22.3.6-amd-epyc".
+    std::string key() const;
+    /// Bits must be the same: one renderer, one version and one CPU, whatever the backend.
+    bool equals(const GoldenEnvironment& other) const;
+};
+
+GoldenEnvironment environment_of(const gpu::ContextInfo& info);
+/// backend, renderer, version, mesa, llvm, cpu, software.
+nlohmann::ordered_json json_of(const GoldenEnvironment& environment);
+
+/// What made an approved image. Older ones have renderer, version, cpu and backend only.
+struct GoldenSidecar {
+    GoldenEnvironment environment;
+    std::string command;     ///< that approved it
+    std::string look_hash;   ///< of the look and its effects (look_hash.h)
+    std::string image_hash;  ///< of the image file's bytes: a sidecar of another image says nothing
+};
+
+struct ApprovedImage {
+    std::filesystem::path file;
+    std::string key;  ///< after the '@'; "" of the first
+    /// nullopt: absent, unreadable, or of another image.
+    std::optional<GoldenSidecar> sidecar;
+};
+
+/// Approved images by one name ("lamps.color.0001"): that of `own` first (by sidecar, then by key), then the
+/// one without a key, then the others by name.
+std::vector<ApprovedImage> approved_images(const std::filesystem::path& folder, const std::string& name,
+                                           const GoldenEnvironment& own);
+
+/// The frame of a file name "<image_stem>.<frame>.exr" or "<image_stem>.<frame>@<key>.exr".
+std::optional<int> approved_frame(const std::string& file_name, const std::string& image_stem);
+
+std::filesystem::path sidecar_path(const std::filesystem::path& image);
+std::string sidecar_text(const GoldenSidecar& sidecar);
+/// FNV-1a of the file's bytes, 16 hexadecimal digits; "" where it cannot be read.
+std::string file_hash(const std::filesystem::path& file);
+
+/// "model name" of /proc/cpuinfo, or "unknown".
+std::string cpu_model();
+
+}  // namespace aftershade

@@ -1,0 +1,195 @@
+#include "framework/batch/golden_approve.h"
+
+#include <algorithm>
+#include <list>
+#include <mutex>
+
+#include "framework/core/atomic_file.h"
+#include "framework/core/error.h"
+
+namespace aftershade {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool same_bits(const fs::path& a, const fs::path& b) {
+    CompareRules rules;
+    rules.flip_choice = FlipChoice::none;
+    rules.ssim = false;
+    rules.threads = 1;
+    rules.nan_equal = true;
+    return has_equal_bits(compare_files(a, b, rules));
+}
+
+/// Approved images of a case, whatever their frames.
+std::vector<ApprovedImage> approved_of(const GoldenCase& test, const GoldenEnvironment& own) {
+    std::vector<ApprovedImage> all;
+    std::error_code unreadable;
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(test.goldens, unreadable))
+        for (const std::string& stem : test.image_stems())
+            if (const auto frame = approved_frame(entry.path().filename().string(), stem))
+                names.push_back(golden_image_name(stem, *frame));
+    std::ranges::sort(names);
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    for (const std::string& name : names)
+        for (ApprovedImage& image : approved_images(test.goldens, name, own)) all.push_back(std::move(image));
+    return all;
+}
+
+/// Files beside their goldens under other names, until all are renamed.
+class Staging {
+public:
+    void add(const fs::path& target, const fs::path& image, GoldenSidecar sidecar) {
+        stage_copy(image, target);
+        sidecar.image_hash = file_hash(image);
+        add_text(sidecar_path(target), sidecar_text(sidecar));
+    }
+    void add_text(const fs::path& target, const std::string& text) {
+        AtomicFile& file = files_.emplace_back(target);
+        // The inner file is renamed to the staged one; both are whole or not there.
+        write_text_file(file.temporary_path(), text);
+    }
+    /// In the order added: an image before its sidecar, which knows the image's hash and is not believed
+    /// beside another.
+    void commit() {
+        for (AtomicFile& file : files_) file.commit();
+    }
+
+private:
+    void stage_copy(const fs::path& from, const fs::path& target) {
+        AtomicFile& file = files_.emplace_back(target);
+        std::error_code failure;
+        fs::copy_file(from, file.temporary_path(), failure);
+        if (failure) throw Error(ExitCode::output, target.string() + ": " + failure.message());
+    }
+
+    std::list<AtomicFile> files_;
+};
+
+class Approver {
+public:
+    Approver(const GoldenApproveOptions& options, GoldenApproval& approval)
+        : options_(options), approval_(approval) {}
+
+    void take(const GoldenCaseResult& result, const std::vector<RenderedImage>& images) {
+        const std::scoped_lock lock(mutex_);
+        std::error_code failure;
+        fs::create_directories(result.test->goldens, failure);
+        if (failure) throw Error(ExitCode::output, result.test->goldens.string() + ": " + failure.message());
+        for (const RenderedImage& image : images) take(*result.test, image, result.look_hash);
+    }
+    void commit() { staging_.commit(); }
+
+private:
+    void take(const GoldenCase& test, const RenderedImage& image, const std::string& look_hash) {
+        const GoldenEnvironment& own = options_.run.environment;
+        const std::vector<ApprovedImage> approved = approved_images(test.goldens, image.name, own);
+        const GoldenSidecar sidecar{own, options_.command, look_hash, ""};
+        const auto equal = std::ranges::find_if(
+            approved, [&](const ApprovedImage& other) { return same_bits(other.file, image.file); });
+        if (equal != approved.end()) {
+            ++approval_.unchanged;
+            if (options_.renew_sidecars) renew(*equal, sidecar);
+            return;
+        }
+        const fs::path target = target_of(test, image, approved);
+        staging_.add(target, image.file, sidecar);
+        approval_.written.push_back(target);
+        for (const ApprovedImage& other : approved)
+            if (other.file != target && (!other.sidecar || other.sidecar->look_hash != look_hash))
+                approval_.outdated.push_back(other.file);
+    }
+
+    void renew(const ApprovedImage& approved, GoldenSidecar sidecar) {
+        sidecar.image_hash = file_hash(approved.file);
+        if (approved.sidecar) {
+            // Only what the bits depend on; another command is no news.
+            const GoldenSidecar& old = *approved.sidecar;
+            if (old.environment.equals(sidecar.environment) && old.look_hash == sidecar.look_hash &&
+                old.image_hash == sidecar.image_hash)
+                return;
+        }
+        staging_.add_text(sidecar_path(approved.file), sidecar_text(sidecar));
+        approval_.renewed.push_back(sidecar_path(approved.file));
+    }
+
+    fs::path target_of(const GoldenCase& test, const RenderedImage& image,
+                       const std::vector<ApprovedImage>& approved) const {
+        const GoldenEnvironment& own = options_.run.environment;
+        if (!approved.empty()) {
+            const ApprovedImage& nearest = approved.front();
+            if (nearest.key == own.key() || (nearest.sidecar && nearest.sidecar->environment.equals(own)))
+                return nearest.file;
+        }
+        const std::string key = options_.add && !approved.empty() ? "@" + own.key() : "";
+        return test.goldens / (image.name + key + ".exr");
+    }
+
+    const GoldenApproveOptions& options_;
+    GoldenApproval& approval_;
+    Staging staging_;
+    std::mutex mutex_;
+};
+
+}  // namespace
+
+std::string foreign_goldens(const GoldenSuite& suite, const GoldenRunOptions& options) {
+    const bool software = options.environment.software;
+    for (const GoldenCase& test : suite.cases) {
+        if (!fits_filter(test, options.filters)) continue;
+        const ApprovedImage* foreign = nullptr;
+        bool has_own_kind = false;
+        const std::vector<ApprovedImage> approved = approved_of(test, options.environment);
+        for (const ApprovedImage& image : approved) {
+            if (!image.sidecar) continue;
+            if (image.sidecar->environment.software == software) has_own_kind = true;
+            else foreign = &image;
+        }
+        if (foreign && !has_own_kind)
+            return foreign->file.string() + " is of " + foreign->sidecar->environment.renderer + ", a " +
+                   (software ? "hardware" : "software") + " renderer; this one is " +
+                   options.environment.renderer + ". Use the goldens' --backend, or --any-renderer";
+    }
+    return "";
+}
+
+GoldenApproval approve_goldens(const GoldenSuite& suite, const GoldenApproveOptions& options,
+                               const GoldenListener& listener, const std::atomic<bool>& interrupt) {
+    GoldenApproval approval;
+    Approver approver(options, approval);
+    std::vector<const GoldenCase*> cases;
+    for (const GoldenCase& test : suite.cases)
+        if (fits_filter(test, options.run.filters)) cases.push_back(&test);
+    const std::vector<std::string> hashes = look_hashes(cases, options.run.render.effect_paths);
+    approval.cases.resize(cases.size());
+    std::mutex telling;
+    int done = 0;
+    for_each_in_folders(cases.size(), options.run.jobs, [&](std::size_t i, const fs::path& work) {
+        GoldenCaseResult& result = approval.cases[i];
+        result.test = cases[i];
+        result.look_hash = hashes[i];
+        result.skipped = cases[i]->skip;
+        if (interrupt) return;
+        if (result.skipped.empty()) {
+            const RenderedCase rendered = render_case(*cases[i], options.run.render, work, interrupt);
+            if (rendered.interrupted) return;
+            result.skipped = rendered.absent;
+            result.verdict = rendered.verdict;
+            result.messages = rendered.messages;
+            result.seconds = rendered.seconds;
+            if (result.verdict == Verdict::same) approver.take(result, rendered.images);
+        }
+        const std::scoped_lock lock(telling);
+        if (listener) listener(result, ++done, int(cases.size()));
+    });
+    for (const GoldenCaseResult& test : approval.cases)
+        approval.verdict = std::max(approval.verdict, test.verdict);
+    approval.interrupted = interrupt;
+    if (!approval.interrupted) approver.commit();
+    for (auto* files : {&approval.written, &approval.renewed, &approval.outdated}) std::ranges::sort(*files);
+    return approval;
+}
+
+}  // namespace aftershade

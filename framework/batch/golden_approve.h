@@ -1,0 +1,41 @@
+// New approved images for a golden suite.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "framework/batch/golden_run.h"
+
+namespace aftershade {
+
+struct GoldenApproveOptions {
+    GoldenRunOptions run;
+    bool add = false;             ///< beside those of other renderers, instead of in place of the first
+    bool renew_sidecars = false;  ///< where the bits are equal, say anew what gives them
+    std::string command;          ///< for the sidecars
+};
+
+struct GoldenApproval {
+    std::vector<std::filesystem::path> written;   ///< images, each with its sidecar
+    std::vector<std::filesystem::path> renewed;   ///< sidecars alone
+    std::vector<std::filesystem::path> outdated;  ///< approved by other renderers, of another look or effects
+    std::size_t unchanged = 0;                    ///< images whose bits are approved already
+    std::vector<GoldenCaseResult> cases;          ///< with verdict and messages of those that did not render
+    Verdict verdict = Verdict::same;              ///< the worst
+    bool interrupted = false;                     ///< then nothing was written
+};
+
+/// "" where the cases' goldens are of the kind of renderer of `environment`, software or hardware, or have no
+/// sidecars; else what stands against it.
+std::string foreign_goldens(const GoldenSuite& suite, const GoldenRunOptions& options);
+
+/// Renders the cases that fit the filters. An image with new bits is put beside its golden under another name
+/// and, when every case has ended, renamed into place, then its sidecar: a process that is killed leaves old
+/// files or new ones, each whole. In place of: this renderer's own approved image; else the first of its
+/// name, or with `add` one with the renderer's key. Throws Error(ExitCode::output).
+GoldenApproval approve_goldens(const GoldenSuite& suite, const GoldenApproveOptions& options,
+                               const GoldenListener& listener, const std::atomic<bool>& interrupt);
+
+}  // namespace aftershade

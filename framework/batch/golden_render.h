@@ -1,0 +1,50 @@
+// The images of a case, made by a worker process: `aftershade run` of this very executable.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "framework/batch/golden_case.h"
+
+namespace aftershade {
+
+struct GoldenRenderOptions {
+    std::string backend = "osmesa";         ///< as `--backend` takes it
+    std::vector<std::string> effect_paths;  ///< folders, the first wins
+    std::vector<std::string> plugin_paths;
+    std::chrono::milliseconds timeout{600'000};  ///< of one case, wall time
+    int threads = 1;                             ///< llvmpipe's, where LP_NUM_THREADS says nothing
+};
+
+struct RenderedImage {
+    std::string name;    ///< "lamps.color.0001"
+    std::string output;  ///< role, or "step.texture" of a tap
+    int frame = 0;
+    std::filesystem::path file;
+};
+
+struct RenderedCase {
+    /// same: rendered. failure: an effect or a document is wrong, or the time is over. file_error: the
+    /// capture cannot be read, there is no GL, or nothing can be written.
+    Verdict verdict = Verdict::same;
+    std::string absent;                 ///< what is not there, so that the case is skipped; "" otherwise
+    std::vector<std::string> messages;  ///< of the worker: warnings, and everything where it failed
+    std::vector<RenderedImage> images;  ///< every output and tap of every frame; none after a failure
+    std::string command;                ///< for a shell
+    double seconds = 0;                 ///< wall time of the worker
+    bool interrupted = false;
+};
+
+/// Renders into `work`, an empty folder of the case's own. Images hold only channels, windows and
+/// chromaticities: the same picture gives the same bytes wherever it is made. Throws Error(ExitCode::output).
+/// [thread-safe for different folders]
+RenderedCase render_case(const GoldenCase& test, const GoldenRenderOptions& options,
+                         const std::filesystem::path& work, const std::atomic<bool>& interrupt);
+
+/// Words for a shell, quoted where it would read them otherwise.
+std::string shell_line(const std::vector<std::string>& words);
+
+}  // namespace aftershade

@@ -1,0 +1,263 @@
+#include "framework/batch/golden_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "framework/compare/comparison_report.h"
+
+namespace aftershade {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr std::size_t kNameWidth = 44;
+
+struct Counts {
+    int passed = 0, warned = 0, failed = 0, skipped = 0;
+};
+
+Counts count(const GoldenSuiteResult& result) {
+    Counts counts;
+    for (const GoldenCaseResult& test : result.cases) {
+        if (test.verdict >= Verdict::failure) ++counts.failed;
+        else if (!test.skipped.empty()) ++counts.skipped;
+        else if (test.verdict == Verdict::warning) ++counts.warned;
+        else ++counts.passed;
+    }
+    return counts;
+}
+
+std::string word_of(const GoldenCaseResult& test, const char* good) {
+    if (test.verdict >= Verdict::failure) return "***Failed ";
+    if (!test.skipped.empty()) return "***Skipped";
+    return test.verdict == Verdict::warning ? "***Warning" : "   " + std::string(good) + " ";
+}
+
+/// Why a case has its verdict, an image a line.
+std::vector<std::string> reasons_of(const GoldenCaseResult& test) {
+    std::vector<std::string> lines;
+    if (test.verdict >= Verdict::failure || test.verdict == Verdict::warning) lines = test.messages;
+    for (const GoldenImage& image : test.images)
+        if (image.verdict != Verdict::same)
+            for (const std::string& reason : image.reasons) lines.push_back(image.name + ": " + reason);
+    return lines;
+}
+
+/// Whether new images could make the case pass.
+bool can_approve(const GoldenCaseResult& test) {
+    return std::ranges::any_of(test.images,
+                               [](const GoldenImage& image) { return image.verdict != Verdict::same; });
+}
+
+std::vector<std::string> cases_to_approve(const GoldenSuiteResult& result) {
+    std::vector<std::string> names;
+    for (const GoldenCaseResult& test : result.cases)
+        if (can_approve(test)) names.push_back(test.test->name);
+    return names;
+}
+
+std::string escaped(const std::string& text) {
+    std::string result;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (c == '&') result += "&amp;";
+        else if (c == '<') result += "&lt;";
+        else if (c == '>') result += "&gt;";
+        else if (c == '"') result += "&quot;";
+        else if (c == '\n') result += "&#10;";
+        // XML 1.0 has no other control characters, and a worker's bytes above 127 need not be UTF-8.
+        else result += byte == '\t' || (byte >= 32 && byte < 127) ? c : '?';
+    }
+    return result;
+}
+
+std::string joined(const std::vector<std::string>& lines) {
+    std::string text;
+    for (const std::string& line : lines) text += (text.empty() ? "" : "\n") + line;
+    return text;
+}
+
+std::string junit_case(const GoldenCaseResult& test, const GoldenReportContext& context) {
+    std::string text = fmt::format("    <testcase classname=\"golden\" name=\"{}\" time=\"{:.3f}\">",
+                                   escaped(test.test->name), test.seconds);
+    std::vector<std::string> lines = reasons_of(test);
+    if (can_approve(test)) lines.push_back("to approve: " + approve_command(context, {test.test->name}));
+    const std::string why = lines.empty() ? "" : lines.front();
+    if (test.verdict >= Verdict::failure)
+        text += fmt::format("<failure type=\"{}\" message=\"{}\">{}</failure>", verdict_name(test.verdict),
+                            escaped(why), escaped(joined(lines)));
+    else if (!test.skipped.empty()) text += fmt::format("<skipped message=\"{}\"/>", escaped(test.skipped));
+    else if (test.verdict == Verdict::warning)
+        text += fmt::format("<system-out>warning: {}</system-out>", escaped(joined(lines)));
+    return text + "</testcase>\n";
+}
+
+Json text_or_null(const std::string& text) {
+    return text.empty() ? Json(nullptr) : Json(text);
+}
+
+Json json_of(const ApprovedImage& approved) {
+    Json json{{"file", approved.file.string()}, {"key", approved.key}, {"sidecar", nullptr}};
+    if (!approved.sidecar) return json;
+    json["sidecar"] = json_of(approved.sidecar->environment);
+    json["sidecar"]["command"] = approved.sidecar->command;
+    json["sidecar"]["look_hash"] = approved.sidecar->look_hash;
+    return json;
+}
+
+Json json_of(const GoldenImage& image, const CompareRules& rules) {
+    const GoldenPictures& pictures = image.pictures;
+    return {{"name", image.name},
+            {"output", image.output},
+            {"frame", image.frame},
+            {"verdict", verdict_name(image.verdict)},
+            {"reasons", image.reasons},
+            {"approved", image.approved ? json_of(*image.approved) : Json(nullptr)},
+            {"approved_count", image.approved_count},
+            {"tier", image.exact_tier ? "bits" : "tolerance"},
+            {"bits_equal", image.bits_equal},
+            {"pictures",
+             {{"reference", text_or_null(pictures.reference)},
+              {"test", text_or_null(pictures.test)},
+              {"difference", text_or_null(pictures.difference)},
+              {"difference_scale", pictures.difference_scale},
+              {"heat_map", text_or_null(pictures.heat_map)},
+              {"side_by_side", text_or_null(pictures.side_by_side)},
+              {"reference_exr", text_or_null(pictures.reference_exr)},
+              {"test_exr", text_or_null(pictures.test_exr)}}},
+            {"comparison", image.comparison ? json_of(*image.comparison, rules) : Json(nullptr)}};
+}
+
+Json json_of(const GoldenCaseResult& result, const GoldenReportContext& context) {
+    const GoldenCase& test = *result.test;
+    Json images = Json::array();
+    for (const GoldenImage& image : result.images) images.push_back(json_of(image, test.rules));
+    return {{"name", test.name},
+            {"file", test.file.string()},
+            {"look", test.look.empty() ? Json(nullptr) : Json(test.look.string())},
+            {"steps", test.steps.empty() ? Json(nullptr) : Json::parse(test.steps)["steps"]},
+            {"capture", test.capture.string()},
+            {"frames", text_or_null(test.frames)},
+            {"set", test.sets},
+            {"tags", test.tags},
+            {"verdict", verdict_name(result.verdict)},
+            {"skipped", text_or_null(result.skipped)},
+            {"seconds", result.seconds},
+            {"messages", result.messages},
+            {"look_hash", text_or_null(result.look_hash)},
+            {"command", text_or_null(result.command)},
+            {"approve", can_approve(result) ? Json(approve_command(context, {test.name})) : Json(nullptr)},
+            {"images", std::move(images)}};
+}
+
+}  // namespace
+
+std::string approve_command(const GoldenReportContext& context, const std::vector<std::string>& cases) {
+    if (cases.empty()) return "";
+    std::vector<std::string> words = {"aftershade", "golden", "approve", context.suite->argument};
+    for (const std::string& name : cases) words.insert(words.end(), {"--filter", name});
+    return shell_line(words) + context.with_options;
+}
+
+std::string line_of(const GoldenCaseResult& test, int done, int all, const char* good) {
+    std::string name = test.test->name + " ";
+    name.resize(std::max(name.size(), kNameWidth), '.');
+    const int digits = int(std::to_string(all).size());
+    return fmt::format("{:>{}}/{} {} {} {:7.2f} s{}", done, digits, all, name, word_of(test, good),
+                       test.seconds, test.skipped.empty() ? "" : "  (" + test.skipped + ")");
+}
+
+std::string summary_of(const GoldenSuiteResult& result, const GoldenReportContext& context) {
+    std::string text;
+    for (const bool failures : {false, true})
+        for (const GoldenCaseResult& test : result.cases) {
+            if (test.verdict == Verdict::same || (test.verdict >= Verdict::failure) != failures) continue;
+            text += fmt::format("\n{} {}: {}\n", failures ? "FAILED" : "WARNING", test.test->name,
+                                verdict_name(test.verdict));
+            for (const std::string& line : reasons_of(test)) text += "    " + line + "\n";
+            if (can_approve(test))
+                text += "    to approve: " + approve_command(context, {test.test->name}) + "\n";
+        }
+    for (const fs::path& orphan : result.orphans)
+        text += fmt::format("\nFAILED {}: no case gives this golden; remove it, or mend the case\n",
+                            orphan.string());
+    if (const auto names = cases_to_approve(result); names.size() > 1)
+        text += "\nto approve all: " + approve_command(context, names) + "\n";
+    const Counts counts = count(result);
+    return text +
+           fmt::format(
+               "\n{} passed, {} with warnings, {} failed, {} skipped{}, {} cases in {:.2f} s: {}\n",
+               counts.passed, counts.warned, counts.failed, counts.skipped,
+               result.orphans.empty() ? "" : fmt::format(", {} orphaned goldens", result.orphans.size()),
+               result.cases.size(), result.seconds,
+               result.interrupted ? "interrupted" : verdict_name(result.verdict));
+}
+
+std::string junit_of(const GoldenSuiteResult& result, const GoldenReportContext& context) {
+    const Counts counts = count(result);
+    const std::size_t tests = result.cases.size() + result.orphans.size();
+    const std::size_t failures = std::size_t(counts.failed) + result.orphans.size();
+    std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
+    const std::string sums =
+        fmt::format("tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"{}\" time=\"{:.3f}\"", tests,
+                    failures, counts.skipped, result.seconds);
+    text += "<testsuites " + sums + ">\n";
+    text += fmt::format("  <testsuite name=\"{}\" {} timestamp=\"{}\">\n    <properties>\n",
+                        escaped(context.suite->argument), sums, result.started.substr(0, 19));
+    const auto property = [&](const char* name, const std::string& value) {
+        text += fmt::format("      <property name=\"{}\" value=\"{}\"/>\n", name, escaped(value));
+    };
+    const GoldenEnvironment& environment = context.options.environment;
+    property("backend", environment.backend);
+    property("renderer", environment.renderer);
+    property("version", environment.version);
+    property("cpu", environment.cpu);
+    property("commit", context.commit);
+    text += "    </properties>\n";
+    for (const GoldenCaseResult& test : result.cases) text += junit_case(test, context);
+    for (const fs::path& orphan : result.orphans)
+        text += fmt::format(
+            "    <testcase classname=\"golden.orphan\" name=\"{0}\"><failure type=\"failure\" "
+            "message=\"no case gives this golden\">{0}</failure></testcase>\n",
+            escaped(orphan.string()));
+    return text + "  </testsuite>\n</testsuites>\n";
+}
+
+Json json_of(const GoldenSuiteResult& result, const GoldenReportContext& context) {
+    const Counts counts = count(result);
+    Json environment = json_of(context.options.environment);
+    environment["key"] = context.options.environment.key();
+    environment["threads"] = std::thread::hardware_concurrency();
+    environment["jobs"] = context.options.jobs;
+    environment["commit"] = text_or_null(context.commit);
+    environment["aftershade"] = context.version;
+    Json cases = Json::array(), orphans = Json::array();
+    for (const GoldenCaseResult& test : result.cases) cases.push_back(json_of(test, context));
+    for (const fs::path& orphan : result.orphans) orphans.push_back(orphan.string());
+    return {{"aftershade", 1},
+            {"suite", context.suite->argument},
+            {"verdict", verdict_name(result.verdict)},
+            {"exit_code", int(result.verdict)},
+            {"interrupted", result.interrupted},
+            {"started", result.started},
+            {"seconds", result.seconds},
+            {"counts",
+             {{"cases", result.cases.size()},
+              {"passed", counts.passed},
+              {"warned", counts.warned},
+              {"failed", counts.failed},
+              {"skipped", counts.skipped},
+              {"orphans", result.orphans.size()}}},
+            {"filters", context.options.filters},
+            {"approve", text_or_null(approve_command(context, cases_to_approve(result)))},
+            {"environment", std::move(environment)},
+            {"cases", std::move(cases)},
+            {"orphans", std::move(orphans)}};
+}
+
+}  // namespace aftershade

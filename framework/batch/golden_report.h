@@ -1,0 +1,35 @@
+// What a golden suite found: for people as ctest tells it, JUnit for CI, JSON for pages.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "framework/batch/golden_run.h"
+
+namespace aftershade {
+
+/// What the result itself does not know.
+struct GoldenReportContext {
+    const GoldenSuite* suite = nullptr;
+    GoldenRunOptions options;
+    std::string version;       ///< of aftershade
+    std::string commit;        ///< of the folder of the suite; "" where git knows none
+    std::string with_options;  ///< " --effect-path x": added to approve commands
+};
+
+/// A command for a shell that approves these cases' images; "" for none.
+std::string approve_command(const GoldenReportContext& context, const std::vector<std::string>& cases);
+
+/// " 3/42 bloom/lamps ........   Passed    0.41 s"; `good` has six letters.
+std::string line_of(const GoldenCaseResult& test, int done, int all, const char* good = "Passed");
+/// Failures and warnings again with their reasons, what approves them, and one line of sums.
+std::string summary_of(const GoldenSuiteResult& result, const GoldenReportContext& context);
+
+/// JUnit's XML as Jenkins, GitLab and GitHub's actions read it.
+std::string junit_of(const GoldenSuiteResult& result, const GoldenReportContext& context);
+
+/// docs/golden.md lists every key.
+nlohmann::ordered_json json_of(const GoldenSuiteResult& result, const GoldenReportContext& context);
+
+}  // namespace aftershade

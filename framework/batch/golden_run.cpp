@@ -1,0 +1,150 @@
+#include "framework/batch/golden_run.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "framework/batch/look_hash.h"
+#include "framework/core/data_path.h"
+#include "framework/core/error.h"
+
+namespace aftershade {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr const char* kInterrupted = "interrupted";
+
+/// A folder that goes away with everything in it.
+class WorkFolder {
+public:
+    WorkFolder() {
+        std::string pattern = (fs::temp_directory_path() / "aftershade-golden-XXXXXX").string();
+        if (!mkdtemp(pattern.data())) throw Error(ExitCode::output, "cannot make a work folder " + pattern);
+        path_ = pattern;
+    }
+    ~WorkFolder() {
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+    }
+    WorkFolder(const WorkFolder&) = delete;
+    WorkFolder& operator=(const WorkFolder&) = delete;
+    const fs::path& path() const { return path_; }
+
+private:
+    fs::path path_;
+};
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void skip(GoldenCaseResult& result, const std::string& why, const GoldenRunOptions& options) {
+    result.skipped = why;
+    if (!options.no_skip) return;
+    result.verdict = Verdict::failure;
+    result.messages.push_back("skipped, and --no-skip: " + why);
+}
+
+void run_case(const GoldenRunOptions& options, const fs::path& work, const std::atomic<bool>& interrupt,
+              GoldenCaseResult& result, bool& interrupted) {
+    const GoldenCase& test = *result.test;
+    if (!test.skip.empty()) return skip(result, test.skip, options);
+    const RenderedCase rendered = render_case(test, options.render, work, interrupt);
+    interrupted = rendered.interrupted;
+    if (!rendered.absent.empty()) return skip(result, rendered.absent, options);
+    result.command = rendered.command;
+    if (interrupted) return;
+    result.verdict = rendered.verdict;
+    result.messages = rendered.messages;
+    const fs::path pictures = options.report.empty() ? fs::path() : options.report / "images";
+    for (const RenderedImage& image : rendered.images) {
+        result.images.push_back(judge_image(test, image, result.look_hash, options.environment, pictures));
+        result.verdict = std::max(result.verdict, result.images.back().verdict);
+    }
+}
+
+}  // namespace
+
+void for_each_in_folders(std::size_t count, int jobs,
+                         const std::function<void(std::size_t, const fs::path&)>& work) {
+    const WorkFolder folder;
+    std::atomic<std::size_t> next = 0;
+    std::atomic<bool> failed = false;
+    std::exception_ptr failure;
+    std::mutex mutex;
+    const auto turn = [&] {
+        for (std::size_t i = next++; i < count && !failed; i = next++) try {
+                const fs::path own = folder.path() / std::to_string(i);
+                fs::create_directory(own);
+                work(i, own);
+                fs::remove_all(own);
+            } catch (...) {
+                const std::scoped_lock lock(mutex);
+                if (!failed.exchange(true)) failure = std::current_exception();
+            }
+    };
+    std::vector<std::thread> threads;
+    for (int i = 1; i < std::min<int>(jobs, int(count)); ++i) threads.emplace_back(turn);
+    turn();
+    for (std::thread& thread : threads) thread.join();
+    if (failure) std::rethrow_exception(failure);
+}
+
+std::vector<std::string> look_hashes(const std::vector<const GoldenCase*>& cases,
+                                     const std::vector<std::string>& effect_paths) {
+    std::vector<fs::path> folders(effect_paths.begin(), effect_paths.end());
+    const fs::path data = data_path();
+    folders.push_back(data / "effects");
+    LookHasher hasher(folders, data / "glsl");
+    std::vector<std::string> hashes;
+    for (const GoldenCase* test : cases) hashes.push_back(hasher.hash(*test));
+    return hashes;
+}
+
+GoldenSuiteResult run_golden_suite(const GoldenSuite& suite, const GoldenRunOptions& options,
+                                   const GoldenListener& listener, const std::atomic<bool>& interrupt) {
+    const auto start = Clock::now();
+    GoldenSuiteResult result;
+    result.started = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+    std::vector<const GoldenCase*> cases;
+    for (const GoldenCase& test : suite.cases)
+        if (fits_filter(test, options.filters)) cases.push_back(&test);
+    const std::vector<std::string> hashes = look_hashes(cases, options.render.effect_paths);
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        result.cases.emplace_back();
+        result.cases.back().test = cases[i];
+        result.cases.back().look_hash = hashes[i];
+        result.cases.back().skipped = kInterrupted;  // until it has run
+    }
+    std::mutex telling;
+    int done = 0;
+    for_each_in_folders(cases.size(), options.jobs, [&](std::size_t i, const fs::path& work) {
+        if (interrupt) return;
+        const auto begin = Clock::now();
+        bool interrupted = false;
+        result.cases[i].skipped.clear();
+        run_case(options, work, interrupt, result.cases[i], interrupted);
+        if (interrupted) result.cases[i].skipped = kInterrupted;
+        result.cases[i].seconds = seconds_since(begin);
+        const std::scoped_lock lock(telling);
+        if (!interrupted && listener) listener(result.cases[i], ++done, int(cases.size()));
+    });
+    result.interrupted = interrupt;
+    result.orphans = orphaned_goldens(suite, options.filters);
+    if (!result.orphans.empty()) result.verdict = Verdict::failure;
+    for (const GoldenCaseResult& test : result.cases) result.verdict = std::max(result.verdict, test.verdict);
+    result.seconds = seconds_since(start);
+    return result;
+}
+
+}  // namespace aftershade

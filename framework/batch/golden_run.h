@@ -1,0 +1,95 @@
+// A golden suite from its cases to verdicts: workers beside each other, each image held against those
+// approved.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/batch/approved_image.h"
+#include "framework/batch/golden_render.h"
+#include "framework/batch/golden_suite.h"
+#include "framework/compare/compare_files.h"
+
+namespace aftershade {
+
+/// Paths relative to the report's folder; "" where there is none.
+struct GoldenPictures {
+    std::string reference, test, difference, heat_map, side_by_side;  ///< .png
+    std::string reference_exr, test_exr;                              ///< as they are
+    double difference_scale = 1;  ///< of difference.png: |reference - test| times this
+};
+
+/// One image of a case against the approved image that is nearest to it.
+struct GoldenImage {
+    std::string name, output;
+    int frame = 0;
+    Verdict verdict = Verdict::same;
+    std::vector<std::string> reasons;  ///< of the verdict
+    std::optional<ApprovedImage> approved;
+    std::size_t approved_count = 0;  ///< images by this name; 0: missing
+    /// Environment and look are those that the approved image was made by: every bit must be the same.
+    bool exact_tier = false;
+    bool bits_equal = false;
+    std::optional<Comparison> comparison;
+    GoldenPictures pictures;
+};
+
+struct GoldenCaseResult {
+    const GoldenCase* test = nullptr;
+    Verdict verdict = Verdict::same;
+    std::string skipped;  ///< why; "" where it ran
+    std::vector<std::string> messages;
+    std::vector<GoldenImage> images;
+    std::string command;  ///< what rendered it
+    std::string look_hash;
+    double seconds = 0;  ///< rendering and comparing
+};
+
+struct GoldenRunOptions {
+    GoldenRenderOptions render;
+    GoldenEnvironment environment;  ///< of the workers
+    std::vector<std::string> filters;
+    std::filesystem::path report;  ///< folder for pictures; "" for none
+    int jobs = 1;
+    bool no_skip = false;  ///< a skipped case fails
+};
+
+struct GoldenSuiteResult {
+    std::vector<GoldenCaseResult> cases;  ///< those that fit the filters, in the suite's order
+    std::vector<std::filesystem::path> orphans;
+    Verdict verdict = Verdict::same;  ///< the worst
+    double seconds = 0;
+    bool interrupted = false;
+    std::string started;  ///< ISO 8601, UTC
+};
+
+/// Called for each case that has ended, one at a time.
+using GoldenListener = std::function<void(const GoldenCaseResult&, int done, int all)>;
+
+/// Throws Error(ExitCode::output) where the work folder or the report cannot be written.
+GoldenSuiteResult run_golden_suite(const GoldenSuite& suite, const GoldenRunOptions& options,
+                                   const GoldenListener& listener, const std::atomic<bool>& interrupt);
+
+/// Hashes of the looks of the cases, in their order.
+std::vector<std::string> look_hashes(const std::vector<const GoldenCase*>& cases,
+                                     const std::vector<std::string>& effect_paths);
+
+/// Calls work(i, folder of its own, empty) for 0 .. count - 1 on `jobs` threads, beginning in order. The
+/// folders go away. The first exception ends all and is thrown.
+void for_each_in_folders(std::size_t count, int jobs,
+                         const std::function<void(std::size_t, const std::filesystem::path&)>& work);
+
+/// Whether two files have the same layers with the same bits in every value.
+bool has_equal_bits(const Comparison& comparison);
+
+/// An image against those approved by its name, the renderer's own first; with `pictures`, a folder that
+/// exists, the pictures are written there.
+GoldenImage judge_image(const GoldenCase& test, const RenderedImage& rendered, const std::string& look_hash,
+                        const GoldenEnvironment& environment, const std::filesystem::path& pictures);
+
+}  // namespace aftershade

@@ -1,0 +1,179 @@
+#include "framework/batch/golden_suite.h"
+
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <set>
+
+#include "framework/batch/approved_image.h"
+#include "framework/core/data_path.h"
+#include "framework/image/frame_range.h"
+
+namespace aftershade {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Presence = ObjectReader::Presence;
+
+/// A name is the beginning of files' names, and its dots would be taken for theirs.
+bool is_case_name(const std::string& name) {
+    const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };
+    return !name.empty() && std::ranges::all_of(name, fits) && name.front() != '-';
+}
+
+class SuiteReader {
+public:
+    SuiteReader(GoldenSuite& suite, Diagnostics& diagnostics) : suite_(suite), diagnostics_(diagnostics) {}
+
+    void read(const Node& node) {
+        folder_ = suite_.file.parent_path();
+        ObjectReader reader(node, "the suite", diagnostics_);
+        check_document_version(reader, node, diagnostics_);
+        reader.text("$schema");
+        goldens_ = folder_ / reader.text("goldens").value_or("goldens");
+        for (const std::string& path : reader.texts("effect_paths")) add_effect_path(node, path);
+        if (const Node* cases = reader.array("cases"))
+            for (const Node& test : cases->items) add_case(test);
+        const Node* of_effects = reader.any("cases_of_effects");
+        if (of_effects && of_effects->kind != Node::Kind::boolean)
+            diagnostics_.error(of_effects->place, "'cases_of_effects' must be a boolean, not " +
+                                                      std::string(kind_name(of_effects->kind)));
+        if (of_effects && of_effects->boolean) add_cases_of_effects();
+        reader.finish();
+        if (suite_.cases.empty() && !diagnostics_.has_errors())
+            diagnostics_.error(node.place, "a suite needs 'cases' or 'cases_of_effects'");
+    }
+
+private:
+    void add_effect_path(const Node& node, const std::string& path) {
+        suite_.effect_paths.push_back((folder_ / path).lexically_normal());
+        if (!fs::is_directory(suite_.effect_paths.back()))
+            diagnostics_.error(node.find("effect_paths")->place,
+                               "no folder '" + suite_.effect_paths.back().string() + "'");
+    }
+
+    void add_case(const Node& node) {
+        ObjectReader reader(node, "the case", diagnostics_);
+        GoldenCase result;
+        result.file = suite_.file;
+        result.folder = folder_;
+        result.goldens = goldens_;
+        result.name = result.stem = reader.text("name", Presence::required).value_or("");
+        if (const Node* name = node.find("name"); name && name->is_string()) check_name(*name);
+        if (const auto look = reader.text("look")) {
+            result.look = (folder_ / *look).lexically_normal();
+            if (!fs::is_regular_file(result.look))
+                diagnostics_.error(node.find("look")->place, "no file '" + result.look.string() + "'");
+        }
+        if (node.is_object() && (node.find("look") != nullptr) == (node.find("steps") != nullptr))
+            diagnostics_.error(node.place, "a case has a 'look' (a file) or 'steps', one of both");
+        parse_golden_case(node, reader, folder_, result, diagnostics_);
+        reader.finish();
+        suite_.cases.push_back(std::move(result));
+    }
+
+    void check_name(const Node& name) {
+        if (!is_case_name(name.string))
+            diagnostics_.error(name.place,
+                               "a case's name begins its files' names: letters, digits, '_' and "
+                               "'-', not '" +
+                                   name.string + "'");
+        const auto [other, is_new] = names_.emplace(name.string, name.place);
+        if (!is_new)
+            diagnostics_.error(name.place, "a second case named '" + name.string + "' (the first is at " +
+                                               to_string(other->second) + ")");
+    }
+
+    void add_cases_of_effects() {
+        std::vector<fs::path> folders = suite_.effect_paths;
+        if (folders.empty()) folders.push_back(data_path() / "effects");
+        for (const fs::path& folder : folders) {
+            std::set<fs::path> effects;
+            if (!fs::is_directory(folder)) continue;  // told of already
+            for (const auto& entry : fs::directory_iterator(folder))
+                if (fs::is_regular_file(entry.path() / "effect.json")) effects.insert(entry.path());
+            for (const fs::path& effect : effects)
+                for (GoldenCase& test : read_effect_cases(effect, folder.parent_path(), diagnostics_))
+                    suite_.cases.push_back(std::move(test));
+        }
+    }
+
+    GoldenSuite& suite_;
+    Diagnostics& diagnostics_;
+    fs::path folder_, goldens_;
+    std::map<std::string, Place> names_;
+};
+
+/// "lamps" of "lamps.color.0001@key.exr".
+std::string first_word(const fs::path& file) {
+    const std::string name = file.filename().string();
+    return name.substr(0, name.find('.'));
+}
+
+/// A case's images; without frames those of its capture, whatever they are.
+struct KnownImages {
+    std::vector<std::string> stems;
+    std::vector<int> frames;
+    bool has(const std::string& name) const {
+        return std::ranges::any_of(stems, [&](const std::string& stem) {
+            const auto frame = approved_frame(name, stem);
+            return frame && (frames.empty() || std::ranges::find(frames, *frame) != frames.end());
+        });
+    }
+};
+
+bool is_orphan(const fs::path& file, const std::map<std::string, KnownImages>& known) {
+    const std::string name = file.filename().string();
+    const bool image = file.extension() == ".exr", sidecar = file.extension() == ".json";
+    // <case>.json is a case of an effect.
+    if (name.starts_with('.') || (!image && !(sidecar && std::ranges::count(name, '.') > 1))) return false;
+    if (sidecar && !fs::exists(fs::path(file).replace_extension(".exr"))) return true;
+    const auto images = known.find(first_word(file));
+    return images == known.end() || (image && !images->second.has(name));
+}
+
+}  // namespace
+
+std::optional<GoldenSuite> read_golden_suite(const std::string& argument, Diagnostics& diagnostics) {
+    GoldenSuite suite;
+    suite.argument = argument;
+    suite.file = fs::is_directory(argument) ? fs::path(argument) / "golden.json" : fs::path(argument);
+    const auto node = read_document(suite.file, diagnostics);
+    if (node) SuiteReader(suite, diagnostics).read(*node);
+    if (diagnostics.has_errors()) return std::nullopt;
+    return suite;
+}
+
+bool fits_filter(const GoldenCase& test, const std::vector<std::string>& filters) {
+    const auto fits = [&](const std::string& filter) {
+        return fnmatch(filter.c_str(), test.name.c_str(), 0) == 0 ||
+               std::ranges::find(test.tags, filter) != test.tags.end();
+    };
+    return filters.empty() || std::ranges::any_of(filters, fits);
+}
+
+std::vector<fs::path> orphaned_goldens(const GoldenSuite& suite, const std::vector<std::string>& filters) {
+    std::map<fs::path, std::map<std::string, KnownImages>> known;  // by folder, by case
+    std::set<std::pair<fs::path, std::string>> chosen;
+    for (const GoldenCase& test : suite.cases) {
+        known[test.goldens][test.stem] = {test.image_stems(),
+                                          parse_frame_range(test.frames).value_or(std::vector<int>{})};
+        if (fits_filter(test, filters)) chosen.insert({test.goldens, test.stem});
+    }
+    std::vector<fs::path> orphans;
+    for (const auto& [folder, images] : known) {
+        if (!fs::is_directory(folder)) continue;
+        for (const auto& entry : fs::directory_iterator(folder))
+            if (entry.is_regular_file() && is_orphan(entry.path(), images) &&
+                (filters.empty() || chosen.contains({folder, first_word(entry.path())})))
+                orphans.push_back(entry.path());
+    }
+    std::sort(orphans.begin(), orphans.end());
+    return orphans;
+}
+
+}  // namespace aftershade

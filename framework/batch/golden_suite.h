@@ -1,0 +1,38 @@
+// golden.json: which cases there are and where their goldens lie.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/batch/golden_case.h"
+#include "framework/core/diagnostics.h"
+
+namespace aftershade {
+
+struct GoldenSuite {
+    std::filesystem::path file;
+    std::string argument;  ///< the file or folder as the user named it, for commands
+    /// Folders of effects: searched before the shipped ones, and with `cases_of_effects` the place of cases.
+    std::vector<std::filesystem::path> effect_paths;
+    std::vector<GoldenCase> cases;  ///< those of the document, then those of effects by name
+};
+
+/// `argument` is the document, or the folder of a golden.json. Faults of it and of every case go to
+/// `diagnostics`; nullopt after any.
+std::optional<GoldenSuite> read_golden_suite(const std::string& argument, Diagnostics& diagnostics);
+
+/// Whether a filter fits: its name as a glob (fnmatch's, `*` takes `/` too), or one of its tags as a word.
+/// Without filters every case fits.
+bool fits_filter(const GoldenCase& test, const std::vector<std::string>& filters);
+
+/// Images (and sidecars without one) in the folders of goldens that no case of the suite gives. With filters
+/// only those whose names begin with a case that fits. Sorted.
+std::vector<std::filesystem::path> orphaned_goldens(const GoldenSuite& suite,
+                                                    const std::vector<std::string>& filters);
+
+/// JSON Schema of golden.json.
+std::string golden_schema();
+
+}  // namespace aftershade

@@ -1,0 +1,34 @@
+// A hash of what a look is made of: its documents, its effects' manifests, shaders and modules.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "framework/batch/golden_case.h"
+#include "framework/effect/registry.h"
+
+namespace aftershade {
+
+/// Remembers what it read. [one thread at a time]
+class LookHasher {
+public:
+    /// As the registry's: folders of effects in order, and the folder of shared GLSL.
+    LookHasher(std::vector<std::filesystem::path> effect_folders, std::filesystem::path glsl_folder);
+
+    /// 16 hexadecimal digits over the look (and looks that it uses), `--set`s, and of each of its effects the
+    /// manifest, its modules' manifests, native sources and every shader with what it includes; a change of
+    /// none of them cannot change a picture on one machine. "" where one of them cannot be read.
+    std::string hash(const GoldenCase& test);
+
+private:
+    bool add_effect(const std::string& id, std::string& text);
+    void add_file(const std::filesystem::path& file, std::string& text);
+
+    EffectRegistry effects_;
+    std::filesystem::path glsl_folder_;
+    std::map<std::string, std::string> effect_texts_;  // by id; "" for one with faults
+};
+
+}  // namespace aftershade

@@ -1,0 +1,202 @@
+#include "framework/batch/golden_suite.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "framework/batch/approved_image.h"
+#include "framework/batch/look_hash.h"
+#include "tests/temporary_folder.h"
+
+namespace aftershade::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Suite : public testing::Test {
+protected:
+    std::optional<GoldenSuite> read(const std::string& text) {
+        write_text(folder_ / "golden.json", text);
+        Diagnostics diagnostics;
+        auto suite = read_golden_suite(folder_.path().string(), diagnostics);
+        std::ostringstream out;
+        diagnostics.print(out);
+        faults_ = out.str();
+        return suite;
+    }
+    TemporaryFolder folder_;
+    std::string faults_;
+};
+
+const char* const kTwoCases = R"({ "aftershade": 1, "goldens": "approved", "cases": [
+    { "name": "a", "steps": [], "capture": "in/capture.json", "frames": "1-2", "tags": ["fast", "hdr"] },
+    { "name": "b_wide", "steps": [], "capture": "/abs/capture.json", "frames": "1", "taps": ["x.y"], "skip": "later" } ] })";
+
+TEST_F(Suite, NamesPathsFromItsFolder) {
+    const auto suite = read(kTwoCases);
+    ASSERT_TRUE(suite) << faults_;
+    EXPECT_EQ(suite->cases[0].capture, folder_ / "in/capture.json");
+    EXPECT_EQ(suite->cases[1].capture, "/abs/capture.json");
+    EXPECT_EQ(suite->cases[1].goldens, folder_ / "approved");
+    EXPECT_EQ(suite->cases[1].skip, "later");
+}
+
+TEST_F(Suite, TellsAllFaultsAtOnce) {
+    EXPECT_FALSE(read(R"({ "aftershade": 1, "golden": "x", "effect_paths": ["nowhere"], "cases": [
+        { "name": "a.b", "look": "none.json", "capture": "c.json" },
+        { "name": "b", "look": "golden.json", "steps": [], "capture": "c.json", "frames": "x", "skip": "" },
+        { "name": "b", "steps": [ { "effect": "x", "preste": 1 } ], "capture": "c.json", "taps": ["y"] } ],
+        "cases_of_effects": "yes" })"));
+    for (const char* part : {"'golden'; did you mean 'goldens'", "no folder", "not 'a.b'", "none.json'",
+                             "one of both", "'x' is no range", "'skip' says why", "a second case named 'b'",
+                             "golden.json:3:", "'preste'; did you mean 'preset'", "'y' is not 'step.texture'",
+                             "must be a boolean"})
+        EXPECT_NE(faults_.find(part), std::string::npos) << part << " in\n" << faults_;
+}
+
+TEST_F(Suite, NeedsCases) {
+    EXPECT_FALSE(read(R"({ "aftershade": 1 })"));
+    EXPECT_NE(faults_.find("needs 'cases'"), std::string::npos);
+}
+
+TEST_F(Suite, FiltersByGlobAndByTag) {
+    const auto suite = read(kTwoCases);
+    ASSERT_TRUE(suite) << faults_;
+    const auto fits = [&](const std::vector<std::string>& filters) {
+        std::string names;
+        for (const GoldenCase& test : suite->cases)
+            if (fits_filter(test, filters)) names += test.name + " ";
+        return names;
+    };
+    EXPECT_EQ(fits({}), "a b_wide ");
+    EXPECT_EQ(fits({"b*"}), "b_wide ");
+    EXPECT_EQ(fits({"hdr"}), "a ");
+    EXPECT_EQ(fits({"hd"}), "") << "a tag is a word";
+    EXPECT_EQ(fits({"hdr", "b?wide"}), "a b_wide ");
+}
+
+TEST_F(Suite, FindsGoldensThatNoCaseGives) {
+    const auto suite = read(kTwoCases);
+    ASSERT_TRUE(suite) << faults_;
+    fs::create_directory(folder_ / "approved");
+    for (const char* name : {"a.color.0001.exr", "a.color.0001@llvmpipe-1.exr", "a.color.0001.json",
+                             "b_wide.x.y.0001.exr", ".a.color.0001.exr.12-0.tmp", "notes.txt"})
+        write_text(folder_ / "approved" / name, "");
+    EXPECT_EQ(orphaned_goldens(*suite, {}), std::vector<fs::path>{});
+    const std::vector<std::string> orphans = {"a.color.0003.exr", "a.depth.0001.exr", "a.depth.0001@x.json",
+                                              "gone.color.0001.exr"};
+    std::vector<fs::path> expected, of_a;
+    for (const std::string& name : orphans) {
+        write_text(folder_ / "approved" / name, "");
+        expected.push_back(folder_ / "approved" / name);
+        if (name.starts_with("a.")) of_a.push_back(expected.back());
+    }
+    EXPECT_EQ(orphaned_goldens(*suite, {}), expected);
+    EXPECT_EQ(orphaned_goldens(*suite, {"a"}), of_a) << "with a filter those of its cases";
+}
+
+// ---- environments and approved images ----
+
+const GoldenEnvironment kHere = {"osmesa", "llvmpipe (LLVM 15.0.6, 256 bits)",
+                                 "4.5 (Core Profile) Mesa 22.3.6", "AMD EPYC", true};
+
+TEST(GoldenEnvironment, IsOneByRendererMesaAndCpu) {
+    EXPECT_EQ(kHere.mesa(), "22.3.6");
+    EXPECT_EQ(kHere.llvm(), "15.0.6");
+    EXPECT_EQ(kHere.key(), "llvmpipe-256-bits-22.3.6-amd-epyc");
+    GoldenEnvironment other = kHere;
+    other.backend = "egl-software";
+    EXPECT_TRUE(kHere.equals(other)) << "both draw by the same code";
+    for (std::string GoldenEnvironment::*field :
+         {&GoldenEnvironment::renderer, &GoldenEnvironment::version, &GoldenEnvironment::cpu}) {
+        other = kHere;
+        other.*field = "Mesa 25.0.1";
+        EXPECT_FALSE(kHere.equals(other));
+        EXPECT_NE(kHere.key(), other.key());
+    }
+}
+
+TEST(ApprovedImages, ComeWithTheOwnRenderersFirst) {
+    TemporaryFolder folder;
+    GoldenEnvironment intel = kHere;
+    intel.cpu = "Intel Xeon";
+    const auto approve = [&](const std::string& name, const GoldenEnvironment& environment) {
+        write_text(folder / (name + ".exr"), name);
+        GoldenSidecar sidecar{environment, "aftershade golden approve x", "hash",
+                              file_hash(folder / (name + ".exr"))};
+        write_text(folder / (name + ".json"), sidecar_text(sidecar));
+    };
+    approve("a.color.0001", intel);
+    approve("a.color.0001@zzz", kHere);
+    approve("a.color.0001@aaa", intel);
+    approve("a.color.0002", kHere);
+    const auto images = approved_images(folder.path(), "a.color.0001", kHere);
+    ASSERT_EQ(images.size(), 3u);
+    EXPECT_EQ(images[0].key, "zzz");
+    EXPECT_EQ(images[1].key, "");
+    EXPECT_EQ(images[2].key, "aaa");
+    ASSERT_TRUE(images[0].sidecar);
+    EXPECT_EQ(images[0].sidecar->look_hash, "hash");
+    EXPECT_EQ(images[0].sidecar->environment.cpu, "AMD EPYC");
+    EXPECT_TRUE(images[0].sidecar->environment.software);
+
+    write_text(folder / "a.color.0001@zzz.exr", "other");
+    const auto changed = approved_images(folder.path(), "a.color.0001", kHere);
+    EXPECT_EQ(changed[0].key, "") << "a sidecar of another image says nothing";
+    EXPECT_FALSE(changed[2].sidecar);
+}
+
+TEST(ApprovedImages, KnowSidecarsOfOldForm) {
+    TemporaryFolder folder;
+    write_text(folder / "a.color.0001.exr", "x");
+    write_text(folder / "a.color.0001.json", R"json({ "backend": "egl-software",
+        "renderer": "llvmpipe (LLVM 15.0.6, 256 bits)", "version": "4.5 (Core Profile) Mesa 22.3.6",
+        "cpu": "AMD EPYC" })json");
+    const auto images = approved_images(folder.path(), "a.color.0001", kHere);
+    ASSERT_TRUE(images.at(0).sidecar);
+    EXPECT_TRUE(images[0].sidecar->environment.equals(kHere));
+    EXPECT_TRUE(images[0].sidecar->environment.software);
+    EXPECT_EQ(images[0].sidecar->look_hash, "");
+}
+
+TEST(LookHash, ChangesWithTheLookItsManifestAndEveryShaderAndWithNothingElse) {
+    TemporaryFolder folder;
+    fs::create_directories(folder / "effects/tint/cases");
+    fs::create_directories(folder / "glsl");
+    write_text(folder / "glsl/shared.glsl", "float one() { return 1; }\n");
+    write_text(folder / "effects/tint/own.glsl", "float two() { return 2; }\n");
+    write_text(folder / "effects/tint/tint.frag",
+               "#version 450 core\n#include <pass>\n#include <shared.glsl>\n#include \"own.glsl\"\nvoid "
+               "main() {}\n");
+    const std::string manifest = R"({"aftershade": 1, "id": "tint", "version": "1.0.0", "summary": "A tint.",
+        "inputs": {"color": {"role": "color"}}, "outputs": {"color": {"role": "color"}},
+        "passes": [{"name": "main", "shader": "tint.frag", "reads": ["color"], "writes": ["color"]}]})";
+    write_text(folder / "effects/tint/effect.json", manifest);
+    GoldenCase test;
+    test.file = folder / "golden.json";
+    test.steps = R"({"aftershade": 1, "steps": [ {"effect": "tint"} ]})";
+    const auto hash = [&] { return LookHasher({folder / "effects"}, folder / "glsl").hash(test); };
+    const std::string before = hash();
+    EXPECT_EQ(before.size(), 16u);
+    for (const char* file : {"effects/tint/effect.json", "effects/tint/tint.frag", "effects/tint/own.glsl",
+                             "glsl/shared.glsl"}) {
+        const std::string text = read_text(folder / file);
+        write_text(folder / file, text + "\n");
+        EXPECT_NE(hash(), before) << file;
+        write_text(folder / file, text);
+        EXPECT_EQ(hash(), before) << file;
+    }
+    test.sets = {"tint.mix=0.5"};
+    EXPECT_NE(hash(), before);
+    test.sets.clear();
+    test.tags = {"fast"};
+    write_text(folder / "glsl/unused.glsl", "");
+    write_text(folder / "effects/tint/cases/x.json", "");
+    EXPECT_EQ(hash(), before);
+    test.steps = R"({"aftershade": 1, "steps": [ {"effect": "none"} ]})";
+    EXPECT_EQ(hash(), "");
+}
+
+}  // namespace
+}  // namespace aftershade::test

@@ -1,0 +1,208 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+#include <thread>
+
+#include "framework/batch/approved_image.h"
+#include "tests/cli/golden_suite.h"
+
+namespace aftershade::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class GoldenApprove : public GoldenCommand {
+protected:
+    /// Another renderer's golden in place of this one's.
+    void make_foreign(const std::string& name, const std::string& renderer, const std::string& cpu,
+                      bool software) {
+        GoldenSidecar sidecar;
+        sidecar.environment = {"egl", renderer, "4.5 (Core Profile) Mesa 22.3.6", cpu, software};
+        sidecar.look_hash = "0";
+        sidecar.image_hash = file_hash(image(name));
+        write_text(sidecar_path(image(name)), sidecar_text(sidecar));
+    }
+    void darken(const std::string& name) {
+        change_image(image(name), [](Image& pixels) {
+            for (float& value : pixels.floats()) value *= 0.5f;
+        });
+    }
+    std::map<std::string, fs::file_time_type> times() const {
+        std::map<std::string, fs::file_time_type> all;
+        for (const auto& entry : fs::directory_iterator(folder_ / "goldens"))
+            all[entry.path().filename().string()] = entry.last_write_time();
+        return all;
+    }
+};
+
+TEST_F(GoldenApprove, WritesWhatIsNewAndTellsItsPaths) {
+    const CommandResult first = golden({"approve", "golden.json"});
+    EXPECT_EQ(first.exit_code, 0) << first.err;
+    EXPECT_EQ(lines_of_text(first.out),
+              (std::vector<std::string>{"goldens/corner.color.0001.exr", "goldens/lens.color.0001.exr",
+                                        "goldens/lens.color.0002.exr"}));
+    const auto before = times();
+    const CommandResult again = golden({"approve", "golden.json"});
+    EXPECT_EQ(again.exit_code, 0);
+    EXPECT_EQ(again.out, "");
+    EXPECT_NE(again.err.find("0 images written, 0 sidecars renewed, 3 unchanged"), std::string::npos)
+        << again.err;
+    EXPECT_EQ(times(), before) << "never writes where nothing changed";
+    darken("corner.color.0001");
+    EXPECT_EQ(golden({"approve", "golden.json", "--filter", "slow"}).out, "")
+        << "the other case is not asked for";
+    EXPECT_EQ(golden({"approve", "golden.json"}).out, "goldens/corner.color.0001.exr\n");
+    EXPECT_EQ(run().exit_code, 0);
+}
+
+TEST_F(GoldenApprove, SaysBesideEachGoldenWhatMadeIt) {
+    approve();
+    const Json sidecar = Json::parse(read_text(sidecar_path(image("lens.color.0001"))));
+    const Json environment = report()["environment"];
+    for (const char* key : {"backend", "renderer", "version", "mesa", "llvm", "cpu", "software"})
+        EXPECT_EQ(sidecar[key], environment[key]) << key;
+    EXPECT_EQ(sidecar["command"], "aftershade golden approve golden.json");
+    EXPECT_EQ(sidecar["image_hash"], file_hash(image("lens.color.0001")));
+    EXPECT_EQ(sidecar["look_hash"], case_of(report(), "lens")["look_hash"]);
+}
+
+TEST_F(GoldenApprove, RenewsSidecarsWhereBitsAreEqualOnlyWhenAsked) {
+    approve();
+    make_foreign("corner.color.0001", "llvmpipe (LLVM 11.0.0, 128 bits)", "Intel Xeon", true);
+    const auto before = times();
+    approve();
+    EXPECT_EQ(times(), before);
+    const CommandResult result = golden({"approve", "golden.json", "--renew-sidecars"});
+    EXPECT_EQ(result.out, "goldens/corner.color.0001.json\n") << result.err;
+    EXPECT_EQ(case_of(report(), "corner")["images"][0]["tier"], "bits");
+}
+
+TEST_F(GoldenApprove, KeepsGoldensOfOtherRenderersWhenAsked) {
+    approve();
+    darken("corner.color.0001");
+    make_foreign("corner.color.0001", "llvmpipe (LLVM 11.0.0, 128 bits)", "Intel Xeon", true);
+    EXPECT_EQ(run().exit_code, 2);
+    const std::string key = report()["environment"]["key"];
+    const CommandResult result = golden({"approve", "golden.json", "--add"});
+    EXPECT_EQ(result.out, "goldens/corner.color.0001@" + key + ".exr\n") << result.err;
+    const Json document = report();
+    EXPECT_EQ(document["exit_code"], 0);
+    const Json& image_ = case_of(document, "corner")["images"][0];
+    EXPECT_EQ(image_["approved"]["key"], key) << "the own renderer's first";
+    EXPECT_EQ(image_["approved_count"], 2);
+    darken("corner.color.0001@" + key);
+    EXPECT_EQ(golden({"approve", "golden.json"}).out, "goldens/corner.color.0001@" + key + ".exr\n")
+        << "the own one is replaced, with or without --add";
+}
+
+TEST_F(GoldenApprove, LetsACasePassByAnyApprovedImage) {
+    approve();
+    fs::copy_file(image("corner.color.0001"), image("corner.color.0001@other"));
+    darken("corner.color.0001");
+    const Json document = report();
+    EXPECT_EQ(document["exit_code"], 0);
+    EXPECT_EQ(case_of(document, "corner")["images"][0]["approved"]["key"], "other");
+}
+
+TEST_F(GoldenApprove, TellsOfGoldensThatOthersApprovedForAnotherLook) {
+    approve();
+    fs::copy_file(image("lens.color.0001"), image("lens.color.0001@other"));
+    make_foreign("lens.color.0001@other", "llvmpipe (LLVM 11.0.0, 128 bits)", "Intel Xeon", true);
+    std::string open = kLens;
+    open.replace(open.find("0.5"), 3, "1.5");
+    write_text(folder_ / "lens.json", open);
+    const CommandResult result = golden({"approve", "golden.json"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.err.find("goldens/lens.color.0001@other.exr: warning"), std::string::npos) << result.err;
+}
+
+TEST_F(GoldenApprove, RefusesAnotherKindOfRenderer) {
+    approve();
+    darken("corner.color.0001");
+    make_foreign("corner.color.0001", "NVIDIA H200/PCIe/SSE2", "AMD EPYC", false);
+    const auto before = contents(folder_ / "goldens");
+    const CommandResult result = golden({"approve", "golden.json"});
+    EXPECT_EQ(result.exit_code, 64);
+    EXPECT_NE(result.err.find("NVIDIA H200/PCIe/SSE2, a hardware renderer"), std::string::npos) << result.err;
+    EXPECT_EQ(contents(folder_ / "goldens"), before);
+    EXPECT_EQ(golden({"approve", "golden.json", "--filter", "lens"}).exit_code, 0)
+        << "whose goldens are of software";
+    EXPECT_EQ(golden({"approve", "golden.json", "--any-renderer"}).exit_code, 0);
+    EXPECT_EQ(run().exit_code, 0);
+}
+
+TEST_F(GoldenApprove, LeavesTheGoldensOfACaseThatDoesNotRender) {
+    approve();
+    const std::string lens = read_text(image("lens.color.0001"));
+    write_text(folder_ / "lens.json", R"({ "aftershade": 1, "steps": [ { "effect": "bokehh" } ] })");
+    darken("corner.color.0001");
+    const CommandResult result = golden({"approve", "golden.json"});
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    EXPECT_EQ(result.out, "goldens/corner.color.0001.exr\n");
+    EXPECT_NE(result.err.find("did you mean 'bokeh'"), std::string::npos) << result.err;
+    EXPECT_EQ(read_text(image("lens.color.0001")), lens);
+}
+
+TEST_F(GoldenApprove, EndsWith4WhereNothingCanBeWritten) {
+    write_text(folder_ / "goldens", "a file where the folder should be");
+    const CommandResult result = golden({"approve", "golden.json"});
+    EXPECT_EQ(result.exit_code, 4) << result.err;
+    EXPECT_NE(result.err.find("goldens"), std::string::npos) << result.err;
+    EXPECT_EQ(golden({"run", "golden.json"}, {{"TMPDIR", "/nowhere"}}).exit_code, 4);
+}
+
+TEST_F(GoldenApprove, LeavesOldOrNewFilesWholeWhereverItIsKilled) {
+    approve();
+    const auto old_files = contents(folder_ / "goldens");
+    write_frame(1, 90);
+    write_frame(2, 95);
+    int before = 0, after = 0;
+    std::map<std::string, std::string> new_files;
+    using Milliseconds = std::chrono::milliseconds;
+    const auto kill_after = [&](Milliseconds delay) {
+        for (const auto& entry : fs::directory_iterator(folder_ / "goldens")) fs::remove(entry.path());
+        for (const auto& [name, bytes] : old_files) write_text(folder_ / "goldens" / name, bytes);
+        Command command(aftershade_words({"golden", "approve", "golden.json"}), folder_.path());
+        std::this_thread::sleep_for(delay);
+        command.send(SIGKILL);
+        command.wait();
+        for (const auto& [name, bytes] : contents(folder_ / "goldens")) {
+            if (name.starts_with('.') || !name.ends_with(".exr")) continue;
+            const bool is_old = bytes == old_files.at(name);
+            (is_old ? before : after) += 1;
+            EXPECT_NO_THROW(ExrFile(folder_ / "goldens" / name).read_floats(0, std::vector<std::string>{"R"}))
+                << name;
+            if (!is_old) {
+                EXPECT_EQ(new_files.emplace(name, bytes).first->second, bytes) << name;
+            }
+        }
+    };
+    // Ever later until something was renamed, then around that moment.
+    Milliseconds delay(40);
+    for (; after == 0 && delay < Milliseconds(60'000); delay = delay * 3 / 2) kill_after(delay);
+    for (int step = 0; step < 8; ++step) {
+        kill_after(delay * (8 + step) / 24);
+        const int code = run({"--filter", "corner"}).exit_code;
+        EXPECT_TRUE(code == 0 || code == 2) << "a file that is not whole is 4; " << code;
+    }
+    EXPECT_GT(before, 0);
+    EXPECT_GT(after, 0) << "no run was let live long enough";
+    approve();
+    EXPECT_EQ(run().exit_code, 0) << "what a killed process left is in nobody's way";
+}
+
+TEST_F(GoldenApprove, WritesNothingWhenItIsInterrupted) {
+    Command command(aftershade_words({"golden", "approve", "golden.json"}), folder_.path());
+    std::this_thread::sleep_for(std::chrono::milliseconds(250));
+    command.send(SIGTERM);
+    const CommandResult result = command.wait();
+    if (result.exit_code == 0) GTEST_SKIP() << "SKIPPED: it was done before it could be interrupted";
+    EXPECT_EQ(result.exit_code, 130) << result.err;
+    if (fs::exists(folder_ / "goldens")) {
+        EXPECT_EQ(contents(folder_ / "goldens").size(), 0u);
+    }
+}
+
+}  // namespace
+}  // namespace aftershade::test
