@@ -20,7 +20,7 @@ FIXED = ("`sss_burley`, 64 samples", "sss_burley", {"samples": 64})
 LONG = {"guiding_weight": 0.05}
 FEW = LONG | {"min_samples": 4, "target_variance": 0.004}
 WAYS = [FIXED, ("adaptive", "sss_adaptive", LONG), ("adaptive, `min_samples` 4, `target_variance` 0.004", "sss_adaptive", FEW),
-        ("the same, `hybrid` auto", "sss_adaptive", FEW | {"hybrid": "auto"}), ("adaptive, prefilter", "sss_adaptive", LONG | {"prefilter": True})]
+        ("the same, `hybrid` auto", "sss_adaptive", FEW | {"hybrid": "auto"})]
 
 
 def passes_of(told, effect):
