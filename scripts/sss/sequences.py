@@ -37,7 +37,7 @@ def still(file, profile, frames):
 
 
 # Textures of fewer than four channels.
-TAP_CHANNELS = {"sampled": ["Y"], "tile_class": ["R", "G"], "tile_range": ["Y"]}
+TAP_CHANNELS = {"sampled": ["Y"]}
 
 
 def run(name, capture, profile, params, frames, effect="sss_adaptive", taps=("estimate", "history", "plan"), after=(), roles="irradiance",
