@@ -10,6 +10,7 @@
 #include "cli/interrupt.h"
 #include "cli/verbs.h"
 #include "framework/batch/golden_approve.h"
+#include "framework/batch/report_page.h"
 #include "framework/core/atomic_file.h"
 
 namespace aftershade::cli {
@@ -25,13 +26,22 @@ void print_head(const GoldenReportContext& context) {
                              environment.renderer, environment.version, environment.cpu);
 }
 
+fs::path write_page(const fs::path& report, fs::path page, double limit_mb) {
+    if (page.empty()) page = report / "index.html";
+    write_report_page(report, page, {std::uint64_t(limit_mb * 1024 * 1024)});
+    return page;
+}
+
 void write_reports(const GoldenOptions& options, const GoldenSuiteResult& result,
                    const GoldenReportContext& context) {
     if (!options.junit.empty()) write_text_file(options.junit, junit_of(result, context));
     if (!options.json && options.report.empty()) return;
     const std::string json =
         json_of(result, context).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-    if (!options.report.empty()) write_text_file(fs::path(options.report) / "report.json", json);
+    if (!options.report.empty()) {
+        write_text_file(fs::path(options.report) / "report.json", json);
+        std::cerr << "report: " << write_page(options.report, "", options.page_limit_mb).string() << "\n";
+    }
     if (options.json) std::fwrite(json.data(), 1, json.size(), stdout);
 }
 
@@ -105,6 +115,18 @@ ExitCode approve(const GoldenOptions& options) {
     return ExitCode(int(approval.verdict));
 }
 
+ExitCode report(const GoldenOptions& options) {
+    std::cout << write_page(options.report, options.page, options.page_limit_mb).string() << "\n";
+    return ExitCode::done;
+}
+
+void add_page_limit(CLI::App& app, GoldenOptions& options) {
+    app.add_option("--page-limit", options.page_limit_mb,
+                   "MiB of pictures inside index.html; what is more is shown from the files beside it")
+        ->check(CLI::Range(0.0, 400.0))
+        ->capture_default_str();
+}
+
 /// The codes of this verb are idiff's: what cannot be read, drawn or written is a file error.
 ExitCode with_own_codes(const std::function<ExitCode()>& work) {
     try {
@@ -131,7 +153,8 @@ Verb add_golden(CLI::App& app) {
     run_verb->add_flag("--no-skip", options->no_skip, "A case that is skipped fails");
     run_verb->add_option("--junit", options->junit, "Write JUnit XML to this file");
     run_verb->add_option("--report", options->report,
-                         "Write report.json and pictures of every image to this folder");
+                         "Write index.html (the page to look at), report.json and pictures to this folder");
+    add_page_limit(*run_verb, *options);
     run_verb->add_flag("--json", options->json, "The same report.json on stdout");
     auto* approve_verb = app.add_subcommand(
         "approve", "Render every case and keep what is new as its goldens; prints their paths");
@@ -144,8 +167,16 @@ Verb add_golden(CLI::App& app) {
     approve_verb->add_flag(
         "--renew-sidecars", options->renew_sidecars,
         "Where the bits are equal: write what gives them now (renderer, hash of look and effects)");
-    return [options, approve_verb] {
-        return with_own_codes([&] { return approve_verb->parsed() ? approve(*options) : run(*options); });
+    auto* report_verb = app.add_subcommand(
+        "report", "Make the page anew out of a folder that run --report wrote; prints its path");
+    report_verb->add_option("report", options->report, "Folder with report.json and images/")->required();
+    report_verb->add_option("-o,--output", options->page, "The page (index.html in that folder)");
+    add_page_limit(*report_verb, *options);
+    return [options, approve_verb, report_verb] {
+        return with_own_codes([&] {
+            if (report_verb->parsed()) return report(*options);
+            return approve_verb->parsed() ? approve(*options) : run(*options);
+        });
     };
 }
 

@@ -20,6 +20,9 @@ struct GoldenOptions {
     std::string junit, report;
     // approve
     bool any_renderer = false, add = false, renew_sidecars = false;
+    // report
+    std::string page;
+    double page_limit_mb = 128;  ///< run too
 };
 
 void add_shared_golden_options(CLI::App& app, GoldenOptions& options);

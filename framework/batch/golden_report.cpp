@@ -133,6 +133,13 @@ Json json_of(const GoldenImage& image, const CompareRules& rules) {
             {"comparison", image.comparison ? json_of(*image.comparison, rules) : Json(nullptr)}};
 }
 
+std::string golden_command(const std::string& verb, const GoldenReportContext& context,
+                           const std::vector<std::string>& cases) {
+    std::vector<std::string> words = {"aftershade", "golden", verb, context.suite->argument};
+    for (const std::string& name : cases) words.insert(words.end(), {"--filter", name});
+    return shell_line(words) + context.with_options;
+}
+
 Json json_of(const GoldenCaseResult& result, const GoldenReportContext& context) {
     const GoldenCase& test = *result.test;
     Json images = Json::array();
@@ -151,6 +158,7 @@ Json json_of(const GoldenCaseResult& result, const GoldenReportContext& context)
             {"messages", result.messages},
             {"look_hash", text_or_null(result.look_hash)},
             {"command", text_or_null(result.command)},
+            {"rerun", golden_command("run", context, {test.name})},
             {"approve", can_approve(result) ? Json(approve_command(context, {test.name})) : Json(nullptr)},
             {"images", std::move(images)}};
 }
@@ -158,10 +166,7 @@ Json json_of(const GoldenCaseResult& result, const GoldenReportContext& context)
 }  // namespace
 
 std::string approve_command(const GoldenReportContext& context, const std::vector<std::string>& cases) {
-    if (cases.empty()) return "";
-    std::vector<std::string> words = {"aftershade", "golden", "approve", context.suite->argument};
-    for (const std::string& name : cases) words.insert(words.end(), {"--filter", name});
-    return shell_line(words) + context.with_options;
+    return cases.empty() ? "" : golden_command("approve", context, cases);
 }
 
 std::string line_of(const GoldenCaseResult& test, int done, int all, const char* good) {
@@ -241,6 +246,7 @@ Json json_of(const GoldenSuiteResult& result, const GoldenReportContext& context
     for (const fs::path& orphan : result.orphans) orphans.push_back(orphan.string());
     return {{"aftershade", 1},
             {"suite", context.suite->argument},
+            {"document", fs::absolute(context.suite->file).lexically_normal().string()},
             {"verdict", verdict_name(result.verdict)},
             {"exit_code", int(result.verdict)},
             {"interrupted", result.interrupted},

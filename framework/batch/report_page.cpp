@@ -1,0 +1,246 @@
+#include "framework/batch/report_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "framework/batch/page_pixels.h"
+#include "framework/compare/difference_picture.h"
+#include "framework/compare/layer_file.h"
+#include "framework/core/atomic_file.h"
+#include "framework/core/error.h"
+#include "framework/image/false_color.h"
+
+namespace aftershade {
+
+// Made by CMake out of report_page/.
+std::string_view report_page_html();
+std::string_view report_page_style();
+std::string_view report_page_script();
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+std::string read_bytes(const fs::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    if (!in) throw Error(ExitCode::capture, path.string() + ": cannot be read");
+    return bytes;
+}
+
+std::string hex_color(const DisplayColor& color) {
+    const auto byte = [&](std::size_t c) { return int(std::clamp(color[c], 0.0f, 1.0f) * 255 + 0.5f); };
+    return fmt::format("#{:02x}{:02x}{:02x}", byte(0), byte(1), byte(2));
+}
+
+/// The colours that the program's own pictures have.
+Json palette() {
+    Json ramp = Json::array(), heat = Json::array();
+    for (int i = 0; i < 256; ++i) {
+        ramp.push_back(hex_color(ramp_color(float(i) / 255)));
+        heat.push_back(hex_color(magma_color(float(i) / 255)));
+    }
+    return {{"ramp", ramp},
+            {"heat", heat},
+            {"nan", hex_color(pixel_fault_color(PixelFault::nan))},
+            {"infinite", hex_color(pixel_fault_color(PixelFault::infinite))},
+            {"negative", hex_color(pixel_fault_color(PixelFault::negative))},
+            {"nothing_hit", hex_color(kNothingHitColor)}};
+}
+
+/// Texts that the page's elements hold, by number, within a limit.
+class Store {
+public:
+    explicit Store(std::uint64_t limit_bytes) : limit_bytes_(limit_bytes) {}
+
+    /// The number; null where it does not fit.
+    Json add(std::string text) {
+        if (text.size() > limit_bytes_ - bytes_) return nullptr;
+        bytes_ += text.size();
+        texts_.push_back(std::move(text));
+        return texts_.size() - 1;
+    }
+    std::size_t size() const { return texts_.size(); }
+    /// Forgets what was added since there were `count`.
+    void shrink_to(std::size_t count) {
+        for (; texts_.size() > count; texts_.pop_back()) bytes_ -= texts_.back().size();
+    }
+    std::string elements() const {
+        std::string html;
+        for (std::size_t i = 0; i < texts_.size(); ++i)
+            html += fmt::format("<script type=\"text/plain\" id=\"data-{}\">{}</script>\n", i, texts_[i]);
+        return html;
+    }
+
+private:
+    std::uint64_t limit_bytes_, bytes_ = 0;
+    std::vector<std::string> texts_;
+};
+
+/// One file's pixels of a layer.
+struct StoredLayer {
+    LayerInfo info;
+    PagePixels pixels;
+};
+
+std::vector<StoredLayer> read_layers(const fs::path& path) {
+    const LayerFile file(path);
+    file.prefetch();
+    std::vector<StoredLayer> layers;
+    for (const LayerInfo& info : file.layers())
+        layers.push_back({info, page_pixels(file.read(info, info.channels))});
+    return layers;
+}
+
+Json json_of(const StoredLayer& layer, const Json& data) {
+    const Window& window = layer.info.data_window;
+    return {{"data", data},
+            {"type", layer.pixels.type},
+            {"channels", layer.info.channels},
+            {"x", window.min_x},
+            {"y", window.min_y},
+            {"width", window.max_x - window.min_x + 1},
+            {"height", window.max_y - window.min_y + 1}};
+}
+
+/// Adds to the page what it shows of the images of one report.
+class PageImages {
+public:
+    PageImages(fs::path report, Store& store) : report_(std::move(report)), store_(store) {}
+
+    /// Adds "shown" to the image: {"layers": [...], "picture", "heat_map": text or null, "missing": words}.
+    /// "picture" is a small one, for images that pass.
+    void add(Json& image) {
+        Json shown = {{"layers", Json::array()}, {"picture", nullptr}, {"heat_map", nullptr}, {"missing", ""}};
+        try {
+            const Json& pictures = image.at("pictures");
+            if (image.at("bits_equal") != true) add_layers(pictures, shown);
+            if (image.at("verdict") == "same") shown["picture"] = png(pictures.at("test"));
+        } catch (const Error& error) {
+            shown["missing"] = error.what();
+        }
+        image["shown"] = std::move(shown);
+    }
+
+private:
+    std::vector<StoredLayer> layers_in(const Json& name) const {
+        return name.is_string() ? read_layers(report_ / name.get<std::string>()) : std::vector<StoredLayer>{};
+    }
+
+    Json png(const Json& name) {
+        if (!name.is_string()) return nullptr;
+        const std::string bytes = read_bytes(report_ / name.get<std::string>());
+        return store_.add(base64(std::as_bytes(std::span(bytes))));
+    }
+
+    /// Nothing at all of an image that does not fit whole: half of it would look like a difference.
+    void add_layers(const Json& pictures, Json& shown) {
+        const std::size_t before = store_.size();
+        const std::vector<StoredLayer> references = layers_in(pictures.at("reference_exr"));
+        const std::vector<StoredLayer> tests = layers_in(pictures.at("test_exr"));
+        Json layers = Json::array();
+        bool fits = true;
+        const auto stored = [&](const StoredLayer& layer) {
+            const Json data = store_.add(layer.pixels.text);
+            fits &= !data.is_null();
+            return json_of(layer, data);
+        };
+        const auto add = [&](const StoredLayer* reference, const StoredLayer* test) {
+            const LayerInfo& info = (reference ? reference : test)->info;
+            const bool equal = reference && test && reference->pixels.text == test->pixels.text;
+            Json layer = {{"label", info.label()}, {"role", layer_role_name(info.role)}, {"equal", equal}};
+            layer["reference"] = reference ? stored(*reference) : Json(nullptr);
+            if (equal) layer["test"] = json_of(*test, layer["reference"]["data"]);
+            else layer["test"] = test ? stored(*test) : Json(nullptr);
+            layers.push_back(std::move(layer));
+        };
+        for (const StoredLayer& reference : references) add(&reference, find(tests, reference));
+        for (const StoredLayer& test : tests)
+            if (!find(references, test)) add(nullptr, &test);
+        const Json heat_map = png(pictures.at("heat_map"));
+        if (!fits || (heat_map.is_null() && pictures.at("heat_map").is_string())) {
+            store_.shrink_to(before);
+            return;
+        }
+        shown["layers"] = std::move(layers);
+        shown["heat_map"] = heat_map;
+    }
+
+    static const StoredLayer* find(const std::vector<StoredLayer>& layers, const StoredLayer& like) {
+        for (const StoredLayer& layer : layers)
+            if (layer.info.key() == like.info.key()) return &layer;
+        return nullptr;
+    }
+
+    fs::path report_;
+    Store& store_;
+};
+
+/// Worst first, so that they get the room there is.
+void add_images(Json& report, const fs::path& folder, Store& store) {
+    struct Entry {
+        Json* image;
+        bool equal;
+        int rank;
+    };
+    std::vector<Entry> entries;
+    for (Json& test : report.at("cases"))
+        for (Json& image : test.at("images")) {
+            const bool equal = image.at("bits_equal") == true;
+            const std::string verdict = image.at("verdict");
+            entries.push_back({&image, equal, equal ? 3 : verdict == "same" ? 2 : verdict == "warning" ? 1 : 0});
+        }
+    std::ranges::stable_sort(entries, {}, &Entry::rank);
+    PageImages images(folder, store);
+    for (const Entry& entry : entries) images.add(*entry.image);
+}
+
+void replace_mark(std::string& html, std::string_view mark, std::string_view text) {
+    const std::size_t at = html.find(mark);
+    if (at != std::string::npos) html.replace(at, mark.size(), text);
+}
+
+/// In an element of a page, "</script>" and "<!--" would end the text.
+std::string in_element(const Json& json) {
+    std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace), result;
+    for (const char c : text)
+        if (c == '<') result += "\\u003c";
+        else result += c;
+    return result;
+}
+
+}  // namespace
+
+void write_report_page(const fs::path& report, const fs::path& page, const ReportPageOptions& options) {
+    const fs::path file = report / "report.json";
+    Json data;
+    Store store(options.limit_bytes);
+    try {
+        data = Json::parse(read_bytes(file));
+        add_images(data, report, store);
+    } catch (const Json::exception& error) {
+        throw Error(ExitCode::capture, fmt::format("{}: is no report of a golden suite: {}", file.string(), error.what()));
+    }
+    data["palette"] = palette();
+    std::error_code failure;
+    data["folder"] = fs::proximate(report, fs::absolute(page).parent_path(), failure).generic_string();
+    std::string html(report_page_html());
+    replace_mark(html, "<!-- style -->", fmt::format("<style>\n{}</style>", report_page_style()));
+    replace_mark(html, "<!-- data -->",
+                 fmt::format("<script type=\"application/json\" id=\"report\">{}</script>\n{}", in_element(data),
+                             store.elements()));
+    replace_mark(html, "<!-- script -->", fmt::format("<script type=\"module\">\n{}</script>", report_page_script()));
+    write_text_file(page, html);
+}
+
+}  // namespace aftershade

@@ -1,0 +1,23 @@
+// The report of a golden suite as one HTML page.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+namespace aftershade {
+
+struct ReportPageOptions {
+    /// Of the pictures inside the page. Worst verdicts come first; what does not fit is shown from the PNG
+    /// files beside the page, without exposure and values.
+    std::uint64_t limit_bytes = 128ull * 1024 * 1024;
+};
+
+/// Writes `page` from the report.json and images/ that `golden run --report` left in `report`: a page that
+/// needs no server, no network and, within the limit, no other file. Images whose bits are those approved are
+/// one small picture; of all others every layer's values are in it. A picture that is gone is told in the
+/// page. Throws Error(ExitCode::capture) where report.json cannot be read, Error(ExitCode::output) where the
+/// page cannot be written.
+void write_report_page(const std::filesystem::path& report, const std::filesystem::path& page,
+                       const ReportPageOptions& options = {});
+
+}  // namespace aftershade

@@ -1,0 +1,174 @@
+// Colours of pixels, as the program's own pictures have them (framework/image/false_color.cpp).
+
+const rgbOfHex = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
+
+/** The sRGB byte of linear light: the last one whose least value it reaches, so that rounding is exact. */
+const srgbByte = (() => {
+  const linear = (encoded) => (encoded <= 0.04045 ? encoded / 12.92 : ((encoded + 0.055) / 1.055) ** 2.4);
+  const least = Float64Array.from({ length: 257 }, (_, byte) => (byte === 256 ? Infinity : linear((byte - 0.5) / 255)));
+  const steps = 4096, guesses = new Uint8Array(steps + 1);
+  for (let i = 0, byte = 0; i <= steps; ++i) {
+    while (i / steps >= least[byte + 1]) ++byte;
+    guesses[i] = byte;
+  }
+  return (light) => {
+    if (!(light > 0)) return 0;
+    if (light >= 1) return 255;
+    let byte = guesses[Math.floor(light * steps)];
+    while (light >= least[byte + 1]) ++byte;
+    return byte;
+  };
+})();
+
+/** A colour of turns around the wheel, red at 0. */
+function hueColor(turns, saturation, value) {
+  return [3, 1, 2].map((third) => {
+    const phase = turns + third / 3;
+    const k = Math.abs((phase - Math.floor(phase)) * 6 - 3) - 1;
+    return 255 * value * (1 + saturation * (Math.min(Math.max(k, 0), 1) - 1));
+  });
+}
+
+function wheelColor(x, y) {
+  const length = Math.hypot(x, y);
+  if (!(length > 0)) return [0, 0, 0];
+  return hueColor(Math.atan2(y, x) / (2 * Math.PI), length > 1 ? 1 / length : 1, Math.sqrt(Math.min(length, 1)));
+}
+
+function idColor(id) {
+  if (id === 0) return [0, 0, 0];
+  const hash = Math.imul(id, 2654435769) >>> 0;
+  return hueColor(hash / 4294967296, hash & 64 ? 0.55 : 0.85, hash & 128 ? 0.95 : 0.7);
+}
+
+/** Values of some pixels of all images, sorted: `of` gives a number of a pixel, or NaN to leave it out. */
+function sortedValues(images, of) {
+  const pixels = images.reduce((sum, image) => sum + image.width * image.height, 0);
+  const step = Math.floor(pixels / 1e6) + 1, values = [];
+  let skip = 0;
+  for (const image of images)
+    for (let i = 0; i < image.width * image.height; ++i) {
+      if (skip-- > 0) continue;
+      skip = step - 1;
+      const value = of(image.planes, i);
+      if (!Number.isNaN(value) && Math.abs(value) !== Infinity) values.push(value);
+    }
+  return Float64Array.from(values).sort();
+}
+
+const percentile = (sorted, fraction) => sorted[Math.round(fraction * (sorted.length - 1))];
+
+/** Stops that show a picture well, in tenths: its geometric mean as middle grey, at most a twentieth burnt out. */
+function fittingStops(images) {
+  const lit = sortedValues(images, (planes, i) => {
+    const [red, green, blue] = [0, 1, 2].map((c) => planes[Math.min(c, planes.length - 1)][i]);
+    const luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+    return luminance >= 1e-6 ? luminance : NaN;
+  });
+  if (lit.length === 0) return 0;
+  const mean = Math.exp(lit.reduce((sum, value) => sum + Math.log(value), 0) / lit.length);
+  return Math.round(Math.min(Math.log2(0.18 / mean), -Math.log2(percentile(lit, 0.95))) * 10) / 10;
+}
+
+const short = (value) => (Number.isFinite(value) ? String(Number(value.toPrecision(4))) : String(value));
+
+const NOTHING_HIT = 1e9; // producers write 1e10 m and more where nothing was hit
+
+/**
+ * How a layer is shown: {stops: what exposure begins with, or null where there is none; words; color(planes, i, gain)}.
+ * `images` are all that share the scale.
+ */
+function coloringOf(layer, images, palette) {
+  const ramp = palette.ramp.map(rgbOfHex), channels = images[0].planes.length;
+  const shade = (t) => ramp[Math.round(255 * Math.min(Math.max(t, 0), 1))];
+  if (layer.role === "id" || images[0].type === "uint")
+    return { stops: null, words: "a colour for each id", color: (planes, i) => idColor(planes[0][i] >>> 0) };
+  if (layer.role === "velocity" || (layer.role === "data" && channels === 2)) {
+    const rim = percentile(sortedValues(images, (planes, i) => Math.hypot(planes[0][i], planes[1][i])), 0.995) || 0.1;
+    const words = `direction as hue, full at ${short(rim)}${layer.role === "velocity" ? " px" : ""}`;
+    return { stops: null, words, color: (planes, i) => wheelColor(planes[0][i] / rim, planes[1][i] / rim) };
+  }
+  if (layer.role === "depth" && channels === 1) {
+    const depths = sortedValues(images, ([depth], i) => (depth[i] > 0 && depth[i] < NOTHING_HIT ? depth[i] : NaN));
+    const [near, far] = [percentile(depths, 0.005) || 1, percentile(depths, 0.98) || 1];
+    const nothing = rgbOfHex(palette.nothing_hit), span = Math.log(far / near);
+    const color = ([depth], i) =>
+      depth[i] >= NOTHING_HIT ? nothing : depth[i] === 0 ? [0, 0, 0] : shade(span > 0 ? 1 - Math.log(depth[i] / near) / span : 1);
+    return { stops: null, words: `bright ${short(near)} m, dark ${short(far)} m`, color };
+  }
+  if (channels < 3 && layer.role !== "color" && layer.role !== "display") {
+    const values = sortedValues(images, ([plane], i) => plane[i]);
+    const high = Math.max(values[values.length - 1] ?? 1, layer.role === "alpha" ? 1 : -Infinity);
+    const low = Math.min(values[0] ?? 0, 0), span = high - low || 1;
+    const grey = (t) => Array(3).fill(255 * Math.min(Math.max(t, 0), 1));
+    const tone = layer.role === "alpha" ? grey : shade;
+    return { stops: null, words: `dark ${short(low)}, bright ${short(high)}`, color: ([plane], i) => tone((plane[i] - low) / span) };
+  }
+  if (layer.role === "display")
+    return { stops: null, words: "as encoded", color: (planes, i) => [0, 1, 2].map((c) => 255 * Math.min(Math.max(planes[Math.min(c, channels - 1)][i], 0), 1)) };
+  const color = (planes, i, gain) => [0, 1, 2].map((c) => srgbByte(planes[Math.min(c, channels - 1)][i] * gain));
+  return { stops: fittingStops(images), words: "linear light", color };
+}
+
+/** Colours of values that should not be; null for a sound pixel. */
+function faultColor(layer, planes, i, palette) {
+  if (layer.role === "id") return null;
+  let worst = null;
+  for (const plane of planes) {
+    const value = plane[i];
+    if (Number.isNaN(value)) return palette.nan;
+    if (Math.abs(value) === Infinity && !(layer.role === "depth" && value > 0)) worst = palette.infinite;
+    else if (value < 0 && !["velocity", "data"].includes(layer.role)) worst = worst ?? palette.negative;
+  }
+  return worst;
+}
+
+function canvasOf(width, height, colorAt) {
+  const canvas = document.createElement("canvas");
+  canvas.width = width;
+  canvas.height = height;
+  const context = canvas.getContext("2d"), picture = context.createImageData(width, height);
+  for (let i = 0, at = 0; i < width * height; ++i) {
+    const color = colorAt(i);
+    picture.data[at++] = Math.round(color[0]);
+    picture.data[at++] = Math.round(color[1]);
+    picture.data[at++] = Math.round(color[2]);
+    picture.data[at++] = 255;
+  }
+  context.putImageData(picture, 0, 0);
+  return canvas;
+}
+
+/** A picture of an image, at its place in the file. */
+function pictureOf(layer, image, coloring, stops, palette) {
+  const gain = 2 ** stops, faults = new Map();
+  const faultRgb = (hex) => faults.get(hex) ?? faults.set(hex, rgbOfHex(hex)).get(hex);
+  const canvas = canvasOf(image.width, image.height, (i) => {
+    const fault = faultColor(layer, image.planes, i, palette);
+    return fault ? faultRgb(fault) : coloring.color(image.planes, i, gain);
+  });
+  return { source: canvas, x: image.x, y: image.y, width: image.width, height: image.height };
+}
+
+/** |reference - test| times 2^stops where both have pixels; of ids, white where they differ. */
+function differencePictureOf(layer, reference, test, stops) {
+  const x = Math.max(reference.x, test.x), y = Math.max(reference.y, test.y);
+  const width = Math.min(reference.x + reference.width, test.x + test.width) - x;
+  const height = Math.min(reference.y + reference.height, test.y + test.height) - y;
+  const channels = Math.min(reference.planes.length, test.planes.length), scale = 255 * 2 ** stops;
+  if (width <= 0 || height <= 0) return null;
+  const one = (c, i, k) => {
+    const a = reference.planes[c][i], b = test.planes[c][k];
+    if (Object.is(a, b) || a === b) return 0;
+    if (layer.role === "id" || reference.type === "uint") return 255;
+    const value = Math.abs(a - b) * scale;
+    return Number.isNaN(value) ? (Number.isNaN(a) && Number.isNaN(b) ? 0 : 255) : Math.min(value, 255);
+  };
+  const canvas = canvasOf(width, height, (at) => {
+    const column = at % width, row = (at - column) / width;
+    const i = (row + y - reference.y) * reference.width + column + x - reference.x;
+    const k = (row + y - test.y) * test.width + column + x - test.x;
+    return [0, 1, 2].map((c) => (channels === 2 && c === 2 ? 0 : one(Math.min(c, channels - 1), i, k)));
+  });
+  return { source: canvas, x, y, width, height };
+}

@@ -1,0 +1,356 @@
+// One image of a case: reference, test, difference, heat map, wipe; zoom, exposure, values under the pointer.
+
+const MODES = {
+  all: { key: "a", label: "All", title: "Reference, test and difference beside each other; point at the test to see the reference in its place" },
+  reference: { key: "r", label: "Reference", title: "The approved image" },
+  test: { key: "t", label: "Test", title: "The image that this run made" },
+  difference: { key: "d", label: "Difference", title: "|reference \u2212 test| times the scale" },
+  heat_map: { key: "h", label: "FLIP", title: "What people see as different: dark 0, bright 1" },
+  wipe: { key: "w", label: "Wipe", title: "Reference left of the line, test right of it" },
+};
+const STOP = 0.5; // EV that a key changes
+
+/** Layers of pictures that lie beside the page: no values, so no exposure. */
+async function linkedLayer(image, folder) {
+  const load = async (path) => {
+    if (!path) return null;
+    const picture = new Image();
+    picture.src = `${folder}/${path}`;
+    await picture.decode();
+    return picture;
+  };
+  const kinds = ["reference", "test", "difference", "heat_map"];
+  const pictures = await Promise.all(kinds.map((kind) => load(image.pictures[kind])));
+  // Narrow pictures are enlarged by a whole factor, wide ones reduced: all are shown in the size of the first.
+  const size = pictures.find(Boolean), result = { x: 0, y: 0, width: size.naturalWidth, height: size.naturalHeight };
+  kinds.forEach((kind, i) => (result[kind] = pictures[i] && { source: pictures[i], x: 0, y: 0, width: result.width, height: result.height }));
+  return result;
+}
+
+class Viewer {
+  constructor(image, report) {
+    this.image = image;
+    this.palette = report.palette;
+    this.folder = report.folder;
+    this.layers = image.shown.layers;
+    this.values = new Map(); // layer -> {reference, test, coloring}
+    this.layer = this.firstLayer();
+    this.mode = image.pictures.reference ? (innerWidth < 800 ? "test" : "all") : "test";
+    this.swapped = this.hovered = false;
+    this.wipe = 0.5;
+    this.marks = true;
+    this.scaleStops = Math.log2(image.pictures.difference_scale || 1);
+    this.node = this.build();
+    this.resizing = new ResizeObserver(() => this.draw());
+    this.resizing.observe(this.frame);
+  }
+
+  comparisonOf(layer) {
+    return this.image.comparison?.layers.find((one) => one.layer === layer?.label) ?? null;
+  }
+  /** The layer of the worst verdict; of equal ones the first with colours. */
+  firstLayer() {
+    const rank = (layer) => {
+      const verdicts = ["same", "warning", "failure", "different size or channels"];
+      return 2 * verdicts.indexOf(this.comparisonOf(layer)?.verdict ?? "failure") + (layer.role === "color");
+    };
+    return this.layers.reduce((best, layer) => (best && rank(best) >= rank(layer) ? best : layer), null);
+  }
+  /** FLIP is drawn of one layer. */
+  flipLayer() {
+    return this.layers.find((layer) => { const told = this.comparisonOf(layer); return told?.hdr_flip || told?.ldr_flip; });
+  }
+  hasMode(mode) {
+    const { pictures, shown } = this.image;
+    if (mode === "test") return true;
+    if (!pictures.reference) return false;
+    if (mode === "heat_map") return this.layer ? shown.heat_map !== null && this.layer === this.flipLayer() : !!pictures.heat_map;
+    return mode !== "difference" || this.layer !== null || !!pictures.difference;
+  }
+
+  // ---- what is drawn ----
+
+  async load() {
+    try {
+      await this.loadLayer();
+      this.node.classList.remove("waiting");
+      this.refresh();
+      this.node.dataset.ready = "";
+    } catch (error) {
+      this.frame.replaceChildren(element("p", { class: "missing" }, `This picture cannot be shown: ${error.message || error}`));
+    }
+  }
+  async loadLayer() {
+    if (!this.layer) {
+      if (!this.linked) this.linked = await linkedLayer(this.image, this.folder);
+      if (!this.view) this.view = new View(this.linked);
+      return;
+    }
+    if (!this.values.has(this.layer)) this.values.set(this.layer, await this.readLayer(this.layer));
+    const { stops, box } = this.values.get(this.layer);
+    this.stops ??= stops;
+    if (!this.view || JSON.stringify(this.view.box) !== JSON.stringify(box)) this.view = new View(box);
+  }
+  async readLayer(layer) {
+    const reference = layer.reference && (await readPixels(layer.reference));
+    const same = layer.equal && layer.test.x === layer.reference.x && layer.test.y === layer.reference.y;
+    const test = same ? reference : layer.test && (await readPixels(layer.test));
+    const all = [reference, test].filter(Boolean), coloring = coloringOf(layer, all, this.palette);
+    const x = Math.min(...all.map((one) => one.x)), y = Math.min(...all.map((one) => one.y));
+    const right = Math.max(...all.map((one) => one.x + one.width)), bottom = Math.max(...all.map((one) => one.y + one.height));
+    const flip = layer === this.flipLayer() && this.image.shown.heat_map !== null ? await this.readHeatMap(layer) : null;
+    return { reference, test, coloring, stops: coloring.stops, heat_map: flip, box: { x, y, width: right - x, height: bottom - y }, pictures: {} };
+  }
+  async readHeatMap(layer) {
+    const source = new Image();
+    source.src = pngAddress(this.image.shown.heat_map);
+    await source.decode();
+    const [x, y] = this.comparisonOf(layer).window.min;
+    return { source, x, y, width: source.naturalWidth, height: source.naturalHeight };
+  }
+  /** Drawn once for each exposure or scale. */
+  picture(kind) {
+    if (!this.layer) return this.linked[kind];
+    const values = this.values.get(this.layer);
+    if (kind === "heat_map") return values.heat_map;
+    const setting = kind === "difference" ? this.scaleStops : this.stops ?? 0, kept = values.pictures[kind];
+    if (kept?.setting === setting) return kept.picture;
+    let picture = null;
+    if (kind === "difference") {
+      if (values.reference && values.test) picture = differencePictureOf(this.layer, values.reference, values.test, setting);
+    } else if (values[kind]) picture = pictureOf(this.layer, values[kind], values.coloring, setting, this.palette);
+    values.pictures[kind] = { setting, picture };
+    return picture;
+  }
+  panes() {
+    const { width, height } = this.canvas, kinds = this.mode === "all" ? ["reference", "test", "difference"] : [this.mode];
+    const gap = Math.round(4 * devicePixelRatio), each = Math.floor((width - gap * (kinds.length - 1)) / kinds.length);
+    return kinds.map((kind, i) => ({ kind, left: i * (each + gap), top: 0, width: each, height }));
+  }
+  shownKind(kind) {
+    const other = { reference: "test", test: "reference" };
+    const swap = (this.swapped && kind in other) !== (this.hovered && this.mode === "all" && kind === "test");
+    return swap && this.hasMode(other[kind]) ? other[kind] : kind;
+  }
+  draw() {
+    if (!this.view) return;
+    const ratio = devicePixelRatio, { clientWidth, clientHeight } = this.frame;
+    if (clientWidth === 0) return;
+    this.canvas.width = Math.round(clientWidth * ratio);
+    this.canvas.height = Math.round(clientHeight * ratio);
+    const context = this.canvas.getContext("2d"), panes = this.panes();
+    if (this.view.fitted) this.view.fit(panes[0]);
+    for (const pane of panes) {
+      const kind = this.shownKind(pane.kind);
+      within(context, pane, () => {
+        if (kind === "wipe") this.drawWipe(context, pane, ratio);
+        else drawPicture(context, this.view, pane, this.picture(kind));
+        if (this.marks) this.drawMarks(context, pane);
+        if (kind !== "wipe") drawLabel(context, pane, MODES[kind].label, ratio);
+      });
+    }
+    this.zoomWords.textContent = `${Number((this.view.zoom * 100).toPrecision(3))} %`;
+  }
+  drawWipe(context, pane, ratio) {
+    const line = Math.round(pane.left + pane.width * this.wipe);
+    within(context, { ...pane, width: line - pane.left }, () => {
+      drawPicture(context, this.view, pane, this.picture("reference"));
+      drawLabel(context, pane, MODES.reference.label, ratio);
+    });
+    within(context, { ...pane, left: line, width: pane.left + pane.width - line }, () => {
+      drawPicture(context, this.view, pane, this.picture("test"));
+      drawLabel(context, { ...pane, left: line }, MODES.test.label, ratio);
+    });
+    context.fillStyle = "#fff";
+    context.fillRect(line - ratio, pane.top, 2 * ratio, pane.height);
+  }
+  drawMarks(context, pane) {
+    const told = this.comparisonOf(this.layer), box = told?.failing?.box;
+    if (!box) return;
+    const [x, y] = box.min, [right, bottom] = box.max;
+    drawFrame(context, this.view, pane, { x, y, width: right - x + 1, height: bottom - y + 1 }, "#ffd23f");
+    if (this.view.zoom >= 6) drawFrame(context, this.view, pane, { ...told.max_error, width: 1, height: 1 }, "#fff");
+  }
+
+  // ---- what can be done ----
+
+  setMode(mode) {
+    if (!this.hasMode(mode)) return tell(`${MODES[mode].label}: there is none`);
+    this.mode = mode;
+    this.refresh();
+  }
+  setStops(stops) {
+    if (!this.coloring() || this.coloring().stops === null) return;
+    this.stops = Math.min(Math.max(stops, -12), 12);
+    this.refresh();
+  }
+  setScale(stops) {
+    this.scaleStops = Math.min(Math.max(stops, 0), 20);
+    this.refresh();
+  }
+  setWipe(share) {
+    this.wipe = Math.min(Math.max(share, 0), 1);
+    this.refresh();
+  }
+  async setLayer(label) {
+    this.layer = this.layers.find((layer) => layer.label === label);
+    this.stops = undefined;
+    await this.loadLayer();
+    if (!this.hasMode(this.mode)) this.mode = "all";
+    this.refresh();
+  }
+  zoomBy(steps, screenX, screenY) {
+    const panes = this.panes(), pane = panes.find((one) => screenX >= one.left && screenX < one.left + one.width) ?? panes[0];
+    this.view.zoomBy(steps, pane, screenX ?? pane.left + pane.width / 2, screenY ?? pane.top + pane.height / 2);
+    this.draw();
+  }
+  showWhole() {
+    this.view.fitted = true;
+    this.draw();
+  }
+  showPixels() {
+    this.view.setZoom(1);
+    this.draw();
+  }
+  /** To the largest difference, close enough to see the pixel. */
+  showWorst() {
+    const worst = this.comparisonOf(this.layer)?.max_error;
+    if (!worst) return tell("Nothing was compared");
+    this.view.setZoom(Math.max(this.view.zoom, 16));
+    [this.view.x, this.view.y] = [worst.x + 0.5, worst.y + 0.5];
+    this.draw();
+    this.tellValues(worst.x, worst.y);
+  }
+  coloring() {
+    return this.layer ? this.values.get(this.layer)?.coloring : null;
+  }
+  tellValues(x, y) {
+    if (!this.layer) return;
+    const { reference, test } = this.values.get(this.layer);
+    const words = (image) => { const values = image && valuesAt(image, x, y); return values ? values.map(short).join("  ") : "none"; };
+    const names = (reference ?? test).channels.map((name) => name.split(".").pop()).join(" ");
+    this.readout.textContent = `x ${x}  y ${y}   ${names}   reference ${words(reference)}   test ${words(test)}`;
+  }
+
+  // ---- elements ----
+
+  build() {
+    const button = (label, title, act, more = {}) => element("button", { type: "button", title, onclick: act, ...more }, label);
+    this.modeButtons = Object.entries(MODES).map(([mode, { label, title, key }]) =>
+      button(label, `${title} (${key})`, () => this.setMode(mode), { "data-mode": mode }));
+    this.canvas = element("canvas", { tabindex: 0, role: "img", "aria-label": this.image.name });
+    this.frame = element("div", { class: "frame" }, this.canvas);
+    this.zoomWords = element("output", { class: "zoom" });
+    this.readout = element("div", { class: "readout" });
+    this.words = element("span", { class: "quiet" });
+    this.exposure = this.slider("Exposure", -12, 12, 0.1, (value) => this.setStops(value));
+    this.scale = this.slider("Scale", 0, 20, 1, (value) => this.setScale(value));
+    this.wiper = this.slider("Wipe", 0, 1, 0.001, (value) => this.setWipe(value));
+    this.markBox = element("input", { type: "checkbox", checked: true, onchange: () => { this.marks = this.markBox.checked; this.draw(); } });
+    this.layerMenu = element("select", { "aria-label": "Layer", onchange: () => this.setLayer(this.layerMenu.value) },
+      this.layers.map((layer) => element("option", { value: layer.label, selected: layer === this.layer }, `${layer.label} (${layer.role})${layer.equal ? ", same bits" : ""}`)));
+    const tools = element("div", { class: "tools" },
+      element("div", { class: "group", role: "group", "aria-label": "View" }, this.modeButtons),
+      this.layers.length > 1 ? this.layerMenu : null, this.exposure.node, this.scale.node, this.wiper.node,
+      element("div", { class: "group", role: "group", "aria-label": "Zoom" },
+        button("\u2212", "Smaller (-)", () => this.zoomBy(-1)), this.zoomWords, button("+", "Larger (+)", () => this.zoomBy(1)),
+        button("Fit", "The whole picture (0)", () => this.showWhole()), button("1:1", "A pixel for a pixel (1)", () => this.showPixels()),
+        this.layer && this.image.comparison ? button("Worst", "To the largest difference (x)", () => this.showWorst()) : null),
+      this.layer && this.image.comparison ? element("label", { title: "A frame around all pixels that fail (b)" }, this.markBox, "Frame failing pixels") : null);
+    this.listen();
+    return element("div", { class: "viewer waiting" }, tools, this.frame, element("div", { class: "under" }, this.readout, this.words));
+  }
+  slider(label, min, max, step, act) {
+    const input = element("input", { type: "range", min, max, step, "aria-label": label, oninput: () => act(Number(input.value)) });
+    const output = element("output");
+    return { input, output, node: element("label", { class: "slider" }, label, input, output) };
+  }
+  refresh() {
+    for (const node of this.modeButtons) {
+      node.setAttribute("aria-pressed", String(node.dataset.mode === this.mode));
+      node.disabled = !this.hasMode(node.dataset.mode);
+    }
+    const show = (slider, visible, value, words) => {
+      slider.node.hidden = !visible;
+      slider.input.value = value;
+      slider.input.setAttribute("aria-valuetext", (slider.output.textContent = words));
+    };
+    const coloring = this.coloring(), exposes = coloring && coloring.stops !== null && !["difference", "heat_map"].includes(this.mode);
+    show(this.exposure, exposes, this.stops ?? 0, `${(this.stops ?? 0) >= 0 ? "+" : ""}${(this.stops ?? 0).toFixed(1)} EV`);
+    show(this.scale, this.layer && (this.mode === "all" || this.mode === "difference"), this.scaleStops, `${short(2 ** this.scaleStops)} \u00d7`);
+    show(this.wiper, this.mode === "wipe", this.wipe, `${Math.round(this.wipe * 100)} %`);
+    const words = { difference: "|reference \u2212 test| times the scale", heat_map: "dark 0, bright 1" };
+    this.words.textContent = words[this.mode] ?? (coloring ? coloring.words : "shown from the files beside the page: no exposure, no values");
+    this.canvas.setAttribute("aria-label", `${this.image.name}: ${MODES[this.mode].title}`);
+    this.shape();
+    this.draw();
+  }
+  /** As high as the fitted picture is, and no higher than the window. */
+  shape() {
+    const panes = this.mode === "all" ? 3 : 1;
+    if (this.shapedFor === panes) return; // the user may have drawn the corner since
+    this.shapedFor = panes;
+    const pane = { left: 0, top: 0, width: (this.frame.clientWidth * devicePixelRatio) / panes, height: Infinity }, whole = new View(this.view.box);
+    whole.fit(pane);
+    this.frame.style.height = `${Math.ceil((whole.zoom * whole.box.height) / devicePixelRatio) + 2 * LABEL_HEIGHT}px`;
+  }
+  place(event) {
+    const box = this.canvas.getBoundingClientRect();
+    return [(event.clientX - box.left) * devicePixelRatio, (event.clientY - box.top) * devicePixelRatio];
+  }
+  listen() {
+    const { canvas } = this;
+    let grip = null; // "pan" or "wipe"
+    canvas.addEventListener("pointerdown", (event) => {
+      if (event.button !== 0) return;
+      const [x] = this.place(event), line = this.canvas.width * this.wipe;
+      grip = this.mode === "wipe" && Math.abs(x - line) < 12 * devicePixelRatio ? "wipe" : "pan";
+      canvas.setPointerCapture(event.pointerId);
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      if (!this.view) return;
+      const [x, y] = this.place(event), pane = this.panes().find((one) => x >= one.left && x < one.left + one.width);
+      if (grip === "wipe") this.setWipe(x / canvas.width);
+      else if (grip === "pan") this.view.moveBy(event.movementX * devicePixelRatio, event.movementY * devicePixelRatio), this.draw();
+      if (!pane) return;
+      this.tellValues(...this.view.toFile(pane, x, y));
+      this.hover(pane.kind === "test");
+    });
+    canvas.addEventListener("pointerup", () => (grip = null));
+    canvas.addEventListener("pointercancel", () => (grip = null));
+    canvas.addEventListener("pointerleave", () => this.hover(false));
+    canvas.addEventListener("dblclick", () => (this.view.fitted ? this.showPixels() : this.showWhole()));
+    // Without Ctrl the wheel scrolls the page, unless the picture was clicked.
+    canvas.addEventListener("wheel", (event) => {
+      if (!this.view || (!event.ctrlKey && !event.metaKey && document.activeElement !== canvas)) return;
+      event.preventDefault();
+      this.zoomBy(event.deltaY < 0 ? 1 : -1, ...this.place(event));
+    }, { passive: false });
+  }
+  hover(on) {
+    if (this.hovered === on) return;
+    this.hovered = on;
+    this.draw();
+  }
+  /** Whether the key meant something. */
+  key(event) {
+    const mode = Object.keys(MODES).find((name) => MODES[name].key === event.key);
+    const pan = { ArrowLeft: [40, 0], ArrowRight: [-40, 0], ArrowUp: [0, 40], ArrowDown: [0, -40] }[event.key];
+    const acts = {
+      " ": () => { this.swapped = !this.swapped; this.draw(); },
+      "[": () => this.setStops((this.stops ?? 0) - STOP), "]": () => this.setStops((this.stops ?? 0) + STOP),
+      "\\": () => this.setStops(this.coloring()?.stops ?? 0),
+      "{": () => this.setScale(this.scaleStops - 1), "}": () => this.setScale(this.scaleStops + 1),
+      ",": () => this.setWipe(this.wipe - 0.02), ".": () => this.setWipe(this.wipe + 0.02),
+      "+": () => this.zoomBy(1), "=": () => this.zoomBy(1), "-": () => this.zoomBy(-1),
+      "0": () => this.showWhole(), "1": () => this.showPixels(), "x": () => this.showWorst(),
+      "b": () => { this.markBox.checked = this.marks = !this.marks; this.draw(); },
+    };
+    if (!this.view) return false;
+    if (mode) this.setMode(mode);
+    else if (pan && document.activeElement === this.canvas) this.view.moveBy(...pan.map((step) => step * devicePixelRatio)), this.draw();
+    else if (acts[event.key]) acts[event.key]();
+    else return false;
+    return true;
+  }
+}
