@@ -7,7 +7,7 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 
 import { axeSource, colorsAt, compareWithPng, openBrowser, openPage, seenColorsAt, viewerOf } from "./browser.mjs";
-import { makeReport, program, rebuildPage } from "./suite.mjs";
+import { golden, makeReport, program, rebuildPage } from "./suite.mjs";
 
 const folder = mkdtempSync(join(tmpdir(), "aftershade-page-"));
 let browser, suite, report, file, json;
@@ -94,6 +94,7 @@ inPage("tells the sums of report.json", async (page) => {
   assert.deepEqual(chips, [`${failed} failed`, `${warned} with warnings`, `${skipped} skipped`, `${passed} passed`]);
   assert.equal(failed + warned + skipped + passed, await page.locator(".case").count());
   assert.match(await page.locator("#head").innerText(), /gone\.color\.0001\.exr/);
+  assert.doesNotMatch(await page.locator("body").innerText(), /null|undefined/);
 });
 
 inPage("has failures first, the worst at the top, and opens them", async (page) => {
@@ -121,6 +122,18 @@ inPage("finds cases by name, tag and verdict", async (page) => {
   await page.getByRole("searchbox").fill("");
   await page.getByRole("button", { name: /failed/ }).click();
   assert.equal((await shown()).length, json.counts.cases - json.counts.failed);
+});
+
+test("is short where all is well", async () => {
+  const mine = join(folder, "green");
+  assert.equal(golden(suite, "run", ".", "--filter", "passing", "--filter", "visible_depth", "--report", mine).code, 0);
+  const page = await openPage(browser, join(mine, "index.html"));
+  assert.equal(await page.locator("details[open]").count(), 0);
+  assert.doesNotMatch(await page.locator("body").innerText(), /null|undefined|NaN|Approve/);
+  const thumbnails = await page.locator(".thumbnail").evaluateAll((nodes) => nodes.map((node) => node.naturalWidth));
+  assert.deepEqual(thumbnails, [240, 240]);
+  assert.deepEqual(page.faults, []);
+  await page.context().close();
 });
 
 test("opens the case that its address names", async () => {

@@ -60,7 +60,7 @@ function writeEffect(folder, files) {
   for (const [name, content] of Object.entries(files)) writeFileSync(join(folder, name), typeof content === "string" ? content : JSON.stringify(content));
 }
 
-function golden(folder, ...words) {
+export function golden(folder, ...words) {
   const result = spawnSync(program, ["golden", ...words], { cwd: folder, encoding: "utf8", env: { ...process.env, AFTERSHADE_BACKEND: "osmesa" } });
   return { code: result.status, err: result.stderr, out: result.stdout };
 }

@@ -106,21 +106,31 @@ function coloringOf(layer, images, palette) {
   }
   if (layer.role === "display")
     return { stops: null, words: "as encoded", color: (planes, i) => [0, 1, 2].map((c) => 255 * Math.min(Math.max(planes[Math.min(c, channels - 1)][i], 0), 1)) };
-  const color = (planes, i, gain) => [0, 1, 2].map((c) => srgbByte(planes[Math.min(c, channels - 1)][i] * gain));
+  const rgb = [0, 0, 0], [green, blue] = [Math.min(1, channels - 1), Math.min(2, channels - 1)];
+  const color = (planes, i, gain) => {
+    rgb[0] = srgbByte(planes[0][i] * gain);
+    rgb[1] = srgbByte(planes[green][i] * gain);
+    rgb[2] = srgbByte(planes[blue][i] * gain);
+    return rgb; // one for all pixels: millions of arrays would take seconds
+  };
   return { stops: fittingStops(images), words: "linear light", color };
 }
 
-/** Colours of values that should not be; null for a sound pixel. */
-function faultColor(layer, planes, i, palette) {
-  if (layer.role === "id") return null;
-  let worst = null;
-  for (const plane of planes) {
-    const value = plane[i];
-    if (Number.isNaN(value)) return palette.nan;
-    if (Math.abs(value) === Infinity && !(layer.role === "depth" && value > 0)) worst = palette.infinite;
-    else if (value < 0 && !["velocity", "data"].includes(layer.role)) worst = worst ?? palette.negative;
-  }
-  return worst;
+/** Gives the colour of a pixel with values that should not be, and null of a sound one. */
+function faultColoringOf(layer, palette) {
+  if (layer.role === "id") return () => null;
+  const [nan, infinite, negative] = [palette.nan, palette.infinite, palette.negative].map(rgbOfHex);
+  const anySign = layer.role === "velocity" || layer.role === "data", farthest = layer.role === "depth" ? Infinity : NaN;
+  return (planes, i) => {
+    let fault = null;
+    for (let c = 0; c < planes.length; ++c) {
+      const value = planes[c][i];
+      if (value !== value) return nan;
+      if (Math.abs(value) === Infinity && value !== farthest) fault = infinite;
+      else if (value < 0 && !anySign && !fault) fault = negative;
+    }
+    return fault;
+  };
 }
 
 function canvasOf(width, height, colorAt) {
@@ -141,12 +151,8 @@ function canvasOf(width, height, colorAt) {
 
 /** A picture of an image, at its place in the file. */
 function pictureOf(layer, image, coloring, stops, palette) {
-  const gain = 2 ** stops, faults = new Map();
-  const faultRgb = (hex) => faults.get(hex) ?? faults.set(hex, rgbOfHex(hex)).get(hex);
-  const canvas = canvasOf(image.width, image.height, (i) => {
-    const fault = faultColor(layer, image.planes, i, palette);
-    return fault ? faultRgb(fault) : coloring.color(image.planes, i, gain);
-  });
+  const gain = 2 ** stops, { planes } = image, faultAt = faultColoringOf(layer, palette);
+  const canvas = canvasOf(image.width, image.height, (i) => faultAt(planes, i) ?? coloring.color(planes, i, gain));
   return { source: canvas, x: image.x, y: image.y, width: image.width, height: image.height };
 }
 
@@ -157,18 +163,21 @@ function differencePictureOf(layer, reference, test, stops) {
   const height = Math.min(reference.y + reference.height, test.y + test.height) - y;
   const channels = Math.min(reference.planes.length, test.planes.length), scale = 255 * 2 ** stops;
   if (width <= 0 || height <= 0) return null;
+  const ids = layer.role === "id" || reference.type === "uint", rgb = [0, 0, 0];
   const one = (c, i, k) => {
     const a = reference.planes[c][i], b = test.planes[c][k];
-    if (Object.is(a, b) || a === b) return 0;
-    if (layer.role === "id" || reference.type === "uint") return 255;
+    if (a === b || (a !== a && b !== b)) return 0;
     const value = Math.abs(a - b) * scale;
-    return Number.isNaN(value) ? (Number.isNaN(a) && Number.isNaN(b) ? 0 : 255) : Math.min(value, 255);
+    return ids || !(value < 255) ? 255 : value; // what cannot be subtracted is the brightest
   };
   const canvas = canvasOf(width, height, (at) => {
     const column = at % width, row = (at - column) / width;
     const i = (row + y - reference.y) * reference.width + column + x - reference.x;
     const k = (row + y - test.y) * test.width + column + x - test.x;
-    return [0, 1, 2].map((c) => (channels === 2 && c === 2 ? 0 : one(Math.min(c, channels - 1), i, k)));
+    rgb[0] = one(0, i, k);
+    rgb[1] = channels > 1 ? one(1, i, k) : rgb[0];
+    rgb[2] = channels > 2 ? one(2, i, k) : channels > 1 ? 0 : rgb[0]; // two channels are red and green
+    return rgb;
   });
   return { source: canvas, x, y, width, height };
 }

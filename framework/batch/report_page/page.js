@@ -77,14 +77,16 @@ class Page {
     this.themeButton = element("button", { type: "button", title: "Light, dark, or as the system (l)", onclick: () => this.nextTheme() });
     const keys = element("button", { type: "button", title: "Keys (?)", onclick: () => this.showKeys() }, "Keys");
     const environment = report.environment;
-    document.getElementById("head").append(
+    const parts = [
       element("div", { class: "title" }, element("h1", {}, suiteName(report)), verdictMark(report.interrupted ? "interrupted" : report.verdict),
         element("span", { class: "quiet" }, `${counts.cases} cases in ${seconds(report.seconds)}, ${report.started.replace("T", " ").replace("Z", " UTC")}`)),
       element("p", { class: "quiet line" }, [environment.renderer, `Mesa ${environment.mesa || "?"}`, environment.cpu, environment.commit && `commit ${environment.commit.slice(0, 12)}`].filter(Boolean).join(" \u00b7 ")),
       element("div", { class: "bar" }, element("div", { class: "chips", role: "group", "aria-label": "Show" }, this.chips), this.search, this.themeButton, keys),
-      report.approve ? commandLine("Approve all of these", report.approve) : null,
+      report.approve ? commandLine("Approve all", report.approve) : null,
       report.orphans.length ? element("div", { class: "orphans" }, element("b", {}, "No case gives these goldens; remove them, or mend the case:"),
-        element("ul", {}, report.orphans.map((path) => element("li", {}, element("code", {}, path))))) : null);
+        element("ul", {}, report.orphans.map((path) => element("li", {}, element("code", {}, path))))) : null,
+    ];
+    document.getElementById("head").append(...parts.filter(Boolean));
     this.nameTheme();
   }
   buildFoot() {
