@@ -13,6 +13,7 @@
 #include "framework/batch/approved_image.h"
 #include "framework/batch/golden_render.h"
 #include "framework/batch/golden_suite.h"
+#include "framework/batch/report_pictures.h"
 #include "framework/compare/compare_files.h"
 
 namespace aftershade {
@@ -54,7 +55,7 @@ struct GoldenRunOptions {
     GoldenRenderOptions render;
     GoldenEnvironment environment;  ///< of the workers
     std::vector<std::string> filters;
-    std::filesystem::path report;  ///< folder for pictures; "" for none
+    std::filesystem::path report;  ///< <report>/images exists and is for pictures; "": none are written
     int jobs = 1;
     bool no_skip = false;  ///< a skipped case fails
 };
@@ -87,9 +88,9 @@ void for_each_in_folders(std::size_t count, int jobs,
 /// Whether two files have the same layers with the same bits in every value.
 bool has_equal_bits(const Comparison& comparison);
 
-/// An image against those approved by its name, the renderer's own first; with `pictures`, a folder that
-/// exists, the pictures are written there.
+/// An image against those approved by its name, the renderer's own first; its pictures are written, unless
+/// `pictures` is nullptr.
 GoldenImage judge_image(const GoldenCase& test, const RenderedImage& rendered, const std::string& look_hash,
-                        const GoldenEnvironment& environment, const std::filesystem::path& pictures);
+                        const GoldenEnvironment& environment, ReportPictures* pictures);
 
 }  // namespace aftershade
