@@ -98,6 +98,39 @@ TEST_F(GoldenRun, TellsAnEffectThatFailsAndGoesOn) {
     EXPECT_EQ(result.err.find("to approve"), std::string::npos) << "there is no image to approve";
 }
 
+TEST_F(GoldenRun, CatchesAnOutputThatTheCaseDoesNotName) {
+    fs::create_directories(folder_ / "mine/litters");
+    write_text(folder_ / "mine/litters/effect.json",
+               R"({ "aftershade": 1, "version": "1.0.0", "summary": "A test.", "id": "litters",
+        "inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
+        "params": { "gain": { "type": "float", "default": 0.5, "doc": "." } },
+        "native": { "uniforms": { "gain": { "type": "float", "doc": "Gain times the frame's number." } } },
+        "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color"], "writes": ["color"] } ] })");
+    write_text(folder_ / "mine/litters/main.frag",
+               "#version 450 core\n#include <pass>\nvoid main() { out_color = texelFetch(color, "
+               "ivec2(gl_FragCoord.xy), 0) * native.gain; }\n");
+    write_text(folder_ / "golden.json", R"({ "aftershade": 1, "effect_paths": ["mine"], "cases": [
+    { "name": "tidy", "steps": [ { "effect": "litters" } ], "capture": "in_####.exr", "frames": "1" } ] })");
+    const std::vector<std::string> with_library = {"--plugin-path", AFTERSHADE_CASES};
+    approve(with_library);
+    EXPECT_EQ(run(with_library).exit_code, 0);
+    for (const std::string name : {"stray.exr", "0002.exr"}) {
+        const Environment littering = {{"LITTER", name}};
+        const CommandResult result = run(with_library, littering);
+        EXPECT_EQ(result.exit_code, 2) << result.err;
+        EXPECT_NE(result.err.find("FAILED tidy: failure\n    an output that the case does not name: " + name),
+                  std::string::npos)
+            << result.err;
+        const Json document = report(with_library, littering);
+        EXPECT_TRUE(all_bits_equal(document)) << "nothing else is wrong";
+        EXPECT_TRUE(document["cases"][0]["approve"].is_null()) << "no new image makes it pass";
+        const CommandResult approval =
+            golden({"approve", "golden.json", "--plugin-path", AFTERSHADE_CASES}, littering);
+        EXPECT_EQ(approval.exit_code, 2) << approval.err;
+        EXPECT_NE(approval.err.find(name), std::string::npos) << approval.err;
+    }
+}
+
 // ---- what changes no bit ----
 
 TEST_F(GoldenRun, GivesTheSameBitsOnBothBackendsWithAnyThreadsAndVectors) {
