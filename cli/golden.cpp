@@ -35,6 +35,11 @@ void write_reports(const GoldenOptions& options, const GoldenSuiteResult& result
     if (options.json) std::fwrite(json.data(), 1, json.size(), stdout);
 }
 
+/// What the sums do not say.
+void print_notes(const GoldenSuiteResult& result) {
+    if (result.all_skipped()) std::cerr << "warning: every case was skipped; nothing was compared\n";
+}
+
 ExitCode run(const GoldenOptions& options) {
     const std::atomic<bool>& stop = watch_for_interrupt();
     GoldenJob job = prepare_golden(options);
@@ -53,6 +58,7 @@ ExitCode run(const GoldenOptions& options) {
         stop);
     std::cerr << summary_of(result, job.context);
     if (result.interrupted) return ExitCode::interrupted;
+    print_notes(result);
     write_reports(options, result, job.context);
     return ExitCode(int(result.verdict));
 }

@@ -74,6 +74,10 @@ void run_case(const GoldenRunOptions& options, const fs::path& work, ReportPictu
 
 }  // namespace
 
+bool GoldenSuiteResult::all_skipped() const {
+    return std::ranges::all_of(cases, [](const GoldenCaseResult& test) { return !test.skipped.empty(); });
+}
+
 void for_each_in_folders(std::size_t count, int jobs,
                          const std::function<void(std::size_t, const fs::path&)>& work) {
     const WorkFolder folder;
@@ -145,6 +149,7 @@ GoldenSuiteResult run_golden_suite(const GoldenSuite& suite, const GoldenRunOpti
     result.orphans = orphaned_goldens(suite, options.filters);
     if (!result.orphans.empty()) result.verdict = Verdict::failure;
     for (const GoldenCaseResult& test : result.cases) result.verdict = std::max(result.verdict, test.verdict);
+    if (result.all_skipped()) result.verdict = std::max(result.verdict, Verdict::warning);
     result.seconds = seconds_since(start);
     return result;
 }

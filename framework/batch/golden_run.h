@@ -63,10 +63,13 @@ struct GoldenRunOptions {
 struct GoldenSuiteResult {
     std::vector<GoldenCaseResult> cases;  ///< those that fit the filters, in the suite's order
     std::vector<std::filesystem::path> orphans;
-    Verdict verdict = Verdict::same;  ///< the worst
+    Verdict verdict = Verdict::same;  ///< the worst; at least a warning where all were skipped
     double seconds = 0;
     bool interrupted = false;
     std::string started;  ///< ISO 8601, UTC
+
+    /// No case ran: nothing was compared, and nothing is known to be the same.
+    bool all_skipped() const;
 };
 
 /// Called for each case that has ended, one at a time.

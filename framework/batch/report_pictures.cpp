@@ -47,7 +47,8 @@ void ReportPictures::remove_old() {
         const fs::path file = folder_ / name;
         if (own_.contains(name) || !fs::is_regular_file(fs::symlink_status(file, failure))) continue;
         fs::remove(file, failure);
-        if (failure) throw Error(ExitCode::output, file.string() + ": cannot be removed: " + failure.message());
+        if (failure)
+            throw Error(ExitCode::output, file.string() + ": cannot be removed: " + failure.message());
     }
     write_text_file(list(), names);
     old_.clear();

@@ -8,9 +8,9 @@
 
 namespace aftershade {
 
-/// Knows files by a list of the names that reports have written here, DIR/images/.pictures. A name alone would
-/// not do: "shot.0001.reference.exr" may be anybody's; nor would the report.json of an earlier run, which a
-/// run that was killed has not written.
+/// Knows files by a list of the names that reports have written here, DIR/images/.pictures. A name alone
+/// would not do: "shot.0001.reference.exr" may be anybody's; nor would the report.json of an earlier run,
+/// which a run that was killed has not written.
 class ReportPictures {
 public:
     /// `folder` exists. Throws Error(ExitCode::output) where its list cannot be read.
@@ -18,12 +18,12 @@ public:
 
     const std::filesystem::path& folder() const { return folder_; }
 
-    /// Where to write the picture of that file name. It is listed before it is there, whatever ends the process.
-    /// Throws Error(ExitCode::output). [thread-safe]
+    /// Where to write the picture of that file name. It is listed before it is there, whatever ends the
+    /// process. Throws Error(ExitCode::output). [thread-safe]
     std::filesystem::path add(const std::string& name);
 
-    /// Removes the pictures of earlier runs that this one has not written again; files in no list stay. Throws
-    /// Error(ExitCode::output).
+    /// Removes the pictures of earlier runs that this one has not written again; files in no list stay.
+    /// Throws Error(ExitCode::output).
     void remove_old();
 
 private:

@@ -198,6 +198,25 @@ TEST_F(GoldenRun, SkipsWithAReasonAndFailsForItWhenAsked) {
     EXPECT_EQ(run({"--no-skip"}).exit_code, 2);
 }
 
+TEST_F(GoldenRun, WarnsWhereEveryCaseWasSkippedAndNothingCompared) {
+    approve();
+    write_suite(R"("fail": 0.004)", R"(,
+    { "name": "later", "steps": [], "capture": "in_0001.exr", "skip": "waits for its capture" },
+    { "name": "absent", "steps": [], "capture": "large/capture.json" })");
+    const std::vector<std::string> skipped = {"--filter", "later", "--filter", "absent"};
+    const CommandResult result = run(skipped);
+    EXPECT_EQ(result.exit_code, 1) << result.err;
+    EXPECT_NE(result.err.find("every case was skipped; nothing was compared"), std::string::npos)
+        << result.err;
+    const Json document = report(skipped);
+    EXPECT_EQ(document["verdict"], "warning");
+    EXPECT_EQ(document["exit_code"], 1);
+    EXPECT_EQ(run({"--no-skip", "--filter", "later"}).exit_code, 2);
+    const CommandResult one_ran = run({"--filter", "later", "--filter", "corner"});
+    EXPECT_EQ(one_ran.exit_code, 0) << one_ran.err;
+    EXPECT_EQ(one_ran.err.find("nothing was compared"), std::string::npos) << one_ran.err;
+}
+
 TEST_F(GoldenRun, EndsACaseThatTakesTooLong) {
     write_suite(R"("fail": 0.004)", R"(,
     { "name": "long", "look": "lens.json", "capture": "in_0001.exr", "set": ["bokeh.shape=octagon"] })");
@@ -215,6 +234,13 @@ TEST_F(GoldenRun, EndsWith64ForWrongWordsAndDocuments) {
     const CommandResult filter = run({"--filter", "slwo"});
     EXPECT_EQ(filter.exit_code, 64);
     EXPECT_NE(filter.err.find("did you mean 'slow'"), std::string::npos) << filter.err;
+    const CommandResult filters = run({"--filter", "lens", "--filter", "lends", "--filter", "x/*"});
+    EXPECT_EQ(filters.exit_code, 64) << "although one fits";
+    EXPECT_NE(filters.err.find("--filter lends: error: fits no case's name or tag; did you mean 'lens'"),
+              std::string::npos)
+        << filters.err;
+    EXPECT_NE(filters.err.find("--filter x/*: error: fits no case"), std::string::npos) << filters.err;
+    EXPECT_EQ(golden({"approve", "golden.json", "--filter", "lends"}).exit_code, 64);
     write_suite(R"("fial": 0.004)");
     const CommandResult document = run();
     EXPECT_EQ(document.exit_code, 64);
