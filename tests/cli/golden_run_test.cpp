@@ -161,6 +161,47 @@ TEST_F(GoldenRun, WarnsOfAnyBitWhereNothingThatChangesBitsHasChanged) {
         << "another renderer has the tolerance";
 }
 
+TEST_F(GoldenRun, HoldsAGoldenThatWasCopiedByHandToItsToleranceAlone) {
+    write_suite(R"("fail": 0.5)");
+    EXPECT_EQ(run({"--report", "report"}).exit_code, 2) << "there is no golden yet";
+    fs::create_directory(folder_ / "goldens");
+    const Json first = Json::parse(read_text(folder_ / "report/report.json"));
+    for (const Json& test : first["cases"])
+        for (const Json& made : test["images"])
+            fs::copy_file(folder_ / "report" / made["pictures"]["test_exr"].get<std::string>(),
+                          image(made["name"].get<std::string>()));
+    const Json copied = report();
+    EXPECT_EQ(copied["exit_code"], 0);
+    EXPECT_TRUE(all_bits_equal(copied));
+    for (const Json& test : copied["cases"])
+        for (const Json& made : test["images"]) {
+            EXPECT_EQ(made["tier"], "tolerance") << "nothing tells what made the golden";
+            EXPECT_TRUE(made["approved"]["sidecar"].is_null());
+        }
+    const CommandResult told = run();
+    EXPECT_EQ(told.exit_code, 0) << "an image without a sidecar is no orphan; " << told.err;
+    EXPECT_NE(told.err.find("note: goldens/lens.color.0001.exr and 2 more goldens: no sidecar tells what "
+                            "made them, so that only the tolerance counts"),
+              std::string::npos)
+        << told.err;
+    write_frame(1, 30.1f);
+    EXPECT_EQ(run({"--filter", "corner"}).exit_code, 0) << "other bits are no warning";
+    write_frame(1, 40);
+    EXPECT_EQ(run({"--filter", "corner"}).exit_code, 2);
+    write_frame(1, 30);
+    // A golden copied over an approved one: the sidecar that stays is of another image.
+    approve({"--renew-sidecars"});
+    EXPECT_EQ(case_of(report(), "corner")["images"][0]["tier"], "bits");
+    EXPECT_EQ(run().err.find("note:"), std::string::npos);
+    change_image(image("corner.color.0001"), [](Image& pixels) { pixels.at(31, 17, 1) += 0.01f; });
+    EXPECT_EQ(case_of(report(), "corner")["images"][0]["tier"], "tolerance");
+    const CommandResult over = run();
+    EXPECT_EQ(over.exit_code, 0) << over.err;
+    EXPECT_NE(over.err.find("note: goldens/corner.color.0001.exr: no sidecar tells what made it"),
+              std::string::npos)
+        << over.err;
+}
+
 TEST_F(GoldenRun, EndsWithTheWorstVerdict) {
     approve();
     fs::copy_file(image("corner.color.0001"), image("keep"));
