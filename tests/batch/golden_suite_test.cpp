@@ -221,7 +221,8 @@ protected:
                 "unused": {"type": "file", "kind": "lut", "default": "unused.cube", "doc": "."},
                 "scattering": {"type": "scattering_profile", "default": "wax", "doc": "."}},
             "presets": {"own": {"second": "preset.cube"}},
-            "passes": [{"name": "main", "shader": "graded.frag", "reads": ["color"], "writes": ["color"]}]})");
+            "passes": [{"name": "main", "shader": "graded.frag", "reads": ["color"],
+                        "writes": ["color"]}]})");
         for (const char* file :
              {"effects/graded/default.cube", "effects/graded/preset.cube", "effects/graded/unused.cube",
               "key_1.cube", "key_2.cube", "set.exr", "replaced.cube", "mask.png", "note.txt"})
