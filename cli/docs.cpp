@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <memory>
-#include <sstream>
 
 #include "cli/capture_options.h"
 #include "cli/effect_options.h"
@@ -48,13 +46,6 @@ std::map<std::string, std::string> pages(const DocsOptions& options, EffectRegis
     return pages;
 }
 
-std::string text_of(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
-}
-
 ExitCode docs(const DocsOptions& options) {
     Diagnostics diagnostics;
     EffectRegistry effects = find_effects(options.effect_paths, diagnostics);
@@ -65,7 +56,7 @@ ExitCode docs(const DocsOptions& options) {
     bool same = true;
     for (const auto& [name, text] : made) {
         const fs::path file = (fs::path(options.folder) / name).lexically_normal();
-        if (text_of(file) == text) continue;
+        if (fs::exists(file, failure) && read_text_file(file, ExitCode::usage) == text) continue;
         same = false;
         if (!options.check) write_text_file(file, text);
         fmt::print("{}{}\n", file.string(),

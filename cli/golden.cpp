@@ -45,6 +45,20 @@ void write_reports(const GoldenOptions& options, const GoldenSuiteResult& result
     if (options.json) std::fwrite(json.data(), 1, json.size(), stdout);
 }
 
+/// What the sums do not say: why a run that is not bad proves less than it seems to.
+void print_notes(const GoldenSuiteResult& result) {
+    if (result.all_skipped()) std::cerr << "warning: every case was skipped; nothing was compared\n";
+    std::vector<fs::path> bare;
+    for (const GoldenCaseResult& test : result.cases)
+        for (const GoldenImage& image : test.images)
+            if (image.approved && !image.approved->sidecar) bare.push_back(image.approved->file);
+    if (bare.empty()) return;
+    std::cerr << fmt::format("note: {}{}: no sidecar tells what made {}, so that only the tolerance counts\n",
+                             bare.front().string(),
+                             bare.size() > 1 ? fmt::format(" and {} more goldens", bare.size() - 1) : "",
+                             bare.size() > 1 ? "them" : "it");
+}
+
 ExitCode run(const GoldenOptions& options) {
     const std::atomic<bool>& stop = watch_for_interrupt();
     GoldenJob job = prepare_golden(options);
@@ -63,6 +77,7 @@ ExitCode run(const GoldenOptions& options) {
         stop);
     std::cerr << summary_of(result, job.context);
     if (result.interrupted) return ExitCode::interrupted;
+    print_notes(result);
     write_reports(options, result, job.context);
     return ExitCode(int(result.verdict));
 }

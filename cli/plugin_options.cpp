@@ -4,13 +4,12 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <mutex>
 #include <string_view>
 #include <thread>
 
 #include "framework/batch/worker.h"
+#include "framework/core/atomic_file.h"
 #include "framework/core/status.h"
 #include "framework/effect/native_library.h"
 
@@ -22,8 +21,7 @@ using Clock = std::chrono::steady_clock;
 
 /// The words of this process's command line.
 std::vector<std::string> own_arguments() {
-    std::ifstream in("/proc/self/cmdline", std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    const std::string text = read_text_file("/proc/self/cmdline", ExitCode::effect);
     std::vector<std::string> words;
     for (std::size_t at = 0; at < text.size();) {
         const std::size_t end = std::min(text.find('\0', at), text.size());

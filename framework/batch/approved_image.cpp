@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <span>
 
+#include "framework/core/atomic_file.h"
 #include "framework/core/text.h"
 #include "framework/image/frame_range.h"
 
@@ -36,14 +36,10 @@ std::string slug(const std::string& text) {
     return result;
 }
 
-std::string read_bytes(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
 std::optional<GoldenSidecar> read_sidecar(const fs::path& image) {
-    const Json json = Json::parse(read_bytes(sidecar_path(image)), nullptr, false);
-    if (!json.is_object()) return std::nullopt;
+    std::error_code absent;
+    const Json json = Json::parse(read_text_file(sidecar_path(image), absent), nullptr, false);
+    if (absent || !json.is_object()) return std::nullopt;
     const auto text = [&](const char* key) {
         const auto found = json.find(key);
         return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
@@ -141,9 +137,9 @@ std::string sidecar_text(const GoldenSidecar& sidecar) {
 }
 
 std::string file_hash(const fs::path& file) {
-    std::error_code absent;
-    if (!fs::is_regular_file(file, absent)) return "";
-    const std::string bytes = read_bytes(file);
+    std::error_code failure;
+    const std::string bytes = read_text_file(file, failure);
+    if (failure) return "";
     return fmt::format("{:016x}", fnv1a(std::as_bytes(std::span(bytes))));
 }
 

@@ -72,15 +72,17 @@ void copy_into(const fs::path& from, const fs::path& to) {
     file.commit();
 }
 
-/// `folder` is <report>/images; the names in the result begin there.
-void write_pictures(const GoldenCase& test, const RenderedImage& rendered, const fs::path& folder,
+/// The names in the result begin with that of the report's folder of pictures.
+void write_pictures(const GoldenCase& test, const RenderedImage& rendered, ReportPictures& report,
                     GoldenImage& result) {
     std::string stem = test.name + "." + rendered.name.substr(test.stem.size() + 1);
     std::ranges::replace(stem, '/', '.');
     const auto path = [&](const std::string& kind, const char* extension = ".png") {
-        return folder / (stem + "." + kind + extension);
+        return report.add(stem + "." + kind + extension);
     };
-    const auto told = [&](const fs::path& file) { return (folder.filename() / file.filename()).string(); };
+    const auto told = [&](const fs::path& file) {
+        return (report.folder().filename() / file.filename()).string();
+    };
     GoldenPictures& pictures = result.pictures;
     copy_into(rendered.file, path("test", ".exr"));
     pictures.test_exr = told(path("test", ".exr"));
@@ -124,7 +126,7 @@ bool has_equal_bits(const Comparison& comparison) {
 }
 
 GoldenImage judge_image(const GoldenCase& test, const RenderedImage& rendered, const std::string& look_hash,
-                        const GoldenEnvironment& environment, const fs::path& pictures) {
+                        const GoldenEnvironment& environment, ReportPictures* pictures) {
     const std::vector<ApprovedImage> approved = approved_images(test.goldens, rendered.name, environment);
     GoldenImage best;
     bool own_bits_differ = false;
@@ -148,7 +150,7 @@ GoldenImage judge_image(const GoldenCase& test, const RenderedImage& rendered, c
         best.verdict = Verdict::failure;
         best.reasons = {"no golden " + (test.goldens / (rendered.name + ".exr")).string()};
     }
-    if (!pictures.empty()) write_pictures(test, rendered, pictures, best);
+    if (pictures) write_pictures(test, rendered, *pictures, best);
     return best;
 }
 

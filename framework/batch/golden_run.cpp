@@ -55,8 +55,8 @@ void skip(GoldenCaseResult& result, const std::string& why, const GoldenRunOptio
     result.messages.push_back("skipped, and --no-skip: " + why);
 }
 
-void run_case(const GoldenRunOptions& options, const fs::path& work, const std::atomic<bool>& interrupt,
-              GoldenCaseResult& result, bool& interrupted) {
+void run_case(const GoldenRunOptions& options, const fs::path& work, ReportPictures* pictures,
+              const std::atomic<bool>& interrupt, GoldenCaseResult& result, bool& interrupted) {
     const GoldenCase& test = *result.test;
     if (!test.skip.empty()) return skip(result, test.skip, options);
     const RenderedCase rendered = render_case(test, options.render, work, interrupt);
@@ -66,7 +66,6 @@ void run_case(const GoldenRunOptions& options, const fs::path& work, const std::
     if (interrupted) return;
     result.verdict = rendered.verdict;
     result.messages = rendered.messages;
-    const fs::path pictures = options.report.empty() ? fs::path() : options.report / "images";
     for (const RenderedImage& image : rendered.images) {
         result.images.push_back(judge_image(test, image, result.look_hash, options.environment, pictures));
         result.verdict = std::max(result.verdict, result.images.back().verdict);
@@ -74,6 +73,10 @@ void run_case(const GoldenRunOptions& options, const fs::path& work, const std::
 }
 
 }  // namespace
+
+bool GoldenSuiteResult::all_skipped() const {
+    return std::ranges::all_of(cases, [](const GoldenCaseResult& test) { return !test.skipped.empty(); });
+}
 
 void for_each_in_folders(std::size_t count, int jobs,
                          const std::function<void(std::size_t, const fs::path&)>& work) {
@@ -126,6 +129,8 @@ GoldenSuiteResult run_golden_suite(const GoldenSuite& suite, const GoldenRunOpti
         result.cases.back().look_hash = hashes[i];
         result.cases.back().skipped = kInterrupted;  // until it has run
     }
+    std::optional<ReportPictures> pictures;
+    if (!options.report.empty()) pictures.emplace(options.report / "images");
     std::mutex telling;
     int done = 0;
     for_each_in_folders(cases.size(), options.jobs, [&](std::size_t i, const fs::path& work) {
@@ -133,16 +138,18 @@ GoldenSuiteResult run_golden_suite(const GoldenSuite& suite, const GoldenRunOpti
         const auto begin = Clock::now();
         bool interrupted = false;
         result.cases[i].skipped.clear();
-        run_case(options, work, interrupt, result.cases[i], interrupted);
+        run_case(options, work, pictures ? &*pictures : nullptr, interrupt, result.cases[i], interrupted);
         if (interrupted) result.cases[i].skipped = kInterrupted;
         result.cases[i].seconds = seconds_since(begin);
         const std::scoped_lock lock(telling);
         if (!interrupted && listener) listener(result.cases[i], ++done, int(cases.size()));
     });
     result.interrupted = interrupt;
+    if (pictures && !interrupt) pictures->remove_old();
     result.orphans = orphaned_goldens(suite, options.filters);
     if (!result.orphans.empty()) result.verdict = Verdict::failure;
     for (const GoldenCaseResult& test : result.cases) result.verdict = std::max(result.verdict, test.verdict);
+    if (result.all_skipped()) result.verdict = std::max(result.verdict, Verdict::warning);
     result.seconds = seconds_since(start);
     return result;
 }

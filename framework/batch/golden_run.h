@@ -13,6 +13,7 @@
 #include "framework/batch/approved_image.h"
 #include "framework/batch/golden_render.h"
 #include "framework/batch/golden_suite.h"
+#include "framework/batch/report_pictures.h"
 #include "framework/compare/compare_files.h"
 
 namespace aftershade {
@@ -54,7 +55,7 @@ struct GoldenRunOptions {
     GoldenRenderOptions render;
     GoldenEnvironment environment;  ///< of the workers
     std::vector<std::string> filters;
-    std::filesystem::path report;  ///< folder for pictures; "" for none
+    std::filesystem::path report;  ///< <report>/images exists and is for pictures; "": none are written
     int jobs = 1;
     bool no_skip = false;  ///< a skipped case fails
 };
@@ -62,10 +63,13 @@ struct GoldenRunOptions {
 struct GoldenSuiteResult {
     std::vector<GoldenCaseResult> cases;  ///< those that fit the filters, in the suite's order
     std::vector<std::filesystem::path> orphans;
-    Verdict verdict = Verdict::same;  ///< the worst
+    Verdict verdict = Verdict::same;  ///< the worst; at least a warning where all were skipped
     double seconds = 0;
     bool interrupted = false;
     std::string started;  ///< ISO 8601, UTC
+
+    /// No case ran: nothing was compared, and nothing is known to be the same.
+    bool all_skipped() const;
 };
 
 /// Called for each case that has ended, one at a time.
@@ -87,9 +91,9 @@ void for_each_in_folders(std::size_t count, int jobs,
 /// Whether two files have the same layers with the same bits in every value.
 bool has_equal_bits(const Comparison& comparison);
 
-/// An image against those approved by its name, the renderer's own first; with `pictures`, a folder that
-/// exists, the pictures are written there.
+/// An image against those approved by its name, the renderer's own first; its pictures are written, unless
+/// `pictures` is nullptr.
 GoldenImage judge_image(const GoldenCase& test, const RenderedImage& rendered, const std::string& look_hash,
-                        const GoldenEnvironment& environment, const std::filesystem::path& pictures);
+                        const GoldenEnvironment& environment, ReportPictures* pictures);
 
 }  // namespace aftershade

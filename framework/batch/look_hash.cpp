@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <regex>
 #include <set>
 #include <span>
 #include <sstream>
 
+#include "framework/core/atomic_file.h"
 #include "framework/core/text.h"
-#include "framework/pipeline/look.h"
+#include "framework/pipeline/pipeline.h"
 
 namespace aftershade {
 
@@ -19,16 +18,39 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string read_bytes(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
+/// The name too, but not where it lies: another checkout gives the same hash.
+void add_file(const fs::path& file, std::string& text) {
+    text += "\n" + file.filename().string() + "\n" + read_text_file(file, ExitCode::usage);
+}
+
+/// What the files hold that the step's parameters and its mask name. Of a scattering profile, which may be a
+/// file too, what was read from it: its name is in the look or the manifest.
+void add_values(const PipelineStep& step, std::string& text) {
+    for (const ParamSpec& spec : step.manifest->params)
+        for (const ParamValue& value : step.known_values(spec)) {
+            if (const auto* scattering = std::get_if<ScatteringValue>(&value))
+                for (ScatteringProfile profile : scattering_profiles_of(*scattering)) {
+                    profile.name.clear();
+                    text += "\n" + format_scattering_profile(profile);
+                }
+            if (spec.type == ParamType::file && !std::get<std::string>(value).empty())
+                add_file(std::get<std::string>(value), text);
+        }
+    if (step.mask && !step.mask->file.empty()) add_file(step.mask->file, text);
+}
+
+/// The code of a native effect, without its tests.
+bool is_native_source(const fs::path& file) {
+    const std::string extension = file.extension().string();
+    return (extension == ".c" || extension == ".cpp" || extension == ".h") &&
+           !file.stem().string().ends_with("_test");
 }
 
 /// A shader file and all that it includes, each once.
 void gather_shader(const fs::path& file, const fs::path& glsl_folder, std::set<fs::path>& files) {
     if (!files.insert(file.lexically_normal()).second) return;
     static const std::regex include(R"(^\s*#\s*include\s*([<"])([^">]*)[>"])");
-    std::istringstream lines(read_bytes(file));
+    std::istringstream lines(read_text_file(file, ExitCode::usage));
     for (std::string line; std::getline(lines, line);) {
         std::smatch match;
         if (!std::regex_search(line, match, include) || match[2] == "pass") continue;
@@ -45,9 +67,12 @@ std::set<fs::path> files_of(const EffectManifest& manifest, const fs::path& glsl
             if (!shader.empty()) gather_shader(pass.folder / shader, glsl_folder, files);
     if (manifest.native)
         for (const auto& entry : fs::directory_iterator(manifest.folder))
-            if (entry.path().extension() == ".cpp" && !entry.path().stem().string().ends_with("_test"))
-                files.insert(entry.path());
+            if (is_native_source(entry.path())) files.insert(entry.path());
     return files;
+}
+
+[[noreturn]] void refuse() {
+    throw Error(ExitCode::usage, "the look has faults");
 }
 
 }  // namespace
@@ -56,7 +81,16 @@ LookHasher::LookHasher(std::vector<fs::path> effect_folders, fs::path glsl_folde
     : effects_(std::move(effect_folders), glsl_folder), glsl_folder_(std::move(glsl_folder)) {}
 
 std::string LookHasher::hash(const GoldenCase& test) {
-    Diagnostics faults;  // are the worker's to tell
+    try {
+        const std::string text = text_of(test);
+        return fmt::format("{:016x}", fnv1a(std::as_bytes(std::span(text))));
+    } catch (const Error&) {
+        return "";  // the worker tells it
+    }
+}
+
+std::string LookHasher::text_of(const GoldenCase& test) {
+    Diagnostics faults;
     std::optional<Look> look;
     if (!test.look.empty()) {
         look = read_look(test.look, faults);
@@ -64,34 +98,29 @@ std::string LookHasher::hash(const GoldenCase& test) {
         node->place.file = (test.folder / test.file.filename()).string();
         look = parse_look(*node, faults);
     }
-    if (!look || faults.has_errors()) return "";
+    if (!look) refuse();
+    PipelineOptions options;
+    options.sets = test.sets;
+    const Pipeline pipeline = compile_pipeline(*look, effects_, options, faults);
+    if (faults.has_errors()) refuse();
     std::string text = test.steps;
     // Of a suite or a case only the steps count; its tolerance changes no picture.
     for (std::size_t i = test.look.empty() ? 1 : 0; i < look->files.size(); ++i)
-        text += read_bytes(look->files[i]);
+        text += read_text_file(look->files[i], ExitCode::usage);
     for (const std::string& set : test.sets) text += "\n" + set;
     std::set<std::string> ids;
     for (const LookStep& step : look->steps) ids.insert(step.effect);
-    for (const std::string& id : ids)
-        if (!add_effect(id, text)) return "";
-    return fmt::format("{:016x}", fnv1a(std::as_bytes(std::span(text))));
+    for (const std::string& id : ids) text += effect_text(id);
+    for (const PipelineStep& step : pipeline.steps) add_values(step, text);
+    return text;
 }
 
-bool LookHasher::add_effect(const std::string& id, std::string& text) {
-    const auto [known, is_new] = effect_texts_.emplace(id, "");
-    if (is_new) {
-        Diagnostics faults;
-        const EffectManifest* manifest = effects_.contains(id) ? effects_.find(id, faults) : nullptr;
-        if (manifest)
-            for (const fs::path& file : files_of(*manifest, glsl_folder_)) add_file(file, known->second);
-    }
-    text += known->second;
-    return !known->second.empty();
-}
-
-/// The name too, but not where it lies: another checkout gives the same hash.
-void LookHasher::add_file(const fs::path& file, std::string& text) {
-    text += "\n" + file.filename().string() + "\n" + read_bytes(file);
+const std::string& LookHasher::effect_text(const std::string& id) {
+    if (const auto known = effect_texts_.find(id); known != effect_texts_.end()) return known->second;
+    Diagnostics faults;
+    std::string text;
+    for (const fs::path& file : files_of(*effects_.find(id, faults), glsl_folder_)) add_file(file, text);
+    return effect_texts_[id] = std::move(text);
 }
 
 }  // namespace aftershade

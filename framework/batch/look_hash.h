@@ -17,18 +17,20 @@ public:
     /// As the registry's: folders of effects in order, and the folder of shared GLSL.
     LookHasher(std::vector<std::filesystem::path> effect_folders, std::filesystem::path glsl_folder);
 
-    /// 16 hexadecimal digits over the look (and looks that it uses), `--set`s, and of each of its effects the
-    /// manifest, its modules' manifests, native sources and every shader with what it includes; a change of
-    /// none of them cannot change a picture on one machine. "" where one of them cannot be read.
+    /// 16 hexadecimal digits over the look (and looks that it uses), `--set`s, the files that values and
+    /// masks name, scattering profiles by what they say, and of each of its effects the manifest, its
+    /// modules' manifests, native sources and every shader with what it includes; a change of none of them
+    /// cannot change a picture on one machine. "" after faults of the look, or where one of them cannot be
+    /// read.
     std::string hash(const GoldenCase& test);
 
 private:
-    bool add_effect(const std::string& id, std::string& text);
-    void add_file(const std::filesystem::path& file, std::string& text);
+    std::string text_of(const GoldenCase& test);
+    const std::string& effect_text(const std::string& id);
 
     EffectRegistry effects_;
     std::filesystem::path glsl_folder_;
-    std::map<std::string, std::string> effect_texts_;  // by id; "" for one with faults
+    std::map<std::string, std::string> effect_texts_;  // by id
 };
 
 }  // namespace aftershade

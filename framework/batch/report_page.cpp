@@ -3,12 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <numeric>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -30,13 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-std::string read_bytes(const fs::path& path) {
-    std::ifstream in(path, std::ios::binary);
-    std::string bytes{std::istreambuf_iterator<char>(in), {}};
-    if (!in) throw Error(ExitCode::capture, path.string() + ": cannot be read");
-    return bytes;
-}
 
 std::string hex_color(const DisplayColor& color) {
     const auto byte = [&](std::size_t c) { return int(std::clamp(color[c], 0.0f, 1.0f) * 255 + 0.5f); };
@@ -121,7 +109,8 @@ public:
     /// Adds "shown" to the image: {"layers": [...], "picture", "heat_map": text or null, "missing": words}.
     /// "picture" is a small one, for images that pass.
     void add(Json& image) {
-        Json shown = {{"layers", Json::array()}, {"picture", nullptr}, {"heat_map", nullptr}, {"missing", ""}};
+        Json shown = {
+            {"layers", Json::array()}, {"picture", nullptr}, {"heat_map", nullptr}, {"missing", ""}};
         try {
             const Json& pictures = image.at("pictures");
             if (image.at("bits_equal") != true) add_layers(pictures, shown);
@@ -139,7 +128,7 @@ private:
 
     Json png(const Json& name) {
         if (!name.is_string()) return nullptr;
-        const std::string bytes = read_bytes(report_ / name.get<std::string>());
+        const std::string bytes = read_text_file(report_ / name.get<std::string>(), ExitCode::capture);
         return store_.add(base64(std::as_bytes(std::span(bytes))));
     }
 
@@ -198,7 +187,11 @@ void add_images(Json& report, const fs::path& folder, Store& store) {
         for (Json& image : test.at("images")) {
             const bool equal = image.at("bits_equal") == true;
             const std::string verdict = image.at("verdict");
-            entries.push_back({&image, equal, equal ? 3 : verdict == "same" ? 2 : verdict == "warning" ? 1 : 0});
+            entries.push_back({&image, equal,
+                               equal                  ? 3
+                               : verdict == "same"    ? 2
+                               : verdict == "warning" ? 1
+                                                      : 0});
         }
     std::ranges::stable_sort(entries, {}, &Entry::rank);
     PageImages images(folder, store);
@@ -226,10 +219,11 @@ void write_report_page(const fs::path& report, const fs::path& page, const Repor
     Json data;
     Store store(options.limit_bytes);
     try {
-        data = Json::parse(read_bytes(file));
+        data = Json::parse(read_text_file(file, ExitCode::capture));
         add_images(data, report, store);
     } catch (const Json::exception& error) {
-        throw Error(ExitCode::capture, fmt::format("{}: is no report of a golden suite: {}", file.string(), error.what()));
+        throw Error(ExitCode::capture,
+                    fmt::format("{}: is no report of a golden suite: {}", file.string(), error.what()));
     }
     data["palette"] = palette();
     std::error_code failure;
@@ -237,9 +231,10 @@ void write_report_page(const fs::path& report, const fs::path& page, const Repor
     std::string html(report_page_html());
     replace_mark(html, "<!-- style -->", fmt::format("<style>\n{}</style>", report_page_style()));
     replace_mark(html, "<!-- data -->",
-                 fmt::format("<script type=\"application/json\" id=\"report\">{}</script>\n{}", in_element(data),
-                             store.elements()));
-    replace_mark(html, "<!-- script -->", fmt::format("<script type=\"module\">\n{}</script>", report_page_script()));
+                 fmt::format("<script type=\"application/json\" id=\"report\">{}</script>\n{}",
+                             in_element(data), store.elements()));
+    replace_mark(html, "<!-- script -->",
+                 fmt::format("<script type=\"module\">\n{}</script>", report_page_script()));
     write_text_file(page, html);
 }
 

@@ -3,13 +3,12 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <utility>
-
-#include "framework/core/error.h"
 
 namespace aftershade {
 
@@ -49,6 +48,27 @@ void write_text_file(const fs::path& path, std::string_view text) {
     out.close();
     if (!out) throw Error(ExitCode::output, path.string() + ": cannot be written");
     file.commit();
+}
+
+std::string read_text_file(const fs::path& path, std::error_code& failure) {
+    failure.clear();
+    errno = 0;
+    std::ifstream in(path, std::ios::binary);
+    std::string text;
+    std::array<char, 65536> buffer;
+    while (in && in.read(buffer.data(), buffer.size()).gcount() > 0)
+        text.append(buffer.data(), std::size_t(in.gcount()));
+    // A folder can be opened, but not read.
+    if (in.is_open() && !in.bad()) return text;
+    failure.assign(errno != 0 ? errno : EIO, std::generic_category());
+    return "";
+}
+
+std::string read_text_file(const fs::path& path, ExitCode code) {
+    std::error_code failure;
+    std::string text = read_text_file(path, failure);
+    if (failure) throw Error(code, path.string() + ": cannot be read: " + failure.message());
+    return text;
 }
 
 }  // namespace aftershade

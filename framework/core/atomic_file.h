@@ -1,8 +1,12 @@
-// A file that appears whole or not at all.
+// Files that appear whole or not at all, and files read whole.
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
+#include <system_error>
+
+#include "framework/core/error.h"
 
 namespace aftershade {
 
@@ -27,5 +31,11 @@ private:
 
 /// Replaces the file by this text. Throws Error(ExitCode::output) naming the path.
 void write_text_file(const std::filesystem::path& path, std::string_view text);
+
+/// The file's bytes as they are, also where the system does not know their number (/proc). "" where it cannot
+/// be read; `failure` says why, and is cleared otherwise.
+std::string read_text_file(const std::filesystem::path& path, std::error_code& failure);
+/// The same. Throws Error(code) naming the path and the system's reason.
+std::string read_text_file(const std::filesystem::path& path, ExitCode code);
 
 }  // namespace aftershade

@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <utility>
+
+#include "framework/core/atomic_file.h"
 
 namespace aftershade {
 
@@ -275,14 +273,12 @@ std::optional<Node> read_document(const fs::path& path, Diagnostics& diagnostics
                                       std::to_string(kMaxDocumentBytes) + " that a document may have");
         return std::nullopt;
     }
-    std::ifstream in(path, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    if (!in) {
-        diagnostics.error({name}, "cannot be read: " + std::string(std::strerror(errno)));
+    const std::string text = read_text_file(path, failure);
+    if (failure) {
+        diagnostics.error({name}, "cannot be read: " + failure.message());
         return std::nullopt;
     }
-    return parse_document(text.str(), name, diagnostics);
+    return parse_document(text, name, diagnostics);
 }
 
 ObjectReader::ObjectReader(const Node& node, std::string thing, Diagnostics& diagnostics)

@@ -1,22 +1,14 @@
 #include "framework/effect/pass_program.h"
 
-#include <fstream>
 #include <sstream>
 #include <utility>
 
+#include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
 
 namespace aftershade {
 
 namespace {
-
-std::string read_text(const std::filesystem::path& file) {
-    std::ifstream in(file);
-    std::ostringstream text;
-    text << in.rdbuf();
-    if (!in) throw Error(ExitCode::effect, file.string() + ": cannot be read");
-    return text.str();
-}
 
 Place author_place(const ShaderSource& source, const gpu::ShaderMessage& message) {
     if (message.line < 1 || message.line > int(source.lines.size())) return {"shader"};
@@ -47,7 +39,7 @@ ProgramCache::ProgramCache(gpu::Context& context, std::filesystem::path glsl_fol
     : context_(context),
       glsl_folder_(std::move(glsl_folder)),
       store_(std::move(store)),
-      full_screen_(read_text(glsl_folder_ / "fullscreen.vert")) {}
+      full_screen_(read_text_file(glsl_folder_ / "fullscreen.vert", ExitCode::effect)) {}
 
 ProgramCache::Sources ProgramCache::assemble(const ShaderContext& context, Diagnostics& faults) const {
     Sources sources;
@@ -88,7 +80,7 @@ gpu::Program ProgramCache::make(const Sources& sources, const std::string& label
 const gpu::Program& ProgramCache::host(const std::string& file, const std::vector<std::string>& defines) {
     Sources sources;
     sources.vertex = full_screen_;
-    sources.main.text = read_text(glsl_folder_ / "host" / file);
+    sources.main.text = read_text_file(glsl_folder_ / "host" / file, ExitCode::effect);
     std::string symbols;
     for (const std::string& define : defines) symbols += "#define " + define + " 1\n";
     sources.main.text.insert(sources.main.text.find('\n') + 1, symbols);

@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <system_error>
 
 #include "framework/core/atomic_file.h"
@@ -93,8 +92,7 @@ std::optional<gpu::ProgramBinary> ProgramStore::load(const std::string& key) con
     std::error_code failure;
     if (!fs::is_regular_file(file, failure) || fs::file_size(file, failure) > kMaxFileBytes || failure)
         return std::nullopt;
-    std::ifstream in(file, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    const std::string text = read_text_file(file, failure);
     Taker taker{text};
     if (taker.bytes(kMagic.size()) != kMagic || taker.bytes(taker.number()) != key) return std::nullopt;
     gpu::ProgramBinary binary;

@@ -1,15 +1,13 @@
 #include "framework/image/lut.h"
 
+#include "framework/core/atomic_file.h"
 #include "framework/core/units.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
-#include <fstream>
 #include <limits>
 #include <set>
 #include <utility>
@@ -202,10 +200,8 @@ std::optional<Lut> read_lut(const fs::path& path, Diagnostics& diagnostics) {
     if (failure) return fault("cannot be opened: " + failure.message());
     if (size > kMaxFileBytes)
         return fault(fmt::format("the file has {} bytes, the limit is {}", size, kMaxFileBytes));
-    std::string text(size, '\0');
-    std::ifstream in(path, std::ios::binary);
-    if (!in || (size > 0 && !in.read(text.data(), std::streamsize(size))))
-        return fault("cannot be read: " + std::string(std::strerror(errno)));
+    const std::string text = read_text_file(path, failure);
+    if (failure) return fault("cannot be read: " + failure.message());
     return parse_lut(text, name, diagnostics);
 }
 

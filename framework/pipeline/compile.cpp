@@ -214,15 +214,6 @@ private:
                                                        did_you_mean(*look_step.preset, names));
     }
 
-    /// A path is complete from here on; it was named from `folder`, or from the working directory.
-    static ParamValue with_file(const ParamSpec& spec, ParamValue value,
-                                const std::filesystem::path& folder) {
-        if (spec.type != ParamType::file) return value;
-        auto& path = std::get<std::string>(value);
-        if (!path.empty()) path = (folder / path).string();
-        return value;
-    }
-
     void set_value(PipelineStep& step, const std::string& name, const Node& value, const Place& key_place,
                    const std::string& origin, const std::filesystem::path& folder) {
         const ParamSpec* spec = step.manifest->find_param(name);
@@ -234,13 +225,17 @@ private:
         }
         auto parsed = parse_value_source(*spec, value, step.name + "." + name, diagnostics_);
         if (!parsed) return;
-        if (auto* literal = std::get_if<ParamValue>(&*parsed); literal && spec->type == ParamType::file) {
-            *literal = with_file(*spec, std::move(*literal), folder);
-            const auto& path = std::get<std::string>(*literal);
+        const auto complete = [&](ParamValue& file) {
+            file = with_file(*spec, std::move(file), folder);
+            const auto& path = std::get<std::string>(file);
             std::error_code failure;
             if (!path.empty() && !std::filesystem::is_regular_file(path, failure))
                 diagnostics_.error(value.place, step.name + "." + name + ": no file '" + path + "'");
-        }
+        };
+        auto* literal = std::get_if<ParamValue>(&*parsed);
+        if (spec->type == ParamType::file && literal) complete(*literal);
+        if (auto* keyed = std::get_if<KeyedValue>(&*parsed); keyed && spec->type == ParamType::file)
+            for (auto& [frame, file] : keyed->keys) complete(file);
         step.values[name] = std::move(*parsed);
         step.origins[name] = origin;
         step.places[name] = value.place;

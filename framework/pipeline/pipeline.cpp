@@ -49,6 +49,16 @@ bool PipelineStep::may_take(const InputSpec& input) const {
     });
 }
 
+std::vector<ParamValue> PipelineStep::known_values(const ParamSpec& spec) const {
+    const auto asked = values.find(spec.name);
+    if (asked == values.end()) return {with_file(spec, spec.default_value, manifest->folder)};
+    if (const auto* literal = std::get_if<ParamValue>(&asked->second)) return {*literal};
+    std::vector<ParamValue> known;
+    if (const auto* keyed = std::get_if<KeyedValue>(&asked->second))
+        for (const auto& [frame, value] : keyed->keys) known.push_back(value);
+    return known;
+}
+
 std::vector<std::string> Pipeline::capture_roles() const {
     std::vector<std::string> roles{"color"};
     for (const PipelineStep& step : steps) {
@@ -93,6 +103,13 @@ int Pipeline::last_accumulating_step() const {
     for (int i = int(steps.size()) - 1; i >= 0; --i)
         if (steps[std::size_t(i)].manifest->accumulates_subframes) return i;
     return -1;
+}
+
+ParamValue with_file(const ParamSpec& spec, ParamValue value, const std::filesystem::path& folder) {
+    if (spec.type != ParamType::file) return value;
+    auto& path = std::get<std::string>(value);
+    if (!path.empty()) path = (folder / path).string();
+    return value;
 }
 
 const ParamSpec& mix_spec() {
@@ -169,7 +186,7 @@ ResolvedValue resolve_param(const PipelineStep& step, const ParamSpec& spec, con
         if (auto captured = camera_value(spec, field, label, frame.capture->header))
             return {std::move(*captured), frame.capture->header.camera.origin(field)};
     }
-    return {spec.default_value, "the manifest"};
+    return {with_file(spec, spec.default_value, step.manifest->folder), "the manifest"};
 }
 
 /// A relation that the capture's or keyed values break; those of the look alone were checked before.

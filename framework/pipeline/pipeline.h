@@ -1,6 +1,7 @@
 // A look bound to its effects: what each step reads, and which values were asked for.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -39,6 +40,9 @@ struct PipelineStep {
 
     /// Whether the input's conditions may hold: with values that differ from frame to frame they may.
     bool may_take(const InputSpec& input) const;
+    /// Every value that the parameter may have, whatever the frame, but for what only the capture knows: the
+    /// user's, by keys all of them, else the manifest's. Paths of files are complete.
+    std::vector<ParamValue> known_values(const ParamSpec& spec) const;
 };
 
 /// "bokeh.coc": an intermediate to be written out.
@@ -90,6 +94,9 @@ struct PipelineOptions {
 /// usable if there was none.
 Pipeline compile_pipeline(const Look& look, EffectRegistry& effects, const PipelineOptions& options,
                           Diagnostics& diagnostics);
+
+/// The value with the path of a file, where it is one, named from `folder`; "" stays "".
+ParamValue with_file(const ParamSpec& spec, ParamValue value, const std::filesystem::path& folder);
 
 /// What every step takes from the host: "mix", 0 to 1.
 const ParamSpec& mix_spec();

@@ -196,6 +196,90 @@ TEST(LookHash, ChangesWithTheLookItsManifestAndEveryShaderAndWithNothingElse) {
     EXPECT_EQ(hash(), before);
     test.steps = R"({"aftershade": 1, "steps": [ {"effect": "none"} ]})";
     EXPECT_EQ(hash(), "");
+    test.steps = R"({"aftershade": 1, "steps": [ {"effect": "tint", "params": {"no": 1}} ]})";
+    EXPECT_EQ(hash(), "");
+}
+
+/// An effect with files of its own, and a look that names others in every way there is.
+class LookWithFiles : public testing::Test {
+protected:
+    LookWithFiles() {
+        fs::create_directories(folder_ / "effects/graded");
+        fs::create_directories(folder_ / "glsl");
+        fs::create_directories(folder_ / "profiles/scattering");
+        setenv("AFTERSHADE_DATA", folder_.path().c_str(), 1);
+        write_text(folder_ / "effects/graded/graded.frag",
+                   "#version 450 core\n#include <pass>\nvoid main() {}\n");
+        write_text(folder_ / "effects/graded/effect.json",
+                   R"({"aftershade": 1, "id": "graded", "version": "1.0.0", "summary": "A grade.",
+            "inputs": {"color": {"role": "color"}}, "outputs": {"color": {"role": "color"}},
+            "params": {
+                "first": {"type": "file", "kind": "lut", "default": "default.cube", "doc": "."},
+                "second": {"type": "file", "kind": "lut", "default": "", "doc": "."},
+                "third": {"type": "file", "kind": "lut", "default": "", "doc": "."},
+                "fourth": {"type": "file", "kind": "image", "default": "", "doc": "."},
+                "unused": {"type": "file", "kind": "lut", "default": "unused.cube", "doc": "."},
+                "scattering": {"type": "scattering_profile", "default": "wax", "doc": "."}},
+            "presets": {"own": {"second": "preset.cube"}},
+            "passes": [{"name": "main", "shader": "graded.frag", "reads": ["color"],
+                        "writes": ["color"]}]})");
+        for (const char* file :
+             {"effects/graded/default.cube", "effects/graded/preset.cube", "effects/graded/unused.cube",
+              "key_1.cube", "key_2.cube", "set.exr", "replaced.cube", "mask.png", "note.txt"})
+            write_text(folder_ / file, file);
+        for (const char* file : kProfiles) write_text(folder_ / file, profile("0.5", "A wax."));
+        write_text(folder_ / "look.json",
+                   R"({"aftershade": 1, "steps": [ {"effect": "graded", "preset": "own",
+            "mask": {"file": "mask.png"}, "params": {
+                "third": {"keys": {"1": "key_1.cube", "2": "key_2.cube"}}, "fourth": "replaced.cube",
+                "unused": "",
+                "scattering": {"default": "usual.json", "rows": [
+                    {"object": 3, "profile": "row.json"}, {"object": 4, "profile": "wax"}]}}} ]})");
+        test_.look = folder_ / "look.json";
+        test_.sets = {"graded.fourth=" + (folder_ / "set.exr").string()};
+    }
+    ~LookWithFiles() override { unsetenv("AFTERSHADE_DATA"); }
+    static constexpr const char* kProfiles[] = {"usual.json", "row.json", "profiles/scattering/wax.json"};
+    static std::string profile(const std::string& d_mm, const std::string& summary) {
+        return R"({"aftershade": 1, "type": "burley", "d_mm": [1, 1, )" + d_mm + R"(], "summary": ")" +
+               summary + "\"}";
+    }
+    std::string hash() const { return LookHasher({folder_ / "effects"}, folder_ / "glsl").hash(test_); }
+
+    TemporaryFolder folder_;
+    GoldenCase test_;
+};
+
+TEST_F(LookWithFiles, HasAnotherHashWithEachOfThemAndWithNoOther) {
+    const std::string before = hash();
+    ASSERT_EQ(before.size(), 16u);
+    for (const char* file : {"effects/graded/default.cube", "effects/graded/preset.cube", "key_1.cube",
+                             "key_2.cube", "set.exr", "mask.png"}) {
+        write_text(folder_ / file, std::string(file) + " ");
+        EXPECT_NE(hash(), before) << file;
+        write_text(folder_ / file, file);
+        EXPECT_EQ(hash(), before) << file;
+    }
+    for (const char* file : {"effects/graded/unused.cube", "replaced.cube", "note.txt"}) {
+        write_text(folder_ / file, "another");
+        EXPECT_EQ(hash(), before) << file;
+    }
+}
+
+TEST_F(LookWithFiles, HasAnotherHashWithWhatItsScatteringProfilesSay) {
+    const std::string before = hash();
+    ASSERT_EQ(before.size(), 16u);
+    for (const char* file : kProfiles) {
+        write_text(folder_ / file, profile("0.5000001", "A wax."));
+        EXPECT_NE(hash(), before) << file;
+        write_text(folder_ / file, profile("0.5", "A wax, or a cheese."));
+        EXPECT_EQ(hash(), before) << "what it says of itself draws nothing";
+    }
+}
+
+TEST_F(LookWithFiles, HasNoHashWithoutThem) {
+    fs::remove(folder_ / "effects/graded/default.cube");
+    EXPECT_EQ(hash(), "");
 }
 
 }  // namespace

@@ -98,6 +98,39 @@ TEST_F(GoldenRun, TellsAnEffectThatFailsAndGoesOn) {
     EXPECT_EQ(result.err.find("to approve"), std::string::npos) << "there is no image to approve";
 }
 
+TEST_F(GoldenRun, CatchesAnOutputThatTheCaseDoesNotName) {
+    fs::create_directories(folder_ / "mine/litters");
+    write_text(folder_ / "mine/litters/effect.json",
+               R"({ "aftershade": 1, "version": "1.0.0", "summary": "A test.", "id": "litters",
+        "inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
+        "params": { "gain": { "type": "float", "default": 0.5, "doc": "." } },
+        "native": { "uniforms": { "gain": { "type": "float", "doc": "Gain times the frame's number." } } },
+        "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color"], "writes": ["color"] } ] })");
+    write_text(folder_ / "mine/litters/main.frag",
+               "#version 450 core\n#include <pass>\nvoid main() { out_color = texelFetch(color, "
+               "ivec2(gl_FragCoord.xy), 0) * native.gain; }\n");
+    write_text(folder_ / "golden.json", R"({ "aftershade": 1, "effect_paths": ["mine"], "cases": [
+    { "name": "tidy", "steps": [ { "effect": "litters" } ], "capture": "in_####.exr", "frames": "1" } ] })");
+    const std::vector<std::string> with_library = {"--plugin-path", AFTERSHADE_CASES};
+    approve(with_library);
+    EXPECT_EQ(run(with_library).exit_code, 0);
+    for (const std::string name : {"stray.exr", "0002.exr"}) {
+        const Environment littering = {{"LITTER", name}};
+        const CommandResult result = run(with_library, littering);
+        EXPECT_EQ(result.exit_code, 2) << result.err;
+        EXPECT_NE(result.err.find("FAILED tidy: failure\n    an output that the case does not name: " + name),
+                  std::string::npos)
+            << result.err;
+        const Json document = report(with_library, littering);
+        EXPECT_TRUE(all_bits_equal(document)) << "nothing else is wrong";
+        EXPECT_TRUE(document["cases"][0]["approve"].is_null()) << "no new image makes it pass";
+        const CommandResult approval =
+            golden({"approve", "golden.json", "--plugin-path", AFTERSHADE_CASES}, littering);
+        EXPECT_EQ(approval.exit_code, 2) << approval.err;
+        EXPECT_NE(approval.err.find(name), std::string::npos) << approval.err;
+    }
+}
+
 // ---- what changes no bit ----
 
 TEST_F(GoldenRun, GivesTheSameBitsOnBothBackendsWithAnyThreadsAndVectors) {
@@ -126,6 +159,47 @@ TEST_F(GoldenRun, WarnsOfAnyBitWhereNothingThatChangesBitsHasChanged) {
     EXPECT_NE(result.err.find("bits differ although"), std::string::npos) << result.err;
     EXPECT_EQ(run({"--filter", "corner"}, {{"LP_NATIVE_VECTOR_WIDTH", "128"}}).exit_code, 0)
         << "another renderer has the tolerance";
+}
+
+TEST_F(GoldenRun, HoldsAGoldenThatWasCopiedByHandToItsToleranceAlone) {
+    write_suite(R"("fail": 0.5)");
+    EXPECT_EQ(run({"--report", "report"}).exit_code, 2) << "there is no golden yet";
+    fs::create_directory(folder_ / "goldens");
+    const Json first = Json::parse(read_text(folder_ / "report/report.json"));
+    for (const Json& test : first["cases"])
+        for (const Json& made : test["images"])
+            fs::copy_file(folder_ / "report" / made["pictures"]["test_exr"].get<std::string>(),
+                          image(made["name"].get<std::string>()));
+    const Json copied = report();
+    EXPECT_EQ(copied["exit_code"], 0);
+    EXPECT_TRUE(all_bits_equal(copied));
+    for (const Json& test : copied["cases"])
+        for (const Json& made : test["images"]) {
+            EXPECT_EQ(made["tier"], "tolerance") << "nothing tells what made the golden";
+            EXPECT_TRUE(made["approved"]["sidecar"].is_null());
+        }
+    const CommandResult told = run();
+    EXPECT_EQ(told.exit_code, 0) << "an image without a sidecar is no orphan; " << told.err;
+    EXPECT_NE(told.err.find("note: goldens/lens.color.0001.exr and 2 more goldens: no sidecar tells what "
+                            "made them, so that only the tolerance counts"),
+              std::string::npos)
+        << told.err;
+    write_frame(1, 30.1f);
+    EXPECT_EQ(run({"--filter", "corner"}).exit_code, 0) << "other bits are no warning";
+    write_frame(1, 40);
+    EXPECT_EQ(run({"--filter", "corner"}).exit_code, 2);
+    write_frame(1, 30);
+    // A golden copied over an approved one: the sidecar that stays is of another image.
+    approve({"--renew-sidecars"});
+    EXPECT_EQ(case_of(report(), "corner")["images"][0]["tier"], "bits");
+    EXPECT_EQ(run().err.find("note:"), std::string::npos);
+    change_image(image("corner.color.0001"), [](Image& pixels) { pixels.at(31, 17, 1) += 0.01f; });
+    EXPECT_EQ(case_of(report(), "corner")["images"][0]["tier"], "tolerance");
+    const CommandResult over = run();
+    EXPECT_EQ(over.exit_code, 0) << over.err;
+    EXPECT_NE(over.err.find("note: goldens/corner.color.0001.exr: no sidecar tells what made it"),
+              std::string::npos)
+        << over.err;
 }
 
 TEST_F(GoldenRun, EndsWithTheWorstVerdict) {
@@ -165,6 +239,25 @@ TEST_F(GoldenRun, SkipsWithAReasonAndFailsForItWhenAsked) {
     EXPECT_EQ(run({"--no-skip"}).exit_code, 2);
 }
 
+TEST_F(GoldenRun, WarnsWhereEveryCaseWasSkippedAndNothingCompared) {
+    approve();
+    write_suite(R"("fail": 0.004)", R"(,
+    { "name": "later", "steps": [], "capture": "in_0001.exr", "skip": "waits for its capture" },
+    { "name": "absent", "steps": [], "capture": "large/capture.json" })");
+    const std::vector<std::string> skipped = {"--filter", "later", "--filter", "absent"};
+    const CommandResult result = run(skipped);
+    EXPECT_EQ(result.exit_code, 1) << result.err;
+    EXPECT_NE(result.err.find("every case was skipped; nothing was compared"), std::string::npos)
+        << result.err;
+    const Json document = report(skipped);
+    EXPECT_EQ(document["verdict"], "warning");
+    EXPECT_EQ(document["exit_code"], 1);
+    EXPECT_EQ(run({"--no-skip", "--filter", "later"}).exit_code, 2);
+    const CommandResult one_ran = run({"--filter", "later", "--filter", "corner"});
+    EXPECT_EQ(one_ran.exit_code, 0) << one_ran.err;
+    EXPECT_EQ(one_ran.err.find("nothing was compared"), std::string::npos) << one_ran.err;
+}
+
 TEST_F(GoldenRun, EndsACaseThatTakesTooLong) {
     write_suite(R"("fail": 0.004)", R"(,
     { "name": "long", "look": "lens.json", "capture": "in_0001.exr", "set": ["bokeh.shape=octagon"] })");
@@ -182,6 +275,13 @@ TEST_F(GoldenRun, EndsWith64ForWrongWordsAndDocuments) {
     const CommandResult filter = run({"--filter", "slwo"});
     EXPECT_EQ(filter.exit_code, 64);
     EXPECT_NE(filter.err.find("did you mean 'slow'"), std::string::npos) << filter.err;
+    const CommandResult filters = run({"--filter", "lens", "--filter", "lends", "--filter", "x/*"});
+    EXPECT_EQ(filters.exit_code, 64) << "although one fits";
+    EXPECT_NE(filters.err.find("--filter lends: error: fits no case's name or tag; did you mean 'lens'"),
+              std::string::npos)
+        << filters.err;
+    EXPECT_NE(filters.err.find("--filter x/*: error: fits no case"), std::string::npos) << filters.err;
+    EXPECT_EQ(golden({"approve", "golden.json", "--filter", "lends"}).exit_code, 64);
     write_suite(R"("fial": 0.004)");
     const CommandResult document = run();
     EXPECT_EQ(document.exit_code, 64);

@@ -30,10 +30,7 @@ protected:
         arguments.insert(arguments.begin(), AFTERSHADE_EXECUTABLE);
         return Command(std::move(arguments), folder_.path()).wait();
     }
-    std::string bytes(const std::string& file) {
-        std::ifstream in(folder_ / file, std::ios::binary);
-        return {std::istreambuf_iterator<char>(in), {}};
-    }
+    std::string bytes(const std::string& file) { return read_text(folder_ / file); }
     std::vector<float> channel(const std::string& file, const std::string& name) {
         const std::vector<std::string> one = {name};
         const Image image = ExrFile(folder_ / file).read_floats(0, one);

@@ -30,11 +30,11 @@ std::string statistic(const std::string& fields) {
 
 TEST(ManifestTelemetry, SaysWhatIsWrong) {
     const std::vector<std::pair<std::string, Lines>> broken = {
-        {R"("doc": ".")", {"8: statistic 'reach' needs the key 'of'"}},
+        {R"("doc": ".")", {"8: statistic 'reach' has no 'of'"}},
         {R"("of": "smal.r")",
          {"8: statistic 'reach', of: 'smal' is not a texture of the effect with one layer of floats; did you "
           "mean "
-          "'small'? (known: small)"}},
+          "'small'? (known: 'small')"}},
         {R"("of": "small.x")",
          {"8: statistic 'reach', of: 'small.x' must end in a channel of 'small', one of rgba: \"small.r\""}},
         {R"("of": "small.r", "bins": [0, 4])", {"8: 'bins' is [from, to, count], three numbers: [0, 64, 8]"}},

@@ -1,8 +1,6 @@
 // What survives a frame: against a recurrence on the CPU.
 #include <gtest/gtest.h>
 
-#include <fstream>
-
 #include "framework/core/error.h"
 #include "tests/pipeline/effect_fixture.h"
 
@@ -190,8 +188,7 @@ TEST_F(SavedHistories, AreRefusedForAnotherFrameSizeLookOrVersion) {
 
 TEST_F(SavedHistories, ThatAreDamagedOrNoneAreRefused) {
     save_after(4);
-    std::ifstream in(file_, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    const std::string bytes = read_text(file_);
     const auto refused = [&](const std::string& content) {
         write_text(file_, content);
         Bench bench(effects_, look_);

@@ -225,6 +225,43 @@ void main() {
     EXPECT_NEAR(image.at(13, 3, 0), 0.05f, 1e-6);
 }
 
+TEST_F(MixAndMask, AManifestsOwnFilesLieInItsFolderAndThoseOfKeysInTheLooks) {
+    effects_.add("tabled", R"(
+        "inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
+        "params": { "grade": { "type": "file", "kind": "lut", "default": "own.cube", "doc": "." } },
+        "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color"], "writes": ["color"] } ])",
+                 R"(
+void main() {
+    out_color = vec4(grade(texelFetch(color, ivec2(gl_FragCoord.xy), 0).rgb), 1.0);
+})");
+    write_text(effects_.path() / "tabled/own.cube", "LUT_1D_SIZE 2\n0.75 0.75 0.75\n0.75 0.75 0.75\n");
+    EXPECT_NEAR(run(R"({ "effect": "tabled" })").at(1, 1, 0), 0.75f, 1e-6);
+    const TemporaryFolder folder;
+    for (const char* level : {"0.25", "0.5"})
+        write_text(folder / (std::string(level) + ".cube"),
+                   std::string("LUT_1D_SIZE 2\n") + level + " 0 0\n" + level + " 0 0\n");
+    const auto keyed = [&](const std::string& second) {
+        write_text(folder / "look.json", look_of(R"({ "effect": "tabled", "params": { "grade":
+            { "keys": { "1": "0.25.cube", "2": ")" +
+                                                 second + "\" } } } }"));
+        Diagnostics diagnostics;
+        EffectRegistry registry({effects_.path()});
+        const auto look = read_look(folder / "look.json", diagnostics);
+        const Pipeline pipeline = compile_pipeline(look.value(), registry, {}, diagnostics);
+        std::ostringstream faults;
+        diagnostics.print(faults);
+        std::string text = faults.str();
+        for (const ParamValue& value :
+             pipeline.steps.at(0).known_values(pipeline.steps[0].manifest->params.at(0)))
+            text += std::get<std::string>(value) + "\n";
+        return text;
+    };
+    EXPECT_EQ(keyed("0.5.cube"),
+              (folder / "0.25.cube").string() + "\n" + (folder / "0.5.cube").string() + "\n");
+    EXPECT_NE(keyed("none.cube").find("tabled.grade: no file '" + (folder / "none.cube").string()),
+              std::string::npos);
+}
+
 TEST_F(MixAndMask, NeighbourFramesAreSeenWhereTheyAreThere) {
     effects_.add("ahead", R"(
         "inputs": { "color": { "role": "color" },
