@@ -208,12 +208,12 @@ std::string junit_of(const GoldenSuiteResult& result, const GoldenReportContext&
     const std::size_t tests = result.cases.size() + result.orphans.size();
     const std::size_t failures = std::size_t(counts.failed) + result.orphans.size();
     std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
-    const std::string sums =
-        fmt::format("tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"{}\" time=\"{:.3f}\"", tests,
-                    failures, counts.skipped, result.seconds);
+    const std::string sums = fmt::format("tests=\"{}\" failures=\"{}\" errors=\"0\" time=\"{:.3f}\"", tests,
+                                         failures, result.seconds);
+    // Jenkins' schema of these files knows `skipped` of a testsuite alone.
     text += "<testsuites " + sums + ">\n";
-    text += fmt::format("  <testsuite name=\"{}\" {} timestamp=\"{}\">\n    <properties>\n",
-                        escaped(context.suite->argument), sums, result.started.substr(0, 19));
+    text += fmt::format("  <testsuite name=\"{}\" {} skipped=\"{}\" timestamp=\"{}\">\n    <properties>\n",
+                        escaped(context.suite->argument), sums, counts.skipped, result.started.substr(0, 19));
     const auto property = [&](const char* name, const std::string& value) {
         text += fmt::format("      <property name=\"{}\" value=\"{}\"/>\n", name, escaped(value));
     };

@@ -364,7 +364,9 @@ TEST_F(GoldenRun, WritesJUnitThatAParserOfXmlTakes) {
     EXPECT_EQ(run({"--junit", "out.xml"}).exit_code, 2);
     write_text(folder_ / "read.py", R"(
 import sys, xml.etree.ElementTree as tree
-suite = tree.parse("out.xml").getroot().find("testsuite")
+root = tree.parse("out.xml").getroot()
+suite = root.find("testsuite")
+print(root.tag, *sorted(root.keys()))
 for key in ("tests", "failures", "skipped"): print(key, suite.get(key))
 for case in suite.findall("testcase"):
     print(case.get("name"), [(child.tag, child.get("message")[:12]) for child in case])
@@ -372,7 +374,8 @@ for case in suite.findall("testcase"):
     const CommandResult parsed = Command({"/usr/bin/python3", "read.py"}, folder_.path()).wait();
     ASSERT_EQ(parsed.exit_code, 0) << parsed.err << read_text(folder_ / "out.xml");
     EXPECT_EQ(parsed.out.substr(0, parsed.out.find("lens")),
-              "tests 3\nfailures 2\nskipped 1\ncorner [('failure', 'corner.color')]\n");
+              "testsuites errors failures tests time\ntests 3\nfailures 2\nskipped 1\ncorner [('failure', "
+              "'corner.color')]\n");
     EXPECT_NE(parsed.out.find("later [('skipped', '<&\">')]"), std::string::npos) << parsed.out;
 }
 
