@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "framework/core/error.h"
 #include "framework/gpu/timer.h"
 #include "framework/image/role.h"
@@ -15,11 +17,13 @@ namespace aftershade {
 
 namespace {
 
-/// Texels of three-channel roles carry a fourth that nothing reads.
-std::vector<float> widened(std::span<const float> rgb) {
-    std::vector<float> rgba(rgb.size() / 3 * 4);
-    for (std::size_t i = 0; i < rgb.size() / 3; ++i) std::copy_n(&rgb[i * 3], 3, &rgba[i * 4]);
-    return rgba;
+/// Texels of three-channel roles, and of an AOV that has fewer than four, carry zeros that nothing reads.
+std::vector<float> widened(const Image& image, int stored_channels) {
+    const auto channels = std::size_t(image.channels()), stored = std::size_t(stored_channels);
+    std::vector<float> texels(image.floats().size() / channels * stored);
+    for (std::size_t i = 0; i < texels.size() / stored; ++i)
+        std::copy_n(&image.floats()[i * channels], channels, &texels[i * stored]);
+    return texels;
 }
 
 Image read_back(const gpu::Texture& texture, int channels) {
@@ -40,8 +44,12 @@ Image read_back(const gpu::Texture& texture, int channels) {
 }
 
 void upload(const Image& image, gpu::Texture& texture) {
+    const int stored = gpu::channel_count(texture.desc().format);
+    if (image.channels() > stored)
+        throw Error(ExitCode::effect, fmt::format("{}: an image of {} channels, its role has {}",
+                                                  texture.label(), image.channels(), stored));
     if (image.type() == ComponentType::uint32) texture.upload(image.uints());
-    else if (image.channels() == 3) texture.upload(widened(image.floats()));
+    else if (image.channels() < stored) texture.upload(widened(image, stored));
     else texture.upload(image.floats());
 }
 

@@ -70,10 +70,28 @@ TEST(PngFile, SaysWhatIsWrongWithAFileThatCannotBeRead) {
     EXPECT_NE(message(folder / "text.png").find("text.png: not a PNG file"), std::string::npos);
     write_png(folder / "good.png", test::pattern_image(64, 64, 3));
     const std::string good = test::read_text(folder / "good.png");
-    for (std::size_t length = 1; length < good.size() - 16; length += 7) {
+    for (std::size_t length = 1; length < good.size(); length += 7) {
         test::write_text(folder / "cut.png", good.substr(0, length));
         EXPECT_NE(message(folder / "cut.png").find("cut.png: "), std::string::npos) << length;
     }
+}
+
+TEST(PngFile, IsRefusedWithAnyBitChanged) {
+    const TemporaryFolder folder;
+    write_png(folder / "good.png", test::pattern_image(8, 8, 3));
+    const std::string good = test::read_text(folder / "good.png");
+    for (std::size_t i = 0; i < good.size(); ++i) {
+        std::string bad = good;
+        bad[i] = char(bad[i] ^ (1 << i % 8));
+        test::write_text(folder / "bad.png", bad);
+        // A chunk whose type lost the bit that makes it critical ends in a file without it, which is refused
+        // too.
+        EXPECT_NE(test::capture_error([&] { read_png(folder / "bad.png"); }).find("bad.png: "),
+                  std::string::npos)
+            << i;
+    }
+    test::write_text(folder / "longer.png", good + "what other programs append");
+    EXPECT_NO_THROW(read_png(folder / "longer.png"));
 }
 
 TEST(PngFile, IsReadWithSixteenBitsAChannel) {

@@ -96,6 +96,21 @@ TEST_P(RendererOn, CarriesEveryKindOfRole) {
     }
 }
 
+TEST_P(RendererOn, ReadsZerosBesideTheChannelsThatAnAovHas) {
+    EffectFolder effects;
+    effects.add("show",
+                R"("inputs": { "hair": { "role": "aov:hair" } }, "outputs": { "color": { "role": "color" } },
+                           "passes": [ { "name": "main", "shader": "main.frag", "reads": ["hair"],
+                                         "writes": ["color"] } ])",
+                "void main() { out_color = texelFetch(hair, ivec2(gl_FragCoord.xy), 0); }\n");
+    Capture capture = plain();
+    Image hair(7, 5, 1);
+    std::ranges::fill(hair.floats(), 0.5f);
+    capture.images["aov:hair"] = hair;
+    expect_everywhere(Bench(effects, look_of(R"({ "effect": "show" })"), {}, GetParam()).color(capture),
+                      {0.5f, 0, 0});
+}
+
 TEST_P(RendererOn, GivesTheShaderItsParametersInTheirUnits) {
     EffectFolder effects;
     effects.add_color(
