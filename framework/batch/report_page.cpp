@@ -175,27 +175,26 @@ private:
     Store& store_;
 };
 
-/// Worst first, so that they get the room there is.
+/// Reports of before there was a page lack keys that it shows.
+void check_keys(const Json& report) {
+    for (const char* key : {"document", "environment", "counts", "orphans"}) (void)report.at(key);
+    for (const Json& test : report.at("cases")) (void)test.at("rerun");
+}
+
+/// Lower ranks get the room that there is.
+int rank_of(const Json& image) {
+    if (image.at("bits_equal") == true) return 3;
+    const Json& verdict = image.at("verdict");
+    return verdict == "same" ? 2 : verdict == "warning" ? 1 : 0;
+}
+
 void add_images(Json& report, const fs::path& folder, Store& store) {
-    struct Entry {
-        Json* image;
-        bool equal;
-        int rank;
-    };
-    std::vector<Entry> entries;
+    std::vector<Json*> images;
     for (Json& test : report.at("cases"))
-        for (Json& image : test.at("images")) {
-            const bool equal = image.at("bits_equal") == true;
-            const std::string verdict = image.at("verdict");
-            entries.push_back({&image, equal,
-                               equal                  ? 3
-                               : verdict == "same"    ? 2
-                               : verdict == "warning" ? 1
-                                                      : 0});
-        }
-    std::ranges::stable_sort(entries, {}, &Entry::rank);
-    PageImages images(folder, store);
-    for (const Entry& entry : entries) images.add(*entry.image);
+        for (Json& image : test.at("images")) images.push_back(&image);
+    std::ranges::stable_sort(images, {}, [](const Json* image) { return rank_of(*image); });
+    PageImages page(folder, store);
+    for (Json* image : images) page.add(*image);
 }
 
 void replace_mark(std::string& html, std::string_view mark, std::string_view text) {
@@ -220,6 +219,7 @@ void write_report_page(const fs::path& report, const fs::path& page, const Repor
     Store store(options.limit_bytes);
     try {
         data = Json::parse(read_text_file(file, ExitCode::capture));
+        check_keys(data);
         add_images(data, report, store);
     } catch (const Json::exception& error) {
         throw Error(ExitCode::capture,

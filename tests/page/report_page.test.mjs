@@ -1,7 +1,7 @@
 // The page of a golden suite's report, as its users have it. The suite is made anew by the program (suite.mjs).
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { copyFileSync, cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, symlinkSync } from "node:fs";
+import { copyFileSync, cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
@@ -357,9 +357,10 @@ inPage("fits a narrow window", async (page) => {
 // ---- large and damaged reports ----
 
 test("shows pictures from the files beside it where they do not fit", async () => {
-  const page_file = join(report, "linked.html");
-  assert.equal(rebuildPage(report, "--page-limit", "0", "-o", "linked.html").code, 0);
-  const page = await openPage(browser, page_file);
+  const mine = join(folder, "100 % #1? it's");
+  cpSync(report, mine, { recursive: true });
+  assert.equal(rebuildPage(mine, "--page-limit", "0", "-o", "../linked.html").code, 0);
+  const page = await openPage(browser, join(folder, "linked.html"));
   const viewer = await viewerOf(page, "lens");
   assert.match(await viewer.locator(".under").innerText(), /from the files beside the page/);
   assert.ok(!(await viewer.getByLabel("Exposure").isVisible()));
@@ -378,6 +379,8 @@ test("tells pictures that are gone, and no report", async () => {
   const page = await openPage(browser, join(mine, "index.html"));
   assert.match(await page.locator("#case-lens").innerText(), /Pictures are missing: .*lens\.color\.0001\.test\.exr/);
   await page.context().close();
+  writeFileSync(join(mine, "report.json"), '{"cases": []}');
+  assert.match(rebuildPage(mine).err, /report\.json: is no report of a golden suite: .*'document'/);
   rmSync(join(mine, "report.json"));
   const failed = rebuildPage(mine);
   assert.equal(failed.code, 4);

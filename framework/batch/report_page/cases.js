@@ -64,7 +64,7 @@ function imageSection(image, report, viewers) {
     ["Tolerance", image.comparison ? toleranceWords(image.comparison.rules) : null],
     ["Approved by", sidecar?.command],
     ["Files", image.pictures.test_exr ? [image.pictures.reference_exr, image.pictures.test_exr].filter(Boolean).flatMap((path, i) =>
-      [i ? ", " : "", element("a", { href: `${report.folder}/${path}`.replaceAll("#", "%23") }, path)]) : null],
+      [i ? ", " : "", element("a", { href: addressOf(report, path) }, path)]) : null],
   ]));
   return element("section", { class: "image" }, element("h3", {}, image.name, " ", verdictMark(image.verdict)), ...parts);
 }
@@ -80,7 +80,7 @@ function reasonsOf(test) {
 
 /** Of an image that passes; beside the page where it did not fit. */
 const smallPicture = (image, report) =>
-  image.shown.picture === null ? `${report.folder}/${image.pictures.test}` : pngAddress(image.shown.picture);
+  image.shown.picture === null ? addressOf(report, image.pictures.test) : pngAddress(image.shown.picture);
 
 /** What the line of a closed case shows. */
 function thumbnailOf(test, report) {

@@ -49,3 +49,6 @@ function facts(pairs) {
   return element("dl", { class: "facts" }, pairs.filter(([, value]) => value !== null && value !== undefined && value !== "")
     .map(([name, value]) => element("div", {}, element("dt", {}, name), element("dd", {}, value))));
 }
+
+/** Where a file of the report lies, from the page. */
+const addressOf = (report, path) => `${report.folder}/${path}`.split("/").map(encodeURIComponent).join("/");

@@ -11,11 +11,11 @@ const MODES = {
 const STOP = 0.5; // EV that a key changes
 
 /** Layers of pictures that lie beside the page: no values, so no exposure. */
-async function linkedLayer(image, folder) {
+async function linkedLayer(image, report) {
   const load = async (path) => {
     if (!path) return null;
     const picture = new Image();
-    picture.src = `${folder}/${path}`;
+    picture.src = addressOf(report, path);
     await picture.decode();
     return picture;
   };
@@ -31,7 +31,7 @@ class Viewer {
   constructor(image, report) {
     this.image = image;
     this.palette = report.palette;
-    this.folder = report.folder;
+    this.report = report;
     this.layers = image.shown.layers;
     this.values = new Map(); // layer -> {reference, test, coloring}
     this.layer = this.firstLayer();
@@ -82,7 +82,7 @@ class Viewer {
   }
   async loadLayer() {
     if (!this.layer) {
-      if (!this.linked) this.linked = await linkedLayer(this.image, this.folder);
+      if (!this.linked) this.linked = await linkedLayer(this.image, this.report);
       if (!this.view) this.view = new View(this.linked);
       return;
     }
