@@ -109,13 +109,17 @@ public:
     /// Adds "shown" to the image: {"layers": [...], "picture", "heat_map": text or null, "missing": words}.
     /// "picture" is a small one, for images that pass.
     void add(Json& image) {
-        Json shown = {
+        const Json nothing = {
             {"layers", Json::array()}, {"picture", nullptr}, {"heat_map", nullptr}, {"missing", ""}};
+        Json shown = nothing;
+        const std::size_t before = store_.size();
         try {
             const Json& pictures = image.at("pictures");
             if (image.at("bits_equal") != true) add_layers(pictures, shown);
             if (image.at("verdict") == "same") shown["picture"] = png(pictures.at("test"));
         } catch (const Error& error) {
+            store_.shrink_to(before);
+            shown = nothing;
             shown["missing"] = error.what();
         }
         image["shown"] = std::move(shown);
