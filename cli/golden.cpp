@@ -32,6 +32,13 @@ fs::path write_page(const fs::path& report, fs::path page, double limit_mb) {
     return page;
 }
 
+/// A run that does not end must not leave the figures of an earlier one beside its own pictures.
+void remove_old_page(const fs::path& report) {
+    std::error_code failure;
+    if (!fs::remove(report / "report.json", failure)) return;
+    fs::remove(report / "index.html", failure);
+}
+
 void write_reports(const GoldenOptions& options, const GoldenSuiteResult& result,
                    const GoldenReportContext& context) {
     if (!options.junit.empty()) write_text_file(options.junit, junit_of(result, context));
@@ -68,6 +75,7 @@ ExitCode run(const GoldenOptions& options) {
         fs::create_directories(fs::path(options.report) / "images", failure);
         if (failure) throw Error(ExitCode::output, "--report " + options.report + ": " + failure.message());
     }
+    if (!options.report.empty()) remove_old_page(options.report);
     print_head(job.context);
     const GoldenSuiteResult result = run_golden_suite(
         job.suite, job.context.options,
@@ -135,9 +143,10 @@ ExitCode report(const GoldenOptions& options) {
     return ExitCode::done;
 }
 
-void add_page_limit(CLI::App& app, GoldenOptions& options) {
-    app.add_option("--page-limit", options.page_limit_mb,
-                   "MiB of pictures inside index.html; what is more is shown from the files beside it")
+CLI::Option* add_page_limit(CLI::App& app, GoldenOptions& options) {
+    return app
+        .add_option("--page-limit", options.page_limit_mb,
+                    "MiB of pictures inside index.html; what is more is shown from the files beside it")
         ->check(CLI::Range(0.0, 400.0))
         ->capture_default_str();
 }
@@ -169,7 +178,7 @@ Verb add_golden(CLI::App& app) {
     run_verb->add_option("--junit", options->junit, "Write JUnit XML to this file");
     run_verb->add_option("--report", options->report,
                          "Write index.html (the page to look at), report.json and pictures to this folder");
-    add_page_limit(*run_verb, *options);
+    add_page_limit(*run_verb, *options)->needs("--report");
     run_verb->add_flag("--json", options->json, "The same report.json on stdout");
     auto* approve_verb = app.add_subcommand(
         "approve", "Render every case and keep what is new as its goldens; prints their paths");

@@ -41,7 +41,7 @@ class PictureTaker {
 public:
     void add(const LayerComparison& layer, const LayerImages& images) {
         const int rank = 2 * int(layer.verdict) + is_perceptual(layer.role);
-        if (rank <= best_) return;
+        if (rank <= best_ || images.reference.empty()) return;
         best_ = rank;
         row_ = side_by_side_row(layer, images);
     }
@@ -96,13 +96,15 @@ void write_pictures(const GoldenCase& test, const RenderedImage& rendered, Repor
                                                     taker.add(layer, images);
                                                     all.add(layer, images);
                                                 });
+    if (result.approved) {
+        copy_into(reference, path("reference", ".exr"));
+        pictures.reference_exr = told(path("reference", ".exr"));
+    }
     if (!taker.row()) return;  // nothing could be compared
     const SideBySideRow& row = *taker.row();
     write_png(path("test"), row.pictures[1]);
     pictures.test = told(path("test"));
     if (!result.approved) return;
-    copy_into(reference, path("reference", ".exr"));
-    pictures.reference_exr = told(path("reference", ".exr"));
     write_png(path("reference"), row.pictures[0]);
     pictures.reference = told(path("reference"));
     if (result.bits_equal) return;
@@ -111,7 +113,7 @@ void write_pictures(const GoldenCase& test, const RenderedImage& rendered, Repor
     all.write_side_by_side(path("side_by_side"), result.name);
     pictures.side_by_side = told(path("side_by_side"));
     if (std::ranges::none_of(comparison.layers,
-                             [](const LayerComparison& layer) { return is_perceptual(layer.role); }))
+                             [](const LayerComparison& layer) { return layer.hdr_flip || layer.ldr_flip; }))
         return;
     all.write_heat_map(path("flip"));
     pictures.heat_map = told(path("flip"));

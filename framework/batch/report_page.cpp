@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "framework/batch/page_pixels.h"
-#include "framework/compare/difference_picture.h"
 #include "framework/compare/layer_file.h"
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
@@ -33,13 +32,13 @@ std::string hex_color(const DisplayColor& color) {
 
 /// The colours that the program's own pictures have.
 Json palette() {
-    Json ramp = Json::array(), heat = Json::array();
+    Json ramp = Json::array(), diverging = Json::array();
     for (int i = 0; i < 256; ++i) {
         ramp.push_back(hex_color(ramp_color(float(i) / 255)));
-        heat.push_back(hex_color(magma_color(float(i) / 255)));
+        diverging.push_back(hex_color(diverging_color(float(i) / 127.5f - 1)));
     }
     return {{"ramp", ramp},
-            {"heat", heat},
+            {"diverging", diverging},
             {"nan", hex_color(pixel_fault_color(PixelFault::nan))},
             {"infinite", hex_color(pixel_fault_color(PixelFault::infinite))},
             {"negative", hex_color(pixel_fault_color(PixelFault::negative))},
@@ -53,12 +52,13 @@ public:
 
     /// The number; null where it does not fit.
     Json add(std::string text) {
-        if (text.size() > limit_bytes_ - bytes_) return nullptr;
+        if (text.size() > room_bytes()) return nullptr;
         bytes_ += text.size();
         texts_.push_back(std::move(text));
         return texts_.size() - 1;
     }
     std::size_t size() const { return texts_.size(); }
+    std::uint64_t room_bytes() const { return limit_bytes_ - bytes_; }
     /// Forgets what was added since there were `count`.
     void shrink_to(std::size_t count) {
         for (; texts_.size() > count; texts_.pop_back()) bytes_ -= texts_.back().size();
@@ -101,6 +101,18 @@ Json json_of(const StoredLayer& layer, const Json& data) {
             {"height", window.max_y - window.min_y + 1}};
 }
 
+/// Nothing is to be seen. Bits may be equal where a verdict is worse: NaN is no number to approve.
+bool is_as_approved(const Json& image) {
+    return image.at("bits_equal") == true && image.at("verdict") == "same";
+}
+
+/// Whether two stored layers have the same values at the same places.
+bool is_equal(const Json& a, const Json& b) {
+    for (const char* key : {"type", "channels", "x", "y", "width", "height"})
+        if (a.at(key) != b.at(key)) return false;
+    return true;
+}
+
 /// Adds to the page what it shows of the images of one report.
 class PageImages {
 public:
@@ -115,7 +127,7 @@ public:
         const std::size_t before = store_.size();
         try {
             const Json& pictures = image.at("pictures");
-            if (image.at("bits_equal") != true) add_layers(pictures, shown);
+            if (!is_as_approved(image)) add_layers(pictures, shown);
             if (image.at("verdict") == "same") shown["picture"] = png(pictures.at("test"));
         } catch (const Error& error) {
             store_.shrink_to(before);
@@ -130,6 +142,13 @@ private:
         return name.is_string() ? read_layers(report_ / name.get<std::string>()) : std::vector<StoredLayer>{};
     }
 
+    std::uint64_t bytes_of(const Json& name) const {
+        std::error_code failure;
+        const auto bytes =
+            name.is_string() ? fs::file_size(report_ / name.get<std::string>(), failure) : std::uintmax_t(0);
+        return failure ? 0 : bytes;  // is told when it is read
+    }
+
     Json png(const Json& name) {
         if (!name.is_string()) return nullptr;
         const std::string bytes = read_text_file(report_ / name.get<std::string>(), ExitCode::capture);
@@ -138,6 +157,9 @@ private:
 
     /// Nothing at all of an image that does not fit whole: half of it would look like a difference.
     void add_layers(const Json& pictures, Json& shown) {
+        // Base64 of our streams is hardly smaller than the files: what cannot fit need not be packed.
+        if (bytes_of(pictures.at("reference_exr")) + bytes_of(pictures.at("test_exr")) > store_.room_bytes())
+            return;
         const std::size_t before = store_.size();
         const std::vector<StoredLayer> references = layers_in(pictures.at("reference_exr"));
         const std::vector<StoredLayer> tests = layers_in(pictures.at("test_exr"));
@@ -150,7 +172,8 @@ private:
         };
         const auto add = [&](const StoredLayer* reference, const StoredLayer* test) {
             const LayerInfo& info = (reference ? reference : test)->info;
-            const bool equal = reference && test && reference->pixels.text == test->pixels.text;
+            const bool equal = reference && test && reference->pixels.text == test->pixels.text &&
+                               is_equal(json_of(*reference, nullptr), json_of(*test, nullptr));
             Json layer = {{"label", info.label()}, {"role", layer_role_name(info.role)}, {"equal", equal}};
             layer["reference"] = reference ? stored(*reference) : Json(nullptr);
             if (equal) layer["test"] = json_of(*test, layer["reference"]["data"]);
@@ -187,7 +210,7 @@ void check_keys(const Json& report) {
 
 /// Lower ranks get the room that there is.
 int rank_of(const Json& image) {
-    if (image.at("bits_equal") == true) return 3;
+    if (is_as_approved(image)) return 3;
     const Json& verdict = image.at("verdict");
     return verdict == "same" ? 2 : verdict == "warning" ? 1 : 0;
 }

@@ -35,6 +35,8 @@ void main() {
 
 const broken = "float broken() { return parm; }";
 
+const corner = "corner.exr"; // of the capture: 40 x 30 px from (200, 100)
+
 function casesOf(changed) {
   const cardCase = (name, values, more = {}) => ({ name, steps: [{ effect: "card", params: changed ? values : {} }], capture, frames: "1", ...more });
   return [
@@ -47,6 +49,9 @@ function casesOf(changed) {
     { ...cardCase("shrunk", {}), capture: changed ? smaller : capture },
     { name: "visible_depth", steps: [{ effect: "visualize" }], capture, frames: "1" },
     { name: "roles", steps: [], capture: "in.exr", outputs: ["color", "depth", "velocity", "object_id"] },
+    { name: "apart", steps: [], capture: corner },
+    { name: "other_layers", steps: [], capture: "in.exr" },
+    { ...cardCase("always_poisoned", {}), steps: [{ effect: "card", params: { poison: true } }] },
     ...(changed ? [
       { name: "brand_new", steps: [{ effect: "sharpen" }], capture, frames: "1" },
       { name: "absent", steps: [], capture, skip: "<img src=x onerror=\"document.title='broken in'\">" },
@@ -65,6 +70,13 @@ export function golden(folder, ...words) {
   return { code: result.status, err: result.stderr, out: result.stdout };
 }
 
+function draw(folder, from, to, ...words) {
+  const look = join(folder, "nothing.json");
+  writeFileSync(look, JSON.stringify({ aftershade: 1, steps: [] }));
+  const result = spawnSync(program, ["run", look, from, "-o", to, "--backend", "osmesa", ...words], { cwd: folder, encoding: "utf8" });
+  if (result.status !== 0) throw new Error(result.stderr);
+}
+
 /** The report's folder; its page is index.html. */
 export function makeReport(folder) {
   rmSync(folder, { recursive: true, force: true });
@@ -78,9 +90,13 @@ export function makeReport(folder) {
     writeFileSync(join(folder, "golden.json"), JSON.stringify({ aftershade: 1, effect_paths: ["effects"], cases: casesOf(changed) }, null, 1));
   };
   write(false);
+  draw(folder, "in.exr", corner, "--region", "200,100,40,30");
   const approved = golden(folder, "approve", ".");
   if (approved.code !== 0) throw new Error(approved.err);
   copyFileSync(join(folder, "goldens/passing.color.0001.exr"), join(folder, "goldens/gone.color.0001.exr"));
+  // What no look makes: a golden of other pixels than the picture's, and one of other layers.
+  draw(folder, "in.exr", "goldens/apart.color.0001.exr", "--region", "0,0,40,30");
+  copyFileSync(join(folder, "goldens/roles.depth.0001.exr"), join(folder, "goldens/other_layers.color.0001.exr"));
   write(true);
   const run = golden(folder, "run", ".", "--report", "report");
   if (run.code !== 3) throw new Error(`exit ${run.code}\n${run.err}`);

@@ -16,15 +16,18 @@ function figure(value) {
   return typeof value === "number" ? short(value) : { inf: "\u221e", "-inf": "-\u221e", nan: "NaN" }[value] ?? String(value);
 }
 
+const exactFigure = (value) => (typeof value === "number" ? exact(value) : figure(value));
+
 function metricsTable(image) {
   const heads = ["Layer", "Verdict", "Failing pixels", "Largest error", "at", "reference", "test", "RMSE", "MAE", "relMSE", "PSNR dB", "SSIM", "MS-SSIM", "LDR-FLIP", "HDR-FLIP", "NaN, Inf"];
   const faulty = ({ nan, inf }) => (nan + inf ? `${nan}, ${inf}` : "none");
   const rows = image.comparison.layers.map((layer) => {
     const worst = layer.max_error;
+    if (!layer.pixels) return [`${layer.layer} (${layer.role})`, layer.verdict, "no pixel in common", ...Array(heads.length - 3).fill("\u2013")];
     return [
       `${layer.layer} (${layer.role})`, layer.verdict,
       `${layer.failing.pixels} of ${layer.pixels} (${figure(layer.failing.percent)} %)`,
-      figure(worst.value), worst.value === 0 ? "\u2013" : `${worst.x}, ${worst.y} ${worst.channel}`, figure(worst.reference), figure(worst.test),
+      figure(worst.value), worst.value === 0 ? "\u2013" : `${worst.x}, ${worst.y} ${worst.channel}`, exactFigure(worst.reference), exactFigure(worst.test),
       figure(layer.rmse), figure(layer.mean_absolute), figure(layer.relative_mse), figure(layer.psnr_db), figure(layer.ssim), figure(layer.ms_ssim),
       figure(layer.ldr_flip?.mean), figure(layer.hdr_flip?.mean),
       faulty(layer.test_non_finite) === faulty(layer.reference_non_finite) ? faulty(layer.test_non_finite) : `${faulty(layer.reference_non_finite)} \u2192 ${faulty(layer.test_non_finite)}`,
@@ -33,9 +36,15 @@ function metricsTable(image) {
   return element("div", { class: "wide", tabindex: 0, role: "group", "aria-label": `Figures of ${image.name}` }, table(heads, rows, { class: "metrics" }));
 }
 
-function toleranceWords(rules) {
-  const { limit, percent, hard, allowed, flip, ssim } = rules.fail;
-  return [`fails above ${figure(limit)}`, percent ? `in more than ${figure(percent)} % of pixels` : null, allowed ? `${allowed} pixels allowed` : null,
+function toleranceWords({ fail, warn, nan_equal }) {
+  const words = [levelWords("fails", fail)];
+  if (warn && JSON.stringify(warn) !== JSON.stringify(fail)) words.push(levelWords("warns", warn));
+  if (nan_equal) words.push("NaN equals NaN");
+  return words.join("; ");
+}
+
+function levelWords(does, { limit, percent, hard, allowed, flip, ssim }) {
+  return [`${does} above ${figure(limit)}`, percent ? `in more than ${figure(percent)} % of pixels` : null, allowed ? `${allowed} pixels allowed` : null,
     hard === "inf" ? null : `any pixel above ${figure(hard)}`, flip === null ? null : `FLIP above ${figure(flip)}`, ssim === null ? null : `SSIM below ${figure(ssim)}`]
     .filter(Boolean).join(", ");
 }
@@ -46,12 +55,15 @@ function approvedWords(image) {
   return `${image.approved.file}${others}${made ? `, made by ${made.renderer}, Mesa ${made.mesa ?? "?"}, ${made.cpu}` : ", without a sidecar"}`;
 }
 
+/** Nothing is to be seen. NaN has equal bits, and is no number to approve. */
+const isAsApproved = (image) => image.bits_equal && image.verdict === "same";
+
 function imageSection(image, report, viewers) {
   const parts = [];
   if (image.shown.missing) parts.push(element("p", { class: "missing" }, `Pictures are missing: ${image.shown.missing}`));
-  else if (image.bits_equal) {
+  else if (isAsApproved(image)) {
     parts.push(element("p", { class: "quiet" }, "Every bit is as approved."), element("img", { class: "whole", src: smallPicture(image, report), alt: `${image.name}, as approved`, loading: "lazy" }));
-  } else if (image.pictures.test) {
+  } else if (image.shown.layers.length || image.pictures.test) {
     const viewer = new Viewer(image, report);
     viewers.add(viewer);
     parts.push(viewer.node);
@@ -99,6 +111,17 @@ function caseDetails(test, report, viewers) {
       ["Tags", test.tags.join(", ")], ["Hash of look and effects", test.look_hash],
     ]),
     test.steps ? element("details", { class: "steps" }, element("summary", {}, "Steps"), element("pre", {}, JSON.stringify(test.steps, null, 2))) : null);
+}
+
+/** One that cannot be shown does not take the others away. */
+function safeCaseCard(test, report, viewers) {
+  try {
+    return caseCard(test, report, viewers);
+  } catch (error) {
+    return element("details", { class: `case ${kindOf(test)}`, id: `case-${test.name}`, "data-kind": kindOf(test), open: true },
+      element("summary", {}, element("h2", {}, test.name), verdictMark(test.verdict)),
+      element("p", { class: "missing" }, `This case cannot be shown: ${error.message}; report.json has its figures.`));
+  }
 }
 
 /** Builds what it shows when it is opened first. */

@@ -1,4 +1,4 @@
-// Colours of pixels, as the program's own pictures have them (framework/image/false_color.cpp).
+// Colours of pixels, as the program's own pictures have them (framework/image/false_color.cpp, compare/side_by_side.cpp).
 
 const rgbOfHex = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
 
@@ -34,6 +34,16 @@ function wheelColor(x, y) {
   if (!(length > 0)) return [0, 0, 0];
   return hueColor(Math.atan2(y, x) / (2 * Math.PI), length > 1 ? 1 / length : 1, Math.sqrt(Math.min(length, 1)));
 }
+
+/** Renderers write ids as floats; hashes of names are floats that are no integers: their bits are the id. */
+const idOf = (() => {
+  const float = new Float32Array(1), bits = new Uint32Array(float.buffer);
+  return (value) => {
+    if (Number.isInteger(value) && value >= 0 && value < 4294967296) return value >>> 0;
+    float[0] = value;
+    return bits[0];
+  };
+})();
 
 function idColor(id) {
   if (id === 0) return [0, 0, 0];
@@ -72,6 +82,14 @@ function fittingStops(images) {
 
 const short = (value) => (Number.isFinite(value) ? String(Number(value.toPrecision(4))) : String(value));
 
+/** As few digits as tell a value from every other one of its type. */
+function exact(value) {
+  if (Number.isInteger(value) || !Number.isFinite(value)) return String(value);
+  for (let digits = 1; digits < 9; ++digits)
+    if (Math.fround(Number(value.toPrecision(digits))) === Math.fround(value)) return String(Number(value.toPrecision(digits)));
+  return String(Number(value.toPrecision(9)));
+}
+
 const NOTHING_HIT = 1e9; // producers write 1e10 m and more where nothing was hit
 
 /**
@@ -81,8 +99,13 @@ const NOTHING_HIT = 1e9; // producers write 1e10 m and more where nothing was hi
 function coloringOf(layer, images, palette) {
   const ramp = palette.ramp.map(rgbOfHex), channels = images[0].planes.length;
   const shade = (t) => ramp[Math.round(255 * Math.min(Math.max(t, 0), 1))];
-  if (layer.role === "id" || images[0].type === "uint")
-    return { stops: null, words: "a colour for each id", color: (planes, i) => idColor(planes[0][i] >>> 0) };
+  if (images[0].type === "uint" || (layer.role === "id" && channels === 1))
+    return { stops: null, words: "a colour for each id", color: ([plane], i) => idColor(idOf(plane[i])) };
+  if (channels === 3 && /normal/i.test(layer.label)) {
+    const axis = (plane, i) => 127.5 * Math.min(Math.max(plane[i] + 1, 0), 2);
+    const color = ([x, y, z], i) => (x[i] === 0 && y[i] === 0 && z[i] === 0 ? [0, 0, 0] : [axis(x, i), axis(y, i), axis(z, i)]);
+    return { stops: null, words: "-1 to 1: x red, y green, z blue", color };
+  }
   if (layer.role === "velocity" || (layer.role === "data" && channels === 2)) {
     const rim = percentile(sortedValues(images, (planes, i) => Math.hypot(planes[0][i], planes[1][i])), 0.995) || 0.1;
     const words = `direction as hue, full at ${short(rim)}${layer.role === "velocity" ? " px" : ""}`;
@@ -98,8 +121,12 @@ function coloringOf(layer, images, palette) {
   }
   if (channels < 3 && layer.role !== "color" && layer.role !== "display") {
     const values = sortedValues(images, ([plane], i) => plane[i]);
-    const high = Math.max(values[values.length - 1] ?? 1, layer.role === "alpha" ? 1 : -Infinity);
-    const low = Math.min(values[0] ?? 0, 0), span = high - low || 1;
+    const [least, most] = [values[0] ?? 0, values[values.length - 1] ?? 1], largest = Math.max(Math.abs(least), Math.abs(most)) || 1;
+    if (layer.role === "data" && least < 0) {
+      const both = palette.diverging.map(rgbOfHex), color = ([plane], i) => both[Math.round(127.5 * (1 + plane[i] / largest))] ?? both[0];
+      return { stops: null, words: `blue ${short(-largest)}, white 0, red ${short(largest)}`, color };
+    }
+    const high = Math.max(most, layer.role === "alpha" ? 1 : -Infinity), low = Math.min(least, 0), span = high - low || 1;
     const grey = (t) => Array(3).fill(255 * Math.min(Math.max(t, 0), 1));
     const tone = layer.role === "alpha" ? grey : shade;
     return { stops: null, words: `dark ${short(low)}, bright ${short(high)}`, color: ([plane], i) => tone((plane[i] - low) / span) };

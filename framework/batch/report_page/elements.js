@@ -20,10 +20,10 @@ function tell(words) {
   tell.timer = setTimeout(() => (place.textContent = ""), 2500);
 }
 
-async function copy(text, code) {
+async function copy(text, code, done = "Copied") {
   try {
     await navigator.clipboard.writeText(text);
-    tell("Copied");
+    tell(done);
   } catch {
     // A page from a file may not write to the clipboard: what is selected can be copied by hand.
     getSelection().selectAllChildren(code);

@@ -12,18 +12,26 @@ const KEYS = [
 /** The folder of the suite with the one above it: "tests/golden". */
 const suiteName = (report) => report.document.split("/").slice(-3, -1).join("/");
 
+const KEPT = 8; // viewers that keep their pixels
+
 /** Viewers are read when they come near the window, and one of them is who keys are for. */
 class Viewers {
   constructor() {
     this.all = new Map();
     this.current = null;
     this.near = new IntersectionObserver((entries) => {
-      for (const { isIntersecting, target } of entries) {
-        if (!isIntersecting) continue;
-        this.near.unobserve(target);
-        this.all.get(target).load();
-      }
+      for (const { isIntersecting, target } of entries) this.move(this.all.get(target), isIntersecting);
     }, { rootMargin: "600px" });
+    this.far = []; // left last at the end; pixels of hundreds of pictures do not fit into memory
+  }
+  move(viewer, isNear) {
+    this.far = this.far.filter((other) => other !== viewer);
+    if (isNear) {
+      if (!viewer.isReady) viewer.load();
+    } else if (viewer.isReady) {
+      this.far.push(viewer);
+      while (this.far.length > KEPT) this.far.shift().release();
+    }
   }
   add(viewer) {
     this.all.set(viewer.node, viewer);
@@ -36,13 +44,18 @@ class Viewers {
     viewer.node.classList.add("current");
   }
   visible() {
-    const nodes = [...document.querySelectorAll(".viewer")].filter((node) => node.offsetParent !== null);
+    const isOpen = (card) => card.open && !card.hidden; // a closed one's content has an offsetParent all the same
+    const nodes = [...document.querySelectorAll(".viewer")].filter((node) => isOpen(node.closest(".case")));
     return nodes.map((node) => this.all.get(node));
   }
   step(by) {
     const visible = this.visible();
     if (visible.length === 0) return;
-    const at = visible.indexOf(this.current), next = at < 0 ? 0 : Math.min(Math.max(at + by, 0), visible.length - 1);
+    // From where the current one was, if its case has been closed.
+    const isAfter = (viewer) => this.current && this.current.node.compareDocumentPosition(viewer.node) & Node.DOCUMENT_POSITION_FOLLOWING;
+    const at = visible.indexOf(this.current), following = visible.findIndex(isAfter);
+    const place = at >= 0 ? at + by : !this.current ? 0 : by > 0 ? following : (following < 0 ? visible.length : following) - 1;
+    const next = Math.min(Math.max(place < 0 && by > 0 ? visible.length - 1 : place, 0), visible.length - 1);
     this.choose(visible[next]);
     visible[next].canvas.focus({ preventScroll: true });
     visible[next].node.closest(".image").scrollIntoView({ block: "start" });
@@ -106,7 +119,7 @@ class Page {
   buildCases() {
     const worst = ["file error", "different size or channels", "failure", "warning", "same"];
     const ordered = [...this.report.cases].sort((a, b) => KINDS.indexOf(kindOf(a)) - KINDS.indexOf(kindOf(b)) || worst.indexOf(a.verdict) - worst.indexOf(b.verdict));
-    this.cards = ordered.map((test) => ({ test, node: caseCard(test, this.report, this.viewers) }));
+    this.cards = ordered.map((test) => ({ test, node: safeCaseCard(test, this.report, this.viewers) }));
     this.none = element("p", { class: "quiet", hidden: true }, "No case fits.");
     document.getElementById("cases").append(...this.cards.map(({ node }) => node), this.none);
   }
@@ -125,7 +138,11 @@ class Page {
   }
   /** index.html#case-bokeh/lens opens that case. */
   openLinked() {
-    const card = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+    let name = location.hash.slice(1);
+    try {
+      name = decodeURIComponent(name);
+    } catch { /* a sign of per cent that encodes nothing */ }
+    const card = document.getElementById(name);
     if (!card?.classList.contains("case")) return;
     card.open = true;
     card.scrollIntoView({ block: "start" });
@@ -160,13 +177,17 @@ class Page {
     this.themeButton.textContent = { system: "System colours", light: "Light", dark: "Dark" }[this.theme];
   }
   copyApproval() {
-    const card = this.viewers.current?.node.closest(".case") ?? document.activeElement.closest?.(".case");
-    const command = (card ?? document).querySelector(".command");
-    if (command?.querySelector(".label").textContent.startsWith("Approve")) command.querySelector("button").click();
-    else tell("Nothing to approve here");
+    const chosen = this.viewers.visible().includes(this.viewers.current) ? this.viewers.current.node.closest(".case") : null;
+    const card = document.activeElement.closest(".case") ?? chosen;
+    if (!card) return tell("Choose a case first (j, k)");
+    const { test } = this.cards.find(({ node }) => node === card);
+    if (!test.approve) return tell(`${test.name}: nothing to approve`);
+    copy(test.approve, card.querySelector(".command code"), `Copied what approves ${test.name}`);
   }
   key(event) {
-    if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest("dialog")) return;
+    // Keys with AltGr (Option on a Mac) come with Ctrl and Alt: brackets of many keyboards are such.
+    const isTyped = event.getModifierState("AltGraph") || (event.altKey && event.key.length === 1 && "[]{}\\".includes(event.key));
+    if (((event.ctrlKey || event.metaKey || event.altKey) && !isTyped) || event.target.closest("dialog")) return;
     const field = event.target.closest("input, select, textarea");
     if (field && event.key === "Escape") return field.blur();
     // A slider keeps the keys that move it, a field of text all of them, a button those that press it.
@@ -178,7 +199,8 @@ class Page {
     };
     if (acts[event.key]) acts[event.key]();
     else {
-      if (!this.viewers.current && this.viewers.visible().length) this.viewers.choose(this.viewers.visible()[0]);
+      const visible = this.viewers.visible();
+      if (visible.length && !visible.includes(this.viewers.current)) this.viewers.choose(visible[0]);
       if (!this.viewers.current?.key(event)) return;
     }
     event.preventDefault();

@@ -35,11 +35,12 @@ class Viewer {
     this.layers = image.shown.layers;
     this.values = new Map(); // layer -> {reference, test, coloring}
     this.layer = this.firstLayer();
-    this.mode = image.pictures.reference ? (innerWidth < 800 ? "test" : "all") : "test";
+    this.mode = this.hasReference() ? (innerWidth < 800 ? "test" : "all") : "test";
     this.swapped = this.hovered = false;
     this.wipe = 0.5;
     this.marks = true;
     this.scaleStops = Math.log2(image.pictures.difference_scale || 1);
+    [this.leastScale, this.mostScale] = [Math.min(0, Math.floor(this.scaleStops)), Math.max(20, Math.ceil(this.scaleStops))];
     this.node = this.build();
     this.resizing = new ResizeObserver(() => this.draw());
     this.resizing.observe(this.frame);
@@ -60,10 +61,18 @@ class Viewer {
   flipLayer() {
     return this.layers.find((layer) => { const told = this.comparisonOf(layer); return told?.hdr_flip || told?.ldr_flip; });
   }
+  hasReference() {
+    return this.layer ? this.layer.reference !== null : !!this.image.pictures.reference;
+  }
+  hasTest() {
+    return this.layer ? this.layer.test !== null : !!this.image.pictures.test;
+  }
   hasMode(mode) {
     const { pictures, shown } = this.image;
-    if (mode === "test") return true;
-    if (!pictures.reference) return false;
+    if (mode === "test") return this.hasTest();
+    if (!this.hasReference()) return false;
+    if (mode === "reference") return true;
+    if (!this.hasTest()) return false;
     if (mode === "heat_map") return this.layer ? shown.heat_map !== null && this.layer === this.flipLayer() : !!pictures.heat_map;
     return mode !== "difference" || this.layer !== null || !!pictures.difference;
   }
@@ -72,24 +81,41 @@ class Viewer {
 
   async load() {
     try {
-      await this.loadLayer();
+      await this.showLayer(this.layer);
       this.node.classList.remove("waiting");
-      this.refresh();
       this.node.dataset.ready = "";
+      if (!this.hasMode(this.mode)) this.mode = this.hasTest() ? "test" : "reference";
+      this.refresh();
     } catch (error) {
+      this.tools.remove();
       this.frame.replaceChildren(element("p", { class: "missing" }, `This picture cannot be shown: ${error.message || error}`));
     }
   }
-  async loadLayer() {
-    if (!this.layer) {
-      if (!this.linked) this.linked = await linkedLayer(this.image, this.report);
-      if (!this.view) this.view = new View(this.linked);
+  /** Reads first, then shows: what is shown meanwhile stays whole, and the last wish counts. */
+  async showLayer(layer) {
+    this.wanted = layer;
+    if (!layer) {
+      this.linked = await linkedLayer(this.image, this.report);
+      this.view ??= new View(this.linked);
       return;
     }
-    if (!this.values.has(this.layer)) this.values.set(this.layer, await this.readLayer(this.layer));
-    const { stops, box } = this.values.get(this.layer);
-    this.stops ??= stops;
-    if (!this.view || JSON.stringify(this.view.box) !== JSON.stringify(box)) this.view = new View(box);
+    const values = this.values.get(layer) ?? (await this.readLayer(layer));
+    if (this.wanted !== layer) return;
+    this.values.set(layer, values);
+    if (this.layer !== layer || this.stops === undefined) this.stops = values.stops;
+    this.layer = layer;
+    if (!this.view || JSON.stringify(this.view.box) !== JSON.stringify(values.box)) this.view = new View(values.box);
+  }
+  /** Frees the pixels of a picture that is far from the window; load() reads them again, and all settings stay. */
+  release() {
+    this.values.clear();
+    this.linked = null;
+    this.canvas.width = this.canvas.height = 1;
+    this.node.classList.add("waiting");
+    delete this.node.dataset.ready;
+  }
+  get isReady() {
+    return "ready" in this.node.dataset;
   }
   async readLayer(layer) {
     const reference = layer.reference && (await readPixels(layer.reference));
@@ -133,7 +159,7 @@ class Viewer {
     return swap && this.hasMode(other[kind]) ? other[kind] : kind;
   }
   draw() {
-    if (!this.view) return;
+    if (!this.isReady) return;
     const ratio = devicePixelRatio, { clientWidth, clientHeight } = this.frame;
     if (clientWidth === 0) return;
     this.canvas.width = Math.round(clientWidth * ratio);
@@ -177,6 +203,7 @@ class Viewer {
   setMode(mode) {
     if (!this.hasMode(mode)) return tell(`${MODES[mode].label}: there is none`);
     this.mode = mode;
+    this.swapped = false;
     this.refresh();
   }
   setStops(stops) {
@@ -185,7 +212,7 @@ class Viewer {
     this.refresh();
   }
   setScale(stops) {
-    this.scaleStops = Math.min(Math.max(stops, 0), 20);
+    this.scaleStops = Math.min(Math.max(stops, this.leastScale), this.mostScale);
     this.refresh();
   }
   setWipe(share) {
@@ -193,29 +220,32 @@ class Viewer {
     this.refresh();
   }
   async setLayer(label) {
-    this.layer = this.layers.find((layer) => layer.label === label);
-    this.stops = undefined;
-    await this.loadLayer();
-    if (!this.hasMode(this.mode)) this.mode = "all";
+    this.wanted = this.layers.find((layer) => layer.label === label);
+    await this.showLayer(this.wanted).catch((error) => tell(`This layer cannot be shown: ${error.message}`));
+    if (!this.hasMode(this.mode)) this.mode = this.hasTest() ? "test" : "reference";
     this.refresh();
   }
   zoomBy(steps, screenX, screenY) {
+    if (!this.isReady) return;
     const panes = this.panes(), pane = panes.find((one) => screenX >= one.left && screenX < one.left + one.width) ?? panes[0];
     this.view.zoomBy(steps, pane, screenX ?? pane.left + pane.width / 2, screenY ?? pane.top + pane.height / 2);
     this.draw();
   }
   showWhole() {
+    if (!this.isReady) return;
     this.view.fitted = true;
     this.draw();
   }
   showPixels() {
+    if (!this.isReady) return;
     this.view.setZoom(1);
     this.draw();
   }
   /** To the largest difference, close enough to see the pixel. */
   showWorst() {
+    if (!this.isReady) return;
     const worst = this.comparisonOf(this.layer)?.max_error;
-    if (!worst) return tell("Nothing was compared");
+    if (!worst) return tell("No pixel was compared");
     this.view.setZoom(Math.max(this.view.zoom, 16));
     [this.view.x, this.view.y] = [worst.x + 0.5, worst.y + 0.5];
     this.draw();
@@ -227,7 +257,7 @@ class Viewer {
   tellValues(x, y) {
     if (!this.layer) return;
     const { reference, test } = this.values.get(this.layer);
-    const words = (image) => { const values = image && valuesAt(image, x, y); return values ? values.map(short).join("  ") : "none"; };
+    const words = (image) => { const values = image && valuesAt(image, x, y); return values ? values.map(exact).join("  ") : "none"; };
     const names = (reference ?? test).channels.map((name) => name.split(".").pop()).join(" ");
     this.readout.textContent = `x ${x}  y ${y}   ${names}   reference ${words(reference)}   test ${words(test)}`;
   }
@@ -241,15 +271,15 @@ class Viewer {
     this.canvas = element("canvas", { tabindex: 0, role: "img", "aria-label": this.image.name });
     this.frame = element("div", { class: "frame" }, this.canvas);
     this.zoomWords = element("output", { class: "zoom" });
-    this.readout = element("div", { class: "readout" });
     this.words = element("span", { class: "quiet" });
     this.exposure = this.slider("Exposure", -12, 12, 0.1, (value) => this.setStops(value));
-    this.scale = this.slider("Scale", 0, 20, 1, (value) => this.setScale(value));
+    this.scale = this.slider("Scale", this.leastScale, this.mostScale, 1, (value) => this.setScale(value));
     this.wiper = this.slider("Wipe", 0, 1, 0.001, (value) => this.setWipe(value));
     this.markBox = element("input", { type: "checkbox", checked: true, onchange: () => { this.marks = this.markBox.checked; this.draw(); } });
+    this.readout = element("div", { class: "readout", role: "status" });
     this.layerMenu = element("select", { "aria-label": "Layer", onchange: () => this.setLayer(this.layerMenu.value) },
       this.layers.map((layer) => element("option", { value: layer.label, selected: layer === this.layer }, `${layer.label} (${layer.role})${layer.equal ? ", same bits" : ""}`)));
-    const tools = element("div", { class: "tools" },
+    this.tools = element("div", { class: "tools" },
       element("div", { class: "group", role: "group", "aria-label": "View" }, this.modeButtons),
       this.layers.length > 1 ? this.layerMenu : null, this.exposure.node, this.scale.node, this.wiper.node,
       element("div", { class: "group", role: "group", "aria-label": "Zoom" },
@@ -258,7 +288,7 @@ class Viewer {
         this.layer && this.image.comparison ? button("Worst", "To the largest difference (x)", () => this.showWorst()) : null),
       this.layer && this.image.comparison ? element("label", { title: "A frame around all pixels that fail (b)" }, this.markBox, "Frame failing pixels") : null);
     this.listen();
-    return element("div", { class: "viewer waiting" }, tools, this.frame, element("div", { class: "under" }, this.readout, this.words));
+    return element("div", { class: "viewer waiting" }, this.tools, this.frame, element("div", { class: "under" }, this.readout, this.words));
   }
   slider(label, min, max, step, act) {
     const input = element("input", { type: "range", min, max, step, "aria-label": label, oninput: () => act(Number(input.value)) });
@@ -266,6 +296,7 @@ class Viewer {
     return { input, output, node: element("label", { class: "slider" }, label, input, output) };
   }
   refresh() {
+    if (!this.isReady) return;
     for (const node of this.modeButtons) {
       node.setAttribute("aria-pressed", String(node.dataset.mode === this.mode));
       node.disabled = !this.hasMode(node.dataset.mode);
@@ -281,7 +312,8 @@ class Viewer {
     show(this.wiper, this.mode === "wipe", this.wipe, `${Math.round(this.wipe * 100)} %`);
     const words = { difference: "|reference \u2212 test| times the scale", heat_map: "dark 0, bright 1" };
     this.words.textContent = words[this.mode] ?? (coloring ? coloring.words : "shown from the files beside the page: no exposure, no values");
-    this.canvas.setAttribute("aria-label", `${this.image.name}: ${MODES[this.mode].title}`);
+    const shown = this.swapped && this.mode !== "all" ? this.shownKind(this.mode) : this.mode;
+    this.canvas.setAttribute("aria-label", `${this.image.name}: ${MODES[shown].title}`);
     this.shape();
     this.draw();
   }
@@ -302,13 +334,14 @@ class Viewer {
     const { canvas } = this;
     let grip = null; // "pan" or "wipe"
     canvas.addEventListener("pointerdown", (event) => {
-      if (event.button !== 0) return;
+      if (event.button !== 0 || !this.isReady) return;
+      this.clicked = true;
       const [x] = this.place(event), line = this.canvas.width * this.wipe;
       grip = this.mode === "wipe" && Math.abs(x - line) < 12 * devicePixelRatio ? "wipe" : "pan";
       canvas.setPointerCapture(event.pointerId);
     });
     canvas.addEventListener("pointermove", (event) => {
-      if (!this.view) return;
+      if (!this.isReady) return;
       const [x, y] = this.place(event), pane = this.panes().find((one) => x >= one.left && x < one.left + one.width);
       if (grip === "wipe") this.setWipe(x / canvas.width);
       else if (grip === "pan") this.view.moveBy(event.movementX * devicePixelRatio, event.movementY * devicePixelRatio), this.draw();
@@ -319,13 +352,24 @@ class Viewer {
     canvas.addEventListener("pointerup", () => (grip = null));
     canvas.addEventListener("pointercancel", () => (grip = null));
     canvas.addEventListener("pointerleave", () => this.hover(false));
-    canvas.addEventListener("dblclick", () => (this.view.fitted ? this.showPixels() : this.showWhole()));
-    // Without Ctrl the wheel scrolls the page, unless the picture was clicked.
+    canvas.addEventListener("dblclick", () => this.isReady && (this.view.fitted ? this.showPixels() : this.showWhole()));
+    // Without Ctrl the wheel scrolls the page, unless the picture was clicked. Trackpads send many small turns.
+    let turned = 0;
+    const turnOfStep = 50; // CSS pixels; a notch of a wheel has about 100
     canvas.addEventListener("wheel", (event) => {
-      if (!this.view || (!event.ctrlKey && !event.metaKey && document.activeElement !== canvas)) return;
+      if (!this.isReady || event.deltaY === 0 || (!event.ctrlKey && !event.metaKey && !this.clicked)) return;
       event.preventDefault();
-      this.zoomBy(event.deltaY < 0 ? 1 : -1, ...this.place(event));
+      turned = Math.sign(turned) === Math.sign(event.deltaY) ? turned + event.deltaY : event.deltaY;
+      if (Math.abs(turned) < turnOfStep && event.deltaMode === WheelEvent.DOM_DELTA_PIXEL) return;
+      this.zoomBy(turned < 0 ? 1 : -1, ...this.place(event));
+      turned = 0;
     }, { passive: false });
+    canvas.addEventListener("blur", () => (this.clicked = false));
+  }
+  swap() {
+    if (!["all", "reference", "test"].includes(this.mode)) return tell("Swaps reference and test where they are shown alone or beside each other");
+    this.swapped = !this.swapped;
+    this.refresh();
   }
   hover(on) {
     if (this.hovered === on) return;
@@ -337,7 +381,7 @@ class Viewer {
     const mode = Object.keys(MODES).find((name) => MODES[name].key === event.key);
     const pan = { ArrowLeft: [40, 0], ArrowRight: [-40, 0], ArrowUp: [0, 40], ArrowDown: [0, -40] }[event.key];
     const acts = {
-      " ": () => { this.swapped = !this.swapped; this.draw(); },
+      " ": () => this.swap(),
       "[": () => this.setStops((this.stops ?? 0) - STOP), "]": () => this.setStops((this.stops ?? 0) + STOP),
       "\\": () => this.setStops(this.coloring()?.stops ?? 0),
       "{": () => this.setScale(this.scaleStops - 1), "}": () => this.setScale(this.scaleStops + 1),
@@ -346,7 +390,7 @@ class Viewer {
       "0": () => this.showWhole(), "1": () => this.showPixels(), "x": () => this.showWorst(),
       "b": () => { this.markBox.checked = this.marks = !this.marks; this.draw(); },
     };
-    if (!this.view) return false;
+    if (!this.isReady) return false;
     if (mode) this.setMode(mode);
     else if (pan && document.activeElement === this.canvas) this.view.moveBy(...pan.map((step) => step * devicePixelRatio)), this.draw();
     else if (acts[event.key]) acts[event.key]();
