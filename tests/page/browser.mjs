@@ -4,7 +4,8 @@ import { createRequire } from "node:module";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 
-const modules = process.env.AFTERSHADE_PAGE_MODULES ?? resolve(dirname(fileURLToPath(import.meta.url)), "../../build/page-modules");
+const modules =
+  process.env.AFTERSHADE_PAGE_MODULES ?? resolve(dirname(fileURLToPath(import.meta.url)), "../../build/page-modules");
 const require = createRequire(join(modules, "/"));
 const { chromium } = require("playwright-core");
 
@@ -12,12 +13,20 @@ export const axeSource = require.resolve("axe-core/axe.min.js");
 
 export async function openBrowser() {
   // No sandbox: containers run as root.
-  return chromium.launch({ executablePath: process.env.AFTERSHADE_CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox", "--force-color-profile=srgb"] });
+  return chromium.launch({
+    executablePath: process.env.AFTERSHADE_CHROMIUM ?? "/usr/bin/chromium",
+    args: ["--no-sandbox", "--force-color-profile=srgb"],
+  });
 }
 
 /** Opens the page as a user does, from a file and without a network. What goes wrong is kept in `page.faults`. */
 export async function openPage(browser, file, options = {}) {
-  const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, permissions: ["clipboard-read", "clipboard-write"], offline: true, ...options });
+  const context = await browser.newContext({
+    viewport: { width: 1280, height: 900 },
+    permissions: ["clipboard-read", "clipboard-write"],
+    offline: true,
+    ...options,
+  });
   const page = await context.newPage();
   page.faults = [];
   page.requests = [];
@@ -38,43 +47,58 @@ export async function viewerOf(page, name, index = 0) {
 }
 
 /** Colours of places of the canvas, in CSS pixels from its corner. */
-export const colorsAt = (viewer, places) => viewer.locator("canvas").evaluate((canvas, wanted) => {
-  const context = canvas.getContext("2d"), ratio = devicePixelRatio;
-  return wanted.map(([x, y]) => [...context.getImageData(x * ratio, y * ratio, 1, 1).data.slice(0, 3)]);
-}, places);
+export const colorsAt = (viewer, places) =>
+  viewer.locator("canvas").evaluate((canvas, wanted) => {
+    const context = canvas.getContext("2d"),
+      ratio = devicePixelRatio;
+    return wanted.map(([x, y]) => [...context.getImageData(x * ratio, y * ratio, 1, 1).data.slice(0, 3)]);
+  }, places);
 
 /** Colours of places of what the reader sees; where pictures are from files a canvas may not be read. */
 export async function seenColorsAt(viewer, places) {
   const picture = (await viewer.locator("canvas").screenshot()).toString("base64");
-  return viewer.evaluate(async (_, [text, wanted]) => {
-    const image = new Image();
-    image.src = `data:image/png;base64,${text}`;
-    await image.decode();
-    const canvas = document.createElement("canvas");
-    [canvas.width, canvas.height] = [image.naturalWidth, image.naturalHeight];
-    const context = canvas.getContext("2d");
-    context.drawImage(image, 0, 0);
-    return wanted.map(([x, y]) => [...context.getImageData(x, y, 1, 1).data.slice(0, 3)]);
-  }, [picture, places]);
+  return viewer.evaluate(
+    async (_, [text, wanted]) => {
+      const image = new Image();
+      image.src = `data:image/png;base64,${text}`;
+      await image.decode();
+      const canvas = document.createElement("canvas");
+      [canvas.width, canvas.height] = [image.naturalWidth, image.naturalHeight];
+      const context = canvas.getContext("2d");
+      context.drawImage(image, 0, 0);
+      return wanted.map(([x, y]) => [...context.getImageData(x, y, 1, 1).data.slice(0, 3)]);
+    },
+    [picture, places],
+  );
 }
 
 /**
  * A PNG file against the middle of the canvas, where its picture lies when a pixel is shown as a pixel:
  * {width, height, difference: the largest of all bytes, brightest: byte}.
  */
-export const compareWithPng = (viewer, file) => viewer.locator("canvas").evaluate(async (canvas, text) => {
-  const image = new Image();
-  image.src = `data:image/png;base64,${text}`;
-  await image.decode();
-  const [width, height] = [image.naturalWidth, image.naturalHeight], other = document.createElement("canvas");
-  [other.width, other.height] = [width, height];
-  other.getContext("2d").drawImage(image, 0, 0);
-  const expected = other.getContext("2d").getImageData(0, 0, width, height).data;
-  const found = canvas.getContext("2d").getImageData(Math.round((canvas.width - width) / 2), Math.round((canvas.height - height) / 2), width, height).data;
-  let difference = 0, brightest = 0;
-  for (let i = 0; i < found.length; ++i) {
-    difference = Math.max(difference, Math.abs(found[i] - expected[i]));
-    if (i % 4 < 3) brightest = Math.max(brightest, found[i]);
-  }
-  return { width, height, difference, brightest };
-}, readFileSync(file).toString("base64"));
+export const compareWithPng = (viewer, file) =>
+  viewer.locator("canvas").evaluate(async (canvas, text) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${text}`;
+    await image.decode();
+    const [width, height] = [image.naturalWidth, image.naturalHeight],
+      other = document.createElement("canvas");
+    [other.width, other.height] = [width, height];
+    other.getContext("2d").drawImage(image, 0, 0);
+    const expected = other.getContext("2d").getImageData(0, 0, width, height).data;
+    const found = canvas
+      .getContext("2d")
+      .getImageData(
+        Math.round((canvas.width - width) / 2),
+        Math.round((canvas.height - height) / 2),
+        width,
+        height,
+      ).data;
+    let difference = 0,
+      brightest = 0;
+    for (let i = 0; i < found.length; ++i) {
+      difference = Math.max(difference, Math.abs(found[i] - expected[i]));
+      if (i % 4 < 3) brightest = Math.max(brightest, found[i]);
+    }
+    return { width, height, difference, brightest };
+  }, readFileSync(file).toString("base64"));

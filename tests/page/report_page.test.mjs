@@ -1,7 +1,16 @@
 // The page of a golden suite's report, as its users have it. The suite is made anew by the program (suite.mjs).
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { copyFileSync, cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
+import {
+  copyFileSync,
+  cpSync,
+  mkdirSync,
+  mkdtempSync,
+  readFileSync,
+  rmSync,
+  symlinkSync,
+  writeFileSync,
+} from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
@@ -45,7 +54,9 @@ const light = (x, y) => [x / 64, y / 32, 0.25];
 /** All cards are built; what they show is what a reader sees of them at first. */
 async function openAllCases(page) {
   await page.evaluate(() => document.querySelectorAll(".case").forEach((node) => (node.open = true)));
-  await page.waitForFunction(() => [...document.querySelectorAll(".case")].every((node) => node.querySelector(".details")));
+  await page.waitForFunction(() =>
+    [...document.querySelectorAll(".case")].every((node) => node.querySelector(".details")),
+  );
 }
 
 async function exposureOf(viewer) {
@@ -78,7 +89,10 @@ test("shows its pictures without the folder that it was made in", async () => {
   const { width, height } = await viewer.locator("canvas").boundingBox();
   const [middle] = await colorsAt(viewer, [[width / 2, height / 2]]);
   assert.ok(Math.max(...middle) > 20, `the middle is ${middle}`);
-  assert.deepEqual(page.requests.filter((url) => url.startsWith("file:") && !url.endsWith("alone.html")), []);
+  assert.deepEqual(
+    page.requests.filter((url) => url.startsWith("file:") && !url.endsWith("alone.html")),
+    [],
+  );
   assert.deepEqual(page.faults, []);
   await page.context().close();
 });
@@ -114,7 +128,8 @@ inPage("has failures first, the worst at the top, and opens them", async (page) 
 });
 
 inPage("names renderer, Mesa, CPU and why a case failed", async (page) => {
-  const { renderer, mesa, cpu } = json.environment, foot = await page.locator("#environment").innerText();
+  const { renderer, mesa, cpu } = json.environment,
+    foot = await page.locator("#environment").innerText();
   for (const words of [renderer, mesa, cpu]) assert.ok(foot.includes(words), words);
   assert.match(await page.locator("#case-does_not_compile").innerText(), /card\.frag:\d+:.*parm/);
   assert.match(await page.locator("#case-brand_new").innerText(), /no golden/);
@@ -137,7 +152,9 @@ test("is short where all is well", async () => {
   const page = await openPage(browser, join(mine, "index.html"));
   assert.equal(await page.locator("details[open]").count(), 0);
   assert.doesNotMatch(await page.locator("body").innerText(), /null|undefined|NaN|Approve/);
-  await page.waitForFunction(() => [...document.querySelectorAll(".thumbnail")].every((node) => node.complete && node.naturalWidth));
+  await page.waitForFunction(() =>
+    [...document.querySelectorAll(".thumbnail")].every((node) => node.complete && node.naturalWidth),
+  );
   const thumbnails = await page.locator(".thumbnail").evaluateAll((nodes) => nodes.map((node) => node.naturalWidth));
   assert.deepEqual(thumbnails, [240, 240]);
   assert.deepEqual(page.faults, []);
@@ -153,19 +170,28 @@ test("opens the case that its address names", async () => {
 
 inPage("has the figures of report.json in its table", async (page) => {
   const rgb = caseOf("one_pixel").images[0].comparison.layers.find((layer) => layer.layer === "RGB");
-  const row = page.locator("#case-one_pixel .metrics tr", { hasText: "RGB" }), words = await row.innerText();
+  const row = page.locator("#case-one_pixel .metrics tr", { hasText: "RGB" }),
+    words = await row.innerText();
   assert.match(words, /1 of 32400/);
   assert.match(words, /31, 17 G/);
   const cells = (await row.locator("td").allInnerTexts()).map(Number);
   for (const value of [rgb.max_error.value, rgb.rmse, rgb.mean_absolute, rgb.psnr_db, rgb.ssim, rgb.hdr_flip.mean])
-    assert.ok(cells.some((cell) => Math.abs(cell - value) <= 1e-3 * Math.abs(value)), `${value} in ${words}`);
+    assert.ok(
+      cells.some((cell) => Math.abs(cell - value) <= 1e-3 * Math.abs(value)),
+      `${value} in ${words}`,
+    );
 });
 
 // ---- pictures ----
 
 inPage("shows the colours of the program's own pictures", async (page) => {
-  for (const [name, kind, button] of [["lens", "reference", "Reference"], ["lens", "test", "Test"], ["one_pixel", "reference", "Reference"]]) {
-    const viewer = await viewerOf(page, name), { pictures } = caseOf(name).images[0];
+  for (const [name, kind, button] of [
+    ["lens", "reference", "Reference"],
+    ["lens", "test", "Test"],
+    ["one_pixel", "reference", "Reference"],
+  ]) {
+    const viewer = await viewerOf(page, name),
+      { pictures } = caseOf(name).images[0];
     await viewer.getByLabel("Frame failing pixels").uncheck();
     await viewer.getByRole("button", { name: button, exact: true }).click();
     await page.keyboard.press("1");
@@ -176,9 +202,13 @@ inPage("shows the colours of the program's own pictures", async (page) => {
 });
 
 inPage("shows the program's difference picture and FLIP heat map", async (page) => {
-  const viewer = await viewerOf(page, "lens"), { pictures } = caseOf("lens").images[0];
+  const viewer = await viewerOf(page, "lens"),
+    { pictures } = caseOf("lens").images[0];
   await viewer.getByLabel("Frame failing pixels").uncheck();
-  for (const [kind, button] of [["difference", "Difference"], ["heat_map", "FLIP"]]) {
+  for (const [kind, button] of [
+    ["difference", "Difference"],
+    ["heat_map", "FLIP"],
+  ]) {
     await viewer.getByRole("button", { name: button, exact: true }).click();
     await page.keyboard.press("1");
     const { difference, brightest } = await compareWithPng(viewer, join(report, pictures[kind]));
@@ -187,11 +217,16 @@ inPage("shows the program's difference picture and FLIP heat map", async (page) 
 });
 
 inPage("exposes light by what the slider says", async (page) => {
-  const viewer = await viewerOf(page, "one_pixel"), place = await lookAtWorst(viewer, "Reference");
+  const viewer = await viewerOf(page, "one_pixel"),
+    place = await lookAtWorst(viewer, "Reference");
   for (const stops of [-2, 0, 1.5]) {
     await viewer.getByLabel("Exposure").fill(String(stops));
     assert.equal(await exposureOf(viewer), stops);
-    assert.deepEqual((await colorsAt(viewer, [place]))[0], light(31, 17).map((value) => srgb(value * 2 ** stops)), `${stops} EV`);
+    assert.deepEqual(
+      (await colorsAt(viewer, [place]))[0],
+      light(31, 17).map((value) => srgb(value * 2 ** stops)),
+      `${stops} EV`,
+    );
   }
   const before = await exposureOf(viewer);
   await page.keyboard.press("[");
@@ -203,10 +238,11 @@ inPage("keeps pixels when it zooms", async (page) => {
   const [, y] = await lookAtWorst(viewer, "Reference");
   assert.equal(await viewer.locator(".zoom").innerText(), "1600 %");
   const runs = await viewer.locator("canvas").evaluate((canvas, row) => {
-    const line = canvas.getContext("2d").getImageData(0, row, canvas.width, 1).data, lengths = [];
+    const line = canvas.getContext("2d").getImageData(0, row, canvas.width, 1).data,
+      lengths = [];
     for (let i = 1, length = 1; i < canvas.width; ++i)
       if (line[4 * i] === line[4 * i - 4] && line[4 * i + 1] === line[4 * i - 3]) ++length;
-      else lengths.push(length), (length = 1);
+      else (lengths.push(length), (length = 1));
     return lengths;
   }, y);
   // The card's red changes from pixel to pixel, by a byte at least where it is not bright; the pane cuts off the first.
@@ -218,7 +254,10 @@ inPage("swaps test for reference where the pointer is, and with the space bar", 
   await viewer.getByRole("button", { name: "Worst" }).click();
   await viewer.getByLabel("Frame failing pixels").uncheck();
   const box = await viewer.locator("canvas").boundingBox();
-  const [reference, test] = [1 / 6, 3 / 6].map((share) => [Math.floor(box.width * share) - 3, Math.floor(box.height / 2) + 3]);
+  const [reference, test] = [1 / 6, 3 / 6].map((share) => [
+    Math.floor(box.width * share) - 3,
+    Math.floor(box.height / 2) + 3,
+  ]);
   await page.mouse.move(box.x + 5, box.y + 5);
   const [left, right] = await colorsAt(viewer, [reference, test]);
   assert.notDeepEqual(left, right, "the pixel differs");
@@ -232,7 +271,8 @@ inPage("swaps test for reference where the pointer is, and with the space bar", 
 });
 
 inPage("wipes between reference and test by pointer, slider and keys", async (page) => {
-  const viewer = await viewerOf(page, "one_pixel"), reference = await lookAtWorst(viewer, "Reference");
+  const viewer = await viewerOf(page, "one_pixel"),
+    reference = await lookAtWorst(viewer, "Reference");
   const [expected] = await colorsAt(viewer, [reference]);
   const place = await lookAtWorst(viewer, "Test");
   const [other] = await colorsAt(viewer, [place]);
@@ -255,18 +295,23 @@ inPage("wipes between reference and test by pointer, slider and keys", async (pa
 });
 
 inPage("tells the values under the pointer", async (page) => {
-  const viewer = await viewerOf(page, "one_pixel"), place = await lookAtWorst(viewer, "Test");
+  const viewer = await viewerOf(page, "one_pixel"),
+    place = await lookAtWorst(viewer, "Test");
   const box = await viewer.locator("canvas").boundingBox();
   await page.mouse.move(box.x + place[0] + 32, box.y + place[1] + 16);
   const words = await viewer.locator(".readout").innerText();
   const same = light(33, 18).join("  ");
   assert.equal(words, `x 33  y 18   R G B   reference ${same}   test ${same}`);
   await page.mouse.move(box.x + place[0], box.y + place[1]);
-  assert.match(await viewer.locator(".readout").innerText(), /x 31  y 17 .*reference 0\.484375  0\.53125  0\.25 .*test 0\.484375  1\.03125  0\.25/);
+  assert.match(
+    await viewer.locator(".readout").innerText(),
+    /x 31  y 17 .*reference 0\.484375  0\.53125  0\.25 .*test 0\.484375  1\.03125  0\.25/,
+  );
 });
 
 inPage("shows what is not finite in a colour that light has not", async (page) => {
-  const viewer = await viewerOf(page, "poisoned"), place = await lookAtWorst(viewer, "Test");
+  const viewer = await viewerOf(page, "poisoned"),
+    place = await lookAtWorst(viewer, "Test");
   assert.deepEqual((await colorsAt(viewer, [place]))[0], [255, 0, 255]);
   assert.match(await page.locator("#case-poisoned .metrics").innerText(), /none → 1, 0/);
 });
@@ -281,7 +326,8 @@ inPage("shows every role", async (page) => {
 });
 
 inPage("shows images of different size at their places", async (page) => {
-  const viewer = await viewerOf(page, "shrunk"), box = await viewer.locator("canvas").boundingBox();
+  const viewer = await viewerOf(page, "shrunk"),
+    box = await viewer.locator("canvas").boundingBox();
   await viewer.getByRole("button", { name: "Test", exact: true }).click();
   await page.keyboard.press("1");
   const { width, height } = await viewer.locator("canvas").boundingBox();
@@ -294,31 +340,45 @@ inPage("shows images of different size at their places", async (page) => {
 
 inPage("shows files that have no pixel or no layer in common", async (page) => {
   assert.match(await page.locator("#case-apart .metrics").innerText(), /no pixel in common/);
-  for (const [name, words] of [["apart", "Test"], ["other_layers", "Test"]]) {
+  for (const [name, words] of [
+    ["apart", "Test"],
+    ["other_layers", "Test"],
+  ]) {
     const viewer = await viewerOf(page, name);
     if (name === "other_layers") await viewer.getByRole("combobox", { name: "Layer" }).selectOption("RGB");
     await viewer.getByRole("button", { name: words, exact: true }).click();
     await page.keyboard.press("0");
-    const colors = await viewer.locator("canvas").evaluate((canvas) => new Set(new Uint32Array(canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data.buffer)).size);
+    const colors = await viewer
+      .locator("canvas")
+      .evaluate(
+        (canvas) =>
+          new Set(new Uint32Array(canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data.buffer))
+            .size,
+      );
     assert.ok(colors > 50, `${name} has ${colors} colours`);
   }
 });
 
 inPage("does not call NaN approved", async (page) => {
   assert.equal(caseOf("always_poisoned").images[0].bits_equal, true);
-  const viewer = await viewerOf(page, "always_poisoned"), place = await lookAtWorst(viewer, "Test");
+  const viewer = await viewerOf(page, "always_poisoned"),
+    place = await lookAtWorst(viewer, "Test");
   assert.deepEqual((await colorsAt(viewer, [place]))[0], [255, 0, 255]);
   assert.doesNotMatch(await page.locator("#case-always_poisoned").innerText(), /as approved/);
 });
 
 inPage("frees pictures far from the window and reads them again", async (page) => {
-  const before = await viewerOf(page, "lens"), size = () => before.locator("canvas").evaluate((canvas) => canvas.width);
+  const before = await viewerOf(page, "lens"),
+    size = () => before.locator("canvas").evaluate((canvas) => canvas.width);
   await before.getByLabel("Exposure").fill("-1");
   const width = await size();
   assert.ok(width > 100);
-  await page.evaluate(() => document.querySelectorAll(".viewer").forEach((node) => (node.style.marginBottom = "1500px")));
+  await page.evaluate(() =>
+    document.querySelectorAll(".viewer").forEach((node) => (node.style.marginBottom = "1500px")),
+  );
   const names = await page.locator(".case:has(.viewer)").evaluateAll((nodes) => nodes.map((node) => node.id.slice(5)));
-  for (const name of names) for (let i = 0; i < (await page.locator(`#case-${name} .viewer`).count()); ++i) await viewerOf(page, name, i);
+  for (const name of names)
+    for (let i = 0; i < (await page.locator(`#case-${name} .viewer`).count()); ++i) await viewerOf(page, name, i);
   assert.equal(await size(), 1, "freed");
   await viewerOf(page, "lens");
   assert.equal(await size(), width);
@@ -348,7 +408,11 @@ test("copies a command that approves the case", async () => {
   const bin = join(folder, "bin");
   mkdirSync(bin);
   symlinkSync(program, join(bin, "aftershade"));
-  const options = { cwd: mine, env: { ...process.env, PATH: `${bin}:${process.env.PATH}`, AFTERSHADE_BACKEND: "osmesa" }, stdio: "pipe" };
+  const options = {
+    cwd: mine,
+    env: { ...process.env, PATH: `${bin}:${process.env.PATH}`, AFTERSHADE_BACKEND: "osmesa" },
+    stdio: "pipe",
+  };
   execFileSync("sh", ["-c", command], options);
   execFileSync("sh", ["-c", caseOf("one_pixel").rerun], options); // throws unless it exits 0
 });
@@ -367,9 +431,19 @@ inPage("works by keyboard alone", async (page) => {
   for (let i = 0; i < 2; ++i) await page.keyboard.press("k");
   assert.equal(await current(), first);
   await viewerOf(page, "lens");
-  for (const [key, mode] of [["r", "reference"], ["t", "test"], ["d", "difference"], ["w", "wipe"], ["h", "heat_map"], ["a", "all"]]) {
+  for (const [key, mode] of [
+    ["r", "reference"],
+    ["t", "test"],
+    ["d", "difference"],
+    ["w", "wipe"],
+    ["h", "heat_map"],
+    ["a", "all"],
+  ]) {
     await page.keyboard.press(key);
-    assert.equal(await page.evaluate(() => document.querySelector(".viewer.current [aria-pressed=true]").dataset.mode), mode);
+    assert.equal(
+      await page.evaluate(() => document.querySelector(".viewer.current [aria-pressed=true]").dataset.mode),
+      mode,
+    );
   }
   await page.keyboard.press("+");
   assert.equal(await page.locator(".viewer.current .zoom").innerText(), "200 %");
@@ -386,8 +460,18 @@ inPage("works by keyboard alone", async (page) => {
 });
 
 test("follows the system's dark and light, and the reader's choice", async () => {
-  const luminance = (page) => page.evaluate(() => getComputedStyle(document.body).backgroundColor.match(/\d+/g).slice(0, 3).reduce((sum, c) => sum + Number(c), 0) / 3);
-  for (const [colorScheme, isDark] of [["dark", true], ["light", false]]) {
+  const luminance = (page) =>
+    page.evaluate(
+      () =>
+        getComputedStyle(document.body)
+          .backgroundColor.match(/\d+/g)
+          .slice(0, 3)
+          .reduce((sum, c) => sum + Number(c), 0) / 3,
+    );
+  for (const [colorScheme, isDark] of [
+    ["dark", true],
+    ["light", false],
+  ]) {
     const page = await openPage(browser, file, { colorScheme });
     assert.equal((await luminance(page)) < 80, isDark, colorScheme);
     await page.keyboard.press("l");
@@ -403,17 +487,32 @@ test("has no fault that axe finds, dark or light", async () => {
     await viewerOf(page, "lens");
     await openAllCases(page);
     await page.evaluate(readFileSync(axeSource, "utf8"));
-    const found = await page.evaluate(async () => (await axe.run()).violations.map(({ id, nodes }) => `${id}: ${nodes.slice(0, 3).map((node) => node.html).join(" ")}`));
+    const found = await page.evaluate(async () =>
+      (await axe.run()).violations.map(
+        ({ id, nodes }) =>
+          `${id}: ${nodes
+            .slice(0, 3)
+            .map((node) => node.html)
+            .join(" ")}`,
+      ),
+    );
     assert.deepEqual(found, []);
     await page.context().close();
   }
 });
 
-inPage("fits a narrow window", async (page) => {
-  await viewerOf(page, "lens");
-  await openAllCases(page);
-  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "nothing to scroll sideways");
-}, { viewport: { width: 390, height: 800 } });
+inPage(
+  "fits a narrow window",
+  async (page) => {
+    await viewerOf(page, "lens");
+    await openAllCases(page);
+    assert.ok(
+      await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth),
+      "nothing to scroll sideways",
+    );
+  },
+  { viewport: { width: 390, height: 800 } },
+);
 
 // ---- large and damaged reports ----
 

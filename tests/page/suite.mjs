@@ -5,13 +5,17 @@ import { join, resolve } from "node:path";
 
 const root = resolve(import.meta.dirname ?? new URL(".", import.meta.url).pathname, "../..");
 export const program = process.env.AFTERSHADE_EXECUTABLE ?? join(root, "build/release/aftershade");
-const scene = join(root, "scenes/starter"), capture = join(scene, "capture.json"); // 240 x 135 px: colour, depth, velocity, ids
+const scene = join(root, "scenes/starter"),
+  capture = join(scene, "capture.json"); // 240 x 135 px: colour, depth, velocity, ids
 const smaller = join(root, "scenes/soap/capture.json"); // 160 x 90 px
 
 // Light that a test knows: (x / 64, y / 32, 1 / 4), all of it exact as half. One pixel can be changed.
 const card = {
   "effect.json": {
-    aftershade: 1, id: "card", version: "1.0.0", summary: "A card of known light.",
+    aftershade: 1,
+    id: "card",
+    version: "1.0.0",
+    summary: "A card of known light.",
     inputs: { color: { role: "color", doc: "Gives the size." } },
     outputs: { color: { role: "color", doc: "The card." } },
     params: {
@@ -38,10 +42,23 @@ const broken = "float broken() { return parm; }";
 const corner = "corner.exr"; // of the capture: 40 x 30 px from (200, 100)
 
 function casesOf(changed) {
-  const cardCase = (name, values, more = {}) => ({ name, steps: [{ effect: "card", params: changed ? values : {} }], capture, frames: "1", ...more });
+  const cardCase = (name, values, more = {}) => ({
+    name,
+    steps: [{ effect: "card", params: changed ? values : {} }],
+    capture,
+    frames: "1",
+    ...more,
+  });
   return [
     { name: "passing", steps: [{ effect: "vignette" }], capture, frames: "1", tags: ["fast"] },
-    { name: "lens", steps: [{ effect: "bokeh", params: { f_number: 1, rotation: changed ? 12 : 0 } }], capture, frames: "1", tolerance: { fail: 0.02 }, tags: ["slow", "<b>bold</b>"] },
+    {
+      name: "lens",
+      steps: [{ effect: "bokeh", params: { f_number: 1, rotation: changed ? 12 : 0 } }],
+      capture,
+      frames: "1",
+      tolerance: { fail: 0.02 },
+      tags: ["slow", "<b>bold</b>"],
+    },
     cardCase("one_pixel", { change: 0.5 }, { tolerance: { fail: 0.004 } }),
     cardCase("poisoned", { poison: true }),
     cardCase("inside_tolerance", { change: 0.03125 }, { tolerance: { fail: 0.1 } }),
@@ -52,28 +69,38 @@ function casesOf(changed) {
     { name: "apart", steps: [], capture: corner },
     { name: "other_layers", steps: [], capture: "in.exr" },
     { ...cardCase("always_poisoned", {}), steps: [{ effect: "card", params: { poison: true } }] },
-    ...(changed ? [
-      { name: "brand_new", steps: [{ effect: "sharpen" }], capture, frames: "1" },
-      { name: "absent", steps: [], capture, skip: "<img src=x onerror=\"document.title='broken in'\">" },
-      { name: "does_not_compile", steps: [{ effect: "card_broken" }], capture, frames: "1" },
-    ] : []),
+    ...(changed
+      ? [
+          { name: "brand_new", steps: [{ effect: "sharpen" }], capture, frames: "1" },
+          { name: "absent", steps: [], capture, skip: "<img src=x onerror=\"document.title='broken in'\">" },
+          { name: "does_not_compile", steps: [{ effect: "card_broken" }], capture, frames: "1" },
+        ]
+      : []),
   ];
 }
 
 function writeEffect(folder, files) {
   mkdirSync(folder, { recursive: true });
-  for (const [name, content] of Object.entries(files)) writeFileSync(join(folder, name), typeof content === "string" ? content : JSON.stringify(content));
+  for (const [name, content] of Object.entries(files))
+    writeFileSync(join(folder, name), typeof content === "string" ? content : JSON.stringify(content));
 }
 
 export function golden(folder, ...words) {
-  const result = spawnSync(program, ["golden", ...words], { cwd: folder, encoding: "utf8", env: { ...process.env, AFTERSHADE_BACKEND: "osmesa" } });
+  const result = spawnSync(program, ["golden", ...words], {
+    cwd: folder,
+    encoding: "utf8",
+    env: { ...process.env, AFTERSHADE_BACKEND: "osmesa" },
+  });
   return { code: result.status, err: result.stderr, out: result.stdout };
 }
 
 function draw(folder, from, to, ...words) {
   const look = join(folder, "nothing.json");
   writeFileSync(look, JSON.stringify({ aftershade: 1, steps: [] }));
-  const result = spawnSync(program, ["run", look, from, "-o", to, "--backend", "osmesa", ...words], { cwd: folder, encoding: "utf8" });
+  const result = spawnSync(program, ["run", look, from, "-o", to, "--backend", "osmesa", ...words], {
+    cwd: folder,
+    encoding: "utf8",
+  });
   if (result.status !== 0) throw new Error(result.stderr);
 }
 
@@ -87,7 +114,10 @@ export function makeReport(folder) {
   });
   const write = (changed) => {
     copyFileSync(join(scene, `gbuffer_000${changed ? 2 : 1}.exr`), join(folder, "in.exr"));
-    writeFileSync(join(folder, "golden.json"), JSON.stringify({ aftershade: 1, effect_paths: ["effects"], cases: casesOf(changed) }, null, 1));
+    writeFileSync(
+      join(folder, "golden.json"),
+      JSON.stringify({ aftershade: 1, effect_paths: ["effects"], cases: casesOf(changed) }, null, 1),
+    );
   };
   write(false);
   draw(folder, "in.exr", corner, "--region", "200,100,40,30");

@@ -26,11 +26,18 @@ class View {
   }
   toFile(pane, screenX, screenY) {
     const [left, top] = this.toScreen(pane, this.box.x, this.box.y);
-    return [Math.floor((screenX - left) / this.zoom) + this.box.x, Math.floor((screenY - top) / this.zoom) + this.box.y];
+    return [
+      Math.floor((screenX - left) / this.zoom) + this.box.x,
+      Math.floor((screenY - top) / this.zoom) + this.box.y,
+    ];
   }
   zoomBy(steps, pane, screenX, screenY) {
-    const [x, y] = [(screenX - pane.left - pane.width / 2) / this.zoom, (screenY - pane.top - pane.height / 2) / this.zoom];
-    const above = steps > 0 ? ZOOMS.find((zoom) => zoom > this.zoom * 1.001) : ZOOMS.findLast((zoom) => zoom < this.zoom * 0.999);
+    const [x, y] = [
+      (screenX - pane.left - pane.width / 2) / this.zoom,
+      (screenY - pane.top - pane.height / 2) / this.zoom,
+    ];
+    const above =
+      steps > 0 ? ZOOMS.find((zoom) => zoom > this.zoom * 1.001) : ZOOMS.findLast((zoom) => zoom < this.zoom * 0.999);
     this.setZoom(above ?? this.zoom);
     // What lies under the pointer stays there.
     this.x += x - (screenX - pane.left - pane.width / 2) / this.zoom;
@@ -65,7 +72,10 @@ function drawPicture(context, view, pane, picture) {
 function drawFrame(context, view, pane, box, color) {
   const [left, top] = view.toScreen(pane, box.x, box.y);
   const [width, height] = [box.width * view.zoom, box.height * view.zoom];
-  for (const [line, grow, style] of [[4, 2, "rgba(0, 0, 0, 0.6)"], [2, 2, color]]) {
+  for (const [line, grow, style] of [
+    [4, 2, "rgba(0, 0, 0, 0.6)"],
+    [2, 2, color],
+  ]) {
     context.lineWidth = line;
     context.strokeStyle = style;
     context.strokeRect(left - grow, top - grow, width + 2 * grow, height + 2 * grow);
@@ -85,7 +95,9 @@ const LABEL_HEIGHT = 20; // CSS pixels
 
 function drawLabel(context, pane, words, ratio) {
   context.font = `${12 * ratio}px system-ui, sans-serif`;
-  const padding = 5 * ratio, height = LABEL_HEIGHT * ratio, width = context.measureText(words).width + 2 * padding;
+  const padding = 5 * ratio,
+    height = LABEL_HEIGHT * ratio,
+    width = context.measureText(words).width + 2 * padding;
   context.fillStyle = "rgba(0, 0, 0, 0.65)";
   context.fillRect(pane.left, pane.top, width, height);
   context.fillStyle = "#fff";

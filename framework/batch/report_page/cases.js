@@ -13,27 +13,68 @@ const seconds = (value) => `${value.toFixed(value < 10 ? 2 : 1)} s`;
 /** JSON has no infinities: they come as words. */
 function figure(value) {
   if (value === null || value === undefined) return "\u2013";
-  return typeof value === "number" ? short(value) : { inf: "\u221e", "-inf": "-\u221e", nan: "NaN" }[value] ?? String(value);
+  return typeof value === "number"
+    ? short(value)
+    : ({ inf: "\u221e", "-inf": "-\u221e", nan: "NaN" }[value] ?? String(value));
 }
 
 const exactFigure = (value) => (typeof value === "number" ? exact(value) : figure(value));
 
 function metricsTable(image) {
-  const heads = ["Layer", "Verdict", "Failing pixels", "Largest error", "at", "reference", "test", "RMSE", "MAE", "relMSE", "PSNR dB", "SSIM", "MS-SSIM", "LDR-FLIP", "HDR-FLIP", "NaN, Inf"];
+  const heads = [
+    "Layer",
+    "Verdict",
+    "Failing pixels",
+    "Largest error",
+    "at",
+    "reference",
+    "test",
+    "RMSE",
+    "MAE",
+    "relMSE",
+    "PSNR dB",
+    "SSIM",
+    "MS-SSIM",
+    "LDR-FLIP",
+    "HDR-FLIP",
+    "NaN, Inf",
+  ];
   const faulty = ({ nan, inf }) => (nan + inf ? `${nan}, ${inf}` : "none");
   const rows = image.comparison.layers.map((layer) => {
     const worst = layer.max_error;
-    if (!layer.pixels) return [`${layer.layer} (${layer.role})`, layer.verdict, "no pixel in common", ...Array(heads.length - 3).fill("\u2013")];
+    if (!layer.pixels)
+      return [
+        `${layer.layer} (${layer.role})`,
+        layer.verdict,
+        "no pixel in common",
+        ...Array(heads.length - 3).fill("\u2013"),
+      ];
     return [
-      `${layer.layer} (${layer.role})`, layer.verdict,
+      `${layer.layer} (${layer.role})`,
+      layer.verdict,
       `${layer.failing.pixels} of ${layer.pixels} (${figure(layer.failing.percent)} %)`,
-      figure(worst.value), worst.value === 0 ? "\u2013" : `${worst.x}, ${worst.y} ${worst.channel}`, exactFigure(worst.reference), exactFigure(worst.test),
-      figure(layer.rmse), figure(layer.mean_absolute), figure(layer.relative_mse), figure(layer.psnr_db), figure(layer.ssim), figure(layer.ms_ssim),
-      figure(layer.ldr_flip?.mean), figure(layer.hdr_flip?.mean),
-      faulty(layer.test_non_finite) === faulty(layer.reference_non_finite) ? faulty(layer.test_non_finite) : `${faulty(layer.reference_non_finite)} \u2192 ${faulty(layer.test_non_finite)}`,
+      figure(worst.value),
+      worst.value === 0 ? "\u2013" : `${worst.x}, ${worst.y} ${worst.channel}`,
+      exactFigure(worst.reference),
+      exactFigure(worst.test),
+      figure(layer.rmse),
+      figure(layer.mean_absolute),
+      figure(layer.relative_mse),
+      figure(layer.psnr_db),
+      figure(layer.ssim),
+      figure(layer.ms_ssim),
+      figure(layer.ldr_flip?.mean),
+      figure(layer.hdr_flip?.mean),
+      faulty(layer.test_non_finite) === faulty(layer.reference_non_finite)
+        ? faulty(layer.test_non_finite)
+        : `${faulty(layer.reference_non_finite)} \u2192 ${faulty(layer.test_non_finite)}`,
     ];
   });
-  return element("div", { class: "wide", tabindex: 0, role: "group", "aria-label": `Figures of ${image.name}` }, table(heads, rows, { class: "metrics" }));
+  return element(
+    "div",
+    { class: "wide", tabindex: 0, role: "group", "aria-label": `Figures of ${image.name}` },
+    table(heads, rows, { class: "metrics" }),
+  );
 }
 
 function toleranceWords({ fail, warn, nan_equal }) {
@@ -44,14 +85,22 @@ function toleranceWords({ fail, warn, nan_equal }) {
 }
 
 function levelWords(does, { limit, percent, hard, allowed, flip, ssim }) {
-  return [`${does} above ${figure(limit)}`, percent ? `in more than ${figure(percent)} % of pixels` : null, allowed ? `${allowed} pixels allowed` : null,
-    hard === "inf" ? null : `any pixel above ${figure(hard)}`, flip === null ? null : `FLIP above ${figure(flip)}`, ssim === null ? null : `SSIM below ${figure(ssim)}`]
-    .filter(Boolean).join(", ");
+  return [
+    `${does} above ${figure(limit)}`,
+    percent ? `in more than ${figure(percent)} % of pixels` : null,
+    allowed ? `${allowed} pixels allowed` : null,
+    hard === "inf" ? null : `any pixel above ${figure(hard)}`,
+    flip === null ? null : `FLIP above ${figure(flip)}`,
+    ssim === null ? null : `SSIM below ${figure(ssim)}`,
+  ]
+    .filter(Boolean)
+    .join(", ");
 }
 
 function approvedWords(image) {
   if (!image.approved) return "none: this image is new";
-  const others = image.approved_count > 1 ? ` (nearest of ${image.approved_count})` : "", made = image.approved.sidecar;
+  const others = image.approved_count > 1 ? ` (nearest of ${image.approved_count})` : "",
+    made = image.approved.sidecar;
   return `${image.approved.file}${others}${made ? `, made by ${made.renderer}, Mesa ${made.mesa ?? "?"}, ${made.cpu}` : ", without a sidecar"}`;
 }
 
@@ -60,9 +109,18 @@ const isAsApproved = (image) => image.bits_equal && image.verdict === "same";
 
 function imageSection(image, report, viewers) {
   const parts = [];
-  if (image.shown.missing) parts.push(element("p", { class: "missing" }, `Pictures are missing: ${image.shown.missing}`));
+  if (image.shown.missing)
+    parts.push(element("p", { class: "missing" }, `Pictures are missing: ${image.shown.missing}`));
   else if (isAsApproved(image)) {
-    parts.push(element("p", { class: "quiet" }, "Every bit is as approved."), element("img", { class: "whole", src: smallPicture(image, report), alt: `${image.name}, as approved`, loading: "lazy" }));
+    parts.push(
+      element("p", { class: "quiet" }, "Every bit is as approved."),
+      element("img", {
+        class: "whole",
+        src: smallPicture(image, report),
+        alt: `${image.name}, as approved`,
+        loading: "lazy",
+      }),
+    );
   } else if (image.shown.layers.length || image.pictures.test) {
     const viewer = new Viewer(image, report);
     viewers.add(viewer);
@@ -70,15 +128,33 @@ function imageSection(image, report, viewers) {
   }
   if (image.comparison?.layers.length) parts.push(metricsTable(image));
   const sidecar = image.approved?.sidecar;
-  parts.push(facts([
-    ["Approved", approvedWords(image)],
-    ["Held to", image.tier === "bits" ? "the bit (renderer, Mesa, CPU, look and effects are those of the approved image)" : "the tolerance"],
-    ["Tolerance", image.comparison ? toleranceWords(image.comparison.rules) : null],
-    ["Approved by", sidecar?.command],
-    ["Files", image.pictures.test_exr ? [image.pictures.reference_exr, image.pictures.test_exr].filter(Boolean).flatMap((path, i) =>
-      [i ? ", " : "", element("a", { href: addressOf(report, path) }, path)]) : null],
-  ]));
-  return element("section", { class: "image" }, element("h3", {}, image.name, " ", verdictMark(image.verdict)), ...parts);
+  parts.push(
+    facts([
+      ["Approved", approvedWords(image)],
+      [
+        "Held to",
+        image.tier === "bits"
+          ? "the bit (renderer, Mesa, CPU, look and effects are those of the approved image)"
+          : "the tolerance",
+      ],
+      ["Tolerance", image.comparison ? toleranceWords(image.comparison.rules) : null],
+      ["Approved by", sidecar?.command],
+      [
+        "Files",
+        image.pictures.test_exr
+          ? [image.pictures.reference_exr, image.pictures.test_exr]
+              .filter(Boolean)
+              .flatMap((path, i) => [i ? ", " : "", element("a", { href: addressOf(report, path) }, path)])
+          : null,
+      ],
+    ]),
+  );
+  return element(
+    "section",
+    { class: "image" },
+    element("h3", {}, image.name, " ", verdictMark(image.verdict)),
+    ...parts,
+  );
 }
 
 function verdictMark(verdict) {
@@ -87,7 +163,12 @@ function verdictMark(verdict) {
 }
 
 function reasonsOf(test) {
-  return [...test.messages, ...test.images.flatMap((image) => (image.verdict === "same" ? [] : image.reasons.map((reason) => `${image.name}: ${reason}`)))];
+  return [
+    ...test.messages,
+    ...test.images.flatMap((image) =>
+      image.verdict === "same" ? [] : image.reasons.map((reason) => `${image.name}: ${reason}`),
+    ),
+  ];
 }
 
 /** Of an image that passes; beside the page where it did not fit. */
@@ -102,15 +183,30 @@ function thumbnailOf(test, report) {
 }
 
 function caseDetails(test, report, viewers) {
-  return element("div", { class: "details" },
+  return element(
+    "div",
+    { class: "details" },
     test.approve ? commandLine("Approve", test.approve) : null,
     commandLine("Run again", test.rerun),
     test.images.map((image) => imageSection(image, report, viewers)),
     facts([
-      ["Defined in", test.file], ["Look", test.look], ["Capture", test.capture], ["Frames", test.frames], ["Set", test.set.join(", ")],
-      ["Tags", test.tags.join(", ")], ["Hash of look and effects", test.look_hash],
+      ["Defined in", test.file],
+      ["Look", test.look],
+      ["Capture", test.capture],
+      ["Frames", test.frames],
+      ["Set", test.set.join(", ")],
+      ["Tags", test.tags.join(", ")],
+      ["Hash of look and effects", test.look_hash],
     ]),
-    test.steps ? element("details", { class: "steps" }, element("summary", {}, "Steps"), element("pre", {}, JSON.stringify(test.steps, null, 2))) : null);
+    test.steps
+      ? element(
+          "details",
+          { class: "steps" },
+          element("summary", {}, "Steps"),
+          element("pre", {}, JSON.stringify(test.steps, null, 2)),
+        )
+      : null,
+  );
 }
 
 /** One that cannot be shown does not take the others away. */
@@ -118,21 +214,40 @@ function safeCaseCard(test, report, viewers) {
   try {
     return caseCard(test, report, viewers);
   } catch (error) {
-    return element("details", { class: `case ${kindOf(test)}`, id: `case-${test.name}`, "data-kind": kindOf(test), open: true },
+    return element(
+      "details",
+      { class: `case ${kindOf(test)}`, id: `case-${test.name}`, "data-kind": kindOf(test), open: true },
       element("summary", {}, element("h2", {}, test.name), verdictMark(test.verdict)),
-      element("p", { class: "missing" }, `This case cannot be shown: ${error.message}; report.json has its figures.`));
+      element("p", { class: "missing" }, `This case cannot be shown: ${error.message}; report.json has its figures.`),
+    );
   }
 }
 
 /** Builds what it shows when it is opened first. */
 function caseCard(test, report, viewers) {
-  const kind = kindOf(test), reasons = reasonsOf(test), differs = kind === "passed" && test.images.some((image) => !image.bits_equal);
-  const card = element("details", { class: `case ${kind}`, id: `case-${test.name}`, "data-kind": kind },
-    element("summary", {},
+  const kind = kindOf(test),
+    reasons = reasonsOf(test),
+    differs = kind === "passed" && test.images.some((image) => !image.bits_equal);
+  const card = element(
+    "details",
+    { class: `case ${kind}`, id: `case-${test.name}`, "data-kind": kind },
+    element(
+      "summary",
+      {},
       kind === "passed" ? thumbnailOf(test, report) : null,
-      element("h2", {}, test.name), verdictMark(kind === "skipped" ? "skipped" : test.verdict), element("span", { class: "quiet" }, seconds(test.seconds) + (differs ? ", within tolerance, bits differ" : ""))),
+      element("h2", {}, test.name),
+      verdictMark(kind === "skipped" ? "skipped" : test.verdict),
+      element("span", { class: "quiet" }, seconds(test.seconds) + (differs ? ", within tolerance, bits differ" : "")),
+    ),
     kind === "skipped" ? element("p", { class: "reasons" }, test.skipped) : null,
-    reasons.length ? element("ul", { class: "reasons" }, reasons.map((reason) => element("li", {}, reason))) : null);
+    reasons.length
+      ? element(
+          "ul",
+          { class: "reasons" },
+          reasons.map((reason) => element("li", {}, reason)),
+        )
+      : null,
+  );
   const build = () => {
     if (!card.open || card.built) return;
     card.built = true;

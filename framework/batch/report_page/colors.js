@@ -6,7 +6,8 @@ const rgbOfHex = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 
 const srgbByte = (() => {
   const linear = (encoded) => (encoded <= 0.04045 ? encoded / 12.92 : ((encoded + 0.055) / 1.055) ** 2.4);
   const least = Float64Array.from({ length: 257 }, (_, byte) => (byte === 256 ? Infinity : linear((byte - 0.5) / 255)));
-  const steps = 4096, guesses = new Uint8Array(steps + 1);
+  const steps = 4096,
+    guesses = new Uint8Array(steps + 1);
   for (let i = 0, byte = 0; i <= steps; ++i) {
     while (i / steps >= least[byte + 1]) ++byte;
     guesses[i] = byte;
@@ -37,7 +38,8 @@ function wheelColor(x, y) {
 
 /** Renderers write ids as floats; hashes of names are floats that are no integers: their bits are the id. */
 const idOf = (() => {
-  const float = new Float32Array(1), bits = new Uint32Array(float.buffer);
+  const float = new Float32Array(1),
+    bits = new Uint32Array(float.buffer);
   return (value) => {
     if (Number.isInteger(value) && value >= 0 && value < 4294967296) return value >>> 0;
     float[0] = value;
@@ -54,7 +56,8 @@ function idColor(id) {
 /** Values of some pixels of all images, sorted: `of` gives a number of a pixel, or NaN to leave it out. */
 function sortedValues(images, of) {
   const pixels = images.reduce((sum, image) => sum + image.width * image.height, 0);
-  const step = Math.floor(pixels / 1e6) + 1, values = [];
+  const step = Math.floor(pixels / 1e6) + 1,
+    values = [];
   let skip = 0;
   for (const image of images)
     for (let i = 0; i < image.width * image.height; ++i) {
@@ -86,7 +89,8 @@ const short = (value) => (Number.isFinite(value) ? String(Number(value.toPrecisi
 function exact(value) {
   if (Number.isInteger(value) || !Number.isFinite(value)) return String(value);
   for (let digits = 1; digits < 9; ++digits)
-    if (Math.fround(Number(value.toPrecision(digits))) === Math.fround(value)) return String(Number(value.toPrecision(digits)));
+    if (Math.fround(Number(value.toPrecision(digits))) === Math.fround(value))
+      return String(Number(value.toPrecision(digits)));
   return String(Number(value.toPrecision(9)));
 }
 
@@ -97,43 +101,67 @@ const NOTHING_HIT = 1e9; // producers write 1e10 m and more where nothing was hi
  * `images` are all that share the scale.
  */
 function coloringOf(layer, images, palette) {
-  const ramp = palette.ramp.map(rgbOfHex), channels = images[0].planes.length;
+  const ramp = palette.ramp.map(rgbOfHex),
+    channels = images[0].planes.length;
   const shade = (t) => ramp[Math.round(255 * Math.min(Math.max(t, 0), 1))];
   if (images[0].type === "uint" || (layer.role === "id" && channels === 1))
     return { stops: null, words: "a colour for each id", color: ([plane], i) => idColor(idOf(plane[i])) };
   if (channels === 3 && /normal/i.test(layer.label)) {
     const axis = (plane, i) => 127.5 * Math.min(Math.max(plane[i] + 1, 0), 2);
-    const color = ([x, y, z], i) => (x[i] === 0 && y[i] === 0 && z[i] === 0 ? [0, 0, 0] : [axis(x, i), axis(y, i), axis(z, i)]);
+    const color = ([x, y, z], i) =>
+      x[i] === 0 && y[i] === 0 && z[i] === 0 ? [0, 0, 0] : [axis(x, i), axis(y, i), axis(z, i)];
     return { stops: null, words: "-1 to 1: x red, y green, z blue", color };
   }
   if (layer.role === "velocity" || (layer.role === "data" && channels === 2)) {
-    const rim = percentile(sortedValues(images, (planes, i) => Math.hypot(planes[0][i], planes[1][i])), 0.995) || 0.1;
+    const rim =
+      percentile(
+        sortedValues(images, (planes, i) => Math.hypot(planes[0][i], planes[1][i])),
+        0.995,
+      ) || 0.1;
     const words = `direction as hue, full at ${short(rim)}${layer.role === "velocity" ? " px" : ""}`;
     return { stops: null, words, color: (planes, i) => wheelColor(planes[0][i] / rim, planes[1][i] / rim) };
   }
   if (layer.role === "depth" && channels === 1) {
     const depths = sortedValues(images, ([depth], i) => (depth[i] > 0 && depth[i] < NOTHING_HIT ? depth[i] : NaN));
     const [near, far] = [percentile(depths, 0.005) || 1, percentile(depths, 0.98) || 1];
-    const nothing = rgbOfHex(palette.nothing_hit), span = Math.log(far / near);
+    const nothing = rgbOfHex(palette.nothing_hit),
+      span = Math.log(far / near);
     const color = ([depth], i) =>
-      depth[i] >= NOTHING_HIT ? nothing : depth[i] === 0 ? [0, 0, 0] : shade(span > 0 ? 1 - Math.log(depth[i] / near) / span : 1);
+      depth[i] >= NOTHING_HIT
+        ? nothing
+        : depth[i] === 0
+          ? [0, 0, 0]
+          : shade(span > 0 ? 1 - Math.log(depth[i] / near) / span : 1);
     return { stops: null, words: `bright ${short(near)} m, dark ${short(far)} m`, color };
   }
   if (channels < 3 && layer.role !== "color" && layer.role !== "display") {
     const values = sortedValues(images, ([plane], i) => plane[i]);
-    const [least, most] = [values[0] ?? 0, values[values.length - 1] ?? 1], largest = Math.max(Math.abs(least), Math.abs(most)) || 1;
+    const [least, most] = [values[0] ?? 0, values[values.length - 1] ?? 1],
+      largest = Math.max(Math.abs(least), Math.abs(most)) || 1;
     if (layer.role === "data" && least < 0) {
-      const both = palette.diverging.map(rgbOfHex), color = ([plane], i) => both[Math.round(127.5 * (1 + plane[i] / largest))] ?? both[0];
+      const both = palette.diverging.map(rgbOfHex),
+        color = ([plane], i) => both[Math.round(127.5 * (1 + plane[i] / largest))] ?? both[0];
       return { stops: null, words: `blue ${short(-largest)}, white 0, red ${short(largest)}`, color };
     }
-    const high = Math.max(most, layer.role === "alpha" ? 1 : -Infinity), low = Math.min(least, 0), span = high - low || 1;
+    const high = Math.max(most, layer.role === "alpha" ? 1 : -Infinity),
+      low = Math.min(least, 0),
+      span = high - low || 1;
     const grey = (t) => Array(3).fill(255 * Math.min(Math.max(t, 0), 1));
     const tone = layer.role === "alpha" ? grey : shade;
-    return { stops: null, words: `dark ${short(low)}, bright ${short(high)}`, color: ([plane], i) => tone((plane[i] - low) / span) };
+    return {
+      stops: null,
+      words: `dark ${short(low)}, bright ${short(high)}`,
+      color: ([plane], i) => tone((plane[i] - low) / span),
+    };
   }
   if (layer.role === "display")
-    return { stops: null, words: "as encoded", color: (planes, i) => [0, 1, 2].map((c) => 255 * Math.min(Math.max(planes[Math.min(c, channels - 1)][i], 0), 1)) };
-  const rgb = [0, 0, 0], [green, blue] = [Math.min(1, channels - 1), Math.min(2, channels - 1)];
+    return {
+      stops: null,
+      words: "as encoded",
+      color: (planes, i) => [0, 1, 2].map((c) => 255 * Math.min(Math.max(planes[Math.min(c, channels - 1)][i], 0), 1)),
+    };
+  const rgb = [0, 0, 0],
+    [green, blue] = [Math.min(1, channels - 1), Math.min(2, channels - 1)];
   const color = (planes, i, gain) => {
     rgb[0] = srgbByte(planes[0][i] * gain);
     rgb[1] = srgbByte(planes[green][i] * gain);
@@ -147,7 +175,8 @@ function coloringOf(layer, images, palette) {
 function faultColoringOf(layer, palette) {
   if (layer.role === "id") return () => null;
   const [nan, infinite, negative] = [palette.nan, palette.infinite, palette.negative].map(rgbOfHex);
-  const anySign = layer.role === "velocity" || layer.role === "data", farthest = layer.role === "depth" ? Infinity : NaN;
+  const anySign = layer.role === "velocity" || layer.role === "data",
+    farthest = layer.role === "depth" ? Infinity : NaN;
   return (planes, i) => {
     let fault = null;
     for (let c = 0; c < planes.length; ++c) {
@@ -164,7 +193,8 @@ function canvasOf(width, height, colorAt) {
   const canvas = document.createElement("canvas");
   canvas.width = width;
   canvas.height = height;
-  const context = canvas.getContext("2d"), picture = context.createImageData(width, height);
+  const context = canvas.getContext("2d"),
+    picture = context.createImageData(width, height);
   for (let i = 0, at = 0; i < width * height; ++i) {
     const color = colorAt(i);
     picture.data[at++] = Math.round(color[0]);
@@ -178,27 +208,34 @@ function canvasOf(width, height, colorAt) {
 
 /** A picture of an image, at its place in the file. */
 function pictureOf(layer, image, coloring, stops, palette) {
-  const gain = 2 ** stops, { planes } = image, faultAt = faultColoringOf(layer, palette);
+  const gain = 2 ** stops,
+    { planes } = image,
+    faultAt = faultColoringOf(layer, palette);
   const canvas = canvasOf(image.width, image.height, (i) => faultAt(planes, i) ?? coloring.color(planes, i, gain));
   return { source: canvas, x: image.x, y: image.y, width: image.width, height: image.height };
 }
 
 /** |reference - test| times 2^stops where both have pixels; of ids, white where they differ. */
 function differencePictureOf(layer, reference, test, stops) {
-  const x = Math.max(reference.x, test.x), y = Math.max(reference.y, test.y);
+  const x = Math.max(reference.x, test.x),
+    y = Math.max(reference.y, test.y);
   const width = Math.min(reference.x + reference.width, test.x + test.width) - x;
   const height = Math.min(reference.y + reference.height, test.y + test.height) - y;
-  const channels = Math.min(reference.planes.length, test.planes.length), scale = 255 * 2 ** stops;
+  const channels = Math.min(reference.planes.length, test.planes.length),
+    scale = 255 * 2 ** stops;
   if (width <= 0 || height <= 0) return null;
-  const ids = layer.role === "id" || reference.type === "uint", rgb = [0, 0, 0];
+  const ids = layer.role === "id" || reference.type === "uint",
+    rgb = [0, 0, 0];
   const one = (c, i, k) => {
-    const a = reference.planes[c][i], b = test.planes[c][k];
+    const a = reference.planes[c][i],
+      b = test.planes[c][k];
     if (a === b || (a !== a && b !== b)) return 0;
     const value = Math.abs(a - b) * scale;
     return ids || !(value < 255) ? 255 : value; // what cannot be subtracted is the brightest
   };
   const canvas = canvasOf(width, height, (at) => {
-    const column = at % width, row = (at - column) / width;
+    const column = at % width,
+      row = (at - column) / width;
     const i = (row + y - reference.y) * reference.width + column + x - reference.x;
     const k = (row + y - test.y) * test.width + column + x - test.x;
     rgb[0] = one(0, i, k);

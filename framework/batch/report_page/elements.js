@@ -34,20 +34,49 @@ async function copy(text, code, done = "Copied") {
 /** A command line with what it does, and a button that copies it. */
 function commandLine(label, command) {
   const code = element("code", { tabindex: 0 }, command); // reached by keys, because it can scroll
-  const button = element("button", { type: "button", onclick: () => copy(command, code), "aria-label": `Copy: ${label}` }, "Copy");
+  const button = element(
+    "button",
+    { type: "button", onclick: () => copy(command, code), "aria-label": `Copy: ${label}` },
+    "Copy",
+  );
   return element("div", { class: "command" }, element("span", { class: "label" }, label), code, button);
 }
 
 function table(heads, rows, attributes = {}) {
-  return element("table", attributes,
-    element("thead", {}, element("tr", {}, heads.map((head) => element("th", { scope: "col" }, head)))),
-    element("tbody", {}, rows.map((cells) =>
-      element("tr", {}, cells.map((cell, i) => (i === 0 ? element("th", { scope: "row" }, cell) : element("td", {}, cell)))))));
+  return element(
+    "table",
+    attributes,
+    element(
+      "thead",
+      {},
+      element(
+        "tr",
+        {},
+        heads.map((head) => element("th", { scope: "col" }, head)),
+      ),
+    ),
+    element(
+      "tbody",
+      {},
+      rows.map((cells) =>
+        element(
+          "tr",
+          {},
+          cells.map((cell, i) => (i === 0 ? element("th", { scope: "row" }, cell) : element("td", {}, cell))),
+        ),
+      ),
+    ),
+  );
 }
 
 function facts(pairs) {
-  return element("dl", { class: "facts" }, pairs.filter(([, value]) => value !== null && value !== undefined && value !== "")
-    .map(([name, value]) => element("div", {}, element("dt", {}, name), element("dd", {}, value))));
+  return element(
+    "dl",
+    { class: "facts" },
+    pairs
+      .filter(([, value]) => value !== null && value !== undefined && value !== "")
+      .map(([name, value]) => element("div", {}, element("dt", {}, name), element("dd", {}, value))),
+  );
 }
 
 /** Where a file of the report lies, from the page. */

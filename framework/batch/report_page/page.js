@@ -1,12 +1,23 @@
 // The whole page: summary, filter, cases with failures first, environment, keys.
 
 const KEYS = [
-  ["j, k", "next, previous image"], ["o", "open or close the case of the image"], ["/", "search"], ["?", "these keys"], ["l", "light, dark, or as the system"],
+  ["j, k", "next, previous image"],
+  ["o", "open or close the case of the image"],
+  ["/", "search"],
+  ["?", "these keys"],
+  ["l", "light, dark, or as the system"],
   ["c", "copy the command that approves the case"],
-  ["a r t d h w", "all, reference, test, difference, FLIP heat map, wipe"], ["Space", "swap reference and test"], [", .", "move the wipe"],
-  ["[ ]", "exposure, half a stop"], ["\\", "exposure as fitted"], ["{ }", "scale of the difference"],
-  ["+ \u2212 0 1", "zoom in, out, whole picture, 1:1"], ["x", "to the largest difference"], ["b", "frame around failing pixels"],
-  ["arrows, drag", "move the picture (click it first)"], ["Ctrl + wheel", "zoom; the wheel alone once the picture was clicked"],
+  ["a r t d h w", "all, reference, test, difference, FLIP heat map, wipe"],
+  ["Space", "swap reference and test"],
+  [", .", "move the wipe"],
+  ["[ ]", "exposure, half a stop"],
+  ["\\", "exposure as fitted"],
+  ["{ }", "scale of the difference"],
+  ["+ \u2212 0 1", "zoom in, out, whole picture, 1:1"],
+  ["x", "to the largest difference"],
+  ["b", "frame around failing pixels"],
+  ["arrows, drag", "move the picture (click it first)"],
+  ["Ctrl + wheel", "zoom; the wheel alone once the picture was clicked"],
 ];
 
 /** The folder of the suite with the one above it: "tests/golden". */
@@ -19,9 +30,12 @@ class Viewers {
   constructor() {
     this.all = new Map();
     this.current = null;
-    this.near = new IntersectionObserver((entries) => {
-      for (const { isIntersecting, target } of entries) this.move(this.all.get(target), isIntersecting);
-    }, { rootMargin: "600px" });
+    this.near = new IntersectionObserver(
+      (entries) => {
+        for (const { isIntersecting, target } of entries) this.move(this.all.get(target), isIntersecting);
+      },
+      { rootMargin: "600px" },
+    );
     this.far = []; // left last at the end; pixels of hundreds of pictures do not fit into memory
   }
   move(viewer, isNear) {
@@ -52,9 +66,12 @@ class Viewers {
     const visible = this.visible();
     if (visible.length === 0) return;
     // From where the current one was, if its case has been closed.
-    const isAfter = (viewer) => this.current && this.current.node.compareDocumentPosition(viewer.node) & Node.DOCUMENT_POSITION_FOLLOWING;
-    const at = visible.indexOf(this.current), following = visible.findIndex(isAfter);
-    const place = at >= 0 ? at + by : !this.current ? 0 : by > 0 ? following : (following < 0 ? visible.length : following) - 1;
+    const isAfter = (viewer) =>
+      this.current && this.current.node.compareDocumentPosition(viewer.node) & Node.DOCUMENT_POSITION_FOLLOWING;
+    const at = visible.indexOf(this.current),
+      following = visible.findIndex(isAfter);
+    const place =
+      at >= 0 ? at + by : !this.current ? 0 : by > 0 ? following : (following < 0 ? visible.length : following) - 1;
     const next = Math.min(Math.max(place < 0 && by > 0 ? visible.length - 1 : place, 0), visible.length - 1);
     this.choose(visible[next]);
     visible[next].canvas.focus({ preventScroll: true });
@@ -80,45 +97,128 @@ class Page {
   // ---- summary ----
 
   buildHead() {
-    const { report } = this, { counts } = report;
+    const { report } = this,
+      { counts } = report;
     const numbers = { failed: counts.failed, warned: counts.warned, skipped: counts.skipped, passed: counts.passed };
     const words = { failed: "failed", warned: "with warnings", skipped: "skipped", passed: "passed" };
-    this.chips = KINDS.map((kind) => element("button", { type: "button", class: `chip ${kind}`, "aria-pressed": "true", "data-kind": kind, disabled: numbers[kind] === 0,
-      title: `Show or hide cases that ${kind === "warned" ? "have warnings" : kind === "skipped" ? "were skipped" : kind}`, onclick: () => this.toggleKind(kind) },
-      element("b", {}, numbers[kind]), ` ${words[kind]}`));
-    this.search = element("input", { type: "search", placeholder: "Name or tag", "aria-label": "Name or tag", oninput: () => this.filter() });
-    this.themeButton = element("button", { type: "button", title: "Light, dark, or as the system (l)", onclick: () => this.nextTheme() });
+    this.chips = KINDS.map((kind) =>
+      element(
+        "button",
+        {
+          type: "button",
+          class: `chip ${kind}`,
+          "aria-pressed": "true",
+          "data-kind": kind,
+          disabled: numbers[kind] === 0,
+          title: `Show or hide cases that ${kind === "warned" ? "have warnings" : kind === "skipped" ? "were skipped" : kind}`,
+          onclick: () => this.toggleKind(kind),
+        },
+        element("b", {}, numbers[kind]),
+        ` ${words[kind]}`,
+      ),
+    );
+    this.search = element("input", {
+      type: "search",
+      placeholder: "Name or tag",
+      "aria-label": "Name or tag",
+      oninput: () => this.filter(),
+    });
+    this.themeButton = element("button", {
+      type: "button",
+      title: "Light, dark, or as the system (l)",
+      onclick: () => this.nextTheme(),
+    });
     const keys = element("button", { type: "button", title: "Keys (?)", onclick: () => this.showKeys() }, "Keys");
     const environment = report.environment;
     const parts = [
-      element("div", { class: "title" }, element("h1", {}, suiteName(report)), verdictMark(report.interrupted ? "interrupted" : report.verdict),
-        element("span", { class: "quiet" }, `${counts.cases} cases in ${seconds(report.seconds)}, ${report.started.replace("T", " ").replace("Z", " UTC")}`)),
-      element("p", { class: "quiet line" }, [environment.renderer, `Mesa ${environment.mesa || "?"}`, environment.cpu, environment.commit && `commit ${environment.commit.slice(0, 12)}`].filter(Boolean).join(" \u00b7 ")),
-      element("div", { class: "bar" }, element("div", { class: "chips", role: "group", "aria-label": "Show" }, this.chips), this.search, this.themeButton, keys),
+      element(
+        "div",
+        { class: "title" },
+        element("h1", {}, suiteName(report)),
+        verdictMark(report.interrupted ? "interrupted" : report.verdict),
+        element(
+          "span",
+          { class: "quiet" },
+          `${counts.cases} cases in ${seconds(report.seconds)}, ${report.started.replace("T", " ").replace("Z", " UTC")}`,
+        ),
+      ),
+      element(
+        "p",
+        { class: "quiet line" },
+        [
+          environment.renderer,
+          `Mesa ${environment.mesa || "?"}`,
+          environment.cpu,
+          environment.commit && `commit ${environment.commit.slice(0, 12)}`,
+        ]
+          .filter(Boolean)
+          .join(" \u00b7 "),
+      ),
+      element(
+        "div",
+        { class: "bar" },
+        element("div", { class: "chips", role: "group", "aria-label": "Show" }, this.chips),
+        this.search,
+        this.themeButton,
+        keys,
+      ),
       report.approve ? commandLine("Approve all", report.approve) : null,
-      report.orphans.length ? element("div", { class: "orphans" }, element("b", {}, "No case gives these goldens; remove them, or mend the case:"),
-        element("ul", {}, report.orphans.map((path) => element("li", {}, element("code", {}, path))))) : null,
+      report.orphans.length
+        ? element(
+            "div",
+            { class: "orphans" },
+            element("b", {}, "No case gives these goldens; remove them, or mend the case:"),
+            element(
+              "ul",
+              {},
+              report.orphans.map((path) => element("li", {}, element("code", {}, path))),
+            ),
+          )
+        : null,
     ];
     document.getElementById("head").append(...parts.filter(Boolean));
     this.nameTheme();
   }
   buildFoot() {
-    const { report } = this, { environment } = report;
-    document.getElementById("environment").append(element("h2", {}, "Environment"), facts([
-      ["Suite", report.document], ["Renderer", environment.renderer], ["Driver", environment.version], ["Mesa", environment.mesa], ["LLVM", environment.llvm], ["Backend", environment.backend],
-      ["CPU", environment.cpu], ["Cores, cases at a time", `${environment.threads}, ${environment.jobs}`], ["Commit", environment.commit], ["Aftershade", environment.aftershade],
-      ["Renderer's name in files", environment.key], ["Filters", report.filters.join(", ")], ["Exit code", String(report.exit_code)],
-    ]));
-    document.getElementById("keys").append(element("h2", {}, "Keys"),
-      element("dl", { class: "facts" }, KEYS.map(([keys, words]) => element("div", {}, element("dt", {}, keys), element("dd", {}, words)))),
-      element("form", { method: "dialog" }, element("button", {}, "Close")));
+    const { report } = this,
+      { environment } = report;
+    document.getElementById("environment").append(
+      element("h2", {}, "Environment"),
+      facts([
+        ["Suite", report.document],
+        ["Renderer", environment.renderer],
+        ["Driver", environment.version],
+        ["Mesa", environment.mesa],
+        ["LLVM", environment.llvm],
+        ["Backend", environment.backend],
+        ["CPU", environment.cpu],
+        ["Cores, cases at a time", `${environment.threads}, ${environment.jobs}`],
+        ["Commit", environment.commit],
+        ["Aftershade", environment.aftershade],
+        ["Renderer's name in files", environment.key],
+        ["Filters", report.filters.join(", ")],
+        ["Exit code", String(report.exit_code)],
+      ]),
+    );
+    document.getElementById("keys").append(
+      element("h2", {}, "Keys"),
+      element(
+        "dl",
+        { class: "facts" },
+        KEYS.map(([keys, words]) => element("div", {}, element("dt", {}, keys), element("dd", {}, words))),
+      ),
+      element("form", { method: "dialog" }, element("button", {}, "Close")),
+    );
   }
 
   // ---- cases ----
 
   buildCases() {
     const worst = ["file error", "different size or channels", "failure", "warning", "same"];
-    const ordered = [...this.report.cases].sort((a, b) => KINDS.indexOf(kindOf(a)) - KINDS.indexOf(kindOf(b)) || worst.indexOf(a.verdict) - worst.indexOf(b.verdict));
+    const ordered = [...this.report.cases].sort(
+      (a, b) =>
+        KINDS.indexOf(kindOf(a)) - KINDS.indexOf(kindOf(b)) || worst.indexOf(a.verdict) - worst.indexOf(b.verdict),
+    );
     this.cards = ordered.map((test) => ({ test, node: safeCaseCard(test, this.report, this.viewers) }));
     this.none = element("p", { class: "quiet", hidden: true }, "No case fits.");
     document.getElementById("cases").append(...this.cards.map(({ node }) => node), this.none);
@@ -141,7 +241,9 @@ class Page {
     let name = location.hash.slice(1);
     try {
       name = decodeURIComponent(name);
-    } catch { /* a sign of per cent that encodes nothing */ }
+    } catch {
+      /* a sign of per cent that encodes nothing */
+    }
     const card = document.getElementById(name);
     if (!card?.classList.contains("case")) return;
     card.open = true;
@@ -171,13 +273,17 @@ class Page {
     this.nameTheme();
     try {
       localStorage.setItem("aftershade-theme", this.theme);
-    } catch { /* as above */ }
+    } catch {
+      /* as above */
+    }
   }
   nameTheme() {
     this.themeButton.textContent = { system: "System colours", light: "Light", dark: "Dark" }[this.theme];
   }
   copyApproval() {
-    const chosen = this.viewers.visible().includes(this.viewers.current) ? this.viewers.current.node.closest(".case") : null;
+    const chosen = this.viewers.visible().includes(this.viewers.current)
+      ? this.viewers.current.node.closest(".case")
+      : null;
     const card = document.activeElement.closest(".case") ?? chosen;
     if (!card) return tell("Choose a case first (j, k)");
     const { test } = this.cards.find(({ node }) => node === card);
@@ -186,16 +292,29 @@ class Page {
   }
   key(event) {
     // Keys with AltGr (Option on a Mac) come with Ctrl and Alt: brackets of many keyboards are such.
-    const isTyped = event.getModifierState("AltGraph") || (event.altKey && event.key.length === 1 && "[]{}\\".includes(event.key));
+    const isTyped =
+      event.getModifierState("AltGraph") || (event.altKey && event.key.length === 1 && "[]{}\\".includes(event.key));
     if (((event.ctrlKey || event.metaKey || event.altKey) && !isTyped) || event.target.closest("dialog")) return;
     const field = event.target.closest("input, select, textarea");
     if (field && event.key === "Escape") return field.blur();
     // A slider keeps the keys that move it, a field of text all of them, a button those that press it.
-    if (field && (field.type !== "range" && field.type !== "checkbox" || event.key.startsWith("Arrow") || event.key === " ")) return;
+    if (
+      field &&
+      ((field.type !== "range" && field.type !== "checkbox") || event.key.startsWith("Arrow") || event.key === " ")
+    )
+      return;
     if (event.target.closest("button, summary, a") && [" ", "Enter"].includes(event.key)) return;
     const acts = {
-      j: () => this.viewers.step(1), k: () => this.viewers.step(-1), "/": () => this.search.focus(), "?": () => this.showKeys(), l: () => this.nextTheme(),
-      c: () => this.copyApproval(), o: () => { const card = this.viewers.current?.node.closest(".case"); if (card) card.open = !card.open; },
+      j: () => this.viewers.step(1),
+      k: () => this.viewers.step(-1),
+      "/": () => this.search.focus(),
+      "?": () => this.showKeys(),
+      l: () => this.nextTheme(),
+      c: () => this.copyApproval(),
+      o: () => {
+        const card = this.viewers.current?.node.closest(".case");
+        if (card) card.open = !card.open;
+      },
     };
     if (acts[event.key]) acts[event.key]();
     else {

@@ -5,7 +5,8 @@ const textOf = (index) => document.getElementById(`data-${index}`).textContent;
 const pngAddress = (index) => `data:image/png;base64,${textOf(index)}`;
 
 async function inflate(text) {
-  const letters = atob(text), packed = new Uint8Array(letters.length);
+  const letters = atob(text),
+    packed = new Uint8Array(letters.length);
   for (let i = 0; i < letters.length; ++i) packed[i] = letters.charCodeAt(i); // .from() takes seconds for large pictures
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
   return new Uint8Array(await new Response(stream).arrayBuffer());
@@ -32,7 +33,9 @@ const halves = (() => {
     if (table) return table;
     table = new Float32Array(65536);
     for (let bits = 0; bits < 65536; ++bits) {
-      const sign = bits & 0x8000 ? -1 : 1, exponent = (bits >> 10) & 31, fraction = bits & 1023;
+      const sign = bits & 0x8000 ? -1 : 1,
+        exponent = (bits >> 10) & 31,
+        fraction = bits & 1023;
       if (exponent === 0) table[bits] = sign * fraction * 2 ** -24;
       else if (exponent === 31) table[bits] = fraction ? NaN : sign * Infinity;
       else table[bits] = sign * (1 + fraction / 1024) * 2 ** (exponent - 15);
@@ -46,7 +49,8 @@ const halves = (() => {
  * value of a channel, and (x, y) the place of its first pixel in the file.
  */
 async function readPixels(stored) {
-  const pixels = stored.width * stored.height, values = pixels * stored.channels.length;
+  const pixels = stored.width * stored.height,
+    values = pixels * stored.channels.length;
   const bytes = stored.type === "half" ? 2 : 4;
   const bits = bitsOf(await inflate(textOf(stored.data)), values, pixels, bytes);
   let all = bits;
@@ -62,7 +66,8 @@ async function readPixels(stored) {
 
 /** Values of all channels of a place in the file; null outside. */
 function valuesAt(image, x, y) {
-  const column = x - image.x, row = y - image.y;
+  const column = x - image.x,
+    row = y - image.y;
   if (column < 0 || row < 0 || column >= image.width || row >= image.height) return null;
   return image.planes.map((plane) => plane[row * image.width + column]);
 }

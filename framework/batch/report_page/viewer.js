@@ -1,83 +1,14 @@
-// One image of a case: reference, test, difference, heat map, wipe; zoom, exposure, values under the pointer.
+// What a reader does with an image: views, exposure, zoom, wipe, values under the pointer, keys.
 
-const MODES = {
-  all: { key: "a", label: "All", title: "Reference, test and difference beside each other; point at the test to see the reference in its place" },
-  reference: { key: "r", label: "Reference", title: "The approved image" },
-  test: { key: "t", label: "Test", title: "The image that this run made" },
-  difference: { key: "d", label: "Difference", title: "|reference \u2212 test| times the scale" },
-  heat_map: { key: "h", label: "FLIP", title: "What people see as different: dark 0, bright 1" },
-  wipe: { key: "w", label: "Wipe", title: "Reference left of the line, test right of it" },
-};
 const STOP = 0.5; // EV that a key changes
 
-/** Layers of pictures that lie beside the page: no values, so no exposure. */
-async function linkedLayer(image, report) {
-  const load = async (path) => {
-    if (!path) return null;
-    const picture = new Image();
-    picture.src = addressOf(report, path);
-    await picture.decode();
-    return picture;
-  };
-  const kinds = ["reference", "test", "difference", "heat_map"];
-  const pictures = await Promise.all(kinds.map((kind) => load(image.pictures[kind])));
-  // Narrow pictures are enlarged by a whole factor, wide ones reduced: all are shown in the size of the first.
-  const size = pictures.find(Boolean), result = { x: 0, y: 0, width: size.naturalWidth, height: size.naturalHeight };
-  kinds.forEach((kind, i) => (result[kind] = pictures[i] && { source: pictures[i], x: 0, y: 0, width: result.width, height: result.height }));
-  return result;
-}
-
-class Viewer {
+class Viewer extends ComparedImage {
   constructor(image, report) {
-    this.image = image;
-    this.palette = report.palette;
-    this.report = report;
-    this.layers = image.shown.layers;
-    this.values = new Map(); // layer -> {reference, test, coloring}
-    this.layer = this.firstLayer();
-    this.mode = this.hasReference() ? (innerWidth < 800 ? "test" : "all") : "test";
-    this.swapped = this.hovered = false;
-    this.wipe = 0.5;
-    this.marks = true;
-    this.scaleStops = Math.log2(image.pictures.difference_scale || 1);
-    [this.leastScale, this.mostScale] = [Math.min(0, Math.floor(this.scaleStops)), Math.max(20, Math.ceil(this.scaleStops))];
+    super(image, report);
     this.node = this.build();
     this.resizing = new ResizeObserver(() => this.draw());
     this.resizing.observe(this.frame);
   }
-
-  comparisonOf(layer) {
-    return this.image.comparison?.layers.find((one) => one.layer === layer?.label) ?? null;
-  }
-  /** The layer of the worst verdict; of equal ones the first with colours. */
-  firstLayer() {
-    const rank = (layer) => {
-      const verdicts = ["same", "warning", "failure", "different size or channels"];
-      return 2 * verdicts.indexOf(this.comparisonOf(layer)?.verdict ?? "failure") + (layer.role === "color");
-    };
-    return this.layers.reduce((best, layer) => (best && rank(best) >= rank(layer) ? best : layer), null);
-  }
-  /** FLIP is drawn of one layer. */
-  flipLayer() {
-    return this.layers.find((layer) => { const told = this.comparisonOf(layer); return told?.hdr_flip || told?.ldr_flip; });
-  }
-  hasReference() {
-    return this.layer ? this.layer.reference !== null : !!this.image.pictures.reference;
-  }
-  hasTest() {
-    return this.layer ? this.layer.test !== null : !!this.image.pictures.test;
-  }
-  hasMode(mode) {
-    const { pictures, shown } = this.image;
-    if (mode === "test") return this.hasTest();
-    if (!this.hasReference()) return false;
-    if (mode === "reference") return true;
-    if (!this.hasTest()) return false;
-    if (mode === "heat_map") return this.layer ? shown.heat_map !== null && this.layer === this.flipLayer() : !!pictures.heat_map;
-    return mode !== "difference" || this.layer !== null || !!pictures.difference;
-  }
-
-  // ---- what is drawn ----
 
   async load() {
     try {
@@ -88,23 +19,10 @@ class Viewer {
       this.refresh();
     } catch (error) {
       this.tools.remove();
-      this.frame.replaceChildren(element("p", { class: "missing" }, `This picture cannot be shown: ${error.message || error}`));
+      this.frame.replaceChildren(
+        element("p", { class: "missing" }, `This picture cannot be shown: ${error.message || error}`),
+      );
     }
-  }
-  /** Reads first, then shows: what is shown meanwhile stays whole, and the last wish counts. */
-  async showLayer(layer) {
-    this.wanted = layer;
-    if (!layer) {
-      this.linked = await linkedLayer(this.image, this.report);
-      this.view ??= new View(this.linked);
-      return;
-    }
-    const values = this.values.get(layer) ?? (await this.readLayer(layer));
-    if (this.wanted !== layer) return;
-    this.values.set(layer, values);
-    if (this.layer !== layer || this.stops === undefined) this.stops = values.stops;
-    this.layer = layer;
-    if (!this.view || JSON.stringify(this.view.box) !== JSON.stringify(values.box)) this.view = new View(values.box);
   }
   /** Frees the pixels of a picture that is far from the window; load() reads them again, and all settings stay. */
   release() {
@@ -117,85 +35,10 @@ class Viewer {
   get isReady() {
     return "ready" in this.node.dataset;
   }
-  async readLayer(layer) {
-    const reference = layer.reference && (await readPixels(layer.reference));
-    const same = layer.equal && layer.test.x === layer.reference.x && layer.test.y === layer.reference.y;
-    const test = same ? reference : layer.test && (await readPixels(layer.test));
-    const all = [reference, test].filter(Boolean), coloring = coloringOf(layer, all, this.palette);
-    const x = Math.min(...all.map((one) => one.x)), y = Math.min(...all.map((one) => one.y));
-    const right = Math.max(...all.map((one) => one.x + one.width)), bottom = Math.max(...all.map((one) => one.y + one.height));
-    const flip = layer === this.flipLayer() && this.image.shown.heat_map !== null ? await this.readHeatMap(layer) : null;
-    return { reference, test, coloring, stops: coloring.stops, heat_map: flip, box: { x, y, width: right - x, height: bottom - y }, pictures: {} };
-  }
-  async readHeatMap(layer) {
-    const source = new Image();
-    source.src = pngAddress(this.image.shown.heat_map);
-    await source.decode();
-    const [x, y] = this.comparisonOf(layer).window.min;
-    return { source, x, y, width: source.naturalWidth, height: source.naturalHeight };
-  }
-  /** Drawn once for each exposure or scale. */
-  picture(kind) {
-    if (!this.layer) return this.linked[kind];
-    const values = this.values.get(this.layer);
-    if (kind === "heat_map") return values.heat_map;
-    const setting = kind === "difference" ? this.scaleStops : this.stops ?? 0, kept = values.pictures[kind];
-    if (kept?.setting === setting) return kept.picture;
-    let picture = null;
-    if (kind === "difference") {
-      if (values.reference && values.test) picture = differencePictureOf(this.layer, values.reference, values.test, setting);
-    } else if (values[kind]) picture = pictureOf(this.layer, values[kind], values.coloring, setting, this.palette);
-    values.pictures[kind] = { setting, picture };
-    return picture;
-  }
-  panes() {
-    const { width, height } = this.canvas, kinds = this.mode === "all" ? ["reference", "test", "difference"] : [this.mode];
-    const gap = Math.round(4 * devicePixelRatio), each = Math.floor((width - gap * (kinds.length - 1)) / kinds.length);
-    return kinds.map((kind, i) => ({ kind, left: i * (each + gap), top: 0, width: each, height }));
-  }
-  shownKind(kind) {
-    const other = { reference: "test", test: "reference" };
-    const swap = (this.swapped && kind in other) !== (this.hovered && this.mode === "all" && kind === "test");
-    return swap && this.hasMode(other[kind]) ? other[kind] : kind;
-  }
   draw() {
+    super.draw();
     if (!this.isReady) return;
-    const ratio = devicePixelRatio, { clientWidth, clientHeight } = this.frame;
-    if (clientWidth === 0) return;
-    this.canvas.width = Math.round(clientWidth * ratio);
-    this.canvas.height = Math.round(clientHeight * ratio);
-    const context = this.canvas.getContext("2d"), panes = this.panes();
-    if (this.view.fitted) this.view.fit(panes[0]);
-    for (const pane of panes) {
-      const kind = this.shownKind(pane.kind);
-      within(context, pane, () => {
-        if (kind === "wipe") this.drawWipe(context, pane, ratio);
-        else drawPicture(context, this.view, pane, this.picture(kind));
-        if (this.marks) this.drawMarks(context, pane);
-        if (kind !== "wipe") drawLabel(context, pane, MODES[kind].label, ratio);
-      });
-    }
     this.zoomWords.textContent = `${Number((this.view.zoom * 100).toPrecision(3))} %`;
-  }
-  drawWipe(context, pane, ratio) {
-    const line = Math.round(pane.left + pane.width * this.wipe);
-    within(context, { ...pane, width: line - pane.left }, () => {
-      drawPicture(context, this.view, pane, this.picture("reference"));
-      drawLabel(context, pane, MODES.reference.label, ratio);
-    });
-    within(context, { ...pane, left: line, width: pane.left + pane.width - line }, () => {
-      drawPicture(context, this.view, pane, this.picture("test"));
-      drawLabel(context, { ...pane, left: line }, MODES.test.label, ratio);
-    });
-    context.fillStyle = "#fff";
-    context.fillRect(line - ratio, pane.top, 2 * ratio, pane.height);
-  }
-  drawMarks(context, pane) {
-    const told = this.comparisonOf(this.layer), box = told?.failing?.box;
-    if (!box) return;
-    const [x, y] = box.min, [right, bottom] = box.max;
-    drawFrame(context, this.view, pane, { x, y, width: right - x + 1, height: bottom - y + 1 }, "#ffd23f");
-    if (this.view.zoom >= 6) drawFrame(context, this.view, pane, { ...told.max_error, width: 1, height: 1 }, "#fff");
   }
 
   // ---- what can be done ----
@@ -227,7 +70,8 @@ class Viewer {
   }
   zoomBy(steps, screenX, screenY) {
     if (!this.isReady) return;
-    const panes = this.panes(), pane = panes.find((one) => screenX >= one.left && screenX < one.left + one.width) ?? panes[0];
+    const panes = this.panes(),
+      pane = panes.find((one) => screenX >= one.left && screenX < one.left + one.width) ?? panes[0];
     this.view.zoomBy(steps, pane, screenX ?? pane.left + pane.width / 2, screenY ?? pane.top + pane.height / 2);
     this.draw();
   }
@@ -257,7 +101,10 @@ class Viewer {
   tellValues(x, y) {
     if (!this.layer) return;
     const { reference, test } = this.values.get(this.layer);
-    const words = (image) => { const values = image && valuesAt(image, x, y); return values ? values.map(exact).join("  ") : "none"; };
+    const words = (image) => {
+      const values = image && valuesAt(image, x, y);
+      return values ? values.map(exact).join("  ") : "none";
+    };
     const names = (reference ?? test).channels.map((name) => name.split(".").pop()).join(" ");
     this.readout.textContent = `x ${x}  y ${y}   ${names}   reference ${words(reference)}   test ${words(test)}`;
   }
@@ -265,9 +112,11 @@ class Viewer {
   // ---- elements ----
 
   build() {
-    const button = (label, title, act, more = {}) => element("button", { type: "button", title, onclick: act, ...more }, label);
+    const button = (label, title, act, more = {}) =>
+      element("button", { type: "button", title, onclick: act, ...more }, label);
     this.modeButtons = Object.entries(MODES).map(([mode, { label, title, key }]) =>
-      button(label, `${title} (${key})`, () => this.setMode(mode), { "data-mode": mode }));
+      button(label, `${title} (${key})`, () => this.setMode(mode), { "data-mode": mode }),
+    );
     this.canvas = element("canvas", { tabindex: 0, role: "img", "aria-label": this.image.name });
     this.frame = element("div", { class: "frame" }, this.canvas);
     this.zoomWords = element("output", { class: "zoom" });
@@ -275,23 +124,68 @@ class Viewer {
     this.exposure = this.slider("Exposure", -12, 12, 0.1, (value) => this.setStops(value));
     this.scale = this.slider("Scale", this.leastScale, this.mostScale, 1, (value) => this.setScale(value));
     this.wiper = this.slider("Wipe", 0, 1, 0.001, (value) => this.setWipe(value));
-    this.markBox = element("input", { type: "checkbox", checked: true, onchange: () => { this.marks = this.markBox.checked; this.draw(); } });
+    this.markBox = element("input", {
+      type: "checkbox",
+      checked: true,
+      onchange: () => {
+        this.marks = this.markBox.checked;
+        this.draw();
+      },
+    });
     this.readout = element("div", { class: "readout", role: "status" });
-    this.layerMenu = element("select", { "aria-label": "Layer", onchange: () => this.setLayer(this.layerMenu.value) },
-      this.layers.map((layer) => element("option", { value: layer.label, selected: layer === this.layer }, `${layer.label} (${layer.role})${layer.equal ? ", same bits" : ""}`)));
-    this.tools = element("div", { class: "tools" },
+    this.layerMenu = element(
+      "select",
+      { "aria-label": "Layer", onchange: () => this.setLayer(this.layerMenu.value) },
+      this.layers.map((layer) =>
+        element(
+          "option",
+          { value: layer.label, selected: layer === this.layer },
+          `${layer.label} (${layer.role})${layer.equal ? ", same bits" : ""}`,
+        ),
+      ),
+    );
+    this.tools = element(
+      "div",
+      { class: "tools" },
       element("div", { class: "group", role: "group", "aria-label": "View" }, this.modeButtons),
-      this.layers.length > 1 ? this.layerMenu : null, this.exposure.node, this.scale.node, this.wiper.node,
-      element("div", { class: "group", role: "group", "aria-label": "Zoom" },
-        button("\u2212", "Smaller (-)", () => this.zoomBy(-1)), this.zoomWords, button("+", "Larger (+)", () => this.zoomBy(1)),
-        button("Fit", "The whole picture (0)", () => this.showWhole()), button("1:1", "A pixel for a pixel (1)", () => this.showPixels()),
-        this.layer && this.image.comparison ? button("Worst", "To the largest difference (x)", () => this.showWorst()) : null),
-      this.layer && this.image.comparison ? element("label", { title: "A frame around all pixels that fail (b)" }, this.markBox, "Frame failing pixels") : null);
+      this.layers.length > 1 ? this.layerMenu : null,
+      this.exposure.node,
+      this.scale.node,
+      this.wiper.node,
+      element(
+        "div",
+        { class: "group", role: "group", "aria-label": "Zoom" },
+        button("\u2212", "Smaller (-)", () => this.zoomBy(-1)),
+        this.zoomWords,
+        button("+", "Larger (+)", () => this.zoomBy(1)),
+        button("Fit", "The whole picture (0)", () => this.showWhole()),
+        button("1:1", "A pixel for a pixel (1)", () => this.showPixels()),
+        this.layer && this.image.comparison
+          ? button("Worst", "To the largest difference (x)", () => this.showWorst())
+          : null,
+      ),
+      this.layer && this.image.comparison
+        ? element("label", { title: "A frame around all pixels that fail (b)" }, this.markBox, "Frame failing pixels")
+        : null,
+    );
     this.listen();
-    return element("div", { class: "viewer waiting" }, this.tools, this.frame, element("div", { class: "under" }, this.readout, this.words));
+    return element(
+      "div",
+      { class: "viewer waiting" },
+      this.tools,
+      this.frame,
+      element("div", { class: "under" }, this.readout, this.words),
+    );
   }
   slider(label, min, max, step, act) {
-    const input = element("input", { type: "range", min, max, step, "aria-label": label, oninput: () => act(Number(input.value)) });
+    const input = element("input", {
+      type: "range",
+      min,
+      max,
+      step,
+      "aria-label": label,
+      oninput: () => act(Number(input.value)),
+    });
     const output = element("output");
     return { input, output, node: element("label", { class: "slider" }, label, input, output) };
   }
@@ -306,12 +200,24 @@ class Viewer {
       slider.input.value = value;
       slider.input.setAttribute("aria-valuetext", (slider.output.textContent = words));
     };
-    const coloring = this.coloring(), exposes = coloring && coloring.stops !== null && !["difference", "heat_map"].includes(this.mode);
-    show(this.exposure, exposes, this.stops ?? 0, `${(this.stops ?? 0) >= 0 ? "+" : ""}${(this.stops ?? 0).toFixed(1)} EV`);
-    show(this.scale, this.layer && (this.mode === "all" || this.mode === "difference"), this.scaleStops, `${short(2 ** this.scaleStops)} \u00d7`);
+    const coloring = this.coloring(),
+      exposes = coloring && coloring.stops !== null && !["difference", "heat_map"].includes(this.mode);
+    show(
+      this.exposure,
+      exposes,
+      this.stops ?? 0,
+      `${(this.stops ?? 0) >= 0 ? "+" : ""}${(this.stops ?? 0).toFixed(1)} EV`,
+    );
+    show(
+      this.scale,
+      this.layer && (this.mode === "all" || this.mode === "difference"),
+      this.scaleStops,
+      `${short(2 ** this.scaleStops)} \u00d7`,
+    );
     show(this.wiper, this.mode === "wipe", this.wipe, `${Math.round(this.wipe * 100)} %`);
     const words = { difference: "|reference \u2212 test| times the scale", heat_map: "dark 0, bright 1" };
-    this.words.textContent = words[this.mode] ?? (coloring ? coloring.words : "shown from the files beside the page: no exposure, no values");
+    this.words.textContent =
+      words[this.mode] ?? (coloring ? coloring.words : "shown from the files beside the page: no exposure, no values");
     const shown = this.swapped && this.mode !== "all" ? this.shownKind(this.mode) : this.mode;
     this.canvas.setAttribute("aria-label", `${this.image.name}: ${MODES[shown].title}`);
     this.shape();
@@ -322,7 +228,8 @@ class Viewer {
     const panes = this.mode === "all" ? 3 : 1;
     if (this.shapedFor === panes) return; // the user may have drawn the corner since
     this.shapedFor = panes;
-    const pane = { left: 0, top: 0, width: (this.frame.clientWidth * devicePixelRatio) / panes, height: Infinity }, whole = new View(this.view.box);
+    const pane = { left: 0, top: 0, width: (this.frame.clientWidth * devicePixelRatio) / panes, height: Infinity },
+      whole = new View(this.view.box);
     whole.fit(pane);
     this.frame.style.height = `${Math.ceil((whole.zoom * whole.box.height) / devicePixelRatio) + 2 * LABEL_HEIGHT}px`;
   }
@@ -336,15 +243,18 @@ class Viewer {
     canvas.addEventListener("pointerdown", (event) => {
       if (event.button !== 0 || !this.isReady) return;
       this.clicked = true;
-      const [x] = this.place(event), line = this.canvas.width * this.wipe;
+      const [x] = this.place(event),
+        line = this.canvas.width * this.wipe;
       grip = this.mode === "wipe" && Math.abs(x - line) < 12 * devicePixelRatio ? "wipe" : "pan";
       canvas.setPointerCapture(event.pointerId);
     });
     canvas.addEventListener("pointermove", (event) => {
       if (!this.isReady) return;
-      const [x, y] = this.place(event), pane = this.panes().find((one) => x >= one.left && x < one.left + one.width);
+      const [x, y] = this.place(event),
+        pane = this.panes().find((one) => x >= one.left && x < one.left + one.width);
       if (grip === "wipe") this.setWipe(x / canvas.width);
-      else if (grip === "pan") this.view.moveBy(event.movementX * devicePixelRatio, event.movementY * devicePixelRatio), this.draw();
+      else if (grip === "pan")
+        (this.view.moveBy(event.movementX * devicePixelRatio, event.movementY * devicePixelRatio), this.draw());
       if (!pane) return;
       this.tellValues(...this.view.toFile(pane, x, y));
       this.hover(pane.kind === "test");
@@ -352,22 +262,30 @@ class Viewer {
     canvas.addEventListener("pointerup", () => (grip = null));
     canvas.addEventListener("pointercancel", () => (grip = null));
     canvas.addEventListener("pointerleave", () => this.hover(false));
-    canvas.addEventListener("dblclick", () => this.isReady && (this.view.fitted ? this.showPixels() : this.showWhole()));
+    canvas.addEventListener(
+      "dblclick",
+      () => this.isReady && (this.view.fitted ? this.showPixels() : this.showWhole()),
+    );
     // Without Ctrl the wheel scrolls the page, unless the picture was clicked. Trackpads send many small turns.
     let turned = 0;
     const turnOfStep = 50; // CSS pixels; a notch of a wheel has about 100
-    canvas.addEventListener("wheel", (event) => {
-      if (!this.isReady || event.deltaY === 0 || (!event.ctrlKey && !event.metaKey && !this.clicked)) return;
-      event.preventDefault();
-      turned = Math.sign(turned) === Math.sign(event.deltaY) ? turned + event.deltaY : event.deltaY;
-      if (Math.abs(turned) < turnOfStep && event.deltaMode === WheelEvent.DOM_DELTA_PIXEL) return;
-      this.zoomBy(turned < 0 ? 1 : -1, ...this.place(event));
-      turned = 0;
-    }, { passive: false });
+    canvas.addEventListener(
+      "wheel",
+      (event) => {
+        if (!this.isReady || event.deltaY === 0 || (!event.ctrlKey && !event.metaKey && !this.clicked)) return;
+        event.preventDefault();
+        turned = Math.sign(turned) === Math.sign(event.deltaY) ? turned + event.deltaY : event.deltaY;
+        if (Math.abs(turned) < turnOfStep && event.deltaMode === WheelEvent.DOM_DELTA_PIXEL) return;
+        this.zoomBy(turned < 0 ? 1 : -1, ...this.place(event));
+        turned = 0;
+      },
+      { passive: false },
+    );
     canvas.addEventListener("blur", () => (this.clicked = false));
   }
   swap() {
-    if (!["all", "reference", "test"].includes(this.mode)) return tell("Swaps reference and test where they are shown alone or beside each other");
+    if (!["all", "reference", "test"].includes(this.mode))
+      return tell("Swaps reference and test where they are shown alone or beside each other");
     this.swapped = !this.swapped;
     this.refresh();
   }
@@ -382,17 +300,28 @@ class Viewer {
     const pan = { ArrowLeft: [40, 0], ArrowRight: [-40, 0], ArrowUp: [0, 40], ArrowDown: [0, -40] }[event.key];
     const acts = {
       " ": () => this.swap(),
-      "[": () => this.setStops((this.stops ?? 0) - STOP), "]": () => this.setStops((this.stops ?? 0) + STOP),
+      "[": () => this.setStops((this.stops ?? 0) - STOP),
+      "]": () => this.setStops((this.stops ?? 0) + STOP),
       "\\": () => this.setStops(this.coloring()?.stops ?? 0),
-      "{": () => this.setScale(this.scaleStops - 1), "}": () => this.setScale(this.scaleStops + 1),
-      ",": () => this.setWipe(this.wipe - 0.02), ".": () => this.setWipe(this.wipe + 0.02),
-      "+": () => this.zoomBy(1), "=": () => this.zoomBy(1), "-": () => this.zoomBy(-1),
-      "0": () => this.showWhole(), "1": () => this.showPixels(), "x": () => this.showWorst(),
-      "b": () => { this.markBox.checked = this.marks = !this.marks; this.draw(); },
+      "{": () => this.setScale(this.scaleStops - 1),
+      "}": () => this.setScale(this.scaleStops + 1),
+      ",": () => this.setWipe(this.wipe - 0.02),
+      ".": () => this.setWipe(this.wipe + 0.02),
+      "+": () => this.zoomBy(1),
+      "=": () => this.zoomBy(1),
+      "-": () => this.zoomBy(-1),
+      0: () => this.showWhole(),
+      1: () => this.showPixels(),
+      x: () => this.showWorst(),
+      b: () => {
+        this.markBox.checked = this.marks = !this.marks;
+        this.draw();
+      },
     };
     if (!this.isReady) return false;
     if (mode) this.setMode(mode);
-    else if (pan && document.activeElement === this.canvas) this.view.moveBy(...pan.map((step) => step * devicePixelRatio)), this.draw();
+    else if (pan && document.activeElement === this.canvas)
+      (this.view.moveBy(...pan.map((step) => step * devicePixelRatio)), this.draw());
     else if (acts[event.key]) acts[event.key]();
     else return false;
     return true;
