@@ -2,6 +2,8 @@
 
 #include <fnmatch.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <map>
@@ -136,6 +138,18 @@ bool is_orphan(const fs::path& file, const std::map<std::string, KnownImages>& k
     return images == known.end() || (image && !images->second.has(name));
 }
 
+/// --filter takes names and tags: a word that is both would approve more than the case that was looked at.
+void check_tags(const GoldenSuite& suite, Diagnostics& diagnostics) {
+    for (const GoldenCase& test : suite.cases)
+        for (const GoldenCase& other : suite.cases)
+            if (&other != &test && std::ranges::find(test.tags, other.name) != test.tags.end())
+                diagnostics.error(
+                    {test.file.string()},
+                    fmt::format("case '{0}' has the tag '{1}', which is the name of a case; --filter {1} "
+                                "would mean both: choose another tag",
+                                test.name, other.name));
+}
+
 }  // namespace
 
 std::optional<GoldenSuite> read_golden_suite(const std::string& argument, Diagnostics& diagnostics) {
@@ -144,6 +158,7 @@ std::optional<GoldenSuite> read_golden_suite(const std::string& argument, Diagno
     suite.file = fs::is_directory(argument) ? fs::path(argument) / "golden.json" : fs::path(argument);
     const auto node = read_document(suite.file, diagnostics);
     if (node) SuiteReader(suite, diagnostics).read(*node);
+    check_tags(suite, diagnostics);
     if (diagnostics.has_errors()) return std::nullopt;
     return suite;
 }

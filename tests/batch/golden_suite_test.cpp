@@ -55,6 +55,18 @@ TEST_F(Suite, TellsAllFaultsAtOnce) {
         EXPECT_NE(faults_.find(part), std::string::npos) << part << " in\n" << faults_;
 }
 
+TEST_F(Suite, RefusesATagThatIsTheNameOfAnotherCase) {
+    const auto text = [](const std::string& tag) {
+        return R"({ "aftershade": 1, "cases": [ { "name": "a", "steps": [], "capture": "c", "tags": ["a", "fast"] },
+            { "name": "b", "steps": [], "capture": "c", "tags": [")" +
+               tag + R"("] } ] })";
+    };
+    EXPECT_FALSE(read(text("a")));
+    EXPECT_NE(faults_.find("case 'b' has the tag 'a', which is the name of a case"), std::string::npos)
+        << faults_;
+    EXPECT_TRUE(read(text("fast"))) << faults_;
+}
+
 TEST_F(Suite, NeedsCases) {
     EXPECT_FALSE(read(R"({ "aftershade": 1 })"));
     EXPECT_NE(faults_.find("needs 'cases'"), std::string::npos);
