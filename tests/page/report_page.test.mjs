@@ -201,6 +201,20 @@ inPage("shows the colours of the program's own pictures", async (page) => {
   }
 });
 
+inPage("colours depth, velocity and ids as the program does", async (page) => {
+  for (const [i, name] of ["depth", "velocity", "object_id"].entries()) {
+    const viewer = await viewerOf(page, "roles", i + 1);
+    const { pictures, output } = caseOf("roles").images[i + 1];
+    assert.equal(output, name);
+    await viewer.getByLabel("Frame failing pixels").uncheck();
+    await viewer.getByRole("button", { name: "Reference", exact: true }).click();
+    await page.keyboard.press("1");
+    const { difference, brightest } = await compareWithPng(viewer, join(report, pictures.reference));
+    // The page takes the nearest of 256 colours of the ramp.
+    assert.ok(difference <= 3 && brightest > 100, `${name}: ${difference}, ${brightest}`);
+  }
+});
+
 inPage("shows the program's difference picture and FLIP heat map", async (page) => {
   const viewer = await viewerOf(page, "lens"),
     { pictures } = caseOf("lens").images[0];

@@ -96,79 +96,94 @@ function exact(value) {
 
 const NOTHING_HIT = 1e9; // producers write 1e10 m and more where nothing was hit
 
+const normalColoring = {
+  stops: null,
+  words: "-1 to 1: x red, y green, z blue",
+  color: ([x, y, z], i) => {
+    const byte = (plane) => 127.5 * Math.min(Math.max(plane[i] + 1, 0), 2);
+    return x[i] === 0 && y[i] === 0 && z[i] === 0 ? [0, 0, 0] : [byte(x), byte(y), byte(z)];
+  },
+};
+
+const idColoring = { stops: null, words: "a colour for each id", color: ([plane], i) => idColor(idOf(plane[i])) };
+
+/** The longest but for one in two hundred is at the rim of the wheel, in two digits; less than a tenth is rounding. */
+function vectorColoring(layer, images) {
+  const lengths = sortedValues(images, ([x, y], i) => Math.hypot(x[i], y[i]));
+  const most = percentile(lengths, 0.995) || lengths[lengths.length - 1] || 0;
+  const rim = Number(Math.max(most, 0.1).toPrecision(2));
+  const words = `direction as hue, full at ${rim}${layer.role === "velocity" ? " px" : ""}`;
+  return { stops: null, words, color: ([x, y], i) => wheelColor(x[i] / rim, y[i] / rim) };
+}
+
+function depthColoring(images, palette, shade) {
+  const depths = sortedValues(images, ([depth], i) => (depth[i] > 0 && depth[i] < NOTHING_HIT ? depth[i] : NaN));
+  const near = percentile(depths, 0.005) || 1,
+    far = percentile(depths, 0.98) || 1,
+    span = Math.log(far / near),
+    nothing = rgbOfHex(palette.nothing_hit);
+  const color = ([plane], i) => {
+    const depth = plane[i];
+    if (depth >= NOTHING_HIT) return nothing;
+    if (depth === 0) return [0, 0, 0];
+    return shade(span > 0 ? 1 - Math.log(depth / near) / span : 1);
+  };
+  return { stops: null, words: `bright ${short(near)} m, dark ${short(far)} m`, color };
+}
+
+function signedColoring(largest, palette) {
+  const colors = palette.diverging.map(rgbOfHex);
+  const color = ([plane], i) => colors[Math.round(127.5 * (1 + plane[i] / largest))] ?? colors[0];
+  return { stops: null, words: `blue ${short(-largest)}, white 0, red ${short(largest)}`, color };
+}
+
+function scalarColoring(layer, images, palette, shade) {
+  const values = sortedValues(images, ([plane], i) => plane[i]);
+  const least = values[0] ?? 0,
+    most = values[values.length - 1] ?? 1;
+  if (layer.role === "data" && least < 0) return signedColoring(Math.max(-least, most), palette);
+  const high = layer.role === "alpha" ? Math.max(most, 1) : most,
+    low = Math.min(least, 0),
+    span = high - low || 1;
+  const grey = (t) => Array(3).fill(255 * Math.min(Math.max(t, 0), 1));
+  const tone = layer.role === "alpha" ? grey : shade;
+  const color = ([plane], i) => tone((plane[i] - low) / span);
+  return { stops: null, words: `dark ${short(low)}, bright ${short(high)}`, color };
+}
+
+/** Light is exposed; encoded colours are shown as they are. */
+function lightColoring(layer, images) {
+  const channels = images[0].planes.length,
+    green = Math.min(1, channels - 1),
+    blue = Math.min(2, channels - 1);
+  const encoded = (value) => 255 * Math.min(Math.max(value, 0), 1);
+  const byte = layer.role === "display" ? encoded : srgbByte;
+  const rgb = [0, 0, 0];
+  const color = (planes, i, gain) => {
+    rgb[0] = byte(planes[0][i] * gain);
+    rgb[1] = byte(planes[green][i] * gain);
+    rgb[2] = byte(planes[blue][i] * gain);
+    return rgb; // one for all pixels: millions of arrays would take seconds
+  };
+  if (layer.role === "display") return { stops: null, words: "as encoded", color };
+  return { stops: fittingStops(images), words: "linear light", color };
+}
+
 /**
  * How a layer is shown: {stops: what exposure begins with, or null where there is none; words; color(planes, i, gain)}.
  * `images` are all that share the scale.
  */
 function coloringOf(layer, images, palette) {
-  const ramp = palette.ramp.map(rgbOfHex),
-    channels = images[0].planes.length;
+  const channels = images[0].planes.length,
+    ramp = palette.ramp.map(rgbOfHex);
   const shade = (t) => ramp[Math.round(255 * Math.min(Math.max(t, 0), 1))];
-  if (images[0].type === "uint" || (layer.role === "id" && channels === 1))
-    return { stops: null, words: "a colour for each id", color: ([plane], i) => idColor(idOf(plane[i])) };
-  if (channels === 3 && /normal/i.test(layer.label)) {
-    const axis = (plane, i) => 127.5 * Math.min(Math.max(plane[i] + 1, 0), 2);
-    const color = ([x, y, z], i) =>
-      x[i] === 0 && y[i] === 0 && z[i] === 0 ? [0, 0, 0] : [axis(x, i), axis(y, i), axis(z, i)];
-    return { stops: null, words: "-1 to 1: x red, y green, z blue", color };
-  }
-  if (layer.role === "velocity" || (layer.role === "data" && channels === 2)) {
-    const rim =
-      percentile(
-        sortedValues(images, (planes, i) => Math.hypot(planes[0][i], planes[1][i])),
-        0.995,
-      ) || 0.1;
-    const words = `direction as hue, full at ${short(rim)}${layer.role === "velocity" ? " px" : ""}`;
-    return { stops: null, words, color: (planes, i) => wheelColor(planes[0][i] / rim, planes[1][i] / rim) };
-  }
-  if (layer.role === "depth" && channels === 1) {
-    const depths = sortedValues(images, ([depth], i) => (depth[i] > 0 && depth[i] < NOTHING_HIT ? depth[i] : NaN));
-    const [near, far] = [percentile(depths, 0.005) || 1, percentile(depths, 0.98) || 1];
-    const nothing = rgbOfHex(palette.nothing_hit),
-      span = Math.log(far / near);
-    const color = ([depth], i) =>
-      depth[i] >= NOTHING_HIT
-        ? nothing
-        : depth[i] === 0
-          ? [0, 0, 0]
-          : shade(span > 0 ? 1 - Math.log(depth[i] / near) / span : 1);
-    return { stops: null, words: `bright ${short(near)} m, dark ${short(far)} m`, color };
-  }
-  if (channels < 3 && layer.role !== "color" && layer.role !== "display") {
-    const values = sortedValues(images, ([plane], i) => plane[i]);
-    const [least, most] = [values[0] ?? 0, values[values.length - 1] ?? 1],
-      largest = Math.max(Math.abs(least), Math.abs(most)) || 1;
-    if (layer.role === "data" && least < 0) {
-      const both = palette.diverging.map(rgbOfHex),
-        color = ([plane], i) => both[Math.round(127.5 * (1 + plane[i] / largest))] ?? both[0];
-      return { stops: null, words: `blue ${short(-largest)}, white 0, red ${short(largest)}`, color };
-    }
-    const high = Math.max(most, layer.role === "alpha" ? 1 : -Infinity),
-      low = Math.min(least, 0),
-      span = high - low || 1;
-    const grey = (t) => Array(3).fill(255 * Math.min(Math.max(t, 0), 1));
-    const tone = layer.role === "alpha" ? grey : shade;
-    return {
-      stops: null,
-      words: `dark ${short(low)}, bright ${short(high)}`,
-      color: ([plane], i) => tone((plane[i] - low) / span),
-    };
-  }
-  if (layer.role === "display")
-    return {
-      stops: null,
-      words: "as encoded",
-      color: (planes, i) => [0, 1, 2].map((c) => 255 * Math.min(Math.max(planes[Math.min(c, channels - 1)][i], 0), 1)),
-    };
-  const rgb = [0, 0, 0],
-    [green, blue] = [Math.min(1, channels - 1), Math.min(2, channels - 1)];
-  const color = (planes, i, gain) => {
-    rgb[0] = srgbByte(planes[0][i] * gain);
-    rgb[1] = srgbByte(planes[green][i] * gain);
-    rgb[2] = srgbByte(planes[blue][i] * gain);
-    return rgb; // one for all pixels: millions of arrays would take seconds
-  };
-  return { stops: fittingStops(images), words: "linear light", color };
+  if (images[0].type === "uint" || (layer.role === "id" && channels === 1)) return idColoring;
+  if (channels === 3 && /normal/i.test(layer.label)) return normalColoring;
+  if (channels >= 2 && layer.role === "velocity") return vectorColoring(layer, images);
+  if (channels === 2 && layer.role === "data") return vectorColoring(layer, images);
+  if (channels === 1 && layer.role === "depth") return depthColoring(images, palette, shade);
+  if (channels < 3 && !["color", "display"].includes(layer.role)) return scalarColoring(layer, images, palette, shade);
+  return lightColoring(layer, images);
 }
 
 /** Gives the colour of a pixel with values that should not be, and null of a sound one. */
