@@ -138,20 +138,26 @@ public:
     }
 
 private:
+    /// A report may come from a stranger's job: it must not bring other files of this machine into a page.
+    fs::path file_of(const Json& name) const {
+        const fs::path file = fs::path(name.get<std::string>()).lexically_normal();
+        if (file.is_absolute() || (!file.empty() && *file.begin() == ".."))
+            throw Error(ExitCode::capture, file.string() + ": leads out of the report");
+        return report_ / file;
+    }
     std::vector<StoredLayer> layers_in(const Json& name) const {
-        return name.is_string() ? read_layers(report_ / name.get<std::string>()) : std::vector<StoredLayer>{};
+        return name.is_string() ? read_layers(file_of(name)) : std::vector<StoredLayer>{};
     }
 
     std::uint64_t bytes_of(const Json& name) const {
         std::error_code failure;
-        const auto bytes =
-            name.is_string() ? fs::file_size(report_ / name.get<std::string>(), failure) : std::uintmax_t(0);
+        const auto bytes = name.is_string() ? fs::file_size(file_of(name), failure) : std::uintmax_t(0);
         return failure ? 0 : bytes;  // is told when it is read
     }
 
     Json png(const Json& name) {
         if (!name.is_string()) return nullptr;
-        const std::string bytes = read_text_file(report_ / name.get<std::string>(), ExitCode::capture);
+        const std::string bytes = read_text_file(file_of(name), ExitCode::capture);
         return store_.add(base64(std::as_bytes(std::span(bytes))));
     }
 

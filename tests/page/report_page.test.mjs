@@ -549,8 +549,12 @@ test("tells pictures that are gone, and no report", async () => {
   const mine = join(folder, "damaged");
   cpSync(report, mine, { recursive: true });
   rmSync(join(mine, caseOf("lens").images[0].pictures.test_exr));
+  const foreign = structuredClone(json);
+  foreign.cases.find((one) => one.name === "one_pixel").images[0].pictures.test_exr = "images/../../suite/in.exr";
+  writeFileSync(join(mine, "report.json"), JSON.stringify(foreign));
   assert.equal(rebuildPage(mine).code, 0);
   const page = await openPage(browser, join(mine, "index.html"));
+  assert.match(await page.locator("#case-one_pixel").innerText(), /suite\/in\.exr: leads out of the report/);
   assert.match(await page.locator("#case-lens").innerText(), /Pictures are missing: .*lens\.color\.0001\.test\.exr/);
   await page.context().close();
   writeFileSync(join(mine, "report.json"), '{"cases": []}');
