@@ -74,8 +74,8 @@ ExitCode run(const GoldenOptions& options) {
         std::error_code failure;
         fs::create_directories(fs::path(options.report) / "images", failure);
         if (failure) throw Error(ExitCode::output, "--report " + options.report + ": " + failure.message());
+        remove_old_page(options.report);
     }
-    if (!options.report.empty()) remove_old_page(options.report);
     print_head(job.context);
     const GoldenSuiteResult result = run_golden_suite(
         job.suite, job.context.options,

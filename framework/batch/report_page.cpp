@@ -107,10 +107,8 @@ bool is_as_approved(const Json& image) {
 }
 
 /// Whether two stored layers have the same values at the same places.
-bool is_equal(const Json& a, const Json& b) {
-    for (const char* key : {"type", "channels", "x", "y", "width", "height"})
-        if (a.at(key) != b.at(key)) return false;
-    return true;
+bool is_equal(const StoredLayer& a, const StoredLayer& b) {
+    return a.pixels.text == b.pixels.text && json_of(a, nullptr) == json_of(b, nullptr);
 }
 
 /// Adds to the page what it shows of the images of one report.
@@ -178,8 +176,7 @@ private:
         };
         const auto add = [&](const StoredLayer* reference, const StoredLayer* test) {
             const LayerInfo& info = (reference ? reference : test)->info;
-            const bool equal = reference && test && reference->pixels.text == test->pixels.text &&
-                               is_equal(json_of(*reference, nullptr), json_of(*test, nullptr));
+            const bool equal = reference && test && is_equal(*reference, *test);
             Json layer = {{"label", info.label()}, {"role", layer_role_name(info.role)}, {"equal", equal}};
             layer["reference"] = reference ? stored(*reference) : Json(nullptr);
             if (equal) layer["test"] = json_of(*test, layer["reference"]["data"]);

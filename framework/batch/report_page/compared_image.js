@@ -102,14 +102,13 @@ class ComparedImage {
     const values = this.values.get(layer) ?? (await this.readLayer(layer));
     if (this.wanted !== layer) return;
     this.values.set(layer, values);
-    if (this.layer !== layer || this.stops === undefined) this.stops = values.stops;
+    if (this.layer !== layer || this.stops === undefined) this.stops = values.coloring.stops;
     this.layer = layer;
     if (!this.view || JSON.stringify(this.view.box) !== JSON.stringify(values.box)) this.view = new View(values.box);
   }
   async readLayer(layer) {
     const reference = layer.reference && (await readPixels(layer.reference));
-    const same = layer.equal && layer.test.x === layer.reference.x && layer.test.y === layer.reference.y;
-    const test = same ? reference : layer.test && (await readPixels(layer.test));
+    const test = layer.equal ? reference : layer.test && (await readPixels(layer.test));
     const all = [reference, test].filter(Boolean),
       coloring = coloringOf(layer, all, this.palette);
     const x = Math.min(...all.map((one) => one.x)),
@@ -122,7 +121,6 @@ class ComparedImage {
       reference,
       test,
       coloring,
-      stops: coloring.stops,
       heat_map: flip,
       box: { x, y, width: right - x, height: bottom - y },
       pictures: {},

@@ -65,14 +65,11 @@ class Viewers {
   step(by) {
     const visible = this.visible();
     if (visible.length === 0) return;
-    // From where the current one was, if its case has been closed.
-    const isAfter = (viewer) =>
-      this.current && this.current.node.compareDocumentPosition(viewer.node) & Node.DOCUMENT_POSITION_FOLLOWING;
-    const at = visible.indexOf(this.current),
-      following = visible.findIndex(isAfter);
-    const place =
-      at >= 0 ? at + by : !this.current ? 0 : by > 0 ? following : (following < 0 ? visible.length : following) - 1;
-    const next = Math.min(Math.max(place < 0 && by > 0 ? visible.length - 1 : place, 0), visible.length - 1);
+    const isBefore = (viewer) =>
+      this.current && this.current.node.compareDocumentPosition(viewer.node) & Node.DOCUMENT_POSITION_PRECEDING;
+    // Where the current one is not to be seen, because its case has been closed, the next is the first after it.
+    const steps = by > 0 && !visible.includes(this.current) ? 0 : by;
+    const next = Math.min(Math.max(visible.filter(isBefore).length + steps, 0), visible.length - 1);
     this.choose(visible[next]);
     visible[next].canvas.focus({ preventScroll: true });
     visible[next].node.closest(".image").scrollIntoView({ block: "start" });
