@@ -1,5 +1,6 @@
 #include "cli/capture_options.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
 

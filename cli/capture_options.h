@@ -1,7 +1,6 @@
 // CAPTURE, --frames, --profile and the limits, shared by every verb that reads a capture.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +9,11 @@
 #include "framework/image/exr_file.h"
 #include "framework/image/profile.h"
 #include "framework/image/sequence.h"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace aftershade::cli {
 

@@ -1,7 +1,6 @@
 // The words of `aftershade compare`.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -10,6 +9,10 @@
 #include "framework/compare/compare_files.h"
 #include "framework/core/diagnostics.h"
 #include "framework/core/error.h"
+
+namespace CLI {
+class App;
+}  // namespace CLI
 
 namespace aftershade::cli {
 

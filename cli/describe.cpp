@@ -1,5 +1,6 @@
 #include "framework/effect/describe.h"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,30 +1,21 @@
 // --effect-path, shared by every verb that looks for effects.
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <filesystem>
 #include <string>
 #include <vector>
 
-#include "framework/core/data_path.h"
 #include "framework/core/diagnostics.h"
 #include "framework/effect/registry.h"
 
+namespace CLI {
+class App;
+}  // namespace CLI
+
 namespace aftershade::cli {
 
-inline void add_effect_path_option(CLI::App& app, std::vector<std::string>& paths) {
-    app.add_option("--effect-path", paths, "Folder of effects, searched before the shipped ones; repeatable")
-        ->allow_extra_args(false);
-}
+void add_effect_path_option(CLI::App& app, std::vector<std::string>& paths);
 
 /// The shipped effects, below those of `paths`; a path that is no folder is a fault.
-inline EffectRegistry find_effects(const std::vector<std::string>& paths, Diagnostics& diagnostics) {
-    std::vector<std::filesystem::path> folders(paths.begin(), paths.end());
-    for (const std::string& folder : paths)
-        if (std::error_code failure; !std::filesystem::is_directory(folder, failure))
-            diagnostics.error({"--effect-path " + folder}, "no such folder");
-    folders.push_back(data_path() / "effects");
-    return EffectRegistry(std::move(folders));
-}
+EffectRegistry find_effects(const std::vector<std::string>& paths, Diagnostics& diagnostics);
 
 }  // namespace aftershade::cli

@@ -1,5 +1,6 @@
 #include "cli/golden_options.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <filesystem>

@@ -1,11 +1,14 @@
 // The words of `aftershade golden`.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
 #include "framework/batch/golden_report.h"
+
+namespace CLI {
+class App;
+}  // namespace CLI
 
 namespace aftershade::cli {
 

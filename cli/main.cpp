@@ -36,27 +36,9 @@ int main(int argc, char** argv) {
         CLI::App* verb = app.add_subcommand(name, help);
         verbs[verb] = add_options(*verb);
     };
-    add("run", "Run a look over a capture and write the result", aftershade::cli::add_run);
-    add("inspect", "Tell what a capture holds: parts, channels with their figures, roles, camera",
-        aftershade::cli::add_inspect);
-    add("compare", "Compare two pictures, layer by layer: how different, how visible, a verdict for scripts",
-        aftershade::cli::add_compare);
-    add("golden", "Render a suite of cases and compare them with approved images; approve new ones",
-        aftershade::cli::add_golden);
-    add("render", "Render a scene: captures, and the true pictures that effects approximate",
-        aftershade::cli::add_render);
-    add("list", "List the effects that there are", aftershade::cli::add_list);
-    add("describe", "Tell what an effect takes, makes and can be told; what a scattering profile is",
-        aftershade::cli::add_describe);
-    add("new", "Make the folder of a new effect, which runs at once", aftershade::cli::add_new);
-    add("check", "Check an effect or a look: documents, shaders, values; exit 1: no",
-        aftershade::cli::add_check);
-    add("schema", "Print the JSON Schema of looks, captures, effects, scenes or profiles, for editors",
-        aftershade::cli::add_schema);
-    add("docs", "Write the page of each effect from its manifest, and the scene reference",
-        aftershade::cli::add_docs);
-    add("doctor", "Tell which GL backends work on this machine, and why others do not",
-        aftershade::cli::add_doctor);
+#define AFTERSHADE_ADD_VERB(name, help) add(#name, help, aftershade::cli::add_##name);
+    AFTERSHADE_VERBS(AFTERSHADE_ADD_VERB)
+#undef AFTERSHADE_ADD_VERB
 
     try {
         app.parse(argc, argv);

@@ -1,5 +1,6 @@
 #include "cli/plugin_options.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>

@@ -1,7 +1,6 @@
 // --plugin-path and --plugin-timeout, and the process of its own in which plug-ins run.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <optional>
 #include <string>
@@ -9,6 +8,10 @@
 
 #include "framework/core/error.h"
 #include "framework/pipeline/pipeline.h"
+
+namespace CLI {
+class App;
+}  // namespace CLI
 
 namespace aftershade::cli {
 

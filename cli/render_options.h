@@ -1,12 +1,15 @@
 // --scale, --region, --history-in, --history-out, --graph and --var of `run`.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
 #include "framework/pipeline/look.h"
 #include "framework/pipeline/run.h"
+
+namespace CLI {
+class App;
+}  // namespace CLI
 
 namespace aftershade::cli {
 

@@ -1,5 +1,6 @@
 #include "framework/pipeline/run.h"
 
+#include <CLI/CLI.hpp>
 #include <chrono>
 #include <iostream>
 #include <memory>

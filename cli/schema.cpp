@@ -1,5 +1,6 @@
 #include "framework/pipeline/schema.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 

@@ -10,16 +10,14 @@ namespace aftershade {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 double difference(double reference, double test, bool nan_equal) {
     if (std::isfinite(reference) && std::isfinite(test)) return std::abs(reference - test);
     const bool same = (std::isnan(reference) && std::isnan(test)) || reference == test;
-    return same && nan_equal ? 0 : kInfinity;
+    return same && nan_equal ? 0 : std::numeric_limits<double>::infinity();
 }
 
 double psnr_of_mse(double mse) {
-    return mse == 0 ? kInfinity : -10 * std::log10(mse);
+    return mse == 0 ? std::numeric_limits<double>::infinity() : -10 * std::log10(mse);
 }
 
 }  // namespace

@@ -24,7 +24,6 @@ constexpr int kMaxEnlargement = 16;
 
 // Blender writes 1e10 m, and others more; no scene is that deep, and its surfaces are to be told apart.
 constexpr float kNothingHit = 1e9f;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 constexpr DisplayColor kPaper = {0.11f, 0.11f, 0.12f};
 constexpr DisplayColor kBright = {1, 1, 1};
@@ -61,7 +60,8 @@ Image stacked(const LayerImages& images, LayerRole role) {
                 const int channel = std::min(c, r.channels() - 1), line = y % r.height();
                 const float value =
                     integers ? float(source.uint_at(x, line, channel)) : source.at(x, line, channel);
-                both.at(x, y, c) = role == LayerRole::depth && value >= kNothingHit ? kInfinity : value;
+                const bool nothing_hit = role == LayerRole::depth && value >= kNothingHit;
+                both.at(x, y, c) = nothing_hit ? std::numeric_limits<float>::infinity() : value;
             }
     return both;
 }

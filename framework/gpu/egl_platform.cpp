@@ -15,10 +15,9 @@ namespace aftershade::gpu {
 namespace {
 
 constexpr unsigned int kGlRenderer = 0x1F01;
-constexpr unsigned int kGlVersion = 0x1F02;
 constexpr EGLint kDrmDeviceFile = 0x3233;  // EGL_EXT_device_drm
 
-void* library() {
+void* egl_library() {
     static void* const handle = open_library({"libEGL.so.1"}, "libegl1");
     return handle;
 }
@@ -41,7 +40,7 @@ struct EglApi {
 
 template <typename Function>
 void load(Function& function, const char* name) {
-    void* address = dlsym(library(), name);
+    void* address = dlsym(egl_library(), name);
     if (!address) throw Error(ExitCode::gl, fmt::format("libEGL.so.1 has no {}; EGL 1.5 is needed", name));
     function = reinterpret_cast<Function>(address);
 }

@@ -24,14 +24,13 @@ constexpr int kOsmesaCoreProfile = 0x34;
 constexpr int kOsmesaMajorVersion = 0x36;
 constexpr int kOsmesaMinorVersion = 0x37;
 constexpr unsigned int kUnsignedByte = 0x1401;
-constexpr unsigned int kGlVersion = 0x1F02;
 
 // OSMesa demands a buffer to be current; every pass draws to textures, so it is never looked at.
 constexpr int kBufferSide = 16;
 
 using OsmesaContext = void*;
 
-void* library() {
+void* osmesa_library() {
     static void* const handle =
         open_library({"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"}, "libosmesa6");
     return handle;
@@ -39,7 +38,7 @@ void* library() {
 
 template <typename Function>
 Function symbol(const char* name) {
-    void* address = dlsym(library(), name);
+    void* address = dlsym(osmesa_library(), name);
     if (!address)
         throw Error(ExitCode::gl, std::string("libOSMesa has no ") + name + "; Mesa 12 or later is needed");
     return reinterpret_cast<Function>(address);

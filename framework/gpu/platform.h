@@ -37,6 +37,9 @@ bool is_software_renderer(std::string_view renderer);
 /// dlopen of the first of `names` that loads. Throws Error(ExitCode::gl) naming the Debian package.
 void* open_library(std::initializer_list<const char*> names, std::string_view package);
 
+/// GL_VERSION, for gl_string().
+inline constexpr unsigned int kGlVersion = 0x1F02;
+
 /// glGetString through `platform`; empty where GL gives null, which is how a null context shows itself.
 std::string gl_string(const Platform& platform, unsigned int name);
 

@@ -11,7 +11,7 @@
 namespace aftershade::graph {
 namespace {
 
-std::string quoted(std::string_view text) {
+std::string label_of(std::string_view text) {
     std::string result;
     for (const char c : text) {
         if (c == '"' || c == '\\') result += '\\';
@@ -30,7 +30,7 @@ public:
             runs_ = std::find(compiled_.passes.begin(), compiled_.passes.end(), i) != compiled_.passes.end();
             const char* const grey = runs_ ? "" : ", color=grey, fontcolor=grey";
             text_ +=
-                fmt::format("  p{} [shape=box, label=\"{}\"{}];\n", i, quoted(graph_.pass(i).name), grey);
+                fmt::format("  p{} [shape=box, label=\"{}\"{}];\n", i, label_of(graph_.pass(i).name), grey);
             const PassUses uses = uses_of(graph_, i);
             for (const Version& version : uses.needs)
                 if (exists(version)) edge(node(version), fmt::format("p{}", i));
@@ -83,7 +83,7 @@ private:
         if (index < textures) {
             const FrameGraph::Texture& texture = graph_.textures()[index];
             const gpu::TextureDesc& desc = texture.desc;
-            label = fmt::format("{}\\n{}x{} {}", quoted(texture.name), desc.width, desc.height,
+            label = fmt::format("{}\\n{}x{} {}", label_of(texture.name), desc.width, desc.height,
                                 gpu::texture_format_name(desc.format));
             if (desc.layers > 1) label += fmt::format(", {} layers", desc.layers);
             if (desc.mips > 1) label += fmt::format(", {} levels", desc.mips);
@@ -91,7 +91,7 @@ private:
             is_history = is_of_history(graph_.textures(), index);
         } else {
             const FrameGraph::Buffer& buffer = graph_.buffers()[index - textures];
-            label = fmt::format("{}\\n{} bytes", quoted(buffer.name), buffer.desc.bytes);
+            label = fmt::format("{}\\n{} bytes", label_of(buffer.name), buffer.desc.bytes);
             slot = compiled_.slot_of_buffer[index - textures];
             is_history = is_of_history(graph_.buffers(), index - textures);
         }

@@ -11,7 +11,6 @@ using glm::dvec3;
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kFar_m = 1e7;
 
 /// Where a ray to a light leaves a surface that must not hide itself: all light comes to the normal's side.
@@ -59,7 +58,7 @@ double pattern_at(const LightPattern& pattern, const dvec3& position) {
     switch (pattern.kind) {
         case LightPattern::Kind::edge: return along_m >= 0 ? 1 : 0;
         case LightPattern::Kind::cosine:
-            return 1 + pattern.amplitude * std::cos(2 * kPi * along_m / pattern.period_m);
+            return 1 + pattern.amplitude * std::cos(2 * std::numbers::pi * along_m / pattern.period_m);
         case LightPattern::Kind::none: break;
     }
     return 1;
@@ -73,7 +72,7 @@ double highlight(const Material& material, const dvec3& normal, const dvec3& to_
     const double alpha = material.roughness * material.roughness, a2 = alpha * alpha;
     const double n_h = std::clamp(glm::dot(normal, half_way), 0.0, 1.0);
     const double base = n_h * n_h * (a2 - 1) + 1;
-    const double distribution = a2 / (kPi * base * base);
+    const double distribution = a2 / (std::numbers::pi * base * base);
     const double masking =
         0.5 / (n_l * std::sqrt(n_v * n_v * (1 - a2) + a2) + n_v * std::sqrt(n_l * n_l * (1 - a2) + a2));
     const double grazing = 1 - std::clamp(glm::dot(half_way, to_light), 0.0, 1.0),
@@ -141,7 +140,7 @@ void World::add_light(std::size_t index, const Surface& surface, const dvec3* to
         received *= seen;
         highlighted *= seen;
     }
-    shading.irradiance += now.color_intensity * (received / kPi);
+    shading.irradiance += now.color_intensity * (received / std::numbers::pi);
     if (!to_eye || highlighted <= 0) return;
     const Material& material =
         scene().materials[std::size_t(scene().objects[std::size_t(surface.object)].material)];

@@ -11,7 +11,6 @@ using glm::dvec2;
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 
 /// In [0, 1).
 double unit_hash(std::uint32_t index, std::uint32_t seed) {
@@ -78,13 +77,13 @@ dvec2 on_aperture(const dvec2& u, int blades, double rotation_rad) {
         if (p == dvec2(0)) return p;
         const bool wide = std::abs(p.x) > std::abs(p.y);
         const double radius = wide ? p.x : p.y;
-        const double angle_rad = wide ? kPi / 4 * p.y / p.x : kPi / 2 - kPi / 4 * p.x / p.y;
+        const double angle_rad = wide ? std::numbers::pi / 4 * p.y / p.x : std::numbers::pi / 2 - std::numbers::pi / 4 * p.x / p.y;
         return radius * dvec2(std::cos(angle_rad), std::sin(angle_rad));
     }
     const double scaled = u.x * blades;
     const double blade = std::min(std::floor(scaled), double(blades - 1));
-    const double first_rad = rotation_rad + (2 * blade - 1) * kPi / blades,
-                 second_rad = first_rad + 2 * kPi / blades;
+    const double first_rad = rotation_rad + (2 * blade - 1) * std::numbers::pi / blades,
+                 second_rad = first_rad + 2 * std::numbers::pi / blades;
     const dvec2 first(std::cos(first_rad), std::sin(first_rad)),
         second(std::cos(second_rad), std::sin(second_rad));
     return std::sqrt(u.y) * glm::mix(first, second, scaled - blade);

@@ -18,7 +18,6 @@ using glm::dvec4;
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 
 /// A sphere stays one where its three axes keep one length and their right angles.
 bool is_round(const glm::dmat4& matrix) {

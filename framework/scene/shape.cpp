@@ -13,7 +13,6 @@ using glm::dvec2;
 using glm::dvec3;
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
-constexpr double kPi = std::numbers::pi;
 
 struct Span {
     double enter = -kNone;
@@ -124,7 +123,7 @@ bool intersect_mesh(const MeshTree& tree, const Ray& ray, double low, double hig
 }
 
 double around(const dvec3& p) {
-    const double turns = std::atan2(p.z, p.x) / (2 * kPi);
+    const double turns = std::atan2(p.z, p.x) / (2 * std::numbers::pi);
     return turns < 0 ? turns + 1 : turns;
 }
 
@@ -144,7 +143,7 @@ dvec2 box_uv(const dvec3& p, int axis) {
 ShapePoint sphere_point(const dvec3& near, double radius) {
     const dvec3 normal = glm::normalize(near);
     return {
-        normal * radius, normal, normal, {around(normal), std::acos(std::clamp(normal.y, -1.0, 1.0)) / kPi}};
+        normal * radius, normal, normal, {around(normal), std::acos(std::clamp(normal.y, -1.0, 1.0)) / std::numbers::pi}};
 }
 
 ShapePoint box_point(const dvec3& near, const dvec3& half_size) {

@@ -1,0 +1,27 @@
+#include "cli/gl_options.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+
+#include "framework/core/error.h"
+
+namespace aftershade::cli {
+
+void add_backend_option(CLI::App& app, std::string& backend) {
+    app.add_option("--backend", backend,
+                   "auto, egl, egl-software or osmesa (default: $AFTERSHADE_BACKEND, else auto)");
+}
+
+gpu::Backend chosen_backend(const std::string& option) {
+    const char* environment = std::getenv("AFTERSHADE_BACKEND");
+    const bool from_environment = option.empty() && environment && *environment;
+    const std::string name = from_environment ? environment : option.empty() ? "auto" : option;
+    const auto backend = gpu::parse_backend(name);
+    if (!backend)
+        throw Error(ExitCode::usage, std::string(from_environment ? "AFTERSHADE_BACKEND" : "--backend") +
+                                         ": '" + name +
+                                         "' is not one of 'auto', 'egl', 'egl-software' or 'osmesa'");
+    return *backend;
+}
+
+}  // namespace aftershade::cli
