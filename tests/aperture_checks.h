@@ -195,8 +195,8 @@ inline void expect_no_light_is_made(const std::string& effect) {
         }
 }
 
-/// PSNR, dB, of frame 4 against the renderer's own lens; `folder` is captures/suzanne, `more` further members
-/// of "params".
+/// PSNR, dB, of frame 4 against the renderer's own lens; `folder` is
+/// $AFTERSHADE_CAPTURES/suzanne, `more` further members of "params".
 inline double suzanne_through_aperture_db(const std::string& effect, const std::filesystem::path& folder,
                                           const std::string& more = "") {
     Sequence sequence;

@@ -1,5 +1,5 @@
 // What the tests of motion effects share: captures of shipped scenes with the truth of their shutter, the
-// changed pixels of docs/measures.md, and Suzanne through her renderer's shutter.
+// changed pixels of docs/design.md, and Suzanne through her renderer's shutter.
 #pragma once
 
 #include <algorithm>
@@ -91,7 +91,8 @@ inline double display_psnr_db_where(const std::vector<bool>& where, const Image&
     return -10 * std::log10(sum / double(count));
 }
 
-/// Suzanne's frame 4, which a shutter of half a frame sees for 128 samples; `folder` is captures/suzanne.
+/// Suzanne's frame 4, which a shutter of half a frame sees for 128 samples; `folder` is
+/// $AFTERSHADE_CAPTURES/suzanne.
 struct SuzanneInMotion {
     explicit SuzanneInMotion(const std::filesystem::path& folder) {
         Sequence sequence;

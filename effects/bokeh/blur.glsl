@@ -22,7 +22,7 @@ float cover(float reach_px, float distance_px, float step_px) {
 }
 
 #if WEIGHTS == WEIGHTS_SEED
-// Listing A.2 of seed 001, with CoC as a fraction of the largest: what lies in front counts by its own blur, unless the
+// Listing A.2 of Post 2013, with CoC as a fraction of the largest: what lies in front counts by its own blur, unless the
 // centre is hardly more blurred than it.
 float seed_weight(float centre_coc, float tap_coc) {
     float centre = abs(centre_coc) / param.max_coc_radius, tap = abs(tap_coc) / param.max_coc_radius;

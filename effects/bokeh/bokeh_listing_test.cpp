@@ -1,4 +1,5 @@
-// Preset seed_2013 against seed 001's listings A.1 and A.2, written anew in double precision.
+// Preset seed_2013 against listings A.1 and A.2 of Post 2013, Depth of Field and Motion Blur in Realtime Computer
+// Graphics, written again in double precision.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -22,7 +22,7 @@ struct ShapeCase {
     const char* shape;
     const char* combine;
     int sides;      // 0: not a convex polygon, only its energy is known
-    double energy;  // of an isolated point; the areas' ratio, reference/algorithms.md section 12
+    double energy;  // of an isolated point: area of the intersection or the union over one parallelogram's
     double radius_px;
     double rotation_deg;
     bool near;

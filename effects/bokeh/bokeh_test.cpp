@@ -26,8 +26,7 @@ struct CocCase {
     double diameter_px;
 };
 
-/// reference/algorithms.md section 10: f = 50 mm, N = 2, focus 2 m, 1920 px wide, 36 mm: diameters by
-/// equation 2.1.
+/// f = 50 mm, N = 2, focus 2 m, 1920 px wide, 36 mm: diameters by equation 2.1 of Post 2013 (glsl/lens/coc.glsl).
 TEST(BokehCoc, MatchesTheThinLensTableToATenthOfAPercent) {
     constexpr CocCase kTable[] = {{1.0f, 34.19}, {1.5f, 11.40}, {2.0f, 0}, {4.0f, 17.09}, {kInfinity, 34.19}};
     Capture capture = make_capture({.width = 1920, .height = 2});
@@ -165,7 +164,7 @@ TEST(Bokeh, GivesTheSameBitsOnBothSoftwareBackends) {
 
 // ---- against a renderer's lens ----
 
-/// captures/suzanne/README.md: the sharp input has 21.7 dB.
+/// The sharp input has 21.7 dB.
 TEST(BokehOnSuzanne, ComesWithinReachOfTheRenderersLens) {
     AFTERSHADE_REQUIRE_CAPTURE(folder, "suzanne");
     Sequence sequence;

@@ -1,6 +1,7 @@
-// Seed 001, listings A.1 and A.2, to the letter: taps at even distances from end to end of a line, through the picture's
-// own CoC and depth in both passes. Irrlicht, which the seed draws with, filters textures bilinearly unless told
-// otherwise, and so do these taps; in full precision, by four texels each.
+// Post 2013, Depth of Field and Motion Blur in Realtime Computer Graphics, listings A.1 and A.2, to the
+// letter: taps at even distances from end to end of a line, through the picture's own CoC and depth in both passes.
+// Irrlicht, which Post draws with, filters textures bilinearly unless told otherwise, and so do these taps; in full
+// precision, by four texels each.
 //
 // Not the listing's: the edges clamp, the alpha, which it sets to 1, is blurred as the colour, and what is exactly in
 // focus is copied.

@@ -172,7 +172,7 @@ TEST(BokehDisk, GivesTheSameBitsOnBothSoftwareBackends) {
 
 // ---- against a renderer's lens ----
 
-/// captures/suzanne/README.md: the sharp input has 21.7 dB, a layered reference in double precision 30.2.
+/// The sharp input has 21.7 dB, a layered reference in double precision 30.2.
 TEST(BokehDiskOnSuzanne, ComesWithinReachOfTheRenderersLens) {
     AFTERSHADE_REQUIRE_CAPTURE(folder, "suzanne");
     const double db = suzanne_through_aperture_db("bokeh_disk", *folder);

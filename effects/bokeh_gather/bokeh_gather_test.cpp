@@ -195,7 +195,7 @@ TEST(BokehGather, GivesTheSameBitsOnBothSoftwareBackends) {
 
 // ---- against a renderer's lens ----
 
-/// captures/suzanne/README.md: the sharp input has 21.7 dB, a layered reference in double precision 30.2.
+/// The sharp input has 21.7 dB, a layered reference in double precision 30.2.
 TEST(BokehGatherOnSuzanne, ComesWithinReachOfTheRenderersLens) {
     AFTERSHADE_REQUIRE_CAPTURE(folder, "suzanne");
     const double db = suzanne_through_aperture_db("bokeh_gather", *folder);

@@ -235,7 +235,7 @@ TEST(DofFocus, IsTheSameByANumberADepthAnObjectTheCameraOrAKey) {
 
 // ---- against a renderer's lens ----
 
-/// captures/suzanne/README.md: the sharp input has 21.7 dB.
+/// The sharp input has 21.7 dB.
 TEST(DofOnSuzanne, ComesCloseToTheRenderersLens) {
     AFTERSHADE_REQUIRE_CAPTURE(folder, "suzanne");
     const auto db = [&](const std::string& quality) {

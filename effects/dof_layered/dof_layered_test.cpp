@@ -64,7 +64,7 @@ TEST(DofLayered, KeepsASurfaceAcrossLayersWhole) {
         for (int x = 0; x < 96; ++x) ASSERT_NEAR(out.at(x, y, 0), 0.5f, 0.005f) << x << " " << y;
 }
 
-/// captures/suzanne/README.md: the sharp input has 21.7 dB, a plain layered reference with 30 layers 30.2.
+/// The sharp input has 21.7 dB, a plain layered reference with 30 layers 30.2.
 TEST(DofLayeredOnSuzanne, ComesCloseToTheRenderersLens) {
     AFTERSHADE_REQUIRE_CAPTURE(folder, "suzanne");
     EXPECT_GE(suzanne_through_aperture_db(kEffect, *folder), 32.5);  // measured 33.09

@@ -69,7 +69,7 @@ TEST(DofScatter, ShowsAFarPointOnlyWhereNothingInFocusCoversIt) {
         for (int x = 32; x < 64; ++x) ASSERT_EQ(out.at(x, y, 0), 0) << x << " " << y;
 }
 
-/// captures/suzanne/README.md: the sharp input has 21.7 dB, a plain layered reference with 30 layers 30.2.
+/// The sharp input has 21.7 dB, a plain layered reference with 30 layers 30.2.
 TEST(DofScatterOnSuzanne, ComesCloseToTheRenderersLens) {
     AFTERSHADE_REQUIRE_CAPTURE(folder, "suzanne");
     EXPECT_GE(suzanne_through_aperture_db(kEffect, *folder), 32.4);  // measured 33.00

@@ -125,7 +125,7 @@ constexpr double kPoisson[12][2] = {{0.468, -0.385},  {0.63, 0.495},    {-0.47, 
                                     {0.046, 0.608},   {-0.85, -0.087},  {0.971, -0.066}, {-0.459, 0.3},
                                     {-0.409, -0.122}, {-0.059, -0.425}, {0.232, -0.74},  {0.408, 0.125}};
 
-/// Reference/algorithms.md section 11, with depth as signed CoC.
+/// Riguer et al. 2004 and Scheuermann 2004 (effect.json, "sources"), with depth as signed CoC.
 Texel twin(const Picture& full, const Picture& low, int x, int y, const TwinSettings& settings) {
     const Texel& centre = full.at(x, y);
     const double radius = std::abs(centre[4]);

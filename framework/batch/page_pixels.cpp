@@ -50,7 +50,7 @@ std::string deflated(const std::vector<Bytef>& bytes) {
 
 }  // namespace
 
-// No library of DESIGN.md section 8 has it in its public headers.
+// No library that this project uses has it in its public headers.
 std::string base64(std::span<const std::byte> bytes) {
     constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string text;

@@ -139,8 +139,8 @@ std::string_view frame_block_glsl();
 using ColumnMatrix = std::array<float, 16>;
 inline constexpr ColumnMatrix kIdentityMatrix = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
-/// The block `camera`: DESIGN.md section 3 (view looks along -z, NDC z in [0, 1], +y up). Lens values are 0
-/// where unknown.
+/// The block `camera` (docs/shaders.md): view looks along -z, NDC z in [0, 1], +y up. Lens values are 0 where
+/// unknown.
 struct CameraBlock {
     ColumnMatrix view_from_world = kIdentityMatrix;
     ColumnMatrix world_from_view = kIdentityMatrix;

@@ -209,7 +209,7 @@ void Context::Impl::set_state() {
     gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
     gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
     gl.Disable(GL_DITHER);
-    // DESIGN.md section 3: NDC y up, z in [0, 1], texel row 0 at the top.
+    // docs/design.md, Conventions: NDC y up, z in [0, 1], texel row 0 at the top.
     gl.ClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
     gl.CreateVertexArrays(1, &vertex_array);
     gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &limits.texture_size);

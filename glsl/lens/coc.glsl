@@ -1,4 +1,5 @@
-// Circle of confusion of a thin lens. Seed 001 equation 2.1; Potmesil and Chakravarty 1981.
+// Circle of confusion of a thin lens. Post 2013, Depth of Field and Motion Blur in Realtime Computer Graphics,
+// equation 2.1; Potmesil and Chakravarty 1981.
 
 // Signed CoC *radius* in px of a point at infinity. It is the asymptote of every depth:
 // radius(z) = at_infinity * (1 - focus / z), negative in front of the focus plane.

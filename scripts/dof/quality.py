@@ -11,7 +11,7 @@ from family import (CAPTURES, FAMILY, ROOT, coc_px, command, effects, iou, polyg
 
 WORK = ROOT / "build/quality-dof"
 IMAGES = ROOT / "docs/images/dof"
-# Measured once and cited: captures/suzanne/README.md.
+# Measured once, outside this script, and cited.
 CITED = [("Blender's Defocus node at f-stops tried by hand, cited", "20.3 to 21.1"), ("30 depth layers by FFT in double precision, cited", "30.2")]
 SUZANNE = {"focus_distance": 6.4, "focal_length": 50, "f_number": 0.25, "sensor_width": 36, "lens_model": "pinhole"}
 UNSEEN = (slice(0, 20), slice(0, 60))  # rows, columns that a bulb beyond the frame's edge lights in the lens' picture

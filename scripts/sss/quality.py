@@ -16,7 +16,7 @@ WORK = ROOT / "build/quality-sss"
 IMAGES = ROOT / "docs/images/sss"
 TEXTS = ROOT / "scripts/sss"
 RGB = "RGB"
-# Of Cycles' head: captures/head/README.md.
+# Of Cycles' head: subsurface radius (1.0, 0.4, 0.25) m; Cycles' mean free path is the radius * 0.25 / pi.
 HEAD_PROFILE = {"type": "burley", "albedo": [0.8, 0.5, 0.4], "mean_free_path_mm": [79.577, 31.831, 19.894], "mapping": "diffuse"}
 # The same with albedo 0.8 in all channels.
 HEAD_PROFILE_08 = HEAD_PROFILE | {"albedo": 0.8}

@@ -23,7 +23,7 @@ image = tree.nodes.new("CompositorNodeImage")
 image.image = bpy.data.images.load(source)
 blur = tree.nodes.new("CompositorNodeVecBlur")
 blur.samples = int(samples)
-blur.factor = 1  # best against the truth: captures/suzanne/README.md
+blur.factor = 1  # best against the truth, of those tried
 result = tree.nodes.new("CompositorNodeComposite")
 tree.links.new(image.outputs["Combined"], blur.inputs["Image"])
 tree.links.new(image.outputs["Depth"], blur.inputs["Z"])

@@ -1,4 +1,4 @@
-// Captures, outputs, GL and effects that cannot work (reference/reliability.md, section 4).
+// Captures, outputs, GL and effects that cannot work.
 #include <cstdint>
 #include <cstring>
 
