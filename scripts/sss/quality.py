@@ -175,7 +175,7 @@ def on_views():
         save_strip(IMAGES / f"{scene}.jpg", shown, scale, (100, 20, 280, 230))
     labels = ["what came in"] + [l for l in results["skin_ear"] if l not in (EXACT[0], "what came in")]
     rows = [[f"`{l}`" if l.startswith("sss") else l, *(f"{results[s][l]:.2f}" for s in VIEWS)] for l in labels]
-    rows.append(["separable, as Xie 2021 has it on other models", *(f"{p:.2f}" for _, p in VIEWS.values())])
+    rows.append(["separable, as Xie 2020 has it on other models", *(f"{p:.2f}" for _, p in VIEWS.values())])
     return rows
 
 
