@@ -155,7 +155,7 @@ TEST(BokehHexagon, GivesTheSameBitsOnBothSoftwareBackends) {
 TEST(BokehHexagonOnSuzanne, ComesWithinReachOfTheRenderersLens) {
     AFTERSHADE_REQUIRE_CAPTURE(folder, "suzanne");
     const double db = suzanne_through_aperture_db("bokeh_hexagon", *folder);
-    EXPECT_GE(db, 31.0);  // measured 31.3; the project asks for 27
+    EXPECT_GE(db, 31.0);  // measured 31.3
 }
 
 }  // namespace
