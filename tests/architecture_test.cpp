@@ -1,11 +1,15 @@
 // The rules of STYLE.md that a compiler does not enforce.
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -78,20 +82,131 @@ TEST(Architecture, OnlyTheGpuModuleCallsGl) {
 }
 
 TEST(Architecture, NothingOutsideAnEffectsFolderNamesIt) {
-    std::vector<std::string> ids;
+    std::string ids;
     for (const auto& entry : fs::directory_iterator(kRoot / "effects"))
-        if (entry.is_directory()) ids.push_back(entry.path().filename().string());
+        if (entry.is_directory()) ids += (ids.empty() ? "" : "|") + entry.path().filename().string();
     ASSERT_FALSE(ids.empty());
+    const std::regex any_id("\\b(" + ids + ")\\b");
     for (const char* folder : {"framework", "cli", "glsl"})
         for (const Line& line : code_lines(kRoot / folder, {".h", ".cpp", ".glsl", ".vert", ".json"}))
-            for (const std::string& id : ids)
-                EXPECT_FALSE(std::regex_search(line.text, std::regex("\\b" + id + "\\b")))
-                    << line.place << ": " << line.text;
+            EXPECT_FALSE(std::regex_search(line.text, any_id)) << line.place << ": " << line.text;
 }
 
 TEST(Architecture, TheGraphKnowsNoDocuments) {
     for (const Line& line : code_lines(kRoot / "framework/graph", {".h", ".cpp"}))
         EXPECT_EQ(line.text.find("framework/core/document.h"), std::string::npos) << line.place;
+}
+
+/// Every text file of the repository, by its path from the root; what .gitignore names is left out.
+std::map<std::string, std::string> text_files() {
+    const std::set<std::string> ignored = {".git", "build", "__pycache__", "node_modules"};
+    std::map<std::string, std::string> files;
+    const fs::recursive_directory_iterator end;
+    for (fs::recursive_directory_iterator entry(kRoot); entry != end; ++entry) {
+        if (ignored.contains(entry->path().filename().string())) {
+            entry.disable_recursion_pending();
+            continue;
+        }
+        if (!entry->is_regular_file()) continue;
+        std::ifstream in(entry->path(), std::ios::binary);
+        std::string text{std::istreambuf_iterator<char>(in), {}};
+        const bool is_text = std::string_view(text).substr(0, 8000).find('\0') == std::string_view::npos;
+        if (is_text) files[fs::relative(entry->path(), kRoot).generic_string()] = std::move(text);
+    }
+    return files;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) lines.push_back(line);
+    return lines;
+}
+
+/// What a heading is called in links, as GitHub and GitLab derive it.
+std::string anchor_of(const std::string& heading) {
+    std::string anchor;
+    for (const char c : heading)
+        if (c == ' ') anchor += '-';
+        else if (std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_')
+            anchor += char(std::tolower(static_cast<unsigned char>(c)));
+    return anchor;
+}
+
+/// The lines of a page of Markdown that are no code.
+std::vector<std::string> prose_of(const std::string& text) {
+    std::vector<std::string> prose;
+    bool is_code = false;
+    for (const std::string& line : lines_of(text)) {
+        if (line.starts_with("```")) is_code = !is_code;
+        else if (!is_code) prose.push_back(line);
+    }
+    return prose;
+}
+
+bool has_heading(const std::string& text, const std::string& anchor) {
+    for (const std::string& line : prose_of(text)) {
+        const std::size_t level = line.find_first_not_of('#');
+        if (level == 0 || level == std::string::npos || line[level] != ' ') continue;
+        if (anchor_of(line.substr(level + 1)) == anchor) return true;
+    }
+    return false;
+}
+
+TEST(Architecture, NoLinePointsOutsideTheRepository) {
+    // Where the large captures lie unless AFTERSHADE_CAPTURES says otherwise.
+    const std::string beside = "../" "shared";
+    const std::set<std::string> may_look_beside = {"scripts/check-bare-debian", "scripts/check-damaged",
+                                                   "scripts/dof/family.py", "scripts/quality-bokeh",
+                                                   "tests/real_captures.h"};
+    // The page and the papers' numbers that the first authors worked from, and notes that only they had.
+    const std::regex outside("DESIGN" R"(\.md|\b[Ss]eed[ -]?0[0-9]|\breference/\w+\.md|captures/\w+/README)");
+    std::set<std::string> looking_beside;
+    for (const auto& [path, text] : text_files()) {
+        int number = 0;
+        for (const std::string& line : lines_of(text)) {
+            const std::string place = path + ":" + std::to_string(++number);
+            // The regex is slow on the long lines of pictures in SVG, which have no words of ours.
+            if (line.size() < 10000) {
+                EXPECT_FALSE(std::regex_search(line, outside)) << place << ": " << line;
+            }
+            if (line.find(beside) == std::string::npos) continue;
+            EXPECT_TRUE(may_look_beside.contains(path)) << place << ": say $AFTERSHADE_CAPTURES instead";
+            looking_beside.insert(path);
+        }
+    }
+    EXPECT_EQ(looking_beside, may_look_beside);
+}
+
+TEST(Architecture, EveryLinkAndEveryPageThatIsNamedExists) {
+    const auto files = text_files();
+    const std::regex link(R"(\]\(([^()\s]+)\))"), page(R"(\bdocs/[\w/.-]+\.md\b)");
+    const auto matches = [](const std::string& line, const std::regex& wanted, int group) {
+        std::vector<std::string> found;
+        for (std::sregex_iterator at(line.begin(), line.end(), wanted); at != std::sregex_iterator(); ++at)
+            found.push_back((*at)[std::size_t(group)]);
+        return found;
+    };
+    for (const auto& [path, text] : files) {
+        if (path.ends_with(".svg")) continue;
+        for (const std::string& line : lines_of(text))
+            for (const std::string& named : matches(line, page, 0))
+                EXPECT_TRUE(files.contains(named)) << path << " names " << named;
+        if (!path.ends_with(".md")) continue;
+        // Pieces of pages, which scripts join, lie in scripts/ and link from docs/.
+        const fs::path folder = path.starts_with("scripts/") ? "docs" : fs::path(path).parent_path();
+        for (const std::string& line : prose_of(text))
+            for (const std::string& target : matches(line, link, 1)) {
+                if (target.find("://") != std::string::npos) continue;
+                const std::size_t hash = std::min(target.find('#'), target.size());
+                const std::string file =
+                    hash == 0 ? path : (folder / target.substr(0, hash)).lexically_normal().generic_string();
+                EXPECT_TRUE(fs::exists(kRoot / file)) << path << " links to " << target;
+                if (hash == target.size() || !files.contains(file)) continue;
+                EXPECT_TRUE(has_heading(files.at(file), target.substr(hash + 1)))
+                    << path << " links to " << target;
+            }
+    }
 }
 
 }  // namespace
