@@ -71,8 +71,8 @@ void add_capture_options(CLI::App& app, CaptureOptions& options, const std::stri
         ->capture_default_str();
 }
 
-std::vector<Profile> load_profiles(const CaptureOptions& options, Diagnostics& diagnostics) {
-    std::vector<std::filesystem::path> folders(options.profile_paths.begin(), options.profile_paths.end());
+std::vector<Profile> load_profiles(const std::vector<std::string>& profile_paths, Diagnostics& diagnostics) {
+    std::vector<std::filesystem::path> folders(profile_paths.begin(), profile_paths.end());
     folders.push_back(data_path() / "profiles");
     return read_profiles(folders, diagnostics);
 }

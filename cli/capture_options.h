@@ -35,7 +35,7 @@ CLI::Option* add_capture_argument(CLI::App& app, CaptureOptions& options);
 void add_capture_options(CLI::App& app, CaptureOptions& options, const std::string& frames_help);
 
 /// The profiles of --profile-path and the shipped ones.
-std::vector<Profile> load_profiles(const CaptureOptions& options, Diagnostics& diagnostics);
+std::vector<Profile> load_profiles(const std::vector<std::string>& profile_paths, Diagnostics& diagnostics);
 
 /// nullopt after a fault in capture.json, or after frames were not found while the user has other faults to
 /// mend.

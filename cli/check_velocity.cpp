@@ -75,7 +75,7 @@ nlohmann::ordered_json json_of(const std::string& role, const VelocityCheck& che
 ExitCode check_velocity_of_files(const std::vector<std::string>& files, const CaptureOptions& options,
                                  bool json) {
     Diagnostics diagnostics;
-    const std::vector<Profile> profiles = load_profiles(options, diagnostics);
+    const std::vector<Profile> profiles = load_profiles(options.profile_paths, diagnostics);
     std::vector<Sequence> sequences;
     for (const std::string& file : files) {
         CaptureOptions one = options;

@@ -13,6 +13,7 @@
 #include "framework/batch/golden_approve.h"
 #include "framework/batch/report_page.h"
 #include "framework/core/atomic_file.h"
+#include "framework/core/text.h"
 
 namespace aftershade::cli {
 

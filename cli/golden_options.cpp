@@ -10,6 +10,7 @@
 #include "cli/compare_options.h"
 #include "cli/gl_options.h"
 #include "framework/batch/worker.h"
+#include "framework/core/text.h"
 
 namespace aftershade::cli {
 

@@ -89,7 +89,7 @@ void write_contact_sheet(const std::string& path, const CaptureHeader& header, c
 
 ExitCode inspect(const InspectOptions& options) {
     Diagnostics diagnostics;
-    std::vector<Profile> profiles = load_profiles(options.capture, diagnostics);
+    std::vector<Profile> profiles = load_profiles(options.capture.profile_paths, diagnostics);
     const std::optional<Sequence> sequence = find_sequence(options.capture, profiles, diagnostics);
     check_options(options, sequence, diagnostics);
     stop_at_errors(diagnostics);

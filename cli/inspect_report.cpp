@@ -6,6 +6,7 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
+#include "framework/core/text.h"
 #include "framework/image/role.h"
 
 namespace aftershade::cli {
@@ -13,13 +14,6 @@ namespace aftershade::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// Names in files may hold anything, a terminal's commands too.
-std::string printable(std::string text) {
-    for (char& c : text)
-        if ((c >= 0 && c < ' ') || c == '\x7f') c = '?';
-    return text;
-}
 
 std::string window_text(const Window& window) {
     return fmt::format("({}, {})-({}, {}), {} x {} px", window.min_x, window.min_y, window.max_x,

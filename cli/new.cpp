@@ -2,15 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 
 #include "cli/capture_options.h"
 #include "cli/effect_options.h"
 #include "cli/verbs.h"
+#include "framework/core/atomic_file.h"
 #include "framework/core/text.h"
 
 namespace aftershade::cli {
@@ -60,20 +58,8 @@ constexpr const char* kLook = R"({{
 )";
 
 int write(const fs::path& file, const std::string& text) {
-    std::ofstream out(file, std::ios::binary);
-    out << text;
-    out.close();
-    if (!out) throw Error(ExitCode::output, file.string() + ": cannot be written");
+    write_text_file(file, text);
     return int(std::count(text.begin(), text.end(), '\n'));
-}
-
-/// As a shell takes it for one word.
-std::string quoted(const std::string& word) {
-    const auto is_plain = [](unsigned char c) { return std::isalnum(c) || std::strchr("_-./+:@%,=", c); };
-    if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
-    std::string text = "'";
-    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return text + "'";
 }
 
 ExitCode make(const NewOptions& options) {
@@ -94,8 +80,8 @@ ExitCode make(const NewOptions& options) {
     fmt::print("{}: {} lines\n{}: {} lines\n{}: {} lines\n", (folder / "effect.json").string(), manifest,
                (folder / (options.id + ".frag")).string(), shader, (folder / "look.json").string(), look);
     fmt::print("Run it:   aftershade run {} CAPTURE --effect-path {} -o out.png\n",
-               quoted((folder / "look.json").string()), quoted(options.folder));
-    fmt::print("Check it: aftershade check {}\n", quoted(folder.string()));
+               shell_line({(folder / "look.json").string()}), shell_line({options.folder}));
+    fmt::print("Check it: aftershade check {}\n", shell_line({folder.string()}));
     return ExitCode::done;
 }
 

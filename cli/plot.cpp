@@ -7,6 +7,8 @@
 
 #include <cmath>
 
+#include "framework/core/text.h"
+
 namespace aftershade::cli {
 
 namespace {
@@ -29,17 +31,6 @@ text { font: 13px system-ui, sans-serif; fill: #24292f; }
 </style>
 )";
 
-std::string escaped(const std::string& text) {
-    std::string result;
-    for (const char c : text) {
-        if (c == '<') result += "&lt;";
-        else if (c == '>') result += "&gt;";
-        else if (c == '&') result += "&amp;";
-        else result += c;
-    }
-    return result;
-}
-
 /// Draws one panel with the corner of its box at (x, y).
 class PanelWriter {
 public:
@@ -47,9 +38,9 @@ public:
 
     std::string text() {
         out_ += fmt::format("<text class=\"head\" x=\"{}\" y=\"{}\">{}</text>\n", x_, y_ - 12,
-                            escaped(panel_.title));
+                            xml_text(panel_.title));
         out_ += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n", x_ + kWidth / 2,
-                            y_ + kHeight + 38, escaped(panel_.x_label));
+                            y_ + kHeight + 38, xml_text(panel_.x_label));
         for (const double tick : plot_ticks(panel_.x_range, 6)) add_x_tick(tick);
         if (panel_.log_y) {
             const double low = std::log10(panel_.y_range[0]), high = std::log10(panel_.y_range[1]);
@@ -112,7 +103,7 @@ std::string legend(const std::vector<PlotLine>& lines) {
     for (std::size_t i = 0; i < lines.size(); ++i) {
         out +=
             fmt::format("<path class=\"line line{}\" d=\"M{} 64h26\"/><text x=\"{}\" y=\"68.5\">{}</text>\n",
-                        i, x, x + 32, escaped(lines[i].name));
+                        i, x, x + 32, xml_text(lines[i].name));
         x += 62 + 7.2 * double(lines[i].name.size());
     }
     return out;
@@ -138,11 +129,11 @@ std::string plot_svg(const std::string& title, const std::string& caption,
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} "
         "{1}\" role=\"img\">\n<title>{2}</title>\n{3}<rect class=\"page\" width=\"{0}\" "
         "height=\"{1}\"/>\n",
-        width, height, escaped(title), kStyle);
+        width, height, xml_text(title), kStyle);
     out += fmt::format(
         "<text class=\"title\" x=\"{0}\" y=\"26\">{1}</text>\n<text class=\"small\" x=\"{0}\" "
         "y=\"46\">{2}</text>\n",
-        kLeft, escaped(title), escaped(caption));
+        kLeft, xml_text(title), xml_text(caption));
     if (!panels.empty()) out += legend(panels[0].lines);
     for (std::size_t i = 0; i < panels.size(); ++i)
         out +=

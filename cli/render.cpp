@@ -5,9 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/capture_options.h"
 #include "cli/interrupt.h"
 #include "cli/verbs.h"
-#include "framework/core/data_path.h"
 #include "framework/image/frame_range.h"
 #include "framework/scene/job.h"
 
@@ -150,12 +150,6 @@ void complete_job(const RenderArguments& options, const scene::Scene& scene, sce
     scene::check_job(scene, job, diagnostics);
 }
 
-std::vector<Profile> find_profiles(const RenderArguments& options, Diagnostics& diagnostics) {
-    std::vector<std::filesystem::path> folders(options.profile_paths.begin(), options.profile_paths.end());
-    folders.push_back(data_path() / "profiles");
-    return read_profiles(folders, diagnostics);
-}
-
 void print_report(const RenderArguments& options, const scene::JobReport& report) {
     if (options.json) {
         nlohmann::ordered_json json = {{"frames", report.frames},
@@ -179,7 +173,7 @@ void print_report(const RenderArguments& options, const scene::JobReport& report
 ExitCode render(RenderArguments options) {
     const std::atomic<bool>& stop = watch_for_interrupt();
     Diagnostics diagnostics;
-    const std::vector<Profile> profiles = find_profiles(options, diagnostics);
+    const std::vector<Profile> profiles = load_profiles(options.profile_paths, diagnostics);
     std::vector<std::string> ids;
     for (const Profile& profile : profiles) ids.push_back(profile.id);
     const auto profile = std::find_if(profiles.begin(), profiles.end(),

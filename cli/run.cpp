@@ -227,7 +227,7 @@ ExitCode run(const RunArguments& options) {
     const gpu::Backend backend = chosen_backend(options.backend);
     const ProgressStyle progress = parse_progress(options.progress);
     auto bound = bind_look(options, diagnostics);
-    std::vector<Profile> profiles = load_profiles(options.capture, diagnostics);
+    std::vector<Profile> profiles = load_profiles(options.capture.profile_paths, diagnostics);
     const std::optional<Sequence> sequence = find_sequence(options.capture, profiles, diagnostics);
     OutputOptions outputs = output_options(options);
     check_outputs(outputs, sequence.value_or(Sequence{}), diagnostics);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -64,6 +65,7 @@ inline void PrintTo(const AperturePoint& p, std::ostream* out) {
 /// One bright pixel on a black plane of one depth: its picture has all its energy, and from 8 px on the
 /// polygon's shape, turned by 180 degrees in front of the focus plane.
 inline void expect_point_is_the_aperture(const std::string& effect, const AperturePoint& p) {
+    SCOPED_TRACE(testing::PrintToString(p));
     const int center = int(std::ceil(p.radius_px)) + 3, size = 2 * center + 1;
     const Image out = through_aperture(effect, point_of_light(size, p.near), p.radius_px,
                                        fmt::format(R"("blades": {}, "rotation": {}, "curvature": {})",
@@ -90,16 +92,39 @@ inline Capture aperture_random_depths(const SyntheticScene& scene) {
     return capture;
 }
 
-inline void expect_uniform_stays_uniform(const std::string& effect, const std::string& more) {
-    const Capture capture =
-        aperture_random_depths({.width = 96, .height = 64, .background = {0.7f, 0.4f, 12.0f}, .alpha = 0.5f});
-    const Image out = through_aperture(effect, capture, 12, more);
-    for (int y = 0; y < 64; ++y)
-        for (int x = 0; x < 96; ++x)
+struct UniformImage {
+    int width = 96;
+    int height = 64;
+    double radius_px = 12;
+    double tolerance = 2e-6;     ///< of a value: a float's rounding, in sums of many taps
+    double alpha_tolerance = 0;  ///< more, where alpha is kept as a half
+};
+
+inline void expect_uniform_stays_uniform(const std::string& effect, const std::string& more,
+                                         const UniformImage& image = {}) {
+    const Capture capture = aperture_random_depths(
+        {.width = image.width, .height = image.height, .background = {0.7f, 0.4f, 12.0f}, .alpha = 0.5f});
+    const Image out = through_aperture(effect, capture, image.radius_px, more);
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x)
             for (int c = 0; c < 4; ++c) {
-                const float source = capture.images.at("color").at(x, y, c);
-                ASSERT_NEAR(out.at(x, y, c), source, 2e-6f * source) << x << " " << y << " " << c;
+                const double source = capture.images.at("color").at(x, y, c);
+                const double off = image.tolerance * source + (c == 3 ? image.alpha_tolerance : 0);
+                ASSERT_NEAR(out.at(x, y, c), source, off) << x << " " << y << " " << c;
             }
+}
+
+inline void expect_same_bits(const Image& a, const Image& b) {
+    EXPECT_TRUE(std::equal(a.floats().begin(), a.floats().end(), b.floats().begin(), b.floats().end()));
+}
+
+/// All of the picture is in focus; `alpha`: of every pixel, or nothing for values that are no alpha.
+inline void expect_picture_in_focus_is_copied(const std::string& effect, std::optional<float> alpha = {}) {
+    Capture capture = make_capture({.width = 64, .height = 36, .background_depth_m = kApertureFocusM});
+    const auto floats = capture.images["color"].floats();
+    for (std::size_t i = 0; i < floats.size(); ++i)
+        floats[i] = alpha && i % 4 == 3 ? *alpha : float(i) * 0.37f;
+    expect_same_bits(through_aperture(effect, capture, 20), capture.images["color"]);
 }
 
 inline void expect_focus_stays_bit_for_bit(const std::string& effect) {
@@ -117,16 +142,54 @@ inline void expect_focus_stays_bit_for_bit(const std::string& effect) {
                 ASSERT_EQ(out.at(x, y, c), capture.images.at("color").at(x, y, c)) << x << " " << y;
 }
 
+constexpr int kApertureBoxX = 20, kApertureBoxY = 10, kApertureBoxWidth = 24, kApertureBoxHeight = 20;
+
+/// A box before nothing in a picture of 96 x 48; `alpha`: of what is around it.
+inline Capture aperture_box(float depth_m, float brightness, float alpha = 1) {
+    const SyntheticBox box{.x = kApertureBoxX,
+                           .y = kApertureBoxY,
+                           .width = kApertureBoxWidth,
+                           .height = kApertureBoxHeight,
+                           .depth_m = depth_m,
+                           .color = {brightness, brightness, brightness}};
+    return make_capture({.width = 96, .height = 48, .alpha = alpha, .box = box}, 0);
+}
+
+inline bool is_in_aperture_box(int x, int y) {
+    return x >= kApertureBoxX && x < kApertureBoxX + kApertureBoxWidth && y >= kApertureBoxY &&
+           y < kApertureBoxY + kApertureBoxHeight;
+}
+
 /// At most this much of a bright object in focus in the blur behind it.
 inline void expect_focus_leaks_at_most(const std::string& effect, float share) {
-    const SyntheticBox box{
-        .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kApertureFocusM, .color = {9, 9, 9}};
-    const Image out = through_aperture(effect, make_capture({.width = 96, .height = 48, .box = box}, 0), 12);
+    const Image out = through_aperture(effect, aperture_box(kApertureFocusM, 9), 12);
     for (int y = 0; y < 48; ++y)
-        for (int x = 0; x < 96; ++x) {
-            if (x >= 20 && x < 44 && y >= 10 && y < 30) continue;
-            ASSERT_LE(out.at(x, y, 0), share * 9) << x << " " << y;
-        }
+        for (int x = 0; x < 96; ++x)
+            if (!is_in_aperture_box(x, y)) {
+                ASSERT_LE(out.at(x, y, 0), share * 9) << x << " " << y;
+            }
+}
+
+/// The object in focus too, to `tolerance`.
+inline void expect_focus_keeps_to_itself(const std::string& effect, double radius_px, double tolerance,
+                                         const std::string& more = "") {
+    const Image out = through_aperture(effect, aperture_box(kApertureFocusM, 9), radius_px, more);
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 96; ++x)
+            ASSERT_NEAR(out.at(x, y, 0), is_in_aperture_box(x, y) ? 9 : 0, tolerance)
+                << x << " " << y << " R " << radius_px << " " << more;
+}
+
+/// A red half plane at half the focus distance, with its edge at x = 63.5, before a green one in focus.
+inline Capture near_half_plane() {
+    const SyntheticBox box{
+        .x = 0, .y = -10, .width = 64, .height = 84, .depth_m = kApertureNearM, .color = {1, 0, 0}};
+    return make_capture({.width = 96,
+                         .height = 64,
+                         .background = {0, 0.5f, 0},
+                         .background_depth_m = kApertureFocusM,
+                         .box = box},
+                        0);
 }
 
 constexpr float kApertureDark = 0.1f;
@@ -157,27 +220,24 @@ inline void expect_near_ramp(const Image& out, int first, float tolerance) {
 
 /// `tolerance`: 2e-3 where alpha is kept as a half.
 inline void expect_alpha_blurs_with_color(const std::string& effect, float tolerance = 1e-6f) {
-    const SyntheticBox box{
-        .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kApertureFarM, .color = {1, 1, 1}};
-    const Image out =
-        through_aperture(effect, make_capture({.width = 96, .height = 48, .alpha = 0, .box = box}, 0), 6);
+    const Image out = through_aperture(effect, aperture_box(kApertureFarM, 1, 0), 6);
     for (int x = 10; x < 56; ++x) ASSERT_NEAR(out.at(x, 20, 3), out.at(x, 20, 0), tolerance) << x;
     EXPECT_GT(out.at(18, 20, 3), 0.05f);
     EXPECT_LT(out.at(18, 20, 3), 0.95f);
 }
 
-inline Capture aperture_random_lights() {
+/// Every 37th pixel is a light; `step`: by how much each is brighter than the pixel before it.
+inline Capture aperture_random_lights(float step = 1000) {
     Capture capture = aperture_random_depths({.width = 96, .height = 64, .background = {0.2f, 0.1f, 0.05f}});
-    for (std::size_t i = 0; i < 96 * 64; i += 37) capture.images["color"].floats()[i * 4] = float(i) * 1000;
+    for (std::size_t i = 0; i < 96 * 64; i += 37) capture.images["color"].floats()[i * 4] = float(i) * step;
     return capture;
 }
 
-inline void expect_same_bits_on_both_backends(const std::string& effect) {
-    const Capture capture = aperture_random_lights();
-    const std::string more = R"("blades": 5, "rotation": 7)";
-    const Image egl = through_aperture(effect, capture, 12, more, gpu::Backend::egl_software);
-    const Image osmesa = through_aperture(effect, capture, 12, more, gpu::Backend::osmesa);
-    EXPECT_TRUE(std::equal(egl.floats().begin(), egl.floats().end(), osmesa.floats().begin()));
+inline void expect_same_bits_on_both_backends(const std::string& effect,
+                                              const std::string& more = R"("blades": 5, "rotation": 7)",
+                                              const Capture& capture = aperture_random_lights()) {
+    expect_same_bits(through_aperture(effect, capture, 12, more, gpu::Backend::egl_software),
+                     through_aperture(effect, capture, 12, more, gpu::Backend::osmesa));
 }
 
 /// No darker than the darkest pixel and no brighter than the brightest, up to rounding; so nothing that is no
@@ -195,25 +255,35 @@ inline void expect_no_light_is_made(const std::string& effect) {
         }
 }
 
-/// PSNR, dB, of frame 4 against the renderer's own lens; `folder` is
-/// $AFTERSHADE_CAPTURES/suzanne, `more` further members of "params".
-inline double suzanne_through_aperture_db(const std::string& effect, const std::filesystem::path& folder,
-                                          const std::string& more = "") {
+/// Frame 4 of $AFTERSHADE_CAPTURES/suzanne, and the picture of it through the renderer's own lens.
+struct SuzanneThroughLens {
+    Capture sharp;
+    Image truth;
+};
+
+inline SuzanneThroughLens read_suzanne_through_lens(const std::filesystem::path& folder) {
     Sequence sequence;
     sequence.files = FramePattern((folder / "large/gbuffer_####.exr").string());
     sequence.profile = "blender";
     Diagnostics diagnostics;
     const CaptureReader reader(sequence, read_profiles(AFTERSHADE_SOURCE_DIR "/profiles", diagnostics), {});
-    const std::vector<std::string> roles{"color", "depth"};
-    const Capture capture = reader.read(4, roles);
-    const ExrFile truth_file(folder / "truth/dof_0004.exr");
-    const Image truth = truth_file.read_floats(0, std::vector<std::string>{"R", "G", "B"});
-    LookRunner runner(R"({"aftershade": 1, "steps": [{"effect": ")" + effect +
-                          R"(", "params": {"focus_distance": 6.4, "focal_length": 50, "f_number": 0.25,
-                             "sensor_width": 36, "lens_model": "pinhole")" +
-                          (more.empty() ? "" : ", " + more) + "}}]}",
+    const std::vector<std::string> roles{"color", "depth"}, rgb{"R", "G", "B"};
+    return {reader.read(4, roles), ExrFile(folder / "truth/dof_0004.exr").read_floats(0, rgb)};
+}
+
+/// That lens, as members of "params".
+inline const std::string kSuzanneLens = R"("focus_distance": 6.4, "focal_length": 50, "f_number": 0.25,
+    "sensor_width": 36, "lens_model": "pinhole")";
+
+/// PSNR, dB, against the renderer's own lens; `folder` is $AFTERSHADE_CAPTURES/suzanne, `more` further members of
+/// "params".
+inline double suzanne_through_aperture_db(const std::string& effect, const std::filesystem::path& folder,
+                                          const std::string& more = "") {
+    const SuzanneThroughLens suzanne = read_suzanne_through_lens(folder);
+    LookRunner runner(R"({"aftershade": 1, "steps": [{"effect": ")" + effect + R"(", "params": {)" +
+                          kSuzanneLens + (more.empty() ? "" : ", " + more) + "}}]}",
                       gpu::Backend::osmesa);
-    const double db = display_psnr_db(truth, runner.color(capture));
+    const double db = display_psnr_db(suzanne.truth, runner.color(suzanne.sharp));
     fmt::print("PSNR of {} against the lens: {:.2f} dB {}\n", effect, db, more);
     return db;
 }

@@ -48,4 +48,14 @@ private:
     std::unique_ptr<PipelineRenderer> renderer_;
 };
 
+/// A look of one step; `params`: the members of its "params".
+inline std::string look_of_step(const std::string& effect, const std::string& params) {
+    return R"({"aftershade": 1, "steps": [{"effect": ")" + effect + R"(", "params": {)" + params + "}}]}";
+}
+
+/// The images that this one step makes of a capture.
+inline FrameResult run_step(const std::string& effect, const Capture& capture, const std::string& params) {
+    return LookRunner(look_of_step(effect, params), gpu::Backend::osmesa).run(capture);
+}
+
 }  // namespace aftershade::test

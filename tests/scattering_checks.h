@@ -3,12 +3,14 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <functional>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -39,6 +41,28 @@ inline Capture lit_plane(int width, int height, const Light& light) {
         for (int x = 0; x < width; ++x) {
             capture.images.at("object_id").uint_at(x, y, 0) = 1;
             for (int c = 0; c < 3; ++c) capture.images.at("irradiance").at(x, y, c) = light(x, y, c);
+        }
+    return capture;
+}
+
+constexpr double kFacingPlanePixel_mm = 2;
+
+/// A plane that faces the camera 1 m away, a pixel of it kFacingPlanePixel_mm wide, lit at each pixel's
+/// middle; x and y from the picture's middle, px. Its positions are those of a texture with texels of the
+/// same size.
+inline Capture facing_plane(int width, int height, const std::function<double(double x, double y)>& light) {
+    Capture capture = make_capture({.width = width, .height = height, .background_depth_m = 1});
+    capture.header.camera.set("focal_length", 50);
+    capture.header.camera.set("sensor_width", 50 * kFacingPlanePixel_mm * width / 1000);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const double across = x + 0.5 - width / 2, down = y + 0.5 - height / 2;
+            const float value = float(light(across, down));
+            detail::set_rgb(capture.images["irradiance"], x, y, {value, value, value});
+            capture.images["mask"].at(x, y, 0) = 1;
+            detail::set_rgb(
+                capture.images["position"], x, y,
+                {7, float(across * kFacingPlanePixel_mm / 1000), float(down * kFacingPlanePixel_mm / 1000)});
         }
     return capture;
 }
@@ -103,6 +127,29 @@ inline double cosine_amplitude(const Image& image, int channel, double period_px
     return 4 * sum / count;
 }
 
+/// A plane under waves of light of these periods, against the modulation that Burley's profile gives them.
+struct CosineCheck {
+    int size;
+    std::array<double, 3> d_px;
+    std::vector<double> periods_px;
+    int window_px;  ///< of whole periods, that are looked at
+    int rows;
+};
+
+inline void expect_modulation_of_a_cosine(const std::string& effect, const CosineCheck& check) {
+    const auto [size, d_px, periods_px, window_px, rows] = check;
+    const std::string look = scattering_step(effect, burley_of_px(d_px[0], d_px[1], d_px[2], size));
+    for (const double period_px : periods_px) {
+        const Image image = scattered(look, lit_plane(size, size, cosine_light(size, period_px)));
+        for (int c = 0; c < 3; ++c) {
+            const double d = d_px[std::size_t(c)], w = 2 * std::numbers::pi / period_px;
+            EXPECT_NEAR(cosine_amplitude(image, c, period_px, int(window_px / period_px), rows),
+                        reference::burley_modulation(w, d), 0.01)
+                << "period " << period_px << " d " << d;
+        }
+    }
+}
+
 inline double largest_change(const Image& a, const Image& b) {
     double worst = 0;
     for (std::size_t i = 0; i < a.floats().size(); ++i)
@@ -133,8 +180,9 @@ inline Capture two_objects(int width, int height, const Light& light) {
     return capture;
 }
 
-/// A slanted wall, object 1, and before it a ball, object 2, with light of its own, in a picture of 128 x 96.
-inline void put_ball_before_wall(Capture& capture, float light_of_ball) {
+/// A slanted wall, object 1, and before it a ball, object 2, each in even light, in a picture of 128 x 96.
+inline Capture ball_before_wall(float light_of_ball, float light_of_wall) {
+    Capture capture = facing_plane(128, 96, [&](double, double) { return light_of_wall; });
     for (int y = 0; y < 96; ++y)
         for (int x = 0; x < 128; ++x) {
             const double across = (x - 50) / 30.0, down = (y - 48) / 30.0,
@@ -147,40 +195,7 @@ inline void put_ball_before_wall(Capture& capture, float light_of_ball) {
             detail::set_rgb(capture.images["irradiance"], x, y,
                             {light_of_ball, light_of_ball, light_of_ball});
         }
-}
-
-/// Waves in green, so that scattering shows everywhere.
-inline void put_waves(Capture& capture) {
-    Image& light = capture.images.at("irradiance");
-    for (int y = 0; y < light.height(); ++y)
-        for (int x = 0; x < light.width(); ++x) light.at(x, y, 1) = std::sin(0.9f * float(x)) + 1.5f;
-}
-
-/// Of `after`, where object 2 alone was to scatter.
-inline void expect_object_2_alone_changed(const Capture& capture, const Image& after) {
-    const Image& before = capture.images.at("irradiance");
-    int scattered = 0;
-    for (int y = 0; y < before.height(); ++y)
-        for (int x = 0; x < before.width(); ++x) {
-            const bool ball = capture.images.at("object_id").uint_at(x, y, 0) == 2;
-            for (int c = 0; c < 3; ++c) {
-                const float was = before.at(x, y, c), is = after.at(x, y, c);
-                if (ball) scattered += was != is;
-                else ASSERT_EQ(std::memcmp(&was, &is, sizeof was), 0) << x << " " << y;
-            }
-        }
-    EXPECT_GT(scattered, 2000);
-}
-
-/// Of green: object 2 as where all have the narrow profile, the rest as where all have the wide one.
-inline void expect_object_2_alone_is_narrow(const Capture& capture, const Image& both, const Image& all_wide,
-                                            const Image& all_narrow) {
-    for (int y = 0; y < both.height(); ++y)
-        for (int x = 0; x < both.width(); ++x) {
-            const bool ball = capture.images.at("object_id").uint_at(x, y, 0) == 2;
-            ASSERT_EQ(both.at(x, y, 1), (ball ? all_narrow : all_wide).at(x, y, 1)) << x << " " << y;
-        }
-    EXPECT_NE(all_narrow.at(50, 48, 1), all_wide.at(50, 48, 1));
+    return capture;
 }
 
 inline void expect_even_light_stays(const std::string& effect, const std::string& more, double tolerance) {

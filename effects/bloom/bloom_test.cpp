@@ -13,9 +13,7 @@ namespace aftershade::test {
 namespace {
 
 Image bloomed(const Capture& capture, const std::string& params) {
-    const std::string look =
-        R"({"aftershade": 1, "steps": [{"effect": "bloom", "params": {)" + params + "}}]}";
-    return LookRunner(look, gpu::Backend::osmesa).color(capture);
+    return run_step("bloom", capture, params).images.at("color");
 }
 
 /// Sum, mean place and variance along x and y of one channel as a distribution of light, px.

@@ -7,12 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "effects/bokeh/bokeh_test.h"
-#include "framework/compare/metrics.h"
-#include "framework/core/document.h"
 #include "framework/image/capture.h"
 #include "tests/aperture_checks.h"
 #include "tests/look_runner.h"
-#include "tests/real_captures.h"
 #include "tests/synthetic_capture.h"
 
 namespace aftershade::test::bokeh {
@@ -66,17 +63,7 @@ TEST(BokehCoc, IsCutToTheLargestRadius) {
 class BokehSettings : public testing::TestWithParam<const char*> {};
 
 TEST_P(BokehSettings, LeaveAUniformImageUnchanged) {
-    const Capture capture =
-        aperture_random_depths({.width = 96, .height = 64, .background = {0.7f, 0.4f, 12.0f}, .alpha = 0.5f});
-    const std::string params = fmt::format("{}, {}", lens(12, 96), GetParam());
-    const Image blurred = LookRunner(look(params), gpu::Backend::osmesa).color(capture);
-    for (int y = 0; y < 64; ++y)
-        for (int x = 0; x < 96; ++x)
-            for (int c = 0; c < 4; ++c) {
-                const float source = capture.images.at("color").at(x, y, c);
-                ASSERT_NEAR(blurred.at(x, y, c), source, 2e-6 * source + (c == 3 ? 5e-4 : 0))
-                    << x << " " << y << " " << c;
-            }
+    expect_uniform_stays_uniform("bokeh", GetParam(), {.alpha_tolerance = 5e-4});
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BokehSettings,
@@ -88,32 +75,22 @@ INSTANTIATE_TEST_SUITE_P(All, BokehSettings,
                                          R"("shape": "custom", "third_angle": 20, "squeeze": 0.4)"));
 
 TEST(Bokeh, CopiesPixelsInFocusBitForBit) {
-    Capture capture = make_capture({.width = 64, .height = 36, .background_depth_m = float(kFocusM)});
-    for (std::size_t i = 0; i < capture.images["color"].floats().size(); ++i)
-        capture.images["color"].floats()[i] = i % 4 == 3 ? 1.0f : float(i) * 0.37f;
-    const Image out = LookRunner(look(lens(20, 64)), gpu::Backend::osmesa).color(capture);
-    const auto expected = capture.images["color"].floats();
-    EXPECT_TRUE(std::equal(expected.begin(), expected.end(), out.floats().begin()));
+    expect_picture_in_focus_is_copied("bokeh", 1.0f);
 }
 
 TEST(Bokeh, KeepsAFocusedObjectOutOfTheBlurBehindIt) {
+    expect_focus_leaks_at_most("bokeh", 0.01f);
+}
+
+/// A white box from x = 30 to 63 before nothing in focus.
+Capture near_box() {
     const SyntheticBox box{
-        .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = float(kFocusM), .color = {9, 9, 9}};
-    const Capture capture = make_capture({.width = 96, .height = 48, .box = box}, 0);
-    const Image out = LookRunner(look(lens(12, 96)), gpu::Backend::osmesa).color(capture);
-    for (int y = 0; y < 48; ++y)
-        for (int x = 0; x < 96; ++x) {
-            const bool in_box = x >= 20 && x < 44 && y >= 10 && y < 30;
-            if (in_box) continue;
-            ASSERT_LE(out.at(x, y, 0), 0.01f * 9) << x << " " << y;
-        }
+        .x = 30, .y = -10, .width = 34, .height = 80, .depth_m = float(kFocusM / 2), .color = {1, 1, 1}};
+    return make_capture({.width = 96, .height = 48, .background_depth_m = float(kFocusM), .box = box}, 0);
 }
 
 TEST(Bokeh, SpreadsANearObjectSoftlyOverWhatIsInFocus) {
-    const SyntheticBox box{
-        .x = 30, .y = -10, .width = 34, .height = 80, .depth_m = float(kFocusM / 2), .color = {1, 1, 1}};
-    const Capture capture =
-        make_capture({.width = 96, .height = 48, .background_depth_m = float(kFocusM), .box = box}, 0);
+    const Capture capture = near_box();
     const Image out =
         LookRunner(look(lens(12, 96) + R"(, "shape": "square")"), gpu::Backend::osmesa).color(capture);
     // A square of circumradius 12 px reaches 8.5 px: the box's edge at x = 64 becomes a ramp from 55.5
@@ -126,10 +103,7 @@ TEST(Bokeh, SpreadsANearObjectSoftlyOverWhatIsInFocus) {
 /// Gathering by the centre's CoC alone leaves a near silhouette as sharp as it was: half its light on one
 /// side of the edge and none on the other. Hammon's filter of the CoC lets it run out.
 TEST(Bokeh, SoftensANearSilhouetteByTheCocFilter) {
-    const SyntheticBox box{
-        .x = 30, .y = -10, .width = 34, .height = 80, .depth_m = float(kFocusM / 2), .color = {1, 1, 1}};
-    const Capture capture =
-        make_capture({.width = 96, .height = 48, .background_depth_m = float(kFocusM), .box = box}, 0);
+    const Capture capture = near_box();
     const std::string params =
         lens(12, 96) + R"(, "weights": "seed", "shape": "square", "highlight_repair": false, "coc_filter": )";
     const Image sharp = color(capture, params + R"("none")"), soft = color(capture, params + R"("near")");
@@ -144,22 +118,12 @@ TEST(Bokeh, SoftensANearSilhouetteByTheCocFilter) {
 }
 
 TEST(Bokeh, BlursAlphaWithTheColorThatItCovers) {
-    const SyntheticBox box{
-        .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kInfinity, .color = {1, 1, 1}};
-    const Capture capture = make_capture({.width = 96, .height = 48, .alpha = 0, .box = box}, 0);
-    const Image out = LookRunner(look(lens(6, 96)), gpu::Backend::osmesa).color(capture);
-    for (int x = 10; x < 56; ++x) ASSERT_NEAR(out.at(x, 20, 3), out.at(x, 20, 0), 2e-3f) << x;
-    EXPECT_GT(out.at(18, 20, 3), 0.05f);
-    EXPECT_LT(out.at(18, 20, 3), 0.95f);
+    expect_alpha_blurs_with_color("bokeh", 2e-3f);
 }
 
 TEST(Bokeh, GivesTheSameBitsOnBothSoftwareBackends) {
-    Capture capture = aperture_random_depths({.width = 96, .height = 64, .background = {0.2f, 0.1f, 0.05f}});
-    for (int i = 0; i < 96 * 64; i += 37) capture.images["color"].floats()[std::size_t(i) * 4] = float(i);
-    const std::string params = lens(12, 96) + R"(, "shape": "custom", "rotation": 7, "highlight_gain": 1)";
-    const Image egl = LookRunner(look(params), gpu::Backend::egl_software).color(capture);
-    const Image osmesa = LookRunner(look(params), gpu::Backend::osmesa).color(capture);
-    EXPECT_TRUE(std::equal(egl.floats().begin(), egl.floats().end(), osmesa.floats().begin()));
+    expect_same_bits_on_both_backends("bokeh", R"("shape": "custom", "rotation": 7, "highlight_gain": 1)",
+                                      aperture_random_lights(1));
 }
 
 // ---- against a renderer's lens ----
@@ -167,29 +131,11 @@ TEST(Bokeh, GivesTheSameBitsOnBothSoftwareBackends) {
 /// The sharp input has 21.7 dB.
 TEST(BokehOnSuzanne, ComesWithinReachOfTheRenderersLens) {
     AFTERSHADE_REQUIRE_CAPTURE(folder, "suzanne");
-    Sequence sequence;
-    sequence.files = FramePattern((*folder / "large/gbuffer_####.exr").string());
-    sequence.profile = "blender";
-    Diagnostics diagnostics;
-    const CaptureReader reader(sequence, read_profiles(AFTERSHADE_SOURCE_DIR "/profiles", diagnostics), {});
-    const std::vector<std::string> roles{"color", "depth"};
-    const Capture capture = reader.read(4, roles);
-    const ExrFile truth_file(*folder / "truth/dof_0004.exr");
-    const Image truth = truth_file.read_floats(0, std::vector<std::string>{"R", "G", "B"});
-    const double sharp_db = display_psnr_db(truth, capture.images.at("color"));
-    EXPECT_NEAR(sharp_db, 21.7, 0.05);
-
-    const auto psnr = [&](const std::string& more) {
-        LookRunner runner(R"({"aftershade": 1, "steps": [{"effect": "bokeh", "params": {"focus_distance": 6.4,
-            "focal_length": 50, "f_number": 0.25, "sensor_width": 36, "lens_model": "pinhole")" +
-                              more + "}}]}",
-                          gpu::Backend::osmesa);
-        return display_psnr_db(truth, runner.color(capture));
-    };
-    const double hexagon_db = psnr("");
-    const double seed_db = psnr(R"(, "weights": "seed", "highlight_repair": false)");
-    fmt::print("PSNR against the lens: sharp {:.2f}, hexagon {:.2f}, weights seed {:.2f} dB\n", sharp_db,
-               hexagon_db, seed_db);
+    const SuzanneThroughLens suzanne = read_suzanne_through_lens(*folder);
+    EXPECT_NEAR(display_psnr_db(suzanne.truth, suzanne.sharp.images.at("color")), 21.7, 0.05);
+    const double hexagon_db = suzanne_through_aperture_db("bokeh", *folder);
+    const double seed_db =
+        suzanne_through_aperture_db("bokeh", *folder, R"("weights": "seed", "highlight_repair": false)");
     EXPECT_GE(hexagon_db, 31.0);  // measured 31.42
     EXPECT_GE(seed_db, 23.5);     // measured 24.6; a change here should be noticed
 }

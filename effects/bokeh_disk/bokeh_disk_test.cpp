@@ -14,9 +14,10 @@ namespace {
 
 constexpr float kIntensity = kPointIntensity;
 
-Image blur(const Capture& capture, double radius_px, const std::string& more = "",
-           gpu::Backend backend = gpu::Backend::osmesa) {
-    return through_aperture("bokeh_disk", capture, radius_px, more, backend);
+const std::string kEffect = "bokeh_disk";
+
+Image blur(const Capture& capture, double radius_px, const std::string& more = "") {
+    return through_aperture(kEffect, capture, radius_px, more);
 }
 
 /// Coverage of each pixel by a disk around the middle of pixel (center, center), by 8 x 8 samples.
@@ -84,53 +85,22 @@ INSTANTIATE_TEST_SUITE_P(All, BokehDiskShape, testing::ValuesIn(shapes()));
 class BokehDiskSettings : public testing::TestWithParam<const char*> {};
 
 TEST_P(BokehDiskSettings, LeaveAUniformImageUnchanged) {
-    const Capture capture =
-        aperture_random_depths({.width = 96, .height = 62, .background = {0.7f, 0.4f, 12.0f}, .alpha = 0.5f});
-    const Image blurred = blur(capture, 12, GetParam());
-    for (int y = 0; y < 62; ++y)
-        for (int x = 0; x < 96; ++x)
-            for (int c = 0; c < 4; ++c) {
-                const float source = capture.images.at("color").at(x, y, c);
-                ASSERT_NEAR(blurred.at(x, y, c), source, 2e-6 * source + (c == 3 ? 5e-4 : 0))
-                    << x << " " << y << " " << c;
-            }
+    expect_uniform_stays_uniform(kEffect, GetParam(), {.height = 62, .alpha_tolerance = 5e-4});
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BokehDiskSettings,
                          testing::Values(R"("components": 1)", R"("components": 2)", R"("components": 3)"));
 
 TEST(BokehDisk, CopiesPixelsInFocusBitForBit) {
-    Capture capture = make_capture({.width = 64, .height = 36, .background_depth_m = kApertureFocusM});
-    for (std::size_t i = 0; i < capture.images["color"].floats().size(); ++i)
-        capture.images["color"].floats()[i] = float(i) * 0.37f;
-    const Image out = blur(capture, 20);
-    const auto expected = capture.images["color"].floats();
-    EXPECT_TRUE(std::equal(expected.begin(), expected.end(), out.floats().begin()));
+    expect_picture_in_focus_is_copied(kEffect);
 }
 
 TEST(BokehDisk, KeepsAFocusedObjectOutOfTheBlurBehindIt) {
-    const SyntheticBox box{
-        .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kApertureFocusM, .color = {9, 9, 9}};
-    for (const double radius_px : {6, 12}) {
-        const Image out = blur(make_capture({.width = 96, .height = 48, .box = box}, 0), radius_px);
-        for (int y = 0; y < 48; ++y)
-            for (int x = 0; x < 96; ++x) {
-                const bool in_box = x >= 20 && x < 44 && y >= 10 && y < 30;
-                ASSERT_NEAR(out.at(x, y, 0), in_box ? 9 : 0, 0.01f) << x << " " << y << " R " << radius_px;
-            }
-    }
+    for (const double radius_px : {6, 12}) expect_focus_keeps_to_itself(kEffect, radius_px, 0.01);
 }
 
-/// A half plane at half the focus distance, with its edge at x = 63.5, before what is in focus.
 TEST(BokehDisk, SpreadsANearObjectSoftlyOverWhatIsInFocus) {
-    const SyntheticBox box{
-        .x = 0, .y = -10, .width = 64, .height = 84, .depth_m = kApertureFocusM / 2, .color = {1, 0, 0}};
-    const Capture capture = make_capture({.width = 96,
-                                          .height = 64,
-                                          .background = {0, 0.5f, 0},
-                                          .background_depth_m = kApertureFocusM,
-                                          .box = box},
-                                         0);
+    const Capture capture = near_half_plane();
     const double radius_px = 14;
     const Image out = blur(capture, radius_px);
     for (int x = 64; x < 84; ++x) {
@@ -158,16 +128,11 @@ TEST(BokehDisk, KeepsALightRoundBeforeMoreBlurredThings) {
 }
 
 TEST(BokehDisk, BlursAlphaWithTheColorThatItCovers) {
-    expect_alpha_blurs_with_color("bokeh_disk", 2e-3f);
+    expect_alpha_blurs_with_color(kEffect, 2e-3f);
 }
 
 TEST(BokehDisk, GivesTheSameBitsOnBothSoftwareBackends) {
-    Capture capture = aperture_random_depths({.width = 96, .height = 64, .background = {0.2f, 0.1f, 0.05f}});
-    for (int i = 0; i < 96 * 64; i += 37) capture.images["color"].floats()[std::size_t(i) * 4] = float(i);
-    const std::string more = R"("components": 3)";
-    const Image egl = blur(capture, 12, more, gpu::Backend::egl_software);
-    const Image osmesa = blur(capture, 12, more);
-    EXPECT_TRUE(std::equal(egl.floats().begin(), egl.floats().end(), osmesa.floats().begin()));
+    expect_same_bits_on_both_backends(kEffect, R"("components": 3)", aperture_random_lights(1));
 }
 
 // ---- against a renderer's lens ----
@@ -175,7 +140,7 @@ TEST(BokehDisk, GivesTheSameBitsOnBothSoftwareBackends) {
 /// The sharp input has 21.7 dB, a layered reference in double precision 30.2.
 TEST(BokehDiskOnSuzanne, ComesWithinReachOfTheRenderersLens) {
     AFTERSHADE_REQUIRE_CAPTURE(folder, "suzanne");
-    const double db = suzanne_through_aperture_db("bokeh_disk", *folder);
+    const double db = suzanne_through_aperture_db(kEffect, *folder);
     EXPECT_GE(db, 29.5);  // measured 30.0, although the lens has six blades
 }
 

@@ -14,9 +14,10 @@ namespace {
 
 constexpr float kIntensity = kPointIntensity;
 
-Image blur(const Capture& capture, double radius_px, const std::string& more = "",
-           gpu::Backend backend = gpu::Backend::osmesa) {
-    return through_aperture("bokeh_gather", capture, radius_px, more, backend);
+const std::string kEffect = "bokeh_gather";
+
+Image blur(const Capture& capture, double radius_px, const std::string& more = "") {
+    return through_aperture(kEffect, capture, radius_px, more);
 }
 
 // ---- the shape of a light ----
@@ -123,15 +124,7 @@ TEST(BokehGather, TakesTheShapeOfAPictureOfTheAperture) {
 class BokehGatherSettings : public testing::TestWithParam<const char*> {};
 
 TEST_P(BokehGatherSettings, LeaveAUniformImageUnchanged) {
-    const Capture capture =
-        aperture_random_depths({.width = 96, .height = 62, .background = {0.7f, 0.4f, 12.0f}, .alpha = 0.5f});
-    const Image blurred = blur(capture, 12, GetParam());
-    for (int y = 0; y < 62; ++y)
-        for (int x = 0; x < 96; ++x)
-            for (int c = 0; c < 4; ++c) {
-                const float source = capture.images.at("color").at(x, y, c);
-                ASSERT_NEAR(blurred.at(x, y, c), source, 2e-6 * source) << x << " " << y << " " << c;
-            }
+    expect_uniform_stays_uniform(kEffect, GetParam(), {.height = 62});
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BokehGatherSettings,
@@ -140,37 +133,16 @@ INSTANTIATE_TEST_SUITE_P(All, BokehGatherSettings,
                                          R"("taps": 32)"));
 
 TEST(BokehGather, CopiesPixelsInFocusBitForBit) {
-    Capture capture = make_capture({.width = 64, .height = 36, .background_depth_m = kApertureFocusM});
-    for (std::size_t i = 0; i < capture.images["color"].floats().size(); ++i)
-        capture.images["color"].floats()[i] = float(i) * 0.37f;
-    const Image out = blur(capture, 20);
-    const auto expected = capture.images["color"].floats();
-    EXPECT_TRUE(std::equal(expected.begin(), expected.end(), out.floats().begin()));
+    expect_picture_in_focus_is_copied(kEffect);
 }
 
 TEST(BokehGather, KeepsAFocusedObjectOutOfTheBlurBehindIt) {
-    const SyntheticBox box{
-        .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kApertureFocusM, .color = {9, 9, 9}};
-    for (const char* settings : {R"("taps": 256)", R"("sampler": "mips", "taps": 32)"}) {
-        const Image out = blur(make_capture({.width = 96, .height = 48, .box = box}, 0), 12, settings);
-        for (int y = 0; y < 48; ++y)
-            for (int x = 0; x < 96; ++x) {
-                const bool in_box = x >= 20 && x < 44 && y >= 10 && y < 30;
-                ASSERT_NEAR(out.at(x, y, 0), in_box ? 9 : 0, 1e-5f) << x << " " << y << settings;
-            }
-    }
+    for (const char* settings : {R"("taps": 256)", R"("sampler": "mips", "taps": 32)"})
+        expect_focus_keeps_to_itself(kEffect, 12, 1e-5, settings);
 }
 
-/// A half plane at half the focus distance, with its edge at x = 63.5, before what is in focus.
 TEST(BokehGather, LetsHalfOfTheLightPastTheEdgeOfANearObject) {
-    const SyntheticBox box{
-        .x = 0, .y = -10, .width = 64, .height = 84, .depth_m = kApertureFocusM / 2, .color = {1, 0, 0}};
-    const Capture capture = make_capture({.width = 96,
-                                          .height = 64,
-                                          .background = {0, 0.5f, 0},
-                                          .background_depth_m = kApertureFocusM,
-                                          .box = box},
-                                         0);
+    const Capture capture = near_half_plane();
     // The half plane's share of a square's area, 14.142 px across, beyond x.
     const Image out = blur(capture, 10, R"("blades": 4, "taps": 1024)");
     for (int x = 64; x < 78; ++x) {
@@ -181,16 +153,12 @@ TEST(BokehGather, LetsHalfOfTheLightPastTheEdgeOfANearObject) {
 }
 
 TEST(BokehGather, BlursAlphaWithTheColorThatItCovers) {
-    expect_alpha_blurs_with_color("bokeh_gather", 2e-3f);
+    expect_alpha_blurs_with_color(kEffect, 2e-3f);
 }
 
 TEST(BokehGather, GivesTheSameBitsOnBothSoftwareBackends) {
-    Capture capture = aperture_random_depths({.width = 96, .height = 64, .background = {0.2f, 0.1f, 0.05f}});
-    for (int i = 0; i < 96 * 64; i += 37) capture.images["color"].floats()[std::size_t(i) * 4] = float(i);
     const std::string more = R"("blades": 5, "curvature": 0.3, "rotation": 7, "sampler": "mips", "taps": 64)";
-    const Image egl = blur(capture, 12, more, gpu::Backend::egl_software);
-    const Image osmesa = blur(capture, 12, more);
-    EXPECT_TRUE(std::equal(egl.floats().begin(), egl.floats().end(), osmesa.floats().begin()));
+    expect_same_bits_on_both_backends(kEffect, more, aperture_random_lights(1));
 }
 
 // ---- against a renderer's lens ----
@@ -198,7 +166,7 @@ TEST(BokehGather, GivesTheSameBitsOnBothSoftwareBackends) {
 /// The sharp input has 21.7 dB, a layered reference in double precision 30.2.
 TEST(BokehGatherOnSuzanne, ComesWithinReachOfTheRenderersLens) {
     AFTERSHADE_REQUIRE_CAPTURE(folder, "suzanne");
-    const double db = suzanne_through_aperture_db("bokeh_gather", *folder);
+    const double db = suzanne_through_aperture_db(kEffect, *folder);
     EXPECT_GE(db, 31.5);  // measured 32.06
 }
 

@@ -13,9 +13,7 @@ namespace aftershade::test {
 namespace {
 
 Image fringed(const Capture& capture, const std::string& params) {
-    const std::string look =
-        R"({"aftershade": 1, "steps": [{"effect": "chromatic_aberration", "params": {)" + params + "}}]}";
-    return LookRunner(look, gpu::Backend::osmesa).color(capture);
+    return run_step("chromatic_aberration", capture, params).images.at("color");
 }
 
 /// Mean x of a channel's light above the background, px.

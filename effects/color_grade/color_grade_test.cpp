@@ -16,9 +16,7 @@ namespace {
 using Vec = std::array<double, 3>;
 
 Image graded(const Capture& capture, const std::string& params) {
-    const std::string look =
-        R"({"aftershade": 1, "steps": [{"effect": "color_grade", "params": {)" + params + "}}]}";
-    return LookRunner(look, gpu::Backend::osmesa).color(capture);
+    return run_step("color_grade", capture, params).images.at("color");
 }
 
 Vec graded(Rgb light, const std::string& params) {

@@ -14,9 +14,10 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kFocusM = kApertureFocusM;
 
-Image blur(const Capture& capture, double radius_px, const std::string& more = "",
-           gpu::Backend backend = gpu::Backend::osmesa) {
-    return through_aperture("dof", capture, radius_px, more, backend);
+const std::string kEffect = "dof";
+
+Image blur(const Capture& capture, double radius_px, const std::string& more = "") {
+    return through_aperture(kEffect, capture, radius_px, more);
 }
 
 /// A 3 x 3 px light in the middle of a square picture whose every pixel has the CoC radius of the lens.
@@ -123,19 +124,10 @@ TEST(DofShapeOf, ALightAtTheCornerIsCutByTheRimOfTheLensAndKeepsItsEnergy) {
 class DofSettings : public testing::TestWithParam<const char*> {};
 
 TEST_P(DofSettings, LeaveAUniformImageUnchanged) {
-    const Capture capture = aperture_random_depths({/* odd, for the coarser levels */ .width = 95,
-                                                    .height = 63,
-                                                    .background = {0.7f, 0.4f, 12.0f},
-                                                    .alpha = 0.5f});
-    const Image blurred = blur(capture, 20, GetParam());
-    for (int y = 0; y < 63; ++y)
-        for (int x = 0; x < 95; ++x)
-            for (int c = 0; c < 4; ++c) {
-                const float source = capture.images.at("color").at(x, y, c);
-                // A float's rounding, in sums of up to five thousand taps; alpha is stored as a half.
-                ASSERT_NEAR(blurred.at(x, y, c), source, 1e-4 * source + (c == 3 ? 1e-3 : 0))
-                    << x << " " << y << " " << c;
-            }
+    // Odd, for the coarser levels; sums of up to five thousand taps.
+    expect_uniform_stays_uniform(
+        kEffect, GetParam(),
+        {.width = 95, .height = 63, .radius_px = 20, .tolerance = 1e-4, .alpha_tolerance = 1e-3});
 }
 
 INSTANTIATE_TEST_SUITE_P(All, DofSettings,
@@ -145,23 +137,14 @@ INSTANTIATE_TEST_SUITE_P(All, DofSettings,
                                          R"("highlights": "gather")"));
 
 TEST(Dof, CopiesPixelsInFocusBitForBit) {
-    Capture capture = make_capture({.width = 64, .height = 36, .background_depth_m = kFocusM});
-    for (std::size_t i = 0; i < capture.images["color"].floats().size(); ++i)
-        capture.images["color"].floats()[i] = i % 4 == 3 ? 1.0f : float(i) * 0.37f;
-    const Image out = blur(capture, 20);
-    const auto expected = capture.images["color"].floats();
-    EXPECT_TRUE(std::equal(expected.begin(), expected.end(), out.floats().begin()));
+    expect_picture_in_focus_is_copied(kEffect, 1.0f);
 }
 
 TEST(Dof, KeepsAFocusedObjectOutOfTheBlurBehindIt) {
-    const SyntheticBox box{
-        .x = 20, .y = 10, .width = 24, .height = 20, .depth_m = kFocusM, .color = {9, 9, 9}};
-    const Capture capture = make_capture({.width = 96, .height = 48, .box = box}, 0);
-    const Image out = blur(capture, 12);
+    const Image out = blur(aperture_box(kFocusM, 9), 12);
     for (int y = 0; y < 48; ++y)
         for (int x = 0; x < 96; ++x) {
-            const bool in_box = x >= 20 && x < 44 && y >= 10 && y < 30;
-            if (in_box) ASSERT_EQ(out.at(x, y, 0), 9) << x << " " << y;
+            if (is_in_aperture_box(x, y)) ASSERT_EQ(out.at(x, y, 0), 9) << x << " " << y;
             else ASSERT_LE(out.at(x, y, 0), 0.001f * 9) << x << " " << y;
         }
 }
@@ -184,7 +167,7 @@ TEST(Dof, MakesANearSilhouetteTheRampOfItsAperture) {
 }
 
 TEST(Dof, BlursAlphaWithTheColorThatItCovers) {
-    expect_alpha_blurs_with_color("dof", 2e-3f);
+    expect_alpha_blurs_with_color(kEffect, 2e-3f);
 }
 
 /// An overscan capture's data window is larger than what is displayed, so a light out of sight can reach into
@@ -197,12 +180,8 @@ TEST(Dof, ShowsTheBlurOfALightInTheOverscan) {
 }
 
 TEST(Dof, GivesTheSameBitsOnBothSoftwareBackends) {
-    Capture capture = aperture_random_depths({.width = 96, .height = 64, .background = {0.2f, 0.1f, 0.05f}});
-    for (int i = 0; i < 96 * 64; i += 37) capture.images["color"].floats()[std::size_t(i) * 4] = float(i);
-    const char* params = R"("blades": 5, "rotation": 7, "cat_eye": 0.3)";
-    const Image egl = blur(capture, 12, params, gpu::Backend::egl_software);
-    const Image osmesa = blur(capture, 12, params, gpu::Backend::osmesa);
-    EXPECT_TRUE(std::equal(egl.floats().begin(), egl.floats().end(), osmesa.floats().begin()));
+    expect_same_bits_on_both_backends(kEffect, R"("blades": 5, "rotation": 7, "cat_eye": 0.3)",
+                                      aperture_random_lights(1));
 }
 
 // ---- where the focus is ----
@@ -239,7 +218,7 @@ TEST(DofFocus, IsTheSameByANumberADepthAnObjectTheCameraOrAKey) {
 TEST(DofOnSuzanne, ComesCloseToTheRenderersLens) {
     AFTERSHADE_REQUIRE_CAPTURE(folder, "suzanne");
     const auto db = [&](const std::string& quality) {
-        return suzanne_through_aperture_db("dof", *folder, R"("quality": ")" + quality + "\"");
+        return suzanne_through_aperture_db(kEffect, *folder, R"("quality": ")" + quality + "\"");
     };
     const double fast_db = db("fast"), normal_db = db("normal"), exact_db = db("exact");
     EXPECT_GE(fast_db, 32.8);    // measured 33.06

@@ -25,17 +25,7 @@ TEST(SssBurley, HasTheEdgeResponseOfEachChannel) {
 }
 
 TEST(SssBurley, HasTheModulationOfACosine) {
-    const int size = 384;
-    for (const double period_px : {24.0, 48.0, 96.0}) {
-        const Image image = scattered(scattering_step(kEffect, burley_of_px(8, 4, 2, size)),
-                                      lit_plane(size, size, cosine_light(size, period_px)));
-        for (int c = 0; c < 3; ++c) {
-            const double d = 8 / std::pow(2, c), w = 2 * std::numbers::pi / period_px;
-            EXPECT_NEAR(cosine_amplitude(image, c, period_px, int(192 / period_px), 64),
-                        reference::burley_modulation(w, d), 0.01)
-                << "period " << period_px << " d " << d;
-        }
-    }
+    expect_modulation_of_a_cosine(kEffect, {384, {8, 4, 2}, {24, 48, 96}, 192, 64});
 }
 
 /// Few samples too, and none of the ways to draw them: what they would find on a plane is known.

@@ -22,17 +22,7 @@ TEST(SssExact, HasTheEdgeResponseOfEachChannel) {
 }
 
 TEST(SssExact, HasTheModulationOfACosine) {
-    const int size = 128;
-    for (const double period_px : {12.0, 24.0, 48.0}) {
-        const Image image = scattered(scattering_step(kEffect, burley_of_px(3.8, 2.5, 1.5, size)),
-                                      lit_plane(size, size, cosine_light(size, period_px)));
-        for (int c = 0; c < 3; ++c) {
-            const double d = std::array{3.8, 2.5, 1.5}[std::size_t(c)], w = 2 * std::numbers::pi / period_px;
-            EXPECT_NEAR(cosine_amplitude(image, c, period_px, int(48 / period_px), 2),
-                        reference::burley_modulation(w, d), 0.01)
-                << "period " << period_px << " d " << d;
-        }
-    }
+    expect_modulation_of_a_cosine(kEffect, {128, {3.8, 2.5, 1.5}, {12, 24, 48}, 48, 2});
 }
 
 TEST(SssExact, LeavesEvenLightEven) {

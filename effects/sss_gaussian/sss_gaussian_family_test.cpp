@@ -1,37 +1,15 @@
-// What all effects that scatter irradiance have in common.
-#include <gtest/gtest.h>
-
-#include "tests/scattering_checks.h"
+#include "tests/scattering_family.h"
 
 namespace aftershade::test {
 namespace {
 
-constexpr const char* kEffect = "sss_gaussian";
+struct Named {
+    static constexpr const char* kEffect = "sss_gaussian";
+    static constexpr const char* kWide = R"({ "type": "burley", "d_mm": [16, 12, 8] })";
+    static constexpr const char* kNarrow = R"("skin")";
+};
 
-TEST(SssGaussian, LetsNothingCrossSilhouettes) {
-    expect_nothing_crosses_silhouettes(kEffect, "");
-}
-TEST(SssGaussian, LeavesTheBitsOfWhatDoesNotScatter) {
-    expect_the_rest_keeps_its_bits(kEffect, "");
-}
-TEST(SssGaussian, TakesEachObjectsProfile) {
-    expect_profiles_by_object(kEffect, "");
-}
-TEST(SssGaussian, KnowsTheWorldsUnit) {
-    expect_world_unit_scales(kEffect, "");
-}
-TEST(SssGaussian, LeavesLightThatIsNoNumberAlone) {
-    expect_no_number_stays_alone(kEffect, "");
-}
-TEST(SssGaussian, LeavesEvenLightEven) {
-    expect_even_light_stays(kEffect, "", 1e-3);
-}
-TEST(SssGaussian, KeepsTheEnergyOfLightFarInsideTheSilhouette) {
-    expect_energy_kept(kEffect, "", 0.005);
-}
-TEST(SssGaussian, ChangesTheHeadOfSuzanneAlone) {
-    expect_the_head_of_suzanne_alone_changes(kEffect, "");
-}
+INSTANTIATE_TYPED_TEST_SUITE_P(SssGaussian, ScatteringBlur, Named);
 
 }  // namespace
 }  // namespace aftershade::test

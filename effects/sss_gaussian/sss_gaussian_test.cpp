@@ -18,27 +18,7 @@
 namespace aftershade::test {
 namespace {
 
-constexpr double kPixel_mm = 2;  // of the captures here
-using Light = std::function<double(double x, double y)>;
-
-/// A plane that faces the camera, lit at each pixel's middle; x and y from the picture's middle, px. Its
-/// positions are those of a texture with texels of the same size.
-Capture plane(int width, int height, const Light& light) {
-    Capture capture = make_capture({.width = width, .height = height, .background_depth_m = 1});
-    capture.header.camera.set("focal_length", 50);
-    capture.header.camera.set("sensor_width",
-                              50 * kPixel_mm * width / 1000);  // a pixel at 1 m is kPixel_mm wide
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            const double across = x + 0.5 - width / 2, down = y + 0.5 - height / 2;
-            const float value = float(light(across, down));
-            detail::set_rgb(capture.images["irradiance"], x, y, {value, value, value});
-            capture.images["mask"].at(x, y, 0) = 1;
-            detail::set_rgb(capture.images["position"], x, y,
-                            {7, float(across * kPixel_mm / 1000), float(down * kPixel_mm / 1000)});
-        }
-    return capture;
-}
+constexpr double kPixel_mm = kFacingPlanePixel_mm;
 
 ScatteringProfile profile_of(const std::string& text) {
     Diagnostics diagnostics;
@@ -48,13 +28,13 @@ ScatteringProfile profile_of(const std::string& text) {
     return *profile;
 }
 
+/// `more`: further parameters, each behind a comma.
 std::string look(const std::string& profile, const std::string& more = "") {
-    return R"({ "aftershade": 1, "steps": [ { "effect": "sss_gaussian", "params": { "scattering_profile": )" +
-           profile + more + " } } ] }";
+    return scattering_step("sss_gaussian", profile + more);
 }
 
 Image scatter(const std::string& profile, const std::string& more, const Capture& capture) {
-    return LookRunner(look(profile, more), gpu::Backend::osmesa).run(capture).images.at("irradiance");
+    return scattered(look(profile, more), capture);
 }
 
 /// Light beside a straight edge, of the profile's Gaussians.
@@ -78,8 +58,9 @@ private:
 /// The most that any channel is off across an edge of light along columns or rows.
 double edge_error(const std::string& profile, double mm_per_px, const std::string& more, bool along_x) {
     const int size = 512;
-    const Capture capture = along_x ? plane(size, 8, [](double x, double) { return x > 0 ? 1.0 : 0.0; })
-                                    : plane(8, size, [](double, double y) { return y > 0 ? 1.0 : 0.0; });
+    const Capture capture = along_x
+                                ? facing_plane(size, 8, [](double x, double) { return x > 0 ? 1.0 : 0.0; })
+                                : facing_plane(8, size, [](double, double y) { return y > 0 ? 1.0 : 0.0; });
     const std::string unit = R"(, "world_unit": )" + std::to_string(1000 * mm_per_px / kPixel_mm);
     const Image image = scatter(profile, unit + more, capture);
     const EdgeResponse expected(profile);
@@ -122,16 +103,9 @@ TEST(SssGaussian, OrdersGaussiansByWidth) {
     EXPECT_LT(edge_error(unordered, 0.3, "", true), 0.01);
 }
 
-/// A ball before a slanted wall.
-Capture two_objects(float light_of_ball, float light_of_wall) {
-    Capture capture = plane(128, 96, [&](double, double) { return light_of_wall; });
-    put_ball_before_wall(capture, light_of_ball);
-    return capture;
-}
-
 TEST(SssGaussian, KeepsEvenLightOnEachObject) {
     for (const char* space : kSpaces) {
-        const Capture capture = two_objects(0.7f, 3.3f);
+        const Capture capture = ball_before_wall(0.7f, 3.3f);
         const Image image = scatter(kWax, space, capture);
         for (int y = 0; y < 96; ++y)
             for (int x = 0; x < 128; ++x)
@@ -141,42 +115,10 @@ TEST(SssGaussian, KeepsEvenLightOnEachObject) {
     }
 }
 
-TEST(SssGaussian, LeavesObjectsThatDoNotScatterBitForBit) {
-    Capture capture = two_objects(0.7f, 3.3f);
-    put_waves(capture);
-    const Image image = scatter(kWax, R"(, "object_ids": [2])", capture);
-    expect_object_2_alone_changed(capture, image);
-}
-
-TEST(SssGaussian, ScattersEachObjectByItsOwnProfile) {
-    Capture capture = two_objects(0.7f, 3.3f);
-    put_waves(capture);
-    const std::string wide = kWax, narrow = R"("skin")";
-    const Image both =
-        scatter(R"({ "default": )" + wide + R"(, "rows": [ { "object": 2, "profile": )" + narrow + " } ] }",
-                "", capture);
-    const Image all_wide = scatter(wide, "", capture), all_narrow = scatter(narrow, "", capture);
-    expect_object_2_alone_is_narrow(capture, both, all_wide, all_narrow);
-}
-
-TEST(SssGaussian, MixesByTheMask) {
-    Capture capture = plane(64, 16, [](double x, double) { return x > 0 ? 2.0 : 0.0; });
-    const Image whole = scatter(kWax, "", capture);
-    // Light goes on to come from all that the mask has at all.
-    for (int y = 0; y < 16; ++y)
-        for (int x = 0; x < 64; ++x) capture.images.at("mask").at(x, y, 0) = 0.25f;
-    const Image quarter = scatter(kWax, "", capture);
-    for (int x = 0; x < 64; ++x) {
-        const double before = capture.images.at("irradiance").at(x, 8, 0);
-        EXPECT_NEAR(quarter.at(x, 8, 0), 0.75 * before + 0.25 * whole.at(x, 8, 0), 1e-6) << x;
-    }
-    EXPECT_GT(std::abs(quarter.at(33, 8, 0) - 2), 0.05);
-}
-
 TEST(SssGaussian, KeepsTheLightOfASpotWithinThePlane) {
     for (const double mm_per_px : {200.0, 20.0, 2.0}) {
         const Capture capture =
-            plane(256, 256, [](double x, double y) { return std::hypot(x, y) < 5 ? 10.0 : 0.0; });
+            facing_plane(256, 256, [](double x, double y) { return std::hypot(x, y) < 5 ? 10.0 : 0.0; });
         const Image image =
             scatter(R"({ "type": "burley", "d_mm": [10, 10, 5] })",
                     R"(, "world_unit": )" + std::to_string(1000 * mm_per_px / kPixel_mm), capture);
@@ -194,7 +136,7 @@ TEST(SssGaussian, KeepsTheLightOfASpotWithinThePlane) {
 
 /// Gaussians are round: an edge that runs at 45 degrees spreads as one along a row.
 TEST(SssGaussian, SpreadsAnEdgeAt45DegreesAlike) {
-    const Capture capture = plane(400, 400, [](double x, double y) {
+    const Capture capture = facing_plane(400, 400, [](double x, double y) {
         return x > y ? 1.0 : x < y ? 0.0 : 0.5;
     });
     const Image image = scatter(kWax, R"(, "world_unit": 500)", capture);
@@ -208,7 +150,7 @@ TEST(SssGaussian, SpreadsAnEdgeAt45DegreesAlike) {
 /// Slanted by 60 degrees the plane's millimetres are half as many pixels.
 TEST(SssGaussian, TakesDistancesOnTheSurface) {
     const double slope = std::tan(std::acos(-1.0) / 3);
-    Capture capture = plane(512, 8, [](double x, double) { return x > 0 ? 1.0 : 0.0; });
+    Capture capture = facing_plane(512, 8, [](double x, double) { return x > 0 ? 1.0 : 0.0; });
     const auto depth_at = [&](double x_px) { return 1 / (1 - slope * x_px * kPixel_mm / 1000); };
     for (int y = 0; y < 8; ++y)
         for (int x = 0; x < 512; ++x) capture.images["depth"].at(x, y, 0) = float(depth_at(x + 0.5 - 256));

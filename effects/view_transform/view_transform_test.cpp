@@ -16,9 +16,7 @@ namespace {
 using Vec = std::array<double, 3>;
 
 Image view(const Capture& capture, const std::string& params) {
-    const std::string look =
-        R"({"aftershade": 1, "steps": [{"effect": "view_transform", "params": {)" + params + "}}]}";
-    return LookRunner(look, gpu::Backend::osmesa).run(capture).images.at("display");
+    return run_step("view_transform", capture, params).images.at("display");
 }
 
 /// One pixel's display values.

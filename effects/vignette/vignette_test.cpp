@@ -12,9 +12,7 @@ namespace aftershade::test {
 namespace {
 
 Image vignetted(const Capture& capture, const std::string& params) {
-    const std::string look =
-        R"({"aftershade": 1, "steps": [{"effect": "vignette", "params": {)" + params + "}}]}";
-    return LookRunner(look, gpu::Backend::osmesa).color(capture);
+    return run_step("vignette", capture, params).images.at("color");
 }
 
 Capture white() {

@@ -1,13 +1,10 @@
 #include "framework/batch/approved_image.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cctype>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
-#include <span>
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/text.h"
@@ -140,7 +137,7 @@ std::string file_hash(const fs::path& file) {
     std::error_code failure;
     const std::string bytes = read_text_file(file, failure);
     if (failure) return "";
-    return fmt::format("{:016x}", fnv1a(std::as_bytes(std::span(bytes))));
+    return fnv1a_hex(bytes);
 }
 
 std::string cpu_model() {

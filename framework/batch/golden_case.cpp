@@ -1,8 +1,8 @@
 #include "framework/batch/golden_case.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
+#include "framework/core/text.h"
 #include "framework/core/units.h"
 #include "framework/image/frame_range.h"
 #include "framework/image/role.h"
@@ -15,10 +15,6 @@ namespace fs = std::filesystem;
 namespace {
 
 using Presence = ObjectReader::Presence;
-
-std::string quoted(const std::string& text) {
-    return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
 
 /// The numbers of `fail` or of `warn`; whether any was there.
 bool read_level(ObjectReader& reader, const std::string& word, const std::string& many, Tolerance& level,
@@ -202,13 +198,14 @@ std::string json_of_node(const Node& node) {
         case Node::Kind::boolean: return node.boolean ? "true" : "false";
         case Node::Kind::integer: return std::to_string(node.integer);
         case Node::Kind::number: return format_number(node.number);
-        case Node::Kind::string: return quoted(node.string);
+        case Node::Kind::string: return json_string(node.string);
         case Node::Kind::array:
             for (const Node& item : node.items) text += (text.empty() ? "" : ", ") + json_of_node(item);
             return "[" + text + "]";
         case Node::Kind::object:
             for (const Member& member : node.members)
-                text += (text.empty() ? "" : ", ") + quoted(member.key) + ": " + json_of_node(member.value);
+                text +=
+                    (text.empty() ? "" : ", ") + json_string(member.key) + ": " + json_of_node(member.value);
             return "{" + text + "}";
     }
     return text;

@@ -9,6 +9,7 @@
 #include "framework/batch/worker.h"
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 #include "framework/image/exr_file.h"
 #include "framework/image/frame_range.h"
 #include "framework/image/role.h"
@@ -185,20 +186,6 @@ RenderedCase render_case(const GoldenCase& test, const GoldenRenderOptions& opti
         rendered.images.clear();
     }
     return rendered;
-}
-
-std::string shell_line(const std::vector<std::string>& words) {
-    std::string line;
-    for (const std::string& word : words) {
-        const bool plain = !word.empty() &&
-                           word.find_first_not_of(
-                               "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./=,:@%+") ==
-                               std::string::npos;
-        std::string quoted = "'";
-        for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-        line += (line.empty() ? "" : " ") + (plain ? word : quoted + "'");
-    }
-    return line;
 }
 
 }  // namespace aftershade

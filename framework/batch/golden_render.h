@@ -44,7 +44,4 @@ struct RenderedCase {
 RenderedCase render_case(const GoldenCase& test, const GoldenRenderOptions& options,
                          const std::filesystem::path& work, const std::atomic<bool>& interrupt);
 
-/// Words for a shell, quoted where it would read them otherwise.
-std::string shell_line(const std::vector<std::string>& words);
-
 }  // namespace aftershade

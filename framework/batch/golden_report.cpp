@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "framework/compare/comparison_report.h"
+#include "framework/core/text.h"
 
 namespace aftershade {
 
@@ -61,39 +62,18 @@ std::vector<std::string> cases_to_approve(const GoldenSuiteResult& result) {
     return names;
 }
 
-std::string escaped(const std::string& text) {
-    std::string result;
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (c == '&') result += "&amp;";
-        else if (c == '<') result += "&lt;";
-        else if (c == '>') result += "&gt;";
-        else if (c == '"') result += "&quot;";
-        else if (c == '\n') result += "&#10;";
-        // XML 1.0 has no other control characters, and a worker's bytes above 127 need not be UTF-8.
-        else result += byte == '\t' || (byte >= 32 && byte < 127) ? c : '?';
-    }
-    return result;
-}
-
-std::string joined(const std::vector<std::string>& lines) {
-    std::string text;
-    for (const std::string& line : lines) text += (text.empty() ? "" : "\n") + line;
-    return text;
-}
-
 std::string junit_case(const GoldenCaseResult& test, const GoldenReportContext& context) {
     std::string text = fmt::format("    <testcase classname=\"golden\" name=\"{}\" time=\"{:.3f}\">",
-                                   escaped(test.test->name), test.seconds);
+                                   xml_text(test.test->name), test.seconds);
     std::vector<std::string> lines = reasons_of(test);
     if (can_approve(test)) lines.push_back("to approve: " + approve_command(context, {test.test->name}));
-    const std::string why = lines.empty() ? "" : lines.front();
+    const std::string why = lines.empty() ? "" : lines.front(), all = joined(lines, "\n", "\n");
     if (test.verdict >= Verdict::failure)
         text += fmt::format("<failure type=\"{}\" message=\"{}\">{}</failure>", verdict_name(test.verdict),
-                            escaped(why), escaped(joined(lines)));
-    else if (!test.skipped.empty()) text += fmt::format("<skipped message=\"{}\"/>", escaped(test.skipped));
+                            xml_text(why), xml_text(all));
+    else if (!test.skipped.empty()) text += fmt::format("<skipped message=\"{}\"/>", xml_text(test.skipped));
     else if (test.verdict == Verdict::warning)
-        text += fmt::format("<system-out>warning: {}</system-out>", escaped(joined(lines)));
+        text += fmt::format("<system-out>warning: {}</system-out>", xml_text(all));
     return text + "</testcase>\n";
 }
 
@@ -212,10 +192,11 @@ std::string junit_of(const GoldenSuiteResult& result, const GoldenReportContext&
                                          failures, result.seconds);
     // Jenkins' schema of these files knows `skipped` of a testsuite alone.
     text += "<testsuites " + sums + ">\n";
-    text += fmt::format("  <testsuite name=\"{}\" {} skipped=\"{}\" timestamp=\"{}\">\n    <properties>\n",
-                        escaped(context.suite->argument), sums, counts.skipped, result.started.substr(0, 19));
+    text +=
+        fmt::format("  <testsuite name=\"{}\" {} skipped=\"{}\" timestamp=\"{}\">\n    <properties>\n",
+                    xml_text(context.suite->argument), sums, counts.skipped, result.started.substr(0, 19));
     const auto property = [&](const char* name, const std::string& value) {
-        text += fmt::format("      <property name=\"{}\" value=\"{}\"/>\n", name, escaped(value));
+        text += fmt::format("      <property name=\"{}\" value=\"{}\"/>\n", name, xml_text(value));
     };
     const GoldenEnvironment& environment = context.options.environment;
     property("backend", environment.backend);
@@ -229,7 +210,7 @@ std::string junit_of(const GoldenSuiteResult& result, const GoldenReportContext&
         text += fmt::format(
             "    <testcase classname=\"golden.orphan\" name=\"{0}\"><failure type=\"failure\" "
             "message=\"no case gives this golden\">{0}</failure></testcase>\n",
-            escaped(orphan.string()));
+            xml_text(orphan.string()));
     return text + "  </testsuite>\n</testsuites>\n";
 }
 

@@ -1,15 +1,12 @@
 #include "framework/batch/look_hash.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <regex>
 #include <set>
-#include <span>
 #include <sstream>
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/text.h"
+#include "framework/effect/shader_source.h"
 #include "framework/pipeline/pipeline.h"
 
 namespace aftershade {
@@ -49,12 +46,11 @@ bool is_native_source(const fs::path& file) {
 /// A shader file and all that it includes, each once.
 void gather_shader(const fs::path& file, const fs::path& glsl_folder, std::set<fs::path>& files) {
     if (!files.insert(file.lexically_normal()).second) return;
-    static const std::regex include(R"(^\s*#\s*include\s*([<"])([^">]*)[>"])");
     std::istringstream lines(read_text_file(file, ExitCode::usage));
     for (std::string line; std::getline(lines, line);) {
-        std::smatch match;
-        if (!std::regex_search(line, match, include) || match[2] == "pass") continue;
-        gather_shader((match[1] == "<" ? glsl_folder : file.parent_path()) / match[2].str(), glsl_folder,
+        const auto include = parse_include(line);
+        if (!include || include->name == "pass") continue;
+        gather_shader((include->is_shared ? glsl_folder : file.parent_path()) / include->name, glsl_folder,
                       files);
     }
 }
@@ -82,8 +78,7 @@ LookHasher::LookHasher(std::vector<fs::path> effect_folders, fs::path glsl_folde
 
 std::string LookHasher::hash(const GoldenCase& test) {
     try {
-        const std::string text = text_of(test);
-        return fmt::format("{:016x}", fnv1a(std::as_bytes(std::span(text))));
+        return fnv1a_hex(text_of(test));
     } catch (const Error&) {
         return "";  // the worker tells it
     }

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <optional>
 
+#include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
 #include "framework/image/hdr_file.h"
 #include "framework/image/png_file.h"
@@ -33,14 +34,6 @@ struct LayerFile::Impl {
 };
 
 namespace {
-
-bool begins_with(const fs::path& path, std::string_view magic) {
-    std::error_code error;
-    if (!fs::is_regular_file(path, error)) return false;
-    std::string begin(magic.size(), '\0');
-    std::ifstream(path, std::ios::binary).read(begin.data(), std::streamsize(begin.size()));
-    return begin == magic;
-}
 
 bool is_subsampled(const ExrPart& part) {
     return std::ranges::any_of(part.channels,
@@ -102,13 +95,13 @@ Image LayerFile::Impl::from_whole(const std::vector<std::string>& channels) cons
 
 LayerFile::LayerFile(const fs::path& path, const ReadLimits& limits) : impl_(std::make_unique<Impl>()) {
     impl_->path = path;
-    if (begins_with(path, "\x89PNG")) {
+    if (file_begins_with(path, "\x89PNG")) {
         impl_->format = "PNG";
         impl_->open_flat(read_png(path), LayerRole::display);
     } else if (is_hdr_file(path)) {
         impl_->format = "Radiance HDR";
         impl_->open_flat(read_hdr(path), LayerRole::color);
-    } else if (begins_with(path, "\x76\x2f\x31\x01")) {
+    } else if (is_exr_file(path)) {
         impl_->open_exr(limits);
     } else {
         std::error_code error;

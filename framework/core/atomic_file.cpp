@@ -71,4 +71,26 @@ std::string read_text_file(const fs::path& path, ExitCode code) {
     return text;
 }
 
+std::string read_regular_file(const fs::path& path, std::uintmax_t max_bytes, std::string& fault) {
+    fault.clear();
+    std::error_code failure;
+    const fs::file_status status = fs::status(path, failure);
+    const std::uintmax_t size = fs::is_regular_file(status) ? fs::file_size(path, failure) : 0;
+    std::string text;
+    if (!fs::exists(status)) fault = "no such file";
+    else if (!fs::is_regular_file(status)) fault = "is not a regular file";
+    else if (!failure && size > max_bytes)
+        fault = "the file has " + std::to_string(size) + " bytes, the limit is " + std::to_string(max_bytes);
+    else if (text = read_text_file(path, failure); failure) fault = "cannot be read: " + failure.message();
+    return text;
+}
+
+bool file_begins_with(const fs::path& path, std::string_view bytes) {
+    std::error_code failure;
+    if (!fs::is_regular_file(path, failure)) return false;
+    std::string begin(bytes.size(), '\0');
+    std::ifstream file(path, std::ios::binary);
+    return file.read(begin.data(), std::streamsize(begin.size())) && begin == bytes;
+}
+
 }  // namespace aftershade

@@ -1,6 +1,7 @@
 // Files that appear whole or not at all, and files read whole.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -37,5 +38,12 @@ void write_text_file(const std::filesystem::path& path, std::string_view text);
 std::string read_text_file(const std::filesystem::path& path, std::error_code& failure);
 /// The same. Throws Error(code) naming the path and the system's reason.
 std::string read_text_file(const std::filesystem::path& path, ExitCode code);
+/// The bytes of a regular file of at most `max_bytes`. Where it is none, is larger or cannot be read: "", and
+/// `fault` says why, as a message ends: "no such file", "the file has 9 bytes, the limit is 5". `fault` is
+/// cleared otherwise. Nothing else than a regular file is opened: a pipe would wait for a writer.
+std::string read_regular_file(const std::filesystem::path& path, std::uintmax_t max_bytes,
+                              std::string& fault);
+/// Whether a regular file begins with these bytes; false where it cannot be read.
+bool file_begins_with(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace aftershade

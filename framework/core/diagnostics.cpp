@@ -1,5 +1,7 @@
 #include "framework/core/diagnostics.h"
 
+#include "framework/core/text.h"
+
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -65,12 +67,9 @@ std::string did_you_mean(std::string_view word, std::span<const std::string> can
 }
 
 std::string list_of_names(std::span<const std::string> names, std::string_view conjunction) {
-    std::string text;
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        if (i > 0) text += i + 1 == names.size() ? " " + std::string(conjunction) + " " : ", ";
-        text += "'" + names[i] + "'";
-    }
-    return text;
+    std::vector<std::string> quoted;
+    for (const std::string& name : names) quoted.push_back("'" + name + "'");
+    return joined(quoted, " " + std::string(conjunction) + " ");
 }
 
 }  // namespace aftershade

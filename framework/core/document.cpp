@@ -10,8 +10,6 @@
 
 namespace aftershade {
 
-namespace fs = std::filesystem;
-
 const Node* Node::find(std::string_view key) const {
     for (const Member& member : members)
         if (member.key == key) return &member.value;
@@ -256,29 +254,12 @@ std::optional<Node> parse_document(std::string_view text, const std::string& fil
     return builder.take_root();
 }
 
-std::optional<Node> read_document(const fs::path& path, Diagnostics& diagnostics) {
-    std::error_code failure;
-    const fs::file_status status = fs::status(path, failure);
-    const std::string name = path.string();
-    if (!fs::exists(status)) {
-        diagnostics.error({name}, "no such file");
-        return std::nullopt;
-    }
-    if (!fs::is_regular_file(status)) {
-        diagnostics.error({name}, "is not a regular file");
-        return std::nullopt;
-    }
-    if (const std::uintmax_t size = fs::file_size(path, failure); !failure && size > kMaxDocumentBytes) {
-        diagnostics.error({name}, "is " + std::to_string(size) + " bytes, more than the " +
-                                      std::to_string(kMaxDocumentBytes) + " that a document may have");
-        return std::nullopt;
-    }
-    const std::string text = read_text_file(path, failure);
-    if (failure) {
-        diagnostics.error({name}, "cannot be read: " + failure.message());
-        return std::nullopt;
-    }
-    return parse_document(text, name, diagnostics);
+std::optional<Node> read_document(const std::filesystem::path& path, Diagnostics& diagnostics) {
+    std::string fault;
+    const std::string text = read_regular_file(path, kMaxDocumentBytes, fault);
+    if (fault.empty()) return parse_document(text, path.string(), diagnostics);
+    diagnostics.error({path.string()}, fault);
+    return std::nullopt;
 }
 
 ObjectReader::ObjectReader(const Node& node, std::string thing, Diagnostics& diagnostics)

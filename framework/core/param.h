@@ -14,6 +14,7 @@
 
 #include "framework/core/diagnostics.h"
 #include "framework/core/document.h"
+#include "framework/core/object_keys.h"
 #include "framework/core/scattering_profile.h"
 
 namespace aftershade {
@@ -43,14 +44,6 @@ struct CurveValue {
     /// There must be a point. A smooth curve never leaves the range of two neighbouring points' y.
     double at(double x) const;
     bool operator==(const CurveValue&) const = default;
-};
-
-/// Which objects a row of a table is for: ids first..last, or the object of that name (Cryptomatte).
-struct TableKey {
-    std::uint32_t first = 0;
-    std::uint32_t last = 0;
-    std::string name;  ///< "" for ids
-    bool operator==(const TableKey&) const = default;
 };
 
 /// Rows by object; an object that no row names has the default row.

@@ -1,16 +1,10 @@
 // Values as text.
-#include <nlohmann/json.hpp>
-
 #include "framework/core/param_internal.h"
+#include "framework/core/text.h"
 
 namespace aftershade {
 
 namespace {
-
-std::string quoted(const std::string& text) {
-    constexpr int kOneLine = -1;
-    return nlohmann::json(text).dump(kOneLine, ' ', false, nlohmann::json::error_handler_t::replace);
-}
 
 std::string array_of(const std::vector<double>& numbers) {
     std::string text = "[";
@@ -29,7 +23,7 @@ std::string text_of(const CurveValue& curve) {
 
 std::string text_of_cell(const ParamSpec& column, const std::vector<double>& cell) {
     if (column.type == ParamType::bool_) return cell.at(0) != 0 ? "true" : "false";
-    if (column.type == ParamType::enum_) return quoted(column.values.at(std::size_t(cell.at(0))));
+    if (column.type == ParamType::enum_) return json_string(column.values.at(std::size_t(cell.at(0))));
     return component_count(column.type) > 1 ? array_of(cell) : format_number(cell.at(0));
 }
 
@@ -44,14 +38,14 @@ std::string text_of_row(const std::vector<ParamSpec>* columns, const TableValue:
     for (std::size_t i = 0; i < row.size(); ++i) {
         if (columns && usual && row[i] == (*usual)[i]) continue;
         text += text.empty() ? "" : ", ";
-        text += columns ? quoted((*columns)[i].name) + ": " + text_of_cell((*columns)[i], row[i])
+        text += columns ? json_string((*columns)[i].name) + ": " + text_of_cell((*columns)[i], row[i])
                         : text_of_cell(row[i]);
     }
     return columns ? text : "\"cells\": [" + text + "]";
 }
 
 std::string text_of_key(const TableKey& key) {
-    if (!key.name.empty()) return "\"name\": " + quoted(key.name);
+    if (!key.name.empty()) return "\"name\": " + json_string(key.name);
     if (key.first == key.last) return "\"object\": " + std::to_string(key.first);
     return "\"objects\": \"" + std::to_string(key.first) + "-" + std::to_string(key.last) + "\"";
 }
@@ -70,9 +64,7 @@ std::string text_of_list(const TableValue& objects) {
     std::string items;
     for (const auto& [key, row] : objects.rows) {
         items += items.empty() ? "" : ", ";
-        if (!key.name.empty()) items += quoted(key.name);
-        else if (key.first == key.last) items += std::to_string(key.first);
-        else items += "\"" + std::to_string(key.first) + "-" + std::to_string(key.last) + "\"";
+        items += format_object_keys({&key, 1});
     }
     return "[" + items + "]";
 }
@@ -94,7 +86,7 @@ std::string format_value(const ParamValue& value) {
         std::string operator()(bool v) const { return v ? "true" : "false"; }
         std::string operator()(std::int64_t v) const { return std::to_string(v); }
         std::string operator()(double v) const { return format_number(v); }
-        std::string operator()(const std::string& v) const { return quoted(v); }
+        std::string operator()(const std::string& v) const { return json_string(v); }
         std::string operator()(const std::vector<double>& v) const { return array_of(v); }
         std::string operator()(const CurveValue& v) const { return text_of(v); }
         std::string operator()(const TableValue& v) const { return text_of(v, nullptr); }

@@ -43,7 +43,7 @@ public:
     static bool is_key(std::string_view word);
     /// Of a row: one of 'object', 'objects' and 'name'. `label` is the row's.
     std::vector<TableKey> read_row(ObjectReader& reader, const Node& node, const std::string& label);
-    /// Of a list: 3, "3-7" or "Wheel".
+    /// Of a list: 3, "3-7,9" or "Wheel".
     std::vector<TableKey> read_item(const Node& node, const std::string& label);
     /// Reports what more than one of those read is for. Call once, last.
     void check_overlaps();
@@ -57,8 +57,6 @@ private:
 
     std::vector<TableKey> kept(std::vector<TableKey> keys, const Node& node, const std::string& label);
     std::vector<TableKey> row_keys(ObjectReader& reader, const Node& node, const std::string& label);
-    std::vector<TableKey> id_key(std::int64_t id, const Node& node, const std::string& label);
-    std::vector<TableKey> range_keys(std::string_view text, const Node& node, const std::string& label);
     void report_overlap(std::size_t later, std::size_t earlier);
 
     Diagnostics& diagnostics_;

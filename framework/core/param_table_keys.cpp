@@ -1,45 +1,15 @@
 // Which objects a row, or a list, is for.
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <map>
 
 #include "framework/core/param_internal.h"
-#include "framework/core/text.h"
 
 namespace aftershade {
 
 namespace {
 
 constexpr const char* kKeys[] = {"object", "objects", "name"};
-
-std::optional<std::uint32_t> parse_id(std::string_view text) {
-    std::uint32_t id = 0;
-    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), id);
-    if (failure != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-    return id;
-}
-
-std::string_view trimmed(std::string_view text) {
-    while (text.starts_with(' ')) text.remove_prefix(1);
-    while (text.ends_with(' ')) text.remove_suffix(1);
-    return text;
-}
-
-/// "3-7", "9"; nullopt where it is neither, or falls.
-std::optional<TableKey> parse_range(std::string_view text) {
-    const std::size_t dash = text.find('-');
-    const auto first = parse_id(trimmed(text.substr(0, dash)));
-    const auto last = dash == std::string_view::npos ? first : parse_id(trimmed(text.substr(dash + 1)));
-    if (!first || !last || *last < *first) return std::nullopt;
-    return TableKey{*first, *last, ""};
-}
-
-std::string text_of(const TableKey& key) {
-    if (!key.name.empty()) return "'" + key.name + "'";
-    if (key.first == key.last) return "object " + std::to_string(key.first);
-    return "objects " + std::to_string(key.first) + "-" + std::to_string(key.last);
-}
 
 }  // namespace
 
@@ -59,14 +29,7 @@ std::vector<TableKey> TableKeyReader::read_row(ObjectReader& reader, const Node&
 }
 
 std::vector<TableKey> TableKeyReader::read_item(const Node& node, const std::string& label) {
-    std::vector<TableKey> keys;
-    if (node.kind == Node::Kind::integer) keys = id_key(node.integer, node, label);
-    else if (!node.is_string() || node.string.empty())
-        diagnostics_.error(node.place,
-                           label + ": expected an object's id, a range of ids such as \"3-7\" or a name");
-    else if (const auto range = parse_range(node.string)) keys = {*range};
-    else keys = {TableKey{0, 0, node.string}};
-    return kept(std::move(keys), node, label);
+    return kept(parse_object_keys(node, label, diagnostics_), node, label);
 }
 
 std::vector<TableKey> TableKeyReader::row_keys(ObjectReader& reader, const Node& node,
@@ -81,35 +44,11 @@ std::vector<TableKey> TableKeyReader::row_keys(ObjectReader& reader, const Node&
                                            std::to_string(count));
         return {};
     }
-    if (id) return id_key(*id, *node.find("object"), label);
-    if (ranges) return range_keys(*ranges, *node.find("objects"), label);
+    if (id) return object_id_key(*id, *node.find("object"), label, diagnostics_);
+    if (ranges) return object_range_keys(*ranges, *node.find("objects"), label, diagnostics_);
     if (name && name->empty()) diagnostics_.error(node.find("name")->place, label + ": 'name' is empty");
     if (name && !name->empty()) return {TableKey{0, 0, *name}};
     return {};
-}
-
-std::vector<TableKey> TableKeyReader::id_key(std::int64_t id, const Node& node, const std::string& label) {
-    if (id >= 0 && id <= std::int64_t(UINT32_MAX))
-        return {TableKey{std::uint32_t(id), std::uint32_t(id), ""}};
-    diagnostics_.error(node.place, label + ": " + std::to_string(id) +
-                                       " is not an object's id, a number from 0 to 4294967295");
-    return {};
-}
-
-std::vector<TableKey> TableKeyReader::range_keys(std::string_view text, const Node& node,
-                                                 const std::string& label) {
-    std::vector<TableKey> keys;
-    for (std::size_t start = 0; start <= text.size();) {
-        const std::size_t comma = std::min(text.find(',', start), text.size());
-        const std::string piece(trimmed(text.substr(start, comma - start)));
-        if (const auto range = parse_range(piece)) keys.push_back(*range);
-        else
-            diagnostics_.error(node.place, label + ": '" + piece +
-                                               "' is no range of ids; write \"3-7,9\", each from 0 to "
-                                               "4294967295 and rising");
-        start = comma + 1;
-    }
-    return keys;
 }
 
 void TableKeyReader::check_overlaps() {
@@ -135,8 +74,8 @@ void TableKeyReader::check_overlaps() {
 void TableKeyReader::report_overlap(std::size_t later, std::size_t earlier) {
     const Found& here = found_[later];
     const Found& there = found_[earlier];
-    diagnostics_.error(here.place, here.label + ": " + text_of(here.key) + " is taken already by " +
-                                       text_of(there.key) + " of " + there.label + ", " +
+    diagnostics_.error(here.place, here.label + ": " + object_text(here.key) + " is taken already by " +
+                                       object_text(there.key) + " of " + there.label + ", " +
                                        to_string(there.place));
 }
 

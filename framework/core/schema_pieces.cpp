@@ -98,11 +98,7 @@ private:
         return keyed;
     }
 
-    json objects() const {
-        json item = object_key();
-        item["description"] = "An object's id, a range of ids (\"3-7\") or a Cryptomatte name.";
-        return array_of(part(item));
-    }
+    json objects() const { return array_of(part(object_key())); }
 
     json scattering() const {
         const json profile = part(any_of({text(), scattering_profile(variables_)}));
@@ -175,8 +171,10 @@ json literal(const ParamSpec& spec, Variables variables) {
 }
 
 json object_key() {
-    return any_of({{{"type", "integer"}, {"minimum", 0}, {"maximum", UINT32_MAX}},
-                   {{"type", "string"}, {"minLength", 1}}});
+    json key = any_of({{{"type", "integer"}, {"minimum", 0}, {"maximum", UINT32_MAX}},
+                       {{"type", "string"}, {"minLength", 1}}});
+    key["description"] = "An object's id, ids and ranges of ids (\"3-7,9\") or a Cryptomatte name.";
+    return key;
 }
 
 json document(const std::string& title, json properties, std::vector<std::string> required) {

@@ -40,7 +40,7 @@ json literal(const ParamSpec& spec, Variables variables = Variables::no);
 json scattering_profile(Variables variables = Variables::no);
 /// Of a scattering profile's own file, with its head.
 json scattering_profile_file();
-/// Id of an object, or its Cryptomatte name.
+/// Id of an object, ids and ranges of ids, or a Cryptomatte name.
 json object_key();
 /// Head of a document: "$schema" of the schema itself, title, and "aftershade": 1 among the properties.
 json document(const std::string& title, json properties, std::vector<std::string> required);

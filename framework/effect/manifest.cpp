@@ -83,14 +83,9 @@ void ManifestParser::params(const Node& section) {
 }
 
 void ManifestParser::check_from(const ParamSpec& spec, const Place& place) {
-    constexpr std::string_view kCamera = "camera.";
-    std::vector<std::string> known;
-    if (spec.type == ParamType::enum_) known.push_back(std::string(kCamera) + "lens_model");
-    else
-        for (const CameraField& field : camera_fields()) known.push_back(std::string(kCamera) + field.name);
+    const std::vector<std::string> known = camera_sources(spec.type);
     if (std::find(known.begin(), known.end(), spec.from) == known.end())
-        fault(place, "'" + spec.from + "' is not a value of the capture" + did_you_mean(spec.from, known) +
-                         " (known: " + list_of_names(known, "and") + ")");
+        fault(place, unknown_source(spec.from, known));
 }
 
 void ManifestParser::presets(const Node& section) {

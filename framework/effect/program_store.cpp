@@ -1,6 +1,5 @@
 #include "framework/effect/program_store.h"
 
-#include <charconv>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -20,10 +19,6 @@ namespace {
 constexpr std::string_view kMagic = "aftershade program 1\n";
 /// More than any program of ours; what is larger is no program.
 constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t(64) << 20;
-
-std::uint64_t hash_of(std::string_view bytes) {
-    return fnv1a(std::as_bytes(std::span(bytes)));
-}
 
 void append(std::string& bytes, std::uint64_t value) {
     char raw[sizeof value];
@@ -58,7 +53,7 @@ std::string file_text(const std::string& key, const gpu::ProgramBinary& binary) 
     append(text, binary.format);
     append(text, binary.bytes.size());
     text.append(reinterpret_cast<const char*>(binary.bytes.data()), binary.bytes.size());
-    append(text, hash_of(text));
+    append(text, fnv1a(text));
     return text;
 }
 
@@ -80,10 +75,7 @@ ProgramStore ProgramStore::from_environment() {
 }
 
 fs::path ProgramStore::file_of(const std::string& key) const {
-    std::string name(16, '\0');
-    name.resize(std::size_t(std::to_chars(name.data(), name.data() + name.size(), hash_of(key), 16).ptr -
-                            name.data()));
-    return folder_ / (name + ".program");
+    return folder_ / (fnv1a_hex(key) + ".program");
 }
 
 std::optional<gpu::ProgramBinary> ProgramStore::load(const std::string& key) const {
@@ -99,7 +91,7 @@ std::optional<gpu::ProgramBinary> ProgramStore::load(const std::string& key) con
     binary.format = static_cast<unsigned int>(taker.number());
     const std::string_view bytes = taker.bytes(taker.number());
     const std::string_view hashed = std::string_view(text).substr(0, text.size() - taker.rest.size());
-    const std::uint64_t hash = hash_of(hashed);
+    const std::uint64_t hash = fnv1a(hashed);
     if (taker.number() != hash || !taker.sound || !taker.rest.empty()) return std::nullopt;
     binary.bytes.resize(bytes.size());
     std::memcpy(binary.bytes.data(), bytes.data(), bytes.size());

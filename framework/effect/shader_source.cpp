@@ -1,16 +1,37 @@
 #include "framework/effect/shader_source.h"
 
-#include <fstream>
-#include <regex>
+#include <cctype>
 #include <set>
 #include <sstream>
 #include <utility>
+
+#include "framework/core/atomic_file.h"
 
 namespace aftershade {
 
 namespace fs = std::filesystem;
 
 namespace {
+
+void skip_spaces(std::string_view& text) {
+    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front()))) text.remove_prefix(1);
+}
+
+/// Takes "#<word>" off the front, with any spaces around the '#'.
+bool take_directive(std::string_view& line, std::string_view word) {
+    skip_spaces(line);
+    if (!line.starts_with('#')) return false;
+    line.remove_prefix(1);
+    skip_spaces(line);
+    if (!line.starts_with(word)) return false;
+    line.remove_prefix(word.size());
+    return true;
+}
+
+bool is_version(std::string_view line) {
+    const auto is_part = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
+    return take_directive(line, "version") && (line.empty() || !is_part(static_cast<unsigned char>(line[0])));
+}
 
 /// Expands includes into one text and remembers where each line came from: Mesa keeps the line of #line but
 /// always prints source string 0, so a table of our own is the only way back.
@@ -37,8 +58,9 @@ private:
 
     void add_file(const fs::path& file, const Place& from) {
         if (!included_.insert(file).second) return;
-        std::ifstream in(file);
-        if (!in) {
+        std::error_code failure;
+        std::istringstream in(read_text_file(file, failure));
+        if (failure) {
             diagnostics_.error(from, "cannot read " + file.string());
             return;
         }
@@ -50,12 +72,9 @@ private:
     }
 
     void add_source_line(const std::string& line, const Place& place) {
-        static const std::regex include(R"(^\s*#\s*include\s*([<"])([^">]*)[>"]\s*(//.*)?$)");
-        static const std::regex version(R"(^\s*#\s*version\b.*)");
-        std::smatch match;
-        if (std::regex_match(line, match, include)) {
-            add_include(match[1] == "<", match[2], place);
-        } else if (std::regex_match(line, version)) {
+        if (const auto include = parse_include(line)) {
+            add_include(include->is_shared, include->name, place);
+        } else if (is_version(line)) {
             if (source_.lines.empty() && line == "#version 450 core") has_version_ = true;
             else diagnostics_.error(place, "'#version 450 core' stands once, as the first line of a shader");
             add_line(line, place.file, place.line);
@@ -97,6 +116,18 @@ private:
 };
 
 }  // namespace
+
+std::optional<ShaderInclude> parse_include(std::string_view line) {
+    if (!take_directive(line, "include")) return std::nullopt;
+    skip_spaces(line);
+    if (!line.starts_with('<') && !line.starts_with('"')) return std::nullopt;
+    const std::size_t end = line.find_first_of("\">", 1);
+    if (end == std::string_view::npos) return std::nullopt;
+    ShaderInclude include{std::string(line.substr(1, end - 1)), line.front() == '<'};
+    line.remove_prefix(end + 1);
+    skip_spaces(line);
+    return line.empty() || line.starts_with("//") ? std::optional(std::move(include)) : std::nullopt;
+}
 
 ShaderSource assemble_shader(const ShaderContext& context, Diagnostics& diagnostics, ShaderFile file) {
     return Assembler(context, diagnostics, file).assemble();

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -75,6 +76,14 @@ struct ShaderSource {
     std::string text;
     std::vector<SourceLine> lines;  ///< of text, from its first
 };
+
+struct ShaderInclude {
+    std::string name;
+    bool is_shared = false;  ///< in <>, else in quotation marks
+};
+
+/// What a line of a shader includes; nullopt for every other line.
+std::optional<ShaderInclude> parse_include(std::string_view line);
 
 /// Faults (a missing include, a shader that does not begin as it must) go to `diagnostics`.
 ShaderSource assemble_shader(const ShaderContext& context, Diagnostics& diagnostics,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "framework/gpu/context.h"
+#include "framework/gpu/handle.h"
 
 namespace aftershade::gpu {
 
@@ -16,22 +17,16 @@ class Buffer {
 public:
     /// Zero-filled. Throws Error(ExitCode::effect) when GL has no memory for it.
     Buffer(Context& context, std::size_t bytes, std::string label);
-    ~Buffer();
-    Buffer(Buffer&& other) noexcept;
-    Buffer& operator=(Buffer&& other) noexcept;
-    Buffer(const Buffer&) = delete;
-    Buffer& operator=(const Buffer&) = delete;
 
     std::size_t size() const { return bytes_; }
     void write(std::span<const std::byte> values, std::size_t offset = 0);
     std::vector<std::byte> read() const;
     void clear(std::uint32_t value);
 
-    unsigned int handle() const { return handle_; }  ///< for framework/gpu
+    unsigned int handle() const { return handle_.name(); }  ///< for framework/gpu
 
 private:
-    Context* context_ = nullptr;
-    unsigned int handle_ = 0;
+    Handle<ObjectKind::buffer> handle_;
     std::size_t bytes_ = 0;
     std::string label_;
 };

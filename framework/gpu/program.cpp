@@ -48,6 +48,17 @@ std::vector<ShaderMessage> messages_of(const GladGLContext& gl, const std::strin
     return messages;
 }
 
+/// The log of a shader or a program, by GL's functions for the one or the other.
+std::string info_log(GLuint object, PFNGLGETSHADERIVPROC get, PFNGLGETSHADERINFOLOGPROC get_log) {
+    GLint size = 0;
+    get(object, GL_INFO_LOG_LENGTH, &size);
+    std::string log(static_cast<std::size_t>(std::max(size, 1)), '\0');
+    GLsizei length = 0;
+    get_log(object, static_cast<GLsizei>(log.size()), &length, log.data());
+    log.resize(static_cast<std::size_t>(length));
+    return log;
+}
+
 /// A compiled shader until it is in its program.
 class Stage {
 public:
@@ -64,7 +75,7 @@ public:
             set_label(gl_, GL_SHADER, handle_, label);
             return;
         }
-        const std::string log = info_log();
+        const std::string log = info_log(handle_, gl_.GetShaderiv, gl_.GetShaderInfoLog);
         gl_.DeleteShader(handle_);
         throw ShaderError(std::move(name), messages_of(gl_, source, log), log);
     }
@@ -75,29 +86,9 @@ public:
     GLuint handle() const { return handle_; }
 
 private:
-    std::string info_log() const {
-        GLint size = 0;
-        gl_.GetShaderiv(handle_, GL_INFO_LOG_LENGTH, &size);
-        std::string log(static_cast<std::size_t>(std::max(size, 1)), '\0');
-        GLsizei length = 0;
-        gl_.GetShaderInfoLog(handle_, static_cast<GLsizei>(log.size()), &length, log.data());
-        log.resize(static_cast<std::size_t>(length));
-        return log;
-    }
-
     const GladGLContext& gl_;
     GLuint handle_;
 };
-
-std::string program_log(const GladGLContext& gl, GLuint program) {
-    GLint size = 0;
-    gl.GetProgramiv(program, GL_INFO_LOG_LENGTH, &size);
-    std::string log(static_cast<std::size_t>(std::max(size, 1)), '\0');
-    GLsizei length = 0;
-    gl.GetProgramInfoLog(program, static_cast<GLsizei>(log.size()), &length, log.data());
-    log.resize(static_cast<std::size_t>(length));
-    return log;
-}
 
 GLuint link(const GladGLContext& gl, std::initializer_list<const Stage*> stages, const std::string& label) {
     const GLuint program = gl.CreateProgram();
@@ -108,7 +99,7 @@ GLuint link(const GladGLContext& gl, std::initializer_list<const Stage*> stages,
     GLint linked = 0;
     gl.GetProgramiv(program, GL_LINK_STATUS, &linked);
     if (!linked) {
-        const std::string log = program_log(gl, program);
+        const std::string log = info_log(program, gl.GetProgramiv, gl.GetProgramInfoLog);
         gl.DeleteProgram(program);
         throw ShaderError("link", parse_shader_log(log), log);
     }
@@ -168,44 +159,29 @@ std::optional<Program> Program::from_binary(Context& context, const ProgramBinar
 }
 
 std::optional<ProgramBinary> Program::binary() const {
-    context_->make_current();
-    const GladGLContext& gl = context_->gl();
+    handle_.context().make_current();
+    const GladGLContext& gl = handle_.context().gl();
     GLint size = 0;
-    gl.GetProgramiv(handle_, GL_PROGRAM_BINARY_LENGTH, &size);
+    gl.GetProgramiv(handle(), GL_PROGRAM_BINARY_LENGTH, &size);
     if (size <= 0) return std::nullopt;
     ProgramBinary binary;
     binary.bytes.resize(static_cast<std::size_t>(size));
     GLsizei written = 0;
     GLenum format = 0;
-    gl.GetProgramBinary(handle_, size, &written, &format, binary.bytes.data());
-    context_->check(fmt::format("the binary of program '{}'", label_));
+    gl.GetProgramBinary(handle(), size, &written, &format, binary.bytes.data());
+    handle_.context().check(fmt::format("the binary of program '{}'", label_));
     binary.bytes.resize(static_cast<std::size_t>(std::max(written, 0)));
     binary.format = format;
     if (binary.bytes.empty()) return std::nullopt;
     return binary;
 }
 
+template <>
+void Handle<ObjectKind::program>::remove(Context& context, unsigned int name) noexcept {
+    if (context.impl().try_make_current()) context.gl().DeleteProgram(name);
+}
+
 Program::Program(Context& context, unsigned int handle, bool is_compute, std::string label)
-    : context_(&context), handle_(handle), is_compute_(is_compute), label_(std::move(label)) {}
-
-Program::~Program() {
-    if (handle_ == 0 || !context_->impl().try_make_current()) return;
-    context_->gl().DeleteProgram(handle_);
-}
-
-Program::Program(Program&& other) noexcept
-    : context_(other.context_),
-      handle_(std::exchange(other.handle_, 0)),
-      is_compute_(other.is_compute_),
-      label_(std::move(other.label_)) {}
-
-Program& Program::operator=(Program&& other) noexcept {
-    Program taken(std::move(other));
-    std::swap(context_, taken.context_);
-    std::swap(handle_, taken.handle_);
-    std::swap(is_compute_, taken.is_compute_);
-    std::swap(label_, taken.label_);
-    return *this;
-}
+    : handle_(context, handle), is_compute_(is_compute), label_(std::move(label)) {}
 
 }  // namespace aftershade::gpu

@@ -8,6 +8,7 @@
 
 #include "framework/core/error.h"
 #include "framework/gpu/context.h"
+#include "framework/gpu/handle.h"
 
 namespace aftershade::gpu {
 
@@ -52,22 +53,16 @@ public:
     /// instead. The bytes must be as binary() gave them; drivers do not defend themselves against others.
     static std::optional<Program> from_binary(Context& context, const ProgramBinary& binary, bool is_compute,
                                               std::string label);
-    ~Program();
-    Program(Program&& other) noexcept;
-    Program& operator=(Program&& other) noexcept;
-    Program(const Program&) = delete;
-    Program& operator=(const Program&) = delete;
 
     const std::string& label() const { return label_; }
     bool is_compute() const { return is_compute_; }
     /// nullopt where the driver gives none.
     std::optional<ProgramBinary> binary() const;
-    unsigned int handle() const { return handle_; }  ///< for framework/gpu
+    unsigned int handle() const { return handle_.name(); }  ///< for framework/gpu
 
 private:
     Program(Context& context, unsigned int handle, bool is_compute, std::string label);
-    Context* context_ = nullptr;
-    unsigned int handle_ = 0;
+    Handle<ObjectKind::program> handle_;
     bool is_compute_ = false;
     std::string label_;
 };

@@ -147,39 +147,20 @@ std::vector<Value> read_values(Context& context, const Texture& texture, int lev
 
 }  // namespace
 
+template <>
+void Handle<ObjectKind::texture>::remove(Context& context, unsigned int name) noexcept {
+    if (!context.impl().try_make_current()) return;
+    context.impl().cache->forget_texture(name);
+    context.gl().DeleteTextures(1, &name);
+}
+
 Texture::Texture(Context& context, const TextureDesc& desc, std::string label)
-    : context_(&context), desc_(desc), label_(std::move(label)) {
+    : desc_(desc), label_(std::move(label)) {
     context.make_current();
     check_desc(context.impl().limits, desc_, label_);
-    handle_ = make_texture(context.gl(), desc_, label_);
-    try {
-        context.check(fmt::format("texture '{}', {}x{} {}, {} MiB", label_, desc_.width, desc_.height,
-                                  texture_format_name(desc_.format), byte_size(desc_) >> 20));
-    } catch (const Error&) {
-        context.gl().DeleteTextures(1, &handle_);
-        throw;
-    }
-}
-
-Texture::~Texture() {
-    if (handle_ == 0 || !context_->impl().try_make_current()) return;
-    context_->impl().cache->forget_texture(handle_);
-    context_->gl().DeleteTextures(1, &handle_);
-}
-
-Texture::Texture(Texture&& other) noexcept
-    : context_(other.context_),
-      handle_(std::exchange(other.handle_, 0)),
-      desc_(std::exchange(other.desc_, {})),
-      label_(std::move(other.label_)) {}
-
-Texture& Texture::operator=(Texture&& other) noexcept {
-    Texture taken(std::move(other));
-    std::swap(context_, taken.context_);
-    std::swap(handle_, taken.handle_);
-    std::swap(desc_, taken.desc_);
-    std::swap(label_, taken.label_);
-    return *this;
+    handle_ = Handle<ObjectKind::texture>(context, make_texture(context.gl(), desc_, label_));
+    context.check(fmt::format("texture '{}', {}x{} {}, {} MiB", label_, desc_.width, desc_.height,
+                              texture_format_name(desc_.format), byte_size(desc_) >> 20));
 }
 
 void Texture::upload(std::span<const float> values, int layer, int level) {
@@ -191,10 +172,10 @@ void Texture::upload(std::span<const float> values, int layer, int level) {
                level);
         return;
     }
-    context_->make_current();
-    context_->impl().wait_for_draws();
-    sub_image(context_->gl(), *this, layer, level, values.data());
-    context_->check(fmt::format("uploading texture '{}'", label_));
+    handle_.context().make_current();
+    handle_.context().impl().wait_for_draws();
+    sub_image(handle_.context().gl(), *this, layer, level, values.data());
+    handle_.context().check(fmt::format("uploading texture '{}'", label_));
 }
 
 void Texture::upload(std::span<const std::uint32_t> values, int layer, int level) {
@@ -204,22 +185,22 @@ void Texture::upload(std::span<const std::uint32_t> values, int layer, int level
         upload(converted<float>(values, [](std::uint32_t v) { return static_cast<float>(v); }), layer, level);
         return;
     }
-    context_->make_current();
-    context_->impl().wait_for_draws();
-    sub_image(context_->gl(), *this, layer, level, values.data());
-    context_->check(fmt::format("uploading texture '{}'", label_));
+    handle_.context().make_current();
+    handle_.context().impl().wait_for_draws();
+    sub_image(handle_.context().gl(), *this, layer, level, values.data());
+    handle_.context().check(fmt::format("uploading texture '{}'", label_));
 }
 
 std::vector<float> Texture::read_floats(int level, int layer) const {
-    if (!is_integer(desc_.format)) return read_values<float>(*context_, *this, level, layer);
-    const auto bits = read_values<std::uint32_t>(*context_, *this, level, layer);
+    if (!is_integer(desc_.format)) return read_values<float>(handle_.context(), *this, level, layer);
+    const auto bits = read_values<std::uint32_t>(handle_.context(), *this, level, layer);
     const TextureFormat format = desc_.format;
     return converted<float>(std::span(bits), [format](std::uint32_t v) { return from_bits(v, format); });
 }
 
 std::vector<std::uint32_t> Texture::read_uints(int level, int layer) const {
-    if (is_integer(desc_.format)) return read_values<std::uint32_t>(*context_, *this, level, layer);
-    const auto floats = read_values<float>(*context_, *this, level, layer);
+    if (is_integer(desc_.format)) return read_values<std::uint32_t>(handle_.context(), *this, level, layer);
+    const auto floats = read_values<float>(handle_.context(), *this, level, layer);
     return converted<std::uint32_t>(std::span(floats), to_integer<std::uint32_t>);
 }
 
@@ -241,29 +222,29 @@ void Texture::clear_to(const std::array<double, 4>& value) {
 
 void Texture::clear_to(const std::array<double, 4>& value, int level, int layer) {
     assert(level < desc_.mips && layer < desc_.layers);
-    context_->make_current();
-    context_->impl().wait_for_draws();
-    const GladGLContext& gl = context_->gl();
+    handle_.context().make_current();
+    handle_.context().impl().wait_for_draws();
+    const GladGLContext& gl = handle_.context().gl();
     const std::array<std::uint32_t, 4> texel = clear_texel(value, desc_.format);
     const GLenum pixel = gl_format(desc_.format).pixel;
     const int first = level < 0 ? 0 : level;
     const int last = level < 0 ? desc_.mips - 1 : level;
     for (int i = first; i <= last; ++i) {
         if (layer < 0) {
-            gl.ClearTexImage(handle_, i, pixel, value_type(desc_), texel.data());
+            gl.ClearTexImage(handle(), i, pixel, value_type(desc_), texel.data());
         } else {
-            gl.ClearTexSubImage(handle_, i, 0, 0, layer, level_side(desc_.width, i),
+            gl.ClearTexSubImage(handle(), i, 0, 0, layer, level_side(desc_.width, i),
                                 level_side(desc_.height, i), 1, pixel, value_type(desc_), texel.data());
         }
     }
-    context_->check(fmt::format("clearing texture '{}'", label_));
+    handle_.context().check(fmt::format("clearing texture '{}'", label_));
 }
 
 void Texture::generate_mips() {
     assert(!is_integer(desc_.format));
-    context_->make_current();
-    context_->gl().GenerateTextureMipmap(handle_);
-    context_->check(fmt::format("mip levels of texture '{}'", label_));
+    handle_.context().make_current();
+    handle_.context().gl().GenerateTextureMipmap(handle());
+    handle_.context().check(fmt::format("mip levels of texture '{}'", label_));
 }
 
 }  // namespace aftershade::gpu

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "framework/gpu/context.h"
+#include "framework/gpu/handle.h"
 
 namespace aftershade::gpu {
 
@@ -56,11 +57,6 @@ class Texture {
 public:
     /// Throws Error(ExitCode::effect) when GL has no memory for it or a side exceeds GL_MAX_TEXTURE_SIZE.
     Texture(Context& context, const TextureDesc& desc, std::string label);
-    ~Texture();
-    Texture(Texture&& other) noexcept;
-    Texture& operator=(Texture&& other) noexcept;
-    Texture(const Texture&) = delete;
-    Texture& operator=(const Texture&) = delete;
 
     const TextureDesc& desc() const { return desc_; }
     const std::string& label() const { return label_; }
@@ -85,11 +81,10 @@ public:
     /// Fills levels 1.. from level 0 with GL's own box filter.
     void generate_mips();
 
-    unsigned int handle() const { return handle_; }  ///< for framework/gpu
+    unsigned int handle() const { return handle_.name(); }  ///< for framework/gpu
 
 private:
-    Context* context_ = nullptr;
-    unsigned int handle_ = 0;
+    Handle<ObjectKind::texture> handle_;
     TextureDesc desc_;
     std::string label_;
 };

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "framework/core/param.h"
+#include "framework/core/units.h"
 
 namespace aftershade {
 
@@ -26,6 +26,23 @@ const CameraField* find_camera_field(const std::string& name) {
     const auto found =
         std::find_if(fields.begin(), fields.end(), [&](const auto& f) { return f.name == name; });
     return found == fields.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> camera_sources(ParamType type) {
+    const std::string camera(kFromCamera);
+    if (type == ParamType::enum_) return {camera + "lens_model"};
+    std::vector<std::string> sources;
+    for (const CameraField& field : camera_fields()) sources.push_back(camera + field.name);
+    return sources;
+}
+
+bool converts_to(const CameraField& field, const ParamSpec& spec) {
+    return field.unit == spec.unit || convert_unit(1, field.unit, spec.unit);
+}
+
+std::string unknown_source(const std::string& source, const std::vector<std::string>& known) {
+    return "'" + source + "' is not a value of the capture" + did_you_mean(source, known) +
+           " (known: " + list_of_names(known, "and") + ")";
 }
 
 std::optional<double> Camera::get(const std::string& name) const {

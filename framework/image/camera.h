@@ -5,9 +5,11 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "framework/core/document.h"
+#include "framework/core/param.h"
 
 namespace aftershade {
 
@@ -20,6 +22,15 @@ struct CameraField {
 
 const std::vector<CameraField>& camera_fields();
 const CameraField* find_camera_field(const std::string& name);
+
+/// Before the name of a field where parameters say what they are "from": "camera.focus_distance".
+inline constexpr std::string_view kFromCamera = "camera.";
+/// What a parameter of this type may be "from": the lens model for an enum, the fields for every other type.
+std::vector<std::string> camera_sources(ParamType type);
+/// Whether the field's numbers convert to the parameter's unit.
+bool converts_to(const CameraField& field, const ParamSpec& spec);
+/// For a `source` that is not among `known`: what an error says of it.
+std::string unknown_source(const std::string& source, const std::vector<std::string>& known);
 
 /// Row by row, acting on column vectors: clip = matrix * world.
 using CameraMatrix = std::array<double, 16>;

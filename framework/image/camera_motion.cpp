@@ -7,16 +7,11 @@
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
+#include "framework/image/camera_matrix.h"
+
 namespace aftershade {
 
 namespace {
-
-glm::dmat4 to_glm(const CameraMatrix& rows) {
-    glm::dmat4 matrix;
-    for (int row = 0; row < 4; ++row)
-        for (int column = 0; column < 4; ++column) matrix[column][row] = rows[std::size_t(row * 4 + column)];
-    return matrix;
-}
 
 /// The point of view space at `depth_m` in front of the camera that projects to `ndc`; at +inf its direction,
 /// w = 0. Row i of the projection, r_i, gives ndc_i (r_3 . p) = r_i . p: two equations in p.x and p.y.
@@ -41,9 +36,9 @@ bool knows_motion(const Camera& current, const Camera& previous) {
 void fill_camera_velocity(Image& velocity, std::span<const std::size_t> pixels, const Image& depth,
                           const Window& grid, const Window& display, const Camera& current,
                           const Camera& previous) {
-    const glm::dmat4 world_from_camera = glm::inverse(to_glm(*current.camera_from_world));
-    const glm::dmat4 ndc_from_camera = to_glm(*current.ndc_from_world) * world_from_camera;
-    const glm::dmat4 previous_ndc_from_camera = to_glm(*previous.ndc_from_world) * world_from_camera;
+    const glm::dmat4 world_from_camera = glm::inverse(glm_matrix(*current.camera_from_world));
+    const glm::dmat4 ndc_from_camera = glm_matrix(*current.ndc_from_world) * world_from_camera;
+    const glm::dmat4 previous_ndc_from_camera = glm_matrix(*previous.ndc_from_world) * world_from_camera;
     const glm::dvec2 half_size(0.5 * display.width(), 0.5 * display.height());
     for (const std::size_t pixel : pixels) {
         const int x = int(pixel % std::size_t(grid.width())), y = int(pixel / std::size_t(grid.width()));

@@ -95,6 +95,27 @@ std::uint32_t cryptomatte_hash(const std::string& object) {
     return exponent == 0 || exponent == 0xff ? hash ^ 1u << 23 : hash;
 }
 
+std::vector<IdRange> id_ranges(std::span<const TableKey> keys) {
+    std::vector<IdRange> all, joined;
+    for (const TableKey& key : keys) {
+        const std::uint32_t hash = key.name.empty() ? 0 : cryptomatte_hash(key.name);
+        all.push_back(key.name.empty() ? IdRange{key.first, key.last} : IdRange{hash, hash});
+    }
+    std::ranges::sort(all, {}, &IdRange::first);
+    for (const IdRange& range : all) {
+        // In 64 bits, because nothing follows the last id.
+        if (!joined.empty() && range.first <= std::uint64_t(joined.back().last) + 1)
+            joined.back().last = std::max(joined.back().last, range.last);
+        else joined.push_back(range);
+    }
+    return joined;
+}
+
+bool contains(std::span<const IdRange> ranges, std::uint32_t id) {
+    const auto found = std::ranges::lower_bound(ranges, id, {}, &IdRange::last);
+    return found != ranges.end() && found->first <= id;
+}
+
 Image cryptomatte_mask(const FrameFile& file, const CryptomatteLayer& layer,
                        const std::vector<std::string>& objects, const Window& grid) {
     std::vector<std::uint32_t> wanted;

@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "framework/core/object_keys.h"
 #include "framework/image/frame_file.h"
 
 namespace aftershade {
@@ -27,6 +29,18 @@ const CryptomatteLayer& choose_cryptomatte(const std::vector<CryptomatteLayer>& 
 /// The 32-bit pattern under which an object's name is stored: MurmurHash3_32 with seed 0, its exponent
 /// changed where it would read as zero, denormal, infinite or NaN.
 std::uint32_t cryptomatte_hash(const std::string& object);
+
+/// Ids first..last.
+struct IdRange {
+    std::uint32_t first = 0;
+    std::uint32_t last = 0;
+    bool operator==(const IdRange&) const = default;
+};
+
+/// The ids that the keys stand for, a name by its hash: rising, and a gap between any two.
+std::vector<IdRange> id_ranges(std::span<const TableKey> keys);
+/// Whether an id lies in one of the ranges that id_ranges() gave.
+bool contains(std::span<const IdRange> ranges, std::uint32_t id);
 
 /// Summed coverage of the named objects over all ranks, 0 to 1. Throws Error(ExitCode::capture): ids stored
 /// as half or compressed with loss; a name that the manifest, where there is one, does not have.

@@ -75,6 +75,9 @@ struct ExrRequest {
     bool operator==(const ExrRequest&) const = default;
 };
 
+/// Whether it is a file that begins as OpenEXR files do.
+bool is_exr_file(const std::filesystem::path& path);
+
 /// An open file. Headers are read and held against the limits on construction; nothing larger than a header
 /// is allocated before. Every failure is Error(ExitCode::capture) that begins with the path. [one thread at a
 /// time]

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 #include "framework/image/exr_file.h"
 
 #include <OpenEXR/ImfCompression.h>
@@ -80,13 +81,13 @@ FileLayout read_layout(FileStream& file, const std::filesystem::path& path, cons
 /// Error(ExitCode::capture).
 void check_blocks(FileStream& file, const std::filesystem::path& path, const FileLayout& layout, int part);
 
+/// What every file begins with.
+inline constexpr std::string_view kMagic = "\x76\x2f\x31\x01";
+
 ExrPart describe_part(const Imf::Header& header);
 
 /// "part 2 'left.depth'", or nothing to say where there is one part: then "the file".
 std::string part_label(const std::vector<ExrPart>& parts, int part);
-
-/// For messages: control characters and what is not UTF-8 become '?', as names in a file can be anything.
-std::string printable(std::string_view text);
 
 [[noreturn]] inline void fail(const std::filesystem::path& path, const std::string& what,
                               ExitCode code = ExitCode::capture) {

@@ -79,7 +79,7 @@ private:
         unsigned char magic[4] = {};
         file_.read_at(
             0, {reinterpret_cast<char*>(magic), std::size_t(std::min<std::uint64_t>(4, file_.size()))});
-        if (magic[0] != 0x76 || magic[1] != 0x2f || magic[2] != 0x31 || magic[3] != 0x01) {
+        if (std::string_view(reinterpret_cast<const char*>(magic), sizeof magic) != kMagic) {
             fail(path_,
                  fmt::format("not an OpenEXR file (it begins with the bytes {:02x} {:02x} {:02x} {:02x}, "
                              "expected 76 2f 31 01)",

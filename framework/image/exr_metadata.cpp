@@ -1,5 +1,7 @@
 #include "framework/image/exr_internal.h"
 
+#include "framework/core/atomic_file.h"
+
 #include <Imath/ImathBox.h>
 #include <Imath/ImathMatrix.h>
 #include <Imath/ImathVec.h>
@@ -75,25 +77,6 @@ std::optional<std::vector<float>> vector_value(const Imf::Attribute& attribute) 
     return std::nullopt;
 }
 
-/// Bytes of the character that `text` begins with; 0 where it is a control character or no UTF-8 (RFC 3629).
-std::size_t utf8_length(std::string_view text) {
-    const auto byte = [&](std::size_t i) {
-        return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
-    };
-    const unsigned first = byte(0);
-    if (first < 0x80) return first >= 0x20 && first != 0x7f ? 1 : 0;
-    const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
-    if (first < 0xc2 || first > 0xf4) return 0;
-    unsigned code = first & (0x7fu >> length);
-    for (std::size_t i = 1; i < length; ++i) {
-        if ((byte(i) & 0xc0) != 0x80) return 0;
-        code = code << 6 | (byte(i) & 0x3f);
-    }
-    constexpr unsigned kSmallest[] = {0, 0, 0x80, 0x800, 0x10000};
-    const bool surrogate = code >= 0xd800 && code <= 0xdfff;
-    return code >= kSmallest[length] && code <= 0x10ffff && code >= 0xa0 && !surrogate ? length : 0;
-}
-
 }  // namespace
 
 std::string_view pixel_type_name(PixelType type) {
@@ -103,6 +86,10 @@ std::string_view pixel_type_name(PixelType type) {
         case PixelType::uint32: return "uint";
     }
     return "unknown";
+}
+
+bool is_exr_file(const std::filesystem::path& path) {
+    return file_begins_with(path, exr::kMagic);
 }
 
 const std::vector<std::string>& exr_compression_names() {
@@ -206,17 +193,6 @@ ExrPart describe_part(const Imf::Header& header) {
 std::string part_label(const std::vector<ExrPart>& parts, int part) {
     if (parts.size() == 1) return "the file";
     return fmt::format("part {} '{}'", part, parts[std::size_t(part)].name);
-}
-
-std::string printable(std::string_view text) {
-    std::string result;
-    for (std::size_t i = 0; i < text.size();) {
-        const std::size_t length = utf8_length(text.substr(i));
-        if (length == 0) result += '?';
-        else result += text.substr(i, length);
-        i += std::max<std::size_t>(1, length);
-    }
-    return result;
 }
 
 std::string library_reason(const std::exception& error) {

@@ -3,9 +3,10 @@
 #include <charconv>
 #include <cstdint>
 #include <cstdlib>
-#include <regex>
 #include <unordered_set>
 #include <utility>
+
+#include "framework/core/text.h"
 
 namespace aftershade {
 
@@ -20,22 +21,79 @@ std::optional<int> parse_int(std::string_view text) {
     return value;
 }
 
+bool take(std::string_view& text, std::string_view word) {
+    if (!text.starts_with(word)) return false;
+    text.remove_prefix(word.size());
+    return true;
+}
+
+/// Takes a number of at most nine digits off the front.
+std::optional<int> take_number(std::string_view& text) {
+    constexpr std::size_t kMaxDigits = 9;
+    const std::size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
+    if (digits > kMaxDigits) return std::nullopt;
+    const auto number = parse_int(text.substr(0, digits));
+    text.remove_prefix(digits);
+    return number;
+}
+
+std::optional<int> take_signed_number(std::string_view& text) {
+    const int sign = take(text, "-") ? -1 : 1;
+    const auto number = take_number(text);
+    return number ? std::optional(sign * *number) : std::nullopt;
+}
+
+struct Piece {
+    int first = 0, last = 0, step = 1;
+};
+
+/// "7", "1-100", "1..100x2", "1-100:2", with white space around.
+std::optional<Piece> parse_piece(std::string_view text) {
+    constexpr std::string_view kSpace = " \t\n\v\f\r";
+    text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
+    text = text.substr(0, text.find_last_not_of(kSpace) + 1);
+    const auto first = take_signed_number(text);
+    if (!first) return std::nullopt;
+    Piece piece{*first, *first, 1};
+    if (take(text, "-") || take(text, "..")) {
+        const auto last = take_signed_number(text);
+        const auto step = take(text, "x") || take(text, ":") ? take_number(text) : 1;
+        if (!last || !step) return std::nullopt;
+        piece.last = *last;
+        piece.step = *step;
+    }
+    return text.empty() ? std::optional(piece) : std::nullopt;
+}
+
+/// "%d" or "%04d": how much of the text it is, and the width.
+struct PrintfStyle {
+    std::size_t length = 0;
+    int width = 1;
+};
+
+std::optional<PrintfStyle> parse_printf_style(std::string_view text) {
+    std::string_view rest = text;
+    if (!take(rest, "%")) return std::nullopt;
+    PrintfStyle style;
+    if (take(rest, "0")) {
+        const std::string_view width = rest.substr(0, rest.find_first_not_of("0123456789"));
+        if (width.empty() || width.size() > 2) return std::nullopt;
+        style.width = *take_number(rest);
+    }
+    if (!take(rest, "d")) return std::nullopt;
+    style.length = text.size() - rest.size();
+    return style;
+}
+
 }  // namespace
 
 std::optional<std::vector<int>> parse_frame_range(std::string_view text) {
-    static const std::regex piece(R"(^\s*(-?\d{1,9})(?:(?:-|\.\.)(-?\d{1,9})(?:[x:](\d{1,9}))?)?\s*$)");
     std::vector<int> frames;
     std::unordered_set<int> seen;
-    std::size_t start = 0;
-    while (start <= text.size()) {
-        const std::size_t comma = std::min(text.find(',', start), text.size());
-        const std::string part(text.substr(start, comma - start));
-        start = comma + 1;
-        std::smatch match;
-        if (!std::regex_match(part, match, piece)) return std::nullopt;
-        const int first = *parse_int(match[1].str());
-        const int last = match[2].matched ? *parse_int(match[2].str()) : first;
-        const int step = match[3].matched ? *parse_int(match[3].str()) : 1;
+    for (const std::string_view part : split(text, ',')) {
+        const auto piece = parse_piece(part);
+        if (!piece) return std::nullopt;
+        const auto [first, last, step] = *piece;
         if (step == 0 || std::size_t(std::abs(last - first) / step) >= kMaxFrames) return std::nullopt;
         const int direction = last >= first ? step : -step;
         for (int frame = first; direction > 0 ? frame <= last : frame >= last; frame += direction)
@@ -61,13 +119,13 @@ FramePattern::FramePattern(std::string text) : text_(std::move(text)) {
         width_ = int(length_);
         return;
     }
-    static const std::regex printf_style(R"(%(?:0(\d{1,2}))?d)");
-    std::smatch match;
-    const std::string tail = text_.substr(name);
-    if (!std::regex_search(tail, match, printf_style)) return;
-    start_ = name + std::size_t(match.position(0));
-    length_ = std::size_t(match.length(0));
-    width_ = match[1].matched ? *parse_int(match[1].str()) : 1;
+    for (std::size_t at = text_.find('%', name); at != std::string::npos; at = text_.find('%', at + 1))
+        if (const auto style = parse_printf_style(std::string_view(text_).substr(at))) {
+            start_ = at;
+            length_ = style->length;
+            width_ = style->width;
+            return;
+        }
 }
 
 std::string FramePattern::path(int frame) const {

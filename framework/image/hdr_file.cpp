@@ -3,39 +3,21 @@
 #include <fmt/format.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <memory>
-#include <string>
-#include <string_view>
 
-#include "framework/core/error.h"
+#include "framework/core/atomic_file.h"
 
-// Internal linkage, so that another copy of stb in the program cannot be linked instead of this one.
-#define STB_IMAGE_STATIC
-#define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_HDR
-#define STBI_NO_STDIO
-#define STBI_MAX_DIMENSIONS 16384
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"
-#pragma GCC diagnostic ignored "-Wunused-parameter"
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wshadow"
-#include <stb/stb_image.h>
-#pragma GCC diagnostic pop
+#include "framework/image/stb_internal.h"
 
 namespace aftershade {
 
 namespace fs = std::filesystem;
+using stb::fail;
 
 namespace {
-
-[[noreturn]] void fail(const fs::path& path, const std::string& what) {
-    throw Error(ExitCode::capture, path.string() + ": " + what);
-}
 
 /// What stb reads from, and whether it asked for more than there is.
 struct Source {
@@ -62,12 +44,7 @@ int is_at_end(void* user) {
 }  // namespace
 
 bool is_hdr_file(const fs::path& path) {
-    std::error_code error;
-    if (!fs::is_regular_file(path, error)) return false;
-    char begin[6] = {};
-    std::ifstream(path, std::ios::binary).read(begin, sizeof begin);
-    const std::string_view text(begin, sizeof begin);
-    return text.starts_with("#?RADI") || text.starts_with("#?RGBE");
+    return file_begins_with(path, "#?RADI") || file_begins_with(path, "#?RGBE");
 }
 
 Image read_hdr(const fs::path& path) {

@@ -15,7 +15,7 @@ namespace aftershade {
 namespace {
 
 /// stb_easy_font has no check of its own: its table ends with '~'.
-std::string printable(std::string_view text) {
+std::string in_the_font(std::string_view text) {
     std::string result(text);
     for (char& c : result)
         if (c < ' ' || c > '~') c = '?';
@@ -37,12 +37,12 @@ std::string shortened(std::string text, int scale, int max_width_px) {
 }  // namespace
 
 int text_width_px(std::string_view text) {
-    return stb_easy_font_width(printable(text).data());
+    return stb_easy_font_width(in_the_font(text).data());
 }
 
 void draw_text(Image& picture, int x, int y, std::string_view text, int scale, int max_width_px,
                DisplayColor color) {
-    std::string line = shortened(printable(text), scale, max_width_px);
+    std::string line = shortened(in_the_font(text), scale, max_width_px);
     constexpr std::size_t kQuadsPerLetter = 16;  // '@' has the most, 11
     std::vector<Vertex> vertices((line.size() + 1) * kQuadsPerLetter * 4);
     const int quads = stb_easy_font_print(0, 0, line.data(), nullptr, vertices.data(),

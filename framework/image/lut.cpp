@@ -14,8 +14,6 @@
 
 namespace aftershade {
 
-namespace fs = std::filesystem;
-
 namespace {
 
 constexpr int kMaxFaults = 20;
@@ -186,23 +184,12 @@ std::optional<Lut> parse_lut(std::string_view text, const std::string& file, Dia
     return LutReader(file, diagnostics).read(text);
 }
 
-std::optional<Lut> read_lut(const fs::path& path, Diagnostics& diagnostics) {
-    const std::string name = path.string();
-    const auto fault = [&](const std::string& text) {
-        diagnostics.error({name}, text);
-        return std::nullopt;
-    };
-    std::error_code failure;
-    const fs::file_status status = fs::status(path, failure);
-    if (!fs::exists(status)) return fault("no such file");
-    if (!fs::is_regular_file(status)) return fault("is not a regular file");
-    const std::uintmax_t size = fs::file_size(path, failure);
-    if (failure) return fault("cannot be opened: " + failure.message());
-    if (size > kMaxFileBytes)
-        return fault(fmt::format("the file has {} bytes, the limit is {}", size, kMaxFileBytes));
-    const std::string text = read_text_file(path, failure);
-    if (failure) return fault("cannot be read: " + failure.message());
-    return parse_lut(text, name, diagnostics);
+std::optional<Lut> read_lut(const std::filesystem::path& path, Diagnostics& diagnostics) {
+    std::string fault;
+    const std::string text = read_regular_file(path, kMaxFileBytes, fault);
+    if (fault.empty()) return parse_lut(text, path.string(), diagnostics);
+    diagnostics.error({path.string()}, fault);
+    return std::nullopt;
 }
 
 }  // namespace aftershade

@@ -7,8 +7,6 @@
 #include "framework/image/srgb.h"
 
 #include <algorithm>
-#include <array>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -21,13 +19,6 @@ namespace {
 constexpr int kRgba = 4;
 constexpr int kAlpha = 3;
 const std::vector<std::string> kExrChannels = {"R", "G", "B", "A"};
-
-bool is_exr(const fs::path& path) {
-    constexpr std::array<char, 4> kMagic = {0x76, 0x2f, 0x31, 0x01};
-    std::array<char, 4> bytes{};
-    std::ifstream file(path, std::ios::binary);
-    return file.read(bytes.data(), bytes.size()) && bytes == kMagic;
-}
 
 Image read_exr_picture(const fs::path& path) {
     const ExrFile file(path);
@@ -80,7 +71,7 @@ Image read_png_picture(const fs::path& path, PictureSpace space) {
 }  // namespace
 
 Image read_picture(const fs::path& path, PictureSpace space) {
-    return is_exr(path) ? read_exr_picture(path) : read_png_picture(path, space);
+    return is_exr_file(path) ? read_exr_picture(path) : read_png_picture(path, space);
 }
 
 }  // namespace aftershade

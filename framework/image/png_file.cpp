@@ -1,5 +1,6 @@
 #include "framework/image/png_file.h"
 
+#include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
 #include "framework/image/output_stream.h"
 
@@ -8,48 +9,27 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cerrno>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <cstring>
 #include <exception>
-#include <fstream>
 #include <memory>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <vector>
 
-// Internal linkage, so that another copy of stb in the program cannot be linked instead of this one.
-#define STB_IMAGE_STATIC
-#define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_PNG
-#define STBI_NO_STDIO
-#define STBI_MAX_DIMENSIONS 16384
-#define STB_IMAGE_WRITE_STATIC
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#define STBI_WRITE_NO_STDIO
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wshadow"
-#include <stb/stb_image.h>
-#include <stb/stb_image_write.h>
-#pragma GCC diagnostic pop
+#include "framework/image/stb_internal.h"
 
 namespace aftershade {
 
 namespace fs = std::filesystem;
+using stb::fail;
 
 namespace {
 
 constexpr std::uintmax_t kMaxFileBytes = 512u * 1024 * 1024;
 constexpr int kMaxSidePx = STBI_MAX_DIMENSIONS;
-
-[[noreturn]] void fail(const fs::path& path, const std::string& what) {
-    throw Error(ExitCode::capture, path.string() + ": " + what);
-}
 
 std::uint8_t to_byte(float value) {
     // The comparison is false for NaN.
@@ -73,29 +53,20 @@ void write_to_sink(void* context, void* bytes, int count) {
     }
 }
 
-std::vector<unsigned char> read_bytes(const fs::path& path) {
-    std::error_code error;
-    const fs::file_status status = fs::status(path, error);
-    if (error) fail(path, fmt::format("cannot be opened: {}", error.message()));
-    if (fs::is_directory(status)) fail(path, "is a folder, not a PNG file");
-    if (!fs::is_regular_file(status)) fail(path, "is not a regular file");
-    const std::uintmax_t size = fs::file_size(path, error);
-    if (error) fail(path, fmt::format("cannot be opened: {}", error.message()));
-    if (size == 0) fail(path, "the file is empty");
-    if (size > kMaxFileBytes)
-        fail(path, fmt::format("the file has {} bytes, the limit is {}", size, kMaxFileBytes));
-    std::vector<unsigned char> bytes(size);
-    std::ifstream file(path, std::ios::binary);
-    if (!file) fail(path, fmt::format("cannot be opened: {}", std::strerror(errno)));
-    if (!file.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size)))
-        fail(path, "cannot be read to its end");
+std::string read_bytes(const fs::path& path) {
+    std::error_code ignored;
+    if (fs::is_directory(path, ignored)) fail(path, "is a folder, not a PNG file");
+    std::string fault;
+    std::string bytes = read_regular_file(path, kMaxFileBytes, fault);
+    if (!fault.empty()) fail(path, fault);
+    if (bytes.empty()) fail(path, "the file is empty");
     return bytes;
 }
 
 /// stb_image passes over the checksums of chunks and of the pixels: what it takes from a damaged file would
 /// be another picture. Chunks as the PNG specification, section 5.3, has them; of those that may be ignored
 /// nothing is asked.
-void check_chunks(const fs::path& path, const std::vector<unsigned char>& bytes) {
+void check_chunks(const fs::path& path, std::span<const unsigned char> bytes) {
     const auto number_at = [&](std::size_t at) {
         return std::uint32_t(bytes[at]) << 24 | std::uint32_t(bytes[at + 1]) << 16 |
                std::uint32_t(bytes[at + 2]) << 8 | std::uint32_t(bytes[at + 3]);
@@ -142,7 +113,8 @@ void write_png(const fs::path& path, const Image& display) {
 }
 
 Image read_png(const fs::path& path) {
-    const std::vector<unsigned char> bytes = read_bytes(path);
+    const std::string text = read_bytes(path);
+    const std::span bytes(reinterpret_cast<const unsigned char*>(text.data()), text.size());
     const int size = static_cast<int>(bytes.size());
     int width = 0, height = 0, channels = 0;
     if (stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) == 0) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "framework/core/text.h"
+
 namespace aftershade {
 
 namespace {
@@ -36,13 +38,6 @@ std::string scale_text(const std::array<double, 2>& scale) {
                                 : fmt::format("[{:.3g}, {:.3g}]", scale[0], scale[1]);
 }
 
-std::string join(const std::vector<std::string>& parts, const char* last) {
-    std::string text;
-    for (std::size_t i = 0; i < parts.size(); ++i)
-        text += (i == 0 ? "" : i + 1 == parts.size() ? last : ", ") + parts[i];
-    return text;
-}
-
 /// "delta from prev-cur to cur-prev and y_axis from up to down".
 std::string describe_change(const VelocitySettings& from, const VelocitySettings& to) {
     std::vector<std::string> changes;
@@ -53,7 +48,7 @@ std::string describe_change(const VelocitySettings& from, const VelocitySettings
     if (from.scale != to.scale)
         changes.push_back(fmt::format("scale from {} to {}", scale_text(from.scale), scale_text(to.scale)));
     if (from.exchange_channels != to.exchange_channels) changes.push_back("the order of the two channels");
-    std::string text = join(changes, " and ");
+    std::string text = joined(changes, " and ");
     if (from.is_next() != to.is_next())
         text += fmt::format(" (the channels belong to role {}, not {})", role_name(to), role_name(from));
     return text;
@@ -179,7 +174,7 @@ void add_difference(const VelocitySettings& settings, const VelocityHypothesis& 
 
 std::string describe_verdict(const VelocityCheck& check) {
     const std::string own = percent(check.identity.score), settings = describe_settings(check.settings);
-    const std::string untold = join(check.untold, " and ");
+    const std::string untold = joined(check.untold, " and ");
     switch (check.verdict) {
         case VelocityVerdict::confirmed:
             return fmt::format(

@@ -78,9 +78,10 @@ json rules_of(ParamType type, bool column) {
     rules["properties"]["default"] = schema::literal(any);
     if (!column) rules["properties"]["identity"] = schema::literal(any);
     if (!column && !is_block_type(type)) rules["properties"]["bind"] = {{"const", "uniform"}};
-    if (!column && type == ParamType::enum_) rules["properties"]["from"] = {{"const", "camera.lens_model"}};
+    const std::string of_enums = camera_sources(ParamType::enum_).front();
+    if (!column && type == ParamType::enum_) rules["properties"]["from"] = {{"const", of_enums}};
     if (!column && is_block_type(type) && type != ParamType::enum_)
-        rules["properties"]["from"] = {{"not", {{"const", "camera.lens_model"}}}};
+        rules["properties"]["from"] = {{"not", {{"const", of_enums}}}};
     if (type == ParamType::table) rules["required"] = {"columns"};
     else if (type == ParamType::enum_) rules["required"] = {"default", "values"};
     else if (type == ParamType::file) rules["required"] = {"default", "kind"};
@@ -109,8 +110,8 @@ json param(bool column) {
                  {"values", schema::array_of({{"type", "string"}, {"pattern", "^[a-z0-9_]+$"}}, 2)}};
     keys["values"]["uniqueItems"] = true;
     if (!column) {
-        std::vector<std::string> sources{"camera.lens_model"};
-        for (const CameraField& field : camera_fields()) sources.push_back("camera." + field.name);
+        std::vector<std::string> sources = camera_sources(ParamType::enum_);
+        for (std::string& source : camera_sources(ParamType::float_)) sources.push_back(std::move(source));
         keys["bind"] = schema::one_of({"uniform", "define"});
         keys["from"] = schema::one_of(sources);
         keys["identity"] = json::object();

@@ -1,23 +1,19 @@
 #include "framework/pipeline/frame_blocks.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_inverse.hpp>
 
 #include "framework/core/error.h"
+#include "framework/core/text.h"
+#include "framework/image/camera_matrix.h"
 #include "framework/image/cryptomatte.h"
 
 namespace aftershade {
 
 namespace {
-
-glm::dmat4 matrix_of(const CameraMatrix& rows) {
-    glm::dmat4 matrix;
-    for (int row = 0; row < 4; ++row)
-        for (int column = 0; column < 4; ++column) matrix[column][row] = rows[std::size_t(row * 4 + column)];
-    return matrix;
-}
 
 ColumnMatrix columns_of(const glm::dmat4& matrix) {
     ColumnMatrix columns;
@@ -38,14 +34,14 @@ constexpr double kNear_m = 0.01;
 /// w becomes the distance along the view axis, and z = w - near.
 std::optional<Projection> projection_of(const Camera& camera) {
     if (!camera.camera_from_world || !camera.ndc_from_world) return std::nullopt;
-    glm::dmat4 clip = matrix_of(*camera.ndc_from_world);
+    glm::dmat4 clip = glm_matrix(*camera.ndc_from_world);
     const glm::dvec3 axis(clip[0][3], clip[1][3], clip[2][3]);
     const double scale = glm::length(axis);
     if (!(scale > 1e-12)) return std::nullopt;
     clip /= scale;
     for (int column = 0; column < 4; ++column) clip[column][2] = clip[column][3];
     clip[3][2] -= kNear_m;
-    return Projection{matrix_of(*camera.camera_from_world), clip};
+    return Projection{glm_matrix(*camera.camera_from_world), clip};
 }
 
 void set_matrices(const Camera& camera, CameraBlock& block) {
@@ -70,7 +66,7 @@ struct MixBlock {
     std::int32_t unused = 0;
     std::int32_t origin_px[2] = {0, 0};
     std::int32_t display_size_px[2] = {1, 1};
-    std::uint32_t objects[kMaskObjects][4] = {};
+    std::uint32_t objects[kMaxMaskObjects][4] = {};  // first and last id; std140 has arrays of vec4
 };
 
 void set_origin(const CaptureHeader& header, std::int32_t (&origin_px)[2], std::int32_t (&display_px)[2]) {
@@ -82,11 +78,8 @@ void set_origin(const CaptureHeader& header, std::int32_t (&origin_px)[2], std::
 
 }  // namespace
 
-/// FNV-1a: the seed of a step is its name's, so that a step inserted before it changes nothing.
 std::uint32_t step_seed(const std::string& name) {
-    std::uint32_t hash = 2166136261u;
-    for (const unsigned char c : name) hash = (hash ^ c) * 16777619u;
-    return hash;
+    return fnv1a_32(name);
 }
 
 FrameBlock frame_block(const FrameInputs& frame, const std::string& step, bool history_valid) {
@@ -171,12 +164,12 @@ std::vector<std::byte> mix_block(const PipelineStep& step, const FrameInputs& fr
     set_origin(frame.capture->header, block.origin_px, block.display_size_px);
     if (!step.mask) return bytes_of(block);
     block.invert = step.mask->invert ? 1 : 0;
-    block.object_count = std::int32_t(std::min(step.mask->objects.size(), kMaskObjects));
-    for (std::size_t i = 0; i < std::size_t(block.object_count); ++i) {
-        const TableKey& object = step.mask->objects[i];
-        const std::uint32_t hash = object.name.empty() ? 0 : cryptomatte_hash(object.name);
-        block.objects[i][0] = object.name.empty() ? object.first : hash;
-        block.objects[i][1] = object.name.empty() ? object.last : hash;
+    const std::vector<IdRange> ranges = id_ranges(step.mask->objects);
+    assert(ranges.size() <= kMaxMaskObjects);
+    block.object_count = std::int32_t(ranges.size());
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+        block.objects[i][0] = ranges[i].first;
+        block.objects[i][1] = ranges[i].last;
     }
     return bytes_of(block);
 }

@@ -17,7 +17,7 @@ struct FrameBefore {
     std::optional<Camera> camera;
 };
 
-/// Differs between the steps of a look, by their names.
+/// Differs between the steps of a look, by their names: a step inserted before one changes nothing of it.
 std::uint32_t step_seed(const std::string& step);
 
 /// The block `frame` of one step.
@@ -33,8 +33,6 @@ LightsBlock lights_block(const FrameInputs& frame, const std::string& step);
 /// The block of a step's "mix" and "mask" (glsl/host/mix.frag). Throws Error(ExitCode::capture) where the mix
 /// comes from the capture and does not fit.
 std::vector<std::byte> mix_block(const PipelineStep& step, const FrameInputs& frame);
-/// Most ranges of objects that a mask holds.
-inline constexpr std::size_t kMaskObjects = 64;
 
 template <typename Block>
 std::vector<std::byte> bytes_of(const Block& block) {

@@ -201,7 +201,7 @@ void write_history(const fs::path& path, const SavedHistory& history) {
     std::ofstream out(file.temporary_path(), std::ios::binary);
     const std::string head = describe(history).dump();
     out << kMagic << "\n" << head << "\n";
-    std::uint64_t sum = fnv1a(std::as_bytes(std::span(head)));
+    std::uint64_t sum = fnv1a(head);
     for (const auto& [name, saved] : history.resources) {
         out.write(reinterpret_cast<const char*>(saved.bytes.data()), std::streamsize(saved.bytes.size()));
         sum = fnv1a(saved.bytes, sum);
@@ -229,7 +229,7 @@ SavedHistory read_history(const fs::path& path) {
     try {
         const json document = json::parse(head);
         apply(document, history);
-        const std::uint64_t sum = fnv1a(std::as_bytes(std::span(head)));
+        const std::uint64_t sum = fnv1a(head);
         if (!read_resources(in, file_bytes, document, sum, history))
             throw refuse("this history is damaged; make it anew with --history-out");
     } catch (const json::exception&) {

@@ -30,15 +30,22 @@ std::vector<WiringSpec> parse_wiring(const Node& node, Diagnostics& diagnostics)
     return wiring;
 }
 
-/// One object: an id, a range such as "3-7,9", or a Cryptomatte name.
+/// One entry, or a list of them.
 void add_objects(const Node& node, std::vector<TableKey>& objects, Diagnostics& diagnostics) {
-    if (node.kind == Node::Kind::integer && node.integer >= 0 && node.integer <= 0xffffffffLL) {
-        objects.push_back({std::uint32_t(node.integer), std::uint32_t(node.integer), ""});
-    } else if (node.is_string() && !node.string.empty()) {
-        objects.push_back({0, 0, node.string});
-    } else {
-        diagnostics.error(node.place, "an object is an id from 0 to 4294967295 or a Cryptomatte name");
-    }
+    const std::string label = "the mask";
+    const auto add = [&](const Node& entry) {
+        for (TableKey& key : parse_object_keys(entry, label, diagnostics)) objects.push_back(std::move(key));
+    };
+    if (node.is_array()) std::for_each(node.items.begin(), node.items.end(), add);
+    else add(node);
+    if (node.is_array() && node.items.empty())
+        diagnostics.error(node.place, label + "'s 'object' names no object");
+    if (objects.size() > kMaxMaskObjects)
+        diagnostics.error(node.place,
+                          label + " names " + std::to_string(objects.size()) +
+                              " ids, ranges and names; the limit is " + std::to_string(kMaxMaskObjects) +
+                              " (write ids that follow one another as a range, \"3-7\", or give the mask as "
+                              "a picture: 'role' or 'file')");
 }
 
 MaskSpec parse_mask(const Node& node, const fs::path& folder, Diagnostics& diagnostics) {
@@ -46,11 +53,7 @@ MaskSpec parse_mask(const Node& node, const fs::path& folder, Diagnostics& diagn
     MaskSpec mask;
     mask.place = node.place;
     mask.role = reader.text("role").value_or("");
-    if (const Node* object = reader.any("object")) {
-        if (object->is_array())
-            for (const Node& item : object->items) add_objects(item, mask.objects, diagnostics);
-        else add_objects(*object, mask.objects, diagnostics);
-    }
+    if (const Node* object = reader.any("object")) add_objects(*object, mask.objects, diagnostics);
     if (const auto file = reader.text("file")) mask.file = folder / *file;
     mask.invert = reader.boolean("invert").value_or(false);
     reader.finish();

@@ -1,6 +1,7 @@
 // The user's JSON: ordered steps, no paths of captures or outputs inside.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -20,6 +21,9 @@ struct WiringSpec {
     std::string output;  ///< a role of the capture, or an output or a texture of that step
     Place place;
 };
+
+/// Most ids, ranges of ids and names of one mask: what a uniform block of 16 KiB, GL's least, holds.
+inline constexpr std::size_t kMaxMaskObjects = 1000;
 
 /// "mask": where a step works. One of role, objects and file is set.
 struct MaskSpec {

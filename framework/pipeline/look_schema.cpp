@@ -4,6 +4,7 @@
 #include "framework/effect/describe.h"
 #include "framework/image/camera.h"
 #include "framework/image/role.h"
+#include "framework/pipeline/look.h"
 #include "framework/pipeline/pipeline.h"
 #include "framework/pipeline/schema.h"
 #include "framework/pipeline/schema_role.h"
@@ -38,11 +39,10 @@ bool is_number(const ParamSpec& spec) {
 std::vector<json> captured(const ParamSpec& spec) {
     std::vector<json> forms;
     std::vector<std::string> fields;
-    if (spec.type == ParamType::enum_) fields.push_back("camera.lens_model");
+    if (spec.type == ParamType::enum_) fields = camera_sources(spec.type);
     if (is_number(spec))
         for (const CameraField& field : camera_fields())
-            if (field.unit == spec.unit || convert_unit(1, field.unit, spec.unit))
-                fields.push_back("camera." + field.name);
+            if (converts_to(field, spec)) fields.push_back(std::string(kFromCamera) + field.name);
     if (!fields.empty())
         forms.push_back(schema::object({{"from", or_variable(schema::one_of(fields))}}, {"from"}));
     if (!is_number(spec) || !convert_unit(1, "m", spec.unit)) return forms;
@@ -82,8 +82,9 @@ json wiring_of(const EffectManifest& effect) {
 
 json mask() {
     const json object = or_variable(schema::object_key());
+    const json objects = schema::array_of(object, 1, int(kMaxMaskObjects));
     json result = schema::object({{"role", or_variable(schema::role())},
-                                  {"object", schema::any_of({object, schema::array_of(object)})},
+                                  {"object", schema::any_of({object, objects})},
                                   {"file", or_variable({{"type", "string"}, {"minLength", 1}})},
                                   {"invert", or_variable({{"type", "boolean"}})}});
     result["oneOf"] = {{{"required", {"role"}}}, {{"required", {"object"}}}, {{"required", {"file"}}}};

@@ -180,9 +180,8 @@ ResolvedValue resolve_param(const PipelineStep& step, const ParamSpec& spec, con
     if (const auto asked = step.values.find(spec.name); asked != step.values.end())
         return {evaluate(asked->second, spec, label, *frame.capture),
                 step.origins.at(spec.name) + described(asked->second)};
-    constexpr std::string_view kCamera = "camera.";
-    if (spec.from.starts_with(kCamera)) {
-        const std::string field = spec.from.substr(kCamera.size());
+    if (spec.from.starts_with(kFromCamera)) {
+        const std::string field = spec.from.substr(kFromCamera.size());
         if (auto captured = camera_value(spec, field, label, frame.capture->header))
             return {std::move(*captured), frame.capture->header.camera.origin(field)};
     }

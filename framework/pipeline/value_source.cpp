@@ -6,14 +6,13 @@
 #include <iterator>
 
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 #include "framework/core/units.h"
 #include "framework/image/cryptomatte.h"
 
 namespace aftershade {
 
 namespace {
-
-constexpr std::string_view kCamera = "camera.";
 
 std::optional<int> frame_number(const std::string& text) {
     int number = 0;
@@ -63,23 +62,19 @@ struct SourceReader {
         if (!source) return std::nullopt;
         if (source == "depth") return depth(reader, node);
         reader.finish();
-        std::vector<std::string> known{"depth"};
-        if (spec.type == ParamType::enum_) known.push_back(std::string(kCamera) + "lens_model");
-        else
-            for (const CameraField& field : camera_fields())
-                known.push_back(std::string(kCamera) + field.name);
+        std::vector<std::string> known = camera_sources(spec.type);
+        known.insert(known.begin(), "depth");
         const Place& place = node.find("from")->place;
         if (std::find(known.begin(), known.end(), *source) == known.end()) {
-            diagnostics.error(place, label + ": '" + *source + "' is not a value of the capture" +
-                                         did_you_mean(*source, known) +
-                                         " (known: " + list_of_names(known, "and") + ")");
+            diagnostics.error(place, label + ": " + unknown_source(*source, known));
             return std::nullopt;
         }
-        const std::string field = source->substr(kCamera.size());
+        const std::string field = source->substr(kFromCamera.size());
         if (spec.type == ParamType::enum_) return CameraValue{field};
         if (!is_scalar(place)) return std::nullopt;
-        const std::string& unit = find_camera_field(field)->unit;
-        if (unit != spec.unit && !convert_unit(1, unit, spec.unit)) {
+        const CameraField& camera_field = *find_camera_field(field);
+        if (!converts_to(camera_field, spec)) {
+            const std::string& unit = camera_field.unit;
             diagnostics.error(place, label + ": " + *source + " is in " + (unit.empty() ? "no unit" : unit) +
                                          ", which cannot be converted to " +
                                          (spec.unit.empty() ? "a pure number" : spec.unit));
@@ -110,16 +105,11 @@ struct SourceReader {
                 return std::nullopt;
             }
             value.uv = {uv->items[0].number, uv->items[1].number};
-        } else if (object->kind == Node::Kind::integer && object->integer >= 0 &&
-                   object->integer <= 0xffffffffLL) {
-            value.object = TableKey{std::uint32_t(object->integer), std::uint32_t(object->integer), ""};
-        } else if (object->is_string() && !object->string.empty()) {
-            value.object = TableKey{0, 0, object->string};
-        } else {
-            diagnostics.error(object->place,
-                              label + ": 'object' is an id from 0 to 4294967295 or a Cryptomatte name");
-            return std::nullopt;
+            return value;
         }
+        const int errors_before = diagnostics.error_count();
+        value.objects = parse_object_keys(*object, label, diagnostics);
+        if (diagnostics.error_count() > errors_before) return std::nullopt;
         return value;
     }
 
@@ -148,16 +138,21 @@ ParamValue fitted(double number, const ParamSpec& spec, const std::string& label
     return number;
 }
 
-double median_depth_m(const TableKey& object, const std::string& label, const Capture& capture) {
-    const std::uint32_t first = object.name.empty() ? object.first : cryptomatte_hash(object.name);
-    const std::uint32_t last = object.name.empty() ? object.last : first;
-    const std::string who = object.name.empty() ? "object " + std::to_string(first) : "'" + object.name + "'";
+double median_depth_m(const std::vector<TableKey>& objects, const std::string& label,
+                      const Capture& capture) {
+    const std::vector<IdRange> wanted = id_ranges(objects);
     const auto ids = capture.images.at("object_id").uints();
     const auto depths = capture.images.at("depth").floats();
     std::vector<float> found;
     for (std::size_t i = 0; i < ids.size(); ++i)
-        if (ids[i] >= first && ids[i] <= last && std::isfinite(depths[i])) found.push_back(depths[i]);
-    if (found.empty()) refuse(label, capture.header, who + " has no pixel with a depth in this frame");
+        if (std::isfinite(depths[i]) && contains(wanted, ids[i])) found.push_back(depths[i]);
+    if (found.empty()) {
+        const bool is_one = objects.size() == 1 && objects[0].first == objects[0].last;
+        std::vector<std::string> names;
+        for (const TableKey& key : objects) names.push_back(object_text(key));
+        refuse(label, capture.header,
+               joined(names, " and ") + (is_one ? " has" : " have") + " no pixel with a depth in this frame");
+    }
     const auto middle = found.begin() + std::ptrdiff_t(found.size() / 2);
     std::nth_element(found.begin(), middle, found.end());
     return double(*middle);
@@ -206,9 +201,7 @@ std::string format_source(const ValueSource& source) {
         if (depth->uv)
             return begin + "\"uv\": [" + format_number((*depth->uv)[0]) + ", " +
                    format_number((*depth->uv)[1]) + "]}";
-        const TableKey& object = *depth->object;
-        return begin + "\"object\": " +
-               (object.name.empty() ? std::to_string(object.first) : "\"" + object.name + "\"") + "}";
+        return begin + "\"object\": " + format_object_keys(depth->objects) + "}";
     }
     const auto& keyed = std::get<KeyedValue>(source);
     std::string text;
@@ -222,7 +215,7 @@ std::string format_source(const ValueSource& source) {
 std::vector<std::string> roles_of(const ValueSource& source) {
     const auto* depth = std::get_if<DepthValue>(&source);
     if (!depth) return {};
-    if (depth->object) return {"depth", "object_id"};
+    if (!depth->objects.empty()) return {"depth", "object_id"};
     return {"depth"};
 }
 
@@ -242,7 +235,7 @@ std::optional<ParamValue> camera_value(const ParamSpec& spec, const std::string&
     const std::string& unit = find_camera_field(field)->unit;
     if (number && unit != spec.unit) number = convert_unit(*number, unit, spec.unit);
     if (!number) return std::nullopt;
-    return fitted(*number, spec, label, std::string(kCamera) + field, header);
+    return fitted(*number, spec, label, std::string(kFromCamera) + field, header);
 }
 
 ParamValue evaluate(const ValueSource& source, const ParamSpec& spec, const std::string& label,
@@ -262,7 +255,7 @@ ParamValue evaluate(const ValueSource& source, const ParamSpec& spec, const std:
     for (const std::string& role : roles_of(source))
         if (!capture.images.contains(role)) refuse(label, capture.header, "the capture has no " + role);
     const double depth_m =
-        depth.uv ? depth_at_m(*depth.uv, label, capture) : median_depth_m(*depth.object, label, capture);
+        depth.uv ? depth_at_m(*depth.uv, label, capture) : median_depth_m(depth.objects, label, capture);
     return fitted(*convert_unit(depth_m, "m", spec.unit), spec, label, "depth", capture.header);
 }
 

@@ -27,10 +27,10 @@ struct CameraValue {
 };
 
 /// {"from": "depth", "uv": [0.5, 0.5]} or {"from": "depth", "object": 2}: metres along the view axis, of one
-/// point of the display window (u right, v down, from 0 to 1) or the median over an object's pixels.
+/// point of the display window (u right, v down, from 0 to 1) or the median over the pixels of objects.
 struct DepthValue {
     std::optional<std::array<double, 2>> uv;
-    std::optional<TableKey> object;
+    std::vector<TableKey> objects;  ///< one entry of a document: a name, or ids and ranges of ids
 };
 
 using ValueSource = std::variant<ParamValue, KeyedValue, CameraValue, DepthValue>;

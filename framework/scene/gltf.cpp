@@ -1,3 +1,4 @@
+#include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
 #include "framework/scene/gltf_bytes.h"
 #include "framework/scene/mesh.h"
@@ -41,7 +42,9 @@ std::string same_path(const std::string& path, void*) {
 }
 
 bool read_whole_file(std::vector<unsigned char>* bytes, std::string* error, const std::string& path, void*) {
-    const std::string fault = read_gltf_bytes(path, *bytes);
+    std::string fault;
+    const std::string text = read_regular_file(path, kMaxGltfBytes, fault);
+    bytes->assign(text.begin(), text.end());
     if (!fault.empty() && error) *error += fault;
     return fault.empty();
 }
@@ -74,8 +77,9 @@ void check_extensions(const fs::path& path, const tinygltf::Model& model) {
 }
 
 tinygltf::Model load_model(const fs::path& path) {
-    std::vector<unsigned char> bytes;
-    std::string fault = read_gltf_bytes(path, bytes);
+    std::string fault;
+    const std::string text = read_regular_file(path, kMaxGltfBytes, fault);
+    const std::span bytes(reinterpret_cast<const unsigned char*>(text.data()), text.size());
     if (fault.empty()) fault = check_gltf_bytes(bytes);
     if (!fault.empty()) fail(path, fault);
     const bool binary = is_binary_gltf(bytes);
@@ -91,8 +95,7 @@ tinygltf::Model load_model(const fs::path& path) {
     bool read = false;
     try {
         read = binary ? loader.LoadBinaryFromMemory(&model, &error, &warning, bytes.data(), size, folder)
-                      : loader.LoadASCIIFromString(&model, &error, &warning,
-                                                   reinterpret_cast<const char*>(bytes.data()), size, folder);
+                      : loader.LoadASCIIFromString(&model, &error, &warning, text.data(), size, folder);
     } catch (const std::exception& exception) {
         error += exception.what();
     }

@@ -5,15 +5,11 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 
 namespace aftershade::scene {
 
-namespace fs = std::filesystem;
-
 namespace {
 
-constexpr std::uintmax_t kMaxFileBytes = 1024u * 1024 * 1024;
 constexpr int kMaxJsonDepth = 200;
 // A .glb: magic, version, length; then chunks, each with length and kind before it. The first is JSON.
 constexpr std::size_t kJsonLengthAt = 12;
@@ -51,22 +47,6 @@ std::string check_depth(std::span<const unsigned char> json) {
 }
 
 }  // namespace
-
-std::string read_gltf_bytes(const fs::path& path, std::vector<unsigned char>& bytes) {
-    std::error_code failure;
-    const fs::file_status status = fs::status(path, failure);
-    if (!fs::exists(status)) return "no such file";
-    if (!fs::is_regular_file(status)) return "is not a regular file";
-    const std::uintmax_t size = fs::file_size(path, failure);
-    if (failure) return "cannot be opened: " + failure.message();
-    if (size > kMaxFileBytes)
-        return fmt::format("the file has {} bytes, the limit is {}", size, kMaxFileBytes);
-    bytes.resize(size);
-    std::ifstream in(path, std::ios::binary);
-    if (!in || (size > 0 && !in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size))))
-        return "cannot be read";
-    return "";
-}
 
 bool is_binary_gltf(std::span<const unsigned char> bytes) {
     return bytes.size() >= kJsonAt && std::memcmp(bytes.data(), "glTF", 4) == 0;

@@ -1,15 +1,14 @@
 // The bytes of a glTF file before they are parsed.
 #pragma once
 
-#include <filesystem>
+#include <cstdint>
 #include <span>
 #include <string>
-#include <vector>
 
 namespace aftershade::scene {
 
-/// Fills `bytes` with a regular file of at most 1 GiB. What is wrong, without the path; "" when nothing.
-std::string read_gltf_bytes(const std::filesystem::path& path, std::vector<unsigned char>& bytes);
+/// Largest file that is read, and largest buffer of one.
+inline constexpr std::uintmax_t kMaxGltfBytes = 1024u * 1024 * 1024;
 
 /// Whether they are a .glb, by what they begin with.
 bool is_binary_gltf(std::span<const unsigned char> bytes);

@@ -11,7 +11,7 @@ layout(std140, binding = 0) uniform MixBlock {
     int unused;
     ivec2 origin;        // display-window pixel of texel (0, 0)
     ivec2 display_size;  // px
-    uvec4 objects[64];   // first and last id of a range
+    uvec4 objects[1000];  // first and last id of a range; they rise, with a gap between any two
 } mixing;
 
 layout(location = 0) out vec4 result;
@@ -28,9 +28,13 @@ float mask(ivec2 pixel) {
 layout(binding = 2) uniform usampler2D object_id;
 float mask(ivec2 pixel) {
     uint id = texelFetch(object_id, pixel, 0).r;
-    for (int i = 0; i < mixing.object_count; ++i)
-        if (id >= mixing.objects[i].x && id <= mixing.objects[i].y) return 1.0;
-    return 0.0;
+    int low = 0, high = mixing.object_count;
+    while (low < high) {  // to the first range that ends at the id or above it
+        int middle = (low + high) / 2;
+        if (mixing.objects[middle].y < id) low = middle + 1;
+        else high = middle;
+    }
+    return low < mixing.object_count && mixing.objects[low].x <= id ? 1.0 : 0.0;
 }
 #else
 float mask(ivec2 pixel) { return 1.0; }

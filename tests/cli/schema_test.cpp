@@ -114,7 +114,7 @@ TEST_F(Schemas, TakeEveryFormOfAValue) {
           R"({"from": "depth", "object": "Wheel"})"})
         documents.push_back({"look", value,
                              parsed(R"({"aftershade": 1, "vars": {"focus": 2}, "steps": [
-            {"effect": "bokeh", "preset": "fast", "mix": {"keys": {"1": 0, "9": 1}}, "mask": {"object": [2, "Wheel"]},
+            {"effect": "bokeh", "preset": "fast", "mix": {"keys": {"1": 0, "9": 1}}, "mask": {"object": [2, "Wheel", "3-7,9"]},
              "in": {"depth": "capture.depth"}, "params": {"focus_distance": )" +
                                     std::string(value) + "}}]}")});
     const std::vector<std::string> seen = verdicts(documents);
@@ -185,6 +185,7 @@ std::vector<std::pair<std::string, std::string>> broken_documents() {
         look(step(R"("in": {"depth": "depth"})")),
         look(step(R"("mix": 2)")),
         look(step(R"("mask": {"role": "mask", "object": 2})")),
+        look(step(R"("mask": {"object": []})")),
         look(step(R"("name": "Big")")),
         look(step(R"("name": "capture")")),
         look(kLook + R"({"use": "a.json", "effect": "bokeh"}]})"),

@@ -1,5 +1,7 @@
 #include "framework/core/atomic_file.h"
 
+#include <sys/stat.h>
+
 #include <string>
 
 #include <gtest/gtest.h>
@@ -47,6 +49,39 @@ TEST(TextFile, ThatCannotBeReadIsToldWithItsPathAndTheReason) {
             EXPECT_EQ(std::string(error.what()), path.string() + ": cannot be read: " + reason);
         }
     }
+}
+
+TEST(RegularFile, IsReadWholeUpToItsLimit) {
+    TemporaryFolder folder;
+    write_text(folder / "file", "12345");
+    std::string fault = "of before";
+    EXPECT_EQ(read_regular_file(folder / "file", 5, fault), "12345");
+    EXPECT_EQ(fault, "");
+    EXPECT_EQ(read_regular_file(folder / "file", 4, fault), "");
+    EXPECT_EQ(fault, "the file has 5 bytes, the limit is 4");
+}
+
+TEST(RegularFile, IsNothingElse) {
+    TemporaryFolder folder;
+    const auto fault_of = [](const fs::path& path) {
+        std::string fault;
+        EXPECT_EQ(read_regular_file(path, 5, fault), "");
+        return fault;
+    };
+    EXPECT_EQ(fault_of(folder / "absent"), "no such file");
+    EXPECT_EQ(fault_of(folder.path()), "is not a regular file");
+    ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+    EXPECT_EQ(fault_of(folder / "pipe"), "is not a regular file") << "opening it would wait for a writer";
+}
+
+TEST(RegularFile, IsKnownByItsFirstBytes) {
+    TemporaryFolder folder;
+    write_text(folder / "file", "abc");
+    EXPECT_TRUE(file_begins_with(folder / "file", "ab"));
+    EXPECT_TRUE(file_begins_with(folder / "file", "abc"));
+    for (const char* other : {"b", "abcd"}) EXPECT_FALSE(file_begins_with(folder / "file", other)) << other;
+    EXPECT_FALSE(file_begins_with(folder.path(), "a"));
+    EXPECT_FALSE(file_begins_with(folder / "absent", "a"));
 }
 
 }  // namespace

@@ -23,6 +23,24 @@ TEST(Cryptomatte, NeverHashesToAnInfiniteOrDenormalFloat) {
     }
 }
 
+TEST(IdRanges, RiseWithAGapBetweenAnyTwo) {
+    using Ranges = std::vector<IdRange>;
+    const auto of = [](const std::vector<TableKey>& keys) { return id_ranges(keys); };
+    EXPECT_EQ(of({}), Ranges{});
+    EXPECT_EQ(of({{7, 9, ""}, {1, 3, ""}}), (Ranges{{1, 3}, {7, 9}}));
+    EXPECT_EQ(of({{5, 5, ""}, {4, 4, ""}, {6, 6, ""}}), (Ranges{{4, 6}})) << "ids that follow one another";
+    EXPECT_EQ(of({{1, 9, ""}, {3, 4, ""}, {9, 12, ""}}), (Ranges{{1, 12}}));
+    EXPECT_EQ(of({{4294967295u, 4294967295u, ""}, {0, 4294967294u, ""}}), (Ranges{{0, 4294967295u}}));
+    EXPECT_EQ(of({{0, 0, "bunny"}, {1, 1, ""}}), (Ranges{{1, 1}, {0x13851a76u, 0x13851a76u}}));
+}
+
+TEST(IdRanges, HaveTheirEnds) {
+    const std::vector<IdRange> ranges = {{1, 3}, {7, 7}, {9, 4294967295u}};
+    for (const std::uint32_t id : {1u, 2u, 3u, 7u, 9u, 4294967295u}) EXPECT_TRUE(contains(ranges, id)) << id;
+    for (const std::uint32_t id : {0u, 4u, 6u, 8u}) EXPECT_FALSE(contains(ranges, id)) << id;
+    EXPECT_FALSE(contains({}, 0));
+}
+
 struct Coverage {
     std::string object;
     float amount = 0;

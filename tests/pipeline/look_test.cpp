@@ -100,6 +100,42 @@ TEST(Look, RefusesEmptyWordsWhereSomethingMustBeNamed) {
               "look:1:66: error: the mask's 'file' is empty\n");
 }
 
+Parsed parse_masked(const std::string& objects) {
+    return parse(R"({ "aftershade": 1, "steps": [ { "effect": "a", "mask": { "object": )" + objects +
+                 " } } ] }");
+}
+
+TEST(Look, ReadsTheObjectsOfAMask) {
+    const Parsed parsed = parse_masked(R"([2, "3-7,9", "Wheel"])");
+    EXPECT_EQ(parsed.faults, "");
+    const std::vector<TableKey> keys = {{2, 2, ""}, {3, 7, ""}, {9, 9, ""}, {0, 0, "Wheel"}};
+    EXPECT_EQ(parsed.look->steps.at(0).mask->objects, keys);
+    EXPECT_EQ(parse_masked(R"("1-8")").look->steps.at(0).mask->objects, (std::vector<TableKey>{{1, 8, ""}}));
+}
+
+TEST(Look, SaysWhatIsWrongWithTheObjectsOfAMask) {
+    EXPECT_EQ(
+        parse_masked(R"([2, "7-3", -1, true])").faults,
+        "look:1:71: error: the mask: '7-3' is no range of ids; write \"3-7,9\", each from 0 to 4294967295 "
+        "and rising\n"
+        "look:1:78: error: the mask: -1 is not an object's id, a number from 0 to 4294967295\n"
+        "look:1:82: error: the mask: expected an object's id, a range of ids such as \"3-7\" or a name\n");
+    EXPECT_EQ(parse_masked("[]").faults, "look:1:68: error: the mask's 'object' names no object\n");
+}
+
+TEST(Look, RefusesAMaskOfMoreObjectsThanItHolds) {
+    const auto ids = [](std::size_t count) {
+        std::string list;
+        for (std::size_t i = 0; i < count; ++i) list += (list.empty() ? "" : ", ") + std::to_string(2 * i);
+        return "[" + list + "]";
+    };
+    EXPECT_EQ(parse_masked(ids(kMaxMaskObjects)).faults, "");
+    EXPECT_EQ(
+        parse_masked(ids(kMaxMaskObjects + 1)).faults,
+        "look:1:68: error: the mask names 1001 ids, ranges and names; the limit is 1000 (write ids that "
+        "follow one another as a range, \"3-7\", or give the mask as a picture: 'role' or 'file')\n");
+}
+
 TEST(Look, ReportsAFieldOfTheWrongType) {
     EXPECT_EQ(
         parse("{ \"aftershade\": 1, \"steps\": [\n"

@@ -67,6 +67,8 @@ TEST_F(ValueForms, DepthIsTakenAtAPointOrAsTheMedianOfAnObject) {
     EXPECT_FLOAT_EQ(float(reach(R"({ "from": "depth", "uv": [0.7, 0.4] })", scene(1))), 2.5f);
     EXPECT_FLOAT_EQ(float(reach(R"({ "from": "depth", "uv": [0.1, 0.9] })", scene(1))), 9.0f);
     EXPECT_FLOAT_EQ(float(reach(R"({ "from": "depth", "object": 2 })", scene(1))), 2.5f);
+    EXPECT_FLOAT_EQ(float(reach(R"({ "from": "depth", "object": "2-4" })", scene(1))), 2.5f);
+    EXPECT_FLOAT_EQ(float(reach(R"({ "from": "depth", "object": "0,2" })", scene(1))), 9.0f) << "most of it";
     Capture named = scene(1);
     for (std::uint32_t& id : named.images.at("object_id").uints())
         if (id == 2) id = cryptomatte_hash("Wheel");
@@ -79,6 +81,9 @@ TEST_F(ValueForms, DepthThatIsNotThereIsAnErrorOfTheCapture) {
     for (const auto& [value, message] :
          {std::pair(R"({ "from": "depth", "uv": [0, 0] })", "shown.reach: nothing was hit at pixel (0, 0)"),
           {R"({ "from": "depth", "object": 77 })", "shown.reach: object 77 has no pixel with a depth"},
+          {R"({ "from": "depth", "object": "77-78" })",
+           "shown.reach: objects 77-78 have no pixel with a depth"},
+          {R"({ "from": "depth", "object": "77,79" })", "object 77 and object 79 have no pixel with a depth"},
           {R"({ "from": "camera.far" })", "the capture does not know camera.far"}}) {
         try {
             reach(value, capture);
@@ -106,6 +111,8 @@ TEST_F(ValueForms, ThatMakeNoSenseAreErrorsWithTheirPlace) {
     EXPECT_NE(faults(R"({ "from": "camera.f_number" })").find("which cannot be converted to m"),
               std::string::npos);
     EXPECT_NE(faults(R"({ "from": "depth" })").find("has one of 'uv' and 'object'"), std::string::npos);
+    EXPECT_NE(faults(R"({ "from": "depth", "object": "7-3" })").find("'7-3' is no range of ids"),
+              std::string::npos);
     EXPECT_NE(faults(R"({ "from": "depth", "uv": [2, 0] })").find("two numbers from 0 to 1"),
               std::string::npos);
     EXPECT_NE(faults(R"({ "var": "nothing" })").find("the look has no variable 'nothing'"),
@@ -172,6 +179,47 @@ TEST_F(MixAndMask, AMaskIsARoleAnObjectOrAFile) {
         run(R"({ "effect": "white", "mask": { "file": ")" + (folder / "right.png").string() + "\" } }");
     EXPECT_EQ(image.at(1, 1, 0), 0.25f);
     EXPECT_EQ(image.at(18, 8, 0), 1.0f);
+}
+
+/// One row of a pixel for each id.
+Capture capture_of_ids(const std::vector<std::uint32_t>& ids) {
+    Capture capture =
+        make_capture({.width = int(ids.size()), .height = 1, .background = {0.25f, 0.25f, 0.25f}});
+    for (std::size_t x = 0; x < ids.size(); ++x)
+        capture.images.at("object_id").uint_at(int(x), 0, 0) = ids[x];
+    return capture;
+}
+
+TEST_F(MixAndMask, AMaskTakesRangesListsAndNames) {
+    const std::vector<std::uint32_t> ids = {0, 1, 5, 8, 9, 11, 12, cryptomatte_hash("Wheel"), 4294967295u};
+    const Capture capture = capture_of_ids(ids);
+    const auto painted = [&](const std::string& objects) {
+        Bench bench(effects_, look_of(R"({ "effect": "white", "mask": { "object": )" + objects + " } }"));
+        const Image image = bench.color(capture);
+        std::vector<std::uint32_t> found;
+        for (std::size_t x = 0; x < ids.size(); ++x)
+            if (image.at(int(x), 0, 0) == 1) found.push_back(ids[x]);
+            else EXPECT_EQ(image.at(int(x), 0, 0), 0.25f);
+        return found;
+    };
+    using Ids = std::vector<std::uint32_t>;
+    EXPECT_EQ(painted(R"(["1-8"])"), (Ids{1, 5, 8}));
+    EXPECT_EQ(painted(R"("8-9,12")"), (Ids{8, 9, 12}));
+    EXPECT_EQ(painted(R"(["11-12", 0, "Wheel"])"), (Ids{0, 11, 12, cryptomatte_hash("Wheel")}));
+    EXPECT_EQ(painted(R"(["0-4294967295"])"), Ids(ids));
+    EXPECT_EQ(painted(R"([4294967295, "2-4"])"), Ids{4294967295u});
+}
+
+TEST_F(MixAndMask, AMaskHasEveryObjectOfALongList) {
+    std::vector<std::uint32_t> ids;
+    std::string even;
+    for (std::uint32_t id = 0; id < 2000; ++id) {
+        ids.push_back(id);
+        if (id % 2 == 0) even += (even.empty() ? "" : ", ") + std::to_string(1998 - id);
+    }
+    Bench bench(effects_, look_of(R"({ "effect": "white", "mask": { "object": [)" + even + "] } }"));
+    const Image image = bench.color(capture_of_ids(ids));
+    for (int x = 0; x < int(ids.size()); ++x) ASSERT_EQ(image.at(x, 0, 0), x % 2 == 0 ? 1.0f : 0.25f) << x;
 }
 
 TEST_F(MixAndMask, ThatHaveNothingToWorkOnAreErrors) {
