@@ -54,7 +54,8 @@ void gather_shader(const fs::path& file, const fs::path& glsl_folder, std::set<f
     std::istringstream lines(read_text_file(file, ExitCode::usage));
     for (std::string line; std::getline(lines, line);) {
         std::smatch match;
-        if (!std::regex_search(line, match, include) || match[2] == "pass" || match[2] == "predicate") continue;
+        if (!std::regex_search(line, match, include) || match[2] == "pass" || match[2] == "predicate")
+            continue;
         gather_shader((match[1] == "<" ? glsl_folder : file.parent_path()) / match[2].str(), glsl_folder,
                       files);
     }
@@ -66,7 +67,8 @@ std::set<fs::path> files_of(const EffectManifest& manifest, const fs::path& glsl
     for (const PassSpec& pass : manifest.passes) {
         for (const std::string& shader : {pass.shader, pass.vertex})
             if (!shader.empty()) gather_shader(pass.folder / shader, glsl_folder, files);
-        if (!pass.lists.empty()) gather_shader(shader_path(pass, ShaderFile::main, glsl_folder), glsl_folder, files);
+        if (!pass.lists.empty())
+            gather_shader(shader_path(pass, ShaderFile::main, glsl_folder), glsl_folder, files);
         if (!pass.over.empty())
             gather_shader(shader_path(pass, ShaderFile::vertex, glsl_folder), glsl_folder, files);
     }

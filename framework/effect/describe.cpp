@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "framework/core/units.h"
+#include "framework/effect/manifest_when.h"
 
 namespace aftershade {
 
@@ -55,15 +56,18 @@ std::string telemetry_text(const TelemetrySpec& spec) {
     return text;
 }
 
-/// "hybrid auto or separable, guiding true": what must hold.
+/// "hybrid auto or separable, the input velocity": what must hold.
 std::string conditions_text(const std::vector<WhenSpec>& conditions) {
     std::string text;
     for (const WhenSpec& condition : conditions) {
-        text += (text.empty() ? "" : ", ") + condition.subject;
-        for (std::size_t i = 0; i < condition.values.size(); ++i) {
-            const auto* name = std::get_if<std::string>(&condition.values[i]);
-            text += (i == 0 ? " " : " or ") + (name ? *name : format_value(condition.values[i]));
+        std::string values;
+        for (const ParamValue& value : condition.values) {
+            const auto* name = std::get_if<std::string>(&value);
+            values += (values.empty() ? "" : " or ") + (name ? *name : format_value(value));
         }
+        text += text.empty() ? "" : ", ";
+        if (!condition.subject.starts_with(kHasInput)) text += condition.subject + " " + values;
+        else text += (values == "false" ? "no input " : "the input ") + condition.subject.substr(kHasInput.size());
     }
     return text;
 }

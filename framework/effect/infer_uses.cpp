@@ -28,7 +28,8 @@ public:
         if (pass.infers_reads) {
             add_reads(main);
             const fs::path vertex = shader_path(pass, ShaderFile::vertex, glsl_folder_);
-            if (pass.has_vertex_shader() && fs::is_regular_file(vertex)) add_reads(uses_of(ShaderFile::vertex));
+            if (pass.has_vertex_shader() && fs::is_regular_file(vertex))
+                add_reads(uses_of(ShaderFile::vertex));
             put_in_order(pass.reads, manifest_.inputs);
         }
         if (pass.infers_writes) {
@@ -100,8 +101,10 @@ private:
     }
 
     bool is_native_table(const std::string& name) const {
-        return manifest_.native && std::any_of(manifest_.native->tables.begin(), manifest_.native->tables.end(),
-                                               [&](const auto& table) { return table.name == name; });
+        if (!manifest_.native) return false;
+        const std::vector<NativeTableSpec>& tables = manifest_.native->tables;
+        const auto is_it = [&](const NativeTableSpec& table) { return table.name == name; };
+        return std::any_of(tables.begin(), tables.end(), is_it);
     }
 
     /// A define's value may also be the whole word: "SIZE": "near_size".
@@ -116,8 +119,8 @@ private:
     template <typename Use, typename Image>
     void put_in_order(std::vector<Use>& uses, const std::vector<Image>& images) const {
         const auto place_of = [](const auto& list, const std::string& name) {
-            return std::find_if(list.begin(), list.end(), [&](const auto& item) { return item.name == name; }) -
-                   list.begin();
+            const auto is_it = [&](const auto& item) { return item.name == name; };
+            return std::find_if(list.begin(), list.end(), is_it) - list.begin();
         };
         const auto rank = [&](const Use& use) {
             const auto image = place_of(images, use.name);

@@ -148,7 +148,8 @@ private:
         text_ << "#define TILE_RUNS " << list.runs() << "\n#define TILE_ARGS " << list.args()
               << "\n#define TILE_SIDE ";
         if (!side) text_ << list.tile.number << "\n";
-        else text_ << (side->bind == ParamBind::define ? upper_case(side->name) : "param." + side->name) << "\n";
+        else if (side->bind == ParamBind::define) text_ << upper_case(side->name) << "\n";
+        else text_ << "param." << side->name << "\n";
     }
 
     void params() {

@@ -178,12 +178,12 @@ struct TextureChannel {
     std::string text() const { return texture + "." + "rgba"[channel]; }
 };
 
-/// Tiles that draws are confined to. parse_manifest() writes a list out as two buffers and a compute pass of the
-/// host's, which has the list's name and comes before the first pass over the list.
+/// Tiles that draws are confined to. parse_manifest() writes a list out as two buffers and a compute pass of
+/// the host's, which has the list's name and comes before the first pass over the list.
 struct TileListSpec {
     std::string name;
-    std::optional<TextureChannel> of;  ///< tiles where this is above 0, of a texture with a texel per tile; or
-    std::string predicate;  ///< the file in `folder` with `bool <name>(ivec2 tile)`, which decides
+    std::optional<TextureChannel> of;  ///< tiles where this is above 0, of a texture with a texel per tile
+    std::string predicate;  ///< or else the file in `folder` with `bool <name>(ivec2 tile)`, which decides
     CountSpec tile;         ///< side in texels of `on`
     std::string on;         ///< the texture whose texels make up the tiles; "" for the working grid
     std::vector<ReadSpec> reads;  ///< the predicate's
@@ -312,11 +312,11 @@ struct EffectManifest {
 /// Parses and checks everything that can be known without GL: names, roles, ranges, that each pass reads only
 /// what an earlier one may have written, that every output and texture is written, that shader files exist.
 /// Every fault is reported; nullopt if there was one. What the shaders' text must agree with is
-/// check_declared_used's (usage_check.h). What is declared once is written out: the passes have the conditions
-/// of their groups and textures, tile lists have their buffers and passes, and a pass that leaves out `reads`
-/// or `writes` has those that its shaders' text names.
-/// Modules and shared shaders are read from `glsl_folder`, empty for the shipped one; only then may this throw,
-/// as data_path().
+/// check_declared_used's (usage_check.h). What is declared once is written out: the passes have the
+/// conditions of their groups and textures, tile lists have their buffers and passes, and a pass that leaves
+/// out `reads` or `writes` has those that its shaders' text names.
+/// Modules and shared shaders are read from `glsl_folder`, empty for the shipped one; only then may this
+/// throw, as data_path().
 std::optional<EffectManifest> parse_manifest(const Node& node, const std::filesystem::path& folder,
                                              Diagnostics& diagnostics,
                                              const std::filesystem::path& glsl_folder = {});

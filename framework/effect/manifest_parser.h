@@ -95,8 +95,8 @@ private:
     void pass_or_group(const Node& node, const std::vector<WhenSpec>& shared);
     void pass(const Node& node, const std::vector<WhenSpec>& shared);
     void shaders(ObjectReader& reader, const Node& node, PassSpec& pass);
-    /// The items of "reads" and "writes". True where the rest is what the shaders' text names: the key is left
-    /// out, or an item is "*".
+    /// The items of "reads" and "writes". True where the rest is what the shaders' text names: the key is
+    /// left out, or an item is "*".
     bool reads(const Node& owner, ObjectReader& reader, std::vector<ReadSpec>& reads);
     bool writes(const Node& owner, ObjectReader& reader, std::vector<WriteSpec>& writes);
     ReadSpec read(const Node& node);

@@ -30,8 +30,9 @@ void check_over(const EffectManifest& manifest, const PassSpec& pass, Diagnostic
                                           did_you_mean(pass.over, lists));
     for (const WriteSpec& write : pass.writes)
         if (!has_scale(manifest, write.name) || write.level != 0)
-            diagnostics.error(write.place, label + "runs over tiles, so what it writes, '" + write.name +
-                                               "', must have a 'scale' of the working grid, and be its level 0");
+            diagnostics.error(write.place,
+                              label + "runs over tiles, so what it writes, '" + write.name +
+                                  "', must have a 'scale' of the working grid, and be its level 0");
 }
 
 }  // namespace

@@ -58,7 +58,8 @@ void ManifestParser::tiles_of_texture(const Node& of, TileListSpec& list) {
     list.tile = texture.grid.tile;
     list.when = texture.when;
     if (texture.grid.kind != GridSpec::Kind::tile)
-        fault(of.place, label + ": '" + texture.name + "' has no 'tile': each of its texels must stand for one");
+        fault(of.place,
+              label + ": '" + texture.name + "' has no 'tile': each of its texels must stand for one");
     ReadSpec read;
     read.name = texture.name;
     read.place = of.place;

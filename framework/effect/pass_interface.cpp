@@ -28,8 +28,8 @@ bool is_written(const AccessSpec& access) {
 
 }  // namespace
 
-std::vector<ReadSpec> present_reads(const EffectManifest& manifest, const PassSpec& pass, const ParamSet& params,
-                                    const std::vector<std::string>& present_inputs) {
+std::vector<ReadSpec> present_reads(const EffectManifest& manifest, const PassSpec& pass,
+                                    const ParamSet& params, const std::vector<std::string>& present_inputs) {
     std::vector<ReadSpec> present = present_uses(pass.reads, params, present_inputs);
     std::erase_if(present, [&](const ReadSpec& read) {
         const InputSpec* input = manifest.find_input(read.name);

@@ -59,8 +59,8 @@ struct PassBindings {
     bool has_param_block = false;
     bool has_pass_block = false;
     bool has_native_block = false;
-    /// The block of sizes ends with a vec4 `tile_grid_size`: how many texels of its tile list's grid the pass's
-    /// target, or what the list is of, has.
+    /// The block of sizes ends with a vec4 `tile_grid_size`: how many texels of the tile list's grid the
+    /// pass's target has, or what the list is of.
     bool has_tile_grid = false;
 };
 
@@ -96,10 +96,10 @@ ShaderSource author_text(const EffectManifest& manifest, const PassSpec& pass,
 /// What `#include <pass>` stands for; a vertex shader's has no outputs.
 std::string interface_glsl(const ShaderContext& context, ShaderFile file = ShaderFile::main);
 
-/// The reads of a pass that are there: textures and inputs that are present, where their conditions hold. Their
-/// order gives the sampler bindings.
-std::vector<ReadSpec> present_reads(const EffectManifest& manifest, const PassSpec& pass, const ParamSet& params,
-                                    const std::vector<std::string>& present_inputs);
+/// The reads of a pass that are there: textures and inputs that are present, where their conditions hold.
+/// Their order gives the sampler bindings.
+std::vector<ReadSpec> present_reads(const EffectManifest& manifest, const PassSpec& pass,
+                                    const ParamSet& params, const std::vector<std::string>& present_inputs);
 
 /// The writes of a pass whose conditions hold; their order is that of the targets.
 std::vector<WriteSpec> present_writes(const PassSpec& pass, const ParamSet& params,

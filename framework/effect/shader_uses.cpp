@@ -15,7 +15,7 @@ bool is_sampling(const std::string& word) {
     return word.starts_with(kTexture) && std::isupper(static_cast<unsigned char>(word[kTexture.size()]));
 }
 
-/// Whether the word at `i` is the name in a declaration: a type stands before it, and no directive's last word.
+/// Whether the word at `i` is the name in a declaration: a type stands before it, not the end of a directive.
 bool is_declared_at(const std::vector<Token>& tokens, std::size_t i, const Place& directive) {
     if (i == 0 || !tokens[i - 1].is_word() || tokens[i - 1].text == "return" || tokens[i - 1].text == "else")
         return false;
@@ -56,7 +56,8 @@ ShaderUses::ShaderUses(const std::vector<Token>& tokens) {
         // "vec3 out_direction" is the shader's own.
         const bool declares = is_declared_at(tokens, i, directive);
         if (declares) own.insert(token.text);
-        if (declares && tokens[i - 1].text.find("sampler") != std::string::npos) own_samplers.insert(token.text);
+        if (declares && tokens[i - 1].text.find("sampler") != std::string::npos)
+            own_samplers.insert(token.text);
         if (!token.text.starts_with(kOut)) continue;
         if (declares) own_outputs.insert(token.text.substr(kOut.size()));
         else outputs.emplace(token.text.substr(kOut.size()), token.place);

@@ -23,7 +23,7 @@ struct ShaderUses {
     Uses params;                  ///< x of param.x
     Uses natives;                 ///< x of native.x
     Uses outputs;                 ///< x of out_x, but for names that the shader declares itself
-    /// x of texelFetch(x, ...), texture(x, ...), textureLod(x, ...), ..., but for samplers that functions take.
+    /// x of texelFetch(x, ...), texture(x, ...), textureLod(x, ...), ..., but for parameters of functions.
     Uses samplers;
     Uses plain_samplers;          ///< those outside of every #if: what stands within may be left out
     Uses sizes;                   ///< x of x_size, but for names of the shader's own

@@ -117,7 +117,8 @@ json rules_of_kinds() {
     json draw = without({"dispatch", "value"});
     draw["required"] = {"shader"};
     draw["dependentRequired"] = {{"instances", {"vertex"}}};
-    draw["dependentSchemas"]["vertex"] = {{"anyOf", {{{"required", {"instances"}}}, {{"required", {"over"}}}}}};
+    draw["dependentSchemas"]["vertex"] = {
+        {"anyOf", {{{"required", {"instances"}}}, {{"required", {"over"}}}}}};
     draw["not"] = at_most_one({"instances", "over"});
     json draws = where("kind", "draw", draw);
     draws["if"].erase("required");  // the kind of a pass that names none

@@ -50,7 +50,8 @@ TEST(InferredUses, AreNoNamesOfTheShadersOwn) {
                                "void main() {\n    vec4 out_wide = vec4(0.0), small = vec4(1.0);\n"
                                "    Pair pair = Pair(small);\n    out_color = pair.wide + out_wide + fetched(color);\n"
                                "    /* texelFetch(wide, ivec2(0), 0) */\n}\n");
-    EXPECT_EQ(flow_of(folder), " -> color") << "a sampler that only a function of its own takes must be named";
+    EXPECT_EQ(flow_of(folder), " -> color")
+        << "a sampler that only a function of its own takes must be named";
 }
 
 TEST(InferredUses, MayStandAfterADirective) {

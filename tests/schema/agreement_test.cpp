@@ -264,7 +264,7 @@ TEST_F(SchemaAgreement, OfAManifestChangedEverywhere) {
              "is not the name of its folder|no file '",  // what lies on the disk
              // Names of what stands elsewhere in the document, and what that is.
              "which is no |which is not |is not a parameter|is not one of '|does not name an optional",
-             "has no 'history'|has no 'repeat'|no pass (reads|writes|uses|runs) |before any pass has written it",
+             "has no 'history'|has no 'repeat'|no pass (reads|writes|uses|runs) |before any pass has written",
              "is not a texture of|must end in a channel|has no '(tile|scale)'|must have a 'scale'",
              "has no key '|is not declared 'indirect'|another pass has this name",
              // One value against another, or their units.
