@@ -65,9 +65,10 @@ std::string conditions_text(const std::vector<WhenSpec>& conditions) {
             const auto* name = std::get_if<std::string>(&value);
             values += (values.empty() ? "" : " or ") + (name ? *name : format_value(value));
         }
-        text += text.empty() ? "" : ", ";
-        if (!condition.subject.starts_with(kHasInput)) text += condition.subject + " " + values;
-        else text += (values == "false" ? "no input " : "the input ") + condition.subject.substr(kHasInput.size());
+        std::string what = condition.subject + " " + values;
+        if (condition.subject.starts_with(kHasInput) && condition.values.size() == 1)
+            what = (values == "true" ? "the input " : "no input ") + condition.subject.substr(kHasInput.size());
+        text += (text.empty() ? "" : ", ") + what;
     }
     return text;
 }
