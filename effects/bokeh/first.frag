@@ -6,7 +6,7 @@ void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     float near_px = texelFetch(near, p / kTile, 0).r;
     out_first_a = pack_light(blur(light, p, near_px, first_line(0)));
-#if SHAPE == SHAPE_OCTAGON || SHAPE == SHAPE_CUSTOM
+#ifdef HAS_OUT_FIRST_B
     out_first_b = pack_light(blur(light, p, near_px, first_line(1)));
 #endif
 }

@@ -4,7 +4,7 @@
 #include <lens/packing.glsl>
 #include "outline.glsl"
 
-#if COMBINE == COMBINE_MIN
+#ifdef HAS_SURROUNDINGS
 // How far a texel is a highlight: 1 where it outshines the mean of a square of four CoC radii by far. Like what a
 // minimum of parallelograms loses, it falls with the size of the light: a disk of half the CoC radius is 0.8 of one, and
 // loses 0.9 of what a point does.

@@ -4,7 +4,7 @@
 
 void main() {
     out_line_a = listing_blur(color, first_degrees(0));
-#if SHAPE == SHAPE_OCTAGON || SHAPE == SHAPE_CUSTOM
+#ifdef HAS_OUT_LINE_B
     out_line_b = listing_blur(color, first_degrees(1));
 #endif
 }

@@ -7,7 +7,7 @@ void main() {
     out_color = listing_blur(line_a, second_degrees(0));
 #if SHAPE == SHAPE_HEXAGON
     out_color = combine(out_color, listing_blur(line_a, second_degrees(1)));
-#elif SHAPE == SHAPE_OCTAGON || SHAPE == SHAPE_CUSTOM
+#elif defined(HAS_LINE_B)
     out_color = combine(out_color, listing_blur(line_b, second_degrees(1)));
 #endif
 }

@@ -14,7 +14,7 @@ void main() {
     vec4 a = second_blur(first_a, p, near_px, 0);
 #if SHAPE == SHAPE_HEXAGON
     out_color = combine(a, second_blur(first_a, p, near_px, 1));
-#elif SHAPE == SHAPE_OCTAGON || SHAPE == SHAPE_CUSTOM
+#elif defined(HAS_FIRST_B)
     out_color = combine(a, second_blur(first_b, p, near_px, 1));
 #else
     out_color = a;

@@ -3,7 +3,7 @@
 #include <lens/packing.glsl>
 #include <aperture.glsl>
 #include <near_reach/tile.glsl>
-#if PICTURE
+#ifdef HAS_APERTURE
 #include "picture.glsl"
 #endif
 
@@ -72,7 +72,7 @@ void add_tap(inout Sum front, inout Sum back, Light tap, Aperture a, float centr
     float reached = clamp((radius_px - gauge_px) * a.inradius / step_px + 0.5, 0.0, 1.0);
     float tap_area = step_px * step_px;
     float front_weight = in_front * reached * tap_area / max(a.area * radius_px * radius_px, tap_area);
-#if PICTURE
+#ifdef HAS_APERTURE
     front_weight *= passes_at(-offset / tap.coc) / max(texelFetch(passes_mean, ivec2(0), 0).r, 1e-6);
 #endif
     front.light += front_weight * tap.color;
@@ -107,7 +107,7 @@ vec4 gather(ivec2 p, Light centre, float near_px) {
             bool middle = row == 0 && column == 0;
             ivec2 texel = clamp(p + ivec2(floor(offset + 0.5)), ivec2(0), last);
             float own_cover = sharp ? (middle ? 1.0 : 0.0) : cover(own, offset.x, step_px);
-#if PICTURE
+#ifdef HAS_APERTURE
             if (own_cover > 0.0 && !sharp) own_cover *= passes_at(-offset / own_coc);
 #endif
             Light tap = take(texel, sharp && middle ? 0 : level);

@@ -1,4 +1,4 @@
-// Lays out the grid, and tells how large a texture it is in.
+// Lays out the grid.
 #include "grid.glsl"
 
 Grid make_grid(float spacing) {
@@ -14,12 +14,3 @@ Grid make_grid(float spacing) {
     grid.shear = vec2(grid.b.x / grid.a.x, grid.a.y * grid.a.x / kCell);
     return grid;
 }
-
-#ifdef FINE
-const float kSpacing = FINE == 1 ? 1.0 : 2.0;
-
-// Texels of the grid's textures, whose scales effect.json declares.
-ivec2 target_size() { return FINE == 1 ? (5 * frame.size + 3) / 4 : (11 * frame.size + 15) / 16; }
-#else
-ivec2 target_size() { return frame.size; }
-#endif

@@ -1,7 +1,6 @@
 #version 450 core
 #include <pass>
 #include <tile_runs.glsl>
-#include "tile.glsl"
 #include "make_grid.glsl"
 
 layout(location = 0) flat out vec4 grid_axes;
@@ -12,5 +11,5 @@ void main() {
     Grid grid = make_grid(1.0);
     grid_axes = vec4(grid.a, grid.b);
     grid_shear_sign = vec3(grid.shear, float(grid.sign));
-    gl_Position = run_position(RUNS[gl_InstanceID], kTile, vec2(target_size()));
+    gl_Position = tile_position();
 }

@@ -1,8 +1,20 @@
 #version 450 core
 #include <pass>
+#include <scattering/filled.glsl>
 #include <scattering/result.glsl>
+#ifdef HAS_BLURRED
+#include "hybrid_result.glsl"
+#endif
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
-    out_irradiance = scattered_result(p, texelFetch(estimate, p, 0).rgb);
+#ifdef HAS_GUIDED
+    vec3 drawn = filled(texelFetch(guided, p, 0).rgb, texelFetch(guided_share, p, 0).rgb);
+#else
+    vec3 drawn = texelFetch(estimate, p, 0).rgb;
+#endif
+#ifdef HAS_BLURRED
+    drawn = hybrid_result(p, drawn);
+#endif
+    out_irradiance = scattered_result(p, drawn);
 }

@@ -7,12 +7,24 @@ void main() {
     ivec2 p = ivec2(gl_FragCoord.xy), q;
     past_pixel(q);
     Facet here = read_facet(view_lines(), p);
-    vec4 planned = texelFetch(plan, p, 0), drawn = texelFetch(estimate, p, 0);
+    vec4 planned = texelFetch(plan, p, 0), drawn = texelFetch(estimate, p, 0), past = texelFetch(history_prev, q, 0);
+    bool known = planned.y > 0.0 && past.x >= 0.0, followed = here.key != 0u && planned.y >= 0.0;
     float value = exposed(drawn.rgb);
 #if CONTROL_VARIATE == CONTROL_VARIATE_CONSTANT
     value -= exposed(here.light);
+#elif CONTROL_VARIATE == CONTROL_VARIATE_ONLINE
+    // The control variate's factor is what followed the light best so far, Cov / Var (Xie and Olano 2021), with the moving
+    // covariance matrix of the luminance after and before scattering; 1 while that before has not changed yet.
+    vec2 light = vec2(value, exposed(here.light));
+    vec4 moments = known ? texelFetch(covariance_prev, q, 0) : vec4(0.0, 0.0, light);
+    bool varied = moments.y > 1e-6 * (1.0 + moments.w * moments.w);
+    float factor = varied ? clamp(moments.x / moments.y, 0.0, 2.0) : 1.0;
+    vec2 off = light - moments.zw;
+    float weight = param.history_weight;
+    vec4 moved = vec4((1.0 - weight) * (moments.xy + weight * off * off.y), moments.zw + weight * off);
+    out_covariance = !followed ? vec4(0.0) : drawn.a < 0.5 ? moments : moved;
+    value -= factor * light.y;
 #endif
-    vec4 past = texelFetch(history_prev, q, 0);
-    vec4 after = updated_history(past, planned.y > 0.0 && past.x >= 0.0, drawn.a, value, here.key);
-    out_history = here.key == 0u ? vec4(0.0) : planned.y < 0.0 ? unsampled_history(here.key) : after;
+    vec4 after = updated_history(past, known, drawn.a, value, here.key);
+    out_history = here.key == 0u ? vec4(0.0) : followed ? after : unsampled_history(here.key);
 }

@@ -49,7 +49,7 @@ void gather_shader(const fs::path& file, const fs::path& glsl_folder, std::set<f
     std::istringstream lines(read_text_file(file, ExitCode::usage));
     for (std::string line; std::getline(lines, line);) {
         const auto include = parse_include(line);
-        if (!include || include->name == "pass") continue;
+        if (!include || include->name == "pass" || include->name == "predicate") continue;
         gather_shader((include->is_shared ? glsl_folder : file.parent_path()) / include->name, glsl_folder,
                       files);
     }
@@ -58,9 +58,14 @@ void gather_shader(const fs::path& file, const fs::path& glsl_folder, std::set<f
 std::set<fs::path> files_of(const EffectManifest& manifest, const fs::path& glsl_folder) {
     std::set<fs::path> files{manifest.folder / "effect.json"};
     for (const ModuleSpec& part : manifest.modules) files.insert(part.folder / "module.json");
-    for (const PassSpec& pass : manifest.passes)
+    for (const PassSpec& pass : manifest.passes) {
         for (const std::string& shader : {pass.shader, pass.vertex})
             if (!shader.empty()) gather_shader(pass.folder / shader, glsl_folder, files);
+        if (!pass.lists.empty())
+            gather_shader(shader_path(pass, ShaderFile::main, glsl_folder), glsl_folder, files);
+        if (!pass.over.empty())
+            gather_shader(shader_path(pass, ShaderFile::vertex, glsl_folder), glsl_folder, files);
+    }
     if (manifest.native)
         for (const auto& entry : fs::directory_iterator(manifest.folder))
             if (is_native_source(entry.path())) files.insert(entry.path());

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "framework/core/units.h"
+#include "framework/effect/manifest_when.h"
 
 namespace aftershade {
 
@@ -55,6 +56,23 @@ std::string telemetry_text(const TelemetrySpec& spec) {
     return text;
 }
 
+/// "hybrid auto or separable, the input velocity": what must hold.
+std::string conditions_text(const std::vector<WhenSpec>& conditions) {
+    std::string text;
+    for (const WhenSpec& condition : conditions) {
+        std::string values;
+        for (const ParamValue& value : condition.values) {
+            const auto* name = std::get_if<std::string>(&value);
+            values += (values.empty() ? "" : " or ") + (name ? *name : format_value(value));
+        }
+        std::string what = condition.subject + " " + values;
+        if (condition.subject.starts_with(kHasInput) && condition.values.size() == 1)
+            what = (values == "true" ? "the input " : "no input ") + condition.subject.substr(kHasInput.size());
+        text += (text.empty() ? "" : ", ") + what;
+    }
+    return text;
+}
+
 std::string texture_text(const TextureSpec& texture) {
     std::string text{gpu::texture_format_name(texture.format)};
     const GridSpec& grid = texture.grid;
@@ -67,27 +85,36 @@ std::string texture_text(const TextureSpec& texture) {
     if (texture.auto_mips) text += ", mips";
     else if (texture.mips > 1) text += ", " + std::to_string(texture.mips) + " levels";
     if (texture.history) text += ", history";
+    if (!texture.when.empty()) text += ", with " + conditions_text(texture.when);
     return text;
 }
 
-/// "color, kept.prev -> near, list": what a pass takes and makes.
-std::string flow_text(const PassSpec& pass) {
+/// "color, [kept.prev] -> near, list over near_tiles": what a pass takes and makes, in brackets what is not
+/// always there, and the tiles to which it is confined.
+std::string flow_text(const EffectManifest& manifest, const PassSpec& pass) {
     std::string reads, writes;
-    const auto add = [](std::string& list, const std::string& name, bool previous) {
-        list += (list.empty() ? "" : ", ") + name + (previous ? ".prev" : "");
+    const auto add = [](std::string& list, std::string name, bool has_conditions) {
+        list += (list.empty() ? "" : ", ") + (has_conditions ? "[" + name + "]" : name);
     };
-    for (const ReadSpec& read : pass.reads) add(reads, read.name, read.previous);
-    for (const WriteSpec& write : pass.writes) add(writes, write.name, false);
+    const auto label = [](const auto& use) { return use.name + (use.previous ? ".prev" : ""); };
+    for (const ReadSpec& read : pass.reads) add(reads, label(read), !read.when.empty());
+    for (const WriteSpec& write : pass.writes) add(writes, write.name, !write.when.empty());
+    if (!pass.lists.empty()) return reads + " ->";
+    const TileListSpec* over = manifest.find_tile_list(pass.over);
     for (const auto* list : {&pass.images, &pass.buffers})
         for (const AccessSpec& access : *list) {
-            if (access.kind != AccessSpec::Kind::write) add(reads, access.name, access.previous);
-            if (access.kind != AccessSpec::Kind::read) add(writes, access.name, false);
+            if (over && access.name == over->runs()) continue;
+            if (access.kind != AccessSpec::Kind::write) add(reads, label(access), !access.when.empty());
+            if (access.kind != AccessSpec::Kind::read) add(writes, access.name, !access.when.empty());
         }
-    return (reads.empty() ? "" : reads + " ") + "-> " + writes;
+    return (reads.empty() ? "" : reads + " ") + "-> " + writes + (over ? " over " + over->name : "");
 }
 
-/// "blur.frag", "lens/coc.frag" of a module.
-std::string shader_text(const PassSpec& pass) {
+/// "blur.frag", "lens/coc.frag" of a module, "tiles where near.r > 0" of the host.
+std::string shader_text(const EffectManifest& manifest, const PassSpec& pass) {
+    const TileListSpec* listed = manifest.find_tile_list(pass.lists);
+    if (listed && listed->of) return "tiles where " + listed->of->text() + " > 0";
+    if (listed) return "tiles by " + (pass.module.empty() ? "" : pass.module + "/") + pass.shader;
     if (pass.shader.empty()) return "clear";
     return (pass.module.empty() ? "" : pass.module + "/") + pass.shader;
 }
@@ -186,7 +213,8 @@ std::string describe_text(const EffectManifest& manifest) {
     telemetry.print(out);
     out << "\npasses\n";
     TextTable passes("  ");
-    for (const PassSpec& pass : manifest.passes) passes.add({pass.name, shader_text(pass), flow_text(pass)});
+    for (const PassSpec& pass : manifest.passes)
+        passes.add({pass.name, shader_text(manifest, pass), flow_text(manifest, pass)});
     passes.print(out);
     return out.str();
 }

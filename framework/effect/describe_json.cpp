@@ -55,8 +55,13 @@ std::string describe_json(const EffectManifest& manifest) {
                                             {"doc", texture.doc}};
     for (const TelemetrySpec& spec : manifest.telemetry)
         result["telemetry"][spec.name] = {{"of", spec.of.text()}, {"doc", spec.doc}};
-    for (const PassSpec& pass : manifest.passes)
-        result["passes"].push_back({{"name", pass.name}, {"shader", pass.shader}, {"module", pass.module}});
+    for (const TileListSpec& list : manifest.tiles) result["tiles"][list.name] = {{"doc", list.doc}};
+    for (const PassSpec& pass : manifest.passes) {
+        json entry = {{"name", pass.name}, {"shader", pass.shader}, {"module", pass.module}};
+        if (!pass.over.empty()) entry["over"] = pass.over;
+        if (!pass.lists.empty()) entry["lists"] = pass.lists;
+        result["passes"].push_back(entry);
+    }
     for (const PresetSpec& preset : manifest.presets) {
         json& values = result["presets"][preset.name] = json::object();
         for (const auto& [name, value] : preset.values)

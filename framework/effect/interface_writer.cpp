@@ -1,4 +1,5 @@
 // What `#include <pass>` stands for.
+#include <algorithm>
 #include <sstream>
 #include <utility>
 
@@ -97,8 +98,8 @@ public:
 
 private:
     void defines() {
-        for (const std::string& name : context_.present_inputs)
-            if (manifest_.find_input(name)->optional) text_ << "#define HAS_" << upper_case(name) << " 1\n";
+        presence();
+        if (bindings_.has_tile_grid) tiles();
         for (const auto& [name, value] : context_.pass->defines)
             text_ << "#define " << name << " " << value << "\n";
         for (const ParamSpec& spec : manifest_.params) {
@@ -112,6 +113,43 @@ private:
                 text_ << "#define " << name << " " << define_value(spec, context_.params->get(spec.name))
                       << "\n";
         }
+    }
+
+    /// HAS_... for what may be absent and is there.
+    void presence() {
+        std::vector<std::string> names;
+        const auto add = [&](const std::string& name) {
+            if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+        };
+        for (const std::string& name : context_.present_inputs)
+            if (manifest_.find_input(name)->optional && !is_left_out(name)) add(name);
+        for (const ReadSpec& read : bindings_.reads)
+            if (!read.when.empty()) add(read.glsl_name());
+        for (const AccessSpec& image : bindings_.images)
+            if (!image.when.empty()) add(image.name);
+        for (const WriteSpec& write : bindings_.writes)
+            if (!write.when.empty()) add("out_" + write.name);
+        for (const std::string& name : names) text_ << "#define HAS_" << upper_case(name) << " 1\n";
+    }
+
+    /// Whether the pass reads this input, but not with these parameters.
+    bool is_left_out(const std::string& input) const {
+        const auto reads = [&](const ReadSpec& read) { return read.name == input && !read.previous; };
+        const std::vector<ReadSpec>& all = context_.pass->reads;
+        return std::any_of(all.begin(), all.end(), reads) &&
+               std::none_of(bindings_.reads.begin(), bindings_.reads.end(), reads);
+    }
+
+    /// What glsl/host/list_tiles.comp and glsl/tile_runs.glsl go by.
+    void tiles() {
+        const PassSpec& pass = *context_.pass;
+        const TileListSpec& list = *manifest_.find_tile_list(pass.lists.empty() ? pass.over : pass.lists);
+        const ParamSpec* side = manifest_.find_param(list.tile.param);
+        text_ << "#define TILE_RUNS " << list.runs() << "\n#define TILE_ARGS " << list.args()
+              << "\n#define TILE_SIDE ";
+        if (!side) text_ << list.tile.number << "\n";
+        else if (side->bind == ParamBind::define) text_ << upper_case(side->name) << "\n";
+        else text_ << "param." << side->name << "\n";
     }
 
     void params() {
@@ -141,9 +179,10 @@ private:
                   << type_prefix(format_of_read(manifest_, reads[i].name))
                   << (is_array(reads[i].name) ? "sampler2DArray " : "sampler2D ") << reads[i].glsl_name()
                   << ";\n";
-        if (reads.empty()) return;
+        if (reads.empty() && !bindings_.has_tile_grid) return;
         text_ << "layout(std140, binding = " << kSizeBinding << ") uniform SizeBlock {\n";
         for (const ReadSpec& read : reads) text_ << "    vec4 " << read.glsl_name() << "_size;\n";
+        if (bindings_.has_tile_grid) text_ << "    vec4 tile_grid_size;\n";
         text_ << "};\n";
     }
 
@@ -195,7 +234,7 @@ private:
     }
 
     void writes() {
-        const auto& writes = context_.pass->writes;
+        const auto& writes = bindings_.writes;
         for (std::size_t i = 0; i < writes.size(); ++i)
             text_ << "layout(location = " << i << ") out "
                   << texel_type(format_of_write(manifest_, writes[i].name)) << " out_" << writes[i].name

@@ -7,6 +7,7 @@
 
 #include "framework/core/text.h"
 #include "framework/effect/manifest_check.h"
+#include "framework/effect/manifest_expand.h"
 #include "framework/effect/manifest_parser.h"
 #include "framework/image/camera.h"
 
@@ -129,6 +130,9 @@ const TextureSpec* EffectManifest::find_texture(const std::string& name) const {
 const BufferSpec* EffectManifest::find_buffer(const std::string& name) const {
     return find_named(buffers, name);
 }
+const TileListSpec* EffectManifest::find_tile_list(const std::string& name) const {
+    return find_named(tiles, name);
+}
 const PresetSpec* EffectManifest::find_preset(const std::string& name) const {
     return find_named(presets, name);
 }
@@ -170,6 +174,7 @@ std::optional<EffectManifest> parse_manifest(const Node& node, const fs::path& f
     check_relation_declarations(manifest.params, diagnostics);
     parser.declarations("textures", reader.object("textures"), &ManifestParser::textures);
     parser.declarations("buffers", reader.object("buffers"), &ManifestParser::buffers);
+    parser.declarations("tiles", reader.object("tiles"), &ManifestParser::tiles);
     if (const Node* section = reader.object("native")) parser.native(*section);
     parser.declarations("passes", reader.array("passes", Presence::required), &ManifestParser::passes);
     const Node* telemetry = reader.object("telemetry");
@@ -177,8 +182,9 @@ std::optional<EffectManifest> parse_manifest(const Node& node, const fs::path& f
     const Node* presets = reader.object("presets");
     if (presets && parser.has_all_modules()) parser.presets(*presets);
     reader.finish();
-    // Whatever uses what a module would declare would seem to be wrong.
-    if (parser.has_all_modules()) check_manifest(manifest, node, diagnostics);
+    // Whatever uses what a module would declare, or a shader cannot say, would seem to be wrong.
+    if (parser.has_all_modules() && write_out(manifest, glsl_folder, diagnostics))
+        check_manifest(manifest, node, diagnostics);
     if (diagnostics.error_count() > errors_before) return std::nullopt;
     return manifest;
 }

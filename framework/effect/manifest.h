@@ -75,7 +75,9 @@ struct TextureSpec {
         false;  ///< the host fills levels 1.. with a box filter after each pass that writes level 0
     std::optional<std::vector<double>> clear;  ///< set to this at the beginning of each frame; 1 or 4 numbers
     bool history = false;                      ///< survives into the next frame, where "<name>.prev" reads it
-    std::string doc;                           ///< one sentence with the unit
+    /// All must hold, or every read, write and image of it is absent.
+    std::vector<WhenSpec> when;
+    std::string doc;  ///< one sentence with the unit
     Place place;
 };
 
@@ -99,6 +101,8 @@ struct ReadSpec {
     gpu::Filter filter = gpu::Filter::nearest;
     gpu::Wrap wrap = gpu::Wrap::clamp;
     int level = -1;  ///< one level only, or kPassIndex + n; -1: all
+    /// All must hold, or there is no sampler. With any, the shader has HAS_<NAME> where it is there.
+    std::vector<WhenSpec> when;
     Place place;
     /// The sampler's name in GLSL: "color", "color_prev".
     std::string glsl_name() const { return previous ? name + "_prev" : name; }
@@ -121,6 +125,8 @@ struct WriteSpec {
     std::string name;  ///< of a texture or an output
     int level = 0;     ///< or kPassIndex + n
     int layer = 0;     ///< or kPassIndex + n
+    /// All must hold, or there is no target. With any, the shader has HAS_OUT_<NAME> where it is there.
+    std::vector<WhenSpec> when;
     Place place;
 };
 
@@ -130,6 +136,7 @@ struct AccessSpec {
     std::string name;
     bool previous = false;  ///< buffers with history, read only
     Kind kind = Kind::read;
+    std::vector<WhenSpec> when;  ///< of an image: its texture's, or it is absent
     Place place;
     std::string glsl_name() const { return previous ? name + "_prev" : name; }
 };
@@ -164,6 +171,32 @@ struct DispatchSpec {
     std::string indirect;  ///< buffer of {x, y, z}
 };
 
+/// One channel of a texture: "history.a".
+struct TextureChannel {
+    std::string texture;
+    int channel = 0;
+    std::string text() const { return texture + "." + "rgba"[channel]; }
+};
+
+/// Tiles that draws are confined to. parse_manifest() writes a list out as two buffers and a compute pass of
+/// the host's, which has the list's name and comes before the first pass over the list.
+struct TileListSpec {
+    std::string name;
+    std::optional<TextureChannel> of;  ///< tiles where this is above 0, of a texture with a texel per tile
+    std::string predicate;  ///< or else the file in `folder` with `bool <name>(ivec2 tile)`, which decides
+    CountSpec tile;         ///< side in texels of `on`
+    std::string on;         ///< the texture whose texels make up the tiles; "" for the working grid
+    std::vector<ReadSpec> reads;  ///< the predicate's
+    bool infers_reads = false;    ///< they are what the predicate's text names
+    std::vector<WhenSpec> when;   ///< all must hold, or neither the list nor the passes over it are there
+    std::filesystem::path folder;  ///< the effect's, or the module's
+    std::string module;            ///< that declares it; "" for the effect itself
+    std::string doc;
+    Place place;
+    std::string runs() const { return name + "_runs"; }  ///< buffer: first tile, its row, end, 0
+    std::string args() const { return name + "_args"; }  ///< buffer: {vertices, instances, first, base}
+};
+
 enum class PassKind { draw, compute, clear };
 
 struct PassSpec {
@@ -173,6 +206,8 @@ struct PassSpec {
     std::string module;            ///< that declares it; "" for the effect itself
     std::string shader;            ///< file in that folder; "" for a clear
     std::string vertex;            ///< draw of instances: its vertex shader; "" for the full screen
+    std::string over;              ///< the tile list that the draw is confined to; "" for none
+    std::string lists;             ///< the host's own pass that fills this tile list; "" for every other
     std::vector<ReadSpec> reads;
     std::vector<WriteSpec>
         writes;  ///< textures and outputs, in the order of the attachments; clear: what it sets
@@ -186,7 +221,11 @@ struct PassSpec {
     gpu::Blend blend = gpu::Blend::none;
     std::vector<double> clear_value;  ///< clear: 1 or 4 numbers
     int max_iterations = 0;  ///< upper bound of the loop iterations of one invocation; 0: not declared
+    bool infers_reads = false;   ///< the manifest leaves `reads` to the shaders' text
+    bool infers_writes = false;  ///< likewise `writes`
     Place place;
+    /// Whether a vertex shader, the pass's own or the host's over tiles, places quads or points.
+    bool has_vertex_shader() const { return !vertex.empty() || !over.empty(); }
 };
 
 /// A value or an array that the effect's native code fills before each frame.
@@ -224,12 +263,7 @@ struct PresetSpec {
 
 /// A number for each frame out of a texture: what `run --telemetry` writes.
 struct TelemetrySpec {
-    /// One channel of a texture: "history.a".
-    struct Channel {
-        std::string texture;
-        int channel = 0;
-        std::string text() const { return texture + "." + "rgba"[channel]; }
-    };
+    using Channel = TextureChannel;
     std::string name;
     Channel of;
     std::optional<Channel> where;  ///< only texels where this is above 0; a texture of the same size
@@ -253,8 +287,9 @@ struct EffectManifest {
     std::vector<OutputSpec> outputs;
     std::vector<ParamSpec> params;
     std::vector<TextureSpec> textures;
-    std::vector<BufferSpec> buffers;
-    std::vector<PassSpec> passes;
+    std::vector<BufferSpec> buffers;   ///< with those of tile lists
+    std::vector<TileListSpec> tiles;
+    std::vector<PassSpec> passes;  ///< with those of tile lists
     std::optional<NativeSpec> native;
     bool accumulates_subframes = false;  ///< "accumulates": "subframes": runs for each, emits at the last
     std::vector<PresetSpec> presets;
@@ -266,6 +301,7 @@ struct EffectManifest {
     const ParamSpec* find_param(const std::string& name) const;
     const TextureSpec* find_texture(const std::string& name) const;
     const BufferSpec* find_buffer(const std::string& name) const;
+    const TileListSpec* find_tile_list(const std::string& name) const;
     bool has_history() const;  ///< of any texture, buffer or input
     const PresetSpec* find_preset(const std::string& name) const;
     std::vector<std::string> param_names() const;
@@ -276,8 +312,11 @@ struct EffectManifest {
 /// Parses and checks everything that can be known without GL: names, roles, ranges, that each pass reads only
 /// what an earlier one may have written, that every output and texture is written, that shader files exist.
 /// Every fault is reported; nullopt if there was one. What the shaders' text must agree with is
-/// check_declared_used's (usage_check.h).
-/// Modules are read from `glsl_folder`, empty for the shipped one; only then may this throw, as data_path().
+/// check_declared_used's (usage_check.h). What is declared once is written out: the passes have the
+/// conditions of their groups and textures, tile lists have their buffers and passes, and a pass that leaves
+/// out `reads` or `writes` has those that its shaders' text names.
+/// Modules and shared shaders are read from `glsl_folder`, empty for the shipped one; only then may this
+/// throw, as data_path().
 std::optional<EffectManifest> parse_manifest(const Node& node, const std::filesystem::path& folder,
                                              Diagnostics& diagnostics,
                                              const std::filesystem::path& glsl_folder = {});

@@ -70,6 +70,7 @@ public:
             claim("out_" + texture.name, "texture '" + texture.name + "'", texture.place);
         }
         for (const BufferSpec& buffer : manifest_.buffers) stored(buffer);
+        for (const TileListSpec& list : manifest_.tiles) tile_list(list);
         for (const ParamSpec& param : manifest_.params) parameter(param);
         if (manifest_.native) native(*manifest_.native);
         for (const PassSpec& pass : manifest_.passes) passes(pass);
@@ -115,6 +116,13 @@ private:
         claim(buffer.name + "_prev", owner, buffer.place);
         claim(storage_block_name(buffer.name + "_prev"), owner, buffer.place);
     }
+    void tile_list(const TileListSpec& list) {
+        for (const char* name : {"TILE_RUNS", "TILE_ARGS", "TILE_SIDE", "tile_grid_size"})
+            claim(name, "section 'tiles'", list.place);
+        if (list.of) return;
+        global("tile list", list.name, list.place);
+        claim("is_listed", "section 'tiles'", list.place);
+    }
     void parameter(const ParamSpec& param) {
         const std::string owner = "parameter '" + param.name + "'";
         if (is_block_type(param.type)) word("parameter", param.name, param.place);
@@ -130,6 +138,10 @@ private:
     }
     void passes(const PassSpec& pass) {
         word("pass", pass.name, pass.place);
+        for (const ReadSpec& read : pass.reads)
+            if (!read.when.empty()) presence(read.glsl_name(), read.name, read.place);
+        for (const WriteSpec& write : pass.writes)
+            if (!write.when.empty()) presence("out_" + write.name, write.name, write.place);
         for (const auto& [name, value] : pass.defines) {
             const auto known = owners_.find(name);
             if (known != owners_.end())
@@ -140,6 +152,14 @@ private:
                 diagnostics_.error(pass.place, "pass '" + pass.name + "' defines '" + name +
                                                    "', a word of GLSL or the host");
         }
+    }
+
+    /// The define of what a pass reads or writes only under conditions.
+    void presence(const std::string& glsl_name, const std::string& name, const Place& place) {
+        const std::string thing = manifest_.find_input(name)     ? "input"
+                                  : manifest_.find_texture(name) ? "texture"
+                                                                 : "output";
+        claim("HAS_" + upper_case(glsl_name), thing + " '" + name + "'", place);
     }
 
     const EffectManifest& manifest_;
@@ -167,6 +187,7 @@ void check_manifest(const EffectManifest& manifest, const Node& node, Diagnostic
     if (manifest.outputs.empty()) diagnostics.error(node.place, "the effect has no outputs");
     check_names(manifest, diagnostics);
     check_passes(manifest, diagnostics);
+    check_tiles(manifest, diagnostics);
 }
 
 }  // namespace aftershade

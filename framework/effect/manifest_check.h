@@ -13,4 +13,10 @@ void check_names(const EffectManifest& manifest, Diagnostics& diagnostics);
 /// Each pass by itself, and in order: who reads what before it is written.
 void check_passes(const EffectManifest& manifest, Diagnostics& diagnostics);
 
+/// Each tile list, and that each pass over tiles names one and writes what they can lie on.
+void check_tiles(const EffectManifest& manifest, Diagnostics& diagnostics);
+
+/// "pass 'x'", "tile list 'x' of the module 'lens' in 'dof'": what faults of a pass begin with.
+std::string label_of(const EffectManifest& manifest, const PassSpec& pass);
+
 }  // namespace aftershade

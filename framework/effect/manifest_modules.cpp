@@ -73,7 +73,7 @@ std::map<std::string, const Node*> ManifestParser::module_sections(Module& modul
     if (name) identifier(*name, document.find("module")->place, "the module");
     module.spec.summary = reader.text("summary", Presence::required).value_or("");
     std::map<std::string, const Node*> sections;
-    for (const char* key : {"params", "textures", "buffers"}) sections[key] = reader.object(key);
+    for (const char* key : {"params", "textures", "buffers", "tiles"}) sections[key] = reader.object(key);
     for (const char* key : {"uses", "passes"}) sections[key] = reader.array(key);
     reader.finish();
     return sections;

@@ -1,6 +1,7 @@
 // Reads the sections of effect.json. Internal to framework/effect.
 #pragma once
 
+#include <algorithm>
 #include <list>
 #include <map>
 #include <set>
@@ -13,6 +14,13 @@ namespace aftershade {
 
 /// Why a value for every channel, or four of them, cannot stand in a texture of this format; "" where it can.
 std::string why_not_in_format(const std::vector<double>& texel, gpu::TextureFormat format);
+
+/// The enumerator that a text of `names`, which are in their order, stands for.
+template <typename T>
+T choice_of(const std::optional<std::string>& text, const std::vector<std::string>& names, T otherwise) {
+    if (!text) return otherwise;
+    return T(std::find(names.begin(), names.end(), *text) - names.begin());
+}
 
 class ManifestParser {
 public:
@@ -33,6 +41,7 @@ public:
     void params(const Node& section);  ///< before everything that may count by one
     void textures(const Node& section);
     void buffers(const Node& section);
+    void tiles(const Node& section);  ///< after textures
     void passes(const Node& section);
     void native(const Node& section);
     void presets(const Node& section);
@@ -62,7 +71,7 @@ private:
     void check_from(const ParamSpec& spec, const Place& place);
     void preset(const Member& member);
     void statistic(const Member& member);
-    std::optional<TelemetrySpec::Channel> channel(const Node& node, const std::string& label);
+    std::optional<TextureChannel> channel(const Node& node, const std::string& label);
     void histogram(const Node& node, TelemetrySpec& spec);
 
     CountSpec count(const Node& node, const std::string& key, const CountLimits& limits);
@@ -81,13 +90,21 @@ private:
     void native_uniform(const Member& member);
     void native_table(const Member& member);
 
-    void pass(const Node& node);
+    void tile_list(const Member& member);
+    void tiles_of_texture(const Node& of, TileListSpec& list);
+    void pass_or_group(const Node& node, const std::vector<WhenSpec>& shared);
+    void pass(const Node& node, const std::vector<WhenSpec>& shared);
     void shaders(ObjectReader& reader, const Node& node, PassSpec& pass);
+    /// The items of "reads" and "writes". True where the rest is what the shaders' text names: the key is
+    /// left out, or an item is "*".
+    bool reads(const Node& owner, ObjectReader& reader, std::vector<ReadSpec>& reads);
+    bool writes(const Node& owner, ObjectReader& reader, std::vector<WriteSpec>& writes);
     ReadSpec read(const Node& node);
     void read_options(const Member& member, ReadSpec& read);
     WriteSpec write(const Node& node);
     int level(const Node& node, const std::string& key, int most);
     std::vector<AccessSpec> accesses(const Node& section, const std::string& thing);
+    void add_conditions(const Node& section, std::vector<WhenSpec>& conditions);
     WhenSpec when(const Member& member);
     void define(PassSpec& pass, const Member& member);
     InstanceSpec instances(const Node& node);

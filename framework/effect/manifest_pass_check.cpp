@@ -6,6 +6,7 @@
 
 #include "framework/effect/manifest_check.h"
 #include "framework/effect/manifest_parser.h"
+#include "framework/effect/manifest_when.h"
 #include "framework/effect/shader_source.h"
 #include "framework/image/role.h"
 
@@ -36,15 +37,20 @@ public:
         }
     }
 
-    void check_inputs() {
-        for (const InputSpec& input : manifest_.inputs)
-            for (const WhenSpec& condition : input.when) {
-                if (condition.subject.starts_with(kHas))
+    /// Of what is there or not for all passes at once.
+    void check_resources() {
+        for (const InputSpec& input : manifest_.inputs) {
+            for (const WhenSpec& condition : input.when)
+                if (condition.subject.starts_with(kHasInput)) {
                     fault(condition.place,
                           "whether an input is there is asked by passes; the conditions of an "
                           "input are on parameters");
-                else check_when(condition);
-            }
+                    asked_.insert(to_string(condition.place));
+                }
+            check_conditions(input.when);
+        }
+        for (const TextureSpec& texture : manifest_.textures) check_conditions(texture.when);
+        for (const TileListSpec& list : manifest_.tiles) check_conditions(list.when);
     }
 
     void check(const PassSpec& pass) {
@@ -62,7 +68,9 @@ public:
                                   did_you_mean(pass.dispatch.over, textures_));
         check_writes();
         check_counts();
-        for (const WhenSpec& condition : pass.when) check_when(condition);
+        check_conditions(pass.when);
+        for (const ReadSpec& read : pass.reads) check_conditions(read.when);
+        for (const WriteSpec& write : pass.writes) check_conditions(write.when);
         for (const WriteSpec& write : pass.writes) filled_.insert(write.name), written_.insert(write.name);
         for (const auto* list : {&pass.images, &pass.buffers})
             for (const AccessSpec& access : *list)
@@ -93,14 +101,7 @@ public:
 
 private:
     void fault(const Place& place, const std::string& text) {
-        if (!pass_) {
-            diagnostics_.error(place, text);
-            return;
-        }
-        // A module is fine or not in an effect: what it reads may be missing there.
-        const std::string origin =
-            pass_->module.empty() ? "" : " of the module '" + pass_->module + "' in '" + manifest_.id + "'";
-        diagnostics_.error(place, "pass '" + pass_->name + "'" + origin + ": " + text);
+        diagnostics_.error(place, (pass_ ? label_of(manifest_, *pass_) + ": " : "") + text);
     }
 
     /// Where the first pass with the name of this one is, if in another document.
@@ -117,12 +118,18 @@ private:
                                                "' has 'history', but no pass reads '" + spec.name + ".prev'");
     }
 
+    bool is_there(const std::string& file) const {
+        return std::filesystem::is_regular_file(pass_->folder / file);
+    }
+
     void check_shader_file(const std::string& file) {
         if (file.empty()) return;
         // A shader is part of its effect or module: nothing from elsewhere on the disk is read.
         if (file.find('/') != std::string::npos)
-            fault(pass_->place, "'shader' is a file name without folders");
-        else if (!std::filesystem::is_regular_file(pass_->folder / file))
+            fault(pass_->place,
+                  pass_->lists.empty() ? "'shader' is a file name without folders"
+                                       : "'predicate' is a file name without folders");
+        else if (!is_there(file))
             fault(pass_->place, "no file '" + file + "' in " + pass_->folder.string());
     }
 
@@ -248,7 +255,11 @@ private:
 
     void check_writes() {
         const PassSpec& pass = *pass_;
-        if (pass.kind != PassKind::compute && pass.writes.empty()) fault(pass.place, "writes nothing");
+        if (pass.kind != PassKind::compute && pass.writes.empty())
+            fault(pass.place, pass.infers_writes && is_there(pass.shader)
+                                  ? "writes nothing: it has no 'writes', and '" + pass.shader +
+                                        "' has no 'out_' and the name of an output or a texture"
+                                  : "writes nothing");
         const auto writes = [](const AccessSpec& access) { return access.kind != AccessSpec::Kind::read; };
         if (pass.kind == PassKind::compute && std::none_of(pass.images.begin(), pass.images.end(), writes) &&
             std::none_of(pass.buffers.begin(), pass.buffers.end(), writes))
@@ -346,42 +357,21 @@ private:
         at_most(blocks, kMaxStorageBlocks, "buffers with those of table parameters");
     }
 
-    void check_when(const WhenSpec& condition) {
-        if (condition.subject.starts_with(kHas)) {
-            const InputSpec* input = manifest_.find_input(condition.subject.substr(kHas.size()));
-            if (!input || !input->optional)
-                fault(condition.place, "'" + condition.subject + "' does not name an optional input");
-            for (const ParamValue& value : condition.values)
-                if (!std::holds_alternative<bool>(value))
-                    fault(condition.place,
-                          "'" + condition.subject + "' is true or false, not " + format_value(value));
-            return;
+    /// Conditions of a group, a texture or a tile list come with each pass that has them: told once.
+    void check_conditions(const std::vector<WhenSpec>& conditions) {
+        for (const WhenSpec& condition : conditions) {
+            if (!asked_.insert(to_string(condition.place)).second) continue;
+            for (const std::string& text : faults_of_condition(manifest_, condition))
+                fault(condition.place, text);
         }
-        const ParamSpec* spec = manifest_.find_param(condition.subject);
-        if (!spec) {
-            fault(condition.place, "the condition '" + condition.subject + "' is not a parameter" +
-                                       did_you_mean(condition.subject, manifest_.param_names()));
-            return;
-        }
-        for (const ParamValue& value : condition.values)
-            if (!may_equal(*spec, value))
-                fault(condition.place, format_value(value) + " is not a value of '" + spec->name + "'");
     }
 
-    /// A condition that could never hold is a mistake.
-    static bool may_equal(const ParamSpec& spec, const ParamValue& value) {
-        if (spec.type == ParamType::bool_) return std::holds_alternative<bool>(value);
-        if (spec.type == ParamType::int_) return std::holds_alternative<std::int64_t>(value);
-        const auto* name = std::get_if<std::string>(&value);
-        return name && std::find(spec.values.begin(), spec.values.end(), *name) != spec.values.end();
-    }
-
-    static constexpr std::string_view kHas = "has.";
     const EffectManifest& manifest_;
     Diagnostics& diagnostics_;
     const PassSpec* pass_ = nullptr;  // being checked
     std::vector<std::string> readable_, writable_, textures_, buffers_;
     std::set<std::string> names_;
+    std::set<std::string> asked_;  // places of conditions
     std::set<std::string> used_;
     std::set<std::string> previous_;  // of what the last frame's is read
     std::set<std::string> written_;
@@ -390,9 +380,16 @@ private:
 
 }  // namespace
 
+std::string label_of(const EffectManifest& manifest, const PassSpec& pass) {
+    // A module is fine or not in an effect: what it reads may be missing there.
+    const std::string origin =
+        pass.module.empty() ? "" : " of the module '" + pass.module + "' in '" + manifest.id + "'";
+    return (pass.lists.empty() ? "pass '" : "tile list '") + pass.name + "'" + origin;
+}
+
 void check_passes(const EffectManifest& manifest, Diagnostics& diagnostics) {
     PassChecker checker(manifest, diagnostics);
-    checker.check_inputs();
+    checker.check_resources();
     for (const PassSpec& pass : manifest.passes) checker.check(pass);
     checker.check_all_used();
 }

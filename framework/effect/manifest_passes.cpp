@@ -14,36 +14,31 @@ namespace {
 constexpr int kMaxGroups = 65535;       // GL_MAX_COMPUTE_WORK_GROUP_COUNT is at least this
 constexpr int kMaxInstances = 1 << 24;  // one a pixel of a 4096 x 4096 image
 constexpr int kMaxGroupTile = 4096;
-constexpr int kMaxLevel = 14;  // of 16384 texels a side
 
 const std::vector<std::string> kKinds{"draw", "compute", "clear"};
-const std::vector<std::string> kFilters{"nearest", "linear"};
-const std::vector<std::string> kOutside{"clamp", "weight_zero"};
-const std::vector<std::string> kAccess{"read", "write", "atomic"};
 const std::vector<std::string> kBlends{"add", "min", "max"};
 const std::vector<std::string> kPrimitives{"quads", "points"};
-
-/// "name.prev" is the last frame's: takes the end off and says whether it was there.
-bool take_prev(std::string& name) {
-    constexpr std::string_view kPrev = ".prev";
-    if (!name.ends_with(kPrev)) return false;
-    name.resize(name.size() - kPrev.size());
-    return true;
-}
-
-template <typename T>
-T choice_of(const std::optional<std::string>& text, const std::vector<std::string>& names, T otherwise) {
-    if (!text) return otherwise;
-    return T(std::find(names.begin(), names.end(), *text) - names.begin());
-}
 
 }  // namespace
 
 void ManifestParser::passes(const Node& section) {
-    for (const Node& node : section.items) pass(node);
+    for (const Node& node : section.items) pass_or_group(node, {});
 }
 
-void ManifestParser::pass(const Node& node) {
+/// A group is {"when": {...}, "passes": [...]}: its conditions come before those of each pass in it.
+void ManifestParser::pass_or_group(const Node& node, const std::vector<WhenSpec>& shared) {
+    if (!node.is_object() || !node.find("passes")) return pass(node, shared);
+    ObjectReader reader(node, "the group of passes", diagnostics_);
+    std::vector<WhenSpec> all = shared;
+    if (const Node* section = reader.object("when", Presence::required)) add_conditions(*section, all);
+    if (const Node* passes = reader.array("passes", Presence::required)) {
+        if (passes->items.empty()) fault(passes->place, "the group has no passes");
+        for (const Node& item : passes->items) pass_or_group(item, all);
+    }
+    reader.finish();
+}
+
+void ManifestParser::pass(const Node& node, const std::vector<WhenSpec>& shared) {
     // What the pass is belongs into what is said of a key that only another kind has.
     const Node* kind = node.find("kind");
     const bool special = kind && (kind->string == "compute" || kind->string == "clear");
@@ -56,10 +51,10 @@ void ManifestParser::pass(const Node& node) {
     pass.name = reader.text("name", Presence::required).value_or("");
     if (node.find("name")) identifier(pass.name, node.find("name")->place, "pass");
     pass.kind = choice_of(reader.choice("kind", kKinds), kKinds, PassKind::draw);
-    if (const Node* conditions = reader.object("when"))
-        for (const Member& member : conditions->members) pass.when.push_back(when(member));
-    if (const Node* writes = pass.kind == PassKind::compute ? nullptr : reader.array("writes"))
-        for (const Node& item : writes->items) pass.writes.push_back(write(item));
+    pass.when = shared;
+    if (const Node* section = reader.object("when")) add_conditions(*section, pass.when);
+    if (pass.kind != PassKind::compute)
+        pass.infers_writes = writes(node, reader, pass.writes) && pass.kind == PassKind::draw;
     if (pass.kind != PassKind::clear) {
         shaders(reader, node, pass);
     } else if (const Node* value = reader.any("value", Presence::required)) {
@@ -72,8 +67,7 @@ void ManifestParser::pass(const Node& node) {
 /// What a pass that runs a shader has. A key that the pass's kind does not take is an unknown key.
 void ManifestParser::shaders(ObjectReader& reader, const Node& node, PassSpec& pass) {
     pass.shader = reader.text("shader", Presence::required).value_or("");
-    if (const Node* reads = reader.array("reads"))
-        for (const Node& item : reads->items) pass.reads.push_back(read(item));
+    pass.infers_reads = reads(node, reader, pass.reads);
     if (const Node* images = reader.object("images")) pass.images = accesses(*images, "image");
     if (const Node* buffers = reader.object("buffers")) pass.buffers = accesses(*buffers, "buffer");
     if (const Node* defines = reader.object("defines"))
@@ -93,110 +87,18 @@ void ManifestParser::shaders(ObjectReader& reader, const Node& node, PassSpec& p
         return;
     }
     pass.vertex = reader.text("vertex").value_or("");
+    const auto over = reader.text("over");
+    pass.over = over.value_or("");
+    if (over && over->empty()) fault(node.find("over")->place, "'over' names no tile list");
     if (const Node* drawn = reader.object("instances")) pass.instances = instances(*drawn);
-    if (pass.instances && pass.vertex.empty())
+    if (pass.instances && !pass.over.empty())
+        fault(node.find("over")->place, "a draw has 'instances' or is 'over' a list of tiles, not both");
+    else if (pass.instances && pass.vertex.empty())
         fault(node.find("instances")->place, "'instances' need a 'vertex' shader, which places them");
-    if (!pass.instances && !pass.vertex.empty())
+    if (!pass.instances && !pass.vertex.empty() && pass.over.empty())
         fault(node.find("vertex")->place, "a 'vertex' shader needs 'instances' to place");
     if (const auto blend = reader.choice("blend", kBlends))
         pass.blend = *blend == "add" ? gpu::Blend::add : *blend == "min" ? gpu::Blend::min : gpu::Blend::max;
-}
-
-ReadSpec ManifestParser::read(const Node& node) {
-    ReadSpec read;
-    read.place = node.place;
-    if (node.is_string()) {
-        read.name = node.string;
-    } else if (!node.is_object() || node.members.size() != 1) {
-        fault(node.place,
-              "a read is a name, or an object of one name with its filter: {\"color\": \"linear\"}");
-    } else {
-        read.name = node.members[0].key;
-        read_options(node.members[0], read);
-    }
-    read.previous = take_prev(read.name);
-    return read;
-}
-
-void ManifestParser::read_options(const Member& member, ReadSpec& read) {
-    if (member.value.is_object()) {
-        ObjectReader reader(member.value, "the read of '" + member.key + "'", diagnostics_);
-        read.filter = choice_of(reader.choice("filter", kFilters), kFilters, gpu::Filter::nearest);
-        read.wrap = choice_of(reader.choice("outside", kOutside), kOutside, gpu::Wrap::clamp);
-        if (const Node* one = reader.any("level")) read.level = level(*one, "level", kMaxLevel);
-        reader.finish();
-    } else if (member.value.is_string() &&
-               (member.value.string == "linear" || member.value.string == "nearest")) {
-        if (member.value.string == "linear") read.filter = gpu::Filter::linear;
-    } else {
-        fault(member.value.place, "the filter of a read is 'nearest' or 'linear'");
-    }
-}
-
-WriteSpec ManifestParser::write(const Node& node) {
-    WriteSpec write;
-    write.place = node.place;
-    if (node.is_string()) {
-        write.name = node.string;
-    } else if (!node.is_object() || node.members.size() != 1) {
-        fault(node.place,
-              "a write is a name, or an object of one name with its place: {\"pyramid\": {\"level\": 1}}");
-    } else {
-        write.name = node.members[0].key;
-        ObjectReader reader(node.members[0].value, "the write of '" + write.name + "'", diagnostics_);
-        if (const Node* one = reader.any("level")) write.level = level(*one, "level", kMaxLevel);
-        if (const Node* one = reader.any("layer")) write.layer = level(*one, "layer", kMaxLayers - 1);
-        reader.finish();
-    }
-    return write;
-}
-
-int ManifestParser::level(const Node& node, const std::string& key, int most) {
-    static const std::regex rule(R"(pass\.index(?: *([+-]) *(\d{1,2}))?)");
-    std::smatch match;
-    if (node.kind == Node::Kind::integer) return int(integer_in(node, key, 0, most));
-    if (!node.is_string() || !std::regex_match(node.string, match, rule)) {
-        fault(node.place,
-              "'" + key + "' is an integer, \"pass.index\", \"pass.index + 1\" or \"pass.index - 1\"");
-        return 0;
-    }
-    const int offset = match[2].matched ? std::stoi(match[2]) : 0;
-    return kPassIndex + (match[1] == "-" ? -offset : offset);
-}
-
-std::vector<AccessSpec> ManifestParser::accesses(const Node& section, const std::string& thing) {
-    std::vector<AccessSpec> accesses;
-    for (const Member& member : section.members) {
-        AccessSpec access;
-        access.name = member.key;
-        access.place = member.key_place;
-        access.previous = take_prev(access.name);
-        const auto found = std::find(kAccess.begin(), kAccess.end(), member.value.string);
-        if (!member.value.is_string() || found == kAccess.end())
-            fault(member.value.place,
-                  "the access to the " + thing + " '" + member.key + "' is " + list_of_names(kAccess));
-        else access.kind = AccessSpec::Kind(found - kAccess.begin());
-        accesses.push_back(std::move(access));
-    }
-    return accesses;
-}
-
-WhenSpec ManifestParser::when(const Member& member) {
-    WhenSpec condition;
-    condition.subject = member.key;
-    condition.place = member.key_place;
-    const auto add = [&](const Node& value) {
-        if (value.kind == Node::Kind::boolean) condition.values.emplace_back(value.boolean);
-        else if (value.kind == Node::Kind::integer) condition.values.emplace_back(value.integer);
-        else if (value.is_string()) condition.values.emplace_back(value.string);
-        else fault(value.place, "a condition compares with true, false, an integer or a name");
-    };
-    if (member.value.is_array())
-        for (const Node& item : member.value.items) add(item);
-    else add(member.value);
-    if (member.value.is_array() && member.value.items.empty())
-        fault(member.value.place, "the condition '" + member.key + "' has no value, so it never holds");
-    return condition;
 }
 
 void ManifestParser::define(PassSpec& pass, const Member& member) {

@@ -181,7 +181,7 @@ void ManifestParser::inputs(const Node& section) {
         if (const Node* conditions = reader.object("when")) {
             if (!input.optional)
                 fault(member.value.find("when")->place, "an input with 'when' must be 'optional'");
-            for (const Member& condition : conditions->members) input.when.push_back(when(condition));
+            add_conditions(*conditions, input.when);
         }
         reader.finish();
         manifest_.inputs.push_back(std::move(input));
@@ -228,6 +228,7 @@ void ManifestParser::texture(const Member& member) {
             fault(clear->place, "'clear' " + why);
     }
     texture.history = reader.boolean("history").value_or(false);
+    if (const Node* section = reader.object("when")) add_conditions(*section, texture.when);
     reader.finish();
     manifest_.textures.push_back(std::move(texture));
 }

@@ -26,7 +26,7 @@ void ManifestParser::telemetry(const Node& section) {
     for (const Member& member : section.members) statistic(member);
 }
 
-std::optional<TelemetrySpec::Channel> ManifestParser::channel(const Node& node, const std::string& label) {
+std::optional<TextureChannel> ManifestParser::channel(const Node& node, const std::string& label) {
     const std::size_t dot = node.string.rfind('.');
     const std::string name = node.string.substr(0, dot),
                       letter = dot == std::string::npos ? "" : node.string.substr(dot + 1);
@@ -45,7 +45,7 @@ std::optional<TelemetrySpec::Channel> ManifestParser::channel(const Node& node, 
                               ".r\"");
         return std::nullopt;
     }
-    return TelemetrySpec::Channel{name, int(place)};
+    return TextureChannel{name, int(place)};
 }
 
 void ManifestParser::histogram(const Node& node, TelemetrySpec& spec) {

@@ -1,40 +1,56 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <iterator>
 
+#include "framework/effect/manifest_when.h"
 #include "framework/effect/shader_source.h"
 #include "framework/effect/std140.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
 
-std::vector<ReadSpec> present_reads(const EffectManifest& manifest, const PassSpec& pass,
-                                    const std::vector<std::string>& present_inputs) {
-    std::vector<ReadSpec> present;
-    for (const ReadSpec& read : pass.reads) {
-        const InputSpec* input = manifest.find_input(read.name);
-        const bool absent =
-            input && input->optional &&
-            std::find(present_inputs.begin(), present_inputs.end(), read.name) == present_inputs.end();
-        if (!absent) present.push_back(read);
-    }
+namespace {
+
+/// Of reads, writes or images those whose conditions hold.
+template <typename Use>
+std::vector<Use> present_uses(const std::vector<Use>& uses, const ParamSet& params,
+                              const std::vector<std::string>& present_inputs) {
+    std::vector<Use> present;
+    std::copy_if(uses.begin(), uses.end(), std::back_inserter(present),
+                 [&](const Use& use) { return conditions_hold(use.when, params, present_inputs); });
     return present;
+}
+
+bool is_written(const AccessSpec& access) {
+    return access.kind != AccessSpec::Kind::read;
+}
+
+}  // namespace
+
+std::vector<ReadSpec> present_reads(const EffectManifest& manifest, const PassSpec& pass,
+                                    const ParamSet& params, const std::vector<std::string>& present_inputs) {
+    std::vector<ReadSpec> present = present_uses(pass.reads, params, present_inputs);
+    std::erase_if(present, [&](const ReadSpec& read) {
+        const InputSpec* input = manifest.find_input(read.name);
+        return input && input->optional &&
+               std::find(present_inputs.begin(), present_inputs.end(), read.name) == present_inputs.end();
+    });
+    return present;
+}
+
+std::vector<WriteSpec> present_writes(const PassSpec& pass, const ParamSet& params,
+                                      const std::vector<std::string>& present_inputs) {
+    return present_uses(pass.writes, params, present_inputs);
 }
 
 bool pass_enabled(const PassSpec& pass, const ParamSet& params,
                   const std::vector<std::string>& present_inputs) {
-    constexpr std::string_view kHas = "has.";
-    const auto holds = [&](const WhenSpec& condition) {
-        ParamValue actual;
-        if (condition.subject.starts_with(kHas)) {
-            const std::string input = condition.subject.substr(kHas.size());
-            actual = std::find(present_inputs.begin(), present_inputs.end(), input) != present_inputs.end();
-        } else {
-            actual = params.get(condition.subject);
-        }
-        return std::find(condition.values.begin(), condition.values.end(), actual) != condition.values.end();
-    };
-    return std::all_of(pass.when.begin(), pass.when.end(), holds);
+    if (!conditions_hold(pass.when, params, present_inputs)) return false;
+    const std::vector<AccessSpec> images = present_uses(pass.images, params, present_inputs);
+    return !present_writes(pass, params, present_inputs).empty() ||
+           std::any_of(images.begin(), images.end(), is_written) ||
+           std::any_of(pass.buffers.begin(), pass.buffers.end(), is_written);
 }
 
 const ParamFile& ShaderContext::file_of(const std::string& param) const {
@@ -47,9 +63,11 @@ const ParamFile& ShaderContext::file_of(const std::string& param) const {
 PassBindings pass_bindings(const ShaderContext& context) {
     const EffectManifest& manifest = *context.manifest;
     PassBindings bindings;
-    bindings.reads = present_reads(manifest, *context.pass, context.present_inputs);
-    bindings.images = context.pass->images;
-    bindings.buffers = context.pass->buffers;
+    const PassSpec& pass = *context.pass;
+    bindings.reads = present_reads(manifest, pass, *context.params, context.present_inputs);
+    bindings.writes = present_writes(pass, *context.params, context.present_inputs);
+    bindings.images = present_uses(pass.images, *context.params, context.present_inputs);
+    bindings.buffers = pass.buffers;
     for (const ParamSpec& spec : manifest.params) {
         const bool has_file = spec.type == ParamType::file &&
                               !std::holds_alternative<std::monostate>(context.file_of(spec.name));
@@ -62,7 +80,8 @@ PassBindings pass_bindings(const ShaderContext& context) {
     bindings.first_native_sampler = bindings.first_param_sampler + int(bindings.param_samplers.size());
     bindings.first_param_buffer = int(bindings.buffers.size());
     bindings.has_param_block = has_param_block(manifest);
-    bindings.has_pass_block = context.pass->repeat.has_value();
+    bindings.has_pass_block = pass.repeat.has_value();
+    bindings.has_tile_grid = !pass.over.empty() || !pass.lists.empty();
     bindings.has_native_block = has_native_block(manifest);
     return bindings;
 }

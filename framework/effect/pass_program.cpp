@@ -46,9 +46,9 @@ ProgramCache::Sources ProgramCache::assemble(const ShaderContext& context, Diagn
     sources.is_compute = context.pass->kind == PassKind::compute;
     sources.main = assemble_shader(context, faults);
     if (sources.is_compute) return sources;
-    if (!context.pass->vertex.empty())
-        sources.vertex_lines = assemble_shader(context, faults, ShaderFile::vertex);
-    sources.vertex = context.pass->vertex.empty() ? full_screen_ : sources.vertex_lines.text;
+    const bool has_vertex = context.pass->has_vertex_shader();
+    if (has_vertex) sources.vertex_lines = assemble_shader(context, faults, ShaderFile::vertex);
+    sources.vertex = has_vertex ? sources.vertex_lines.text : full_screen_;
     return sources;
 }
 

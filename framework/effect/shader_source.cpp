@@ -41,12 +41,19 @@ public:
         : context_(context), diagnostics_(diagnostics), file_(file) {}
 
     ShaderSource assemble() {
-        const PassSpec& pass = *context_.pass;
-        const fs::path file = pass.folder / (file_ == ShaderFile::vertex ? pass.vertex : pass.shader);
+        const fs::path file = shader_path(*context_.pass, file_, context_.glsl_folder);
         add_file(file, Place{file.string()});
         if (!has_version_ || !has_pass_)
             diagnostics_.error({file.string(), 1, 1},
                                "a shader begins with '#version 450 core' and then has '#include <pass>'");
+        return std::move(source_);
+    }
+
+    /// Without the host's lines.
+    ShaderSource author_text() {
+        has_interface_ = false;
+        const fs::path file = shader_path(*context_.pass, file_, context_.glsl_folder);
+        add_file(file, Place{file.string()});
         return std::move(source_);
     }
 
@@ -85,11 +92,11 @@ private:
 
     void add_include(bool shared, const std::string& name, const Place& place) {
         if (shared && name == "pass") {
-            if (std::exchange(has_pass_, true)) return;
-            std::istringstream lines(interface_glsl(context_, file_));
-            for (std::string line; std::getline(lines, line);) add_line(line, "<generated>", place.line);
+            if (!std::exchange(has_pass_, true) && has_interface_)
+                add_generated(interface_glsl(context_, file_), place.line);
             return;
         }
+        if (shared && name == "predicate" && !context_.pass->lists.empty()) return add_predicate(place);
         // A shader cannot reach outside its own folder and glsl/.
         const std::size_t slash = shared ? name.find('/') : std::string::npos;
         const bool is_plain = slash == std::string::npos ? is_plain_name(name)
@@ -100,6 +107,21 @@ private:
             return;
         }
         add_file((shared ? context_.glsl_folder : fs::path(place.file).parent_path()) / name, place);
+    }
+
+    void add_generated(const std::string& text, int line) {
+        std::istringstream lines(text);
+        for (std::string each; std::getline(lines, each);) add_line(each, "<generated>", line);
+    }
+
+    /// What glsl/host/list_tiles.comp asks of each tile.
+    void add_predicate(const Place& place) {
+        const TileListSpec& list = *context_.manifest->find_tile_list(context_.pass->lists);
+        if (!list.of) add_file(list.folder / list.predicate, place);
+        const std::string listed =
+            list.of ? "texelFetch(" + list.of->texture + ", tile, 0)." + "rgba"[list.of->channel] + " > 0.0"
+                    : list.name + "(tile)";
+        add_generated("bool is_listed(ivec2 tile) { return " + listed + "; }\n", place.line);
     }
 
     static bool is_plain_name(const std::string& name) {
@@ -113,6 +135,7 @@ private:
     std::set<fs::path> included_;
     bool has_version_ = false;
     bool has_pass_ = false;
+    bool has_interface_ = true;
 };
 
 }  // namespace
@@ -129,8 +152,20 @@ std::optional<ShaderInclude> parse_include(std::string_view line) {
     return line.empty() || line.starts_with("//") ? std::optional(std::move(include)) : std::nullopt;
 }
 
+fs::path shader_path(const PassSpec& pass, ShaderFile file, const fs::path& glsl_folder) {
+    if (!pass.lists.empty()) return glsl_folder / "host" / "list_tiles.comp";
+    if (file == ShaderFile::main) return pass.folder / pass.shader;
+    return pass.vertex.empty() ? glsl_folder / "host" / "tiles.vert" : pass.folder / pass.vertex;
+}
+
 ShaderSource assemble_shader(const ShaderContext& context, Diagnostics& diagnostics, ShaderFile file) {
     return Assembler(context, diagnostics, file).assemble();
+}
+
+ShaderSource author_text(const EffectManifest& manifest, const PassSpec& pass, const fs::path& glsl_folder,
+                         Diagnostics& diagnostics, ShaderFile file) {
+    const ShaderContext context{&manifest, &pass, nullptr, {}, glsl_folder};
+    return Assembler(context, diagnostics, file).author_text();
 }
 
 }  // namespace aftershade

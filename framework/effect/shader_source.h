@@ -52,6 +52,7 @@ struct PassBindings {
     std::vector<const ParamSpec*> param_samplers;
     int first_native_sampler = 0;  ///< ... and one for each native table
     std::vector<const NativeTableSpec*> native_tables;
+    std::vector<WriteSpec> writes;    ///< target i is writes[i]
     std::vector<AccessSpec> images;   ///< image unit i is images[i]
     std::vector<AccessSpec> buffers;  ///< storage block i is buffers[i]
     int first_param_buffer = 0;       ///< then one for each table parameter
@@ -59,6 +60,9 @@ struct PassBindings {
     bool has_param_block = false;
     bool has_pass_block = false;
     bool has_native_block = false;
+    /// The block of sizes ends with a vec4 `tile_grid_size`: how many texels of the tile list's grid the
+    /// pass's target has, or what the list is of.
+    bool has_tile_grid = false;
 };
 
 /// Pointers are into the context's manifest.
@@ -66,6 +70,10 @@ PassBindings pass_bindings(const ShaderContext& context);
 
 /// Of a draw of instances there are two shaders, of every other pass one.
 enum class ShaderFile { main, vertex };
+
+/// Where a pass's shader begins: the author's file, or the host's own where tiles are listed or drawn over.
+std::filesystem::path shader_path(const PassSpec& pass, ShaderFile file,
+                                  const std::filesystem::path& glsl_folder);
 
 struct SourceLine {
     std::string file;  ///< "<generated>" for the host's own lines
@@ -89,15 +97,24 @@ std::optional<ShaderInclude> parse_include(std::string_view line);
 ShaderSource assemble_shader(const ShaderContext& context, Diagnostics& diagnostics,
                              ShaderFile file = ShaderFile::main);
 
+/// The text that authors wrote, with its includes and without what the host generates; the pass need not be
+/// sound. A missing include goes to `diagnostics`.
+ShaderSource author_text(const EffectManifest& manifest, const PassSpec& pass,
+                         const std::filesystem::path& glsl_folder, Diagnostics& diagnostics, ShaderFile file);
+
 /// What `#include <pass>` stands for; a vertex shader's has no outputs.
 std::string interface_glsl(const ShaderContext& context, ShaderFile file = ShaderFile::main);
 
-/// The reads of a pass that are there: inputs that are present, and textures. Their order gives the sampler
-/// bindings.
+/// The reads of a pass that are there: textures and inputs that are present, where their conditions hold.
+/// Their order gives the sampler bindings.
 std::vector<ReadSpec> present_reads(const EffectManifest& manifest, const PassSpec& pass,
-                                    const std::vector<std::string>& present_inputs);
+                                    const ParamSet& params, const std::vector<std::string>& present_inputs);
 
-/// Whether every condition of the pass holds.
+/// The writes of a pass whose conditions hold; their order is that of the targets.
+std::vector<WriteSpec> present_writes(const PassSpec& pass, const ParamSet& params,
+                                      const std::vector<std::string>& present_inputs);
+
+/// Whether every condition of the pass holds, and at least one of the things that it writes is there.
 bool pass_enabled(const PassSpec& pass, const ParamSet& params,
                   const std::vector<std::string>& present_inputs);
 

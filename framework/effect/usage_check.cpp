@@ -7,50 +7,14 @@
 #include <utility>
 
 #include "framework/effect/glsl_names.h"
-#include "framework/effect/glsl_tokens.h"
 #include "framework/effect/shader_source.h"
+#include "framework/effect/shader_uses.h"
 
 namespace aftershade {
 
 namespace {
 
-constexpr std::string_view kOut = "out_";
-
-using Uses = std::map<std::string, Place>;  // by name, with its first place
-
-/// What one shader uses.
-struct ShaderUses {
-    std::set<std::string> words;
-    Uses params;                  // x of param.x
-    Uses natives;                 // x of native.x
-    Uses outputs;                 // x of out_x, but for names that the shader declares itself
-    std::optional<Place> lights;  // first place of lights.count or lights.light
-
-    explicit ShaderUses(const std::vector<Token>& tokens) {
-        std::set<std::string> own;
-        for (std::size_t i = 0; i < tokens.size(); ++i) {
-            const Token& token = tokens[i];
-            if (!token.is_word()) continue;
-            words.insert(token.text);
-            const bool is_member = i > 0 && tokens[i - 1].text == ".";
-            if (is_member) continue;
-            if (i + 2 < tokens.size() && tokens[i + 1].text == ".") {
-                if (token.text == "param") params.emplace(tokens[i + 2].text, token.place);
-                if (token.text == "native") natives.emplace(tokens[i + 2].text, token.place);
-                const std::string& member = tokens[i + 2].text;
-                if (token.text == "lights" && (member == "count" || member == "light") && !lights)
-                    lights = token.place;
-            }
-            if (!token.text.starts_with(kOut)) continue;
-            // "vec3 out_direction": a type before it makes it the shader's own.
-            const bool declares = i > 0 && tokens[i - 1].is_word() && tokens[i - 1].text != "return" &&
-                                  tokens[i - 1].text != "else";
-            if (declares) own.insert(token.text.substr(kOut.size()));
-            else outputs.emplace(token.text.substr(kOut.size()), token.place);
-        }
-        for (const std::string& name : own) outputs.erase(name);
-    }
-};
+using Uses = ShaderUses::Uses;
 
 class UsageChecker {
 public:
@@ -115,6 +79,11 @@ private:
     }
 
     void check_pass(const PassSpec& pass) {
+        if (names_of(pass).empty()) return;  // a clear, or the tiles of a texture: the host's text
+        const TileListSpec* tiles = manifest_.find_tile_list(pass.lists.empty() ? pass.over : pass.lists);
+        if (!pass.lists.empty() && !pass_has(pass, pass.lists))
+            diagnostics_.error(tiles->place, "tile list '" + pass.lists + "': its predicate '" + pass.shader +
+                                                 "' has no function 'bool " + pass.lists + "(ivec2 tile)'");
         const auto unused = [&](const Place& place, const std::string& what) {
             diagnostics_.error(place, "pass '" + pass.name + "': " + list_of_names(names_of(pass), "and") +
                                           " " + (names_of(pass).size() > 1 ? "do" : "does") + " not use " +
@@ -125,10 +94,11 @@ private:
                 unused(read.place, "its read '" + read.glsl_name() + "'");
         for (const AccessSpec& image : pass.images)
             if (!pass_has(pass, image.name)) unused(image.place, "its image '" + image.name + "'");
-        for (const AccessSpec& buffer : pass.buffers)
-            if (!pass_has(pass, buffer.glsl_name()))
+        for (const AccessSpec& buffer : pass.buffers) {
+            const bool is_host = tiles && (buffer.name == tiles->runs() || buffer.name == tiles->args());
+            if (!is_host && !pass_has(pass, buffer.glsl_name()))
                 unused(buffer.place, "its buffer '" + buffer.glsl_name() + "'");
-        if (pass.kind == PassKind::clear) return;
+        }
         for (const WriteSpec& write : pass.writes)
             if (!pass_has(pass, std::string(kOut) + write.name))
                 unused(write.place, "its target 'out_" + write.name + "'");
@@ -136,18 +106,29 @@ private:
 
     /// Passes may share a shader, whose #if branches then use what only one of them declares.
     void check_shader(const std::string& file, const ShaderUses& uses) {
-        std::vector<std::string> targets;
-        for (const PassSpec& pass : manifest_.passes)
-            if (pass.folder / pass.shader == file)
-                for (const WriteSpec& write : pass.writes) targets.push_back(std::string(kOut) + write.name);
+        std::vector<std::string> targets, meant;
+        for (const PassSpec& pass : manifest_.passes) {
+            if (pass.folder / pass.shader != file) continue;
+            for (const WriteSpec& write : pass.writes) targets.push_back(std::string(kOut) + write.name);
+            if (pass.infers_writes) meant = all_targets();
+        }
+        meant.insert(meant.end(), targets.begin(), targets.end());
         for (const auto& [name, place] : uses.outputs) {
             const std::string word = std::string(kOut) + name;
             if (std::find(targets.begin(), targets.end(), word) == targets.end())
                 once(place,
-                     "'" + word + "' is no target of a pass with this shader" + did_you_mean(word, targets));
+                     "'" + word + "' is no target of a pass with this shader" + did_you_mean(word, meant));
         }
         for (const auto& [name, place] : uses.params) check_member(name, place);
         for (const auto& [name, place] : uses.natives) check_native_member(name, place);
+    }
+
+    std::vector<std::string> all_targets() const {
+        std::vector<std::string> targets;
+        for (const OutputSpec& output : manifest_.outputs) targets.push_back(std::string(kOut) + output.name);
+        for (const TextureSpec& texture : manifest_.textures)
+            targets.push_back(std::string(kOut) + texture.name);
+        return targets;
     }
 
     void check_member(const std::string& name, const Place& place) {
@@ -213,10 +194,16 @@ private:
             add(buffer.count);
             if (buffer.grid) add(buffer.grid->tile);
         }
-        for (const InputSpec& input : manifest_.inputs)
-            for (const WhenSpec& condition : input.when) names.insert(condition.subject);
+        const auto add_subjects = [&](const auto& uses) {
+            for (const auto& use : uses)
+                for (const WhenSpec& condition : use.when) names.insert(condition.subject);
+        };
+        add_subjects(manifest_.inputs);
+        add_subjects(manifest_.textures);
+        add_subjects(manifest_.passes);
         for (const PassSpec& pass : manifest_.passes) {
-            for (const WhenSpec& condition : pass.when) names.insert(condition.subject);
+            add_subjects(pass.reads);
+            add_subjects(pass.writes);
             if (pass.repeat) add(*pass.repeat);
             if (pass.kind == PassKind::compute) add(pass.dispatch.tile);
             if (!pass.instances) continue;

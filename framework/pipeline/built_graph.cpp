@@ -16,9 +16,16 @@ void add_grid(std::string& key, const std::optional<GridSpec>& grid, const Param
     if (grid) add_count(key, grid->tile, params);
 }
 
-void add_pass_key(std::string& key, const PassSpec& pass, const ParamSet& params) {
-    for (const WhenSpec& condition : pass.when)
+void add_conditions(std::string& key, const std::vector<WhenSpec>& conditions, const ParamSet& params) {
+    for (const WhenSpec& condition : conditions)
         if (params.has(condition.subject)) key += " " + format_value(params.get(condition.subject));
+}
+
+void add_pass_key(std::string& key, const PassSpec& pass, const ParamSet& params) {
+    add_conditions(key, pass.when, params);
+    for (const ReadSpec& read : pass.reads) add_conditions(key, read.when, params);
+    for (const WriteSpec& write : pass.writes) add_conditions(key, write.when, params);
+    for (const AccessSpec& image : pass.images) add_conditions(key, image.when, params);
     if (pass.repeat) add_count(key, *pass.repeat, params);
     add_count(key, pass.dispatch.tile, params);
     if (!pass.instances) return;

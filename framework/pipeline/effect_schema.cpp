@@ -5,55 +5,18 @@
 #include "framework/effect/manifest.h"
 #include "framework/image/camera.h"
 #include "framework/image/role.h"
+#include "framework/pipeline/pass_schema.h"
 #include "framework/pipeline/schema.h"
 #include "framework/pipeline/schema_role.h"
 
 namespace aftershade {
 
 using schema::json;
+using namespace schema_of_effect;
 
 namespace {
 
-const json kText = {{"type", "string"}};
-const json kName = {{"type", "string"}, {"minLength", 1}};
-const json kFlag = {{"type", "boolean"}};
-const json kNumber = {{"type", "number"}};
-constexpr int kMostLevel = 14;         // of 16384 texels a side
 constexpr int kMaxElements = 1 << 25;  // of 4 bytes, in a block of 128 MiB
-
-json integer(int min, int max) {
-    return {{"type", "integer"}, {"minimum", min}, {"maximum", max}};
-}
-
-/// A number, or the name of an int parameter.
-json count(int min, int max) {
-    return {{"anyOf", {integer(min, max), schema::snake_case()}}};
-}
-
-/// A value of every channel, or four of them.
-json texel() {
-    return schema::any_of({kNumber, schema::array_of(kNumber, 1, 1), schema::array_of(kNumber, 4, 4)});
-}
-
-json at_most_one(const std::vector<std::string>& keys) {
-    json pairs = json::array();
-    for (std::size_t i = 0; i < keys.size(); ++i)
-        for (std::size_t k = i + 1; k < keys.size(); ++k) pairs.push_back({{"required", {keys[i], keys[k]}}});
-    return {{"anyOf", pairs}};
-}
-
-/// What else holds for an object whose `key` is `value`.
-json where(const std::string& key, const std::string& value, json then) {
-    return {{"if", {{"properties", {{key, {{"const", value}}}}}, {"required", {key}}}},
-            {"then", std::move(then)}};
-}
-
-/// No such keys.
-json without(const std::vector<std::string>& keys) {
-    json properties = json::object();
-    for (const std::string& key : keys) properties[key] = false;
-    return {{"properties", properties}};
-}
 
 /// What a parameter of this type has, and has not, beside what all have.
 json rules_of(ParamType type, bool column) {
@@ -129,10 +92,6 @@ json param(bool column) {
     return result;
 }
 
-json grid_scale() {
-    return {{"type", "number"}, {"exclusiveMinimum", 0}, {"maximum", 4}};
-}
-
 json texture() {
     std::vector<std::string> formats;
     for (const auto name : gpu::texture_format_names()) formats.emplace_back(name);
@@ -144,17 +103,11 @@ json texture() {
                                   {"layers", integer(1, kMaxLayers)},
                                   {"mips", {{"anyOf", {{{"const", "auto"}}, integer(1, 15)}}}},
                                   {"clear", texel()},
-                                  {"history", kFlag}},
+                                  {"history", kFlag},
+                                  {"when", when()}},
                                  {"format", "doc"});
     result["not"] = at_most_one({"scale", "tile", "size"});
     return result;
-}
-
-json per() {
-    return {{"anyOf",
-             {{{"const", "pixel"}},
-              schema::object({{"tile", count(2, 4096)}}, {"tile"}),
-              schema::object({{"scale", grid_scale()}}, {"scale"})}}};
 }
 
 json buffer() {
@@ -178,99 +131,6 @@ json buffer() {
                             {"required", {"count"}}};
     result["if"] = {{"properties", {{"indirect", {{"const", true}}}}}, {"required", {"indirect"}}};
     result["then"] = arguments;
-    return result;
-}
-
-/// Of a texture's levels, or layers.
-json level(int most) {
-    const json of_turn = {{"type", "string"}, {"pattern", "^pass\\.index( *[-+] *[0-9]{1,2})?$"}};
-    return schema::any_of({integer(0, most), of_turn});
-}
-
-json read() {
-    const json filter = schema::one_of({"nearest", "linear"});
-    const json options = schema::object({{"filter", filter},
-                                         {"outside", schema::one_of({"clamp", "weight_zero"})},
-                                         {"level", level(kMostLevel)}});
-    const json chosen = {{"type", "object"},
-                         {"additionalProperties", {{"anyOf", {filter, options}}}},
-                         {"minProperties", 1},
-                         {"maxProperties", 1}};
-    return {{"anyOf", {kText, chosen}}};
-}
-
-json write() {
-    const json options = schema::object({{"level", level(kMostLevel)}, {"layer", level(kMaxLayers - 1)}});
-    const json chosen = {
-        {"type", "object"}, {"additionalProperties", options}, {"minProperties", 1}, {"maxProperties", 1}};
-    return {{"anyOf", {kText, chosen}}};
-}
-
-json instances() {
-    json result = schema::object({{"of", schema::one_of({"quads", "points"})},
-                                  {"count", count(1, 1 << 24)},
-                                  {"per", per()},
-                                  {"indirect", kName}},
-                                 {"of"});
-    result["oneOf"] = {{{"required", {"indirect"}}},
-                       {{"anyOf", {{{"required", {"count"}}}, {{"required", {"per"}}}}}}};
-    return result;
-}
-
-json dispatch() {
-    const json groups = schema::array_of(integer(1, 65535), 3, 3);
-    return schema::any_of({schema::object({{"tile", count(1, 4096)}, {"over", kText}}, {"tile"}),
-                           schema::object({{"groups", groups}}, {"groups"}),
-                           schema::object({{"indirect", kText}}, {"indirect"})});
-}
-
-/// What the kinds of passes have, and have not.
-json rules_of_kinds() {
-    json compute = without({"writes", "vertex", "instances", "blend", "value"});
-    compute["required"] = {"shader", "dispatch"};
-    json clear = without({"shader", "vertex", "reads", "images", "buffers", "defines", "repeat",
-                          "max_iterations", "instances", "dispatch", "blend"});
-    clear["required"] = {"writes", "value"};
-    json draw = without({"dispatch", "value"});
-    draw["required"] = {"shader", "writes"};
-    draw["dependentRequired"] = {{"vertex", {"instances"}}, {"instances", {"vertex"}}};
-    json draws = where("kind", "draw", draw);
-    draws["if"].erase("required");  // the kind of a pass that names none
-    return {where("kind", "compute", compute), where("kind", "clear", clear), draws};
-}
-
-json when() {
-    const json value = {{"type", {"boolean", "integer", "string"}}};
-    return {{"type", "object"},
-            {"patternProperties", {{"^has\\.", schema::any_of({kFlag, schema::array_of(kFlag, 1)})}}},
-            {"additionalProperties", schema::any_of({value, schema::array_of(value, 1)})}};
-}
-
-json pass() {
-    const json access = {{"type", "object"},
-                         {"additionalProperties", schema::one_of({"read", "write", "atomic"})}};
-    // As GLSL names macros.
-    const json defines = {{"type", "object"},
-                          {"propertyNames", {{"pattern", "^(?!GL_)(?!.*__)[A-Za-z_][A-Za-z0-9_]*$"}}},
-                          {"additionalProperties", {{"type", {"string", "integer"}}}}};
-    json result = schema::object({{"name", schema::snake_case()},
-                                  {"kind", schema::one_of({"draw", "compute", "clear"})},
-                                  {"shader", kText},
-                                  {"vertex", kName},
-                                  {"reads", schema::array_of(read())},
-                                  {"writes", schema::array_of(write(), 1)},
-                                  {"images", access},
-                                  {"buffers", access},
-                                  {"defines", defines},
-                                  {"when", when()},
-                                  {"repeat", count(1, kMaxRepeat)},
-                                  {"max_iterations", integer(1, kMaxIterations)},
-                                  {"instances", instances()},
-                                  {"dispatch", dispatch()},
-                                  {"blend", schema::one_of({"add", "min", "max"})},
-                                  {"value", texel()}},
-                                 {"name"});
-    result["allOf"] = rules_of_kinds();
     return result;
 }
 
@@ -318,50 +178,51 @@ std::string effect_schema() {
     const json version = {{"type", "string"},
                           {"pattern", "^" + number + "\\." + number + "\\." + number + "$"}};
     const json presets = {{"type", "object"}, {"additionalProperties", {{"type", "object"}}}};
-    const json channel = {{"type", "string"}, {"pattern", "^[a-z][a-z0-9_]*\\.[rgba]$"}};
     const json number_node = {{"type", "number"}};
-    const json statistic = schema::object({{"of", channel},
-                                           {"where", channel},
+    const json statistic = schema::object({{"of", channel()},
+                                           {"where", channel()},
                                            {"squared", kFlag},
                                            {"bins", schema::array_of(number_node, 3, 3)},
                                            {"doc", kText}},
                                           {"of"});
     json modules = schema::array_of(schema::snake_case());
     modules["uniqueItems"] = true;
-    return schema::document("Aftershade effect",
-                            {{"id", schema::snake_case()},
-                             {"version", version},
-                             {"summary", kText},
-                             {"sources", schema::array_of(kText)},
-                             {"accumulates", {{"const", "subframes"}}},
-                             {"modules", modules},
-                             {"uses", uses()},
-                             {"inputs", schema::named(input)},
-                             {"outputs", outputs},
-                             {"params", schema::named(param(false))},
-                             {"textures", schema::named(texture())},
-                             {"buffers", schema::named(buffer())},
-                             {"passes", schema::array_of(pass(), 1)},
-                             {"native", native()},
-                             {"telemetry", schema::named(statistic)},
-                             {"presets", presets}},
-                            {"id", "version", "summary", "inputs", "outputs", "passes"})
-               .dump(2) +
-           "\n";
+    json result = schema::document("Aftershade effect",
+                                   {{"id", schema::snake_case()},
+                                    {"version", version},
+                                    {"summary", kText},
+                                    {"sources", schema::array_of(kText)},
+                                    {"accumulates", {{"const", "subframes"}}},
+                                    {"modules", modules},
+                                    {"uses", uses()},
+                                    {"inputs", schema::named(input)},
+                                    {"outputs", outputs},
+                                    {"params", schema::named(param(false))},
+                                    {"textures", schema::named(texture())},
+                                    {"buffers", schema::named(buffer())},
+                                    {"tiles", schema::named(tile_list())},
+                                    {"passes", passes(1)},
+                                    {"native", native()},
+                                    {"telemetry", schema::named(statistic)},
+                                    {"presets", presets}},
+                                   {"id", "version", "summary", "inputs", "outputs", "passes"});
+    define_passes(result);
+    return result.dump(2) + "\n";
 }
 
 std::string module_schema() {
-    return schema::document("Aftershade module",
-                            {{"module", schema::snake_case()},
-                             {"summary", kText},
-                             {"uses", uses()},
-                             {"params", schema::named(param(false))},
-                             {"textures", schema::named(texture())},
-                             {"buffers", schema::named(buffer())},
-                             {"passes", schema::array_of(pass())}},
-                            {"module", "summary"})
-               .dump(2) +
-           "\n";
+    json result = schema::document("Aftershade module",
+                                   {{"module", schema::snake_case()},
+                                    {"summary", kText},
+                                    {"uses", uses()},
+                                    {"params", schema::named(param(false))},
+                                    {"textures", schema::named(texture())},
+                                    {"buffers", schema::named(buffer())},
+                                    {"tiles", schema::named(tile_list())},
+                                    {"passes", passes(0)}},
+                                   {"module", "summary"});
+    define_passes(result);
+    return result.dump(2) + "\n";
 }
 
 }  // namespace aftershade

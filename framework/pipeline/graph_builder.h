@@ -81,8 +81,10 @@ private:
     void add_copy(StepBuild& build, const std::string& name, graph::TextureHandle from,
                   graph::TextureHandle to);
     void keep_histories(StepBuild& build);
-    graph::TextureHandle write_target(const StepBuild& build, const PassSpec& spec, const std::string& name,
-                                      const std::string& pass);
+    std::array<float, 4> tile_grid_size(const StepBuild& build, const PassSpec& spec,
+                                        const PassBindings& bindings) const;
+    graph::TextureHandle write_target(const StepBuild& build, const PassBindings& bindings,
+                                      const std::string& name, const std::string& pass);
     void set_kind(const StepBuild& build, const PassSpec& spec, graph::Pass& pass) const;
 
     ProgramCache& programs_;

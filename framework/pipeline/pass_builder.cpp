@@ -33,9 +33,14 @@ std::array<float, 4> size_of(const gpu::TextureDesc& desc, int level) {
                                       "', which no pass has written with these parameters");
 }
 
-/// Samplers of a pass, and the block of their sizes.
+double scale_of(const EffectManifest& manifest, const std::string& name) {
+    const TextureSpec* texture = manifest.find_texture(name);
+    return texture ? texture->grid.scale : 1;
+}
+
+/// Samplers of a pass, and the block of their sizes, which ends with `tile_grid` where the pass has one.
 void bind_reads(const StepBuild& build, const PassSpec& spec, const PassBindings& bindings, int turn,
-                const graph::FrameGraph& graph, graph::Pass& pass) {
+                const std::array<float, 4>& tile_grid, const graph::FrameGraph& graph, graph::Pass& pass) {
     Std140Writer sizes;
     for (const ReadSpec& read : bindings.reads) {
         const graph::TextureHandle handle =
@@ -51,7 +56,9 @@ void bind_reads(const StepBuild& build, const PassSpec& spec, const PassBindings
         const auto size = size_of(texture.desc, level);
         sizes.add(std::span<const float>(size));
     }
-    if (!pass.reads.empty()) pass.uniforms.push_back({kSizeBinding, sizes.finish()});
+    if (bindings.has_tile_grid) sizes.add(std::span<const float>(tile_grid));
+    if (!pass.reads.empty() || bindings.has_tile_grid)
+        pass.uniforms.push_back({kSizeBinding, sizes.finish()});
     for (const ParamSpec* param : bindings.param_samplers)
         pass.reads.push_back({build.param_textures.at(param->name), int(pass.reads.size())});
     for (const NativeTableSpec* table : bindings.native_tables)
@@ -87,11 +94,11 @@ void GraphBuilder::add_clear(StepBuild& build, const PassSpec& spec) {
     pass.name = build.step.name + "." + spec.name;
     pass.kind = graph::PassKind::clear;
     pass.clear_value = four_values(spec.clear_value);
-    for (const WriteSpec& write : spec.writes)
+    const std::vector<WriteSpec> writes = present_writes(spec, build.params, build.present);
+    for (const WriteSpec& write : writes)
         pass.targets.push_back({build.textures.at(write.name), write.level, write.layer});
     const graph::Written written = graph.add_pass(std::move(pass));
-    for (std::size_t i = 0; i < spec.writes.size(); ++i)
-        build.textures[spec.writes[i].name] = written.targets[i];
+    for (std::size_t i = 0; i < writes.size(); ++i) build.textures[writes[i].name] = written.targets[i];
 }
 
 void GraphBuilder::add_turn(StepBuild& build, const PassSpec& spec, int turn, int turns) {
@@ -107,7 +114,7 @@ void GraphBuilder::add_turn(StepBuild& build, const PassSpec& spec, int turn, in
     pass.name = build.prefix() + spec.name + (turns > 1 ? "[" + std::to_string(turn) + "]" : "");
     pass.program = &programs_.get(shader);
     pass.blend = spec.blend;
-    bind_reads(build, spec, bindings, turn, graph, pass);
+    bind_reads(build, spec, bindings, turn, tile_grid_size(build, spec, bindings), graph, pass);
     bind_memory(build, bindings, pass);
     if (has_param_block(manifest))
         pass.uniforms.push_back({kParamBinding, param_block(manifest, build.params)});
@@ -118,13 +125,13 @@ void GraphBuilder::add_turn(StepBuild& build, const PassSpec& spec, int turn, in
     if (const NativeResult* native = natives_.result(build.index); native && has_native_block(manifest))
         pass.uniforms.push_back({kNativeBinding, native_block(manifest, native_values(*native))});
     if (spec.repeat) pass.uniforms.push_back({kPassBinding, bytes_of(PassBlock{turn, turns})});
-    for (const WriteSpec& write : spec.writes)
-        pass.targets.push_back({write_target(build, spec, write.name, pass.name),
+    for (const WriteSpec& write : bindings.writes)
+        pass.targets.push_back({write_target(build, bindings, write.name, pass.name),
                                 level_in_turn(write.level, turn), level_in_turn(write.layer, turn)});
     set_kind(build, spec, pass);
     const graph::Written written = graph.add_pass(std::move(pass));
-    for (std::size_t i = 0; i < spec.writes.size(); ++i)
-        build.textures[spec.writes[i].name] = written.targets[i];
+    for (std::size_t i = 0; i < bindings.writes.size(); ++i)
+        build.textures[bindings.writes[i].name] = written.targets[i];
     for (std::size_t i = 0; i < bindings.images.size(); ++i)
         build.textures[bindings.images[i].name] = written.images[i];
     for (std::size_t i = 0; i < bindings.buffers.size(); ++i)
@@ -132,14 +139,30 @@ void GraphBuilder::add_turn(StepBuild& build, const PassSpec& spec, int turn, in
     passes.push_back({build.index, graph.pass_count() - 1, false, false});
 }
 
+/// How many texels of the tile list's grid there are: on a target of another scale as many as it covers.
+std::array<float, 4> GraphBuilder::tile_grid_size(const StepBuild& build, const PassSpec& spec,
+                                                  const PassBindings& bindings) const {
+    if (!bindings.has_tile_grid) return {};
+    const TileListSpec& list = *build.manifest().find_tile_list(spec.lists.empty() ? spec.over : spec.lists);
+    const std::string& on = spec.lists.empty() ? bindings.writes.front().name : list.on;
+    float width = float(width_), height = float(height_);
+    if (!on.empty()) {
+        const auto& desc = graph.textures()[std::size_t(build.textures.at(on).texture)].desc;
+        const double scale = scale_of(build.manifest(), list.on) / scale_of(build.manifest(), on);
+        width = float(desc.width * scale);
+        height = float(desc.height * scale);
+    }
+    return {width, height, 1 / width, 1 / height};
+}
+
 /// A draw that reads what it writes gets memory of its own to write to: the reads keep what was before.
-graph::TextureHandle GraphBuilder::write_target(const StepBuild& build, const PassSpec& spec,
+graph::TextureHandle GraphBuilder::write_target(const StepBuild& build, const PassBindings& bindings,
                                                 const std::string& name, const std::string& pass) {
     const graph::TextureHandle handle = build.textures.at(name);
     const auto reads_it = [&](const ReadSpec& read) {
         return read.name == name && !read.previous && read.level < 0 && !build.inputs.contains(name);
     };
-    if (std::none_of(spec.reads.begin(), spec.reads.end(), reads_it)) return handle;
+    if (std::none_of(bindings.reads.begin(), bindings.reads.end(), reads_it)) return handle;
     const auto& texture = graph.textures()[std::size_t(handle.texture)];
     graph::TextureOptions options;
     options.auto_mips = texture.options.auto_mips;

@@ -10,12 +10,12 @@ from techniques import psnr_db, scale_of, scatter
 
 SCENE, SIZE = "skin_front", os.environ.get("SIZE", "1920x1080")
 FRAMES, SETTLED = 32, 24  # times are the least of the frames after SETTLED
-COLUMNS = {"setup": ["surface", "tile_scatters", "lit_runs", "plan", "plan_hybrid", "kernel", "tile_light", "tile_range", "tile_class", "tile_rows",
-                     "sampled_runs", "row_runs", "blurred_runs"],
-           "pre-filtering": ["light", "light_around"],
-           "sampling": ["gather", "gather_plain", "gather_hybrid", "gather_plain_hybrid", "lit_pixels", "rows", "columns"],
-           "update": ["update", "guide", "guide_hybrid"],
-           "combine": ["finish", "finish_guided", "finish_hybrid", "finish_hybrid_guided"]}
+COLUMNS = {"setup": ["surface", "tile_scatters", "lit_tiles", "plan", "kernel", "tile_light", "tile_range", "tile_class", "tile_rows",
+                     "sampled_tiles", "row_tiles", "blurred_tiles"],
+           "pre-filtering": ["light"],
+           "sampling": ["gather", "gather_hybrid", "lit_pixels", "rows", "columns"],
+           "update": ["update", "guide"],
+           "combine": ["finish"]}
 FIXED = ("`sss_burley`, 64 samples", "sss_burley", {"samples": 64})
 LONG = {"guiding_weight": 0.05}
 FEW = LONG | {"min_samples": 4, "target_variance": 0.004}

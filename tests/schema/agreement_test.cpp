@@ -264,12 +264,13 @@ TEST_F(SchemaAgreement, OfAManifestChangedEverywhere) {
              "is not the name of its folder|no file '",  // what lies on the disk
              // Names of what stands elsewhere in the document, and what that is.
              "which is no |which is not |is not a parameter|is not one of '|does not name an optional",
-             "has no 'history'|has no 'repeat'|no pass (reads|writes|uses) |before any pass has written it",
+             "has no 'history'|has no 'repeat'|no pass (reads|writes|uses|runs) |before any pass has written",
+             "is not a texture of|must end in a channel|has no '(tile|scale)'|must have a 'scale'",
              "has no key '|is not declared 'indirect'|another pass has this name",
              // One value against another, or their units.
              "is (above|below) |'min' of at least|must rise|has a unit, but|cannot be (compared|converted)",
              "must lie above|taken already|twice|differ in size|in one turn|but it has|holds|whole number",
-             "words, more than|writes no image|outside the domain|is not a value of '|level",
+             "words, more than|writes (no image|nothing)|outside the domain|is not a value of '|level",
              "no scattering profile '",            // what is shipped
              "^/presets/|^/params/skins/default",  // as the parameters and columns say
          });
@@ -280,10 +281,11 @@ TEST_F(SchemaAgreement, OfAModuleChangedEverywhere) {
          {
              "is not the name of its folder|no file '",  // what lies on the disk
              "which is no |which is not |is not a parameter|is not one of '|declared already|GLSL name",
-             "no pass (reads|writes|uses) |before any pass has written it|another pass has this name",
+             "no pass (reads|writes|uses|runs) |before any pass has written it|another pass has this name",
+             "is not a texture of|must end in a channel|has no 'tile'|must have a 'scale'",
              "is (above|below) |has a unit, but|must rise|holds|taken already|twice|whole number|words, more "
              "than",
-             "writes no image|is not a value of '",
+             "writes (no image|nothing)|is not a value of '",
          });
 }
 

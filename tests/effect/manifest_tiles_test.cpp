@@ -1,0 +1,171 @@
+// Tile lists: what they become, and what is wrong with the rest.
+#include "framework/effect/describe.h"
+#include "framework/effect/shader_source.h"
+#include "framework/effect/usage_check.h"
+#include "tests/effect/assembly.h"
+#include "tests/effect/broken_manifests.h"
+
+namespace aftershade {
+namespace {
+
+using test::demo_manifest;
+using test::EffectFolder;
+using test::has_line;
+using test::Lines;
+using test::Sections;
+
+const std::filesystem::path kGlsl = std::filesystem::path(AFTERSHADE_SOURCE_DIR) / "glsl";
+
+Sections tiled(const std::string& tiles, const std::string& passes) {
+    return {{test::kTextures, R"("textures": {
+            "marks": {"format": "rg16f", "tile": 8, "when": {"flag": true}, "doc": "."},
+            "whole": {"format": "rgba16f", "doc": "."},
+            "half_size": {"format": "rgba16f", "scale": 0.5, "doc": "."}})"},
+            {test::kMore, "\"tiles\": {" + tiles + "}"},
+            {test::kPasses, R"("passes": [
+            {"name": "mark", "shader": "a.frag", "reads": ["color", "depth"], "writes": ["marks"]},
+            {"name": "base", "shader": "a.frag", "writes": ["whole", "color"]},
+            {"name": "small", "shader": "a.frag", "writes": ["half_size"]})" +
+                                (passes.empty() ? "" : ", " + passes) + "]"}};
+}
+
+const std::string kMarked = R"("marked": {"of": "marks.g", "doc": "Where a mark is."})";
+const std::string kNear = R"("near": {"predicate": "near.glsl", "tile": 16, "when": {"mode": "good"}, "doc": "."})";
+
+TEST(TileLists, BecomeBuffersAndAPassBeforeTheFirstOverThem) {
+    const EffectFolder folder(demo_manifest(tiled(kMarked, R"(
+        {"name": "one", "shader": "b.frag", "reads": ["whole"], "writes": ["color"], "over": "marked", "when": {"taps": 3}},
+        {"name": "two", "shader": "b.frag", "vertex": "d.vert", "reads": ["whole"], "writes": ["half_size"], "over": "marked"})")));
+    const EffectManifest manifest = folder.sound_manifest();
+    ASSERT_EQ(manifest.passes.size(), 6U);
+    const PassSpec& list = manifest.passes[3];
+    EXPECT_EQ(list.name, "marked");
+    EXPECT_EQ(list.lists, "marked");
+    EXPECT_EQ(list.kind, PassKind::compute);
+    ASSERT_EQ(list.reads.size(), 1U);
+    EXPECT_EQ(list.reads[0].name, "marks");
+    EXPECT_EQ(list.dispatch.over, "marks");
+    EXPECT_EQ(list.dispatch.tile.number, 16);
+    const BufferSpec* runs = manifest.find_buffer("marked_runs");
+    ASSERT_NE(runs, nullptr);
+    EXPECT_EQ(runs->element, "uvec4");
+    EXPECT_EQ(runs->grid->tile.number, 8);
+    const BufferSpec* args = manifest.find_buffer("marked_args");
+    ASSERT_NE(args, nullptr);
+    EXPECT_TRUE(args->indirect);
+    EXPECT_EQ(args->clear, (std::vector<double>{4, 0, 0, 0}));
+    for (const std::size_t i : {4U, 5U}) {
+        const PassSpec& over = manifest.passes[i];
+        EXPECT_EQ(over.instances->indirect, "marked_args") << over.name;
+        EXPECT_EQ(over.buffers.at(0).name, "marked_runs") << over.name;
+        EXPECT_EQ(over.when.back().subject, "flag") << "where the texture is absent, so is what depends on it";
+    }
+    EXPECT_EQ(manifest.passes[4].when.size(), 2U);
+}
+
+TEST(TileLists, AreListedByTheHostsShader) {
+    const EffectFolder folder(demo_manifest(tiled(kMarked + ", " + kNear, R"(
+        {"name": "one", "shader": "b.frag", "writes": ["color"], "over": "marked"},
+        {"name": "two", "shader": "b.frag", "writes": ["half_size"], "over": "near"})")));
+    folder.write("near.glsl", "bool near(ivec2 tile) { return texelFetch(whole, tile, 0).r > 1.0; }\n");
+    const EffectManifest manifest = folder.sound_manifest();
+    ASSERT_EQ(manifest.passes.size(), 7U);
+    ParamSet params;
+    for (const ParamSpec& spec : manifest.params) params.set(spec.name, spec.default_value);
+    params.set("flag", true);
+    const auto text = [&](std::size_t pass, ShaderFile file) {
+        Diagnostics diagnostics;
+        const ShaderSource source =
+            assemble_shader({&manifest, &manifest.passes[pass], &params, {}, kGlsl}, diagnostics, file);
+        EXPECT_EQ(test::lines_of(diagnostics), Lines{});
+        return source;
+    };
+    const ShaderSource of_texture = text(3, ShaderFile::main), over = text(4, ShaderFile::vertex),
+                       by_predicate = text(5, ShaderFile::main), fragment = text(4, ShaderFile::main);
+    EXPECT_TRUE(has_line(of_texture,
+                         "bool is_listed(ivec2 tile) { return texelFetch(marks, tile, 0).g > 0.0; }"));
+    EXPECT_TRUE(has_line(of_texture, "#define TILE_SIDE 8"));
+    EXPECT_TRUE(has_line(of_texture, "#define TILE_RUNS marked_runs"));
+    EXPECT_TRUE(has_line(by_predicate, "bool is_listed(ivec2 tile) { return near(tile); }"));
+    EXPECT_TRUE(has_line(by_predicate, "#define TILE_SIDE 16"));
+    EXPECT_EQ(manifest.passes[5].reads.at(0).name, "whole") << "the predicate's text names it";
+    EXPECT_TRUE(has_line(over, "void main() { gl_Position = tile_position(); }"));
+    EXPECT_TRUE(has_line(over, "    vec4 tile_grid_size;"));
+    EXPECT_TRUE(has_line(fragment, "    vec4 tile_grid_size;")) << "one block for both stages";
+    const std::string described = describe_text(manifest);
+    EXPECT_NE(described.find("tiles where marks.g > 0"), std::string::npos) << described;
+    EXPECT_NE(described.find("tiles by near.glsl"), std::string::npos) << described;
+    EXPECT_NE(described.find("-> half_size over near"), std::string::npos) << described;
+}
+
+TEST(TileLists, SayWhatIsWrong) {
+    const std::string over = R"({"name": "x", "shader": "b.frag", "writes": ["color"], "over": )";
+    const auto expect = [&](const std::string& tiles, const std::string& pass, const Lines& messages) {
+        test::expect_faults(tiled(tiles, pass), messages);
+    };
+    expect(kMarked, over + "\"market\"}", {"6: pass 'x': runs over 'market', which is no tile list; did you mean 'marked'?",
+                                           "8: no pass runs over the tile list 'marked'"});
+    expect(R"("far": {"doc": "."})", over + "\"far\"}",
+           {"8: tile list 'far' is 'of' a texture's channel or has a 'predicate', one of the two"});
+    expect(R"("far": {"predicate": "", "tile": 8, "doc": "."})", over + "\"far\"}",
+           {"8: tile list 'far': 'predicate' names no file"});
+    expect("", over + "\"\"}", {"6: 'over' names no tile list"});
+    expect(R"("far": {"of": "mark.r", "doc": "."})", over + "\"far\"}",
+           {"8: tile list 'far', of: 'mark' is not a texture of the effect with one layer of floats; did you mean "
+            "'marks'? (known: 'marks', 'whole' and 'half_size')"});
+    expect(R"("far": {"of": "whole.r", "doc": "."})", over + "\"far\"}",
+           {"8: tile list 'far', of: 'whole' has no 'tile': each of its texels must stand for one"});
+    expect(R"("far": {"of": "marks.b", "doc": "."})", over + "\"far\"}",
+           {"8: tile list 'far', of: 'marks.b' must end in a channel of 'marks', one of rg: \"marks.r\""});
+    expect(R"("far": {"of": "marks.r", "tile": 8, "doc": "."})", over + "\"far\"}",
+           {"8: tile list 'far' has no key 'tile'"});
+    expect(kMarked, R"({"name": "x", "shader": "b.frag", "writes": ["marks"], "over": "marked"})",
+           {"6: pass 'x': runs over tiles, so what it writes, 'marks', must have a 'scale' of the working grid, and be "
+            "its level 0"});
+    expect(kMarked, R"({"name": "x", "shader": "b.frag", "vertex": "d.vert", "writes": ["color"], "over": "marked",
+        "instances": {"of": "quads", "count": 1}})",
+           {"6: a draw has 'instances' or is 'over' a list of tiles, not both"});
+    expect(kMarked, R"({"name": "marked", "shader": "b.frag", "writes": ["color"], "over": "marked"})",
+           {"6: pass 'marked': another pass has this name"});
+}
+
+TEST(TileLists, LieOnTexturesByTheirScale) {
+    const auto faults = [](const std::string& on) {
+        const EffectFolder folder(demo_manifest(tiled(
+            R"("far": {"predicate": "far.glsl", "tile": 16, "on": ")" + on + R"(", "doc": "."})",
+            R"({"name": "x", "shader": "b.frag", "writes": ["color"], "over": "far"})")));
+        folder.write("far.glsl", "bool far(ivec2 tile) { return true; }\n");
+        Diagnostics diagnostics;
+        const auto manifest = folder.manifest(diagnostics);
+        if (manifest) {
+            // 16 texels of half the size are 32 px.
+            EXPECT_EQ(manifest->find_buffer("far_runs")->grid->tile.number, 32);
+            EXPECT_EQ(manifest->passes[3].dispatch.over, on);
+            EXPECT_EQ(manifest->passes[3].dispatch.tile.number, 256);
+        }
+        Lines texts;
+        for (const Diagnostic& fault : diagnostics.all()) texts.push_back(fault.message);
+        return texts;
+    };
+    EXPECT_EQ(faults("half_size"), Lines{});
+    EXPECT_EQ(faults("marks"),
+              Lines{"the tile list 'far' is on 'marks', which has no 'scale' of the working grid"});
+    EXPECT_EQ(faults("half_sise"), Lines{"tile list 'far': dispatches over 'half_sise', which is no texture; did "
+                                         "you mean 'half_size'?"});
+}
+
+TEST(TileLists, NeedTheFunctionThatDecides) {
+    const EffectFolder folder(demo_manifest(
+        tiled(kNear, R"({"name": "x", "shader": "b.frag", "writes": ["color"], "over": "near"})")));
+    folder.write("near.glsl", "bool nearby(ivec2 tile) { return true; }\n");
+    Diagnostics diagnostics;
+    check_declared_used(folder.sound_manifest(), kGlsl, diagnostics);
+    Lines told;
+    for (const Diagnostic& fault : diagnostics.all())
+        if (fault.message.starts_with("tile list")) told.push_back(fault.message);
+    EXPECT_EQ(told,
+              Lines{"tile list 'near': its predicate 'near.glsl' has no function 'bool near(ivec2 tile)'"});
+}
+
+}  // namespace
+}  // namespace aftershade
