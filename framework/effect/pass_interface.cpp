@@ -21,7 +21,7 @@ std::vector<ReadSpec> present_reads(const EffectManifest& manifest, const PassSp
     return present;
 }
 
-bool pass_enabled(const PassSpec& pass, const ParamSet& params,
+bool pass_enabled(const PassSpec& pass, const ParamReader& params,
                   const std::vector<std::string>& present_inputs) {
     constexpr std::string_view kHas = "has.";
     const auto holds = [&](const WhenSpec& condition) {
@@ -131,6 +131,13 @@ std::vector<std::byte> param_block(const EffectManifest& manifest, const ParamSe
     for (const ParamSpec& spec : manifest.params)
         if (is_in_block(spec)) add_param(block, spec, params.get(spec.name));
     return block.finish();
+}
+
+std::size_t param_block_bytes(const EffectManifest& manifest) {
+    Std140Writer block;
+    for (const ParamSpec& spec : manifest.params)
+        if (is_in_block(spec)) add_param(block, spec, spec.default_value);
+    return block.finish().size();
 }
 
 bool has_native_block(const EffectManifest& manifest) {

@@ -35,6 +35,8 @@ LightsBlock lights_block(const FrameInputs& frame, const std::string& step);
 std::vector<std::byte> mix_block(const PipelineStep& step, const FrameInputs& frame);
 /// Most ranges of objects that a mask holds.
 inline constexpr std::size_t kMaskObjects = 64;
+inline constexpr std::size_t kMixBlockBytes = 32 + 16 * kMaskObjects;
+inline constexpr int kMixBinding = 0;
 
 template <typename Block>
 std::vector<std::byte> bytes_of(const Block& block) {
