@@ -35,7 +35,7 @@ protected:
         const ParamSet params = defaults_of(manifest);
         for (const PassSpec& pass : manifest.passes) {
             if (pass.kind == PassKind::clear) continue;
-            const ShaderContext shader{&manifest, &pass, &params, inputs_of(manifest), kSource / "glsl"};
+            const ShaderContext shader{&manifest, &pass, params, inputs_of(manifest), kSource / "glsl"};
             EXPECT_NO_THROW({
                 try {
                     cache.get(shader);

@@ -86,8 +86,8 @@ TEST(ShaderInterface, LeavesOutAnOptionalInputThatIsAbsent) {
     EXPECT_EQ(source.text.find("sampler2D depth"), std::string::npos);
     EXPECT_EQ(source.text.find("depth_size"), std::string::npos);
     const EffectManifest manifest = folder.sound_manifest();
-    EXPECT_EQ(present_reads(manifest, manifest.passes[0], {}, {}).size(), 1U);
-    EXPECT_EQ(present_reads(manifest, manifest.passes[0], {}, {"depth"}).size(), 2U);
+    EXPECT_EQ(present_reads(manifest, manifest.passes[0], ParamSet{}, {}).size(), 1U);
+    EXPECT_EQ(present_reads(manifest, manifest.passes[0], ParamSet{}, {"depth"}).size(), 2U);
 }
 
 TEST(ShaderInterface, HasTypesForEveryFormat) {
