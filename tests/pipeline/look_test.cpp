@@ -116,10 +116,10 @@ TEST(Look, ReadsTheObjectsOfAMask) {
 TEST(Look, SaysWhatIsWrongWithTheObjectsOfAMask) {
     EXPECT_EQ(
         parse_masked(R"([2, "7-3", -1, true])").faults,
-        "look:1:71: error: the mask: '7-3' is no range of ids; write \"3-7,9\", each from 0 to 4294967295 "
+        "look:1:72: error: the mask: '7-3' is no range of ids; write \"3-7,9\", each from 0 to 4294967295 "
         "and rising\n"
-        "look:1:78: error: the mask: -1 is not an object's id, a number from 0 to 4294967295\n"
-        "look:1:82: error: the mask: expected an object's id, a range of ids such as \"3-7\" or a name\n");
+        "look:1:79: error: the mask: -1 is not an object's id, a number from 0 to 4294967295\n"
+        "look:1:83: error: the mask: expected an object's id, a range of ids such as \"3-7\" or a name\n");
     EXPECT_EQ(parse_masked("[]").faults, "look:1:68: error: the mask's 'object' names no object\n");
 }
 
