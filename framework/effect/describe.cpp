@@ -67,7 +67,8 @@ std::string conditions_text(const std::vector<WhenSpec>& conditions) {
         }
         std::string what = condition.subject + " " + values;
         if (condition.subject.starts_with(kHasInput) && condition.values.size() == 1)
-            what = (values == "true" ? "the input " : "no input ") + condition.subject.substr(kHasInput.size());
+            what = (values == "true" ? "the input " : "no input ") +
+                   condition.subject.substr(kHasInput.size());
         text += (text.empty() ? "" : ", ") + what;
     }
     return text;
