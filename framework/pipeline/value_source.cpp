@@ -8,6 +8,7 @@
 #include "framework/core/error.h"
 #include "framework/core/units.h"
 #include "framework/image/cryptomatte.h"
+#include "framework/image/role.h"
 
 namespace aftershade {
 
@@ -152,8 +153,8 @@ double median_depth_m(const TableKey& object, const std::string& label, const Ca
     const std::uint32_t first = object.name.empty() ? object.first : cryptomatte_hash(object.name);
     const std::uint32_t last = object.name.empty() ? object.last : first;
     const std::string who = object.name.empty() ? "object " + std::to_string(first) : "'" + object.name + "'";
-    const auto ids = capture.images.at("object_id").uints();
-    const auto depths = capture.images.at("depth").floats();
+    const auto ids = capture.images.at(kObjectIdRole).uints();
+    const auto depths = capture.images.at(kDepthRole).floats();
     std::vector<float> found;
     for (std::size_t i = 0; i < ids.size(); ++i)
         if (ids[i] >= first && ids[i] <= last && std::isfinite(depths[i])) found.push_back(depths[i]);
@@ -170,7 +171,7 @@ double depth_at_m(const std::array<double, 2>& uv, const std::string& label, con
     const int y = display.min_y + std::min(int(uv[1] * display.height()), display.height() - 1);
     const std::string where = "pixel (" + std::to_string(x) + ", " + std::to_string(y) + ")";
     if (!data.contains(x, y)) refuse(label, capture.header, where + " is outside the data window");
-    const float depth = capture.images.at("depth").at(x - data.min_x, y - data.min_y, 0);
+    const float depth = capture.images.at(kDepthRole).at(x - data.min_x, y - data.min_y, 0);
     if (!std::isfinite(depth)) refuse(label, capture.header, "nothing was hit at " + where);
     return double(depth);
 }
@@ -222,8 +223,8 @@ std::string format_source(const ValueSource& source) {
 std::vector<std::string> roles_of(const ValueSource& source) {
     const auto* depth = std::get_if<DepthValue>(&source);
     if (!depth) return {};
-    if (depth->object) return {"depth", "object_id"};
-    return {"depth"};
+    if (depth->object) return {kDepthRole, kObjectIdRole};
+    return {kDepthRole};
 }
 
 std::optional<ParamValue> camera_value(const ParamSpec& spec, const std::string& field,
