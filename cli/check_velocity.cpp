@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "framework/image/capture.h"
+#include "framework/image/role.h"
 #include "framework/image/velocity_check.h"
 #include "framework/image/velocity_report.h"
 #include "framework/image/window.h"
@@ -88,7 +89,11 @@ ExitCode check_velocity_of_files(const std::vector<std::string>& files, const Ca
     stop_at_errors(diagnostics);
     set_exr_threads(int(std::thread::hardware_concurrency()));
 
-    const std::vector<std::string> roles = {"color", "velocity", "velocity_next"};
+    std::vector<std::string> motions;
+    for (const ChannelRole& role : channel_roles())
+        if (role.kind == RoleKind::motion) motions.push_back(role.name);
+    std::vector<std::string> roles = motions;
+    roles.push_back(kColorRole);
     std::vector<Capture> captures;
     std::map<std::string, RoleDecoding> decodings;
     for (const Sequence& sequence : sequences) {
@@ -96,8 +101,8 @@ ExitCode check_velocity_of_files(const std::vector<std::string>& files, const Ca
         captures.push_back(reader.read(sequence.frames.front(), roles));
         decodings = reader.decodings(sequence.frames.front());
     }
-    const Image* color_a = on_display(captures[0], "color");
-    const Image* color_b = on_display(captures[1], "color");
+    const Image* color_a = on_display(captures[0], kColorRole);
+    const Image* color_b = on_display(captures[1], kColorRole);
     if (!color_a || !color_b)
         throw Error(ExitCode::capture, files[color_a ? 1 : 0] + ": has no color to compare");
 
@@ -106,7 +111,7 @@ ExitCode check_velocity_of_files(const std::vector<std::string>& files, const Ca
                                     {"profile", captures[1].header.profile},
                                     {"checks", nlohmann::ordered_json::array()}};
     bool all_confirmed = true;
-    for (const std::string role : {"velocity", "velocity_next"}) {
+    for (const std::string& role : motions) {
         const Image* vectors_a = on_display(captures[0], role);
         const Image* vectors_b = on_display(captures[1], role);
         if (!vectors_a && !vectors_b) continue;

@@ -151,11 +151,11 @@ Json camera_json(const Camera& camera) {
 
 std::vector<std::string> Inspection::missing_roles() const {
     std::vector<std::string> missing;
-    for (const std::string& role : role_names()) {
-        if (role == "display") continue;  // what effects make, not what renderers write
-        const bool found =
-            capture && std::find(capture->roles.begin(), capture->roles.end(), role) != capture->roles.end();
-        if (!found) missing.push_back(role);
+    for (const ChannelRole& role : channel_roles()) {
+        if (role.kind == RoleKind::display) continue;
+        const bool found = capture && std::find(capture->roles.begin(), capture->roles.end(), role.name) !=
+                                          capture->roles.end();
+        if (!found) missing.push_back(role.name);
     }
     return missing;
 }

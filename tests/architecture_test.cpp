@@ -141,6 +141,35 @@ TEST(Architecture, NothingOutsideAnEffectsFolderNamesIt) {
             EXPECT_FALSE(std::regex_search(line.text, any_id)) << line.place << ": " << line.text;
 }
 
+/// The names in the table of framework/image/role.cpp.
+std::vector<std::string> role_names() {
+    std::ifstream in(kRoot / "framework/image/role.cpp");
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    const std::regex row(R"re((?:rgb|xyz|xy)\("(\w+)",)re");
+    std::vector<std::string> names = {"color", "depth", "object_id", "mask", "display"};
+    for (std::sregex_iterator match(text.begin(), text.end(), row), end; match != end; ++match)
+        names.push_back((*match)[1]);
+    return names;
+}
+
+TEST(Architecture, RolesAreToldApartByTheirKindsNotTheirNames) {
+    // Words of documents and options, and the renderer, which says what it computes for each role.
+    const std::set<std::string> allowed = {"cli/run.cpp", "framework/compare/layer.cpp",
+                                           "framework/image/role.cpp", "framework/pipeline/value_source.cpp",
+                                           "framework/scene/capture_images.cpp"};
+    std::string any;
+    const std::vector<std::string> names = role_names();
+    ASSERT_GE(names.size(), 13u);
+    for (const std::string& name : names) any += (any.empty() ? "" : "|") + name;
+    const std::string word = "\"(?:" + any + ")\"";
+    const std::regex compared("[=!]= ?" + word + "|" + word + " ?[=!]=|starts_with\\(\"(?:" + any + "|aov:)|" + word +
+                              ", *" + word);
+    for (const char* folder : {"framework", "cli"})
+        for (const Line& line : code_lines(kRoot / folder, {".h", ".cpp"}))
+            if (!allowed.contains(line.place.substr(0, line.place.find(':'))))
+                EXPECT_FALSE(std::regex_search(line.text, compared)) << line.place << ": " << line.text;
+}
+
 TEST(Architecture, TheGraphKnowsNoDocuments) {
     for (const Line& line : code_lines(kRoot / "framework/graph", {".h", ".cpp"}))
         EXPECT_EQ(line.text.find("framework/core/document.h"), std::string::npos) << line.place;

@@ -80,7 +80,7 @@ void check_outputs(const Node& node, const GoldenCase& result, Diagnostics& diag
                           "'outputs' must name a role, or 'taps' a texture");
     if (!outputs || !outputs->is_array()) return;
     for (const Node& output : outputs->items) {
-        if (!output.is_string() || output.string.starts_with("aov:") || find_role(output.string)) continue;
+        if (!output.is_string() || find_role(output.string)) continue;
         const auto roles = role_names();
         diagnostics.error(output.place, "there is no role '" + output.string + "'" +
                                             did_you_mean(output.string, {roles.begin(), roles.end()}));

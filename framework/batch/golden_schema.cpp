@@ -1,7 +1,7 @@
 #include "framework/batch/golden_suite.h"
 #include "framework/core/schema_pieces.h"
 #include "framework/image/frame_range.h"
-#include "framework/image/role.h"
+#include "framework/pipeline/schema_role.h"
 
 namespace aftershade {
 
@@ -29,10 +29,6 @@ json tolerance() {
     return schema::object(keys);
 }
 
-json output() {
-    return schema::any_of({schema::one_of(role_names()), {{"type", "string"}, {"pattern", "^aov:"}}});
-}
-
 json golden_case() {
     json keys = {
         {"name", {{"type", "string"}, {"pattern", "^[A-Za-z0-9_][A-Za-z0-9_-]*$"}}},
@@ -42,7 +38,7 @@ json golden_case() {
         {"frames", {{"type", "string"}, {"pattern", frame_range_pattern()}}},
         {"set", schema::array_of(schema::text())},
         {"taps", schema::array_of({{"type", "string"}, {"pattern", "^[^./=]*\\.[^./=]*$"}})},
-        {"outputs", schema::array_of(output())},
+        {"outputs", schema::array_of(schema::role())},
         {"tolerance", tolerance()},
         {"tags", schema::array_of(schema::text())},
         {"skip", {{"type", "string"}, {"minLength", 1}, {"description", "Why the case is not run."}}}};

@@ -6,6 +6,8 @@
 #include <map>
 #include <set>
 
+#include "framework/image/role.h"
+
 namespace aftershade {
 
 namespace {
@@ -41,12 +43,34 @@ bool has_word(const std::string& name, const std::set<std::string>& words) {
 }
 
 const std::set<std::string> kVelocityWords = {
-    "velocity",      "velocity_next", "velocity_prev",  "vector",  "vectors",  "motion", "motionvector",
-    "motionvectors", "motion_vector", "motion_vectors", "forward", "backward", "speed",  "mv"};
-const std::set<std::string> kDepthWords = {"depth", "z"};
-const std::set<std::string> kIdWords = {"id", "object_id", "objectid", "material_id", "indexob", "indexma"};
-const std::set<std::string> kDataWords = {"normal",   "normals", "n",  "position",
-                                          "worldpos", "p",       "uv", "mask"};
+    "velocity_prev", "vector",         "vectors", "motion",   "motionvector", "motionvectors",
+    "motion_vector", "motion_vectors", "forward", "backward", "speed",        "mv"};
+const std::set<std::string> kDepthWords = {"z"};
+const std::set<std::string> kIdWords = {"id", "objectid", "material_id", "indexob", "indexma"};
+const std::set<std::string> kDataWords = {"normals", "n", "worldpos", "p", "uv"};
+
+/// How a layer that holds a role of this kind is compared.
+LayerRole layer_role_of(RoleKind kind) {
+    switch (kind) {
+        case RoleKind::light: return LayerRole::color;
+        case RoleKind::distance: return LayerRole::depth;
+        case RoleKind::motion: return LayerRole::velocity;
+        case RoleKind::id: return LayerRole::id;
+        case RoleKind::display: return LayerRole::display;
+        case RoleKind::direction:
+        case RoleKind::place:
+        case RoleKind::coverage:
+        case RoleKind::other: break;
+    }
+    return LayerRole::data;
+}
+
+/// The words that tell of `layer`: other producers' and the names of our own roles that are compared so.
+std::set<std::string> words_of(LayerRole layer, std::set<std::string> words = {}) {
+    for (const ChannelRole& role : channel_roles())
+        if (layer_role_of(role.kind) == layer) words.insert(role.name);
+    return words;
+}
 
 bool is_cryptomatte(const std::string& name) {
     return lower(name).find("crypto") != std::string::npos;
@@ -89,11 +113,16 @@ LayerRole role_of(const LayerInfo& layer) {
     if (layer.group == "id") return LayerRole::id;
     const std::string& name = layer.name.empty() ? layer.group : layer.name;
     const std::size_t count = layer.channels.size();
-    if (has_word(name, kVelocityWords) && count >= 2) return LayerRole::velocity;
-    if (has_word(name, kDepthWords) && count == 1) return LayerRole::depth;
-    if (has_word(name, kIdWords) && count == 1) return LayerRole::id;
-    if (layer.group != "color" || has_word(name, kDataWords)) return LayerRole::data;
-    return has_word(name, {"display"}) ? LayerRole::display : LayerRole::color;
+    static const std::set<std::string> velocity = words_of(LayerRole::velocity, kVelocityWords),
+                                       depth = words_of(LayerRole::depth, kDepthWords),
+                                       ids = words_of(LayerRole::id, kIdWords),
+                                       data = words_of(LayerRole::data, kDataWords),
+                                       display = words_of(LayerRole::display);
+    if (has_word(name, velocity) && count >= 2) return LayerRole::velocity;
+    if (has_word(name, depth) && count == 1) return LayerRole::depth;
+    if (has_word(name, ids) && count == 1) return LayerRole::id;
+    if (layer.group != "color" || has_word(name, data)) return LayerRole::data;
+    return has_word(name, display) ? LayerRole::display : LayerRole::color;
 }
 
 }  // namespace

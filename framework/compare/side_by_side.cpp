@@ -66,19 +66,28 @@ Image stacked(const LayerImages& images, LayerRole role) {
     return both;
 }
 
+/// A role of that kind: any of them has the kind's colours.
+const std::string& role_of_kind(RoleKind kind) {
+    const auto roles = channel_roles();
+    return std::ranges::find(roles, kind, &ChannelRole::kind)->name;
+}
+
 std::string false_color_role(const LayerComparison& layer, const Image& image) {
+    const std::string data(kDataRole);
     switch (layer.role) {
-        case LayerRole::color: return "color";
-        case LayerRole::alpha: return "mask";
-        case LayerRole::depth: return image.channels() == 1 ? "depth" : std::string(kDataRole);
-        case LayerRole::velocity: return image.channels() >= 2 ? "velocity" : std::string(kDataRole);
+        case LayerRole::color: return kColorRole;
+        case LayerRole::alpha: return role_of_kind(RoleKind::coverage);
+        case LayerRole::depth: return image.channels() == 1 ? role_of_kind(RoleKind::distance) : data;
+        case LayerRole::velocity: return image.channels() >= 2 ? role_of_kind(RoleKind::motion) : data;
         default: break;
     }
     std::string name = layer.label;
     std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    for (const char* role : {"normal", "position"})
-        if (image.channels() == 3 && name.find(role) != std::string::npos) return role;
-    return std::string(kDataRole);
+    for (const ChannelRole& role : channel_roles())
+        if ((role.kind == RoleKind::direction || role.kind == RoleKind::place) &&
+            image.channels() == role.channels && name.find(role.name) != std::string::npos)
+            return role.name;
+    return data;
 }
 
 using ColorAt = std::function<DisplayColor(int x, int y)>;

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "framework/effect/glsl_tokens.h"
+#include "framework/image/role.h"
 
 namespace aftershade {
 
@@ -55,10 +56,9 @@ private:
         }
     }
 
-    static bool is_exact_role(const std::string& role) {
-        static const std::set<std::string> roles{"depth", "velocity", "velocity_next", "position",
-                                                 "object_id"};
-        return roles.contains(role);
+    static bool is_exact(RoleKind kind) {
+        return kind == RoleKind::distance || kind == RoleKind::motion || kind == RoleKind::place ||
+               kind == RoleKind::id;
     }
 
     /// A half has 11 bits: at 100 m it steps by 6 cm, at 1000 px by 1 px.
@@ -66,7 +66,7 @@ private:
         for (const PassSpec& pass : manifest_.passes) {
             const auto exact = [&](const ReadSpec& read) {
                 const InputSpec* input = manifest_.find_input(read.name);
-                return input && is_exact_role(input->role);
+                return input && is_exact(kind_of_role(input->role));
             };
             if (pass.reads.empty() || !std::all_of(pass.reads.begin(), pass.reads.end(), exact)) continue;
             for (const WriteSpec& write : pass.writes) {
@@ -100,7 +100,9 @@ private:
     }
 
     void encodings() {
-        const auto is_display = [](const OutputSpec& output) { return output.role == "display"; };
+        const auto is_display = [](const OutputSpec& output) {
+            return kind_of_role(output.role) == RoleKind::display;
+        };
         if (std::any_of(manifest_.outputs.begin(), manifest_.outputs.end(), is_display)) return;
         // Kinds of ways to write 1 / 2.2 and 1 / 2.4.
         static const std::set<std::string> exponents{"0.4545",  "0.45454545", "0.416666",

@@ -140,8 +140,8 @@ void CaptureReader::find_roles(OpenFrame& open) const {
         RoleSource source;
         source.file = open.main.get();
         source.from_cryptomatte = true;
-        if (!sequence_.cryptomatte->mask.empty()) open.roles["mask"] = source;
-        if (!open.roles.contains("object_id")) open.roles["object_id"] = source;
+        if (!sequence_.cryptomatte->mask.empty()) open.roles[kMaskRole] = source;
+        if (!open.roles.contains(kObjectIdRole)) open.roles[kObjectIdRole] = source;
     }
     for (const auto& [role, source] : open.roles) {
         open.header.roles.push_back(role);
@@ -170,7 +170,7 @@ CaptureReader::OpenFrame CaptureReader::open(int frame) const {
     header.lights = sequence_.lights ? *sequence_.lights : lights_of_metadata(part.metadata, header.path);
     find_roles(open);
 
-    const auto color = open.roles.find("color");
+    const auto color = open.roles.find(kColorRole);
     header.data_window = color == open.roles.end()
                              ? part.data_window
                              : grid_of(*color->second.file, color->second.channels, color->second.luminance);
@@ -202,7 +202,7 @@ void CaptureReader::read_motion(const OpenFrame& open, const std::string& role, 
     const DecodeContext context{header.path.string(), header.data_window, header.display_window,
                                 header.camera, color};
     const std::vector<std::size_t> missing = decode_velocity(velocity, source.decoding, context);
-    if (role != "velocity" || missing.empty()) return;
+    if (find_role(role)->to_next || missing.empty()) return;
     const auto& cuts = sequence_.cuts;
     const bool begins_shot =
         header.frame % sequence_.subframes == 0 &&
@@ -210,13 +210,13 @@ void CaptureReader::read_motion(const OpenFrame& open, const std::string& role, 
     capture.pixels_without_motion = missing.size();
     const std::filesystem::path before = sequence_.path_of(header.frame - sequence_.subframes);
     std::error_code unreadable;
-    if (begins_shot || !open.roles.contains("depth") || !sequence_.files.has_frame() ||
+    if (begins_shot || !open.roles.contains(kDepthRole) || !sequence_.files.has_frame() ||
         !std::filesystem::exists(before, unreadable))
         return;
     const FrameFile previous(before, limits_, sequence_.view);
     const Camera camera = camera_of_metadata(previous.merged().metadata, *open.profile);
     if (!knows_motion(header.camera, camera)) return;
-    const Image depth = read_role(open, "depth", nullptr, capture);
+    const Image depth = read_role(open, kDepthRole, nullptr, capture);
     fill_camera_velocity(velocity, missing, depth, header.data_window, header.display_window, header.camera,
                          camera);
     capture.motion_from_camera = true;
@@ -231,8 +231,9 @@ Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, c
     if (source.from_cryptomatte) {
         const auto layers = find_cryptomattes(file);
         const CryptomatteLayer& layer = choose_cryptomatte(layers, sequence_.cryptomatte->layer, file);
-        return name == "mask" ? cryptomatte_mask(file, layer, sequence_.cryptomatte->mask, header.data_window)
-                              : cryptomatte_ids(file, layer, header.data_window);
+        return role.kind == RoleKind::coverage
+                   ? cryptomatte_mask(file, layer, sequence_.cryptomatte->mask, header.data_window)
+                   : cryptomatte_ids(file, layer, header.data_window);
     }
     if (role.type == ComponentType::uint32) {
         if (file.type_of(source.channels[0][0]) == PixelType::uint32)
@@ -242,15 +243,15 @@ Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, c
     }
     // A stored value beyond the data window is none: it gets the role's value after decoding, except where
     // decoding itself turns it into that.
-    const float outside = name == "depth" ? source.decoding.no_hit : role.outside;
+    const float outside = role.kind == RoleKind::distance ? source.decoding.no_hit : role.outside;
     Image image = source.luminance.empty() ? read_layers(file, source.channels, header.data_window, outside)
                                            : file.read_luminance_chroma(source.luminance, header.data_window);
-    if (name == "depth")
+    if (role.kind == RoleKind::distance)
         decode_depth(
             image, source.decoding,
             {file.path().string(), header.data_window, header.display_window, header.camera, nullptr});
-    if (name == "velocity" || name == "velocity_next") read_motion(open, name, image, color, capture);
-    if (is_color_role(name) && open.stored_primaries != header.primaries)
+    if (role.kind == RoleKind::motion) read_motion(open, name, image, color, capture);
+    if (role.kind == RoleKind::light && open.stored_primaries != header.primaries)
         convert_colors(image, conversion_matrix(open.stored_primaries, header.primaries));
     return image;
 }
@@ -283,12 +284,12 @@ Capture CaptureReader::read(int frame, std::span<const std::string> roles) const
     prefetch(open, roles);
     Image color;
     const bool needs_color = std::any_of(open.roles.begin(), open.roles.end(), is_premultiplied);
-    if (open.roles.contains("color") && (wants("color") || needs_color))
-        color = read_role(open, "color", nullptr, capture);
+    if (open.roles.contains(kColorRole) && (wants(kColorRole) || needs_color))
+        color = read_role(open, kColorRole, nullptr, capture);
     for (const auto& [role, source] : open.roles)
-        if (role != "color" && wants(role))
+        if (role != kColorRole && wants(role))
             capture.images[role] = read_role(open, role, color.empty() ? nullptr : &color, capture);
-    if (wants("color")) capture.images["color"] = std::move(color);
+    if (wants(kColorRole)) capture.images[kColorRole] = std::move(color);
     capture.header = std::move(open.header);
     return capture;
 }

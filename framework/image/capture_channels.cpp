@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <set>
 #include <utility>
 
 #include "framework/image/capture_internal.h"
@@ -7,11 +6,6 @@
 #include "framework/image/role.h"
 
 namespace aftershade {
-
-bool is_color_role(const std::string& role) {
-    static const std::set<std::string> roles = {"color", "irradiance", "albedo", "specular", "emission"};
-    return roles.contains(role);
-}
 
 /// The role's image as the file stores it: one image per stored channel.
 std::map<std::string, Image> CaptureReader::encode_role(const OpenFrame& open, const std::string& name,
@@ -22,11 +16,11 @@ std::map<std::string, Image> CaptureReader::encode_role(const OpenFrame& open, c
     Image image = canonical;
     Image color;
     Capture unused;
-    if (source.decoding.premultiplied && open.roles.contains("color"))
-        color = read_role(open, "color", nullptr, unused);
+    if (source.decoding.premultiplied && open.roles.contains(kColorRole))
+        color = read_role(open, kColorRole, nullptr, unused);
     const DecodeContext context{header.path.string(), header.data_window, header.display_window,
                                 header.camera, color.empty() ? nullptr : &color};
-    if (is_color_role(name) && open.stored_primaries != header.primaries)
+    if (kind_of_role(name) == RoleKind::light && open.stored_primaries != header.primaries)
         convert_colors(image, conversion_matrix(header.primaries, open.stored_primaries));
     const bool ids_as_uint = source.file->type_of(source.channels[0][0]) == PixelType::uint32;
     return aftershade::encode_role(name, std::move(image), source.decoding, source.channels, ids_as_uint,

@@ -28,7 +28,4 @@ struct CaptureReader::OpenFrame {
     CaptureHeader header;
 };
 
-/// Roles whose three channels are colours in the capture's primaries.
-bool is_color_role(const std::string& role);
-
 }  // namespace aftershade

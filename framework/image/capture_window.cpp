@@ -37,7 +37,7 @@ Image scaled(const Image& image, const ChannelRole& role, const CaptureHeader& h
              int divisor) {
     Image result(window.width(), window.height(), image.channels(), image.type());
     const Window& data = header.data_window;
-    const bool is_velocity = role.name == "velocity" || role.name == "velocity_next";
+    const bool is_in_px = role.kind == RoleKind::motion;
     for (int y = window.min_y; y <= window.max_y; ++y)
         for (int x = window.min_x; x <= window.max_x; ++x) {
             const Window whole = block_of(x, y, header.display_window, divisor);
@@ -54,7 +54,7 @@ Image scaled(const Image& image, const ChannelRole& role, const CaptureHeader& h
                     result.uint_at(to_x, to_y, c) = image.uint_at(from_x, from_y, c);
                 else
                     result.at(to_x, to_y, c) =
-                        image.at(from_x, from_y, c) / (is_velocity ? float(divisor) : 1.0f);
+                        image.at(from_x, from_y, c) / (is_in_px ? float(divisor) : 1.0f);
             }
         }
     return result;

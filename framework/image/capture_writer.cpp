@@ -60,7 +60,7 @@ void require_exact_ids(const std::filesystem::path& path, const Image& image, bo
 std::vector<std::string> write_capture(const std::filesystem::path& path, const Capture& capture,
                                        const Profile& profile, const CaptureWriteOptions& options) {
     const CaptureHeader& header = capture.header;
-    const auto color = capture.images.find("color");
+    const auto color = capture.images.find(kColorRole);
     const DecodeContext context{path.string(), header.data_window, header.display_window, header.camera,
                                 color == capture.images.end() ? nullptr : &color->second};
     const Chromaticities primaries =
@@ -74,7 +74,7 @@ std::vector<std::string> write_capture(const std::filesystem::path& path, const 
             continue;
         }
         Image encoded = image;
-        if (is_color_role(role) && primaries != header.primaries)
+        if (kind_of_role(role) == RoleKind::light && primaries != header.primaries)
             convert_colors(encoded, conversion_matrix(header.primaries, primaries));
         // A producer that is not ours stores ids as floats, as every one of them does.
         const bool ids_as_uint = profile.id == "native";

@@ -273,7 +273,10 @@ Image draw_contact_sheet(const Capture& capture, const std::map<std::string, std
             painter.add_message(role, error.what());
         }
     }
-    draw_footer(sheet, painter.faults(), capture.images.contains("depth"));
+    const bool has_depth = std::any_of(roles.begin(), roles.end(), [&](const std::string& role) {
+        return capture.images.contains(role) && kind_of_role(role) == RoleKind::distance;
+    });
+    draw_footer(sheet, painter.faults(), has_depth);
     return sheet;
 }
 

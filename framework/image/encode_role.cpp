@@ -30,12 +30,13 @@ std::map<std::string, Image> encode_role(const std::string& role, Image image, c
                                          const FoundChannels& channels, bool ids_as_uint,
                                          const DecodeContext& context) {
     std::map<std::string, Image> stored;
-    if (find_role(role)->type == ComponentType::uint32) {
+    const ChannelRole contract = *find_role(role);
+    if (contract.type == ComponentType::uint32) {
         stored.emplace(channels[0][0], ids_as_uint ? std::move(image) : floats_of_ids(image));
         return stored;
     }
-    if (role == "depth") encode_depth(image, decoding, context);
-    if (role == "velocity" || role == "velocity_next") encode_velocity(image, decoding, context);
+    if (contract.kind == RoleKind::distance) encode_depth(image, decoding, context);
+    if (contract.kind == RoleKind::motion) encode_velocity(image, decoding, context);
     for (std::size_t layer = 0; layer < channels.size(); ++layer)
         for (std::size_t c = 0; c < channels[layer].size(); ++c)
             if (const std::string& channel = channels[layer][c]; !channel.empty())

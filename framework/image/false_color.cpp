@@ -123,12 +123,19 @@ DisplayColor id_color(std::uint32_t id) {
     return hue_color(turns, hash & 64 ? 0.55f : 0.85f, hash & 128 ? 0.95f : 0.7f);
 }
 
-FalseColor::Kind FalseColor::kind_of(const std::string& role, const Image& image) {
+FalseColor::Kind FalseColor::kind_of(const std::string& role, RoleKind role_kind, const Image& image) {
     if (image.type() == ComponentType::uint32) return Kind::ids;
-    if (role == "depth") return Kind::depth;
-    if (role == "velocity" || role == "velocity_next") return Kind::velocity;
-    if (role == "normal") return Kind::normal;
-    if (role == "position") return Kind::position;
+    switch (role_kind) {
+        case RoleKind::distance: return Kind::depth;
+        case RoleKind::motion: return Kind::velocity;
+        case RoleKind::direction: return Kind::normal;
+        case RoleKind::place: return Kind::position;
+        case RoleKind::light:
+        case RoleKind::id:
+        case RoleKind::coverage:
+        case RoleKind::display:
+        case RoleKind::other: break;
+    }
     if (role == kDataRole && image.channels() == 2) return Kind::velocity;
     if (role == kDataRole && image.channels() == 1) {
         const auto values = image.floats();
@@ -139,14 +146,18 @@ FalseColor::Kind FalseColor::kind_of(const std::string& role, const Image& image
 }
 
 FalseColor::FalseColor(const std::string& role, const Image& image, const Chromaticities& primaries)
+    : FalseColor(role, find_role(role), image, primaries) {}
+
+FalseColor::FalseColor(const std::string& role, const std::optional<ChannelRole>& contract,
+                       const Image& image, const Chromaticities& primaries)
     : image_(image),
-      kind_(kind_of(role, image)),
+      kind_(kind_of(role, contract ? contract->kind : RoleKind::other, image)),
       may_be_negative_(kind_ == Kind::velocity || kind_ == Kind::normal || kind_ == Kind::position ||
-                       role.starts_with("aov:") || role == kDataRole),
+                       !contract || contract->kind == RoleKind::other),
       may_be_infinite_(kind_ == Kind::depth) {
     count_faults();
     switch (kind_) {
-        case Kind::color: fit_color(role, primaries); break;
+        case Kind::color: fit_color(contract && contract->is_share, primaries); break;
         case Kind::depth: fit_depth(); break;
         case Kind::velocity: fit_velocity(); break;
         case Kind::normal: label_ = {"world space, -1 to 1", "x red, y green, z blue"}; break;
@@ -163,7 +174,7 @@ void FalseColor::count_faults() {
         for (int x = 0; x < image_.width(); ++x) ++fault_counts_[std::size_t(fault(x, y))];
 }
 
-void FalseColor::fit_color(const std::string& role, const Chromaticities& primaries) {
+void FalseColor::fit_color(bool is_share, const Chromaticities& primaries) {
     const Chromaticities rec709 = *color_space_primaries("rec709");
     if (primaries != Chromaticities{} && primaries != rec709)
         to_rec709_ = conversion_matrix(primaries, rec709);
@@ -180,7 +191,7 @@ void FalseColor::fit_color(const std::string& role, const Chromaticities& primar
     for (int c = 0; c < 3; ++c)
         if (const auto range = finite_range(image_, c)) brightest = std::max(brightest, range->max);
     label_[0] = fmt::format("up to {:.4g}", brightest);
-    if (role == "albedo") {  // has a scale of its own
+    if (is_share) {
         label_[1] = "linear, 0 to 1 as it is";
         return;
     }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "framework/image/color_space.h"
 #include "framework/image/image.h"
 #include "framework/image/label_text.h"
+#include "framework/image/role.h"
 #include "glsl/false_color_tables.glsl"
 
 namespace aftershade {
@@ -59,10 +61,12 @@ public:
     }  ///< false: the mean of two colours would be a third id
 
 private:
+    FalseColor(const std::string& role, const std::optional<ChannelRole>& contract, const Image& image,
+               const Chromaticities& primaries);
     enum class Kind { color, depth, velocity, normal, position, ids, grey, signed_data, data };
-    static Kind kind_of(const std::string& role, const Image& image);
+    static Kind kind_of(const std::string& role, RoleKind role_kind, const Image& image);
     void count_faults();
-    void fit_color(const std::string& role, const Chromaticities& primaries);
+    void fit_color(bool is_share, const Chromaticities& primaries);
     void fit_depth();
     void fit_velocity();
     void fit_ids();

@@ -55,7 +55,7 @@ std::optional<FoundChannels> find_channels(const RoleDecoding& decoding, const s
 }
 
 std::string find_layer(const Profile& profile, const ExrPart& part) {
-    const auto color = profile.roles.find("color");
+    const auto color = profile.roles.find(kColorRole);
     if (color == profile.roles.end() || color->second.layers.empty()) return "";
     for (const std::string& pattern : split_alternatives(color->second.layers[0][0])) {
         if (!pattern.starts_with(kLayer)) continue;

@@ -61,7 +61,7 @@ void read_layers(ObjectReader& reader, const ChannelRole& role, const Node& node
         std::string key(1, char(std::tolower(static_cast<unsigned char>(native.back()))));
         if (const auto name = reader.text(key)) by_component.push_back(*name);
     }
-    if (role.name == "color" && by_component.size() + 1 == components) by_component.push_back("A?");
+    if (role.has_optional_alpha() && by_component.size() + 1 == components) by_component.push_back("A?");
     if (!by_component.empty()) decoding.layers.push_back(by_component);
     for (const auto& layer : decoding.layers)
         if (layer.size() != components)
@@ -105,15 +105,15 @@ void read_velocity_scale(const Node& value, RoleDecoding& decoding, Diagnostics&
     }
 }
 
-void read_velocity(ObjectReader& reader, const std::string& role, const Node& node, RoleDecoding& decoding,
+void read_velocity(ObjectReader& reader, const ChannelRole& role, const Node& node, RoleDecoding& decoding,
                    Diagnostics& diagnostics) {
-    if (role == "velocity_next") decoding.delta = VelocityDelta::next_minus_cur;
+    if (role.to_next) decoding.delta = VelocityDelta::next_minus_cur;
     read_choice(reader, "delta", kDeltas, decoding.delta);
     const bool is_next =
         decoding.delta == VelocityDelta::next_minus_cur || decoding.delta == VelocityDelta::cur_minus_next;
-    if (is_next != (role == "velocity_next") && node.find("delta"))
+    if (is_next != role.to_next && node.find("delta"))
         diagnostics.error(node.find("delta")->place,
-                          "role '" + role + "' cannot be decoded from '" + node.find("delta")->string +
+                          "role '" + role.name + "' cannot be decoded from '" + node.find("delta")->string +
                               "': 'next' vectors fill velocity_next and no other role");
     decoding.y_axis_up = reader.choice("y_axis", std::vector<std::string>{"up", "down"}) == "up";
     read_choice(reader, "unit", kUnits, decoding.unit);
@@ -172,10 +172,9 @@ RoleDecoding parse_role_decoding(const std::string& role_name, const Node& node,
     RoleDecoding decoding;
     ObjectReader reader(node, "the decoding of '" + role_name + "'", diagnostics);
     read_layers(reader, role, node, decoding, diagnostics);
-    if (role_name == "color") decoding.luminance = reader.text("luminance").value_or("");
-    if (role_name == "depth") read_depth(reader, decoding, diagnostics);
-    if (role_name == "velocity" || role_name == "velocity_next")
-        read_velocity(reader, role_name, node, decoding, diagnostics);
+    if (role.has_optional_alpha()) decoding.luminance = reader.text("luminance").value_or("");
+    if (role.kind == RoleKind::distance) read_depth(reader, decoding, diagnostics);
+    if (role.kind == RoleKind::motion) read_velocity(reader, role, node, decoding, diagnostics);
     reader.finish();
     return decoding;
 }

@@ -14,58 +14,56 @@ std::vector<std::string> layer(const std::string& name, std::string_view compone
 
 std::vector<ChannelRole> make_roles() {
     constexpr float kNothingHit = std::numeric_limits<float>::infinity();
+    using enum RoleKind;
     const auto real = ComponentType::float32;
-    const auto rgb = [&](const char* name, const char* meaning) {
-        return ChannelRole{name, 3, real, true, 0, layer(name, "RGB"), PixelType::half, meaning};
+    const auto rgb = [&](const char* name, bool is_share, const char* meaning) {
+        return ChannelRole{name,    3,     real,  true,    0, layer(name, "RGB"), PixelType::half,
+                           meaning, light, false, is_share};
     };
-    const auto xyz = [&](const char* name, bool filterable, const char* meaning) {
-        return ChannelRole{name, 3, real, filterable, 0, layer(name, "XYZ"), PixelType::float32, meaning};
+    const auto xyz = [&](const char* name, RoleKind kind, bool filterable, const char* meaning) {
+        return ChannelRole{name, 3, real, filterable, 0, layer(name, "XYZ"), PixelType::float32, meaning, kind};
     };
-    const auto xy = [&](const char* name, const char* meaning) {
-        return ChannelRole{name, 2, real, false, 0, layer(name, "XY"), PixelType::float32, meaning};
+    const auto xy = [&](const char* name, bool to_next, const char* meaning) {
+        return ChannelRole{name,    2,      real,   false, 0, layer(name, "XY"), PixelType::float32,
+                           meaning, motion, to_next};
+    };
+    const auto one = [&](const char* name, RoleKind kind, const char* channel, PixelType stored,
+                         const char* meaning) {
+        const bool is_id = kind == id, is_distance = kind == distance;
+        return ChannelRole{name,
+                           1,
+                           is_id ? ComponentType::uint32 : real,
+                           !is_id && !is_distance,
+                           is_distance ? kNothingHit : 0,
+                           {channel},
+                           stored,
+                           meaning,
+                           kind};
     };
     return {
-        {"color",
+        {kColorRole,
          4,
          real,
          true,
          0,
          {"R", "G", "B", "A"},
          PixelType::half,
-         "scene-linear RGB with premultiplied alpha"},
-        {"depth",
-         1,
-         real,
-         false,
-         kNothingHit,
-         {"Z"},
-         PixelType::float32,
-         "distance along the view axis, m; +inf where nothing was hit"},
-        xy("velocity", "px per frame, current minus previous position, +x right, +y down"),
-        xy("velocity_next", "px per frame, next minus current position, +x right, +y down"),
-        rgb("irradiance", "E / pi without albedo: color = albedo * irradiance + the rest"),
-        rgb("albedo", "scene-linear diffuse reflectance"),
-        rgb("specular", "scene-linear light that albedo does not colour"),
-        rgb("emission", "scene-linear emitted light"),
-        xyz("normal", true, "world space, unit vector"),
-        xyz("position", false, "world space, m"),
-        {"object_id",
-         1,
-         ComponentType::uint32,
-         false,
-         0,
-         {"object_id.I"},
-         PixelType::uint32,
-         "unsigned integer"},
-        {"mask", 1, real, true, 0, {"mask.V"}, PixelType::half, "0 to 1"},
-        {"display",
-         4,
-         real,
-         true,
-         0,
-         {"display.R", "display.G", "display.B", "display.A"},
-         PixelType::half,
-         "display-referred RGB, encoded, 0 to 1, with straight alpha, as PNG has it"},
+         "scene-linear RGB with premultiplied alpha",
+         light},
+        one(kDepthRole, distance, "Z", PixelType::float32,
+            "distance along the view axis, m; +inf where nothing was hit"),
+        xy("velocity", false, "px per frame, current minus previous position, +x right, +y down"),
+        xy("velocity_next", true, "px per frame, next minus current position, +x right, +y down"),
+        rgb("irradiance", false, "E / pi without albedo: color = albedo * irradiance + the rest"),
+        rgb("albedo", true, "scene-linear diffuse reflectance"),
+        rgb("specular", false, "scene-linear light that albedo does not colour"),
+        rgb("emission", false, "scene-linear emitted light"),
+        xyz("normal", direction, true, "world space, unit vector"),
+        xyz("position", place, false, "world space, m"),
+        one(kObjectIdRole, id, "object_id.I", PixelType::uint32, "unsigned integer"),
+        one(kMaskRole, coverage, "mask.V", PixelType::half, "0 to 1"),
+        {kDisplayRole, 4, real, true, 0, layer(kDisplayRole, "RGBA"), PixelType::half,
+         "display-referred RGB, encoded, 0 to 1, with straight alpha, as PNG has it", display},
     };
 }
 
@@ -83,8 +81,9 @@ std::span<const ChannelRole> channel_roles() {
 std::optional<ChannelRole> find_role(std::string_view name) {
     for (const ChannelRole& role : roles())
         if (role.name == name) return role;
-    if (name.starts_with("aov:") && name.size() > 4) {
-        const std::string aov(name.substr(4));
+    constexpr std::string_view kAov = "aov:";
+    if (name.starts_with(kAov) && name.size() > kAov.size()) {
+        const std::string aov(name.substr(kAov.size()));
         return ChannelRole{
             std::string(name), 4, ComponentType::float32, true, 0, layer(aov, "RGBA"), PixelType::half,
             "passed through"};
@@ -96,6 +95,11 @@ std::vector<std::string> role_names() {
     std::vector<std::string> names;
     for (const ChannelRole& role : roles()) names.push_back(role.name);
     return names;
+}
+
+RoleKind kind_of_role(std::string_view name) {
+    const auto role = find_role(name);
+    return role ? role->kind : RoleKind::other;
 }
 
 }  // namespace aftershade

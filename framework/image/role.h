@@ -1,6 +1,7 @@
 // What an image means. One table serves reading, wiring, filtering rules and writing (docs/conventions.md).
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +13,30 @@
 
 namespace aftershade {
 
+/// What a role's values measure. Whoever treats roles differently asks for their kind, so that a new role needs
+/// no change there.
+enum class RoleKind {
+    light,      ///< scene-linear colours in the capture's primaries
+    distance,   ///< m along the view axis
+    motion,     ///< px per frame
+    direction,  ///< world space, unit vectors
+    place,      ///< world space, m
+    id,         ///< names, not amounts
+    coverage,   ///< 0 to 1
+    display,    ///< made by effects, never by renderers: encoded for a screen
+    other       ///< "aov:<name>": passed through
+};
+inline constexpr std::array kRoleKinds = {
+    RoleKind::light, RoleKind::distance, RoleKind::motion,  RoleKind::direction, RoleKind::place,
+    RoleKind::id,    RoleKind::coverage, RoleKind::display, RoleKind::other};
+
+// The roles that code means by themselves.
+inline constexpr const char* kColorRole = "color";      ///< what a look starts from and ends with
+inline constexpr const char* kDisplayRole = "display";  ///< what pictures for a screen hold
+inline constexpr const char* kDepthRole = "depth";
+inline constexpr const char* kObjectIdRole = "object_id";
+inline constexpr const char* kMaskRole = "mask";
+
 /// A role is spelled by name everywhere ("color", "velocity_next", "aov:mist"); this is its contract.
 struct ChannelRole {
     std::string name;
@@ -22,6 +47,12 @@ struct ChannelRole {
     std::vector<std::string> native_channels;  ///< names in the `native` profile and in outputs
     PixelType pixel_type = PixelType::half;    ///< stored as this by default
     std::string meaning;                       ///< one line with unit and space
+    RoleKind kind = RoleKind::other;
+    bool to_next = false;   ///< motion: to the next frame's position, not from the previous one's
+    bool is_share = false;  ///< light: a share of it, 0 to 1, which needs no exposure to be seen
+
+    /// Its alpha may be absent from files, which is 1 then; such a file may hold luminance alone.
+    bool has_optional_alpha() const { return kind == RoleKind::light && channels == 4; }
 };
 
 /// The fixed roles, in the order of the documentation.
@@ -29,5 +60,7 @@ std::span<const ChannelRole> channel_roles();
 /// nullopt for an unknown name; "aov:<name>" is a one-to-four channel image passed through.
 std::optional<ChannelRole> find_role(std::string_view name);
 std::vector<std::string> role_names();
+/// RoleKind::other for a name that is no role's.
+RoleKind kind_of_role(std::string_view name);
 
 }  // namespace aftershade

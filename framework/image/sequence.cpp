@@ -48,11 +48,11 @@ void read_frames(ObjectReader& reader, const Node& node, const fs::path& folder,
                  Diagnostics& diagnostics) {
     if (const Node* files = reader.object("files")) read_role_files(*files, folder, sequence, diagnostics);
     // Without a main file the colour's own file takes its place.
-    const bool has_color_file = sequence.role_files.contains("color");
+    const bool has_color_file = sequence.role_files.contains(kColorRole);
     const auto frames = reader.text(
         "frames", has_color_file ? ObjectReader::Presence::optional : ObjectReader::Presence::required);
     if (frames) sequence.files = FramePattern((folder / *frames).string());
-    else if (has_color_file) sequence.files = sequence.role_files.at("color");
+    else if (has_color_file) sequence.files = sequence.role_files.at(kColorRole);
     const auto range = reader.text("range");
     if (!range) return;
     const auto numbers = parse_frame_range(*range);

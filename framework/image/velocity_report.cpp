@@ -1,4 +1,5 @@
 #include "framework/image/velocity_report.h"
+#include "framework/image/role.h"
 
 #include <fmt/format.h>
 
@@ -25,8 +26,11 @@ std::string delta_name(bool next, bool reversed) {
     return reversed ? "prev-cur" : "cur-prev";
 }
 
-const char* role_name(const VelocitySettings& settings) {
-    return settings.is_next() ? "velocity_next" : "velocity";
+std::string role_name(const VelocitySettings& settings) {
+    const auto roles = channel_roles();
+    return std::ranges::find_if(roles, [&](const ChannelRole& role) {
+               return role.kind == RoleKind::motion && role.to_next == settings.is_next();
+           })->name;
 }
 
 std::string percent(double score) {

@@ -34,19 +34,18 @@ json decoding_of(const ChannelRole& role) {
         keys[components.back()] = schema::text();
     }
     // Colour may have no alpha.
-    if (role.name == "color") components.pop_back();
-    if (role.name == "color") keys["luminance"] = schema::text();
-    if (role.name == "depth") {
+    if (role.has_optional_alpha()) components.pop_back();
+    if (role.has_optional_alpha()) keys["luminance"] = schema::text();
+    if (role.kind == RoleKind::distance) {
         for (const char* key : {"scale", "no_hit", "no_hit_stored"}) keys[key] = kNumber;
         keys["zero_is_no_hit"] = keys["reversed"] = kFlag;
         keys["encoding"] = schema::one_of({"linear", "inverse", "z_buffer", "normalized"});
         keys["kind"] = schema::one_of({"planar", "radial"});
         keys["near"] = keys["far"] = length_m();
     }
-    if (role.name == "velocity" || role.name == "velocity_next") {
-        const bool next = role.name == "velocity_next";
-        keys["delta"] = schema::one_of(next ? std::vector<std::string>{"next-cur", "cur-next"}
-                                            : std::vector<std::string>{"cur-prev", "prev-cur"});
+    if (role.kind == RoleKind::motion) {
+        keys["delta"] = schema::one_of(role.to_next ? std::vector<std::string>{"next-cur", "cur-next"}
+                                                    : std::vector<std::string>{"cur-prev", "prev-cur"});
         keys["y_axis"] = schema::one_of({"up", "down"});
         keys["unit"] = schema::one_of({"px", "uv", "ndc"});
         keys["scale"] = {{"anyOf", {kNumber, schema::array_of(kNumber, 2, 2)}}};
@@ -139,7 +138,7 @@ std::string capture_schema() {
          {"subframes", {{"type", "integer"}, {"minimum", 1}, {"maximum", 1024}}}},
         {});
     document["anyOf"] = {{{"required", {"frames"}}},
-                         {{"required", {"files"}}, {"properties", {{"files", {{"required", {"color"}}}}}}}};
+                         {{"required", {"files"}}, {"properties", {{"files", {{"required", {kColorRole}}}}}}}};
     return document.dump(2) + "\n";
 }
 

@@ -148,7 +148,7 @@ private:
             diagnostics_.error(mask.place,
                                "'" + mask.role + "' is not a role" + did_you_mean(mask.role, role_names()));
         else if (role && (role->type != ComponentType::float32 ||
-                          (role->channels != 1 && !mask.role.starts_with("aov:"))))
+                          (role->channels != 1 && role->kind != RoleKind::other)))
             diagnostics_.error(mask.place, "a mask takes a role of one channel, such as mask or aov:hair; '" +
                                                mask.role + "' is none");
         std::error_code failure;
@@ -170,7 +170,7 @@ private:
             for (const InputSpec& input : step.manifest->inputs)
                 if (input.role == output.role && input.frame == 0 && !input.from_capture)
                     source = step.inputs.at(input.name);
-            if (source.step < 0 && output.role == "display")
+            if (source.step < 0 && kind_of_role(output.role) == RoleKind::display)
                 diagnostics_.error(
                     place,
                     "step '" + step.name + "' makes display, of which there is none before it to mix with");
@@ -249,7 +249,7 @@ private:
                 of_capture ? InputSource{-1, input.role} : nearest_source(input.role, pipeline_.steps.size());
             step.inputs.try_emplace(input.name, source);
             // Who can do without colour does not build on it: it may look at it to the side of the display.
-            if (input.role == "color" && !input.optional && pipeline_.writes_role("display"))
+            if (input.role == kColorRole && !input.optional && pipeline_.writes_role(kDisplayRole))
                 diagnostics_.error(
                     look_step.place,
                     "step '" + step.name + "' reads color after a step has made display; put it before");

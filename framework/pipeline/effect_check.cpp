@@ -1,8 +1,8 @@
 #include "framework/pipeline/effect_check.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <initializer_list>
 #include <limits>
 #include <map>
 #include <set>
@@ -81,6 +81,44 @@ std::string first_bad_value(const FrameResult& result) {
     return "";
 }
 
+/// One pixel of the test capture.
+struct TestPoint {
+    float u = 0, y = 0;
+    float light = 0;
+    float depth_m = 0;
+    bool box = false;
+    bool sky = false;
+};
+
+std::array<float, 4> values_of(const ChannelRole& role, const TestPoint& at) {
+    constexpr std::array kAlbedo = {0.8f, 0.5f, 0.3f};
+    switch (role.kind) {
+        case RoleKind::light: {
+            const float light = role.is_share ? 1 : at.light;
+            if (role.channels == 3 && !role.is_share) return {light, light, light};
+            return {light * kAlbedo[0], light * kAlbedo[1], light * kAlbedo[2], at.sky ? 0.5f : 1.0f};
+        }
+        case RoleKind::distance: return {at.depth_m};
+        case RoleKind::motion: return {at.box ? 3.0f : 0.0f, 0};
+        case RoleKind::direction: return {0, 0, 1};
+        case RoleKind::place: return {at.u, at.y, at.sky ? 0 : -at.depth_m};
+        case RoleKind::coverage: return {at.box ? 1.0f : 0.0f};
+        case RoleKind::id:
+        case RoleKind::display:
+        case RoleKind::other: break;
+    }
+    return {};
+}
+
+void put(const ChannelRole& role, const TestPoint& at, Image& image, int x, int y) {
+    if (role.kind == RoleKind::id) {
+        image.uint_at(x, y, 0) = at.box ? 2 : at.sky ? 0 : 1;
+        return;
+    }
+    const std::array<float, 4> values = values_of(role, at);
+    for (int c = 0; c < role.channels; ++c) image.at(x, y, c) = values[std::size_t(c)];
+}
+
 /// A small capture from formulas, with every role: a plane, a box in motion, lamps far brighter than 1, and
 /// sky without depth.
 Capture make_test_capture(int width, int height, int frame) {
@@ -91,43 +129,36 @@ Capture make_test_capture(int width, int height, int frame) {
     header.profile = "native";
     header.data_window = header.display_window = {0, 0, width - 1, height - 1};
     for (const ChannelRole& role : channel_roles()) {
-        if (role.name == "display") continue;
+        if (role.kind == RoleKind::display) continue;
         capture.images[role.name] = Image(width, height, role.channels, role.type);
         header.roles.push_back(role.name);
     }
-    const auto set = [&](const char* role, int x, int y, std::initializer_list<float> values) {
-        int channel = 0;
-        for (const float value : values) capture.images.at(role).at(x, y, channel++) = value;
-    };
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             const int left = width / 4 + 3 * frame;
             const bool box = x >= left && x < left + width / 4 && y >= height / 4 && y < height * 3 / 4;
             const bool sky = !box && y < height / 3;
             const bool lamp = !box && x % 17 == 5 && y % 11 == 4;
-            const float u = float(x) / float(width), light = lamp ? 500.0f : 0.2f + u;
-            const float depth = box ? 2.0f : sky ? std::numeric_limits<float>::infinity() : 4.0f + 8.0f * u;
-            set("color", x, y, {light * 0.8f, light * 0.5f, light * 0.3f, sky ? 0.5f : 1.0f});
-            set("depth", x, y, {depth});
-            set("albedo", x, y, {0.8f, 0.5f, 0.3f});
-            set("irradiance", x, y, {light, light, light});
-            set("normal", x, y, {0, 0, 1});
-            set("position", x, y, {u, float(y), sky ? 0 : -depth});
-            set("velocity", x, y, {box ? 3.0f : 0.0f, 0});
-            set("velocity_next", x, y, {box ? 3.0f : 0.0f, 0});
-            set("mask", x, y, {box ? 1.0f : 0.0f});
-            capture.images.at("object_id").uint_at(x, y, 0) = box ? 2 : sky ? 0 : 1;
+            TestPoint point;
+            point.u = float(x) / float(width);
+            point.y = float(y);
+            point.light = lamp ? 500.0f : 0.2f + point.u;
+            point.depth_m =
+                box ? 2.0f : sky ? std::numeric_limits<float>::infinity() : 4.0f + 8.0f * point.u;
+            point.box = box;
+            point.sky = sky;
+            for (auto& [name, image] : capture.images) put(*find_role(name), point, image, x, y);
         }
     return capture;
 }
 
 /// What no capture has by itself but the effect cannot do without: small numbers.
 void add_required_aovs(const EffectManifest& manifest, Capture& capture) {
-    const Image& depth = capture.images.at("depth");
+    const Image& depth = capture.images.at(kDepthRole);
     for (const InputSpec& input : manifest.inputs) {
-        if (!input.role.starts_with("aov:") || input.optional || capture.images.contains(input.role))
-            continue;
-        Image image(depth.width(), depth.height(), find_role(input.role)->channels);
+        const ChannelRole role = *find_role(input.role);
+        if (role.kind != RoleKind::other || input.optional || capture.images.contains(input.role)) continue;
+        Image image(depth.width(), depth.height(), role.channels);
         for (std::size_t i = 0; i < image.floats().size(); ++i) image.floats()[i] = 0.001f * float(i % 7);
         capture.images[input.role] = std::move(image);
         capture.header.roles.push_back(input.role);

@@ -65,9 +65,11 @@ void crop(ExrContent& content, const Window& from, const Window& to) {
 }
 
 bool is_id_channel(const ExrOutputChannel& channel, const CaptureHeader& header) {
-    const auto ids = header.role_channels.find("object_id");
-    const bool is_role = ids != header.role_channels.end() &&
-                         std::find(ids->second.begin(), ids->second.end(), channel.name) != ids->second.end();
+    const auto holds = [&](const auto& role) {
+        return kind_of_role(role.first) == RoleKind::id &&
+               std::find(role.second.begin(), role.second.end(), channel.name) != role.second.end();
+    };
+    const bool is_role = std::any_of(header.role_channels.begin(), header.role_channels.end(), holds);
     return is_role || channel.type == PixelType::uint32 || channel.name.find("Crypto") != std::string::npos;
 }
 

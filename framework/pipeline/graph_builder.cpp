@@ -318,7 +318,7 @@ void GraphBuilder::add_mix(StepBuild& build) {
             pass.reads.push_back({import(step.mask->role), 2});
         } else if (step.mask && !step.mask->objects.empty()) {
             defines = {"MASK_OBJECTS"};
-            pass.reads.push_back({import("object_id"), 2});
+            pass.reads.push_back({import(kObjectIdRole), 2});
         } else if (step.mask) {
             defines = {"MASK_FILE"};
             pass.reads.push_back({mask_of(build), 2, gpu::Filter::linear});

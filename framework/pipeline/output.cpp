@@ -68,11 +68,11 @@ Image cropped_for_png(const Image& display, const Window& data, const Window& wi
 }
 
 void write_png_output(const fs::path& path, const FrameResult& result, const Capture& capture) {
-    const auto made = result.images.find("display");
+    const auto made = result.images.find(kDisplayRole);
     const CaptureHeader& header = capture.header;
     const Image display = made != result.images.end()
                               ? made->second
-                              : display_of_color(*find_image("color", result, capture), header.primaries);
+                              : display_of_color(*find_image(kColorRole, result, capture), header.primaries);
     write_png(path,
               cropped_for_png(display, header.data_window, result.region.value_or(header.display_window)));
 }
@@ -208,7 +208,7 @@ std::vector<std::string> wanted_roles(const OutputOptions& options) {
     for (const std::string& pattern : options.patterns) {
         if (extension(pattern) == ".exr")
             roles.insert(roles.end(), options.roles.begin(), options.roles.end());
-        else roles.insert(roles.end(), {"display", "color"});
+        else roles.insert(roles.end(), {kDisplayRole, kColorRole});
     }
     std::sort(roles.begin(), roles.end());
     roles.erase(std::unique(roles.begin(), roles.end()), roles.end());

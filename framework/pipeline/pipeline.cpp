@@ -4,6 +4,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/units.h"
+#include "framework/image/role.h"
 
 namespace aftershade {
 
@@ -31,7 +32,7 @@ std::vector<std::string> host_roles(const PipelineStep& step) {
     for (const auto& [name, value] : step.values)
         for (const std::string& role : roles_of(value)) add_once(roles, role);
     if (step.mask && !step.mask->role.empty()) add_once(roles, step.mask->role);
-    if (step.mask && !step.mask->objects.empty()) add_once(roles, "object_id");
+    if (step.mask && !step.mask->objects.empty()) add_once(roles, kObjectIdRole);
     return roles;
 }
 
@@ -60,7 +61,7 @@ std::vector<ParamValue> PipelineStep::known_values(const ParamSpec& spec) const 
 }
 
 std::vector<std::string> Pipeline::capture_roles() const {
-    std::vector<std::string> roles{"color"};
+    std::vector<std::string> roles{kColorRole};
     for (const PipelineStep& step : steps) {
         for (const InputSpec& input : step.manifest->inputs) {
             const InputSource& source = step.inputs.at(input.name);
@@ -145,7 +146,7 @@ void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header
             if (!contains(header.roles, role))
                 missing("a value or the mask of step '" + step.name + "'", role);
     }
-    if (!contains(header.roles, "color")) missing("the output", "color");
+    if (!contains(header.roles, kColorRole)) missing("the output", kColorRole);
 }
 
 namespace {

@@ -9,6 +9,7 @@
 #include "framework/core/text.h"
 #include "framework/core/units.h"
 #include "framework/image/cryptomatte.h"
+#include "framework/image/role.h"
 
 namespace aftershade {
 
@@ -141,8 +142,8 @@ ParamValue fitted(double number, const ParamSpec& spec, const std::string& label
 double median_depth_m(const std::vector<TableKey>& objects, const std::string& label,
                       const Capture& capture) {
     const std::vector<IdRange> wanted = id_ranges(objects);
-    const auto ids = capture.images.at("object_id").uints();
-    const auto depths = capture.images.at("depth").floats();
+    const auto ids = capture.images.at(kObjectIdRole).uints();
+    const auto depths = capture.images.at(kDepthRole).floats();
     std::vector<float> found;
     for (std::size_t i = 0; i < ids.size(); ++i)
         if (std::isfinite(depths[i]) && contains(wanted, ids[i])) found.push_back(depths[i]);
@@ -165,7 +166,7 @@ double depth_at_m(const std::array<double, 2>& uv, const std::string& label, con
     const int y = display.min_y + std::min(int(uv[1] * display.height()), display.height() - 1);
     const std::string where = "pixel (" + std::to_string(x) + ", " + std::to_string(y) + ")";
     if (!data.contains(x, y)) refuse(label, capture.header, where + " is outside the data window");
-    const float depth = capture.images.at("depth").at(x - data.min_x, y - data.min_y, 0);
+    const float depth = capture.images.at(kDepthRole).at(x - data.min_x, y - data.min_y, 0);
     if (!std::isfinite(depth)) refuse(label, capture.header, "nothing was hit at " + where);
     return double(depth);
 }
@@ -215,8 +216,8 @@ std::string format_source(const ValueSource& source) {
 std::vector<std::string> roles_of(const ValueSource& source) {
     const auto* depth = std::get_if<DepthValue>(&source);
     if (!depth) return {};
-    if (!depth->objects.empty()) return {"depth", "object_id"};
-    return {"depth"};
+    if (!depth->objects.empty()) return {kDepthRole, kObjectIdRole};
+    return {kDepthRole};
 }
 
 std::optional<ParamValue> camera_value(const ParamSpec& spec, const std::string& field,

@@ -10,7 +10,7 @@ namespace aftershade {
 namespace {
 
 bool takes_any_role(const InputSpec& input) {
-    return input.role.starts_with("aov:");
+    return kind_of_role(input.role) == RoleKind::other;
 }
 
 std::string input_text(const InputSpec& input, const EffectManifest& effect) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "framework/core/parallel.h"
+#include "framework/image/role.h"
 #include "framework/scene/capture_images.h"
 #include "framework/scene/renderer.h"
 #include "framework/scene/surface_map.h"
@@ -15,8 +16,10 @@ Capture SceneRenderer::render_texture_space(int frame, int object, int side_px) 
     const SurfaceMap map = make_surface_map(shape, mesh ? mesh->mesh : nullptr, side_px);
     const World world(geometry_, state_at(scene_, frame, frame));
     std::vector<std::string> roles(all_roles().begin(), all_roles().end());
-    std::erase_if(roles,
-                  [](const std::string& role) { return role == "depth" || role.starts_with("velocity"); });
+    std::erase_if(roles, [](const std::string& role) {
+        const RoleKind kind = kind_of_role(role);
+        return kind == RoleKind::distance || kind == RoleKind::motion;
+    });
     Capture capture = make_capture(frame, side_px, side_px, roles);
     capture.header.camera = capture_camera(scene_, world.state(), width_px_, height_px_);
     // The matrices would tell where in this picture a point is, which they do not know.

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 
 #include "framework/compare/layer_file.h"
 #include "framework/core/error.h"
+#include "framework/image/role.h"
 #include "tests/compare/pictures.h"
 #include "tests/real_captures.h"
 
@@ -52,6 +54,21 @@ TEST(Layers, KnowTheRolesOfThisProgramsOwnFiles) {
                     {"object_id.I"})),
         (Texts{"albedo.RGB color", "display.A alpha", "display.RGB display", "mask.V data", "normal.XYZ data",
                "object_id.I id", "velocity.XY velocity", "velocity_next.XY velocity"}));
+}
+
+TEST(Layers, OfEveryRoleAreComparedAsItsKindIs) {
+    const std::map<RoleKind, LayerRole> expected = {
+        {RoleKind::light, LayerRole::color},     {RoleKind::distance, LayerRole::depth},
+        {RoleKind::motion, LayerRole::velocity}, {RoleKind::direction, LayerRole::data},
+        {RoleKind::place, LayerRole::data},      {RoleKind::id, LayerRole::id},
+        {RoleKind::coverage, LayerRole::data},   {RoleKind::display, LayerRole::display}};
+    for (const ChannelRole& role : channel_roles()) {
+        std::vector<std::string> floats, uints;
+        (role.type == ComponentType::uint32 ? uints : floats) = role.native_channels;
+        for (const LayerInfo& layer : layers(floats, uints))
+            if (layer.role != LayerRole::alpha)
+                EXPECT_EQ(layer.role, expected.at(role.kind)) << role.name << ": " << layer.label();
+    }
 }
 
 TEST(Layers, KnowTheRolesOfBlendersFiles) {
