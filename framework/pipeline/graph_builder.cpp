@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 #include "framework/core/error.h"
+#include "framework/image/role.h"
 #include "framework/pipeline/step_build.h"
 
 namespace aftershade {
@@ -84,10 +84,10 @@ std::unique_ptr<BuiltGraph> GraphBuilder::build() {
     std::vector<GraphBinding>& bindings = built_->bindings;
     for (const auto& [image, texture] : imports_)
         bindings.emplace_back(CaptureBinding{image.first, image.second, texture});
-    std::move(params_.begin(), params_.end(), std::back_inserter(bindings));
+    for (ParamBinding& binding : params_) bindings.emplace_back(std::move(binding));
     for (const auto& [step, texture] : masks_) bindings.emplace_back(MaskBinding{step, texture});
-    std::move(native_tables_.begin(), native_tables_.end(), std::back_inserter(bindings));
-    std::move(blocks_.begin(), blocks_.end(), std::back_inserter(bindings));
+    for (NativeTableBinding& binding : native_tables_) bindings.emplace_back(std::move(binding));
+    for (BlockBinding& binding : blocks_) bindings.emplace_back(std::move(binding));
     built_->key = frame_.key();
     built_->executor = std::make_unique<graph::Executor>(tools_.context, std::move(graph_));
     return std::move(built_);
