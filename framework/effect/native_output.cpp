@@ -10,7 +10,7 @@ namespace aftershade {
 
 namespace {
 
-constexpr int kMaxRepeat = 1000;
+constexpr int kMaxNativeRepeat = 1000;
 constexpr int kMaxWarmUpFrames = 1000;
 constexpr int kMaxOverscan_px = 4096;
 
@@ -155,7 +155,7 @@ struct OutputSetters {
         NativeOutput& out = self(output);
         aftershade_status status = check_pass(out, pass);
         if (status == AFTERSHADE_OK)
-            status = check_range(out, "repeat of pass '" + std::string(pass) + "'", count, 1, kMaxRepeat);
+            status = check_range(out, "repeat of pass '" + std::string(pass) + "'", count, 1, kMaxNativeRepeat);
         if (status == AFTERSHADE_OK) out.result_.repeats[pass] = count;
         return status;
     } catch (...) {
