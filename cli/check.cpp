@@ -79,7 +79,7 @@ ExitCode check(const CheckOptions& options) {
                                          did_you_mean(options.subject, ids));
     }
     stop_at_errors(words);
-    if (const auto look = read_look(subject, diagnostics)) compile_pipeline(*look, effects, {}, diagnostics);
+    if (const auto look = read_look(subject, diagnostics)) bind_pipeline(*look, effects, {}, diagnostics);
     return verdict(diagnostics, options);
 }
 

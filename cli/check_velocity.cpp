@@ -9,6 +9,7 @@
 
 #include "framework/image/capture.h"
 #include "framework/image/velocity_check.h"
+#include "framework/image/velocity_report.h"
 #include "framework/image/window.h"
 
 namespace aftershade::cli {

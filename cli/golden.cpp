@@ -70,25 +70,25 @@ void print_notes(const GoldenSuiteResult& result) {
 
 ExitCode run(const GoldenOptions& options) {
     const std::atomic<bool>& stop = watch_for_interrupt();
-    GoldenJob job = prepare_golden(options);
-    job.context.suite = &job.suite;
+    GoldenSetup setup = prepare_golden(options);
+    setup.context.suite = &setup.suite;
     if (!options.report.empty()) {
         std::error_code failure;
         fs::create_directories(fs::path(options.report) / "images", failure);
         if (failure) throw Error(ExitCode::output, "--report " + options.report + ": " + failure.message());
         remove_old_page(options.report);
     }
-    print_head(job.context);
+    print_head(setup.context);
     const GoldenSuiteResult result = run_golden_suite(
-        job.suite, job.context.options,
+        setup.suite, setup.context.options,
         [](const GoldenCaseResult& test, int done, int all) {
             std::cerr << line_of(test, done, all) << "\n";
         },
         stop);
-    std::cerr << summary_of(result, job.context);
+    std::cerr << summary_of(result, setup.context);
     if (result.interrupted) return ExitCode::interrupted;
     print_notes(result);
-    write_reports(options, result, job.context);
+    write_reports(options, result, setup.context);
     return ExitCode(int(result.verdict));
 }
 
@@ -114,20 +114,20 @@ void print_approval(const GoldenApproval& approval) {
 
 ExitCode approve(const GoldenOptions& options) {
     const std::atomic<bool>& stop = watch_for_interrupt();
-    GoldenJob job = prepare_golden(options);
-    job.context.suite = &job.suite;
-    print_head(job.context);
+    GoldenSetup setup = prepare_golden(options);
+    setup.context.suite = &setup.suite;
+    print_head(setup.context);
     if (!options.any_renderer)
-        if (const std::string why = foreign_goldens(job.suite, job.context.options); !why.empty())
+        if (const std::string why = foreign_goldens(setup.suite, setup.context.options); !why.empty())
             throw Error(kCompareUsage, why);
     GoldenApproveOptions approve_options;
-    approve_options.run = job.context.options;
+    approve_options.run = setup.context.options;
     approve_options.add = options.add;
     approve_options.renew_sidecars = options.renew_sidecars;
     approve_options.command =
-        shell_line({"aftershade", "golden", "approve", options.suite}) + job.context.with_options;
+        shell_line({"aftershade", "golden", "approve", options.suite}) + setup.context.with_options;
     const GoldenApproval approval = approve_goldens(
-        job.suite, approve_options,
+        setup.suite, approve_options,
         [](const GoldenCaseResult& test, int done, int all) {
             std::cerr << line_of(test, done, all, "Drawn ") << "\n";
         },

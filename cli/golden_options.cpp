@@ -90,16 +90,16 @@ void add_shared_golden_options(CLI::App& app, GoldenOptions& options) {
                    "auto, egl, egl-software or osmesa (default: $AFTERSHADE_BACKEND, else osmesa)");
 }
 
-GoldenJob prepare_golden(const GoldenOptions& options) {
+GoldenSetup prepare_golden(const GoldenOptions& options) {
     Diagnostics diagnostics;
-    GoldenJob job;
+    GoldenSetup setup;
     std::optional<GoldenSuite> suite = read_golden_suite(options.suite, diagnostics);
     check_words(options, suite.value_or(GoldenSuite{}), diagnostics);
     if (!suite || diagnostics.has_errors()) refuse(diagnostics);
-    job.suite = std::move(*suite);
+    setup.suite = std::move(*suite);
     const gpu::Backend backend = backend_of(options);
 
-    GoldenRunOptions& run = job.context.options;
+    GoldenRunOptions& run = setup.context.options;
     const int cores = std::max(1, int(std::thread::hardware_concurrency()));
     run.jobs = options.jobs > 0 ? options.jobs : cores;
     run.filters = options.filters;
@@ -109,7 +109,7 @@ GoldenJob prepare_golden(const GoldenOptions& options) {
     run.render.threads = std::max(1, cores / run.jobs);
     run.render.plugin_paths = options.plugin_paths;
     run.render.effect_paths = options.effect_paths;
-    for (const fs::path& path : job.suite.effect_paths) run.render.effect_paths.push_back(path.string());
+    for (const fs::path& path : setup.suite.effect_paths) run.render.effect_paths.push_back(path.string());
     {
         const gpu::Context context(backend);
         run.environment = environment_of(context.info());
@@ -120,10 +120,10 @@ GoldenJob prepare_golden(const GoldenOptions& options) {
     for (const std::string& path : options.effect_paths) same.insert(same.end(), {"--effect-path", path});
     for (const std::string& path : options.plugin_paths) same.insert(same.end(), {"--plugin-path", path});
     if (!options.backend.empty()) same.insert(same.end(), {"--backend", options.backend});
-    job.context.with_options = same.empty() ? "" : " " + shell_line(same);
-    job.context.version = AFTERSHADE_VERSION;
-    job.context.commit = commit_of(job.suite.file.parent_path().empty() ? "." : job.suite.file.parent_path());
-    return job;
+    setup.context.with_options = same.empty() ? "" : " " + shell_line(same);
+    setup.context.version = AFTERSHADE_VERSION;
+    setup.context.commit = commit_of(setup.suite.file.parent_path().empty() ? "." : setup.suite.file.parent_path());
+    return setup;
 }
 
 }  // namespace aftershade::cli

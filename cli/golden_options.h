@@ -32,10 +32,10 @@ void add_shared_golden_options(CLI::App& app, GoldenOptions& options);
 
 /// The suite, what its workers will draw with, and what reports tell of both. Throws Error(kCompareUsage)
 /// with every fault of documents and words, Error(ExitCode::gl) without a usable backend.
-struct GoldenJob {
+struct GoldenSetup {
     GoldenSuite suite;
     GoldenReportContext context;
 };
-GoldenJob prepare_golden(const GoldenOptions& options);
+GoldenSetup prepare_golden(const GoldenOptions& options);
 
 }  // namespace aftershade::cli

@@ -72,6 +72,55 @@ TEST(Architecture, IncludesPointOneWay) {
     }
 }
 
+/// A unit is a header with its source; "x_internal.h" belongs to x.
+std::string unit_of(const std::string& path) {
+    const std::string unit = path.substr(0, path.rfind('.'));
+    constexpr std::string_view kInternal = "_internal";
+    return unit.ends_with(kInternal) ? unit.substr(0, unit.size() - kInternal.size()) : unit;
+}
+
+/// The units that each unit of a module includes.
+std::map<std::string, std::set<std::string>> units_included(const std::string& module) {
+    const std::regex include(R"re(^\s*#include "(framework/\w+/\w+\.h)".*)re");
+    std::map<std::string, std::set<std::string>> included;
+    for (const Line& line : code_lines(kRoot / "framework" / module, {".h", ".cpp"})) {
+        std::smatch match;
+        if (!std::regex_match(line.text, match, include)) continue;
+        const std::string from = unit_of(line.place.substr(0, line.place.find(':'))), to = unit_of(match[1]);
+        if (from != to) included[from].insert(to);
+    }
+    return included;
+}
+
+/// "a -> b -> a"; "" where no unit leads back to itself.
+std::string circle_from(const std::string& start, const std::map<std::string, std::set<std::string>>& included) {
+    std::vector<std::string> open{start};
+    std::map<std::string, std::string> came_from;
+    while (!open.empty()) {
+        const std::string unit = open.back();
+        open.pop_back();
+        const auto found = included.find(unit);
+        if (found == included.end()) continue;
+        for (const std::string& next : found->second) {
+            if (next == start) {
+                std::string circle = unit + " -> " + start;
+                for (std::string at = unit; at != start; circle = at + " -> " + circle) at = came_from.at(at);
+                return circle;
+            }
+            if (came_from.emplace(next, unit).second) open.push_back(next);
+        }
+    }
+    return "";
+}
+
+TEST(Architecture, NoTwoUnitsOfAModuleNeedEachOther) {
+    for (const char* module : {"core", "image", "pipeline"}) {
+        const auto included = units_included(module);
+        EXPECT_FALSE(included.empty()) << module;
+        for (const auto& [unit, others] : included) EXPECT_EQ(circle_from(unit, included), "");
+    }
+}
+
 TEST(Architecture, OnlyTheGpuModuleCallsGl) {
     const std::regex gl(R"(\bgl[A-Z]\w*\s*\(|\begl[A-Z]\w*\s*\(|OSMesa[A-Z]|<glad/|\bGL_[A-Z]|\bEGL_[A-Z])");
     for (const char* folder : {"framework", "cli", "effects"})

@@ -2,195 +2,22 @@
 // the range of every parameter, its identity is one, both software backends agree, and it has cases, whose
 // goldens the suite of tests/golden holds.
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <map>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <gtest/gtest.h>
-
 #include "framework/batch/approved_image.h"
 #include "framework/batch/golden_case.h"
-#include "framework/core/units.h"
 #include "framework/effect/usage_check.h"
-#include "framework/image/capture.h"
-#include "framework/image/png_file.h"
-#include "framework/image/profile.h"
-#include "framework/image/role.h"
-#include "tests/camera_pose.h"
-#include "tests/look_runner.h"
-#include "tests/synthetic_capture.h"
+#include "framework/image/frame_range.h"
+#include "tests/every_effect.h"
 
 namespace aftershade::test {
 namespace {
 
 namespace fs = std::filesystem;
-const fs::path kRoot = AFTERSHADE_SOURCE_DIR;
-
-// ---- the effects ----
-
-EffectRegistry& registry() {
-    static EffectRegistry effects({kRoot / "effects"});
-    return effects;
-}
-
-std::string faults_of(const Diagnostics& diagnostics) {
-    std::ostringstream text;
-    diagnostics.print(text);
-    return text.str();
-}
-
-/// The software backends of this machine. None at all is a failure of every test here.
-const std::vector<gpu::Backend>& backends() {
-    static const std::vector<gpu::Backend> present = [] {
-        std::vector<gpu::Backend> usable;
-        for (const gpu::BackendReport& report : gpu::probe_backends())
-            if (report.usable && report.info.software) usable.push_back(report.info.backend);
-        return usable;
-    }();
-    return present;
-}
-
-// ---- looks ----
-
-std::string json_of(const ParamValue& value) {
-    if (const auto* text = std::get_if<std::string>(&value)) return '"' + *text + '"';
-    if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
-    if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer);
-    if (const auto* number = std::get_if<double>(&value)) return format_number(*number);
-    std::string items;
-    for (const double item : std::get<std::vector<double>>(value))
-        items += (items.empty() ? "" : ", ") + format_number(item);
-    return "[" + items + "]";
-}
-
-using Values = std::map<std::string, ParamValue>;
-
-std::string look_of(const std::string& effect, const Values& values) {
-    std::string params;
-    for (const auto& [name, value] : values)
-        params += (params.empty() ? "\"" : ", \"") + name + "\": " + json_of(value);
-    return R"({"aftershade": 1, "steps": [{"effect": ")" + effect + R"(", "params": {)" + params + "}}]}";
-}
-
-/// A limit of a parameter as a value of its type; a vector has it in every component.
-ParamValue limit_of(const ParamSpec& spec, double limit) {
-    if (spec.type == ParamType::int_) return std::int64_t(limit);
-    if (const int count = component_count(spec.type); count > 1)
-        return std::vector<double>(std::size_t(count), limit);
-    return limit;
-}
-
-/// Every value of an enum or a bool; the limits of a number.
-std::vector<ParamValue> extremes_of(const ParamSpec& spec) {
-    std::vector<ParamValue> values;
-    if (spec.type == ParamType::bool_) return {false, true};
-    for (const std::string& name : spec.values) values.emplace_back(name);
-    if (spec.min) values.push_back(limit_of(spec, *spec.min));
-    if (spec.max) values.push_back(limit_of(spec, *spec.max));
-    return values;
-}
-
-// ---- captures ----
-
-/// A sphere and a moving box before nothing, lights brighter than white, and coverage that ends.
-Capture small_capture() {
-    const SyntheticSphere sphere{.x = 20, .y = 18, .radius_px = 12, .depth_m = 2.5f};
-    const SyntheticBox box{
-        .x = 34, .y = 8, .width = 16, .height = 20, .velocity_x = 3, .velocity_y = -2, .depth_m = 4};
-    Capture capture = make_capture({.background = {0.02f, 0.05f, 0.2f},
-                                    .alpha = 0.5f,
-                                    .sphere = sphere,
-                                    .box = box,
-                                    .points = {{5, 4, 1e4f}, {20, 18, 30}, {57, 30, 500}}});
-    // Soft shading too: where all edges are hard, what sharpens within its neighbours' range has nothing to
-    // do.
-    Image& color = capture.images.at("color");
-    for (int y = 0; y < color.height(); ++y)
-        for (int x = 0; x < color.width(); ++x)
-            for (int c = 0; c < 3; ++c)
-                color.at(x, y, c) *= 1 + 0.3f * std::sin(0.6f * float(x) + 0.4f * float(y));
-    // Something in every role that a formula leaves black.
-    for (const char* role : {"specular", "emission"})
-        for (float& value : capture.images.at(role).floats()) value = 0.1f;
-    set_pose(capture.header.camera, {}, color.width(), color.height());
-    return capture;
-}
-
-/// The frame before small_capture's, in which the camera stood and looked elsewhere.
-Capture capture_before() {
-    Capture capture = small_capture();
-    capture.header.frame -= 1;
-    const CameraPose pose{.position_m = {-0.1, 0.05, 0.2}, .angles_deg = {1, -3, 2}};
-    set_pose(capture.header.camera, pose, capture.images.at("color").width(),
-             capture.images.at("color").height());
-    return capture;
-}
-
-void remove_role(Capture& capture, const std::string& role) {
-    capture.images.erase(role);
-    std::erase(capture.header.roles, role);
-}
-
-/// The first value of the images that is no number.
-std::string non_finite(const FrameResult& result) {
-    for (const auto& [role, image] : result.images)
-        for (int y = 0; y < image.height(); ++y)
-            for (int x = 0; x < image.width(); ++x)
-                for (int c = 0; c < image.channels(); ++c)
-                    if (!std::isfinite(image.at(x, y, c)))
-                        return role + " at (" + std::to_string(x) + ", " + std::to_string(y) + "), channel " +
-                               std::to_string(c) + ": " + std::to_string(image.at(x, y, c));
-    return "";
-}
-
-bool same_bits(const Image& a, const Image& b) {
-    return a.floats().size() == b.floats().size() &&
-           std::memcmp(a.floats().data(), b.floats().data(), a.floats().size_bytes()) == 0;
-}
-
-// ---- one test for every folder ----
-
-class EveryEffect : public testing::TestWithParam<std::string> {
-protected:
-    void SetUp() override {
-        Diagnostics diagnostics;
-        manifest_ = registry().find(GetParam(), diagnostics);
-        ASSERT_TRUE(manifest_) << faults_of(diagnostics);
-        ASSERT_FALSE(backends().empty()) << "neither osmesa nor egl-software works on this machine";
-    }
-    const EffectManifest& manifest() const { return *manifest_; }
-
-    FrameResult run(const Values& values, gpu::Backend backend, const Capture& capture) const {
-        const Capture before = with_aovs(capture_before()), whole = with_aovs(capture);
-        FrameInputs frame;
-        frame.capture = &whole;
-        frame.previous = &before;
-        return LookRunner(look_of(GetParam(), values), backend).run(frame);
-    }
-
-    /// With what no capture has by itself but the effect cannot do without: small numbers.
-    Capture with_aovs(Capture capture) const {
-        // Any of them: the test may have taken any role away.
-        const Image& other = capture.images.begin()->second;
-        for (const InputSpec& input : manifest().inputs) {
-            if (!input.role.starts_with("aov:") || input.optional) continue;
-            Image image(other.width(), other.height(), 4);
-            for (std::size_t i = 0; i < image.floats().size(); ++i) image.floats()[i] = 0.001f * float(i % 5);
-            capture.images[input.role] = std::move(image);
-            capture.header.roles.push_back(input.role);
-        }
-        return capture;
-    }
-
-private:
-    const EffectManifest* manifest_ = nullptr;
-};
 
 INSTANTIATE_TEST_SUITE_P(Effects, EveryEffect, testing::ValuesIn(registry().ids()),
                          [](const auto& effect) { return effect.param; });

@@ -22,7 +22,7 @@ public:
         const auto node = parse_document(look, "test look", diagnostics);
         if (node)
             if (const auto parsed = parse_look(*node, diagnostics))
-                pipeline_ = compile_pipeline(*parsed, effects_, {{}, std::move(taps)}, diagnostics);
+                pipeline_ = bind_pipeline(*parsed, effects_, {{}, std::move(taps)}, diagnostics);
         std::ostringstream faults;
         diagnostics.print(faults);
         if (diagnostics.has_errors()) throw std::runtime_error(faults.str());

@@ -101,7 +101,7 @@ std::string LookHasher::text_of(const GoldenCase& test) {
     if (!look) refuse();
     PipelineOptions options;
     options.sets = test.sets;
-    const Pipeline pipeline = compile_pipeline(*look, effects_, options, faults);
+    const Pipeline pipeline = bind_pipeline(*look, effects_, options, faults);
     if (faults.has_errors()) refuse();
     std::string text = test.steps;
     // Of a suite or a case only the steps count; its tolerance changes no picture.

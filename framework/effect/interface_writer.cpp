@@ -108,9 +108,9 @@ private:
                 text_ << "#define " << name << "_" << upper_case(spec.values[i]) << " " << i << "\n";
             if (spec.type == ParamType::scattering_profile)
                 text_ << "#define " << name << "_IS_BURLEY "
-                      << int(is_burley(std::get<ScatteringValue>(context_.params->get(spec.name)))) << "\n";
+                      << int(context_.params.is_burley(spec.name)) << "\n";
             if (spec.bind == ParamBind::define)
-                text_ << "#define " << name << " " << define_value(spec, context_.params->get(spec.name))
+                text_ << "#define " << name << " " << define_value(spec, context_.params.get(spec.name))
                       << "\n";
         }
     }
@@ -199,11 +199,7 @@ private:
 
     /// Of a table by object, of a list of objects, of scattering profiles.
     bool has_rows(const ParamSpec& spec) const {
-        if (!context_.params->has(spec.name)) return true;
-        const ParamValue& value = context_.params->get(spec.name);
-        if (const auto* scattering = std::get_if<ScatteringValue>(&value)) return !scattering->rows.empty();
-        const auto* table = std::get_if<TableValue>(&value);
-        return table && !table->rows.empty();
+        return !context_.params.has(spec.name) || context_.params.table_entries(spec.name) > 0;
     }
 
     void native_tables() {

@@ -21,7 +21,7 @@ public:
         Diagnostics faults;
         for (const PassSpec& pass : manifest.passes) {
             if (pass.kind == PassKind::clear) continue;
-            const ShaderContext context{&manifest, &pass, &defaults, inputs, glsl_folder};
+            const ShaderContext context{&manifest, &pass, defaults, inputs, glsl_folder};
             tokens_[pass.name] = glsl_tokens(assemble_shader(context, faults));
         }
     }

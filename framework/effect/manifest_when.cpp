@@ -63,7 +63,7 @@ std::vector<std::string> faults_of_condition(const EffectManifest& manifest, con
     return faults;
 }
 
-bool conditions_hold(const std::vector<WhenSpec>& conditions, const ParamSet& params,
+bool conditions_hold(const std::vector<WhenSpec>& conditions, const ParamReader& params,
                      const std::vector<std::string>& present_inputs) {
     const auto holds = [&](const WhenSpec& condition) {
         ParamValue actual;

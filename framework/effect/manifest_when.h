@@ -7,6 +7,7 @@
 
 #include "framework/core/param.h"
 #include "framework/effect/manifest.h"
+#include "framework/effect/param_reader.h"
 
 namespace aftershade {
 
@@ -17,7 +18,7 @@ inline constexpr std::string_view kHasInput = "has.";
 std::vector<std::string> faults_of_condition(const EffectManifest& manifest, const WhenSpec& condition);
 
 /// Whether all of them hold with these values and these inputs.
-bool conditions_hold(const std::vector<WhenSpec>& conditions, const ParamSet& params,
+bool conditions_hold(const std::vector<WhenSpec>& conditions, const ParamReader& params,
                      const std::vector<std::string>& present_inputs);
 
 }  // namespace aftershade

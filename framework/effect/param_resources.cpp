@@ -193,6 +193,20 @@ ParamTexture scattering_texture(const ScatteringValue& value) {
     return texture;
 }
 
+std::size_t table_entries(const ParamValue& value) {
+    const auto count = [](const auto& rows) {
+        const auto names = std::size_t(std::count_if(rows.begin(), rows.end(),
+                                                     [](const auto& row) { return !row.first.name.empty(); }));
+        return rows.size() + (names < rows.size() ? names : 0);
+    };
+    if (const auto* scattering = std::get_if<ScatteringValue>(&value)) return count(scattering->rows);
+    return count(std::get<TableValue>(value).rows);
+}
+
+std::size_t table_buffer_bytes(const ParamSpec& spec, std::size_t entries) {
+    return TableWriter(spec, entries).take().size();
+}
+
 TableValue table_of(const ParamValue& value) {
     if (const auto* scattering = std::get_if<ScatteringValue>(&value)) return scattering_table(*scattering);
     return std::get<TableValue>(value);

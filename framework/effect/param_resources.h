@@ -89,7 +89,14 @@ using ObjectIds = std::function<std::optional<std::uint32_t>(const std::string&)
 /// Of a table, objects and a scattering_profile what shaders look up by object.
 TableValue table_of(const ParamValue& value);
 
-/// The bytes of a table's storage block, std430. Rows whose name `ids` does not know are left out: the caller
+/// Entries that the storage block of a table, objects or a scattering_profile has room for: one per row, and
+/// one more for each name that may take its id out of a range. Depends on what kinds of keys there are, never
+/// on what they say, so that content can change without another block.
+std::size_t table_entries(const ParamValue& value);
+/// Bytes of a storage block with room for that many entries.
+std::size_t table_buffer_bytes(const ParamSpec& spec, std::size_t entries);
+
+/// The bytes of a table's storage block, std430, at most table_buffer_bytes(). Rows whose name `ids` does not know are left out: the caller
 /// has been asked and reports them. A row by name goes before one by id; of two names for one id the first.
 std::vector<std::byte> table_buffer(const ParamSpec& spec, const TableValue& table, const ObjectIds& ids);
 

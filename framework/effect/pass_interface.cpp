@@ -14,7 +14,7 @@ namespace {
 
 /// Of reads, writes or images those whose conditions hold.
 template <typename Use>
-std::vector<Use> present_uses(const std::vector<Use>& uses, const ParamSet& params,
+std::vector<Use> present_uses(const std::vector<Use>& uses, const ParamReader& params,
                               const std::vector<std::string>& present_inputs) {
     std::vector<Use> present;
     std::copy_if(uses.begin(), uses.end(), std::back_inserter(present),
@@ -29,7 +29,7 @@ bool is_written(const AccessSpec& access) {
 }  // namespace
 
 std::vector<ReadSpec> present_reads(const EffectManifest& manifest, const PassSpec& pass,
-                                    const ParamSet& params, const std::vector<std::string>& present_inputs) {
+                                    const ParamReader& params, const std::vector<std::string>& present_inputs) {
     std::vector<ReadSpec> present = present_uses(pass.reads, params, present_inputs);
     std::erase_if(present, [&](const ReadSpec& read) {
         const InputSpec* input = manifest.find_input(read.name);
@@ -39,12 +39,12 @@ std::vector<ReadSpec> present_reads(const EffectManifest& manifest, const PassSp
     return present;
 }
 
-std::vector<WriteSpec> present_writes(const PassSpec& pass, const ParamSet& params,
+std::vector<WriteSpec> present_writes(const PassSpec& pass, const ParamReader& params,
                                       const std::vector<std::string>& present_inputs) {
     return present_uses(pass.writes, params, present_inputs);
 }
 
-bool pass_enabled(const PassSpec& pass, const ParamSet& params,
+bool pass_enabled(const PassSpec& pass, const ParamReader& params,
                   const std::vector<std::string>& present_inputs) {
     if (!conditions_hold(pass.when, params, present_inputs)) return false;
     const std::vector<AccessSpec> images = present_uses(pass.images, params, present_inputs);
@@ -150,6 +150,13 @@ std::vector<std::byte> param_block(const EffectManifest& manifest, const ParamSe
     for (const ParamSpec& spec : manifest.params)
         if (is_in_block(spec)) add_param(block, spec, params.get(spec.name));
     return block.finish();
+}
+
+std::size_t param_block_bytes(const EffectManifest& manifest) {
+    Std140Writer block;
+    for (const ParamSpec& spec : manifest.params)
+        if (is_in_block(spec)) add_param(block, spec, spec.default_value);
+    return block.finish().size();
 }
 
 bool has_native_block(const EffectManifest& manifest) {

@@ -19,6 +19,7 @@
 #include "framework/core/diagnostics.h"
 #include "framework/core/param.h"
 #include "framework/effect/manifest.h"
+#include "framework/effect/param_reader.h"
 #include "framework/effect/param_resources.h"
 
 namespace aftershade {
@@ -36,7 +37,7 @@ inline constexpr int kLightsBinding = 6;  ///< only of effects with "uses": ["li
 struct ShaderContext {
     const EffectManifest* manifest = nullptr;
     const PassSpec* pass = nullptr;
-    const ParamSet* params = nullptr;         ///< define-bound values become preprocessor symbols
+    ParamReader params;                       ///< define-bound values become preprocessor symbols
     std::vector<std::string> present_inputs;  ///< optional inputs that the frame has
     std::filesystem::path glsl_folder;
     /// What the paths of file parameters hold, by parameter; nullptr or no entry: none has a file.
@@ -108,14 +109,14 @@ std::string interface_glsl(const ShaderContext& context, ShaderFile file = Shade
 /// The reads of a pass that are there: textures and inputs that are present, where their conditions hold.
 /// Their order gives the sampler bindings.
 std::vector<ReadSpec> present_reads(const EffectManifest& manifest, const PassSpec& pass,
-                                    const ParamSet& params, const std::vector<std::string>& present_inputs);
+                                    const ParamReader& params, const std::vector<std::string>& present_inputs);
 
 /// The writes of a pass whose conditions hold; their order is that of the targets.
-std::vector<WriteSpec> present_writes(const PassSpec& pass, const ParamSet& params,
+std::vector<WriteSpec> present_writes(const PassSpec& pass, const ParamReader& params,
                                       const std::vector<std::string>& present_inputs);
 
 /// Whether every condition of the pass holds, and at least one of the things that it writes is there.
-bool pass_enabled(const PassSpec& pass, const ParamSet& params,
+bool pass_enabled(const PassSpec& pass, const ParamReader& params,
                   const std::vector<std::string>& present_inputs);
 
 /// Format of an input's or output's texture: its role's channels as floats, or unsigned integers.
@@ -128,6 +129,8 @@ gpu::TextureFormat format_of_write(const EffectManifest& manifest, const std::st
 /// The block `param` in std140, in the manifest's order: every parameter of a block type that is bound as a
 /// uniform.
 std::vector<std::byte> param_block(const EffectManifest& manifest, const ParamSet& params);
+/// Its size, the same for all values.
+std::size_t param_block_bytes(const EffectManifest& manifest);
 bool has_param_block(const EffectManifest& manifest);
 
 /// Values of native uniforms by name, as many as the type has components.

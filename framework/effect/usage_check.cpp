@@ -54,7 +54,7 @@ private:
 
     void read_shader(const PassSpec& pass, const std::string& file) {
         if (shaders_.contains(file)) return;
-        const ShaderContext context{&manifest_, &pass, &defaults_, inputs_, glsl_folder_};
+        const ShaderContext context{&manifest_, &pass, defaults_, inputs_, glsl_folder_};
         const auto which = file == pass.folder / pass.shader ? ShaderFile::main : ShaderFile::vertex;
         const ShaderSource source = assemble_shader(context, diagnostics_, which);
         shaders_.emplace(file, ShaderUses(glsl_tokens(source)));

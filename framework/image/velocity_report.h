@@ -1,13 +1,20 @@
-// The words of a velocity check: which settings differ, what to change. Shared by velocity_check.cpp and
-// velocity_report.cpp; nobody else includes it.
+// The words of a velocity check: which settings differ, what to change.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "framework/image/velocity_check.h"
+#include "framework/image/velocity_result.h"
 
 namespace aftershade {
+
+std::string velocity_verdict_name(VelocityVerdict verdict);
+
+/// The settings under which the decoded vectors come out as `hypothesis` makes them.
+VelocitySettings correct_settings(const VelocitySettings& settings, const VelocityHypothesis& hypothesis);
+
+/// Plain text of several lines: the sentence, the claim beside its rivals, the free scale.
+std::string format_velocity_check(const VelocityCheck& check);
 
 /// Whether the scales of the fit are, within its own accuracy, those of the listed hypothesis; where nothing
 /// tells a scale, it is. False for other signs, order or time.

@@ -4,17 +4,16 @@
 
 namespace aftershade {
 
-void audit_values(std::span<const float> values, int width, int channels, bool infinity_allowed,
-                  const std::string& pass, const std::string& texture, std::vector<AuditFinding>& findings) {
-    AuditFinding finding{pass, texture};
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        const bool is_nan = std::isnan(values[i]);
-        const bool is_inf = !infinity_allowed && std::isinf(values[i]);
+void audit_values(const AuditedImage& image, std::vector<AuditFinding>& findings) {
+    AuditFinding finding{image.pass, image.texture};
+    for (std::size_t i = 0; i < image.values.size(); ++i) {
+        const bool is_nan = std::isnan(image.values[i]);
+        const bool is_inf = !image.infinity_allowed && std::isinf(image.values[i]);
         if (!is_nan && !is_inf) continue;
         if (finding.nan_count + finding.inf_count == 0) {
-            const std::size_t pixel = i / std::size_t(channels);
-            finding.x = int(pixel % std::size_t(width));
-            finding.y = int(pixel / std::size_t(width));
+            const std::size_t pixel = i / std::size_t(image.channels);
+            finding.x = int(pixel % std::size_t(image.width));
+            finding.y = int(pixel / std::size_t(image.width));
         }
         finding.nan_count += is_nan;
         finding.inf_count += is_inf;

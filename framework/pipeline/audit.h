@@ -18,10 +18,18 @@ struct AuditFinding {
     int y = 0;
 };
 
-/// Looks at every value; adds a finding if there is one to tell. `infinity_allowed`: depth, where +inf is
-/// nothing hit.
-void audit_values(std::span<const float> values, int width, int channels, bool infinity_allowed,
-                  const std::string& pass, const std::string& texture, std::vector<AuditFinding>& findings);
+/// What is looked at, and how a finding names it. [refers to the values]
+struct AuditedImage {
+    std::span<const float> values;
+    int width = 0;
+    int channels = 0;
+    bool infinity_allowed = false;  ///< depth, where +inf is nothing hit
+    std::string pass{};
+    std::string texture{};
+};
+
+/// Looks at every value; adds a finding if there is one to tell.
+void audit_values(const AuditedImage& image, std::vector<AuditFinding>& findings);
 
 /// "bokeh.second: bokeh.color has 12 NaN and 3 infinite values, the first at (10, 4)".
 std::string describe_finding(const AuditFinding& finding);

@@ -25,9 +25,9 @@ std::vector<std::string> output_names(const EffectManifest& manifest) {
 }
 
 /// Binds one step after the other; `pipeline_` holds those before.
-class Compiler {
+class LookBinder {
 public:
-    Compiler(EffectRegistry& effects, Diagnostics& diagnostics)
+    LookBinder(EffectRegistry& effects, Diagnostics& diagnostics)
         : effects_(effects), diagnostics_(diagnostics) {}
 
     void add(const LookStep& look_step) {
@@ -299,14 +299,14 @@ private:
 
 }  // namespace
 
-Pipeline compile_pipeline(const Look& look, EffectRegistry& effects, const PipelineOptions& options,
+Pipeline bind_pipeline(const Look& look, EffectRegistry& effects, const PipelineOptions& options,
                           Diagnostics& diagnostics) {
-    Compiler compiler(effects, diagnostics);
-    for (const LookStep& step : look.steps) compiler.add(step);
-    for (const std::string& text : options.sets) compiler.apply_set(text);
-    for (const std::string& text : options.taps) compiler.add_tap(text);
-    compiler.check_relations_of_literals();
-    return compiler.take();
+    LookBinder binder(effects, diagnostics);
+    for (const LookStep& step : look.steps) binder.add(step);
+    for (const std::string& text : options.sets) binder.apply_set(text);
+    for (const std::string& text : options.taps) binder.add_tap(text);
+    binder.check_relations_of_literals();
+    return binder.take();
 }
 
 }  // namespace aftershade

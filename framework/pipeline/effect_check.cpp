@@ -73,8 +73,9 @@ std::string first_bad_value(const FrameResult& result) {
     for (const auto& [role, image] : result.images) {
         if (image.type() != ComponentType::float32) continue;
         std::vector<AuditFinding> findings;
-        audit_values(image.floats(), image.width(), image.channels(), std::isinf(find_role(role)->outside),
-                     "the step", role, findings);
+        audit_values({image.floats(), image.width(), image.channels(), std::isinf(find_role(role)->outside),
+                      "the step", role},
+                     findings);
         if (!findings.empty()) return describe_finding(findings.front());
     }
     return "";

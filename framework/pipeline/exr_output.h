@@ -4,7 +4,8 @@
 #include <filesystem>
 
 #include "framework/image/capture.h"
-#include "framework/pipeline/output.h"
+#include "framework/pipeline/output_options.h"
+#include "framework/pipeline/renderer.h"
 
 namespace aftershade {
 

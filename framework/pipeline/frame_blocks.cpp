@@ -68,6 +68,7 @@ struct MixBlock {
     std::int32_t display_size_px[2] = {1, 1};
     std::uint32_t objects[kMaxMaskObjects][4] = {};  // first and last id; std140 has arrays of vec4
 };
+static_assert(sizeof(MixBlock) == kMixBlockBytes);
 
 void set_origin(const CaptureHeader& header, std::int32_t (&origin_px)[2], std::int32_t (&display_px)[2]) {
     display_px[0] = header.display_window.width();

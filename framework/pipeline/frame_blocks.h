@@ -33,6 +33,8 @@ LightsBlock lights_block(const FrameInputs& frame, const std::string& step);
 /// The block of a step's "mix" and "mask" (glsl/host/mix.frag). Throws Error(ExitCode::capture) where the mix
 /// comes from the capture and does not fit.
 std::vector<std::byte> mix_block(const PipelineStep& step, const FrameInputs& frame);
+inline constexpr std::size_t kMixBlockBytes = 32 + 16 * kMaxMaskObjects;
+inline constexpr int kMixBinding = 0;
 
 template <typename Block>
 std::vector<std::byte> bytes_of(const Block& block) {

@@ -10,7 +10,7 @@
 
 #include "framework/image/capture.h"
 #include "framework/pipeline/pipeline.h"
-#include "framework/pipeline/run.h"
+#include "framework/pipeline/run_options.h"
 
 namespace aftershade {
 

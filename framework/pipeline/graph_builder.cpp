@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "framework/core/error.h"
-#include "framework/image/role.h"
-#include "framework/pipeline/frame_blocks.h"
 #include "framework/pipeline/step_build.h"
 
 namespace aftershade {
@@ -44,11 +43,11 @@ std::array<double, 4> four_values(const std::vector<double>& values) {
     return result;
 }
 
-int count_value(const CountSpec& count, const ParamSet& params) {
+int count_value(const CountSpec& count, const ParamReader& params) {
     return count.param.empty() ? count.number : int(std::get<std::int64_t>(params.get(count.param)));
 }
 
-std::pair<int, int> grid_size(const GridSpec& grid, const ParamSet& params, int width, int height) {
+std::pair<int, int> grid_size(const GridSpec& grid, const ParamReader& params, int width, int height) {
     switch (grid.kind) {
         case GridSpec::Kind::size: return {grid.size[0], grid.size[1]};
         case GridSpec::Kind::tile: {
@@ -61,32 +60,93 @@ std::pair<int, int> grid_size(const GridSpec& grid, const ParamSet& params, int 
             std::max(1, int(std::ceil(height * grid.scale)))};
 }
 
-GraphBuilder::GraphBuilder(ProgramCache& programs, StepFiles& files, const NativeSteps& natives,
-                           const Pipeline& pipeline, const FrameInputs& frame)
-    : programs_(programs), files_(files), natives_(natives), pipeline_(pipeline), frame_(frame) {
-    width_ = frame.capture->header.data_window.width();
-    height_ = frame.capture->header.data_window.height();
+std::unique_ptr<BuiltGraph> build_graph(const GraphTools& tools, const GraphFrame& frame) {
+    return GraphBuilder(tools, frame).build();
 }
 
-void GraphBuilder::add_step(int index, const ParamSet& params) {
+GraphBuilder::GraphBuilder(const GraphTools& tools, const GraphFrame& frame)
+    : tools_(tools),
+      frame_(frame),
+      pipeline_(frame.pipeline),
+      width_(frame_.width_px()),
+      height_(frame_.height_px()),
+      built_(std::make_unique<BuiltGraph>()) {}
+
+std::unique_ptr<BuiltGraph> GraphBuilder::build() {
+    const int accumulating = pipeline_.last_accumulating_step();
+    for (int i = 0; i < int(pipeline_.steps.size()); ++i) {
+        add_step(i);
+        if (i == accumulating) built_->first_single_pass = graph_.pass_count();
+    }
+    keep_results();
+    keep_taps();
+    if (tools_.telemetry) keep_statistics();
+    std::vector<GraphBinding>& bindings = built_->bindings;
+    for (const auto& [image, texture] : imports_)
+        bindings.emplace_back(CaptureBinding{image.first, image.second, texture});
+    std::move(params_.begin(), params_.end(), std::back_inserter(bindings));
+    for (const auto& [step, texture] : masks_) bindings.emplace_back(MaskBinding{step, texture});
+    std::move(native_tables_.begin(), native_tables_.end(), std::back_inserter(bindings));
+    std::move(blocks_.begin(), blocks_.end(), std::back_inserter(bindings));
+    built_->key = frame_.key();
+    built_->executor = std::make_unique<graph::Executor>(tools_.context, std::move(graph_));
+    return std::move(built_);
+}
+
+void GraphBuilder::keep_results() {
+    for (const auto& [role, texture] : built_->results)
+        if (frame_.wants(role)) graph_.keep(texture);
+}
+
+void GraphBuilder::keep_taps() {
+    for (const Tap& tap : pipeline_.taps)
+        for (std::size_t i = 0; i < pipeline_.steps.size(); ++i) {
+            if (pipeline_.steps[i].name != tap.step) continue;
+            const graph::TextureHandle handle = built_->textures[i].at(tap.texture);
+            if (handle.version == 0)
+                throw Error(ExitCode::usage,
+                            "--tap " + tap.text() + ": no pass writes it with these parameters");
+            graph_.keep(handle);
+        }
+}
+
+void GraphBuilder::keep_statistics() {
+    for (std::size_t i = 0; i < pipeline_.steps.size(); ++i)
+        for (const TelemetrySpec& spec : pipeline_.steps[i].manifest->telemetry)
+            if (const auto found = find_textures(built_->textures[i], spec)) {
+                graph_.keep(found->of);
+                if (found->where) graph_.keep(*found->where);
+            }
+}
+
+std::vector<std::string> GraphBuilder::present_inputs(int index) {
+    std::vector<std::string> present;
     const PipelineStep& step = pipeline_.steps[std::size_t(index)];
-    StepBuild build{index, step, params, present_inputs(pipeline_, index, frame_), {}, {}, {}, {}, {}, {},
-                    {},    {},   {}};
+    for (const InputSpec& input : step.manifest->inputs) {
+        const InputSource& source = step.inputs.at(input.name);
+        if (step.may_take(input) && (source.step >= 0 || frame_.has_image(source.output, input.frame)))
+            present.push_back(input.name);
+    }
+    return present;
+}
+
+void GraphBuilder::add_step(int index) {
+    const PipelineStep& step = pipeline_.steps[std::size_t(index)];
+    StepBuild build{index, step, frame_.params(index), present_inputs(index)};
     declare(build);
     declare_params(build);
-    if (const NativeResult* native = natives_.result(index))
-        for (const auto& [name, table] : native->tables)
-            build.native_tables[name] = native_tables[index][name] =
-                graph.import_texture(build.prefix() + name, table_desc(table));
+    if (step.manifest->native) declare_native_tables(build);
     for (const PassSpec& pass : step.manifest->passes)
-        if (pass_enabled(pass, params, build.present)) add_pass(build, pass);
+        if (pass_enabled(pass, build.params, build.present)) add_pass(build, pass);
     for (const OutputSpec& output : step.manifest->outputs)
         if (build.textures.at(output.name).version == 0)
             throw Error(ExitCode::effect, "step '" + step.name + "': no pass writes the output '" +
                                               output.name + "' with these parameters");
     keep_histories(build);
     if (!step.before.empty()) add_mix(build);
-    steps_.push_back(std::move(build.textures));
+    for (const OutputSpec& output : step.manifest->outputs)
+        built_->results[output.role] = build.textures.at(output.name);
+    built_->textures.push_back(std::move(build.textures));
 }
 
 void GraphBuilder::declare(StepBuild& build) {
@@ -99,16 +159,16 @@ void GraphBuilder::declare(StepBuild& build) {
         require_written(build, input, handle);
         build.inputs[input.name] = handle;
         if (!input.history) continue;
-        gpu::TextureDesc desc = graph.textures()[std::size_t(handle.texture)].desc;
+        gpu::TextureDesc desc = graph_.textures()[std::size_t(handle.texture)].desc;
         desc.mips = 1;
-        const graph::TextureHistory history = graph.create_history(prefix + "in." + input.name, desc);
+        const graph::TextureHistory history = graph_.create_history(prefix + "in." + input.name, desc);
         build.previous[input.name] = history.previous;
         build.history_current[input.name] = history.current;
     }
     for (const TextureSpec& spec : manifest.textures) declare_texture(build, spec);
     for (const OutputSpec& spec : manifest.outputs)
         build.textures[spec.name] =
-            graph.create_texture(prefix + spec.name, {width_, height_, texture_format_of_role(spec.role)});
+            graph_.create_texture(prefix + spec.name, {width_, height_, texture_format_of_role(spec.role)});
     for (const BufferSpec& spec : manifest.buffers) declare_buffer(build, spec);
 }
 
@@ -116,14 +176,14 @@ void GraphBuilder::declare(StepBuild& build) {
 /// content.
 void GraphBuilder::require_written(const StepBuild& build, const InputSpec& input,
                                    graph::TextureHandle handle) const {
-    const auto& texture = graph.textures()[std::size_t(handle.texture)];
+    const auto& texture = graph_.textures()[std::size_t(handle.texture)];
     if (handle.version > 0 || texture.imported || texture.options.clear) return;
     throw Error(ExitCode::effect, "step '" + build.step.name + "': its input '" + input.name + "' is '" +
                                       texture.name + "', which no pass writes with these parameters");
 }
 
 int GraphBuilder::input_level(graph::TextureHandle handle) const {
-    return graph.textures()[std::size_t(handle.texture)].desc.mips > 1 ? 0 : -1;
+    return graph_.textures()[std::size_t(handle.texture)].desc.mips > 1 ? 0 : -1;
 }
 
 void GraphBuilder::declare_texture(StepBuild& build, const TextureSpec& spec) {
@@ -136,10 +196,10 @@ void GraphBuilder::declare_texture(StepBuild& build, const TextureSpec& spec) {
     options.auto_mips = spec.auto_mips;
     if (spec.clear) options.clear = four_values(*spec.clear);
     if (!spec.history) {
-        build.textures[spec.name] = graph.create_texture(name, desc, options);
+        build.textures[spec.name] = graph_.create_texture(name, desc, options);
         return;
     }
-    const graph::TextureHistory history = graph.create_history(name, desc, options);
+    const graph::TextureHistory history = graph_.create_history(name, desc, options);
     build.previous[spec.name] = history.previous;
     build.textures[spec.name] = build.history_current[spec.name] = history.current;
 }
@@ -153,55 +213,70 @@ void GraphBuilder::declare_buffer(StepBuild& build, const BufferSpec& spec) {
     }
     const graph::BufferDesc desc{std::max<std::size_t>(16, count * element_bytes(spec.element))};
     if (!spec.history) {
-        build.buffers[spec.name] = graph.create_buffer(name, desc, clear_words(spec));
+        build.buffers[spec.name] = graph_.create_buffer(name, desc, clear_words(spec));
         return;
     }
-    const graph::BufferHistory history = graph.create_history_buffer(name, desc, clear_words(spec));
+    const graph::BufferHistory history = graph_.create_history_buffer(name, desc, clear_words(spec));
     build.previous_buffers[spec.name] = history.previous;
     build.buffers[spec.name] = history.current;
 }
 
 graph::TextureHandle GraphBuilder::import(const std::string& role, int offset) {
-    const ImportKey key{role, offset};
-    const auto known = imports.find(key);
-    if (known != imports.end()) return known->second;
+    const std::pair image(role, offset);
+    const auto known = imports_.find(image);
+    if (known != imports_.end()) return known->second;
     const std::string where = offset < 0 ? "previous." : offset > 0 ? "next." : "capture.";
-    return imports[key] = graph.import_texture(where + role, {width_, height_, texture_format_of_role(role)});
+    return imports_[image] =
+               graph_.import_texture(where + role, {width_, height_, texture_format_of_role(role)});
 }
 
 graph::TextureHandle GraphBuilder::resolve(const InputSource& source, int offset) {
     return source.step < 0 ? import(source.output, offset)
-                           : steps_[std::size_t(source.step)].at(source.output);
+                           : built_->textures[std::size_t(source.step)].at(source.output);
 }
 
 void GraphBuilder::declare_params(StepBuild& build) {
-    const auto& files = files_.of_step(build.index, build.step, build.params);
+    const auto& files = tools_.files.of_step(build.index, build.step, build.params);
     for (const ParamSpec& spec : build.manifest().params) {
         const std::string name = build.prefix() + spec.name;
-        BoundParam bound{build.index, &spec, {}, {}};
-        const ParamValue& value = build.params.get(spec.name);
-        if (is_param_buffer(spec.type)) {
-            const auto no_names = [](const std::string&) { return std::optional<std::uint32_t>(0); };
-            bound.buffer = build.param_buffers[spec.name] =
-                graph.import_buffer(name, {table_buffer(spec, table_of(value), no_names).size()});
-        }
-        if (const auto* scattering = std::get_if<ScatteringValue>(&value)) {
-            const int rows = kScatteringRows * int(scattering_profiles_of(*scattering).size());
-            bound.texture = build.param_textures[spec.name] = graph.import_texture(
+        ParamBinding binding{build.index, &spec};
+        if (is_param_buffer(spec.type))
+            binding.buffer = build.param_buffers[spec.name] = graph_.import_buffer(
+                name, {table_buffer_bytes(spec, build.params.table_entries(spec.name))});
+        if (spec.type == ParamType::scattering_profile) {
+            const int rows = kScatteringRows * build.params.profile_count(spec.name);
+            binding.texture = graph_.import_texture(
                 name + ".curves", {kScatteringSamples, rows, gpu::TextureFormat::rgba32f});
         } else if (spec.type == ParamType::curve) {
-            bound.texture = build.param_textures[spec.name] =
-                graph.import_texture(name, {kCurveSamples, 1, gpu::TextureFormat::r32f});
+            binding.texture = graph_.import_texture(name, {kCurveSamples, 1, gpu::TextureFormat::r32f});
         } else if (spec.type == ParamType::file &&
                    !std::holds_alternative<std::monostate>(files.at(spec.name))) {
             const ParamTexture texture = file_texture(files.at(spec.name));
-            bound.texture = build.param_textures[spec.name] =
-                graph.import_texture(name, {texture.width, texture.height, texture.format, texture.layers});
-        } else if (!is_param_buffer(spec.type)) {
-            continue;
+            binding.texture = graph_.import_texture(
+                name, {texture.width, texture.height, texture.format, texture.layers});
         }
-        bound_params.push_back(bound);
+        if (binding.texture) build.param_textures[spec.name] = *binding.texture;
+        if (binding.texture || binding.buffer) params_.push_back(binding);
     }
+}
+
+void GraphBuilder::declare_native_tables(StepBuild& build) {
+    for (const NativeTableSpec& table : build.manifest().native->tables) {
+        const graph::TextureHandle texture =
+            graph_.import_texture(build.prefix() + table.name, frame_.native_table(build.index, table));
+        build.native_tables[table.name] = texture;
+        native_tables_.push_back({build.index, table.name, texture});
+    }
+}
+
+void GraphBuilder::bind_block(const StepBuild& build, BlockKind kind, graph::Pass& pass) {
+    pass.uniforms.push_back({gl_binding(kind), std::vector<std::byte>(block_bytes(kind, build.manifest()))});
+    const auto same = [&](const BlockBinding& block) {
+        return block.kind == kind && (block.step == build.index || kind == BlockKind::camera);
+    };
+    auto block = std::find_if(blocks_.begin(), blocks_.end(), same);
+    if (block == blocks_.end()) block = blocks_.insert(block, BlockBinding{kind, build.index, {}});
+    block->passes.push_back(graph_.pass_count());
 }
 
 void GraphBuilder::keep_histories(StepBuild& build) {
@@ -219,15 +294,14 @@ void GraphBuilder::keep_histories(StepBuild& build) {
 
 void GraphBuilder::add_copy(StepBuild& build, const std::string& name, graph::TextureHandle from,
                             graph::TextureHandle to) {
-    const bool is_integer = gpu::is_integer(graph.textures()[std::size_t(from.texture)].desc.format);
+    const bool is_integer = gpu::is_integer(graph_.textures()[std::size_t(from.texture)].desc.format);
     graph::Pass pass;
     pass.name = build.step.name + "." + name + ".keep";
-    pass.program = &programs_.host(
+    pass.program = &tools_.programs.host(
         "copy.frag", is_integer ? std::vector<std::string>{"COPY_UINT"} : std::vector<std::string>{});
     pass.reads.push_back({from, 0, gpu::Filter::nearest, gpu::Wrap::clamp, input_level(from)});
     pass.targets.push_back({to});
-    (void)graph.add_pass(std::move(pass));
-    passes.push_back({build.index, graph.pass_count() - 1, false, true});
+    (void)graph_.add_pass(std::move(pass));
 }
 
 void GraphBuilder::add_mix(StepBuild& build) {
@@ -247,20 +321,21 @@ void GraphBuilder::add_mix(StepBuild& build) {
             pass.reads.push_back({import("object_id"), 2});
         } else if (step.mask) {
             defines = {"MASK_FILE"};
-            if (!mask_files.contains(build.index)) {
-                const Image& mask = files_.mask_of(step.mask->file);
-                mask_files[build.index] = graph.import_texture(
-                    step.name + ".mask", {mask.width(), mask.height(), gpu::TextureFormat::r32f});
-            }
-            pass.reads.push_back({mask_files.at(build.index), 2, gpu::Filter::linear});
+            pass.reads.push_back({mask_of(build), 2, gpu::Filter::linear});
         }
-        pass.program = &programs_.host("mix.frag", defines);
-        pass.uniforms.push_back({0, mix_block(step, frame_)});
-        const gpu::TextureDesc desc = graph.textures()[std::size_t(build.textures.at(name).texture)].desc;
-        pass.targets.push_back({graph.create_texture(pass.name, desc)});
-        build.textures[name] = graph.add_pass(std::move(pass)).targets[0];
-        passes.push_back({build.index, graph.pass_count() - 1, true, false});
+        pass.program = &tools_.programs.host("mix.frag", defines);
+        bind_block(build, BlockKind::mix, pass);
+        const gpu::TextureDesc desc = graph_.textures()[std::size_t(build.textures.at(name).texture)].desc;
+        pass.targets.push_back({graph_.create_texture(pass.name, desc)});
+        build.textures[name] = graph_.add_pass(std::move(pass)).targets[0];
     }
+}
+
+graph::TextureHandle GraphBuilder::mask_of(const StepBuild& build) {
+    if (const auto known = masks_.find(build.index); known != masks_.end()) return known->second;
+    const Image& mask = tools_.files.mask_of(build.step.mask->file);
+    return masks_[build.index] = graph_.import_texture(
+               build.step.name + ".mask", {mask.width(), mask.height(), gpu::TextureFormat::r32f});
 }
 
 }  // namespace aftershade

@@ -1,70 +1,48 @@
-// From steps and their parameters to the passes of a frame graph.
+// From a look's steps to a frame graph, with the way back from its parts to the steps.
 #pragma once
 
 #include <array>
 #include <cstddef>
-#include <functional>
 #include <map>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "framework/effect/param_resources.h"
+#include "framework/effect/param_reader.h"
 #include "framework/effect/pass_program.h"
 #include "framework/graph/frame_graph.h"
-#include "framework/pipeline/native_steps.h"
-#include "framework/pipeline/param_upload.h"
-#include "framework/pipeline/pipeline.h"
+#include "framework/pipeline/built_graph.h"
+#include "framework/pipeline/graph_bindings.h"
+#include "framework/pipeline/graph_key.h"
+#include "framework/pipeline/step_files.h"
 
 namespace aftershade {
 
-/// Where the executor finds what changes from frame to frame.
-struct BoundPass {
-    int step = 0;
-    int pass = 0;          ///< in the graph
-    bool mixes = false;    ///< the host's own pass: its block is the mix's
-    bool is_host = false;  ///< a copy of the host's own: it has no blocks
+/// What every graph of a pipeline is made with. [refers to what the caller keeps]
+struct GraphTools {
+    gpu::Context& context;
+    ProgramCache& programs;
+    StepFiles& files;
+    bool telemetry = false;  ///< keep the textures of the steps' statistics
 };
 
-/// A texture or a buffer that a parameter fills.
-struct BoundParam {
-    int step = 0;
-    const ParamSpec* spec = nullptr;
-    graph::TextureHandle texture;
-    graph::BufferHandle buffer;
-};
-
-/// One image of a capture that the graph imports.
-struct ImportKey {
-    std::string role;
-    int offset = 0;  ///< -1, 0, +1: of which capture
-    auto operator<=>(const ImportKey&) const = default;
-};
+/// Throws Error(ExitCode::effect) where a pass reads, or a step outputs, what no pass has written with these
+/// parameters; Error(ExitCode::usage) for a tap that no pass writes, and for files.
+std::unique_ptr<BuiltGraph> build_graph(const GraphTools& tools, const GraphFrame& frame);
 
 struct StepBuild;
 
 /// Adds the passes of one step after the other to a graph.
 class GraphBuilder {
 public:
-    using Textures = std::map<std::string, graph::TextureHandle>;
+    GraphBuilder(const GraphTools& tools, const GraphFrame& frame);
 
-    GraphBuilder(ProgramCache& programs, StepFiles& files, const NativeSteps& natives,
-                 const Pipeline& pipeline, const FrameInputs& frame);
-
-    /// Adds step `index`, after those before it. Throws Error(ExitCode::effect) where a pass reads, or the
-    /// step outputs, what no pass has written with these parameters.
-    void add_step(int index, const ParamSet& params);
-
-    /// Textures and outputs of a step that was added, by name, as they are after its last pass.
-    const Textures& textures_of(int step) const { return steps_.at(std::size_t(step)); }
-
-    graph::FrameGraph graph;
-    std::map<ImportKey, graph::TextureHandle> imports;
-    std::map<int, graph::TextureHandle> mask_files;  ///< by step
-    std::vector<BoundPass> passes;
-    std::vector<BoundParam> bound_params;
-    std::map<int, std::map<std::string, graph::TextureHandle>> native_tables;  ///< by step and name
+    std::unique_ptr<BuiltGraph> build();
 
 private:
+    void add_step(int index);
+    std::vector<std::string> present_inputs(int index);
     graph::TextureHandle import(const std::string& role, int offset = 0);
     graph::TextureHandle resolve(const InputSource& source, int offset = 0);
     void declare(StepBuild& build);
@@ -74,10 +52,12 @@ private:
     void declare_texture(StepBuild& build, const TextureSpec& spec);
     void declare_buffer(StepBuild& build, const BufferSpec& spec);
     void declare_params(StepBuild& build);
+    void declare_native_tables(StepBuild& build);
     void add_pass(StepBuild& build, const PassSpec& spec);
     void add_turn(StepBuild& build, const PassSpec& spec, int turn, int turns);
     void add_clear(StepBuild& build, const PassSpec& spec);
     void add_mix(StepBuild& build);
+    graph::TextureHandle mask_of(const StepBuild& build);
     void add_copy(StepBuild& build, const std::string& name, graph::TextureHandle from,
                   graph::TextureHandle to);
     void keep_histories(StepBuild& build);
@@ -86,22 +66,31 @@ private:
     graph::TextureHandle write_target(const StepBuild& build, const PassBindings& bindings,
                                       const std::string& name, const std::string& pass);
     void set_kind(const StepBuild& build, const PassSpec& spec, graph::Pass& pass) const;
+    /// Gives the pass that is added next a block that is filled for each frame.
+    void bind_block(const StepBuild& build, BlockKind kind, graph::Pass& pass);
+    void keep_results();
+    void keep_taps();
+    void keep_statistics();
 
-    ProgramCache& programs_;
-    StepFiles& files_;
-    const NativeSteps& natives_;
+    const GraphTools& tools_;
+    GraphFrameReader frame_;
     const Pipeline& pipeline_;
-    FrameInputs frame_;
     int width_ = 0;
     int height_ = 0;
-    std::vector<Textures> steps_;
+    graph::FrameGraph graph_;
+    std::unique_ptr<BuiltGraph> built_;
+    std::map<std::pair<std::string, int>, graph::TextureHandle> imports_;  // by role and offset
+    std::map<int, graph::TextureHandle> masks_;                            // by step
+    std::vector<ParamBinding> params_;
+    std::vector<NativeTableBinding> native_tables_;
+    std::vector<BlockBinding> blocks_;
 };
 
 /// Extent of a grid over a working grid of width x height px.
-std::pair<int, int> grid_size(const GridSpec& grid, const ParamSet& params, int width, int height);
+std::pair<int, int> grid_size(const GridSpec& grid, const ParamReader& params, int width, int height);
 /// One number for all four, or four.
 std::array<double, 4> four_values(const std::vector<double>& values);
 /// A count's number, or the value of the int parameter that it names.
-int count_value(const CountSpec& count, const ParamSet& params);
+int count_value(const CountSpec& count, const ParamReader& params);
 
 }  // namespace aftershade

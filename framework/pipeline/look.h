@@ -62,7 +62,7 @@ using LookVariables = std::map<std::string, Node>;
 Node parse_command_value(const std::string& text, const Place& place);
 
 /// Reads the form of the document and of every look that it uses ({"use": "lens.json"}); whether effects
-/// exist and values fit is compile_pipeline's to say.
+/// exist and values fit is bind_pipeline's to say.
 std::optional<Look> read_look(const std::filesystem::path& path, Diagnostics& diagnostics,
                               const LookVariables& variables = {});
 /// The same for a document in memory; looks that it uses lie beside node.place.file.

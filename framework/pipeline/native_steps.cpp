@@ -39,9 +39,8 @@ NativeFrame frame_of(const PipelineStep& step, const FrameInputs& frame, const P
     native.step_seed = step_seed(step.name);
     for (const InputSpec& input : step.manifest->inputs) {
         const InputSource& source = step.inputs.at(input.name);
-        const Capture* capture = frame.at(input.frame);
-        const bool present = step.may_take(input) &&
-                             (source.step >= 0 || (capture && capture->images.contains(source.output)));
+        const bool present =
+            step.may_take(input) && (source.step >= 0 || frame.has_image(source.output, input.frame));
         native.images.push_back({input.name, input.role, native.width_px, native.height_px,
                                  find_role(input.role)->channels, present});
     }
@@ -105,28 +104,16 @@ const NativeResult* NativeSteps::result(int step) const {
     return found == results_.end() ? nullptr : &found->second;
 }
 
-std::string NativeSteps::key() const {
-    std::string key;
-    for (const auto& [step, result] : results_) {
-        for (const auto& [name, table] : result.tables)
-            key += " " + name + std::to_string(table.width) + "x" + std::to_string(table.height);
-        for (const auto& [name, turns] : result.repeats) key += " " + name + "*" + std::to_string(turns);
-        for (const auto& [name, enabled] : result.enabled) key += " " + name + (enabled ? "+" : "-");
-        key += ";";
-    }
-    return key;
-}
-
 std::vector<std::string> NativeSteps::take_messages() {
     return std::exchange(messages_, {});
 }
 
-gpu::TextureDesc table_desc(const NativeTable& table) {
+gpu::TextureDesc table_desc(NativeElement element, int width, int height) {
     using gpu::TextureFormat;
     constexpr TextureFormat formats[] = {TextureFormat::r32f,    TextureFormat::rg32f,
                                          TextureFormat::rgba32f, TextureFormat::r32ui,
                                          TextureFormat::rg32ui,  TextureFormat::rgba32ui};
-    return {table.width, table.height, formats[std::size_t(table.element)]};
+    return {width, height, formats[std::size_t(element)]};
 }
 
 void upload_table(const NativeTable& table, gpu::Texture& texture) {

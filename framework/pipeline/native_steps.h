@@ -34,8 +34,6 @@ public:
 
     /// nullptr for a step without native code.
     const NativeResult* result(int step) const;
-    /// What of the results decides the graph's form: sizes of tables, turns and enabling of passes.
-    std::string key() const;
     /// "blur: gain is 2", by step; what was logged since the last call.
     std::vector<std::string> take_messages();
 
@@ -50,8 +48,8 @@ private:
     std::vector<std::string> messages_;
 };
 
-/// The texture that holds a table.
-gpu::TextureDesc table_desc(const NativeTable& table);
+/// The texture that holds a table of width x height elements.
+gpu::TextureDesc table_desc(NativeElement element, int width, int height);
 void upload_table(const NativeTable& table, gpu::Texture& texture);
 /// The step's uniforms as its block takes them.
 std::map<std::string, std::vector<double>> native_values(const NativeResult& result);

@@ -81,11 +81,11 @@ void bind_memory(const StepBuild& build, const PassBindings& bindings, graph::Pa
 }  // namespace
 
 void GraphBuilder::add_pass(StepBuild& build, const PassSpec& spec) {
-    const NativeResult* native = natives_.result(build.index);
-    if (native && native->enabled.contains(spec.name) && !native->enabled.at(spec.name)) return;
+    const bool is_native = build.manifest().native.has_value();
+    if (is_native && !frame_.native_enabled(build.index, spec.name)) return;
     if (spec.kind == PassKind::clear) return add_clear(build, spec);
     int turns = spec.repeat ? count_value(*spec.repeat, build.params) : 1;
-    if (native && native->repeats.contains(spec.name)) turns = native->repeats.at(spec.name);
+    if (is_native) turns = frame_.native_turns(build.index, spec.name, turns);
     for (int turn = 0; turn < turns; ++turn) add_turn(build, spec, turn, turns);
 }
 
@@ -97,7 +97,7 @@ void GraphBuilder::add_clear(StepBuild& build, const PassSpec& spec) {
     const std::vector<WriteSpec> writes = present_writes(spec, build.params, build.present);
     for (const WriteSpec& write : writes)
         pass.targets.push_back({build.textures.at(write.name), write.level, write.layer});
-    const graph::Written written = graph.add_pass(std::move(pass));
+    const graph::Written written = graph_.add_pass(std::move(pass));
     for (std::size_t i = 0; i < writes.size(); ++i) build.textures[writes[i].name] = written.targets[i];
 }
 
@@ -105,38 +105,34 @@ void GraphBuilder::add_turn(StepBuild& build, const PassSpec& spec, int turn, in
     const EffectManifest& manifest = build.manifest();
     const ShaderContext shader{&manifest,
                                &spec,
-                               &build.params,
+                               build.params,
                                build.present,
-                               programs_.glsl_folder(),
-                               &files_.of_step(build.index, build.step, build.params)};
+                               tools_.programs.glsl_folder(),
+                               &tools_.files.of_step(build.index, build.step, build.params)};
     const PassBindings bindings = pass_bindings(shader);
     graph::Pass pass;
     pass.name = build.prefix() + spec.name + (turns > 1 ? "[" + std::to_string(turn) + "]" : "");
-    pass.program = &programs_.get(shader);
+    pass.program = &tools_.programs.get(shader);
     pass.blend = spec.blend;
-    bind_reads(build, spec, bindings, turn, tile_grid_size(build, spec, bindings), graph, pass);
+    bind_reads(build, spec, bindings, turn, tile_grid_size(build, spec, bindings), graph_, pass);
     bind_memory(build, bindings, pass);
-    if (has_param_block(manifest))
-        pass.uniforms.push_back({kParamBinding, param_block(manifest, build.params)});
-    pass.uniforms.push_back({kFrameBinding, std::vector<std::byte>(sizeof(FrameBlock))});
-    pass.uniforms.push_back({kCameraBinding, std::vector<std::byte>(sizeof(CameraBlock))});
-    if (manifest.uses_lights)
-        pass.uniforms.push_back({kLightsBinding, std::vector<std::byte>(sizeof(LightsBlock))});
-    if (const NativeResult* native = natives_.result(build.index); native && has_native_block(manifest))
-        pass.uniforms.push_back({kNativeBinding, native_block(manifest, native_values(*native))});
+    if (bindings.has_param_block) bind_block(build, BlockKind::param, pass);
+    bind_block(build, BlockKind::frame, pass);
+    bind_block(build, BlockKind::camera, pass);
+    if (manifest.uses_lights) bind_block(build, BlockKind::lights, pass);
+    if (bindings.has_native_block) bind_block(build, BlockKind::native, pass);
     if (spec.repeat) pass.uniforms.push_back({kPassBinding, bytes_of(PassBlock{turn, turns})});
     for (const WriteSpec& write : bindings.writes)
         pass.targets.push_back({write_target(build, bindings, write.name, pass.name),
                                 level_in_turn(write.level, turn), level_in_turn(write.layer, turn)});
     set_kind(build, spec, pass);
-    const graph::Written written = graph.add_pass(std::move(pass));
+    const graph::Written written = graph_.add_pass(std::move(pass));
     for (std::size_t i = 0; i < bindings.writes.size(); ++i)
         build.textures[bindings.writes[i].name] = written.targets[i];
     for (std::size_t i = 0; i < bindings.images.size(); ++i)
         build.textures[bindings.images[i].name] = written.images[i];
     for (std::size_t i = 0; i < bindings.buffers.size(); ++i)
         if (!bindings.buffers[i].previous) build.buffers[bindings.buffers[i].name] = written.buffers[i];
-    passes.push_back({build.index, graph.pass_count() - 1, false, false});
 }
 
 /// How many texels of the tile list's grid there are: on a target of another scale as many as it covers.
@@ -147,7 +143,7 @@ std::array<float, 4> GraphBuilder::tile_grid_size(const StepBuild& build, const 
     const std::string& on = spec.lists.empty() ? bindings.writes.front().name : list.on;
     float width = float(width_), height = float(height_);
     if (!on.empty()) {
-        const auto& desc = graph.textures()[std::size_t(build.textures.at(on).texture)].desc;
+        const auto& desc = graph_.textures()[std::size_t(build.textures.at(on).texture)].desc;
         const double scale = scale_of(build.manifest(), list.on) / scale_of(build.manifest(), on);
         width = float(desc.width * scale);
         height = float(desc.height * scale);
@@ -163,10 +159,10 @@ graph::TextureHandle GraphBuilder::write_target(const StepBuild& build, const Pa
         return read.name == name && !read.previous && read.level < 0 && !build.inputs.contains(name);
     };
     if (std::none_of(bindings.reads.begin(), bindings.reads.end(), reads_it)) return handle;
-    const auto& texture = graph.textures()[std::size_t(handle.texture)];
+    const auto& texture = graph_.textures()[std::size_t(handle.texture)];
     graph::TextureOptions options;
     options.auto_mips = texture.options.auto_mips;
-    return graph.create_texture(build.prefix() + name + "@" + pass.substr(build.prefix().size()),
+    return graph_.create_texture(build.prefix() + name + "@" + pass.substr(build.prefix().size()),
                                 texture.desc, options);
 }
 
@@ -186,7 +182,7 @@ void GraphBuilder::set_kind(const StepBuild& build, const PassSpec& spec, graph:
             int width = width_, height = height_;
             if (!dispatch.over.empty()) {
                 const auto& desc =
-                    graph.textures()[std::size_t(build.read_handle(dispatch.over).texture)].desc;
+                    graph_.textures()[std::size_t(build.read_handle(dispatch.over).texture)].desc;
                 width = desc.width;
                 height = desc.height;
             }

@@ -148,19 +148,6 @@ void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header
     if (!contains(header.roles, "color")) missing("the output", "color");
 }
 
-std::vector<std::string> present_inputs(const Pipeline& pipeline, int index, const FrameInputs& frame) {
-    std::vector<std::string> present;
-    const PipelineStep& step = pipeline.steps[std::size_t(index)];
-    for (const InputSpec& input : step.manifest->inputs) {
-        const InputSource& source = step.inputs.at(input.name);
-        const Capture* capture = frame.at(input.frame);
-        if (!step.may_take(input)) continue;
-        if (source.step >= 0 || (capture && capture->images.contains(source.output)))
-            present.push_back(input.name);
-    }
-    return present;
-}
-
 namespace {
 
 struct ResolvedValue {

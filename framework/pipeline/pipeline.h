@@ -80,6 +80,11 @@ struct FrameInputs {
     double fps = 24;
 
     const Capture* at(int offset) const { return offset < 0 ? previous : offset > 0 ? next : capture; }
+    /// Whether there is a capture at that offset, with an image of that role.
+    bool has_image(const std::string& role, int offset) const {
+        const Capture* const from = at(offset);
+        return from && from->images.contains(role);
+    }
 };
 
 /// One "--set step.param=value" or "--tap step.texture", as given.
@@ -92,7 +97,7 @@ struct PipelineOptions {
 /// capture (from the capture alone where the manifest has "from": "capture"), unless the step's "in" says
 /// otherwise. Faults go to `diagnostics`, all of them; the result is
 /// usable if there was none.
-Pipeline compile_pipeline(const Look& look, EffectRegistry& effects, const PipelineOptions& options,
+Pipeline bind_pipeline(const Look& look, EffectRegistry& effects, const PipelineOptions& options,
                           Diagnostics& diagnostics);
 
 /// The value with the path of a file, where it is one, named from `folder`; "" stays "".
@@ -104,9 +109,6 @@ const ParamSpec& mix_spec();
 /// Throws Error(ExitCode::capture) if the capture lacks a role that a step requires, naming the effect, the
 /// role, and the channels that the file does have.
 void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header);
-
-/// Optional and required inputs of a step that have an image in this frame.
-std::vector<std::string> present_inputs(const Pipeline& pipeline, int step, const FrameInputs& frame);
 
 /// Every parameter of the step: the user's value, else the capture's (the manifest's "from"), else the
 /// default; values in px times frame.scale. Throws Error(ExitCode::capture) where the capture's values do not

@@ -4,27 +4,15 @@
 #include <cmath>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "framework/core/error.h"
 #include "framework/gpu/timer.h"
 #include "framework/image/role.h"
-#include "framework/pipeline/built_graph.h"
-#include "framework/pipeline/frame_blocks.h"
+#include "framework/pipeline/graph_builder.h"
 #include "framework/pipeline/history_file.h"
 
 namespace aftershade {
 
 namespace {
-
-/// Texels of three-channel roles, and of an AOV that has fewer than four, carry zeros that nothing reads.
-std::vector<float> widened(const Image& image, int stored_channels) {
-    const auto channels = std::size_t(image.channels()), stored = std::size_t(stored_channels);
-    std::vector<float> texels(image.floats().size() / channels * stored);
-    for (std::size_t i = 0; i < texels.size() / stored; ++i)
-        std::copy_n(&image.floats()[i * channels], channels, &texels[i * stored]);
-    return texels;
-}
 
 Image read_back(const gpu::Texture& texture, int channels) {
     const gpu::TextureDesc& desc = texture.desc();
@@ -43,24 +31,15 @@ Image read_back(const gpu::Texture& texture, int channels) {
     return image;
 }
 
-void upload(const Image& image, gpu::Texture& texture) {
-    const int stored = gpu::channel_count(texture.desc().format);
-    if (image.channels() > stored)
-        throw Error(ExitCode::effect, fmt::format("{}: an image of {} channels, its role has {}",
-                                                  texture.label(), image.channels(), stored));
-    if (image.type() == ComponentType::uint32) texture.upload(image.uints());
-    else if (image.channels() < stored) texture.upload(widened(image, stored));
-    else texture.upload(image.floats());
-}
-
 bool infinity_allowed(const std::string& role) {
     return std::isinf(find_role(role)->outside);
 }
 
 void audit_input(const std::string& role, const Image& image, std::vector<AuditFinding>& findings) {
     if (image.type() != ComponentType::float32) return;
-    audit_values(image.floats(), image.width(), image.channels(), infinity_allowed(role), "capture",
-                 "capture." + role, findings);
+    audit_values({image.floats(), image.width(), image.channels(), infinity_allowed(role), "capture",
+                  "capture." + role},
+                 findings);
 }
 
 /// Integer textures hold ids and packed bits, of which no value is wrong.
@@ -75,8 +54,8 @@ graph::Executor::PassObserver auditor(const Pipeline& pipeline, std::vector<Audi
         if (gpu::is_integer(desc.format)) return;
         const auto role = role_of_output.find(texture);
         const bool infinity = role != role_of_output.end() && infinity_allowed(role->second);
-        audit_values(target.read_floats(), desc.width, gpu::channel_count(desc.format), infinity, pass,
-                     texture, findings);
+        const std::vector<float> values = target.read_floats();
+        audit_values({values, desc.width, gpu::channel_count(desc.format), infinity, pass, texture}, findings);
     };
 }
 
@@ -109,49 +88,21 @@ void PipelineRenderer::prepare(const FrameInputs& frame, const std::vector<std::
     const bool valid = frame.subframe > 0 || frame_fault_.empty();
     if (!valid) natives_.reset();
     natives_.prepare(pipeline_, frame, params_, valid);
-    const std::string key = graph_key(pipeline_, frame, params_, roles) + natives_.key();
-    if (built_ && built_->key == key) return;
+    const GraphFrame graph_frame{pipeline_, frame, params_, natives_, roles};
+    if (built_ && built_->key.holds(graph_frame)) return;
     // The old textures go before the new ones come, unless what they hold lives on.
     std::unique_ptr<BuiltGraph> old = std::move(built_);
     if (!pipeline_.has_history()) old.reset();
-    built_ = build_graph(context_, programs_, files_, natives_, pipeline_, frame, params_, roles, telemetry_);
-    built_->key = key;
+    built_ = build_graph({context_, programs_, files_, telemetry_}, graph_frame);
+    ++graphs_built_;
     if (old) built_->executor->take_history_from(*old->executor);
 }
 
-double PipelineRenderer::feed(const FrameInputs& frame, const FrameBefore& before, int first_pass) {
+double PipelineRenderer::feed(const FrameInputs& frame, const std::vector<std::string>& roles,
+                              const FrameBefore& before, int first_pass) {
     gpu::Timer timer(context_);
     timer.start();
-    graph::Executor& executor = *built_->executor;
-    for (const auto& [key, handle] : built_->imports)
-        if (gpu::Texture* texture = executor.texture(handle))
-            upload(frame.at(key.offset)->images.at(key.role), *texture);
-    upload_params(pipeline_, params_, files_, *built_);
-    for (const auto& [step, tables] : built_->native_tables)
-        for (const auto& [name, handle] : tables)
-            if (gpu::Texture* texture = executor.texture(handle))
-                upload_table(natives_.result(step)->tables.at(name), *texture);
-    const std::vector<std::byte> camera = bytes_of(camera_block(frame, before));
-    for (const BoundPass& pass : built_->passes) {
-        if (pass.pass < first_pass || pass.is_host) continue;
-        const PipelineStep& step = pipeline_.steps[std::size_t(pass.step)];
-        if (pass.mixes) {
-            executor.set_uniforms(pass.pass, 0, mix_block(step, frame));
-            continue;
-        }
-        if (has_param_block(*step.manifest))
-            executor.set_uniforms(pass.pass, kParamBinding,
-                                  param_block(*step.manifest, params_[std::size_t(pass.step)]));
-        executor.set_uniforms(pass.pass, kFrameBinding,
-                              bytes_of(frame_block(frame, step.name, before.history_valid)));
-        executor.set_uniforms(pass.pass, kCameraBinding, camera);
-        if (step.manifest->uses_lights)
-            executor.set_uniforms(pass.pass, kLightsBinding, bytes_of(lights_block(frame, step.name)));
-        if (const NativeResult* native = natives_.result(pass.step);
-            native && has_native_block(*step.manifest))
-            executor.set_uniforms(pass.pass, kNativeBinding,
-                                  native_block(*step.manifest, native_values(*native)));
-    }
+    built_->feed({{pipeline_, frame, params_, natives_, roles}, before, files_, first_pass});
     return timer.stop_ms();
 }
 
@@ -177,7 +128,7 @@ FrameResult PipelineRenderer::render(const FrameInputs& frame, const std::vector
     double upload_ms = 0;
     if (accumulates) {
         const bool valid = !is_first || frame_fault_.empty();
-        upload_ms += feed(frame, {valid, valid && last_ ? std::optional(last_->camera) : std::nullopt}, 0);
+        upload_ms += feed(frame, roles, {valid, valid && last_ ? std::optional(last_->camera) : std::nullopt}, 0);
         run_passes(timed, {0, built_->first_single_pass}, result);
     }
     const CaptureHeader& header = frame.capture->header;
@@ -191,11 +142,12 @@ FrameResult PipelineRenderer::render(const FrameInputs& frame, const std::vector
     }
     const bool valid = frame_fault_.empty();
     const int first_pass = accumulates ? built_->first_single_pass : 0;
-    upload_ms += feed(once, {valid, valid ? camera_before_ : std::nullopt}, first_pass);
+    upload_ms += feed(once, roles, {valid, valid ? camera_before_ : std::nullopt}, first_pass);
     camera_before_ = once.capture->header.camera;
     if (audit_)
-        for (const auto& [key, handle] : built_->imports)
-            audit_input(key.role, once.at(key.offset)->images.at(key.role), result.audit);
+        for (const GraphBinding& binding : built_->bindings)
+            if (const auto* input = std::get_if<CaptureBinding>(&binding))
+                audit_input(input->role, once.at(input->offset)->images.at(input->role), result.audit);
     run_passes(timed, {first_pass, -1}, result);
     read_results(roles, timed, result);
     if (timed) result.times.insert(result.times.begin(), {"upload", upload_ms});

@@ -14,8 +14,8 @@
 #include "framework/image/capture.h"
 #include "framework/pipeline/audit.h"
 #include "framework/pipeline/native_steps.h"
-#include "framework/pipeline/param_upload.h"
 #include "framework/pipeline/pipeline.h"
+#include "framework/pipeline/step_files.h"
 #include "framework/pipeline/telemetry.h"
 
 namespace aftershade {
@@ -36,8 +36,9 @@ struct BuiltGraph;
 struct FrameBefore;
 struct SavedHistory;
 
-/// Builds the frame graph on the first frame and again only when the size, the roles present, or a value that
-/// chooses passes, sizes or programs changes. [the context's thread]
+/// Builds the frame graph on the first frame and again only when something changes that the build looked at:
+/// the size, the presence of an image, a value that chooses passes, sizes or programs.
+/// [the context's thread]
 class PipelineRenderer {
 public:
     PipelineRenderer(gpu::Context& context, const Pipeline& pipeline,
@@ -64,6 +65,8 @@ public:
 
     /// The graph of the last frame in Graphviz's language; "" before the first.
     std::string graph_dot() const;
+    /// How often the graph was built.
+    int graphs_built() const { return graphs_built_; }
     /// Of the last frame: bytes of all textures and buffers, and what they would be without aliasing.
     std::pair<std::uint64_t, std::uint64_t> graph_bytes() const;
 
@@ -76,7 +79,8 @@ private:
     void resolve(const FrameInputs& frame);
     void prepare(const FrameInputs& frame, const std::vector<std::string>& roles);
     std::string history_fault(const FrameInputs& frame) const;
-    double feed(const FrameInputs& frame, const FrameBefore& before, int first_pass);
+    double feed(const FrameInputs& frame, const std::vector<std::string>& roles, const FrameBefore& before,
+                int first_pass);
     void run_passes(bool timed, graph::PassRange range, FrameResult& result);
     FrameTelemetry read_telemetry(int frame) const;
     void read_results(const std::vector<std::string>& roles, bool timed, FrameResult& result);
@@ -90,6 +94,7 @@ private:
     NativeSteps natives_;
     std::vector<ParamSet> params_;
     std::unique_ptr<BuiltGraph> built_;
+    int graphs_built_ = 0;
     std::optional<Last> last_;             // capture, sub-frames too
     std::optional<Camera> camera_before_;  // of the last whole frame
     std::string frame_fault_;              // why this frame began history anew

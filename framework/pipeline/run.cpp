@@ -10,6 +10,7 @@
 #include "framework/image/capture_window.h"
 #include "framework/image/window.h"
 #include "framework/pipeline/frame_loader.h"
+#include "framework/pipeline/output.h"
 
 namespace aftershade {
 
@@ -167,12 +168,10 @@ void tell(const CaptureHeader& header, const FrameResult& result, bool is_first,
 
 }  // namespace
 
-RunReport run_frames(gpu::Context& context, const Pipeline& pipeline, const Sequence& sequence,
-                     const CaptureReader& reader, const RunOptions& run, const OutputOptions& outputs,
-                     const std::filesystem::path& data_folder, const RunObserver& observer,
-                     const std::atomic<bool>& stop) {
+RunReport run_frames(const RunSetup& setup, const RunObserver& observer, const std::atomic<bool>& stop) {
     RunReport report;
     const auto start = Clock::now();
+    const auto& [context, pipeline, sequence, reader, run, outputs, data_folder] = setup;
     const std::vector<std::string> result_roles = wanted_roles(outputs);
     PipelineRenderer renderer(context, pipeline, data_folder, run.natives);
     renderer.set_audit(run.audit);
@@ -206,8 +205,8 @@ RunReport run_frames(gpu::Context& context, const Pipeline& pipeline, const Sequ
         add_times(report.passes, frame.result->times);
         if (frame.result->telemetry) report.telemetry.push_back(*frame.result->telemetry);
         finish_write(pending_write, report, observer);
-        pending_write = std::async(std::launch::async, [frame, &outputs, &reader] {
-            return write_outputs(outputs, *frame.result, *frame.capture, reader);
+        pending_write = std::async(std::launch::async, [frame, &setup] {
+            return write_outputs(setup.outputs, *frame.result, *frame.capture, setup.reader);
         });
     }
     finish_write(pending_write, report, observer);

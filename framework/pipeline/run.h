@@ -1,17 +1,18 @@
-// The main job: frames in, pipeline over each, files out.
+// The main work: frames in, pipeline over each, files out.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "framework/image/capture.h"
-#include "framework/pipeline/output.h"
+#include "framework/pipeline/output_options.h"
 #include "framework/pipeline/pipeline.h"
+#include "framework/pipeline/renderer.h"
+#include "framework/pipeline/run_options.h"
 
 namespace aftershade {
 
@@ -22,26 +23,6 @@ struct PassStatistics {
     double min_ms = 0;
     double max_ms = 0;
     int frames = 0;
-};
-
-/// What to do where a frame's file is not there.
-enum class MissingFrame {
-    error,  ///< the frame has failed
-    skip,   ///< leave it out
-    hold    ///< run the last frame that was there again, under this frame's number
-};
-
-struct RunOptions {
-    std::vector<int> frames;
-    MissingFrame missing = MissingFrame::error;
-    bool audit = false;
-    bool telemetry = false;
-    int scale_divisor = 1;              ///< frames are rendered at 1/this of their size
-    std::optional<Window> region;       ///< px of the display window at full scale, from its top left
-    int region_margin_px = 64;          ///< rendered around the region, and not written
-    std::filesystem::path history_in;   ///< "" for none
-    std::filesystem::path history_out;  ///< "" for none
-    NativeSources natives{};
 };
 
 struct RunReport {
@@ -72,12 +53,20 @@ struct RunObserver {
     std::function<void(int frame, const std::string& line)> native_message;
 };
 
+/// What a run works with. [refers to what the caller keeps]
+struct RunSetup {
+    gpu::Context& context;
+    const Pipeline& pipeline;
+    const Sequence& sequence;
+    const CaptureReader& reader;
+    const RunOptions& options;
+    const OutputOptions& outputs;
+    std::filesystem::path data_folder;
+};
+
 /// Reads the next frame and writes the last one while the GPU works. A frame that cannot be read is reported
 /// and left out; an effect or an output that fails ends the run by its Error. `stop` is looked at between
 /// frames.
-RunReport run_frames(gpu::Context& context, const Pipeline& pipeline, const Sequence& sequence,
-                     const CaptureReader& reader, const RunOptions& run, const OutputOptions& outputs,
-                     const std::filesystem::path& data_folder, const RunObserver& observer,
-                     const std::atomic<bool>& stop);
+RunReport run_frames(const RunSetup& setup, const RunObserver& observer, const std::atomic<bool>& stop);
 
 }  // namespace aftershade

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/effect/param_reader.h"
 #include "framework/graph/frame_graph.h"
 #include "framework/pipeline/pipeline.h"
 
@@ -16,17 +17,17 @@ struct StepBuild {
 
     int index = 0;
     const PipelineStep& step;
-    const ParamSet& params;
+    ParamReader params;
     std::vector<std::string> present;  ///< inputs that have an image
-    Textures inputs;                   ///< by input
-    Textures textures;                 ///< textures and outputs: the live versions
-    Textures previous;                 ///< of textures and inputs with history
-    Textures history_current;          ///< where the next frame finds them
-    Textures param_textures;           ///< curves and files
-    Textures native_tables;
-    Buffers buffers;
-    Buffers previous_buffers;
-    Buffers param_buffers;  ///< tables
+    Textures inputs{};                 ///< by input
+    Textures textures{};               ///< textures and outputs: the live versions
+    Textures previous{};               ///< of textures and inputs with history
+    Textures history_current{};        ///< where the next frame finds them
+    Textures param_textures{};         ///< curves and files
+    Textures native_tables{};
+    Buffers buffers{};
+    Buffers previous_buffers{};
+    Buffers param_buffers{};  ///< tables
 
     const EffectManifest& manifest() const { return *step.manifest; }
     std::string prefix() const { return step.name + "."; }

@@ -94,7 +94,7 @@ Pipeline bind(const json& test, EffectRegistry& effects) {
     Pipeline pipeline;
     if (const auto node = parse_document(text.dump(), test.at("name"), diagnostics))
         if (const auto look = parse_look(*node, diagnostics))
-            pipeline = compile_pipeline(*look, effects, {}, diagnostics);
+            pipeline = bind_pipeline(*look, effects, {}, diagnostics);
     std::ostringstream faults;
     diagnostics.print(faults);
     if (diagnostics.has_errors()) throw std::runtime_error(faults.str());

@@ -24,7 +24,7 @@ struct Assembly {
         for (const ParamSpec& spec : manifest.params) params.set(spec.name, spec.default_value);
     }
     ShaderSource operator()(Diagnostics& diagnostics) const {
-        return assemble_shader({&manifest, &manifest.passes.at(pass_index), &params, present, glsl.path()},
+        return assemble_shader({&manifest, &manifest.passes.at(pass_index), params, present, glsl.path()},
                                diagnostics);
     }
     ShaderSource sound() const {

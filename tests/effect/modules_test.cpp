@@ -131,7 +131,7 @@ TEST_F(Modules, HaveTheirShadersInTheirOwnFolder) {
     for (const ParamSpec& spec : manifest.params) params.set(spec.name, spec.default_value);
     Diagnostics diagnostics;
     const ShaderSource source =
-        assemble_shader({&manifest, &manifest.passes[0], &params, {}, glsl_.path()}, diagnostics);
+        assemble_shader({&manifest, &manifest.passes[0], params, {}, glsl_.path()}, diagnostics);
     EXPECT_EQ(test::lines_of(diagnostics), Lines{});
     EXPECT_NE(source.text.find("return tone * param.key;"), std::string::npos);
     EXPECT_EQ(source.lines.back().file, (glsl_ / "tone/tone.frag").string());

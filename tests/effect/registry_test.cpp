@@ -34,7 +34,7 @@ TEST(ShippedEffects, HaveNoFaults) {
         for (const ParamSpec& spec : manifest->params) defaults.set(spec.name, spec.default_value);
         for (const PassSpec& pass : manifest->passes)
             if (pass.kind != PassKind::clear)
-                assemble_shader({manifest, &pass, &defaults, {}, kSource / "glsl"}, diagnostics);
+                assemble_shader({manifest, &pass, defaults, {}, kSource / "glsl"}, diagnostics);
         EXPECT_EQ(test::lines_of(diagnostics), Lines{}) << id;
     }
 }

@@ -85,7 +85,7 @@ TEST(ShaderBindings, GiveAVertexShaderAllButOutputs) {
     const EffectFolder folder(demo_manifest(kEverything));
     const Assembly assembly(folder, 2);
     const ShaderContext shader{
-        &assembly.manifest, &assembly.manifest.passes[2], &assembly.params, {}, assembly.glsl.path()};
+        &assembly.manifest, &assembly.manifest.passes[2], assembly.params, {}, assembly.glsl.path()};
     const Lines main = lines_of_text(interface_glsl(shader));
     Lines vertex = lines_of_text(interface_glsl(shader, ShaderFile::vertex));
     vertex.push_back("layout(location = 0) out vec4 out_color;");
@@ -120,7 +120,7 @@ TEST(ShaderBindings, NumberParametersAndTablesAfterThePassesOwn) {
         assembly.manifest.params.push_back(param_of(name, type));
     const std::map<std::string, ParamFile> files = {{"lens", Image(4, 2, 4)}};
     ShaderContext shader{
-        &assembly.manifest, &assembly.manifest.passes[0], &assembly.params, {}, assembly.glsl.path(), &files};
+        &assembly.manifest, &assembly.manifest.passes[0], assembly.params, {}, assembly.glsl.path(), &files};
     const PassBindings bindings = pass_bindings(shader);
     EXPECT_EQ(bindings.reads.size(), 2U);
     EXPECT_EQ(bindings.first_param_sampler, 2);

@@ -2,6 +2,7 @@
 
 #include "framework/core/error.h"
 #include "framework/image/exr_file.h"
+#include "framework/image/velocity_report.h"
 #include "tests/real_captures.h"
 #include "tests/synthetic_capture.h"
 

@@ -64,7 +64,7 @@ public:
         Diagnostics diagnostics;
         if (const auto node = parse_document(look, "look", diagnostics))
             if (const auto parsed = parse_look(*node, diagnostics))
-                pipeline_ = compile_pipeline(*parsed, registry_, options, diagnostics);
+                pipeline_ = bind_pipeline(*parsed, registry_, options, diagnostics);
         std::ostringstream text;
         diagnostics.print(text);
         faults_ = text.str();

@@ -18,7 +18,7 @@ protected:
         EffectRegistry effects({root / "tests/effect/toys"});
         Diagnostics faults;
         const auto node = parse_document(R"({"aftershade": 1, "steps": [)" + steps + "]}", "look", faults);
-        const Pipeline pipeline = compile_pipeline(*parse_look(*node, faults), effects, {}, faults);
+        const Pipeline pipeline = bind_pipeline(*parse_look(*node, faults), effects, {}, faults);
         EXPECT_FALSE(faults.has_errors());
         gpu::Context context(GetParam());
         PipelineRenderer renderer(context, pipeline, root);

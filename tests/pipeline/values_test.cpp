@@ -295,7 +295,7 @@ void main() {
         Diagnostics diagnostics;
         EffectRegistry registry({effects_.path()});
         const auto look = read_look(folder / "look.json", diagnostics);
-        const Pipeline pipeline = compile_pipeline(look.value(), registry, {}, diagnostics);
+        const Pipeline pipeline = bind_pipeline(look.value(), registry, {}, diagnostics);
         std::ostringstream faults;
         diagnostics.print(faults);
         std::string text = faults.str();

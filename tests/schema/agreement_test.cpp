@@ -102,7 +102,7 @@ std::string judge_look(const std::string& text) {
     Diagnostics diagnostics;
     const auto node = parse_document(text, (kFolder / "look.json").string(), diagnostics);
     if (const auto look = node ? parse_look(*node, diagnostics) : std::nullopt)
-        compile_pipeline(*look, effects, {}, diagnostics);
+        bind_pipeline(*look, effects, {}, diagnostics);
     return first_fault(diagnostics);
 }
 

@@ -1,22 +1,22 @@
-// What parameters and masks bring from files, and how it reaches the graph's textures and buffers.
+// What parameters and masks bring from files.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <string>
 
+#include "framework/effect/param_reader.h"
 #include "framework/effect/param_resources.h"
 #include "framework/pipeline/pipeline.h"
 
 namespace aftershade {
-
-struct BuiltGraph;
 
 /// Files that a pipeline's steps name, each read once. [one thread at a time]
 class StepFiles {
 public:
     /// What the file parameters of a step hold. Throws Error(ExitCode::usage) with every fault of the files.
     const std::map<std::string, ParamFile>& of_step(int index, const PipelineStep& step,
-                                                    const ParamSet& params);
+                                                    const ParamReader& params);
     /// The mask of a step: one channel, r32f. Throws Error(ExitCode::usage).
     const Image& mask_of(const std::filesystem::path& path);
 
@@ -28,9 +28,5 @@ private:
     std::map<int, Loaded> steps_;
     std::map<std::filesystem::path, Image> masks_;
 };
-
-/// Fills the textures and buffers of curves, files, tables and masks, those that changed since the last call.
-void upload_params(const Pipeline& pipeline, const std::vector<ParamSet>& params, StepFiles& files,
-                   BuiltGraph& built);
 
 }  // namespace aftershade

@@ -1,0 +1,188 @@
+#include "cli/run_options.h"
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "cli/effect_options.h"
+#include "cli/gl_options.h"
+
+namespace aftershade::cli {
+
+namespace {
+
+/// The n of "1/n", "1" or a decimal such as "0.5" that is one.
+int parse_scale(const std::string& text) {
+    constexpr int kMost = 64;
+    for (int n = 1; n <= kMost; ++n)
+        if (text == "1/" + std::to_string(n)) return n;
+    double value = 0;
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (failure != std::errc{} || end != text.data() + text.size() || value <= 0 || value > 1) return 0;
+    const int n = int(1 / value + 0.5);
+    return n <= kMost && std::abs(value * n - 1) < 1e-9 ? n : 0;
+}
+
+/// "x,y,w,h" as a window.
+std::optional<Window> parse_region(const std::string& text) {
+    int numbers[4] = {0, 0, 0, 0};
+    const char* at = text.data();
+    const char* const end = text.data() + text.size();
+    for (int i = 0; i < 4; ++i) {
+        const auto [next, failure] = std::from_chars(at, end, numbers[i]);
+        if (failure != std::errc{}) return std::nullopt;
+        at = next;
+        if (i < 3 && (at == end || *at++ != ',')) return std::nullopt;
+    }
+    if (at != end || numbers[2] < 1 || numbers[3] < 1) return std::nullopt;
+    return Window{numbers[0], numbers[1], numbers[0] + numbers[2] - 1, numbers[1] + numbers[3] - 1};
+}
+
+MissingFrame missing_frame(const std::string& word) {
+    return word == "skip" ? MissingFrame::skip : word == "hold" ? MissingFrame::hold : MissingFrame::error;
+}
+
+void add_frame_options(CLI::App& app, RunArguments& options) {
+    app.add_option("--var", options.variables, "name=value, above the look's own \"vars\"; repeatable")
+        ->allow_extra_args(false);
+    app.add_option("--scale", options.scale, "Render at 1/n of the size; values in px scale along")
+        ->capture_default_str();
+    app.add_option("--region", options.region, "x,y,w,h: only these px of the display window, at full scale");
+    app.add_option("--region-margin", options.region_margin_px,
+                   "px rendered around the region for effects that look around; not written")
+        ->check(CLI::Range(0, 16384))
+        ->capture_default_str();
+    app.add_option("--history-in", options.history_in,
+                   "Go on from the history that a run over the frames before wrote");
+    app.add_option("--history-out", options.history_out,
+                   "Write the history after the last frame, for the next chunk of the sequence");
+    app.add_option("--graph", options.graph, "Draw the frame graph of the last frame: .dot or .svg");
+}
+
+void add_look_options(CLI::App& app, RunArguments& options) {
+    app.add_option("look", options.look, "The look: a JSON file of effects in order")->required();
+    add_capture_argument(app, options.capture);
+    app.add_option("-o,--output", options.outputs, "Output file or pattern (.exr, .png); repeatable")
+        ->required()
+        ->allow_extra_args(false);
+    app.add_option("--set", options.pipeline.sets, "step.param=value, above the look's own; repeatable")
+        ->allow_extra_args(false);
+    app.add_option(
+           "--tap", options.pipeline.taps,
+           "step.texture to write as EXR beside the first output, or step.texture=FILE (.exr, or .png "
+           "in false colour); repeatable")
+        ->allow_extra_args(false);
+    add_capture_options(app, options.capture, "Frames to run, such as 1-100x2,120");
+}
+
+void add_output_options(CLI::App& app, RunArguments& options) {
+    app.add_option("--output-roles", options.roles, "Roles in EXR outputs (default: color)")->delimiter(',');
+    app.add_option("--pixel-type", options.pixel_type, "half or float, for roles that are half by default")
+        ->check(CLI::IsMember({"half", "float"}));
+    app.add_flag(
+        "--keep-channels", options.keep_channels,
+        "EXR: every channel of the source too, bit for bit but for those of roles that a step changed");
+    app.add_option("--crop", options.crop, "EXR: data (the windows as they are) or display (its pixels only)")
+        ->check(CLI::IsMember({"data", "display"}))
+        ->capture_default_str();
+    app.add_option("--compression", options.compression,
+                   "EXR: none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa or dwab")
+        ->capture_default_str();
+}
+
+}  // namespace
+
+void add_run_options(CLI::App& app, RunArguments& options) {
+    add_look_options(app, options);
+    add_output_options(app, options);
+    app.add_option("--missing", options.missing,
+                   "A frame whose file is not there: error, skip, or hold the last one")
+        ->check(CLI::IsMember({"error", "skip", "hold"}))
+        ->capture_default_str();
+    app.add_flag("--explain", options.explain,
+                 "Print every parameter's value and where it is from, and run nothing");
+    app.add_flag("--audit", options.audit,
+                 "Tell which pass first writes NaN or infinite values, where and how many; slow");
+    app.add_option(
+        "--telemetry", options.telemetry,
+        "Write each frame's numbers: the effects' statistics, memory by format, time by pass (.json)");
+    app.add_option("--telemetry-plot", options.telemetry_plot,
+                   "Plot the effects' statistics over the frames (.svg)");
+    app.add_option("--look-folder", options.look_folder,
+                   "Folder that files named in the look lie in (default: the look's own)");
+    add_effect_path_option(app, options.effect_paths);
+    app.add_option("--progress", options.progress, "auto, none or plain")->capture_default_str();
+    app.add_flag("--watch", options.watch,
+                 "Stay, and render again whenever the look, a manifest or a shader changes");
+    add_plugin_options(app, options.plugins);
+    add_frame_options(app, options);
+    add_backend_option(app, options.backend);
+}
+
+bool RunArguments::changes_window() const {
+    return parse_scale(scale) != 1 || !region.empty();
+}
+
+LookVariables look_variables(const RunArguments& options, Diagnostics& diagnostics) {
+    LookVariables variables;
+    for (const std::string& text : options.variables) {
+        const Place place{"--var " + text};
+        const std::size_t equals = text.find('=');
+        if (equals == std::string::npos || equals == 0) {
+            diagnostics.error(place, "expected name=value");
+            continue;
+        }
+        if (!variables.emplace(text.substr(0, equals), parse_command_value(text.substr(equals + 1), place))
+                 .second)
+            diagnostics.error(place, "this variable is given twice");
+    }
+    return variables;
+}
+
+OutputOptions output_options(const RunArguments& options) {
+    OutputOptions outputs;
+    outputs.patterns = options.outputs;
+    if (!options.roles.empty()) outputs.roles = options.roles;
+    if (options.pixel_type == "float") outputs.color_type = PixelType::float32;
+    outputs.keep_channels = options.keep_channels;
+    outputs.crop_to_display = options.crop == "display";
+    outputs.compression = options.compression;
+    outputs.look = options.look;
+    outputs.telemetry = options.telemetry;
+    for (const std::string& tap : options.pipeline.taps)
+        if (const std::size_t equals = tap.find('='); equals != std::string::npos)
+            outputs.tap_patterns[tap.substr(0, equals)] = tap.substr(equals + 1);
+    return outputs;
+}
+
+RunOptions run_options(const RunArguments& options, Diagnostics& diagnostics) {
+    RunOptions run;
+    run.scale_divisor = parse_scale(options.scale);
+    if (run.scale_divisor == 0) {
+        diagnostics.error({"--scale " + options.scale}, "must be 1, 1/2, 1/3 ... or 1/64");
+        run.scale_divisor = 1;
+    }
+    run.region_margin_px = options.region_margin_px;
+    if (!options.region.empty()) {
+        run.region = parse_region(options.region);
+        if (!run.region)
+            diagnostics.error({"--region " + options.region},
+                              "must be x,y,w,h in px from the display window's top left, w and h at least 1");
+    }
+    run.history_in = options.history_in;
+    run.history_out = options.history_out;
+    if (!options.graph.empty() && !options.graph.ends_with(".dot") && !options.graph.ends_with(".svg"))
+        diagnostics.error({"--graph " + options.graph}, "must end in .dot or .svg");
+    if (options.keep_channels && options.changes_window())
+        diagnostics.error({"--keep-channels"},
+                          "keeps the source's channels, which --scale and --region change");
+    if (!options.telemetry_plot.empty() && !options.telemetry_plot.ends_with(".svg"))
+        diagnostics.error({"--telemetry-plot " + options.telemetry_plot}, "must end in .svg");
+    run.missing = missing_frame(options.missing);
+    run.audit = options.audit;
+    run.telemetry = !options.telemetry.empty() || !options.telemetry_plot.empty();
+    return run;
+}
+
+}  // namespace aftershade::cli

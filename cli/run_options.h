@@ -1,0 +1,63 @@
+// The words of `aftershade run`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/capture_options.h"
+#include "cli/plugin_options.h"
+#include "framework/core/diagnostics.h"
+#include "framework/pipeline/look.h"
+#include "framework/pipeline/output_options.h"
+#include "framework/pipeline/pipeline.h"
+#include "framework/pipeline/run_options.h"
+
+namespace CLI {
+class App;
+}  // namespace CLI
+
+namespace aftershade::cli {
+
+struct RunArguments {
+    std::string look;
+    std::string look_folder;
+    std::vector<std::string> outputs;
+    std::vector<std::string> roles;
+    std::vector<std::string> effect_paths;
+    std::string pixel_type = "half";
+    std::string backend;
+    std::string progress = "auto";
+    std::string missing = "error";
+    std::string crop = "data";
+    std::string compression = "zip";
+    bool keep_channels = false;
+    bool audit = false;
+    bool explain = false;
+    bool watch = false;
+    std::string telemetry;
+    std::string telemetry_plot;
+    std::vector<std::string> variables;
+    std::string scale = "1";
+    std::string region;
+    int region_margin_px = 64;
+    std::string history_in;
+    std::string history_out;
+    std::string graph;
+    PipelineOptions pipeline;
+    CaptureOptions capture;
+    PluginOptions plugins;
+
+    /// Whether outputs have other pixels than the source.
+    bool changes_window() const;
+};
+
+void add_run_options(CLI::App& app, RunArguments& arguments);
+
+/// "--var focus=2.4 m" as values above the look's "vars".
+LookVariables look_variables(const RunArguments& arguments, Diagnostics& diagnostics);
+/// Without the renderer, which is not known yet.
+OutputOptions output_options(const RunArguments& arguments);
+/// Without the frames and native code, which words alone do not give.
+RunOptions run_options(const RunArguments& arguments, Diagnostics& diagnostics);
+
+}  // namespace aftershade::cli

@@ -1,0 +1,25 @@
+// What files `run` writes of each frame, and how.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "framework/image/exr_file.h"
+
+namespace aftershade {
+
+struct OutputOptions {
+    std::vector<std::string> patterns;        ///< "out.exr", "out_####.png": format by extension
+    std::vector<std::string> roles{"color"};  ///< in EXR files
+    PixelType color_type = PixelType::half;   ///< of roles that are half by default
+    bool keep_channels = false;               ///< EXR: every channel of the source too, under its own name
+    bool crop_to_display = false;     ///< EXR: the display window's pixels only; PNG always has just these
+    std::string compression = "zip";  ///< EXR
+    std::string look{};               ///< written as attribute aftershade/look
+    std::string renderer{};           ///< GL_RENDERER, written as attribute aftershade/renderer
+    std::string telemetry{};          ///< "stats_####.json": numbers of each frame; "" for none
+    std::map<std::string, std::string> tap_patterns{};  ///< by "step.texture"; else beside the first pattern
+};
+
+}  // namespace aftershade
