@@ -44,8 +44,15 @@ std::vector<const ParamSpec*> form_params(const EffectManifest& manifest) {
         add_grid(buffer.grid);
         names.insert(buffer.count.param);
     }
+    const auto add_subjects = [&](const auto& uses) {
+        for (const auto& use : uses)
+            for (const WhenSpec& condition : use.when) names.insert(condition.subject);
+    };
+    add_subjects(manifest.passes);
     for (const PassSpec& pass : manifest.passes) {
-        for (const WhenSpec& condition : pass.when) names.insert(condition.subject);
+        add_subjects(pass.reads);
+        add_subjects(pass.writes);
+        add_subjects(pass.images);
         if (pass.repeat) names.insert(pass.repeat->param);
         names.insert(pass.dispatch.tile.param);
         if (!pass.instances) continue;

@@ -28,11 +28,13 @@ class ParamReader {
 public:
     using Note = std::function<void(const std::string& name, ParamAspect aspect, const ParamValue& answer)>;
 
+    /// Of a text that no value decides: nothing may be read.
+    ParamReader() = default;
     /// Without notes. Implicit: most readers of a ParamSet build no graph.
     ParamReader(const ParamSet& params) : params_(&params) {}
     ParamReader(const ParamSet& params, Note note) : params_(&params), note_(std::move(note)) {}
 
-    bool has(const std::string& name) const { return params_->has(name); }
+    bool has(const std::string& name) const { return params_ && params_->has(name); }
     /// The whole value.
     const ParamValue& get(const std::string& name) const;
     /// Of a table, objects or a scattering_profile.
@@ -44,7 +46,7 @@ public:
 private:
     ParamValue ask(const std::string& name, ParamAspect aspect) const;
 
-    const ParamSet* params_;
+    const ParamSet* params_ = nullptr;
     Note note_;
 };
 

@@ -164,8 +164,7 @@ ShaderSource assemble_shader(const ShaderContext& context, Diagnostics& diagnost
 
 ShaderSource author_text(const EffectManifest& manifest, const PassSpec& pass, const fs::path& glsl_folder,
                          Diagnostics& diagnostics, ShaderFile file) {
-    const ParamSet none;  // the text is the same for all values
-    const ShaderContext context{&manifest, &pass, none, {}, glsl_folder};
+    const ShaderContext context{&manifest, &pass, {}, {}, glsl_folder};
     return Assembler(context, diagnostics, file).author_text();
 }
 

@@ -74,7 +74,7 @@ TEST_P(ProgramCacheOn, CompilesComputeInstancesAndAtomics) {
     const EffectManifest manifest = toy("tile_classify");
     const ParamSet params = defaults_of(manifest);
     const auto compiled = [&](std::size_t pass) -> const gpu::Program& {
-        return programs.get({&manifest, &manifest.passes[pass], &params, {}, kSource / "glsl"});
+        return programs.get({&manifest, &manifest.passes[pass], params, {}, kSource / "glsl"});
     };
     EXPECT_TRUE(compiled(0).is_compute());
     EXPECT_FALSE(compiled(2).is_compute());
@@ -174,7 +174,7 @@ TEST_P(ProgramCacheOn, NamesTheAuthorsLineInEitherShader) {
     ProgramCache programs(context(), kSource / "glsl", ProgramStore());
     const auto fault = [&] {
         return gpu::error_of([&] {
-            programs.get({&manifest, &manifest.passes[1], &params, {}, kSource / "glsl"});
+            programs.get({&manifest, &manifest.passes[1], params, {}, kSource / "glsl"});
         });
     };
     folder.write("d.vert", "#version 450 core\n#include <pass>\n\nvoid main() { gl_Position = parm; }\n");
