@@ -76,7 +76,7 @@ TEST(TileLists, AreListedByTheHostsShader) {
     const auto text = [&](std::size_t pass, ShaderFile file) {
         Diagnostics diagnostics;
         const ShaderSource source =
-            assemble_shader({&manifest, &manifest.passes[pass], &params, {}, kGlsl}, diagnostics, file);
+            assemble_shader({&manifest, &manifest.passes[pass], params, {}, kGlsl}, diagnostics, file);
         EXPECT_EQ(test::lines_of(diagnostics), Lines{});
         return source;
     };
