@@ -22,7 +22,8 @@ public:
         : manifest_(manifest), glsl_folder_(std::move(glsl_folder)), diagnostics_(diagnostics) {}
 
     void infer(PassSpec& pass) {
-        if (!fs::is_regular_file(shader_path(pass, ShaderFile::main, glsl_folder_))) return;  // told later
+        // The author's own file: of a tile list, whose shader is the host's, the predicate.
+        if (!fs::is_regular_file(pass.folder / pass.shader)) return;  // told later
         pass_ = &pass;
         const ShaderUses main = uses_of(ShaderFile::main);
         if (pass.infers_reads) {

@@ -154,6 +154,17 @@ TEST(TileLists, LieOnTexturesByTheirScale) {
                                          "you mean 'half_size'?"});
 }
 
+TEST(TileLists, NeedTheFileThatDecides) {
+    const EffectFolder folder(demo_manifest(
+        tiled(kNear, R"({"name": "x", "shader": "b.frag", "writes": ["color"], "over": "near"})")));
+    Diagnostics diagnostics;
+    EXPECT_FALSE(folder.manifest(diagnostics).has_value());
+    ASSERT_EQ(diagnostics.all().size(), 1U);
+    EXPECT_EQ(diagnostics.all()[0].message,
+              "tile list 'near': no file 'near.glsl' in " + folder.path().string());
+    EXPECT_EQ(diagnostics.all()[0].place.file, (folder.path() / "effect.json").string());
+}
+
 TEST(TileLists, NeedTheFunctionThatDecides) {
     const EffectFolder folder(demo_manifest(
         tiled(kNear, R"({"name": "x", "shader": "b.frag", "writes": ["color"], "over": "near"})")));
