@@ -114,7 +114,7 @@ TEST_P(EveryRole, IsCroppedPixelByPixel) {
 }
 
 TEST_P(EveryRole, HasColoursAndSaysWhatTheyMean) {
-    const Image pixels = image(2, 10);
+    const Image pixels = image(0.25f, 0.5f);
     const FalseColor colors(role().name, pixels, {});
     EXPECT_FALSE(colors.label()[0].empty());
     EXPECT_FALSE(colors.label()[1].empty());

@@ -135,8 +135,8 @@ TEST_F(GraphKeys, GiveEachFrameWhatAGraphOfItsOwnGives) {
     for (const std::string& params :
          {keyed("gain", "1", "2"), keyed("mode", "\"plain\"", "\"soft\""),
           R"("mode": "soft", )" + keyed("turns", "1", "3"),
-          keyed("gains", R"({ "rows": [ { "object": [0, 9], "gain": 2 } ] })",
-                R"({ "rows": [ { "name": "hair", "gain": 4 }, { "object": [0, 9], "gain": 3 } ] })")}) {
+          keyed("gains", R"({ "rows": [ { "objects": "0-9", "gain": 2 } ] })",
+                R"({ "rows": [ { "name": "hair", "gain": 4 }, { "objects": "0-9", "gain": 3 } ] })")}) {
         const std::string look = look_of(R"({ "effect": "shaped", "params": {)" + params + "} }");
         Bench used(effects_, look), fresh(effects_, look);
         used.run(capture_of(1));
@@ -154,8 +154,8 @@ TEST_F(GraphKeys, LeaveRoomForEveryNameOfATable) {
     ids.uints()[0] = cryptomatte_hash("hair");
     ids.uints()[1] = cryptomatte_hash("skin");
     Bench bench(effects_, look_of(R"({ "effect": "shaped", "params": {
-        "tone": [[0, 0], [100, 100]],
-        "gains": { "rows": [ { "object": [0, 4294967295], "gain": 0.5 }, { "name": "hair", "gain": 0.25 },
+        "tone": [[0, 0], [1, 1]],
+        "gains": { "rows": [ { "objects": "0-4294967295", "gain": 0.5 }, { "name": "hair", "gain": 0.25 },
                              { "name": "skin", "gain": 0.75 } ] } } })"));
     capture.images.erase("depth");
     const Image color = bench.color(capture);
