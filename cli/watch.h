@@ -1,8 +1,10 @@
 // Whether files that a picture is made of have changed: for `run --watch`.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "framework/pipeline/look.h"

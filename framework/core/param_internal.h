@@ -1,8 +1,10 @@
 // Shared by the sources that read parameters. Internal to framework/core.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "framework/core/param.h"
 #include "framework/core/units.h"

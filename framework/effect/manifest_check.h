@@ -1,6 +1,8 @@
 // What a manifest must satisfy beyond the types of its fields. Internal to framework/effect.
 #pragma once
 
+#include <string>
+
 #include "framework/effect/manifest.h"
 
 namespace aftershade {

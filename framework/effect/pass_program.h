@@ -1,9 +1,11 @@
 // Compiles the shaders of a pass and speaks of their faults in the author's files and lines.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "framework/effect/program_store.h"
 #include "framework/effect/shader_source.h"

@@ -1,6 +1,8 @@
 // What FrameGraph refuses. Internal to framework/graph.
 #pragma once
 
+#include <string>
+
 #include "framework/graph/frame_graph.h"
 
 namespace aftershade::graph {

@@ -1,6 +1,7 @@
 // One frame in memory: images by role, camera and metadata.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <set>

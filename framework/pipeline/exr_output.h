@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "framework/image/capture.h"
 #include "framework/pipeline/output_options.h"

@@ -1,6 +1,7 @@
 // Runs a pipeline over captures on one GL context.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "framework/image/capture.h"
 #include "framework/scene/world.h"

@@ -1,8 +1,10 @@
 // Rays against shapes, in a shape's own space.
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
+#include <vector>
 
 #include "framework/scene/mesh.h"
 #include "framework/scene/scene.h"
