@@ -8,7 +8,7 @@
 #include "cli/effect_options.h"
 #include "cli/verbs.h"
 #include "framework/batch/golden_suite.h"
-#include "framework/core/schema_pieces.h"
+#include "framework/scattering/scattering_schema.h"
 #include "framework/scene/scene_schema.h"
 
 namespace aftershade::cli {

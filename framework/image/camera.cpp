@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "framework/core/param_type.h"
 #include "framework/core/units.h"
 
 namespace aftershade {
@@ -30,7 +31,7 @@ const CameraField* find_camera_field(const std::string& name) {
 
 std::vector<std::string> camera_sources(ParamType type) {
     const std::string camera(kFromCamera);
-    if (type == ParamType::enum_) return {camera + "lens_model"};
+    if (type->is_choice) return {camera + "lens_model"};
     std::vector<std::string> sources;
     for (const CameraField& field : camera_fields()) sources.push_back(camera + field.name);
     return sources;

@@ -137,8 +137,9 @@ std::string capture_schema() {
          {"cuts", schema::array_of({{"type", "integer"}})},
          {"subframes", {{"type", "integer"}, {"minimum", 1}, {"maximum", 1024}}}},
         {});
-    document["anyOf"] = {{{"required", {"frames"}}},
-                         {{"required", {"files"}}, {"properties", {{"files", {{"required", {kColorRole}}}}}}}};
+    document["anyOf"] = {
+        {{"required", {"frames"}}},
+        {{"required", {"files"}}, {"properties", {{"files", {{"required", {kColorRole}}}}}}}};
     return document.dump(2) + "\n";
 }
 

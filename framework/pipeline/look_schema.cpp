@@ -1,5 +1,6 @@
 #include <utility>
 
+#include "framework/core/param_type.h"
 #include "framework/core/units.h"
 #include "framework/effect/describe.h"
 #include "framework/image/camera.h"
@@ -31,21 +32,17 @@ json keyed(const json& literal) {
                           {"keys"});
 }
 
-bool is_number(const ParamSpec& spec) {
-    return spec.type == ParamType::float_ || spec.type == ParamType::angle || spec.type == ParamType::int_;
-}
-
 /// Values of the capture that a parameter may take.
 std::vector<json> captured(const ParamSpec& spec) {
     std::vector<json> forms;
     std::vector<std::string> fields;
-    if (spec.type == ParamType::enum_) fields = camera_sources(spec.type);
-    if (is_number(spec))
+    if (spec.type->is_choice) fields = camera_sources(spec.type);
+    if (is_scalar_type(spec.type))
         for (const CameraField& field : camera_fields())
             if (converts_to(field, spec)) fields.push_back(std::string(kFromCamera) + field.name);
     if (!fields.empty())
         forms.push_back(schema::object({{"from", or_variable(schema::one_of(fields))}}, {"from"}));
-    if (!is_number(spec) || !convert_unit(1, "m", spec.unit)) return forms;
+    if (!is_scalar_type(spec.type) || !convert_unit(1, "m", spec.unit)) return forms;
     const json depth = or_variable({{"const", "depth"}});
     const json side = or_variable({{"type", "number"}, {"minimum", 0}, {"maximum", 1}});
     const json point = or_variable(schema::array_of(side, 2, 2));
@@ -64,7 +61,7 @@ json value_of(const ParamSpec& spec) {
     const std::string range = range_text(spec);
     json value = {
         {"description", spec.doc + " [" + type_text(spec) + (range.empty() ? "" : ", " + range) + "]"}};
-    if (spec.type != ParamType::table) value["default"] = json::parse(format_value(spec, spec.default_value));
+    if (spec.type->has_default) value["default"] = json::parse(format_value(spec, spec.default_value));
     value["anyOf"] = std::move(forms);
     return value;
 }

@@ -2,6 +2,7 @@
 
 #include "framework/core/schema_pieces.h"
 #include "framework/image/frame_range.h"
+#include "framework/scattering/scattering_schema.h"
 #include "framework/scene/fields.h"
 
 namespace aftershade::scene {

@@ -65,9 +65,10 @@ TEST(Layers, OfEveryRoleAreComparedAsItsKindIs) {
     for (const ChannelRole& role : channel_roles()) {
         std::vector<std::string> floats, uints;
         (role.type == ComponentType::uint32 ? uints : floats) = role.native_channels;
-        for (const LayerInfo& layer : layers(floats, uints))
-            if (layer.role != LayerRole::alpha)
-                EXPECT_EQ(layer.role, expected.at(role.kind)) << role.name << ": " << layer.label();
+        for (const LayerInfo& layer : layers(floats, uints)) {
+            if (layer.role == LayerRole::alpha) continue;
+            EXPECT_EQ(layer.role, expected.at(role.kind)) << role.name << ": " << layer.label();
+        }
     }
 }
 

@@ -1,5 +1,5 @@
-// Every role, and one that is passed through, in the hands of all that treat roles by their kind. A role that is
-// added to the table is held to its kind here by itself.
+// Every role, and one that is passed through, in the hands of all that treat roles by their kind. A role that
+// is added to the table is held to its kind here by itself.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -56,8 +56,7 @@ protected:
     /// The decoding of channels named c0, c1, ... with more keys.
     RoleDecoding decoding(const std::string& more, Diagnostics& diagnostics) const {
         std::string names;
-        for (int c = 0; c < role().channels; ++c)
-            names += (c ? ", \"c" : "\"c") + std::to_string(c) + "\"";
+        for (int c = 0; c < role().channels; ++c) names += (c ? ", \"c" : "\"c") + std::to_string(c) + "\"";
         return parse_role_decoding(role().name, test::parsed("{\"channels\": [" + names + "]" + more + "}"),
                                    diagnostics);
     }
@@ -114,7 +113,7 @@ TEST_P(EveryRole, IsCroppedPixelByPixel) {
 }
 
 TEST_P(EveryRole, HasColoursAndSaysWhatTheyMean) {
-    const Image pixels = image(2, 10);
+    const Image pixels = image(0.25f, 0.5f);
     const FalseColor colors(role().name, pixels, {});
     EXPECT_FALSE(colors.label()[0].empty());
     EXPECT_FALSE(colors.label()[1].empty());

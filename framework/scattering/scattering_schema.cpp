@@ -1,7 +1,8 @@
-// JSON Schema of scattering profiles: what scattering_profile_parse.cpp takes.
+#include "framework/scattering/scattering_schema.h"
+
 #include <utility>
 
-#include "framework/core/schema_pieces.h"
+#include "framework/scattering/scattering_profile.h"
 
 namespace aftershade::schema {
 
