@@ -86,7 +86,10 @@ void ManifestParser::shaders(ObjectReader& reader, const Node& node, PassSpec& p
             pass.dispatch = dispatch(*groups);
         return;
     }
-    pass.vertex = reader.text("vertex").value_or("");
+    if (const auto vertex = reader.text("vertex")) {
+        pass.vertex = *vertex;
+        if (vertex->empty()) fault(node.find("vertex")->place, "'vertex' is empty: it names a shader's file");
+    }
     const auto over = reader.text("over");
     pass.over = over.value_or("");
     if (over && over->empty()) fault(node.find("over")->place, "'over' names no tile list");
