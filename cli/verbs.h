@@ -16,17 +16,17 @@ using Verb = std::function<ExitCode()>;
 /// One line a verb, in the order of `aftershade --help`; add_<name> is in cli/<name>.cpp.
 #define AFTERSHADE_VERBS(VERB)                                                                               \
     VERB(run, "Run a look over a capture and write the result")                                              \
-    VERB(inspect, "Tell what a capture holds: parts, channels with their figures, roles, camera")            \
+    VERB(inspect, "Show what a capture holds: parts, channels with their figures, roles, camera")            \
     VERB(compare, "Compare two pictures, layer by layer: how different, how visible, a verdict for scripts") \
     VERB(golden, "Render a suite of cases and compare them with approved images; approve new ones")          \
     VERB(render, "Render a scene: captures, and the true pictures that effects approximate")                 \
-    VERB(list, "List the effects that there are")                                                            \
-    VERB(describe, "Tell what an effect takes, makes and can be told; what a scattering profile is")         \
+    VERB(list, "List effects and scattering profiles")                                                       \
+    VERB(describe, "Show an effect's inputs, outputs and parameters, or a scattering profile")               \
     VERB(new, "Make the folder of a new effect, which runs at once")                                         \
     VERB(check, "Check an effect or a look: documents, shaders, values; exit 1: no")                         \
     VERB(schema, "Print the JSON Schema of looks, captures, effects, scenes or profiles, for editors")       \
     VERB(docs, "Write the page of each effect from its manifest, and the scene reference")                   \
-    VERB(doctor, "Tell which GL backends work on this machine, and why others do not")
+    VERB(doctor, "Show which GL backends work on this machine, and why others do not")
 
 #define AFTERSHADE_DECLARE_VERB(name, help) Verb add_##name(CLI::App& app);
 AFTERSHADE_VERBS(AFTERSHADE_DECLARE_VERB)
