@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
 
 #include "cli/capture_options.h"
+#include "cli/documents.h"
 #include "cli/effect_options.h"
 #include "cli/verbs.h"
 #include "framework/core/atomic_file.h"
@@ -26,6 +28,36 @@ struct DocsOptions {
     bool check = false;
 };
 
+/// A page that shows a table of a document leaves none of its others to nobody.
+void check_that_all_are_shown(const grammar::Tables& tables, const std::map<std::string, std::string>& pages,
+                              const fs::path& folder, Diagnostics& diagnostics) {
+    std::set<std::string> shown, documents;
+    for (const auto& [table, text] : tables)
+        for (const auto& [name, page] : pages)
+            if (grammar::shows_table(page, table)) {
+                shown.insert(table);
+                documents.insert(table.substr(0, table.find('.')));
+            }
+    for (const auto& [table, text] : tables)
+        if (documents.contains(table.substr(0, table.find('.'))) && !shown.contains(table))
+            diagnostics.error({folder.string()}, "no page shows the table '" + table + "'");
+}
+
+/// Pages beside the folder of the effects' pages, with the tables that stand in their marked regions.
+void add_pages_with_tables(const fs::path& folder, std::map<std::string, std::string>& pages,
+                           Diagnostics& diagnostics) {
+    const grammar::Tables tables = document_tables();
+    std::error_code failure;
+    for (const auto& entry : fs::directory_iterator((folder / "..").lexically_normal(), failure)) {
+        const std::string name = "../" + entry.path().filename().string();
+        if (entry.path().extension() != ".md" || pages.contains(name)) continue;
+        std::vector<std::string> faults;
+        pages[name] = grammar::with_tables(read_text_file(entry.path(), ExitCode::usage), tables, faults);
+        for (const std::string& fault : faults) diagnostics.error({entry.path().string()}, fault);
+    }
+    check_that_all_are_shown(tables, pages, folder, diagnostics);
+}
+
 /// File name, from the folder of the effects' pages, and text of every page.
 std::map<std::string, std::string> pages(const DocsOptions& options, EffectRegistry& effects,
                                          Diagnostics& diagnostics) {
@@ -43,6 +75,7 @@ std::map<std::string, std::string> pages(const DocsOptions& options, EffectRegis
     if (options.effects.empty()) {
         pages["README.md"] = index_markdown(manifests);
         pages["../scene-reference.md"] = scene::scene_reference();
+        add_pages_with_tables(options.folder, pages, diagnostics);
     }
     return pages;
 }
@@ -77,10 +110,11 @@ ExitCode docs(const DocsOptions& options) {
 
 Verb add_docs(CLI::App& app) {
     auto options = std::make_shared<DocsOptions>();
-    app.add_option("effects", options->effects,
-                   "Ids of effects (default: all, their index and the scene reference)");
+    app.add_option(
+        "effects", options->effects,
+        "Ids of effects (default: all, their index, the scene reference and the tables of other pages)");
     app.add_option("-o,--output", options->folder,
-                   "Folder of the effects' pages; scene-reference.md stands beside it")
+                   "Folder of the effects' pages; scene-reference.md and other pages stand beside it")
         ->capture_default_str();
     app.add_flag("--check", options->check, "Write nothing; exit 1 where a page is not what is declared");
     add_effect_path_option(app, options->effect_paths);

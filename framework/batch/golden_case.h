@@ -13,6 +13,10 @@
 #include "framework/core/diagnostics.h"
 #include "framework/core/document.h"
 
+namespace aftershade::grammar {
+class Reader;
+}
+
 namespace aftershade {
 
 struct GoldenCase {
@@ -43,10 +47,10 @@ std::string golden_image_name(const std::string& image_stem, int frame);
 /// with `warn`; nan_equal. Without any `warn` key only a failing image is told of.
 CompareRules parse_golden_tolerance(const Node& node, Diagnostics& diagnostics);
 
-/// What cases in golden.json and cases of effects share: capture, frames, steps, outputs, tolerance, tags,
-/// skip. The document's own keys are read before; paths are relative to `folder`.
-void parse_golden_case(const Node& node, ObjectReader& reader, const std::filesystem::path& folder,
-                       GoldenCase& result, Diagnostics& diagnostics);
+/// What cases in golden.json and cases of effects share; the document has been checked. Paths are relative to
+/// `folder`.
+void read_golden_case(const grammar::Reader& reader, const std::filesystem::path& folder, GoldenCase& result,
+                      Diagnostics& diagnostics);
 
 /// effects/<id>/cases/<case>.json; nullopt after faults. `root` is what the capture's path is relative to:
 /// the folder that `effects` lies in.

@@ -5,12 +5,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <set>
 
 #include "framework/batch/approved_image.h"
+#include "framework/batch/golden_grammar.h"
 #include "framework/core/data_path.h"
+#include "framework/core/grammar_reader.h"
+#include "framework/core/grammar_schema.h"
 #include "framework/image/frame_range.h"
 
 namespace aftershade {
@@ -19,33 +21,18 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Presence = ObjectReader::Presence;
-
-/// A name is the beginning of files' names, and its dots would be taken for theirs.
-bool is_case_name(const std::string& name) {
-    const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };
-    return !name.empty() && std::ranges::all_of(name, fits) && name.front() != '-';
-}
-
 class SuiteReader {
 public:
     SuiteReader(GoldenSuite& suite, Diagnostics& diagnostics) : suite_(suite), diagnostics_(diagnostics) {}
 
     void read(const Node& node) {
+        grammar::check(node, golden_suite_block(), diagnostics_);
+        const grammar::Reader reader(node, golden_suite_block());
         folder_ = suite_.file.parent_path();
-        ObjectReader reader(node, "the suite", diagnostics_);
-        check_document_version(reader, node, diagnostics_);
-        reader.text("$schema");
-        goldens_ = folder_ / reader.text("goldens").value_or("goldens");
+        goldens_ = folder_ / reader.text("goldens");
         for (const std::string& path : reader.texts("effect_paths")) add_effect_path(node, path);
-        if (const Node* cases = reader.array("cases"))
-            for (const Node& test : cases->items) add_case(test);
-        const Node* of_effects = reader.any("cases_of_effects");
-        if (of_effects && of_effects->kind != Node::Kind::boolean)
-            diagnostics_.error(of_effects->place, "'cases_of_effects' must be a boolean, not " +
-                                                      std::string(kind_name(of_effects->kind)));
-        if (of_effects && of_effects->boolean) add_cases_of_effects();
-        reader.finish();
+        for (const grammar::Reader& test : reader.objects("cases")) add_case(test);
+        if (reader.boolean("cases_of_effects")) add_cases_of_effects();
         if (suite_.cases.empty() && !diagnostics_.has_errors())
             diagnostics_.error(node.place, "a suite needs 'cases' or 'cases_of_effects'");
     }
@@ -58,32 +45,23 @@ private:
                                "no folder '" + suite_.effect_paths.back().string() + "'");
     }
 
-    void add_case(const Node& node) {
-        ObjectReader reader(node, "the case", diagnostics_);
+    void add_case(const grammar::Reader& reader) {
         GoldenCase result;
         result.file = suite_.file;
         result.folder = folder_;
         result.goldens = goldens_;
-        result.name = result.stem = reader.text("name", Presence::required).value_or("");
-        if (const Node* name = node.find("name"); name && name->is_string()) check_name(*name);
-        if (const auto look = reader.text("look")) {
-            result.look = (folder_ / *look).lexically_normal();
+        result.name = result.stem = reader.text("name");
+        if (reader.has("name")) check_name(*reader.find("name"));
+        if (reader.has("look")) {
+            result.look = (folder_ / reader.text("look")).lexically_normal();
             if (!fs::is_regular_file(result.look))
-                diagnostics_.error(node.find("look")->place, "no file '" + result.look.string() + "'");
+                diagnostics_.error(reader.place("look"), "no file '" + result.look.string() + "'");
         }
-        if (node.is_object() && (node.find("look") != nullptr) == (node.find("steps") != nullptr))
-            diagnostics_.error(node.place, "a case has a 'look' (a file) or 'steps', one of both");
-        parse_golden_case(node, reader, folder_, result, diagnostics_);
-        reader.finish();
+        read_golden_case(reader, folder_, result, diagnostics_);
         suite_.cases.push_back(std::move(result));
     }
 
     void check_name(const Node& name) {
-        if (!is_case_name(name.string))
-            diagnostics_.error(name.place,
-                               "a case's name begins its files' names: letters, digits, '_' and "
-                               "'-', not '" +
-                                   name.string + "'");
         const auto [other, is_new] = names_.emplace(name.string, name.place);
         if (!is_new)
             diagnostics_.error(name.place, "a second case named '" + name.string + "' (the first is at " +
@@ -189,6 +167,14 @@ std::vector<fs::path> orphaned_goldens(const GoldenSuite& suite, const std::vect
     }
     std::sort(orphans.begin(), orphans.end());
     return orphans;
+}
+
+std::string golden_schema() {
+    return grammar::schema_text("Aftershade golden suite", golden_suite_block());
+}
+
+std::string effect_case_schema() {
+    return grammar::schema_text("Aftershade case of an effect", effect_case_block());
 }
 
 }  // namespace aftershade

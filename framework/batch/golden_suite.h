@@ -34,5 +34,7 @@ std::vector<std::filesystem::path> orphaned_goldens(const GoldenSuite& suite,
 
 /// JSON Schema of golden.json.
 std::string golden_schema();
+/// JSON Schema of an effect's case.
+std::string effect_case_schema();
 
 }  // namespace aftershade

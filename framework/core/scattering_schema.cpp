@@ -1,4 +1,5 @@
 // JSON Schema of scattering profiles: what scattering_profile_parse.cpp takes.
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "framework/core/schema_pieces.h"
@@ -93,14 +94,14 @@ json scattering_profile(Variables variables) {
     return ProfileForms(variables, json::object()).all({});
 }
 
-json scattering_profile_file() {
+std::string scattering_profile_schema() {
     const json head = {{"$schema", text()},
                        {"aftershade", {{"const", 1}, {"description", "Version of the format."}}},
                        {"summary", text()},
                        {"sources", array_of(text())}};
     json result = {{"$schema", kDraft}, {"title", "Aftershade scattering profile"}};
     result.update(ProfileForms(Variables::no, head).all({"aftershade", "summary"}));
-    return result;
+    return result.dump(2) + "\n";
 }
 
 }  // namespace aftershade::schema

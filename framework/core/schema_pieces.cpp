@@ -1,6 +1,7 @@
 #include "framework/core/schema_pieces.h"
 
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "framework/core/units.h"

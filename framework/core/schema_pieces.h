@@ -1,7 +1,7 @@
 // Pieces that the JSON Schemas of documents share.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -38,8 +38,8 @@ void define_variable(json& definitions);
 json literal(const ParamSpec& spec, Variables variables = Variables::no);
 /// A scattering profile as an object, within another document.
 json scattering_profile(Variables variables = Variables::no);
-/// Of a scattering profile's own file, with its head.
-json scattering_profile_file();
+/// Of a scattering profile's own file, as text.
+std::string scattering_profile_schema();
 /// Id of an object, ids and ranges of ids, or a Cryptomatte name.
 json object_key();
 /// Head of a document: "$schema" of the schema itself, title, and "aftershade": 1 among the properties.

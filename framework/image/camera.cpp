@@ -2,21 +2,22 @@
 
 #include <algorithm>
 
+#include "framework/core/grammar_reader.h"
 #include "framework/core/units.h"
 
 namespace aftershade {
 
 const std::vector<CameraField>& camera_fields() {
     static const std::vector<CameraField> fields = {
-        {"focus_distance", "m", 0.001},
-        {"focal_length", "mm", 0.1},
-        {"sensor_width", "mm", 0.1},
-        {"f_number", "", 0.01},
-        {"blades", "", 0},
-        {"rotation", "deg", -1e6},
-        {"shutter_angle", "deg", 0},
-        {"near", "m", 0},
-        {"far", "m", 0},
+        {"focus_distance", "m", 0.001, "Along the view axis to the plane in focus."},
+        {"focal_length", "mm", 0.1, "With the sensor's width it gives the angle of view."},
+        {"sensor_width", "mm", 0.1, "Sensor, as wide as the display window."},
+        {"f_number", "", 0.01, "Focal length over the aperture's diameter."},
+        {"blades", "", 0, "Corners of the aperture; 0 is a disk."},
+        {"rotation", "deg", -1e6, "Of the aperture; 0 puts the middle of a straight edge at +x."},
+        {"shutter_angle", "deg", 0, "360 is the whole frame."},
+        {"near", "m", 0, "The plane where a stored depth begins."},
+        {"far", "m", 0, "The plane where a stored depth ends."},
     };
     return fields;
 }
@@ -26,6 +27,11 @@ const CameraField* find_camera_field(const std::string& name) {
     const auto found =
         std::find_if(fields.begin(), fields.end(), [&](const auto& f) { return f.name == name; });
     return found == fields.end() ? nullptr : &*found;
+}
+
+const std::vector<std::string>& lens_model_names() {
+    static const std::vector<std::string> names = {"thin", "pinhole"};
+    return names;
 }
 
 std::vector<std::string> camera_sources(ParamType type) {
@@ -69,22 +75,12 @@ void Camera::complete_from(const Camera& other) {
     if (!jitter_px) jitter_px = other.jitter_px;
 }
 
-Camera parse_camera(const Node& node, Diagnostics& diagnostics) {
+Camera read_camera(const grammar::Reader& reader) {
     Camera camera;
-    ObjectReader reader(node, "the camera", diagnostics);
-    for (const CameraField& field : camera_fields()) {
-        const Node* value = reader.any(field.name);
-        if (!value) continue;
-        ParamSpec spec;
-        spec.name = field.name;
-        spec.unit = field.unit;
-        spec.min = field.min;
-        if (const auto parsed = parse_param_value(spec, *value, "camera." + field.name, diagnostics))
-            camera.set(field.name, std::get<double>(*parsed), "capture.json");
-    }
-    if (const auto model = reader.choice("lens_model", std::vector<std::string>{"thin", "pinhole"}))
-        camera.set_lens_model(*model, "capture.json");
-    reader.finish();
+    for (const CameraField& field : camera_fields())
+        if (const auto value = reader.value(field.name))
+            camera.set(field.name, std::get<double>(*value), "capture.json");
+    if (reader.has("lens_model")) camera.set_lens_model(reader.text("lens_model"), "capture.json");
     return camera;
 }
 

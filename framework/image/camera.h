@@ -11,6 +11,10 @@
 #include "framework/core/document.h"
 #include "framework/core/param.h"
 
+namespace aftershade::grammar {
+class Reader;
+}
+
 namespace aftershade {
 
 /// A number that a camera may have, named as parameters' "from" names it.
@@ -18,6 +22,7 @@ struct CameraField {
     std::string name;  ///< "focus_distance"
     std::string unit;  ///< "" for a pure number
     double min = 0;
+    std::string doc;
 };
 
 const std::vector<CameraField>& camera_fields();
@@ -31,6 +36,8 @@ std::vector<std::string> camera_sources(ParamType type);
 bool converts_to(const CameraField& field, const ParamSpec& spec);
 /// For a `source` that is not among `known`: what an error says of it.
 std::string unknown_source(const std::string& source, const std::vector<std::string>& known);
+/// "thin", "pinhole".
+const std::vector<std::string>& lens_model_names();
 
 /// Row by row, acting on column vectors: clip = matrix * world.
 using CameraMatrix = std::array<double, 16>;
@@ -64,8 +71,7 @@ private:
     std::map<std::string, std::string> origins_;
 };
 
-/// Reads "camera": {"focal_length": "50 mm", ...}: numbers in the field's unit, or strings with a unit;
-/// "lens_model".
-Camera parse_camera(const Node& node, Diagnostics& diagnostics);
+/// "camera" of a capture.json, which has been checked.
+Camera read_camera(const grammar::Reader& reader);
 
 }  // namespace aftershade

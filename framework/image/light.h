@@ -9,6 +9,10 @@
 #include "framework/core/diagnostics.h"
 #include "framework/core/document.h"
 
+namespace aftershade::grammar {
+class Reader;
+}
+
 namespace aftershade {
 
 struct CaptureLight {
@@ -27,8 +31,9 @@ struct CaptureLight {
 /// "point", "directional", "area".
 const std::vector<std::string>& light_kind_names();
 
-/// An array of {"type": "point", "name": "key", "position": [x, y, z], "direction": [x, y, z],
-/// "size": [w, h], "intensity": [r, g, b]}; what a type does not have is an unknown key.
+/// An entry of "lights" of a capture.json, which has been checked.
+CaptureLight read_light(const grammar::Reader& reader);
+/// Checks and reads an array of such objects.
 std::vector<CaptureLight> parse_lights(const Node& node, Diagnostics& diagnostics);
 /// One line of JSON that parse_lights reads back as it was.
 std::string format_lights(const std::vector<CaptureLight>& lights);

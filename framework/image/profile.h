@@ -88,8 +88,8 @@ std::vector<Profile> read_profiles(const std::vector<std::filesystem::path>& fol
                                    Diagnostics& diagnostics);
 std::vector<Profile> read_profiles(const std::filesystem::path& folder, Diagnostics& diagnostics);
 std::optional<Profile> parse_profile(const Node& node, Diagnostics& diagnostics);
-/// One role of a profile, or of capture.json's "channels".
-RoleDecoding parse_role_decoding(const std::string& role, const Node& node, Diagnostics& diagnostics);
+/// "roles" of a profile, or "channels" of a capture.json, which has been checked.
+std::map<std::string, RoleDecoding> read_decodings(const Node& node);
 
 /// The stored channels that a role's decoding finds in a part: per layer, per component; "" for an optional
 /// one that is absent. nullopt where a required one is missing.

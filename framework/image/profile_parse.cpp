@@ -1,213 +1,118 @@
 #include <algorithm>
 #include <utility>
 
-#include "framework/core/param.h"
-#include "framework/core/units.h"
+#include "framework/core/grammar_reader.h"
 #include "framework/image/camera.h"
-#include "framework/image/color_space.h"
+#include "framework/image/capture_grammar.h"
 #include "framework/image/profile.h"
+#include "framework/image/profile_grammar.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
 
 namespace fs = std::filesystem;
-using Presence = ObjectReader::Presence;
 
 namespace {
 
-template <typename Value>
-using Names = std::vector<std::pair<std::string, Value>>;
-
-const Names<VelocityDelta> kDeltas = {{"cur-prev", VelocityDelta::cur_minus_prev},
-                                      {"prev-cur", VelocityDelta::prev_minus_cur},
-                                      {"next-cur", VelocityDelta::next_minus_cur},
-                                      {"cur-next", VelocityDelta::cur_minus_next}};
-const Names<VelocityUnit> kUnits = {
-    {"px", VelocityUnit::px}, {"uv", VelocityUnit::uv}, {"ndc", VelocityUnit::ndc}};
-const Names<DepthEncoding> kEncodings = {{"linear", DepthEncoding::linear},
-                                         {"inverse", DepthEncoding::inverse},
-                                         {"z_buffer", DepthEncoding::z_buffer},
-                                         {"normalized", DepthEncoding::normalized}};
-
-template <typename Value>
-void read_choice(ObjectReader& reader, const std::string& key, const Names<Value>& names, Value& value) {
-    std::vector<std::string> words;
-    for (const auto& [word, meaning] : names) words.push_back(word);
-    const auto chosen = reader.choice(key, words);
-    for (const auto& [word, meaning] : names)
-        if (chosen == word) value = meaning;
-}
-
-std::vector<std::string> read_names(const Node& list, Diagnostics& diagnostics) {
-    std::vector<std::string> names;
-    for (const Node& item : list.items) {
-        if (item.is_string()) names.push_back(item.string);
-        else diagnostics.error(item.place, "a channel name must be a string");
-    }
-    return names;
-}
-
 /// "channels": [...], "sum": [[...], [...]], or one key per component: "x": "forward.u", "y": "forward.v".
-void read_layers(ObjectReader& reader, const ChannelRole& role, const Node& node, RoleDecoding& decoding,
-                 Diagnostics& diagnostics) {
-    const std::size_t components = std::size_t(role.channels);
-    if (const Node* channels = reader.array("channels"))
-        decoding.layers.push_back(read_names(*channels, diagnostics));
-    if (const Node* sum = reader.array("sum"))
-        for (const Node& layer : sum->items) decoding.layers.push_back(read_names(layer, diagnostics));
-    std::vector<std::string> by_component;
-    for (const std::string& native : role.native_channels) {
-        // "velocity.X" -> "x", "Z" -> "z"
-        std::string key(1, char(std::tolower(static_cast<unsigned char>(native.back()))));
-        if (const auto name = reader.text(key)) by_component.push_back(*name);
-    }
-    if (role.has_optional_alpha() && by_component.size() + 1 == components) by_component.push_back("A?");
-    if (!by_component.empty()) decoding.layers.push_back(by_component);
-    for (const auto& layer : decoding.layers)
-        if (layer.size() != components)
-            diagnostics.error(node.place, "role '" + role.name + "' has " + std::to_string(components) +
-                                              " channels, not " + std::to_string(layer.size()));
-    if (decoding.layers.empty() && node.is_object())
-        diagnostics.error(node.place,
-                          "role '" + role.name + "' needs 'channels', or 'sum' with lists of channels");
-}
-
-std::optional<double> read_length_m(ObjectReader& reader, const std::string& key, Diagnostics& diagnostics) {
-    const Node* value = reader.any(key);
-    if (!value) return std::nullopt;
-    ParamSpec spec;
-    spec.unit = "m";
-    spec.min = 0;
-    const auto parsed = parse_param_value(spec, *value, key, diagnostics);
-    return parsed ? std::optional(std::get<double>(*parsed)) : std::nullopt;
-}
-
-void read_depth(ObjectReader& reader, RoleDecoding& decoding, Diagnostics& diagnostics) {
-    decoding.scale = float(reader.number("scale").value_or(1.0));
-    if (const auto no_hit = reader.number("no_hit")) decoding.no_hit = float(*no_hit);
-    if (const auto stored = reader.number("no_hit_stored")) decoding.no_hit_stored = float(*stored);
-    decoding.zero_is_no_hit = reader.boolean("zero_is_no_hit").value_or(false);
-    read_choice(reader, "encoding", kEncodings, decoding.encoding);
-    decoding.reversed = reader.boolean("reversed").value_or(false);
-    decoding.radial = reader.choice("kind", std::vector<std::string>{"planar", "radial"}) == "radial";
-    decoding.near_m = read_length_m(reader, "near", diagnostics);
-    decoding.far_m = read_length_m(reader, "far", diagnostics);
-}
-
-void read_velocity_scale(const Node& value, RoleDecoding& decoding, Diagnostics& diagnostics) {
-    if (value.is_number()) {
-        decoding.velocity_scale = {float(value.number), float(value.number)};
-    } else if (value.is_array() && value.items.size() == 2 && value.items[0].is_number() &&
-               value.items[1].is_number()) {
-        decoding.velocity_scale = {float(value.items[0].number), float(value.items[1].number)};
-    } else {
-        diagnostics.error(value.place, "'scale' of a velocity is a number, or one for x and one for y");
-    }
-}
-
-void read_velocity(ObjectReader& reader, const ChannelRole& role, const Node& node, RoleDecoding& decoding,
-                   Diagnostics& diagnostics) {
-    if (role.to_next) decoding.delta = VelocityDelta::next_minus_cur;
-    read_choice(reader, "delta", kDeltas, decoding.delta);
-    const bool is_next =
-        decoding.delta == VelocityDelta::next_minus_cur || decoding.delta == VelocityDelta::cur_minus_next;
-    if (is_next != role.to_next && node.find("delta"))
-        diagnostics.error(node.find("delta")->place,
-                          "role '" + role.name + "' cannot be decoded from '" + node.find("delta")->string +
-                              "': 'next' vectors fill velocity_next and no other role");
-    decoding.y_axis_up = reader.choice("y_axis", std::vector<std::string>{"up", "down"}) == "up";
-    read_choice(reader, "unit", kUnits, decoding.unit);
-    if (const Node* scale = reader.any("scale")) read_velocity_scale(*scale, decoding, diagnostics);
-    decoding.bias = float(reader.number("bias").value_or(0.0));
-    decoding.premultiplied = reader.boolean("premultiplied").value_or(false);
-    if (const auto above = reader.number("no_motion_above")) decoding.no_motion_above = float(*above);
-    decoding.shutter_frames = reader.number("shutter_frames").value_or(1.0);
-    if (decoding.shutter_frames <= 0)
-        diagnostics.error(node.find("shutter_frames")->place, "'shutter_frames' must be above 0");
-}
-
-void read_camera_sources(const Node& section, Profile& profile, Diagnostics& diagnostics) {
-    for (const Member& member : section.members) {
-        const CameraField* field = find_camera_field(member.key);
-        if (!field) {
-            std::vector<std::string> known;
-            for (const CameraField& candidate : camera_fields()) known.push_back(candidate.name);
-            diagnostics.error(member.key_place,
-                              "'" + member.key + "' is not a camera value" + did_you_mean(member.key, known));
-            continue;
+void read_layers(const grammar::Reader& reader, const ChannelRole& role, RoleDecoding& decoding) {
+    if (reader.has("channels")) decoding.layers.push_back(reader.texts("channels"));
+    if (const Node* sum = reader.find("sum"))
+        for (const Node& layer : sum->items) {
+            decoding.layers.emplace_back();
+            for (const Node& name : layer.items) decoding.layers.back().push_back(name.string);
         }
-        ObjectReader reader(member.value, "camera." + member.key, diagnostics);
-        CameraSource source;
-        source.attributes = reader.texts("attributes");
-        source.unit = reader.text("unit").value_or(field->unit);
-        if (source.unit != field->unit && !convert_unit(1, source.unit, field->unit))
-            diagnostics.error(member.value.place, "'" + source.unit + "' does not convert to " + field->unit);
-        reader.finish();
-        profile.camera[member.key] = std::move(source);
-    }
+    std::vector<std::string> by_component;
+    for (const std::string& native : role.native_channels)
+        if (const std::string key = component_key(native); reader.has(key))
+            by_component.push_back(reader.text(key));
+    if (role.has_optional_alpha() && by_component.size() + 1 == std::size_t(role.channels))
+        by_component.push_back("A?");
+    if (!by_component.empty()) decoding.layers.push_back(by_component);
 }
 
-void read_facts(const Node& list, Profile& profile, Diagnostics& diagnostics) {
-    for (const Node& item : list.items) {
-        ObjectReader reader(item, "the fact", diagnostics);
-        ProfileFact fact;
-        fact.fact = reader.text("fact", Presence::required).value_or("");
-        fact.verified = reader.text("verified").value_or("");
-        fact.source = reader.text("source", Presence::required).value_or("");
-        reader.finish();
-        profile.facts.push_back(std::move(fact));
-    }
+std::optional<float> number_if(const grammar::Reader& reader, std::string_view key) {
+    return reader.has(key) ? std::optional(float(reader.number(key))) : std::nullopt;
 }
 
-std::string read_color_space(ObjectReader& reader) {
-    std::vector<std::string> names = color_space_names();
-    names.insert(names.begin(), "auto");
-    return reader.choice("color_space", names).value_or("auto");
+std::optional<double> length_m(const grammar::Reader& reader, std::string_view key) {
+    return reader.has(key) ? std::optional(reader.components(key)[0]) : std::nullopt;
+}
+
+void read_depth(const grammar::Reader& reader, RoleDecoding& decoding) {
+    decoding.scale = float(reader.number("scale"));
+    decoding.no_hit = number_if(reader, "no_hit").value_or(decoding.no_hit);
+    decoding.no_hit_stored = number_if(reader, "no_hit_stored");
+    decoding.zero_is_no_hit = reader.boolean("zero_is_no_hit");
+    decoding.encoding = reader.choice<DepthEncoding>("encoding");
+    decoding.reversed = reader.boolean("reversed");
+    decoding.radial = reader.text("kind") == "radial";
+    decoding.near_m = length_m(reader, "near");
+    decoding.far_m = length_m(reader, "far");
+}
+
+void read_velocity(const grammar::Reader& reader, RoleDecoding& decoding) {
+    const auto& deltas = velocity_delta_names();
+    decoding.delta =
+        VelocityDelta(std::find(deltas.begin(), deltas.end(), reader.text("delta")) - deltas.begin());
+    decoding.y_axis_up = reader.text("y_axis") == "up";
+    decoding.unit = reader.choice<VelocityUnit>("unit");
+    const std::vector<double> scale = reader.numbers("scale");
+    decoding.velocity_scale = {float(scale.front()), float(scale.back())};
+    decoding.bias = float(reader.number("bias"));
+    decoding.premultiplied = reader.boolean("premultiplied");
+    decoding.no_motion_above = number_if(reader, "no_motion_above");
+    decoding.shutter_frames = reader.number("shutter_frames");
+}
+
+RoleDecoding read_decoding(const std::string& role_name, const Node& node) {
+    const grammar::Reader reader(node, decoding_block(role_name));
+    const ChannelRole role = *find_role(role_name);
+    RoleDecoding decoding;
+    read_layers(reader, role, decoding);
+    if (role.has_optional_alpha()) decoding.luminance = reader.text("luminance");
+    if (role.kind == RoleKind::distance) read_depth(reader, decoding);
+    if (role.kind == RoleKind::motion) read_velocity(reader, decoding);
+    return decoding;
+}
+
+/// profile.schema.json is none.
+bool is_profile(const fs::path& path) {
+    return path.extension() == ".json" && path.stem().extension() != ".schema";
 }
 
 }  // namespace
 
-RoleDecoding parse_role_decoding(const std::string& role_name, const Node& node, Diagnostics& diagnostics) {
-    const ChannelRole role = *find_role(role_name);
-    RoleDecoding decoding;
-    ObjectReader reader(node, "the decoding of '" + role_name + "'", diagnostics);
-    read_layers(reader, role, node, decoding, diagnostics);
-    if (role.has_optional_alpha()) decoding.luminance = reader.text("luminance").value_or("");
-    if (role.kind == RoleKind::distance) read_depth(reader, decoding, diagnostics);
-    if (role.kind == RoleKind::motion) read_velocity(reader, role, node, decoding, diagnostics);
-    reader.finish();
-    return decoding;
+std::map<std::string, RoleDecoding> read_decodings(const Node& node) {
+    std::map<std::string, RoleDecoding> decodings;
+    for (const Member& member : node.members)
+        if (find_role(member.key)) decodings[member.key] = read_decoding(member.key, member.value);
+    return decodings;
 }
 
 std::optional<Profile> parse_profile(const Node& node, Diagnostics& diagnostics) {
-    ObjectReader reader(node, "the profile", diagnostics);
-    if (!reader.is_object()) return std::nullopt;
-    check_document_version(reader, node, diagnostics);
+    grammar::check(node, profile_block(), diagnostics);
+    if (!node.is_object()) return std::nullopt;
+    const grammar::Reader reader(node, profile_block());
     Profile profile;
-    profile.id = reader.text("id", Presence::required).value_or("");
-    profile.summary = reader.text("summary", Presence::required).value_or("");
-    if (const Node* detect = reader.object("detect", Presence::required)) {
-        ObjectReader rule(*detect, "'detect'", diagnostics);
-        profile.detect_attributes = rule.texts("attributes");
-        profile.detect_channels = rule.texts("channels");
-        rule.finish();
+    profile.id = reader.text("id");
+    profile.summary = reader.text("summary");
+    if (const auto detect = reader.object("detect")) {
+        profile.detect_attributes = detect->texts("attributes");
+        profile.detect_channels = detect->texts("channels");
     }
-    profile.color_space = read_color_space(reader);
-    profile.lens_model =
-        reader.choice("lens_model", std::vector<std::string>{"thin", "pinhole"}).value_or("");
-    if (const Node* roles = reader.object("roles", Presence::required)) {
-        for (const Member& member : roles->members) {
-            if (find_role(member.key)) {
-                profile.roles[member.key] = parse_role_decoding(member.key, member.value, diagnostics);
-            } else {
-                diagnostics.error(member.key_place, "'" + member.key + "' is not a role" +
-                                                        did_you_mean(member.key, role_names()));
+    profile.color_space = reader.text("color_space");
+    profile.lens_model = reader.text("lens_model");
+    if (const Node* roles = reader.find("roles")) profile.roles = read_decodings(*roles);
+    if (const auto camera = reader.object("camera"))
+        for (const CameraField& field : camera_fields())
+            if (const auto source = camera->object(field.name)) {
+                const bool has_unit = !field.unit.empty() && source->has("unit");
+                profile.camera[field.name] = {source->texts("attributes"),
+                                              has_unit ? source->text("unit") : field.unit};
             }
-        }
-    }
-    if (const Node* camera = reader.object("camera")) read_camera_sources(*camera, profile, diagnostics);
-    if (const Node* facts = reader.array("facts")) read_facts(*facts, profile, diagnostics);
-    reader.finish();
+    for (const grammar::Reader& fact : reader.objects("facts"))
+        profile.facts.push_back({fact.text("fact"), fact.text("verified"), fact.text("source")});
     return profile;
 }
 
@@ -217,7 +122,7 @@ std::vector<Profile> read_profiles(const std::vector<fs::path>& folders, Diagnos
         std::vector<fs::path> files;
         std::error_code failure;
         for (const auto& entry : fs::directory_iterator(folder, failure))
-            if (entry.path().extension() == ".json") files.push_back(entry.path());
+            if (is_profile(entry.path())) files.push_back(entry.path());
         if (failure) diagnostics.error({folder.string()}, "cannot list the profiles: " + failure.message());
         std::sort(files.begin(), files.end());
         for (const fs::path& file : files)

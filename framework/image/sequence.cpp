@@ -4,7 +4,8 @@
 
 #include "framework/core/document.h"
 #include "framework/core/error.h"
-#include "framework/image/color_space.h"
+#include "framework/core/grammar_reader.h"
+#include "framework/image/capture_grammar.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
@@ -13,101 +14,49 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::vector<int> read_cuts(ObjectReader& reader, Diagnostics& diagnostics) {
-    std::vector<int> cuts;
-    const Node* list = reader.array("cuts");
-    if (!list) return cuts;
-    for (const Node& item : list->items) {
-        if (item.kind == Node::Kind::integer) cuts.push_back(int(item.integer));
-        else
-            diagnostics.error(item.place,
-                              "'cuts' holds frame numbers, not " + std::string(kind_name(item.kind)));
-    }
-    return cuts;
-}
-
-/// The role of a key of "files" or "channels", or a fault.
-bool is_role(const std::string& name, const Place& place, Diagnostics& diagnostics) {
-    if (find_role(name)) return true;
-    diagnostics.error(place, "'" + name + "' is not a role" + did_you_mean(name, role_names()));
-    return false;
-}
-
-void read_role_files(const Node& section, const fs::path& folder, Sequence& sequence,
-                     Diagnostics& diagnostics) {
-    for (const Member& member : section.members) {
-        if (!is_role(member.key, member.key_place, diagnostics)) continue;
-        if (member.value.is_string())
-            sequence.role_files.insert_or_assign(member.key,
-                                                 FramePattern((folder / member.value.string).string()));
-        else diagnostics.error(member.value.place, "a file must be a string");
-    }
-}
-
-void read_frames(ObjectReader& reader, const Node& node, const fs::path& folder, Sequence& sequence,
+void read_frames(const grammar::Reader& reader, const fs::path& folder, Sequence& sequence,
                  Diagnostics& diagnostics) {
-    if (const Node* files = reader.object("files")) read_role_files(*files, folder, sequence, diagnostics);
+    if (const Node* files = reader.find("files"))
+        for (const Member& member : files->members)
+            if (find_role(member.key) && member.value.is_string())
+                sequence.role_files.insert_or_assign(member.key,
+                                                     FramePattern((folder / member.value.string).string()));
     // Without a main file the colour's own file takes its place.
-    const bool has_color_file = sequence.role_files.contains(kColorRole);
-    const auto frames = reader.text(
-        "frames", has_color_file ? ObjectReader::Presence::optional : ObjectReader::Presence::required);
-    if (frames) sequence.files = FramePattern((folder / *frames).string());
-    else if (has_color_file) sequence.files = sequence.role_files.at(kColorRole);
-    const auto range = reader.text("range");
-    if (!range) return;
-    const auto numbers = parse_frame_range(*range);
-    const Place place = node.find("range")->place;
-    if (!numbers) diagnostics.error(place, "'" + *range + "' is not a frame range such as \"1-100x2,120\"");
-    else if (numbers->size() > 1 && frames && !sequence.files.has_frame() && sequence.role_files.empty())
+    if (reader.has("frames")) sequence.files = FramePattern((folder / reader.text("frames")).string());
+    else if (sequence.role_files.contains(kColorRole)) sequence.files = sequence.role_files.at(kColorRole);
+    if (!reader.has("range")) return;
+    const auto numbers = *parse_frame_range(reader.text("range"));
+    if (numbers.size() > 1 && reader.has("frames") && !sequence.files.has_frame() &&
+        sequence.role_files.empty())
         diagnostics.error(
-            place, "'range' has " + std::to_string(numbers->size()) +
-                       " frames but 'frames' names one file; write the frame number as ####, %04d or @");
-    else sequence.frames = *numbers;
-}
-
-CryptomatteChoice read_cryptomatte(const Node& node, Diagnostics& diagnostics) {
-    ObjectReader reader(node, "'cryptomatte'", diagnostics);
-    CryptomatteChoice choice;
-    choice.layer = reader.text("layer").value_or("");
-    choice.mask = reader.texts("mask");
-    reader.finish();
-    return choice;
+            reader.place("range"),
+            "'range' has " + std::to_string(numbers.size()) +
+                " frames but 'frames' names one file; write the frame number as ####, %04d or @");
+    else sequence.frames = numbers;
 }
 
 std::optional<Sequence> read_capture_document(const fs::path& path, Diagnostics& diagnostics) {
     const auto node = read_document(path, diagnostics);
     if (!node) return std::nullopt;
     const int errors_before = diagnostics.error_count();
-
-    ObjectReader reader(*node, "the capture", diagnostics);
-    check_document_version(reader, *node, diagnostics);
-    reader.text("$schema");
+    grammar::check(*node, capture_block(), diagnostics);
+    const grammar::Reader reader(*node, capture_block());
     Sequence sequence;
-    read_frames(reader, *node, path.parent_path(), sequence, diagnostics);
-    if (const auto fps = reader.number("fps")) {
-        sequence.fps = *fps;
-        if (*fps <= 0) diagnostics.error(node->find("fps")->place, "'fps' must be above 0");
-    }
-    sequence.profile = reader.text("profile").value_or("auto");
-    sequence.view = reader.text("view").value_or("");
-    std::vector<std::string> spaces = color_space_names();
-    spaces.insert(spaces.begin(), "auto");
-    sequence.color_space = reader.choice("color_space", spaces).value_or("auto");
-    if (const Node* channels = reader.object("channels"))
-        for (const Member& member : channels->members)
-            if (is_role(member.key, member.key_place, diagnostics))
-                sequence.channels[member.key] = parse_role_decoding(member.key, member.value, diagnostics);
-    if (const Node* camera = reader.object("camera")) sequence.camera = parse_camera(*camera, diagnostics);
-    if (const Node* lights = reader.array("lights")) sequence.lights = parse_lights(*lights, diagnostics);
-    if (const Node* matte = reader.object("cryptomatte"))
-        sequence.cryptomatte = read_cryptomatte(*matte, diagnostics);
-    sequence.cuts = read_cuts(reader, diagnostics);
-    if (const auto subframes = reader.integer("subframes")) {
-        if (*subframes < 1 || *subframes > 1024)
-            diagnostics.error(node->find("subframes")->place, "'subframes' must be from 1 to 1024");
-        else sequence.subframes = int(*subframes);
-    }
-    reader.finish();
+    read_frames(reader, path.parent_path(), sequence, diagnostics);
+    sequence.fps = reader.number("fps");
+    sequence.profile = reader.text("profile");
+    sequence.view = reader.text("view");
+    sequence.color_space = reader.text("color_space");
+    if (const Node* channels = reader.find("channels")) sequence.channels = read_decodings(*channels);
+    if (const auto camera = reader.object("camera")) sequence.camera = read_camera(*camera);
+    if (reader.has("lights")) sequence.lights.emplace();
+    for (const grammar::Reader& light : reader.objects("lights"))
+        sequence.lights->push_back(read_light(light));
+    if (const auto matte = reader.object("cryptomatte"))
+        sequence.cryptomatte = CryptomatteChoice{matte->text("layer"), matte->texts("mask")};
+    if (const Node* cuts = reader.find("cuts"))
+        for (const Node& cut : cuts->items) sequence.cuts.push_back(int(cut.integer));
+    sequence.subframes = int(reader.integer("subframes"));
     if (diagnostics.error_count() > errors_before) return std::nullopt;
     return sequence;
 }
@@ -208,8 +157,9 @@ void add_role_file(Sequence& sequence, const std::string& text, Diagnostics& dia
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals + 1 == text.size())
         diagnostics.error(place, "expected role=file, such as depth=z.####.exr");
-    else if (is_role(text.substr(0, equals), place, diagnostics))
-        sequence.role_files.insert_or_assign(text.substr(0, equals), FramePattern(text.substr(equals + 1)));
+    else if (const std::string role = text.substr(0, equals); !find_role(role))
+        diagnostics.error(place, "'" + role + "' is not a role" + did_you_mean(role, role_names()));
+    else sequence.role_files.insert_or_assign(role, FramePattern(text.substr(equals + 1)));
 }
 
 }  // namespace aftershade

@@ -144,11 +144,8 @@ private:
 
     void set_mask(PipelineStep& step, const MaskSpec& mask) {
         const auto role = mask.role.empty() ? std::nullopt : find_role(mask.role);
-        if (!mask.role.empty() && !role)
-            diagnostics_.error(mask.place,
-                               "'" + mask.role + "' is not a role" + did_you_mean(mask.role, role_names()));
-        else if (role && (role->type != ComponentType::float32 ||
-                          (role->channels != 1 && role->kind != RoleKind::other)))
+        if (role &&
+            (role->type != ComponentType::float32 || (role->channels != 1 && role->kind != RoleKind::other)))
             diagnostics_.error(mask.place, "a mask takes a role of one channel, such as mask or aov:hair; '" +
                                                mask.role + "' is none");
         std::error_code failure;
@@ -300,7 +297,7 @@ private:
 }  // namespace
 
 Pipeline bind_pipeline(const Look& look, EffectRegistry& effects, const PipelineOptions& options,
-                          Diagnostics& diagnostics) {
+                       Diagnostics& diagnostics) {
     LookBinder binder(effects, diagnostics);
     for (const LookStep& step : look.steps) binder.add(step);
     for (const std::string& text : options.sets) binder.apply_set(text);

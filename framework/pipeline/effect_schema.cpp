@@ -1,4 +1,5 @@
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "framework/core/units.h"

@@ -1,31 +1,25 @@
 #include "framework/pipeline/look.h"
 
-#include "framework/core/text.h"
-
 #include <algorithm>
 #include <set>
 #include <utility>
 
+#include "framework/core/grammar_reader.h"
+#include "framework/pipeline/look_grammar.h"
+
 namespace aftershade {
 
 namespace fs = std::filesystem;
-using Presence = ObjectReader::Presence;
 
 namespace {
 
-std::vector<WiringSpec> parse_wiring(const Node& node, Diagnostics& diagnostics) {
+std::vector<WiringSpec> read_wiring(const Node& node) {
     std::vector<WiringSpec> wiring;
     for (const Member& member : node.members) {
-        const std::size_t dot = member.value.is_string() ? member.value.string.find('.') : std::string::npos;
-        if (dot == std::string::npos) {
-            diagnostics.error(
-                member.value.place,
-                "'" + member.key +
-                    "' comes from \"capture.<role>\", \"<step>.<output>\" or \"<step>.<texture>\"");
-            continue;
-        }
         const std::string& text = member.value.string;
-        wiring.push_back({member.key, text.substr(0, dot), text.substr(dot + 1), member.value.place});
+        const std::size_t dot = text.find('.');
+        if (dot != std::string::npos)
+            wiring.push_back({member.key, text.substr(0, dot), text.substr(dot + 1), member.value.place});
     }
     return wiring;
 }
@@ -48,22 +42,13 @@ void add_objects(const Node& node, std::vector<TableKey>& objects, Diagnostics& 
                               "a picture: 'role' or 'file')");
 }
 
-MaskSpec parse_mask(const Node& node, const fs::path& folder, Diagnostics& diagnostics) {
-    ObjectReader reader(node, "the mask", diagnostics);
+MaskSpec parse_mask(const grammar::Reader& reader, const fs::path& folder, Diagnostics& diagnostics) {
     MaskSpec mask;
-    mask.place = node.place;
-    mask.role = reader.text("role").value_or("");
-    if (const Node* object = reader.any("object")) add_objects(*object, mask.objects, diagnostics);
-    if (const auto file = reader.text("file")) mask.file = folder / *file;
-    mask.invert = reader.boolean("invert").value_or(false);
-    reader.finish();
-    const int kinds = int(node.find("role") != nullptr) + int(node.find("object") != nullptr) +
-                      int(node.find("file") != nullptr);
-    if (node.is_object() && kinds != 1)
-        diagnostics.error(node.place, "a mask has one of 'role', 'object' and 'file'");
-    for (const char* key : {"role", "file"})
-        if (const Node* value = node.find(key); value && value->is_string() && value->string.empty())
-            diagnostics.error(value->place, "the mask's '" + std::string(key) + "' is empty");
+    mask.place = reader.node().place;
+    mask.role = reader.text("role");
+    if (const Node* object = reader.find("object")) add_objects(*object, mask.objects, diagnostics);
+    if (reader.has("file")) mask.file = folder / reader.text("file");
+    mask.invert = reader.boolean("invert");
     return mask;
 }
 
@@ -75,16 +60,14 @@ public:
     /// `prefix` stands before the name of each step; `overrides` were given by who uses the look.
     void read(const Node& node, const std::string& prefix, bool enabled, const LookVariables& overrides,
               const Place& user) {
-        ObjectReader reader(node, "the look", diagnostics_);
-        if (!reader.is_object()) return;
+        grammar::check(node, look_block(), diagnostics_);
+        if (!node.is_object()) return;
+        const grammar::Reader reader(node, look_block());
         open_.push_back(canonical(node.place.file));
         look_.files.emplace_back(node.place.file);
-        check_document_version(reader, node, diagnostics_);
-        reader.text("$schema");
-        reader.text("summary");
         Scope scope{fs::path(node.place.file).parent_path(), prefix, enabled, {}, {}};
         read_variables(reader, overrides, user, scope);
-        if (const Node* steps = reader.array("steps", Presence::required)) {
+        if (const Node* steps = reader.find("steps")) {
             for (const Node& step : steps->items) {
                 if (step.find("use")) use(step, scope);
                 else look_.steps.push_back(parse_step(step, scope));
@@ -92,7 +75,6 @@ public:
             if (steps->items.empty())
                 diagnostics_.warning(steps->place, "the look has no steps: frames pass through");
         }
-        reader.finish();
         for (const auto& [name, value] : scope.variables)
             if (!scope.used.contains(name))
                 diagnostics_.warning(value.place, "the variable '" + name + "' is never used");
@@ -114,15 +96,10 @@ private:
         return failure ? path : result;
     }
 
-    void read_variables(ObjectReader& reader, const LookVariables& overrides, const Place& user,
+    void read_variables(const grammar::Reader& reader, const LookVariables& overrides, const Place& user,
                         Scope& scope) {
-        if (const Node* vars = reader.object("vars"))
-            for (const Member& member : vars->members) {
-                if (!is_snake_case(member.key))
-                    diagnostics_.error(member.key_place,
-                                       "the variable '" + member.key + "' " + kMustBeSnakeCase);
-                scope.variables[member.key] = member.value;
-            }
+        if (const Node* vars = reader.find("vars"))
+            for (const Member& member : vars->members) scope.variables[member.key] = member.value;
         std::vector<std::string> known;
         for (const auto& [name, value] : scope.variables) known.push_back(name);
         for (const auto& [name, value] : overrides) {
@@ -155,67 +132,66 @@ private:
         return copy;
     }
 
-    LookStep parse_step(const Node& node, Scope& scope) {
+    /// The step with values in the place of its variables. A parameter itself may be named "var".
+    Node filled(const Node& node, Scope& scope) {
+        Node copy = node;
+        for (Member& member : copy.members) {
+            if (member.key == "params")
+                for (Member& value : member.value.members) value.value = with_variables(value.value, scope);
+            if (member.key == "mix" || member.key == "mask")
+                member.value = with_variables(member.value, scope);
+        }
+        return copy;
+    }
+
+    LookStep parse_step(const Node& written, Scope& scope) {
+        const Node node = filled(written, scope);
+        grammar::check(node, look_step_block(), diagnostics_);
+        const grammar::Reader reader(node, look_step_block());
         LookStep step;
-        step.place = step.effect_place = step.preset_place = node.place;
+        step.place = node.place;
+        step.effect_place = reader.place("effect");
+        step.preset_place = reader.place("preset");
         step.folder = scope.folder;
-        ObjectReader reader(node, "the step", diagnostics_);
-        step.effect = reader.text("effect", Presence::required).value_or("");
-        if (const Node* effect = node.find("effect")) {
-            step.effect_place = effect->place;
-            if (effect->is_string() && step.effect.empty())
-                diagnostics_.error(effect->place, "'effect' is empty: it is the id of an effect");
-        }
-        const auto name = reader.text("name");
-        // Wiring, --set and --tap part a name from what follows at the first dot, and taps are files of that
-        // name.
-        if (name && !is_snake_case(*name))
-            diagnostics_.error(node.place, "the name '" + *name + "' " + kMustBeSnakeCase);
-        step.name = scope.prefix + name.value_or(step.effect);
-        step.enabled = reader.boolean("enabled").value_or(true) && scope.enabled;
-        step.preset = reader.text("preset");
-        if (const Node* preset = node.find("preset")) step.preset_place = preset->place;
-        if (const Node* params = reader.object("params"))
-            for (const Member& member : params->members)
-                step.params.push_back({member.key, member.key_place, with_variables(member.value, scope)});
-        if (const Node* in = reader.object("in")) {
-            step.wiring = parse_wiring(*in, diagnostics_);
-            for (WiringSpec& wiring : step.wiring)
-                if (wiring.source != "capture") wiring.source = scope.prefix + wiring.source;
-        }
-        if (const Node* mix = reader.any("mix")) step.mix = with_variables(*mix, scope);
-        if (const Node* mask = reader.object("mask"))
-            step.mask = parse_mask(with_variables(*mask, scope), scope.folder, diagnostics_);
-        reader.finish();
+        step.effect = reader.text("effect");
+        // Also one that is told to be no name: two steps are not of one name because of it.
+        const Node* name = node.find("name");
+        step.name = scope.prefix + (name && name->is_string() ? name->string : step.effect);
+        step.enabled = reader.boolean("enabled") && scope.enabled;
+        if (reader.has("preset")) step.preset = reader.text("preset");
+        if (const Node* params = reader.find("params")) step.params = params->members;
+        if (const Node* in = reader.find("in")) step.wiring = read_wiring(*in);
+        for (WiringSpec& wiring : step.wiring)
+            if (wiring.source != "capture") wiring.source = scope.prefix + wiring.source;
+        if (const Node* mix = reader.find("mix")) step.mix = *mix;
+        if (const auto mask = reader.object("mask"))
+            step.mask = parse_mask(*mask, scope.folder, diagnostics_);
         return step;
     }
 
     /// {"use": "lens.json", "name": "wide", "vars": {"focus": "2 m"}, "enabled": false}
     void use(const Node& node, Scope& scope) {
-        ObjectReader reader(node, "the step", diagnostics_);
-        const auto file = reader.text("use", Presence::required);
-        const auto name = reader.text("name");
-        const bool enabled = reader.boolean("enabled").value_or(true) && scope.enabled;
+        grammar::check(node, look_use_block(), diagnostics_);
+        const grammar::Reader reader(node, look_use_block());
+        const bool enabled = reader.boolean("enabled") && scope.enabled;
         LookVariables variables;
-        if (const Node* vars = reader.object("vars"))
+        if (const Node* vars = reader.find("vars"))
             for (const Member& member : vars->members)
                 variables[member.key] = with_variables(member.value, scope);
-        reader.finish();
-        if (name && !is_snake_case(*name))
-            diagnostics_.error(node.place, "the name '" + *name + "' " + kMustBeSnakeCase);
-        if (!file) return;
-        const Place& place = node.find("use")->place;
-        const fs::path path = scope.folder / *file;
+        if (!reader.has("use")) return;
+        const std::string file = reader.text("use"), name = reader.text("name");
+        const Place& place = reader.place("use");
+        const fs::path path = scope.folder / file;
         if (std::find(open_.begin(), open_.end(), canonical(path)) != open_.end()) {
-            diagnostics_.error(place, "'" + *file + "' uses itself: " + chain_to(canonical(path)));
+            diagnostics_.error(place, "'" + file + "' uses itself: " + chain_to(canonical(path)));
             return;
         }
         const auto document = read_document(path, diagnostics_);
         if (!document) {
-            diagnostics_.error(place, "'" + *file + "' cannot be used (see above)");
+            diagnostics_.error(place, "'" + file + "' cannot be used (see above)");
             return;
         }
-        read(*document, scope.prefix + (name ? *name + "_" : ""), enabled, variables, node.place);
+        read(*document, scope.prefix + (name.empty() ? "" : name + "_"), enabled, variables, node.place);
     }
 
     std::string chain_to(const fs::path& last) const {
@@ -267,7 +243,7 @@ Node parse_command_value(const std::string& text, const Place& place) {
 
 std::optional<Look> parse_look(const Node& node, Diagnostics& diagnostics, const LookVariables& variables) {
     if (!node.is_object()) {
-        ObjectReader(node, "the look", diagnostics);
+        grammar::check(node, look_block(), diagnostics);
         return std::nullopt;
     }
     Look look;

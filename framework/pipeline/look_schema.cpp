@@ -1,13 +1,14 @@
+#include <nlohmann/json.hpp>
 #include <utility>
 
+#include "framework/core/grammar_schema.h"
+#include "framework/core/schema_pieces.h"
 #include "framework/core/units.h"
 #include "framework/effect/describe.h"
 #include "framework/image/camera.h"
-#include "framework/image/role.h"
-#include "framework/pipeline/look.h"
+#include "framework/pipeline/look_grammar.h"
 #include "framework/pipeline/pipeline.h"
 #include "framework/pipeline/schema.h"
-#include "framework/pipeline/schema_role.h"
 
 namespace aftershade {
 
@@ -55,90 +56,75 @@ std::vector<json> captured(const ParamSpec& spec) {
     return forms;
 }
 
-/// A value in any form, with what the manifest says of it.
+/// A value in any form.
 json value_of(const ParamSpec& spec) {
     const json literal = schema::literal(spec, schema::Variables::yes);
     json forms = {literal};
     if (spec.bind != ParamBind::define) forms.push_back(keyed(literal));
     for (json& form : captured(spec)) forms.push_back(std::move(form));
+    return {{"anyOf", std::move(forms)}};
+}
+
+grammar::Form form_of(const json& schema) {
+    return grammar::custom({.type = "", .schema = schema.dump()});
+}
+
+/// A value in any form, with what the manifest says of it.
+grammar::Key value_key(const ParamSpec& spec) {
     const std::string range = range_text(spec);
-    json value = {
-        {"description", spec.doc + " [" + type_text(spec) + (range.empty() ? "" : ", " + range) + "]"}};
-    if (spec.type != ParamType::table) value["default"] = json::parse(format_value(spec, spec.default_value));
-    value["anyOf"] = std::move(forms);
-    return value;
+    return grammar::optional(spec.name, form_of(value_of(spec)),
+                             spec.doc + " [" + type_text(spec) + (range.empty() ? "" : ", " + range) + "]",
+                             spec.type == ParamType::table ? "" : format_value(spec, spec.default_value));
 }
 
-json wiring_of(const EffectManifest& effect) {
-    json inputs = json::object();
+grammar::Form params_of(const EffectManifest& effect) {
+    grammar::Block block;
+    for (const ParamSpec& spec : effect.params) block.keys.push_back(value_key(spec));
+    return grammar::object(std::move(block));
+}
+
+grammar::Form wiring_of(const EffectManifest& effect) {
+    grammar::Block block;
     for (const InputSpec& input : effect.inputs)
-        inputs[input.name] = {
-            {"type", "string"},
-            {"pattern", "^([a-z][a-z0-9_]*\\.[a-z][a-z0-9_]*|capture\\.aov:.+)$"},
-            {"description", "capture.<role>, <step>.<output> or <step>.<texture>; takes the role " +
-                                input.role + ". " + input.doc}};
-    return schema::object(inputs);
+        block.keys.push_back(
+            grammar::optional(input.name, look_wire(),
+                              "capture.<role>, <step>.<output> or <step>.<texture>; takes the role " +
+                                  input.role + ". " + input.doc));
+    return grammar::object(std::move(block));
 }
 
-json mask() {
-    const json object = or_variable(schema::object_key());
-    const json objects = schema::array_of(object, 1, int(kMaxMaskObjects));
-    json result = schema::object({{"role", or_variable(schema::role())},
-                                  {"object", schema::any_of({object, objects})},
-                                  {"file", or_variable({{"type", "string"}, {"minLength", 1}})},
-                                  {"invert", or_variable({{"type", "boolean"}})}});
-    result["oneOf"] = {{{"required", {"role"}}}, {{"required", {"object"}}}, {{"required", {"file"}}}};
-    result["description"] = "Where the step works: a role of one channel, objects, or a picture.";
-    return result;
-}
-
-json step_of(const EffectManifest& effect) {
-    json params = json::object();
-    for (const ParamSpec& spec : effect.params) params[spec.name] = value_of(spec);
-    json properties = {
-        {"effect", {{"const", effect.id}, {"description", effect.summary}}},
-        {"name", {{"type", "string"}, {"pattern", schema::kSnakeCase}, {"not", {{"const", "capture"}}}}},
-        {"enabled", {{"type", "boolean"}}}};
+/// The step's block, with what the effect's manifest says of its keys.
+grammar::Block step_of(const EffectManifest& effect) {
+    grammar::Block block = look_step_block();
+    block.definition = effect.id;
+    block.doc = effect.summary;
     std::vector<std::string> presets;
     for (const PresetSpec& preset : effect.presets) presets.push_back(preset.name);
     // An effect without presets takes none.
-    if (!presets.empty()) properties["preset"] = schema::one_of(presets);
-    properties["params"] = schema::object(params);
-    properties["in"] = wiring_of(effect);
-    properties["mix"] = value_of(mix_spec());
-    properties["mask"] = {{"$ref", "#/$defs/Mask"}};
-    return schema::object(properties, {"effect"});
-}
-
-json use() {
-    return schema::object(
-        {{"use", {{"type", "string"}, {"description", "Another look, named from this one's folder."}}},
-         {"name", {{"type", "string"}, {"pattern", schema::kSnakeCase}}},
-         {"enabled", {{"type", "boolean"}}},
-         {"vars", {{"type", "object"}}}},
-        {"use"});
+    if (presets.empty())
+        std::erase_if(block.keys, [](const grammar::Key& key) { return key.name == "preset"; });
+    for (grammar::Key& key : block.keys) {
+        if (key.name == "effect")
+            key = grammar::required("effect", grammar::choice({effect.id}), effect.summary);
+        if (key.name == "preset") key.form = grammar::choice(presets);
+        if (key.name == "params") key.form = params_of(effect);
+        if (key.name == "in") key.form = wiring_of(effect);
+        if (key.name == "mix") key = value_key(mix_spec());
+    }
+    return block;
 }
 
 }  // namespace
 
 std::string look_schema(const std::vector<const EffectManifest*>& effects) {
-    json branches = json::array({use()});
-    json definitions = {{"Mask", mask()}};
-    schema::define_variable(definitions);
-    for (const EffectManifest* effect : effects) {
-        definitions[effect->id] = step_of(*effect);
-        branches.push_back({{"$ref", "#/$defs/" + effect->id}});
-    }
-    const json variables = {{"type", "object"},
-                            {"propertyNames", {{"pattern", schema::kSnakeCase}}},
-                            {"description", "Values by name, put in where {\"var\": \"name\"} stands."}};
-    json document = schema::document("Aftershade look",
-                                     {{"summary", schema::text()},
-                                      {"vars", variables},
-                                      {"steps", schema::array_of({{"oneOf", branches}})}},
-                                     {"steps"});
-    document["$defs"] = std::move(definitions);
-    return document.dump(2) + "\n";
+    std::vector<grammar::Form> steps;
+    for (const EffectManifest* effect : effects) steps.push_back(grammar::object(step_of(*effect)));
+    grammar::Block look = look_block();
+    for (grammar::Key& key : look.keys)
+        if (key.name == "steps")
+            key.form = grammar::list(
+                grammar::by_key("use", grammar::object(look_use_block()), grammar::any_of(steps)));
+    return grammar::schema_text("Aftershade look", look);
 }
 
 }  // namespace aftershade

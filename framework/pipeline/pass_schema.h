@@ -2,6 +2,7 @@
 // framework/pipeline.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 

@@ -14,8 +14,6 @@ namespace aftershade {
 
 /// Of a look; one branch for each effect, with its parameters, their docs, units and ranges.
 std::string look_schema(const std::vector<const EffectManifest*>& effects);
-/// Of a capture.json.
-std::string capture_schema();
 /// Of an effect.json.
 std::string effect_schema();
 /// Of a module.json.

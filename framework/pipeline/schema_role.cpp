@@ -1,5 +1,7 @@
 #include "framework/pipeline/schema_role.h"
 
+#include <nlohmann/json.hpp>
+
 #include "framework/image/role.h"
 
 namespace aftershade::schema {

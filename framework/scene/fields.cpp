@@ -1,12 +1,32 @@
 #include "framework/scene/fields.h"
 
+#include <string>
 #include <utility>
+
+#include "framework/image/document_forms.h"
 
 namespace aftershade::scene {
 
 namespace {
 
+using grammar::Block;
+using grammar::Form;
+using grammar::Key;
+
 constexpr double kFar_m = 1e6;
+/// A cut is a frame of this number at most, either side of 0.
+constexpr int kMaxCut = 1000000;
+/// parse_frame_range() takes nine digits.
+constexpr int kMaxFrame = 999999999;
+
+/// A literal, until it is a key.
+struct Field {
+    ParamSpec spec;
+    grammar::LiteralForms forms{.still = true};
+    bool is_required = false;
+    operator Key() const { return grammar::field(spec, forms, is_required); }
+    operator Form() const { return grammar::literal(spec, forms); }
+};
 
 Field make(ParamType type, std::string name, std::string unit, ParamValue value, std::string doc) {
     Field field;
@@ -43,7 +63,7 @@ Field vector(ParamType type, std::string name, std::string unit, std::vector<dou
 Field color(std::string name, double value, double max, std::string doc) {
     Field field =
         vector(ParamType::color, std::move(name), "", {value, value, value}, 0, max, std::move(doc));
-    field.uniform = true;
+    field.forms.uniform = true;
     return field;
 }
 
@@ -62,257 +82,312 @@ Field choice(std::string name, std::vector<std::string> values, std::string doc)
 }
 
 Field animated(Field field) {
-    field.animated = true;
+    field.forms.animated = true;
     return field;
 }
 
 Field required(Field field) {
-    field.required = true;
+    field.is_required = true;
     return field;
 }
 
 Field uniform(Field field) {
-    field.uniform = true;
+    field.forms.uniform = true;
     return field;
 }
 
 Field whole(Field field) {
-    field.whole = true;
+    field.forms.whole = true;
     return field;
 }
 
 Field never(Field field, std::vector<double> values) {
-    field.never = std::move(values);
-    return field;
-}
-
-Field or_block(Field field, std::string block) {
-    field.block = std::move(block);
+    field.forms.never = std::move(values);
     return field;
 }
 
 Field with_length(Field field) {
-    field.has_length = true;
+    field.forms.has_length = true;
     return field;
 }
 
-using Form = Part::Form;
-
-Part required(Part part) {
-    part.required = true;
-    return part;
+Key or_block(const Field& field, Block block) {
+    Key key = field;
+    key.form = grammar::any_of({field, grammar::object(std::move(block))});
+    return key;
 }
 
-Part name_part(std::string doc) {
-    return {"name", Form::text, "", std::move(doc)};
+Key name_key(std::string doc) {
+    return grammar::optional("name", grammar::text(), std::move(doc));
+}
+
+/// The name of something that the document declares.
+Form name_of(const std::string& block) {
+    return grammar::text({.type = "name of a declared [" + block + "](#" + block + ")"});
+}
+
+Form object_of(Block block) {
+    return grammar::object(std::move(block));
+}
+
+/// An object that others refer to in the schema.
+Block shared(Block block) {
+    block.definition = block.name;
+    return block;
 }
 
 Field radius() {
     return required(number("radius", "m", 1, 1e-6, kFar_m, "Radius."));
 }
 
-}  // namespace
-
-const Block& camera_block() {
-    static const Block block = {
-        "camera",
-        "A perspective camera with a thin lens; y is up.",
-        {animated(place("position", {0, 0, 5}, "The lens.")),
-         animated(place("target", {0, 0, 0}, "The point in the middle of the picture.")),
-         animated(number("roll", "deg", 0, -36000, 36000, "Turns the picture's content anticlockwise.")),
-         animated(number("focal_length", "mm", 50, 0.1, 10000,
-                         "With the sensor's width it gives the angle of view.")),
-         number("sensor_width", "mm", 36, 0.1, 1000, "Sensor, as wide as the picture."),
-         animated(
-             number("focus_distance", "m", 5, 0.01, kFar_m, "Along the view axis to the plane in focus.")),
-         number("f_number", "", 2.8, 0.05, 1000, "Focal length over the aperture's diameter."),
-         never(integer("blades", 0, 0, 32, "Corners of the aperture; 0 is a disk, 1 and 2 are not polygons."),
-               {1, 2}),
-         number("rotation", "deg", 0, -36000, 36000,
-                "Of the aperture; 0 puts the middle of a straight edge at +x, positive turns +x towards +y "
-                "(down).")}};
-    return block;
+Field albedo() {
+    return color("albedo", 0.8, 1, "Share of the light that is reflected to all sides.");
 }
 
-const Block& shutter_block() {
-    static const Block block = {
-        "shutter",
-        "When light is let in, for the truth of motion blur and for sub-frames.",
-        {number("angle", "deg", 180, 0, 360, "360 is the whole frame."),
-         choice("phase", {"center", "start", "end"}, "Which part of the exposure is the frame's own time.")}};
-    return block;
+Block camera_block() {
+    return shared(
+        {.name = "camera",
+         .thing = "the camera",
+         .doc = "A perspective camera with a thin lens; y is up.",
+         .keys = {
+             animated(place("position", {0, 0, 5}, "The lens.")),
+             animated(place("target", {0, 0, 0}, "The point in the middle of the picture.")),
+             animated(number("roll", "deg", 0, -36000, 36000, "Turns the picture's content anticlockwise.")),
+             animated(number("focal_length", "mm", 50, 0.1, 10000,
+                             "With the sensor's width it gives the angle of view.")),
+             number("sensor_width", "mm", 36, 0.1, 1000, "Sensor, as wide as the picture."),
+             animated(number("focus_distance", "m", 5, 0.01, kFar_m,
+                             "Along the view axis to the plane in focus.")),
+             number("f_number", "", 2.8, 0.05, 1000, "Focal length over the aperture's diameter."),
+             never(integer("blades", 0, 0, 32,
+                           "Corners of the aperture; 0 is a disk, 1 and 2 are not polygons."),
+                   {1, 2}),
+             number("rotation", "deg", 0, -36000, 36000,
+                    "Of the aperture; 0 puts the middle of a straight edge at +x, positive turns +x "
+                    "towards +y (down).")}});
 }
 
-const Block& material_block() {
-    static const Block block = {
-        "material",
-        "Lambert's diffuse reflection and a GGX highlight.",
-        {or_block(color("albedo", 0.8, 1, "Share of the light that is reflected to all sides."), "checker"),
-         number("roughness", "", 0.5, 0.03, 1, "The highlight's; GGX alpha is its square."),
-         number("specular", "", 0.04, 0, 1,
-                "Reflectance at normal incidence, by Schlick; 0 for no highlight."),
-         color("emission", 0, 1e9, "Radiance that it gives off.")},
-        {{"scattering_profile", Form::scattering, "", "Light goes in and comes out nearby."}}};
-    return block;
+Block shutter_block() {
+    return shared({.name = "shutter",
+                   .thing = "the shutter",
+                   .doc = "When light is let in, for the truth of motion blur and for sub-frames.",
+                   .keys = {number("angle", "deg", 180, 0, 360, "360 is the whole frame."),
+                            choice("phase", {"center", "start", "end"},
+                                   "Which part of the exposure is the frame's own time.")}});
 }
 
-const Block& checker_block() {
-    static const Block block = {
-        "checker",
-        "Squares of two colours over the texture coordinates.",
-        {required(vector(ParamType::vec2, "cells", "", {8, 8}, 1e-6, 65536, "Squares along u and v."))},
-        {{"checker", Form::values, "albedo", "The two colours.", true, 2, 2}}};
-    return block;
+Block checker_block() {
+    return shared(
+        {.name = "checker",
+         .thing = "the albedo",
+         .doc = "Squares of two colours over the texture coordinates.",
+         .keys = {
+             required(vector(ParamType::vec2, "cells", "", {8, 8}, 1e-6, 65536, "Squares along u and v.")),
+             grammar::required(
+                 "checker",
+                 grammar::list(albedo(), {.min = 2, .max = 2, .fault = "a checker has two colours"}),
+                 "The two colours.")}});
 }
 
-const Block& mesh_block() {
-    static const Block block = {"mesh",
-                                "Triangles for objects: of a file or a height field, one of the two.",
-                                {},
-                                {{"file", Form::file, "", "glTF 2.0, .gltf or .glb."},
-                                 {"height_field", Form::object, "height_field", "A sheet of waves."}}};
-    return block;
+Block material_block() {
+    return shared(
+        {.name = "material",
+         .thing = "the material '{}'",
+         .doc = "Lambert's diffuse reflection and a GGX highlight.",
+         .keys = {or_block(albedo(), checker_block()),
+                  number("roughness", "", 0.5, 0.03, 1, "The highlight's; GGX alpha is its square."),
+                  number("specular", "", 0.04, 0, 1,
+                         "Reflectance at normal incidence, by Schlick; 0 for no highlight."),
+                  color("emission", 0, 1e9, "Radiance that it gives off."),
+                  grammar::optional("scattering_profile", grammar::scattering_profile(),
+                                    "Light goes in and comes out nearby.")}});
 }
 
-const Block& object_block() {
-    static const Block block = {
-        "object",
-        "A shape with a material that may move.",
-        {animated(place("position", {0, 0, 0}, "Of its origin, in its parent's space.")),
-         animated(
-             vector(ParamType::vec3, "rotation", "deg", {0, 0, 0}, -1e6, 1e6, "About x, then y, then z.")),
-         animated(uniform(vector(ParamType::vec3, "scale", "", {1, 1, 1}, 1e-6, 1e6, "Along its own axes."))),
-         integer("id", 0, 0, 16777215, "The role object_id; 0 takes the object's place in the list, from 1."),
-         flag("casts_shadow", true, "Whether it stands between lights and others.")},
-        {name_part("For \"parent\"; no two without \"repeat\" have the same."),
-         {"material", Form::name, "material",
-          "What it is made of; a group may do without, and a scene that declares none."},
-         {"parent", Form::name, "object", "An earlier object, without \"repeat\", that it moves with."},
-         {"repeat", Form::object, "repeat", "Makes a grid of it, which no parent can be."}}};
-    return block;
+Block wave_block() {
+    return shared({.name = "wave",
+                   .thing = "the wave",
+                   .doc = "amplitude * cos(2 pi (x, y) . cycles + phase), metres.",
+                   .keys = {required(number("amplitude", "m", 0, -kFar_m, kFar_m, "Height of the crest.")),
+                            required(vector(ParamType::vec2, "cycles", "", {1, 0}, -1e6, 1e6,
+                                            "Waves in a metre along x and y.")),
+                            number("phase", "deg", 0, -1e6, 1e6, "At the origin.")}});
 }
 
-const std::vector<Block>& shape_blocks() {
-    static const std::vector<Block> blocks = {
-        {"group", "Nothing to see: a parent for others.", {}},
-        {"plane",
-         "A rectangle in xy, seen from both sides; its normal is +z.",
-         {required(vector(ParamType::vec2, "size", "m", {1, 1}, 1e-6, kFar_m, "Along x and y."))}},
-        {"disk", "In xy, seen from both sides; its normal is +z.", {radius()}},
-        {"sphere", "About its origin.", {radius()}},
-        {"box",
-         "About its origin.",
-         {required(
-             uniform(vector(ParamType::vec3, "size", "m", {1, 1, 1}, 1e-6, kFar_m, "Along x, y and z.")))}},
-        {"cylinder",
-         "Along y about its origin, with its caps.",
-         {radius(), required(number("height", "m", 1, 1e-6, kFar_m, "Along y."))}},
-        {"mesh",
-         "Triangles of the scene's \"meshes\".",
-         {},
-         {required({"mesh", Form::name, "mesh", "Which."})}}};
-    return blocks;
+Block height_field_block() {
+    return shared(
+        {.name = "height_field",
+         .thing = "the height field",
+         .doc = "A sheet over xy, raised along z by the sum of its waves.",
+         .keys = {required(vector(ParamType::vec2, "size", "m", {1, 1}, 1e-6, kFar_m, "Along x and y.")),
+                  integer("segments", 64, 1, 1024, "Squares along each side."),
+                  grammar::optional("waves", grammar::list(object_of(wave_block())),
+                                    "What is added up; none: flat.")}});
 }
 
-const Block& height_field_block() {
-    static const Block block = {
-        "height_field",
-        "A sheet over xy, raised along z by the sum of its waves.",
-        {required(vector(ParamType::vec2, "size", "m", {1, 1}, 1e-6, kFar_m, "Along x and y.")),
-         integer("segments", 64, 1, 1024, "Squares along each side.")},
-        {{"waves", Form::list, "wave", "What is added up; none: flat."}}};
-    return block;
+Block mesh_block() {
+    return shared(
+        {.name = "mesh",
+         .thing = "the mesh '{}'",
+         .doc = "Triangles for objects: of a file or a height field.",
+         .keys = {grammar::optional("file", grammar::text({.type = "path from the document's folder"}),
+                                    "glTF 2.0, .gltf or .glb."),
+                  grammar::optional("height_field", object_of(height_field_block()), "A sheet of waves.")},
+         .rules = {grammar::exactly_one_of({"file", "height_field"},
+                                           "a mesh has either a 'file' or a 'height_field'")}});
 }
 
-const Block& wave_block() {
-    static const Block block = {
-        "wave",
-        "amplitude * cos(2 pi (x, y) . cycles + phase), metres.",
-        {required(number("amplitude", "m", 0, -kFar_m, kFar_m, "Height of the crest.")),
-         required(
-             vector(ParamType::vec2, "cycles", "", {1, 0}, -1e6, 1e6, "Waves in a metre along x and y.")),
-         number("phase", "deg", 0, -1e6, 1e6, "At the origin.")}};
-    return block;
+Block repeat_block() {
+    return shared({.name = "repeat",
+                   .thing = "the repetition",
+                   .doc = "The object several times, along a grid in its parent's space.",
+                   .keys = {required(whole(vector(ParamType::vec3, "count", "", {1, 1, 1}, 1, 4096,
+                                                  "Along x, y and z; the product is at most " +
+                                                      std::to_string(kMaxObjects) + "."))),
+                            place("step", {1, 1, 1}, "From one to the next along each axis."),
+                            uniform(vector(ParamType::vec3, "scatter", "m", {0, 0, 0}, 0, kFar_m,
+                                           "Moves each by up to this much, by a hash of its number.")),
+                            vector(ParamType::vec3, "turn", "deg", {0, 0, 0}, 0, 360,
+                                   "Turns each by up to this much either way."),
+                            integer("id_step", 0, 0, 4096, "What the id grows by from one to the next.")}});
 }
 
-const Block& repeat_block() {
-    static const Block block = {
-        "repeat",
-        "The object several times, along a grid in its parent's space.",
-        {required(
-             whole(vector(ParamType::vec3, "count", "", {1, 1, 1}, 1, 4096,
-                          "Along x, y and z; the product is at most " + std::to_string(kMaxObjects) + "."))),
-         place("step", {1, 1, 1}, "From one to the next along each axis."),
-         uniform(vector(ParamType::vec3, "scatter", "m", {0, 0, 0}, 0, kFar_m,
-                        "Moves each by up to this much, by a hash of its number.")),
-         vector(ParamType::vec3, "turn", "deg", {0, 0, 0}, 0, 360,
-                "Turns each by up to this much either way."),
-         integer("id_step", 0, 0, 4096, "What the id grows by from one to the next.")}};
-    return block;
+std::vector<Block> shapes() {
+    const auto size = [](const char* doc) {
+        return required(vector(ParamType::vec2, "size", "m", {1, 1}, 1e-6, kFar_m, doc));
+    };
+    return {{.name = "group", .doc = "Nothing to see: a parent for others."},
+            {.name = "plane",
+             .doc = "A rectangle in xy, seen from both sides; its normal is +z.",
+             .keys = {size("Along x and y.")}},
+            {.name = "disk", .doc = "In xy, seen from both sides; its normal is +z.", .keys = {radius()}},
+            {.name = "sphere", .doc = "About its origin.", .keys = {radius()}},
+            {.name = "box",
+             .doc = "About its origin.",
+             .keys = {required(uniform(
+                 vector(ParamType::vec3, "size", "m", {1, 1, 1}, 1e-6, kFar_m, "Along x, y and z.")))}},
+            {.name = "cylinder",
+             .doc = "Along y about its origin, with its caps.",
+             .keys = {radius(), required(number("height", "m", 1, 1e-6, kFar_m, "Along y."))}},
+            {.name = "mesh",
+             .doc = "Triangles of the scene's \"meshes\".",
+             .keys = {grammar::required("mesh", name_of("mesh"), "Which.")}}};
 }
 
-const Block& light_block() {
-    static const Block block = {"light",
-                                "Light of a colour and an intensity.",
-                                {color("color", 1, 1e9, "Times intensity."),
-                                 flag("shadows", true, "Whether objects stand in its way.")},
-                                {name_part("As captures and messages have it.")}};
-    return block;
+Block object_block() {
+    return shared(
+        {.name = "object",
+         .doc = "A shape with a material that may move.",
+         .keys = {animated(place("position", {0, 0, 0}, "Of its origin, in its parent's space.")),
+                  animated(vector(ParamType::vec3, "rotation", "deg", {0, 0, 0}, -1e6, 1e6,
+                                  "About x, then y, then z.")),
+                  animated(uniform(
+                      vector(ParamType::vec3, "scale", "", {1, 1, 1}, 1e-6, 1e6, "Along its own axes."))),
+                  integer("id", 0, 0, 16777215,
+                          "The role object_id; 0 takes the object's place in the list, from 1."),
+                  flag("casts_shadow", true, "Whether it stands between lights and others."),
+                  name_key("For \"parent\"; no two without \"repeat\" have the same."),
+                  grammar::optional(
+                      "material", name_of("material"),
+                      "What it is made of; a group may do without, and a scene that declares none."),
+                  grammar::optional("parent", name_of("object"),
+                                    "An earlier object, without \"repeat\", that it moves with."),
+                  grammar::optional("repeat", object_of(repeat_block()),
+                                    "Makes a grid of it, which no parent can be.")},
+         .selector = "shape",
+         .kinds = shapes()});
 }
 
-const std::vector<Block>& light_blocks() {
+Block pattern_block() {
+    return shared(
+        {.name = "pattern",
+         .thing = "the pattern",
+         .doc = "What a directional light shines through, by the distance along an axis.",
+         .keys = {required(choice("type", {"edge", "cosine"},
+                                  "edge: dark below the offset; cosine: 1 + amplitude * cos.")),
+                  with_length(vector(ParamType::vec3, "axis", "", {1, 0, 0}, -1, 1,
+                                     "World; need not have unit length.")),
+                  number("offset", "m", 0, -kFar_m, kFar_m, "edge: lit from here on; cosine: a crest."),
+                  number("period", "m", 1, 1e-9, kFar_m, "cosine: from crest to crest."),
+                  number("amplitude", "", 1, 0, 1, "cosine.")}});
+}
+
+std::vector<Block> light_types() {
     const auto intensity = [](const char* doc) { return animated(number("intensity", "", 1, 0, 1e12, doc)); };
     const auto position = [](const char* doc) {
         return animated(required(place("position", {0, 5, 0}, doc)));
     };
     const auto target = [](const char* doc) { return animated(place("target", {0, 0, 0}, doc)); };
-    static const std::vector<Block> blocks = {
-        {"point", "From one point to all sides.", {position("Where it stands."), intensity("W/sr.")}},
-        {"directional",
-         "From far away.",
-         {position("It shines along the line from here to the target."), target("Where that line goes."),
-          intensity("W/m^2 across the light.")},
-         {{"pattern", Form::object, "pattern", "What it shines through."}}},
-        {"area",
-         "A rectangle that shines from its front alone; it is not seen itself.",
-         {position("Its centre."), target("What its front faces."), intensity("Radiance, W/(m^2 sr)."),
-          vector(ParamType::vec2, "size", "m", {1, 1}, 1e-6, kFar_m, "Its sides; the first is level."),
-          integer("shadow_samples", 1, 1, 16,
-                  "Shadows from a grid of this many points a side; 1: hard ones from the centre.")}}};
-    return blocks;
+    return {{.name = "point",
+             .doc = "From one point to all sides.",
+             .keys = {position("Where it stands."), intensity("W/sr.")}},
+            {.name = "directional",
+             .doc = "From far away.",
+             .keys = {position("It shines along the line from here to the target."),
+                      target("Where that line goes."), intensity("W/m^2 across the light."),
+                      grammar::optional("pattern", object_of(pattern_block()), "What it shines through.")}},
+            {.name = "area",
+             .doc = "A rectangle that shines from its front alone; it is not seen itself.",
+             .keys = {
+                 position("Its centre."), target("What its front faces."), intensity("Radiance, W/(m^2 sr)."),
+                 vector(ParamType::vec2, "size", "m", {1, 1}, 1e-6, kFar_m, "Its sides; the first is level."),
+                 integer("shadow_samples", 1, 1, 16,
+                         "Shadows from a grid of this many points a side; 1: hard ones from the centre.")}}};
 }
 
-const Block& pattern_block() {
-    static const Block block = {
-        "pattern",
-        "What a directional light shines through, by the distance along an axis.",
-        {required(
-             choice("type", {"edge", "cosine"}, "edge: dark below the offset; cosine: 1 + amplitude * cos.")),
-         with_length(
-             vector(ParamType::vec3, "axis", "", {1, 0, 0}, -1, 1, "World; need not have unit length.")),
-         number("offset", "m", 0, -kFar_m, kFar_m, "edge: lit from here on; cosine: a crest."),
-         number("period", "m", 1, 1e-9, kFar_m, "cosine: from crest to crest."),
-         number("amplitude", "", 1, 0, 1, "cosine.")}};
-    return block;
+Block light_block() {
+    return shared({.name = "light",
+                   .doc = "Light of a colour and an intensity.",
+                   .keys = {color("color", 1, 1e9, "Times intensity."),
+                            flag("shadows", true, "Whether objects stand in its way."),
+                            name_key("As captures and messages have it.")},
+                   .selector = "type",
+                   .kinds = light_types()});
 }
+
+/// Where there are materials, everything that is seen has one; SceneReader checks it, object by object.
+grammar::Rule materials_rule() {
+    return grammar::custom_rule({.check = {}, .schema = R"({
+        "if": {"required": ["materials"], "properties": {"materials": {"minProperties": 1}}},
+        "then": {"properties": {"objects": {"items": {"anyOf": [
+            {"properties": {"shape": {"const": "group"}}}, {"required": ["material"]}]}}}}})"});
+}
+
+Block make_scene_block() {
+    const std::string frames_fault = "frames are a range such as \"1-24\" or \"1-100x2,120\"";
+    const Form frames = grammar::any_of(
+        {frame_range_form(frames_fault), grammar::integer(-kMaxFrame, kMaxFrame)}, frames_fault);
+    return {.name = "scene",
+            .thing = "the scene",
+            .doc = "The document.",
+            .keys = {number("fps", "", 24, 0.001, 1000, "Frames a second."),
+                     whole(vector(ParamType::vec2, "size", "", {480, 270}, 1, 16384, "Of the picture, px.")),
+                     color("background", 0, 1e9, "Radiance where nothing is hit."),
+                     color("ambient", 0, 1e9, "Radiance from all sides, without shadows."),
+                     grammar::optional("summary", grammar::text(), "One sentence."),
+                     grammar::optional("frames", frames, "What is rendered; default 1."),
+                     grammar::optional("cuts",
+                                       grammar::list(grammar::integer(-kMaxCut, kMaxCut), {.unique = true}),
+                                       "Frames that begin a shot; each stands once."),
+                     grammar::required("camera", object_of(camera_block()), "Sees the scene."),
+                     grammar::optional("shutter", object_of(shutter_block()), "When light is let in."),
+                     grammar::optional("materials", grammar::map(object_of(material_block())),
+                                       "What objects are made of."),
+                     grammar::optional("meshes", grammar::map(object_of(mesh_block())),
+                                       "Triangles for objects of the shape mesh."),
+                     grammar::required("objects",
+                                       grammar::list(object_of(object_block()), {.max = int(kMaxObjects)}),
+                                       "What is seen."),
+                     grammar::optional("lights",
+                                       grammar::list(object_of(light_block()), {.max = int(kMaxLights)}),
+                                       "What shines.")},
+            .rules = {materials_rule()},
+            .is_document = true};
+}
+
+}  // namespace
 
 const Block& scene_block() {
-    static const Block block = {
-        "scene",
-        "The document.",
-        {number("fps", "", 24, 0.001, 1000, "Frames a second."),
-         whole(vector(ParamType::vec2, "size", "", {480, 270}, 1, 16384, "Of the picture, px.")),
-         color("background", 0, 1e9, "Radiance where nothing is hit."),
-         color("ambient", 0, 1e9, "Radiance from all sides, without shadows.")},
-        {{"summary", Form::text, "", "One sentence."},
-         {"frames", Form::frame_range, "", "What is rendered; default 1."},
-         {"cuts", Form::frames, "", "Frames that begin a shot; each stands once."},
-         required({"camera", Form::object, "camera", "Sees the scene."}),
-         {"shutter", Form::object, "shutter", "When light is let in."},
-         {"materials", Form::by_name, "material", "What objects are made of."},
-         {"meshes", Form::by_name, "mesh", "Triangles for objects of the shape mesh."},
-         {"objects", Form::list, "object", "What is seen.", true, 0, int(kMaxObjects)},
-         {"lights", Form::list, "light", "What shines.", false, 0, int(kMaxLights)}}};
+    static const Block block = make_scene_block();
     return block;
 }
 

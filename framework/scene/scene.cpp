@@ -9,8 +9,6 @@
 
 namespace aftershade::scene {
 
-using Presence = ObjectReader::Presence;
-
 Shot Scene::shot_of(int frame) const {
     Shot shot;
     for (const int cut : cuts) {
@@ -24,188 +22,120 @@ Shot Scene::shot_of(int frame) const {
     return shot;
 }
 
-std::optional<int> SceneReader::find_name(const Node& node, const std::string& what,
-                                          const std::map<std::string, int>& names) {
-    if (!node.is_string()) {
-        diagnostics_.error(node.place, "expected the name of a " + what);
-        return std::nullopt;
-    }
-    if (const auto found = names.find(node.string); found != names.end()) return found->second;
+std::optional<int> SceneReader::find_name(const grammar::Reader& reader, const std::string& key,
+                                          const std::string& what, const std::map<std::string, int>& names) {
+    if (!reader.has(key)) return std::nullopt;
+    const std::string name = reader.text(key);
+    if (const auto found = names.find(name); found != names.end()) return found->second;
     std::vector<std::string> known;
-    for (const auto& [name, index] : names) known.push_back(name);
-    diagnostics_.error(node.place, "there is no " + what + " '" + node.string + "'" +
-                                       (known.empty() ? "" : did_you_mean(node.string, known)));
+    for (const auto& [other, index] : names) known.push_back(other);
+    diagnostics_.error(reader.place(key), "there is no " + what + " '" + name + "'" +
+                                              (known.empty() ? "" : did_you_mean(name, known)));
     return std::nullopt;
 }
 
 void SceneReader::read(const Node& node) {
-    ObjectReader reader(node, "the scene", diagnostics_);
-    if (!reader.is_object()) return;
-    check_document_version(reader, node, diagnostics_);
-    reader.text("$schema");
-    scene_.summary = reader.text("summary").value_or("");
-    FieldReader fields(reader, "", diagnostics_);
-    const glm::dvec2 size_px = fields.vec2(scene_block(), "size");
+    grammar::check(node, scene_block(), diagnostics_);
+    if (!node.is_object()) return;
+    const grammar::Reader reader(node, scene_block());
+    scene_.summary = reader.text("summary");
+    const glm::dvec2 size_px = vec2(reader, "size");
     scene_.width_px = int(size_px.x);
     scene_.height_px = int(size_px.y);
-    scene_.fps = fields.number(scene_block(), "fps");
-    scene_.background = fields.vec3(scene_block(), "background");
-    scene_.ambient = fields.vec3(scene_block(), "ambient");
+    scene_.fps = number(reader, "fps");
+    scene_.background = vec3(reader, "background");
+    scene_.ambient = vec3(reader, "ambient");
     read_frames(reader);
-    if (const Node* camera = reader.object("camera", Presence::required)) read_camera(*camera);
-    if (const Node* shutter = reader.object("shutter")) read_shutter(*shutter);
-    if (const Node* materials = reader.object("materials")) read_materials(*materials);
-    if (const Node* meshes = reader.object("meshes")) read_meshes(*meshes);
-    if (const Node* objects = reader.array("objects", Presence::required)) read_objects(*objects);
-    if (const Node* lights = reader.array("lights")) read_lights(*lights);
-    reader.finish();
+    if (const auto camera = reader.object("camera")) read_camera(*camera);
+    if (const auto shutter = reader.object("shutter")) read_shutter(*shutter);
+    for (const auto& [member, material] : reader.named("materials")) read_material(member->key, material);
+    for (const auto& [member, mesh] : reader.named("meshes")) read_mesh(member->key, mesh);
+    for (const grammar::Reader& object : reader.objects("objects")) read_object(object);
+    if (scene_.objects.size() > kMaxObjects)
+        diagnostics_.error(
+            reader.place("objects"),
+            std::to_string(scene_.objects.size()) + " objects are more than " + std::to_string(kMaxObjects));
+    for (const grammar::Reader& light : reader.objects("lights")) read_light(light);
     if (scene_.materials.empty()) scene_.materials.emplace_back();
 }
 
-void SceneReader::read_frames(ObjectReader& reader) {
-    if (const Node* frames = reader.any("frames")) {
-        const auto range = frames->is_string() ? parse_frame_range(frames->string)
-                           : frames->kind == Node::Kind::integer
-                               ? parse_frame_range(std::to_string(frames->integer))
-                               : std::nullopt;
-        if (!range || range->empty())
-            diagnostics_.error(frames->place, "frames are a range such as \"1-24\" or \"1-100x2,120\"");
-        else scene_.frames = *range;
-    }
-    if (const Node* cuts = reader.array("cuts")) {
-        for (const Node& cut : cuts->items) {
-            if (cut.kind != Node::Kind::integer || cut.integer < -kMaxCut || cut.integer > kMaxCut)
-                diagnostics_.error(cut.place, "a cut is the number of the frame that begins a shot");
-            else scene_.cuts.push_back(int(cut.integer));
-        }
-        std::sort(scene_.cuts.begin(), scene_.cuts.end());
-        if (std::adjacent_find(scene_.cuts.begin(), scene_.cuts.end()) != scene_.cuts.end())
-            diagnostics_.error(cuts->place, "a frame is named twice");
-    }
+void SceneReader::read_frames(const grammar::Reader& reader) {
+    if (const Node* frames = reader.find("frames"))
+        scene_.frames =
+            *parse_frame_range(frames->is_string() ? frames->string : std::to_string(frames->integer));
+    if (const Node* cuts = reader.find("cuts"))
+        for (const Node& cut : cuts->items) scene_.cuts.push_back(int(cut.integer));
+    std::sort(scene_.cuts.begin(), scene_.cuts.end());
 }
 
-void SceneReader::read_camera(const Node& node) {
-    ObjectReader reader(node, "the camera", diagnostics_);
-    FieldReader fields(reader, "camera.", diagnostics_);
-    const Block& block = camera_block();
+void SceneReader::read_camera(const grammar::Reader& reader) {
     SceneCamera& camera = scene_.camera;
-    camera.position_m = fields.animated_vec3(block, "position");
-    camera.target_m = fields.animated_vec3(block, "target");
-    camera.roll_deg = fields.animated_number(block, "roll");
-    camera.focal_length_mm = fields.animated_number(block, "focal_length");
-    camera.sensor_width_mm = fields.number(block, "sensor_width");
-    camera.focus_distance_m = fields.animated_number(block, "focus_distance");
-    camera.f_number = fields.number(block, "f_number");
-    camera.blades = fields.integer(block, "blades");
-    camera.rotation_deg = fields.number(block, "rotation");
-    reader.finish();
+    camera.position_m = animated_vec3(reader, "position");
+    camera.target_m = animated_vec3(reader, "target");
+    camera.roll_deg = animated_number(reader, "roll");
+    camera.focal_length_mm = animated_number(reader, "focal_length");
+    camera.sensor_width_mm = number(reader, "sensor_width");
+    camera.focus_distance_m = animated_number(reader, "focus_distance");
+    camera.f_number = number(reader, "f_number");
+    camera.blades = integer(reader, "blades");
+    camera.rotation_deg = number(reader, "rotation");
 }
 
-void SceneReader::read_shutter(const Node& node) {
-    ObjectReader reader(node, "the shutter", diagnostics_);
-    FieldReader fields(reader, "shutter.", diagnostics_);
-    scene_.camera.shutter_angle_deg = fields.number(shutter_block(), "angle");
-    const std::string phase = fields.choice(shutter_block(), "phase");
+void SceneReader::read_shutter(const grammar::Reader& reader) {
+    scene_.camera.shutter_angle_deg = number(reader, "angle");
+    const std::string phase = reader.text("phase");
     scene_.camera.shutter_phase = phase == "start" ? ShutterPhase::start
                                   : phase == "end" ? ShutterPhase::end
                                                    : ShutterPhase::center;
-    reader.finish();
 }
 
-void SceneReader::read_albedo(ObjectReader& reader, FieldReader& fields, const std::string& label,
-                              Material& material) {
-    const Node* node = reader.any("albedo");
-    if (!node) return;
-    if (node->is_object()) read_checker(*node, fields, label, material);
-    else if (const auto value = fields.vec3(material_block().field("albedo"), *node))
-        material.albedo = material.albedo_2 = *value;
-}
-
-void SceneReader::read_checker(const Node& node, FieldReader& fields, const std::string& label,
-                               Material& material) {
-    ObjectReader reader(node, "the albedo", diagnostics_);
-    material.checker_cells =
-        FieldReader(reader, label + "albedo.", diagnostics_).vec2(checker_block(), "cells");
-    const Node* colors = reader.array("checker", Presence::required);
-    reader.finish();
-    if (!colors) return;
-    if (colors->items.size() != 2) {
-        diagnostics_.error(colors->place, "a checker has two colours");
-        return;
+void SceneReader::read_material(const std::string& name, const grammar::Reader& reader) {
+    Material material;
+    material.name = name;
+    if (const auto checker = reader.object("albedo")) {
+        material.checker_cells = vec2(*checker, "cells");
+        const auto colors = checker->component_list("checker");
+        if (colors.size() == 2) {
+            material.albedo = {colors[0][0], colors[0][1], colors[0][2]};
+            material.albedo_2 = {colors[1][0], colors[1][1], colors[1][2]};
+        }
+    } else if (reader.has("albedo")) {
+        material.albedo = material.albedo_2 = vec3(reader, "albedo");
     }
-    const Field& albedo = material_block().field("albedo");
-    if (const auto value = fields.vec3(albedo, colors->items[0])) material.albedo = *value;
-    if (const auto value = fields.vec3(albedo, colors->items[1])) material.albedo_2 = *value;
+    material.roughness = number(reader, "roughness");
+    material.specular = number(reader, "specular");
+    material.emission = vec3(reader, "emission");
+    if (const Node* scattering = reader.find("scattering_profile"))
+        if (auto profile = parse_scattering_profile(*scattering, "materials." + name + ".scattering_profile",
+                                                    scene_.path.parent_path(), diagnostics_)) {
+            const Rgb d_mm = profile->fitted_d_mm();
+            material.scattering =
+                Scattering{glm::dvec3(d_mm[0], d_mm[1], d_mm[2]) * 1e-3, std::move(*profile)};
+        }
+    materials_[name] = int(scene_.materials.size());
+    scene_.materials.push_back(std::move(material));
 }
 
-std::optional<Scattering> SceneReader::read_scattering(const Node& node, const std::string& label) {
-    auto profile =
-        parse_scattering_profile(node, label + "scattering_profile", scene_.path.parent_path(), diagnostics_);
-    if (!profile) return std::nullopt;
-    const Rgb d_mm = profile->fitted_d_mm();
-    return Scattering{glm::dvec3(d_mm[0], d_mm[1], d_mm[2]) * 1e-3, std::move(*profile)};
-}
-
-void SceneReader::read_materials(const Node& node) {
-    for (const Member& member : node.members) {
-        const std::string label = "materials." + member.key + ".";
-        ObjectReader reader(member.value, "the material '" + member.key + "'", diagnostics_);
-        FieldReader fields(reader, label, diagnostics_);
-        Material material;
-        material.name = member.key;
-        read_albedo(reader, fields, label, material);
-        material.roughness = fields.number(material_block(), "roughness");
-        material.specular = fields.number(material_block(), "specular");
-        material.emission = fields.vec3(material_block(), "emission");
-        if (const Node* scattering = reader.any("scattering_profile"))
-            material.scattering = read_scattering(*scattering, label);
-        reader.finish();
-        materials_[member.key] = int(scene_.materials.size());
-        scene_.materials.push_back(std::move(material));
-    }
-}
-
-std::optional<Mesh> SceneReader::read_height_field(const Node& node, const std::string& label) {
-    ObjectReader reader(node, "the height field", diagnostics_);
-    FieldReader fields(reader, label + "height_field.", diagnostics_);
-    const glm::dvec2 size_m = fields.vec2(height_field_block(), "size");
-    const int segments = fields.integer(height_field_block(), "segments");
+std::optional<Mesh> SceneReader::read_height_field(const grammar::Reader& reader) {
     std::vector<Wave> waves;
-    if (const Node* list = reader.array("waves"))
-        for (const Node& item : list->items) {
-            ObjectReader wave_reader(item, "the wave", diagnostics_);
-            FieldReader wave(wave_reader, label + "height_field.", diagnostics_);
-            const double amplitude_m = wave.number(wave_block(), "amplitude");
-            const glm::dvec2 cycles_per_m = wave.vec2(wave_block(), "cycles");
-            waves.push_back({amplitude_m, cycles_per_m, glm::radians(wave.number(wave_block(), "phase"))});
-            wave_reader.finish();
-        }
-    reader.finish();
+    for (const grammar::Reader& wave : reader.objects("waves"))
+        waves.push_back(
+            {number(wave, "amplitude"), vec2(wave, "cycles"), glm::radians(number(wave, "phase"))});
     if (diagnostics_.has_errors()) return std::nullopt;
-    return make_height_field(size_m, waves, segments);
+    return make_height_field(vec2(reader, "size"), waves, integer(reader, "segments"));
 }
 
-void SceneReader::read_meshes(const Node& node) {
-    for (const Member& member : node.members) {
-        ObjectReader reader(member.value, "the mesh '" + member.key + "'", diagnostics_);
-        const auto file = reader.text("file");
-        const Node* height_field = reader.object("height_field");
-        reader.finish();
-        if (bool(file) == bool(height_field)) {
-            diagnostics_.error(member.value.place, "a mesh has either a 'file' or a 'height_field'");
-            continue;
+void SceneReader::read_mesh(const std::string& name, const grammar::Reader& reader) {
+    std::optional<Mesh> mesh;
+    if (const auto height_field = reader.object("height_field")) mesh = read_height_field(*height_field);
+    else if (reader.has("file")) try {
+            mesh = read_gltf(scene_.path.parent_path() / reader.text("file"));
+        } catch (const Error& error) {
+            diagnostics_.error(reader.place("file"), error.what());
         }
-        std::optional<Mesh> mesh;
-        if (height_field) mesh = read_height_field(*height_field, "meshes." + member.key + ".");
-        else try {
-                mesh = read_gltf(scene_.path.parent_path() / *file);
-            } catch (const Error& error) {
-                diagnostics_.error(member.value.find("file")->place, error.what());
-            }
-        // A mesh that is not usable keeps its name, so that the objects that use it are no faults too.
-        meshes_[member.key] = int(scene_.meshes.size());
-        scene_.meshes.push_back(mesh ? std::move(*mesh) : Mesh{});
-    }
+    // A mesh that is not usable keeps its name, so that the objects that use it are no faults too.
+    meshes_[name] = int(scene_.meshes.size());
+    scene_.meshes.push_back(mesh ? std::move(*mesh) : Mesh{});
 }
 
 std::optional<Scene> parse_scene(const Node& node, Diagnostics& diagnostics) {

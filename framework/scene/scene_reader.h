@@ -19,27 +19,21 @@ public:
     void read(const Node& node);
 
 private:
-    void read_frames(ObjectReader& reader);
-    void read_camera(const Node& node);
-    void read_shutter(const Node& node);
-    void read_materials(const Node& node);
-    void read_albedo(ObjectReader& reader, FieldReader& fields, const std::string& label, Material& material);
-    void read_checker(const Node& node, FieldReader& fields, const std::string& label, Material& material);
-    std::optional<Scattering> read_scattering(const Node& node, const std::string& label);
-    void read_meshes(const Node& node);
-    std::optional<Mesh> read_height_field(const Node& node, const std::string& label);
+    void read_frames(const grammar::Reader& reader);
+    void read_camera(const grammar::Reader& reader);
+    void read_shutter(const grammar::Reader& reader);
+    void read_material(const std::string& name, const grammar::Reader& reader);
+    void read_mesh(const std::string& name, const grammar::Reader& reader);
+    std::optional<Mesh> read_height_field(const grammar::Reader& reader);
 
-    void read_objects(const Node& node);
-    void read_object(const Node& node, std::size_t index);
-    Shape read_shape(ObjectReader& reader, FieldReader& fields);
-    void add_repeated(const Object& object, const Node& node, const std::string& label);
-    void read_lights(const Node& node);
-    void read_light(const Node& node, std::size_t index);
-    LightPattern read_pattern(const Node& node, const std::string& label);
+    void read_object(const grammar::Reader& reader);
+    Shape read_shape(const grammar::Reader& reader);
+    void add_repeated(const Object& object, const grammar::Reader& reader, const std::string& label);
+    void read_light(const grammar::Reader& reader);
 
-    /// The index of a name in `names`, or nullopt and an error that lists them.
-    std::optional<int> find_name(const Node& node, const std::string& what,
-                                 const std::map<std::string, int>& names);
+    /// The index of the name that the key gives, or nullopt and an error that lists those that there are.
+    std::optional<int> find_name(const grammar::Reader& reader, const std::string& key,
+                                 const std::string& what, const std::map<std::string, int>& names);
 
     Scene& scene_;
     Diagnostics& diagnostics_;

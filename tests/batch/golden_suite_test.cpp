@@ -51,7 +51,7 @@ TEST_F(Suite, TellsAllFaultsAtOnce) {
     for (const char* part : {"'golden'; did you mean 'goldens'", "no folder", "not 'a.b'", "none.json'",
                              "one of both", "'x' is no range", "'skip' says why", "a second case named 'b'",
                              "golden.json:3:", "'preste'; did you mean 'preset'", "'y' is not 'step.texture'",
-                             "must be a boolean"})
+                             "'cases_of_effects' must be true or false, not a string"})
         EXPECT_NE(faults_.find(part), std::string::npos) << part << " in\n" << faults_;
 }
 

@@ -252,6 +252,28 @@ TEST_F(Authoring, DocsAreWrittenOnceAndTheirDriftIsFound) {
     EXPECT_NE(drift.find("pages/gone.md: no effect has this page"), std::string::npos);
 }
 
+TEST_F(Authoring, DocsWritesTablesIntoMarkedRegionsOfPagesAndFindsTheirDrift) {
+    const std::string begin = "# Mine\n<!-- made by aftershade docs: case.tolerance -->\n";
+    const std::string end =
+        "<!-- end -->\nMy own words.\n<!-- made by aftershade docs: case.case -->\n<!-- end -->\n";
+    write_text(folder_ / "mine.md", begin + end);
+    EXPECT_NE(command({"docs", "-o", "pages"}).out.find("mine.md"), std::string::npos);
+    const std::string page = read_text(folder_ / "mine.md");
+    EXPECT_TRUE(page.starts_with(begin + "| key | type |")) << page;
+    EXPECT_NE(page.find("| `fail` | float | at least 0 | 1e-06 |"), std::string::npos) << page;
+    EXPECT_NE(page.find("<!-- end -->\nMy own words.\n"), std::string::npos) << page;
+    command({"docs", "-o", "pages", "--check"});
+    replace("mine.md", "1e-06", "0.1");
+    EXPECT_NE(command({"docs", "-o", "pages", "--check"}, 1).out.find("mine.md: is not what is declared"),
+              std::string::npos);
+    write_text(folder_ / "mine.md", begin + "<!-- end -->\n");
+    EXPECT_NE(command({"docs", "-o", "pages"}, 2).err.find("no page shows the table 'case.case'"),
+              std::string::npos);
+    replace("mine.md", "case.tolerance", "case.tolerence");
+    EXPECT_NE(command({"docs", "-o", "pages"}, 2).err.find("did you mean 'case.tolerance'?"),
+              std::string::npos);
+}
+
 TEST(Pages, AreWhatIsDeclared) {
     const std::string folder = std::string(AFTERSHADE_SOURCE_DIR) + "/docs/effects";
     const TemporaryFolder here;

@@ -79,7 +79,7 @@ std::vector<Fault> look_faults() {
               {"look\\.json:2:24: error: a second step named 'bokeh'; give it a 'name' of its own \\(the "
                "first is at look\\.json:.*\\)"}),
         steps("AStepNamedAsAPath", R"({ "effect": "bokeh", "name": "../bokeh" })",
-              {"look\\.json:2:1: error: the name '\\.\\./bokeh' must be snake_case.*"}),
+              {"look\\.json:2:30: error: the name '\\.\\./bokeh' must be snake_case.*"}),
         steps("AnUnknownPreset", R"({ "effect": "bokeh", "preset": "fats" })",
               {"look\\.json:2:32: error: bokeh has no preset 'fats'; did you mean 'fast'\\?"}),
         steps("ColorReadAfterDisplay", R"({ "effect": "view_transform" }, { "effect": "bokeh" })",

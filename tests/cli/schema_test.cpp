@@ -55,7 +55,8 @@ protected:
 
     std::vector<std::string> verdicts(const std::vector<Document>& documents) {
         json task = {{"schemas", json::object()}, {"documents", json::array()}};
-        for (const char* name : {"look", "capture", "effect", "module", "scene", "scattering_profile"})
+        for (const char* name : {"look", "capture", "effect", "module", "scene", "scattering_profile",
+                                 "profile", "golden", "case"})
             task["schemas"][name] = schema(name);
         for (const Document& document : documents)
             task["documents"].push_back({{"schema", document.schema}, {"document", document.content}});
@@ -71,21 +72,28 @@ protected:
     TemporaryFolder folder_;
 };
 
+/// effects/<id>/cases/<case>.json; <case>.<output>.<frame>.json is a golden's sidecar.
+bool is_case(const fs::path& path) {
+    return path.parent_path().filename() == "cases" && path.stem().string().find('.') == std::string::npos;
+}
+
 TEST_F(Schemas, TakeEveryShippedDocument) {
     std::vector<Document> documents;
     for (const auto& entry : fs::recursive_directory_iterator(kRoot)) {
         const fs::path path = entry.path();
         const std::string text = path.lexically_relative(kRoot).string();
         if (path.extension() != ".json" || text.starts_with("build") || text.starts_with(".")) continue;
-        const std::string kind =
-            path.filename() == "effect.json"           ? "effect"
-            : path.filename() == "module.json"         ? "module"
-            : path.filename() == "capture.json"        ? "capture"
-            : path.filename() == "scene.json"          ? "scene"
-            : path.parent_path().filename() == "looks" ? "look"
-            : text.starts_with("profiles/scattering/") && path.filename() != "profile.schema.json"
-                ? "scattering_profile"
-                : "";
+        const std::string kind = path.filename() == "effect.json"           ? "effect"
+                                 : path.filename() == "module.json"         ? "module"
+                                 : path.filename() == "capture.json"        ? "capture"
+                                 : path.filename() == "scene.json"          ? "scene"
+                                 : path.filename() == "golden.json"         ? "golden"
+                                 : is_case(path)                            ? "case"
+                                 : path.parent_path().filename() == "looks" ? "look"
+                                 : path.filename() == "profile.schema.json" ? ""
+                                 : text.starts_with("profiles/scattering/") ? "scattering_profile"
+                                 : text.starts_with("profiles/")            ? "profile"
+                                                                            : "";
         if (!kind.empty()) documents.push_back({kind, text, parsed(read_text(path))});
     }
     ASSERT_GE(documents.size(), 28U);
@@ -101,6 +109,9 @@ TEST_F(Schemas, OfEffectsModulesAndProfilesAreThoseThatArePublished) {
     EXPECT_EQ(run_aftershade({"schema", "module"}, folder_.path()).out,
               read_text(kRoot / "glsl/module.schema.json"))
         << "run: aftershade schema module > glsl/module.schema.json";
+    EXPECT_EQ(run_aftershade({"schema", "profile"}, folder_.path()).out,
+              read_text(kRoot / "profiles/profile.schema.json"))
+        << "run: aftershade schema profile > profiles/profile.schema.json";
     EXPECT_EQ(run_aftershade({"schema", "scattering_profile"}, folder_.path()).out,
               read_text(kRoot / "profiles/scattering/profile.schema.json"))
         << "run: aftershade schema scattering_profile > profiles/scattering/profile.schema.json";

@@ -148,7 +148,7 @@ const std::vector<BrokenDecoding> kBroken = {
      "'y_axis' is 'sideways' but must be 'up' or 'down'"},
     {R"("velocity": {"channels": ["u"]})", "role 'velocity' has 2 channels, not 1"},
     {R"("irradiance": {"sum": [["r", "g", "b"], ["r"]]})", "role 'irradiance' has 3 channels, not 1"},
-    {R"("mask": {"channels": [1]})", "a channel name must be a string"},
+    {R"("mask": {"channels": [1]})", "'channels' holds strings, not an integer"},
     {R"("depht": {"channels": ["Z"]})", "'depht' is not a role; did you mean 'depth'?"},
     {R"("depth": {"channels": ["Z"], "no_hti": 1})",
      "the decoding of 'depth' has no key 'no_hti'; did you mean 'no_hit'?"},

@@ -58,8 +58,9 @@ protected:
         std::string names;
         for (int c = 0; c < role().channels; ++c)
             names += (c ? ", \"c" : "\"c") + std::to_string(c) + "\"";
-        return parse_role_decoding(role().name, test::parsed("{\"channels\": [" + names + "]" + more + "}"),
-                                   diagnostics);
+        const std::string text = "{\"channels\": [" + names + "]" + more + "}";
+        grammar::check(test::parsed(text), decoding_block(role().name), diagnostics);
+        return read_decodings(test::parsed("{\"" + role().name + "\": " + text + "}")).at(role().name);
     }
 };
 

@@ -102,13 +102,13 @@ TEST(CaptureDocument, ListsAllItsFaults) {
     const Lines expected = {
         "capture.json:2:15: error: document version 2 is not known; this program reads version 1",
         "capture.json:3:11: error: '1-5x0' is not a frame range such as \"1-100x2,120\"",
-        "capture.json:3:28: error: 'fps' must be above 0",
+        "capture.json:3:28: error: 'fps' must be above 0, not 0",
         "capture.json:5:3: error: camera.focal_length: '50 deg' cannot be converted to mm; write 'um', 'mm', "
         "'cm', 'm', "
         "'km', 'in' or 'ft'",
         "capture.json:6:18: error: camera.f_number: 0 is below the minimum 0.01",
         "capture.json:6:21: error: the camera has no key 'focus'; did you mean 'focus_distance'?",
-        "capture.json:7:14: error: 'cuts' holds frame numbers, not a string",
+        "capture.json:7:14: error: 'cuts' holds integers, not a string",
         "capture.json:8:3: error: the capture has no key 'profil'; did you mean 'profile'?",
     };
     EXPECT_EQ(faults_of_capture("{\n"

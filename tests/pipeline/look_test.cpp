@@ -95,9 +95,9 @@ TEST(Look, RefusesEmptyWordsWhereSomethingMustBeNamed) {
     EXPECT_EQ(parse(R"({ "aftershade": 1, "steps": [ { "effect": "" } ] })").faults,
               "look:1:43: error: 'effect' is empty: it is the id of an effect\n");
     EXPECT_EQ(parse(R"({ "aftershade": 1, "steps": [ { "effect": "a", "mask": { "role": "" } } ] })").faults,
-              "look:1:66: error: the mask's 'role' is empty\n");
+              "look:1:66: error: 'role' is empty\n");
     EXPECT_EQ(parse(R"({ "aftershade": 1, "steps": [ { "effect": "a", "mask": { "file": "" } } ] })").faults,
-              "look:1:66: error: the mask's 'file' is empty\n");
+              "look:1:66: error: 'file' is empty\n");
 }
 
 Parsed parse_masked(const std::string& objects) {

@@ -68,7 +68,7 @@ const Fault kFaults[] = {
     {"frames", R"("frames": "1-x")", "frames are a range"},
     {"size", R"("size": [0, 20])", "size: 0 is below the minimum 1"},
     {"half a size", R"("size": [10.5, 20])", "size: 10.5 is not a whole number"},
-    {"cut", R"("cuts": [2, 2])", "a frame is named twice"},
+    {"cut", R"("cuts": [2, 2])", "'cuts' holds 2 twice"},
     {"fps", R"("fps": 0)", "fps: 0 is below the minimum 0.001"},
     {"background", R"("background": [0, -1, 0])", "background: -1 is below the minimum 0"},
     {"keys where there are none", R"("fps": { "keys": { "1": 2 } })", "fps does not take keys"},

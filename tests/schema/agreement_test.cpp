@@ -18,6 +18,9 @@
 #include "framework/core/scattering_profile.h"
 #include "framework/core/schema_pieces.h"
 #include "framework/effect/registry.h"
+#include "framework/image/capture_grammar.h"
+#include "framework/image/profile.h"
+#include "framework/image/profile_grammar.h"
 #include "framework/image/sequence.h"
 #include "framework/pipeline/look.h"
 #include "framework/pipeline/pipeline.h"
@@ -148,6 +151,20 @@ std::string judge_scene(const std::string& text) {
     return first_fault(diagnostics);
 }
 
+std::string judge_producer(const std::string& text) {
+    Diagnostics diagnostics;
+    const auto node = parse_document(text, "profile.json", diagnostics);
+    if (node) parse_profile(*node, diagnostics);
+    return first_fault(diagnostics);
+}
+
+std::string judge_case(const std::string& text) {
+    Diagnostics diagnostics;
+    const auto node = parse_document(text, "effects/blur/cases/soft.json", diagnostics);
+    if (node) parse_effect_case(*node, "effects/blur/cases/soft.json", "/root", diagnostics);
+    return first_fault(diagnostics);
+}
+
 std::string judge_profile(const std::string& text) {
     static const TemporaryFolder folder;
     write_text(folder / "profile.json", text);
@@ -258,6 +275,19 @@ TEST_F(SchemaAgreement, OfACaptureChangedEverywhere) {
     hold("capture.json", capture_schema(), judge_capture, {});
 }
 
+TEST_F(SchemaAgreement, OfAProducersProfileChangedEverywhere) {
+    hold("profile.json", profile_schema(), judge_producer, {});
+}
+
+TEST_F(SchemaAgreement, OfACaseOfAnEffectChangedEverywhere) {
+    hold("case.json", effect_case_schema(), judge_case,
+         {
+             "'hard_(fail|warn)' must be at least",  // two values against each other
+             "/steps",                               // as the schema of looks says
+             "'outputs' must name a role",           // or 'taps' a texture
+         });
+}
+
 TEST_F(SchemaAgreement, OfAManifestChangedEverywhere) {
     hold("every_form/effect.json", effect_schema(), judge_manifest,
          {
@@ -292,7 +322,7 @@ TEST_F(SchemaAgreement, OfAModuleChangedEverywhere) {
 TEST_F(SchemaAgreement, OfAScatteringProfileChangedEverywhere) {
     for (const char* file :
          {"burley.json", "burley_path.json", "gaussians.json", "dipole.json", "artist.json"})
-        hold(std::string("profiles/") + file, schema::scattering_profile_file().dump(), judge_profile,
+        hold(std::string("profiles/") + file, schema::scattering_profile_schema(), judge_profile,
              {"weights of .* sum to"});  // several values together
 }
 

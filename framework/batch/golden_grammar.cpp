@@ -1,0 +1,126 @@
+#include "framework/batch/golden_grammar.h"
+
+#include "framework/compare/compare_files.h"
+#include "framework/core/units.h"
+#include "framework/image/document_forms.h"
+
+namespace aftershade {
+
+using grammar::Block;
+using grammar::Form;
+using grammar::Key;
+using grammar::optional;
+using grammar::required;
+using grammar::text;
+
+namespace {
+
+Form texts() {
+    return grammar::list(text());
+}
+
+/// What a verdict of `word` allows. Only `fail` has defaults: without a `warn` key nothing warns.
+void add_level(const std::string& word, const std::string& many, const Tolerance* usual,
+               std::vector<Key>& keys) {
+    const Form share = grammar::number({.min = 0, .max = 1});
+    const auto number = [&](double Tolerance::*member) { return usual ? format_number(usual->*member) : ""; };
+    const auto add = [&](const std::string& name, const Form& form, const char* doc,
+                         const std::string& default_text = "") {
+        keys.push_back(optional(name, form, doc, default_text));
+    };
+    add(word, grammar::number({.min = 0}), "A pixel is one too many where a channel differs by more.",
+        number(&Tolerance::limit));
+    add(word + "_percent", grammar::number({.min = 0, .max = 100}), "Of the pixels may be.",
+        number(&Tolerance::percent));
+    add("hard_" + word, grammar::number({.min = 0}), "No pixel may differ by more; without it any may.");
+    add("allow_" + many, grammar::integer(0), "Pixels that may be, however few there are.",
+        usual ? std::to_string(usual->allowed) : "");
+    add(word + "_flip", share, "The most that the mean of FLIP may be.");
+    add(word + "_ssim", share, "The least that SSIM may be.");
+}
+
+Block tolerance_block() {
+    const Tolerance usual;
+    Block block{.name = "tolerance", .thing = "the tolerance", .doc = "Compare's flags."};
+    add_level("fail", "failures", &usual, block.keys);
+    add_level("warn", "warnings", nullptr, block.keys);
+    block.keys.push_back(
+        optional("nan_equal", grammar::boolean(), "NaN in both images is no difference.", "false"));
+    return block;
+}
+
+/// What each case has, wherever it stands.
+std::vector<Key> common_keys() {
+    const Form range = frame_range_form("'{}' is no range of frames");
+    const Form steps = grammar::list(grammar::custom({.type = "[steps of a look](looks.md)"}));
+    const Form tap = text({.pattern = R"(^[^./=]*\.[^./=]*$)",
+                           .fault = "'{}' is not 'step.texture'",
+                           .type = "`step.texture`"});
+    return {
+        required("capture", text(), "What `run` takes: capture.json, EXR file, pattern, folder."),
+        optional("frames", range, "Without it the capture's. Effects with history need the frames before."),
+        optional("steps", steps, "The steps of the look themselves."),
+        optional("set", texts(), "As `run --set`: `step.param=value`."),
+        optional("taps", grammar::list(tap), "Each an image of its own."),
+        optional("outputs", grammar::list(role_form()), "Each an image of its own.", R"(["color"])"),
+        optional("tolerance", grammar::object(golden_tolerance_block()), "How far images may be apart."),
+        optional("tags", texts(), "Words for `--filter`, no other case's name."),
+        optional("skip", text({.fault = "'skip' says why", .min_length = 1}), "Why the case is not run.")};
+}
+
+Block case_block() {
+    const Form name =
+        text({.pattern = "^[A-Za-z0-9_][A-Za-z0-9_-]*$",
+              .fault = "a case's name begins its files' names: letters, digits, '_' and '-', not '{}'"});
+    Block block{.name = "case",
+                .thing = "the case",
+                .doc = "A look over a capture.",
+                .keys = {required("name", name, "Begins the images' names: letters, digits, `_`, `-`."),
+                         optional("look", text(), "A look's file.")},
+                .rules = {grammar::exactly_one_of({"look", "steps"},
+                                                  "a case has a 'look' (a file) or 'steps', one of both")}};
+    for (Key& key : common_keys()) block.keys.push_back(std::move(key));
+    return block;
+}
+
+}  // namespace
+
+const Block& golden_tolerance_block() {
+    static const Block block = tolerance_block();
+    return block;
+}
+
+const Block& golden_suite_block() {
+    static const Block block{
+        .name = "suite",
+        .thing = "the suite",
+        .doc = "The document.",
+        .keys = {optional("goldens", text(), "Folder of the approved images, the suite's own.",
+                          R"("goldens")"),
+                 optional("effect_paths", texts(), "Folders of effects, searched before the shipped ones."),
+                 optional("cases", grammar::list(grammar::object(case_block())),
+                          "What is rendered and compared."),
+                 optional(
+                     "cases_of_effects", grammar::boolean(),
+                     "Also `<id>/cases/*.json` of every effect in `effect_paths`, or of the shipped ones.",
+                     "false")},
+        .is_document = true};
+    return block;
+}
+
+const Block& effect_case_block() {
+    static const Block block = [] {
+        Block result{.name = "case",
+                     .thing = "the case",
+                     .doc = "A case of an effect.",
+                     .keys = common_keys(),
+                     .is_document = true};
+        for (Key& key : result.keys)
+            for (const char* name : {"frames", "steps", "outputs", "tolerance"})
+                if (key.name == name) key.required = true;
+        return result;
+    }();
+    return block;
+}
+
+}  // namespace aftershade

@@ -1,0 +1,19 @@
+// The grammar of a look, declared once (framework/core/grammar.h). What the parameters, inputs and presets of
+// each effect are its manifest says.
+#pragma once
+
+#include "framework/core/grammar.h"
+
+namespace aftershade {
+
+/// The document. Its steps are checked one by one, when variables are put in.
+const grammar::Block& look_block();
+/// A step with an effect.
+const grammar::Block& look_step_block();
+/// A step that uses another look.
+const grammar::Block& look_use_block();
+const grammar::Block& look_mask_block();
+/// Where an input comes from.
+grammar::Form look_wire();
+
+}  // namespace aftershade
