@@ -1,5 +1,5 @@
-// Every role, and one that is passed through, in the hands of all that treat roles by their kind. A role that is
-// added to the table is held to its kind here by itself.
+// Every role, and one that is passed through, in the hands of all that treat roles by their kind. A role that
+// is added to the table is held to its kind here by itself.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,11 +7,14 @@
 #include <limits>
 #include <memory>
 
+#include "framework/core/grammar.h"
+#include "framework/image/capture_grammar.h"
 #include "framework/image/capture_window.h"
 #include "framework/image/capture_writer.h"
 #include "framework/image/decode.h"
 #include "framework/image/encode_role.h"
 #include "framework/image/false_color.h"
+#include "framework/image/profile.h"
 #include "framework/image/role.h"
 #include "tests/documents.h"
 
@@ -56,8 +59,7 @@ protected:
     /// The decoding of channels named c0, c1, ... with more keys.
     RoleDecoding decoding(const std::string& more, Diagnostics& diagnostics) const {
         std::string names;
-        for (int c = 0; c < role().channels; ++c)
-            names += (c ? ", \"c" : "\"c") + std::to_string(c) + "\"";
+        for (int c = 0; c < role().channels; ++c) names += (c ? ", \"c" : "\"c") + std::to_string(c) + "\"";
         const std::string text = "{\"channels\": [" + names + "]" + more + "}";
         grammar::check(test::parsed(text), decoding_block(role().name), diagnostics);
         return read_decodings(test::parsed("{\"" + role().name + "\": " + text + "}")).at(role().name);
