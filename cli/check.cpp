@@ -1,5 +1,5 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <iostream>
@@ -9,6 +9,7 @@
 #include "cli/effect_options.h"
 #include "cli/gl_options.h"
 #include "cli/verbs.h"
+#include "framework/core/data_path.h"
 #include "framework/core/error.h"
 #include "framework/effect/lint.h"
 #include "framework/effect/usage_check.h"

@@ -1,7 +1,7 @@
 #include "framework/effect/describe.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <fstream>
@@ -13,6 +13,7 @@
 #include "cli/verbs.h"
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
+#include "framework/scattering/param_scattering.h"
 
 namespace aftershade::cli {
 
@@ -28,7 +29,7 @@ struct DescribeOptions {
 /// The default of the effect's first scattering_profile parameter.
 ScatteringProfile profile_of(const EffectManifest& manifest, Diagnostics& diagnostics) {
     for (const ParamSpec& spec : manifest.params)
-        if (const auto* value = std::get_if<ScatteringValue>(&spec.default_value)) return value->usual;
+        if (const auto* value = scattering_of(spec.default_value)) return value->usual;
     diagnostics.error({"--plot"}, "the effect '" + manifest.id + "' has no scattering_profile to plot");
     stop_at_errors(diagnostics);
     return {};

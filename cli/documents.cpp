@@ -11,6 +11,7 @@
 #include "framework/image/role.h"
 #include "framework/pipeline/look_grammar.h"
 #include "framework/pipeline/schema.h"
+#include "framework/scattering/scattering_schema.h"
 #include "framework/scene/scene_schema.h"
 
 namespace aftershade::cli {

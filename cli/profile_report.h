@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "framework/core/scattering_profile.h"
+#include "framework/scattering/scattering_profile.h"
 
 namespace aftershade::cli {
 

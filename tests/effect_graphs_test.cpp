@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "framework/pipeline/renderer.h"
+#include "framework/scattering/param_scattering.h"
 #include "tests/every_effect.h"
 
 namespace aftershade::test {
@@ -96,12 +97,14 @@ std::optional<std::pair<ParamValue, ParamValue>> other_contents(const ParamSpec&
         auto then = first;
         first.rows = {{TableKey{1, 1, ""}, row}};
         then.rows = {{TableKey{2, 5, ""}, row}};
-        return std::pair<ParamValue, ParamValue>(first, then);
+        return std::pair(first, then);
     };
     if (const auto* table = std::get_if<TableValue>(&usual)) return of_objects(*table, table->default_row);
-    if (const auto* profiles = std::get_if<ScatteringValue>(&usual))
-        return of_objects(*profiles, profiles->usual);
-    return std::nullopt;
+    const ScatteringValue* profiles = scattering_of(usual);
+    if (!profiles) return std::nullopt;
+    const auto [first, then] = of_objects(*profiles, profiles->usual);
+    return std::pair<ParamValue, ParamValue>(OpaqueValue(std::make_shared<const ScatteringValue>(first)),
+                                             OpaqueValue(std::make_shared<const ScatteringValue>(then)));
 }
 
 class EveryEffectsGraph : public EveryEffect {

@@ -10,6 +10,7 @@
 
 #include "framework/batch/approved_image.h"
 #include "framework/batch/golden_case.h"
+#include "framework/core/param_type.h"
 #include "framework/effect/usage_check.h"
 #include "framework/image/frame_range.h"
 #include "tests/every_effect.h"
@@ -27,8 +28,7 @@ TEST_P(EveryEffect, SaysWhatItAndItsParametersDo) {
     EXPECT_FALSE(manifest().version.empty());
     for (const ParamSpec& spec : manifest().params) {
         EXPECT_TRUE(spec.doc.ends_with('.')) << spec.name << ": the doc is a sentence";
-        const bool number = is_block_type(spec.type) && spec.type != aftershade::ParamType::bool_ &&
-                            spec.type != aftershade::ParamType::enum_;
+        const bool number = is_block_type(spec.type) && spec.type->has_range;
         EXPECT_EQ(number, spec.ui_range.has_value()) << spec.name << ": a number has a slider's ends";
         EXPECT_EQ(number, spec.min.has_value()) << spec.name << ": a number has a least value";
     }

@@ -69,21 +69,10 @@ inline std::string look_of(const std::string& effect, const Values& values) {
     return R"({"aftershade": 1, "steps": [{"effect": ")" + effect + R"(", "params": {)" + params + "}}]}";
 }
 
-/// A limit of a parameter as a value of its type; a vector has it in every component.
-inline ParamValue limit_of(const ParamSpec& spec, double limit) {
-    if (spec.type == ParamType::int_) return std::int64_t(limit);
-    if (const int count = component_count(spec.type); count > 1)
-        return std::vector<double>(std::size_t(count), limit);
-    return limit;
-}
-
 /// Every value of an enum or a bool; the limits of a number.
 inline std::vector<ParamValue> extremes_of(const ParamSpec& spec) {
     std::vector<ParamValue> values;
-    if (spec.type == ParamType::bool_) return {false, true};
-    for (const std::string& name : spec.values) values.emplace_back(name);
-    if (spec.min) values.push_back(limit_of(spec, *spec.min));
-    if (spec.max) values.push_back(limit_of(spec, *spec.max));
+    for (SweepValue& one : sweep_values(spec)) values.push_back(std::move(one.value));
     return values;
 }
 

@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/core/scattering_profile.h"
 #include "framework/image/exr_file.h"
+#include "framework/scattering/scattering_profile.h"
 #include "tests/cli/command.h"
 #include "tests/look_runner.h"
 #include "tests/scattering_checks.h"

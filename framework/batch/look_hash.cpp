@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "framework/core/atomic_file.h"
+#include "framework/core/param_type.h"
 #include "framework/core/text.h"
 #include "framework/effect/shader_source.h"
 #include "framework/pipeline/pipeline.h"
@@ -20,17 +21,12 @@ void add_file(const fs::path& file, std::string& text) {
     text += "\n" + file.filename().string() + "\n" + read_text_file(file, ExitCode::usage);
 }
 
-/// What the files hold that the step's parameters and its mask name. Of a scattering profile, which may be a
-/// file too, what was read from it: its name is in the look or the manifest.
+/// What the files hold that the step's parameters and its mask name.
 void add_values(const PipelineStep& step, std::string& text) {
     for (const ParamSpec& spec : step.manifest->params)
         for (const ParamValue& value : step.known_values(spec)) {
-            if (const auto* scattering = std::get_if<ScatteringValue>(&value))
-                for (ScatteringProfile profile : scattering_profiles_of(*scattering)) {
-                    profile.name.clear();
-                    text += "\n" + format_scattering_profile(profile);
-                }
-            if (spec.type == ParamType::file && !std::get<std::string>(value).empty())
+            if (spec.type->content) text += spec.type->content(value);
+            if (is_file_type(spec.type) && !std::get<std::string>(value).empty())
                 add_file(std::get<std::string>(value), text);
         }
     if (step.mask && !step.mask->file.empty()) add_file(step.mask->file, text);

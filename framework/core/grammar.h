@@ -212,9 +212,6 @@ Form by_key(std::string key, Form with, Form without);
 /// {"var": "name"} may stand for the value and for each part of it. Names are put in before the value is
 /// checked.
 Form with_variables(Form form);
-/// A scattering profile: name, path or object. Whoever reads it checks it: files lie beside the document.
-Form scattering_profile();
-
 /// What no other form says.
 struct Custom {
     std::string type;           ///< in tables

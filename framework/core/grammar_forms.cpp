@@ -195,14 +195,6 @@ private:
     Custom custom_;
 };
 
-class ScatteringForm : public CustomForm {
-public:
-    ScatteringForm() : CustomForm({.type = "[scattering profile](params.md#scattering-profiles)"}) {}
-    json schema(SchemaScope& scope) const override {
-        return schema::any_of({schema::text(), schema::scattering_profile(scope.variables)});
-    }
-};
-
 }  // namespace
 
 Form boolean() {
@@ -245,10 +237,6 @@ Form constant(const std::string& text_of_value) {
 
 Form custom(Custom custom) {
     return make_form<CustomForm>(std::move(custom));
-}
-
-Form scattering_profile() {
-    return make_form<ScatteringForm>();
 }
 
 const std::vector<Key>& head_keys() {

@@ -21,7 +21,7 @@ public:
     Literal(ParamSpec spec, LiteralForms forms) : spec_(std::move(spec)), forms_(std::move(forms)) {}
 
     bool takes(Node::Kind kind) const override {
-        if (kind == Node::Kind::object) return forms_.animated || spec_.type >= ParamType::curve;
+        if (kind == Node::Kind::object) return forms_.animated || !is_block_type(spec_.type);
         if (kind == Node::Kind::boolean) return spec_.type == ParamType::bool_;
         const bool vector = is_block_type(spec_.type) && component_count(spec_.type) > 1;
         if (kind == Node::Kind::array) return vector || !is_block_type(spec_.type);

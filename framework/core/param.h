@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,26 +16,37 @@
 #include "framework/core/diagnostics.h"
 #include "framework/core/document.h"
 #include "framework/core/object_keys.h"
-#include "framework/core/scattering_profile.h"
 
 namespace aftershade {
 
-enum class ParamType {
-    float_,
-    int_,
-    bool_,
-    enum_,
-    angle,
-    color,
-    vec2,
-    vec3,
-    vec4,
-    curve,
-    file,
-    table,
-    objects,            ///< which objects: a list of ids, ranges of ids and names; empty for all
-    scattering_profile  ///< how light scatters, by object
+struct ParamTypeTraits;
+extern const ParamTypeTraits kFloatParam, kIntParam, kBoolParam, kEnumParam, kAngleParam, kColorParam,
+    kVec2Param, kVec3Param, kVec4Param, kCurveParam, kFileParam, kTableParam, kObjectsParam;
+
+/// One of the types that a table lists (core_param_types()); framework/core/param_type.h has what a type is.
+/// The named ones are those that code means by themselves. [value type]
+class ParamType {
+public:
+    constexpr ParamType(const ParamTypeTraits& traits) : traits_(&traits) {}
+    const ParamTypeTraits* operator->() const { return traits_; }
+    const ParamTypeTraits& operator*() const { return *traits_; }
+    bool operator==(const ParamType&) const = default;
+
+    static const ParamType float_, int_, bool_, enum_, angle, color, vec2, vec3, vec4, curve, file, table;
+    static const ParamType objects;  ///< which objects: a list of ids, ranges of ids and names; empty for all
+
+private:
+    const ParamTypeTraits* traits_;
 };
+
+inline constexpr ParamType ParamType::float_{kFloatParam}, ParamType::int_{kIntParam},
+    ParamType::bool_{kBoolParam}, ParamType::enum_{kEnumParam}, ParamType::angle{kAngleParam},
+    ParamType::color{kColorParam}, ParamType::vec2{kVec2Param}, ParamType::vec3{kVec3Param},
+    ParamType::vec4{kVec4Param}, ParamType::curve{kCurveParam}, ParamType::file{kFileParam},
+    ParamType::table{kTableParam}, ParamType::objects{kObjectsParam};
+
+/// The types that need nothing but core, in the order of messages and schemas. [thread-safe]
+std::span<const ParamType> core_param_types();
 
 /// A function of one variable through points, x rising; constant before the first and after the last.
 struct CurveValue {
@@ -56,26 +68,32 @@ struct TableValue {
     bool operator==(const TableValue&) const = default;
 };
 
-/// Profiles by object; an object that no row names has the usual one.
-struct ScatteringValue {
-    ScatteringProfile usual;
-    std::vector<std::pair<TableKey, ScatteringProfile>> rows;  ///< no id and no name twice
-    bool operator==(const ScatteringValue&) const = default;
+/// What a value holds that only its type's own module knows. Immutable, since values share it. [thread-safe]
+class ValueContent {
+public:
+    virtual ~ValueContent() = default;
+    /// `other` is of the same class.
+    virtual bool equals(const ValueContent& other) const = 0;
+    /// As a document would write it; one line.
+    virtual std::string text() const = 0;
 };
-inline constexpr std::size_t kMaxScatteringRows = 1024;
 
-/// The different profiles of a value, the usual one first.
-std::vector<ScatteringProfile> scattering_profiles_of(const ScatteringValue& value);
-/// Whether each of them is Burley's: shaders then compute it without tables.
-bool is_burley(const ScatteringValue& value);
-/// What shaders look up by object: rows of the type's columns (index among scattering_profiles_of(); d and
-/// falloff, mm, own or fitted; direct; reach, mm).
-TableValue scattering_table(const ScatteringValue& value);
+/// A value of a type that is declared above core. [value type]
+class OpaqueValue {
+public:
+    /// There must be content.
+    explicit OpaqueValue(std::shared_ptr<const ValueContent> content) : content_(std::move(content)) {}
+    const ValueContent& content() const { return *content_; }
+    bool operator==(const OpaqueValue& other) const;
+
+private:
+    std::shared_ptr<const ValueContent> content_;
+};
 
 /// float_ and angle hold a double, in the declared unit; color and vec2..4 hold that many doubles; enum_ a
 /// string; file a path, "" for none; objects a table of one column, 1 for what is listed.
 using ParamValue = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, CurveValue,
-                                TableValue, ScatteringValue>;
+                                TableValue, OpaqueValue>;
 
 /// What a file parameter names: a picture (EXR, PNG), or a colour table (.cube, Adobe Cube LUT 1.0).
 enum class FileKind { image, lut };
@@ -109,17 +127,20 @@ struct ParamSpec {
     FileKind file_kind = FileKind::image;  ///< file
     bool file_is_data = false;             ///< image, "space": "data": a PNG's numbers as they are stored
     std::array<double, 2> domain = {0.0, 1.0};  ///< curve: the range of x
-    std::vector<ParamSpec> columns;  ///< table: each a scalar or vector with its own default; objects and
-                                     ///< scattering_profile: what their type has
+    std::vector<ParamSpec> columns;  ///< table: each a scalar or vector with its own default; of another type
+                                     ///< that shaders look up by object: what the type has
     Place place;
 };
 
-/// float_ ... vec4: a value that a uniform block holds and a table's column may have.
+/// A value that a uniform block holds and a table's column may have: numbers, bools and enums.
 bool is_block_type(ParamType type);
-
-/// Reaches shaders through a texture: curve and scattering_profile; a file where there is one.
+/// One number: has an order, and a number of the capture may fill it.
+bool is_scalar_type(ParamType type);
+/// Names a file, which the host reads.
+bool is_file_type(ParamType type);
+/// Reaches shaders through a texture, whatever its value; of a file only where there is one.
 bool is_param_texture(ParamType type);
-/// Reaches shaders through a storage block, looked up by object: table, objects and scattering_profile.
+/// Reaches shaders through a storage block, looked up by object.
 bool is_param_buffer(ParamType type);
 
 /// Components of a value of this type: 1 for scalars, 3 for color.
@@ -132,11 +153,22 @@ inline constexpr std::size_t kMaxCurvePoints = 64;
 /// A value of a block type as numbers, which is what a cell of a table holds: one per component, in the
 /// declared unit; a bool is 0 or 1, an enum the index of its name in `spec.values`.
 std::vector<double> numbers_of(const ParamSpec& spec, const ParamValue& value);
+/// The way back, from as many numbers as the type has components. An int is rounded.
+ParamValue value_of_numbers(const ParamSpec& spec, const std::vector<double>& numbers);
 
-/// Reads one entry of a manifest's "params". nullopt after a fault that leaves nothing usable. What
-/// `requires` names is checked by check_relation_declarations, once all parameters are known.
-std::optional<ParamSpec> parse_param_spec(const std::string& name, const Node& node,
-                                          Diagnostics& diagnostics);
+/// One value to try: "at its min, 0.5", "hexagon".
+struct SweepValue {
+    std::string how;
+    ParamValue value;
+};
+/// Every value of a bool or an enum; the limits of numbers, in each component. None of other types.
+std::vector<SweepValue> sweep_values(const ParamSpec& spec);
+
+/// Reads one entry of a manifest's "params", which is of one of `types`. nullopt after a fault that leaves
+/// nothing usable. What `requires` names is checked by check_relation_declarations, once all parameters are
+/// known.
+std::optional<ParamSpec> parse_param_spec(const std::string& name, const Node& node, Diagnostics& diagnostics,
+                                          std::span<const ParamType> types = core_param_types());
 
 /// Reads a value for `spec`: a literal in the declared unit, or a string with a compatible unit. `label`
 /// names the parameter in messages: "bokeh.f_number: 0.02 is below the minimum 0.05".
@@ -181,8 +213,8 @@ std::string relation_message(const std::string& step, const RelationFault& fault
 /// defaults that do not hold.
 void check_relation_declarations(std::span<const ParamSpec> specs, Diagnostics& diagnostics);
 
-/// The value at `t` of the way from `a` (0) to `b` (1): linear for float, angle, vec and color; everything
-/// else is `a` until t is 1.
+/// The value at `t` of the way from `a` (0) to `b` (1): linear for what is continuous (float, angle, vec,
+/// color); everything else is `a` until t is 1.
 ParamValue interpolate(const ParamSpec& spec, const ParamValue& a, const ParamValue& b, double t);
 
 /// The value for images whose sides are `factor` of what it was chosen for: what is in px (the cells of such

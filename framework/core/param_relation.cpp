@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <array>
 
-#include "framework/core/param_internal.h"
+#include "framework/core/param_type.h"
+#include "framework/core/units.h"
 
 namespace aftershade {
 
@@ -13,10 +14,6 @@ const ParamSpec* find_spec(std::span<const ParamSpec> specs, const std::string& 
     const auto found =
         std::find_if(specs.begin(), specs.end(), [&](const ParamSpec& spec) { return spec.name == name; });
     return found == specs.end() ? nullptr : &*found;
-}
-
-bool is_scalar(const ParamSpec& spec) {
-    return spec.type == ParamType::float_ || spec.type == ParamType::int_ || spec.type == ParamType::angle;
 }
 
 /// -1, 0 or 1 as `a` is below, equal to or above `b`; nullopt where the units measure different things.
@@ -61,7 +58,7 @@ std::string declaration_fault(std::span<const ParamSpec> specs, const ParamSpec&
         return "'" + relation.other + "' is not a parameter" + did_you_mean(relation.other, names);
     }
     if (other == &spec) return "a parameter has no relation to itself";
-    if (!is_scalar(*other))
+    if (!is_scalar_type(other->type))
         return "'" + other->name + "' is of type " + std::string(param_type_name(other->type)) +
                ", which has no order";
     if (!compare(0, spec.unit, 0, other->unit)) {
@@ -87,7 +84,7 @@ std::vector<RelationFault> check_relations(std::span<const ParamSpec> specs, con
     for (const ParamSpec& spec : specs)
         for (const ParamRelation& relation : spec.relations) {
             const ParamSpec* other = find_spec(specs, relation.other);
-            if (!other || !is_scalar(*other)) continue;
+            if (!other || !is_scalar_type(other->type)) continue;
             const double value = numbers_of(spec, values.get(spec.name))[0];
             const double other_value = numbers_of(*other, values.get(other->name))[0];
             const auto comparison = compare(value, spec.unit, other_value, other->unit);

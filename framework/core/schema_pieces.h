@@ -36,10 +36,23 @@ json variable();
 void define_variable(json& definitions);
 /// A literal of the parameter's type. With variables, one may stand for it and for any part of it.
 json literal(const ParamSpec& spec, Variables variables = Variables::no);
-/// A scattering profile as an object, within another document.
-json scattering_profile(Variables variables = Variables::no);
-/// Of a scattering profile's own file, as text.
-std::string scattering_profile_schema();
+
+/// What the literals of one document's kind are made of.
+class LiteralParts {
+public:
+    explicit LiteralParts(Variables variables) : variables_(variables) {}
+    Variables variables() const { return variables_; }
+    /// A variable may stand for the part where there are variables.
+    json part(json form) const;
+    /// Of the parameter, or the column, that is part of another.
+    json literal(const ParamSpec& spec) const { return schema::literal(spec, variables_); }
+    /// A table's row: the cells, and by one key which objects it is for.
+    json keyed_row(json cells) const;
+    static json one_key();
+
+private:
+    Variables variables_;
+};
 /// Id of an object, ids and ranges of ids, or a Cryptomatte name.
 json object_key();
 /// Head of a document: "$schema" of the schema itself, title, and "aftershade": 1 among the properties.

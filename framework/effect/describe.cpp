@@ -4,6 +4,7 @@
 #include <set>
 #include <sstream>
 
+#include "framework/core/param_type.h"
 #include "framework/core/units.h"
 #include "framework/effect/manifest_when.h"
 
@@ -67,8 +68,8 @@ std::string conditions_text(const std::vector<WhenSpec>& conditions) {
         }
         std::string what = condition.subject + " " + values;
         if (condition.subject.starts_with(kHasInput) && condition.values.size() == 1)
-            what = (values == "true" ? "the input " : "no input ") +
-                   condition.subject.substr(kHasInput.size());
+            what =
+                (values == "true" ? "the input " : "no input ") + condition.subject.substr(kHasInput.size());
         text += (text.empty() ? "" : ", ") + what;
     }
     return text;
@@ -152,22 +153,14 @@ void markdown_params(const EffectManifest& manifest, std::ostream& out) {
 }  // namespace
 
 std::string type_text(const ParamSpec& spec) {
-    std::string text{param_type_name(spec.type)};
-    if (spec.type == ParamType::enum_) {
-        text += ":";
-        for (std::size_t i = 0; i < spec.values.size(); ++i) text += (i ? ", " : " ") + spec.values[i];
-    }
-    if (spec.type == ParamType::table) text += " by object";
-    if (spec.type == ParamType::scattering_profile) text = "scattering profile, by object too";
-    if (spec.type == ParamType::file) text += spec.file_kind == FileKind::lut ? ": .cube" : ": EXR or PNG";
+    const auto own = spec.type->type_text;
+    const std::string text = own ? own(spec) : std::string(spec.type->name);
     return text + (spec.unit.empty() ? "" : ", " + spec.unit);
 }
 
 std::string default_text(const ParamSpec& spec) {
-    if (spec.type == ParamType::table) return "its columns'";
-    if (spec.type == ParamType::file && std::get<std::string>(spec.default_value).empty()) return "none";
-    const std::string value = spec.type == ParamType::enum_ ? std::get<std::string>(spec.default_value)
-                                                            : format_value(spec, spec.default_value);
+    const auto own = spec.type->default_text;
+    const std::string value = own ? own(spec) : format_value(spec, spec.default_value);
     return value + (spec.unit.empty() ? "" : " " + spec.unit) +
            (spec.from.empty() ? "" : "; before it " + spec.from);
 }

@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "framework/core/param_type.h"
 #include "framework/effect/describe.h"
 
 namespace aftershade {
@@ -16,16 +17,15 @@ json param_json(const ParamSpec& spec) {
     json entry = {{"type", param_type_name(spec.type)}, {"doc", spec.doc}};
     if (!spec.unit.empty()) entry["unit"] = spec.unit;
     if (!spec.values.empty()) entry["values"] = spec.values;
-    if (spec.type != ParamType::table) entry["default"] = value_json(spec, spec.default_value);
+    if (spec.type->has_default) entry["default"] = value_json(spec, spec.default_value);
     if (spec.min) entry["min"] = *spec.min;
     if (spec.max) entry["max"] = *spec.max;
     if (spec.ui_range) entry["ui"] = *spec.ui_range;
     if (spec.identity) entry["identity"] = value_json(spec, *spec.identity);
     if (!spec.from.empty()) entry["from"] = spec.from;
     if (is_block_type(spec.type)) entry["bind"] = spec.bind == ParamBind::define ? "define" : "uniform";
-    if (spec.type == ParamType::file) entry["kind"] = spec.file_kind == FileKind::lut ? "lut" : "image";
-    if (spec.type == ParamType::curve) entry["domain"] = spec.domain;
-    if (spec.type != ParamType::table) return entry;
+    if (spec.type->describe) entry.update(spec.type->describe(spec));
+    if (!spec.type->has_columns) return entry;
     for (const ParamSpec& column : spec.columns) entry["columns"][column.name] = param_json(column);
     return entry;
 }

@@ -3,6 +3,7 @@
 #include <sstream>
 #include <utility>
 
+#include "framework/core/param_type.h"
 #include "framework/core/units.h"
 #include "framework/effect/glsl_names.h"
 #include "framework/effect/shader_source.h"
@@ -10,26 +11,6 @@
 namespace aftershade {
 
 namespace {
-
-std::string_view glsl_type(const ParamSpec& spec) {
-    switch (spec.type) {
-        case ParamType::bool_: return "bool";
-        case ParamType::int_:
-        case ParamType::enum_: return "int";
-        case ParamType::float_:
-        case ParamType::angle: return "float";
-        case ParamType::vec2: return "vec2";
-        case ParamType::color:
-        case ParamType::vec3: return "vec3";
-        case ParamType::vec4: return "vec4";
-        case ParamType::curve:
-        case ParamType::file:
-        case ParamType::table:
-        case ParamType::objects:
-        case ParamType::scattering_profile: break;
-    }
-    return "float";
-}
 
 /// A float literal: "3" would divide as an integer, and without brackets "x -SKEW" might become "x --3".
 std::string float_literal(double value) {
@@ -39,16 +20,17 @@ std::string float_literal(double value) {
 }
 
 std::string define_value(const ParamSpec& spec, const ParamValue& value) {
-    if (spec.type == ParamType::enum_)
-        return upper_case(spec.name) + "_" + upper_case(std::get<std::string>(value));
-    if (spec.type == ParamType::bool_) return std::get<bool>(value) ? "1" : "0";
-    if (const auto* number = std::get_if<double>(&value)) return float_literal(*number);
-    if (const auto* integer = std::get_if<std::int64_t>(&value))
-        return *integer < 0 ? "(" + std::to_string(*integer) + ")" : std::to_string(*integer);
+    if (spec.type->is_choice) return upper_case(spec.name) + "_" + upper_case(std::get<std::string>(value));
+    const auto text = [&](double number) {
+        if (!spec.type->is_integer) return float_literal(number);
+        const std::string digits = std::to_string(std::int64_t(number));
+        return number < 0 ? "(" + digits + ")" : digits;
+    };
     std::string components;
-    for (const double component : std::get<std::vector<double>>(value))
-        components += (components.empty() ? "" : ", ") + float_literal(component);
-    return std::string(glsl_type(spec)) + "(" + components + ")";
+    for (const double number : numbers_of(spec, value))
+        components += (components.empty() ? "" : ", ") + text(number);
+    return component_count(spec.type) == 1 ? components
+                                           : std::string(spec.type->glsl_type) + "(" + components + ")";
 }
 
 /// "u" for unsigned, "i" for signed integers, "" for floats: the beginning of usampler2D, uimage2D and uvec4.
@@ -106,9 +88,7 @@ private:
             const std::string name = upper_case(spec.name);
             for (std::size_t i = 0; i < spec.values.size(); ++i)
                 text_ << "#define " << name << "_" << upper_case(spec.values[i]) << " " << i << "\n";
-            if (spec.type == ParamType::scattering_profile)
-                text_ << "#define " << name << "_IS_BURLEY "
-                      << int(context_.params.is_burley(spec.name)) << "\n";
+            if (spec.type->defines) text_ << context_.params.defines(spec);
             if (spec.bind == ParamBind::define)
                 text_ << "#define " << name << " " << define_value(spec, context_.params.get(spec.name))
                       << "\n";
@@ -156,7 +136,7 @@ private:
         text_ << "layout(std140, binding = " << kParamBinding << ") uniform ParamBlock {\n";
         for (const ParamSpec& spec : manifest_.params)
             if (spec.bind == ParamBind::uniform && is_block_type(spec.type))
-                text_ << "    " << glsl_type(spec) << " " << spec.name << ";\n";
+                text_ << "    " << spec.type->glsl_type << " " << spec.name << ";\n";
         text_ << "} param;\n";
     }
 
@@ -189,17 +169,14 @@ private:
     void param_resources() {
         int binding = bindings_.first_param_sampler;
         for (const ParamSpec* spec : bindings_.param_samplers)
-            text_ << (spec->type == ParamType::scattering_profile
-                          ? scattering_sampler_glsl(*spec, binding++)
-                          : param_resource_glsl(*spec, context_.file_of(spec->name), binding++));
+            text_ << param_sampler_glsl(*spec, context_.file_of(spec->name), binding++);
         binding = bindings_.first_param_buffer;
         for (const ParamSpec* spec : bindings_.param_buffers)
-            text_ << param_resource_glsl(*spec, {}, binding++, has_rows(*spec));
+            text_ << param_table_glsl(*spec, binding++, has_rows(*spec));
     }
 
-    /// Of a table by object, of a list of objects, of scattering profiles.
     bool has_rows(const ParamSpec& spec) const {
-        return !context_.params.has(spec.name) || context_.params.table_entries(spec.name) > 0;
+        return !context_.params.has(spec.name) || context_.params.table_entries(spec) > 0;
     }
 
     void native_tables() {

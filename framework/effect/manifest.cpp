@@ -9,6 +9,7 @@
 #include "framework/effect/manifest_check.h"
 #include "framework/effect/manifest_expand.h"
 #include "framework/effect/manifest_parser.h"
+#include "framework/effect/param_types.h"
 #include "framework/image/camera.h"
 
 namespace aftershade {
@@ -73,7 +74,7 @@ void ManifestParser::params(const Node& section) {
     for (const Member& member : section.members) {
         identifier(member.key, member.key_place, "parameter");
         if (!is_new("parameter", member)) continue;
-        const auto spec = parse_param_spec(member.key, member.value, diagnostics_);
+        const auto spec = parse_param_spec(member.key, member.value, diagnostics_, param_types());
         if (!spec) {
             faulty_params_.insert(member.key);
             continue;

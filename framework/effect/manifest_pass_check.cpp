@@ -126,11 +126,9 @@ private:
         if (file.empty()) return;
         // A shader is part of its effect or module: nothing from elsewhere on the disk is read.
         if (file.find('/') != std::string::npos)
-            fault(pass_->place,
-                  pass_->lists.empty() ? "'shader' is a file name without folders"
-                                       : "'predicate' is a file name without folders");
-        else if (!is_there(file))
-            fault(pass_->place, "no file '" + file + "' in " + pass_->folder.string());
+            fault(pass_->place, pass_->lists.empty() ? "'shader' is a file name without folders"
+                                                     : "'predicate' is a file name without folders");
+        else if (!is_there(file)) fault(pass_->place, "no file '" + file + "' in " + pass_->folder.string());
     }
 
     /// Notes the use of `name`, and refuses ".prev" of what keeps no history and the rest before it is
@@ -347,7 +345,7 @@ private:
         };
         std::size_t samplers = pass_->reads.size(), blocks = pass_->buffers.size();
         for (const ParamSpec& param : manifest_.params) {
-            samplers += is_param_texture(param.type) || param.type == ParamType::file;
+            samplers += is_param_texture(param.type) || is_file_type(param.type);
             blocks += is_param_buffer(param.type);
         }
         if (manifest_.native) samplers += manifest_.native->tables.size();

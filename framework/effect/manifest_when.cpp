@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "framework/core/param_type.h"
 #include "framework/effect/manifest_parser.h"
 
 namespace aftershade {
@@ -12,10 +13,9 @@ namespace {
 
 /// A condition that could never hold is a mistake.
 bool may_equal(const ParamSpec& spec, const ParamValue& value) {
-    if (spec.type == ParamType::bool_) return std::holds_alternative<bool>(value);
-    if (spec.type == ParamType::int_) return std::holds_alternative<std::int64_t>(value);
-    const auto* name = std::get_if<std::string>(&value);
-    return name && std::find(spec.values.begin(), spec.values.end(), *name) != spec.values.end();
+    if (!spec.type->is_integer || value.index() != spec.default_value.index()) return false;
+    return !spec.type->is_choice || std::find(spec.values.begin(), spec.values.end(),
+                                              std::get<std::string>(value)) != spec.values.end();
 }
 
 }  // namespace

@@ -1,16 +1,16 @@
 #include "framework/effect/param_reader.h"
 
-#include "framework/effect/param_resources.h"
-
 namespace aftershade {
 
-ParamValue aspect_of(const ParamValue& value, ParamAspect aspect) {
+ParamValue aspect_of(const ParamSpec& spec, const ParamValue& value, ParamAspect aspect) {
     switch (aspect) {
         case ParamAspect::value: break;
-        case ParamAspect::table_entries: return std::int64_t(table_entries(value));
-        case ParamAspect::profile_count:
-            return std::int64_t(scattering_profiles_of(std::get<ScatteringValue>(value)).size());
-        case ParamAspect::is_burley: return is_burley(std::get<ScatteringValue>(value));
+        case ParamAspect::table_entries: return std::int64_t(spec.type->table.entries(value));
+        case ParamAspect::texture_size: {
+            const TexelSize size = spec.type->texture.size(value);
+            return std::vector<double>{double(size.width), double(size.height), double(size.channels)};
+        }
+        case ParamAspect::defines: return spec.type->defines(spec, value);
     }
     return value;
 }
@@ -21,21 +21,22 @@ const ParamValue& ParamReader::get(const std::string& name) const {
     return value;
 }
 
-std::size_t ParamReader::table_entries(const std::string& name) const {
-    return std::size_t(std::get<std::int64_t>(ask(name, ParamAspect::table_entries)));
+std::size_t ParamReader::table_entries(const ParamSpec& spec) const {
+    return std::size_t(std::get<std::int64_t>(ask(spec, ParamAspect::table_entries)));
 }
 
-int ParamReader::profile_count(const std::string& name) const {
-    return int(std::get<std::int64_t>(ask(name, ParamAspect::profile_count)));
+TexelSize ParamReader::texture_size(const ParamSpec& spec) const {
+    const auto answer = std::get<std::vector<double>>(ask(spec, ParamAspect::texture_size));
+    return {int(answer[0]), int(answer[1]), int(answer[2])};
 }
 
-bool ParamReader::is_burley(const std::string& name) const {
-    return std::get<bool>(ask(name, ParamAspect::is_burley));
+std::string ParamReader::defines(const ParamSpec& spec) const {
+    return std::get<std::string>(ask(spec, ParamAspect::defines));
 }
 
-ParamValue ParamReader::ask(const std::string& name, ParamAspect aspect) const {
-    ParamValue answer = aspect_of(params_->get(name), aspect);
-    if (note_) note_(name, aspect, answer);
+ParamValue ParamReader::ask(const ParamSpec& spec, ParamAspect aspect) const {
+    ParamValue answer = aspect_of(spec, params_->get(spec.name), aspect);
+    if (note_) note_(spec.name, aspect, answer);
     return answer;
 }
 

@@ -6,21 +6,22 @@
 #include <string>
 #include <utility>
 
-#include "framework/core/param.h"
+#include "framework/core/param_type.h"
 
 namespace aftershade {
 
-/// What may be asked of a parameter's value: all of it, or of one that shaders look up by object only what
-/// decides sizes and text. Contents of tables, curves and profiles change without a new graph.
+/// What may be asked of a parameter's value: all of it, or of one that reaches shaders through a texture or a
+/// storage block only what decides sizes and text. Contents of tables, curves and profiles change without a
+/// new graph.
 enum class ParamAspect {
     value,
-    table_entries,  ///< int: as table_entries()
-    profile_count,  ///< int: different profiles of a scattering_profile
-    is_burley       ///< bool: as is_burley()
+    table_entries,  ///< int: entries of its table
+    texture_size,   ///< vector: width, height and channels of its texture
+    defines         ///< string: its preprocessor lines
 };
 
-/// The answer, of the type that the aspect says.
-ParamValue aspect_of(const ParamValue& value, ParamAspect aspect);
+/// The answer, of the type that the aspect says. The parameter's type must have that.
+ParamValue aspect_of(const ParamSpec& spec, const ParamValue& value, ParamAspect aspect);
 
 /// Reads the parameters of one step and notes what it read. Graphs, passes and shaders are made through this
 /// alone, so that the notes say when they must be made again. [refers to what the caller keeps]
@@ -37,14 +38,15 @@ public:
     bool has(const std::string& name) const { return params_ && params_->has(name); }
     /// The whole value.
     const ParamValue& get(const std::string& name) const;
-    /// Of a table, objects or a scattering_profile.
-    std::size_t table_entries(const std::string& name) const;
-    /// Of a scattering_profile.
-    int profile_count(const std::string& name) const;
-    bool is_burley(const std::string& name) const;
+    /// Of a type with a table.
+    std::size_t table_entries(const ParamSpec& spec) const;
+    /// Of a type with a texture.
+    TexelSize texture_size(const ParamSpec& spec) const;
+    /// Of a type with such lines.
+    std::string defines(const ParamSpec& spec) const;
 
 private:
-    ParamValue ask(const std::string& name, ParamAspect aspect) const;
+    ParamValue ask(const ParamSpec& spec, ParamAspect aspect) const;
 
     const ParamSet* params_ = nullptr;
     Note note_;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "framework/core/error.h"
+#include "framework/core/param_type.h"
 #include "framework/effect/std430.h"
 #include "framework/image/picture.h"
 
@@ -109,9 +110,7 @@ private:
 
     void put_row(std::size_t at, const TableValue::Row& row) {
         for (std::size_t i = 0; i < spec_.columns.size(); ++i) {
-            const ParamType type = spec_.columns[i].type;
-            const bool is_integer =
-                type == ParamType::int_ || type == ParamType::bool_ || type == ParamType::enum_;
+            const bool is_integer = spec_.columns[i].type->is_integer;
             for (std::size_t c = 0; c < row[i].size(); ++c) {
                 const std::size_t cell = at + cell_offsets_[i] + c * 4;
                 if (is_integer) put(cell, std::int32_t(row[i][c]));
@@ -140,7 +139,7 @@ std::string without_path(const std::string& message, const std::string& path) {
 
 std::optional<ParamFile> load_param_file(const ParamSpec& spec, const std::filesystem::path& path,
                                          Diagnostics& diagnostics) {
-    assert(spec.type == ParamType::file);
+    assert(is_file_type(spec.type));
     if (path.empty()) return ParamFile{};
     if (spec.file_kind == FileKind::lut) {
         auto lut = read_lut(path, diagnostics);
@@ -154,12 +153,14 @@ std::optional<ParamFile> load_param_file(const ParamSpec& spec, const std::files
     }
 }
 
-ParamTexture curve_texture(const ParamSpec& spec, const CurveValue& curve) {
-    ParamTexture texture{kCurveSamples, 1, 1, gpu::TextureFormat::r32f, {}};
-    for (int i = 0; i < kCurveSamples; ++i)
-        texture.texels.push_back(
-            float(curve.at(std::lerp(spec.domain[0], spec.domain[1], double(i) / (kCurveSamples - 1)))));
-    return texture;
+gpu::TextureFormat param_texture_format(int channels) {
+    return channels == 1 ? gpu::TextureFormat::r32f : gpu::TextureFormat::rgba32f;
+}
+
+ParamTexture param_texture(const ParamSpec& spec, const ParamValue& value) {
+    const TexelSize size = spec.type->texture.size(value);
+    return {size.width, size.height, 1, param_texture_format(size.channels),
+            spec.type->texture.texels(spec, value)};
 }
 
 ParamTexture file_texture(const ParamFile& file) {
@@ -168,48 +169,8 @@ ParamTexture file_texture(const ParamFile& file) {
     return image_texture(std::get<Image>(file));
 }
 
-ParamTexture scattering_texture(const ScatteringValue& value) {
-    const std::vector<ScatteringProfile> profiles = scattering_profiles_of(value);
-    ParamTexture texture{
-        kScatteringSamples, kScatteringRows * int(profiles.size()), 1, gpu::TextureFormat::rgba32f, {}};
-    constexpr std::size_t kRow = std::size_t(kScatteringSamples) * 4;
-    texture.texels.resize(profiles.size() * kScatteringRows * kRow);
-    const auto put = [&](std::size_t row, std::size_t column, const Rgb& rgb) {
-        for (std::size_t c = 0; c < 3; ++c) texture.texels[row * kRow + column * 4 + c] = float(rgb[c]);
-    };
-    for (std::size_t i = 0; i < profiles.size(); ++i) {
-        const ScatteringCurves curves = scattering_curves(profiles[i]);
-        for (std::size_t k = 0; k < kScatteringSamples; ++k) {
-            put(4 * i, k, curves.radial[k]);
-            put(4 * i + 1, k, curves.within[k]);
-            put(4 * i + 2, k, curves.line[k]);
-        }
-        const auto gaussians = profiles[i].as_gaussians();
-        for (std::size_t k = 0; k < ScatteringProfile::kMaxGaussians; ++k) {
-            put(4 * i + 3, 2 * k, k < gaussians.size() ? gaussians[k].variance_mm2 : Rgb{1, 1, 1});
-            put(4 * i + 3, 2 * k + 1, k < gaussians.size() ? gaussians[k].weight : Rgb{});
-        }
-    }
-    return texture;
-}
-
-std::size_t table_entries(const ParamValue& value) {
-    const auto count = [](const auto& rows) {
-        const auto names = std::size_t(std::count_if(rows.begin(), rows.end(),
-                                                     [](const auto& row) { return !row.first.name.empty(); }));
-        return rows.size() + (names < rows.size() ? names : 0);
-    };
-    if (const auto* scattering = std::get_if<ScatteringValue>(&value)) return count(scattering->rows);
-    return count(std::get<TableValue>(value).rows);
-}
-
 std::size_t table_buffer_bytes(const ParamSpec& spec, std::size_t entries) {
     return TableWriter(spec, entries).take().size();
-}
-
-TableValue table_of(const ParamValue& value) {
-    if (const auto* scattering = std::get_if<ScatteringValue>(&value)) return scattering_table(*scattering);
-    return std::get<TableValue>(value);
 }
 
 std::vector<std::byte> table_buffer(const ParamSpec& spec, const TableValue& table, const ObjectIds& ids) {

@@ -3,6 +3,7 @@
 #include <cassert>
 #include <iterator>
 
+#include "framework/core/param_type.h"
 #include "framework/effect/manifest_when.h"
 #include "framework/effect/shader_source.h"
 #include "framework/effect/std140.h"
@@ -29,7 +30,8 @@ bool is_written(const AccessSpec& access) {
 }  // namespace
 
 std::vector<ReadSpec> present_reads(const EffectManifest& manifest, const PassSpec& pass,
-                                    const ParamReader& params, const std::vector<std::string>& present_inputs) {
+                                    const ParamReader& params,
+                                    const std::vector<std::string>& present_inputs) {
     std::vector<ReadSpec> present = present_uses(pass.reads, params, present_inputs);
     std::erase_if(present, [&](const ReadSpec& read) {
         const InputSpec* input = manifest.find_input(read.name);
@@ -69,8 +71,8 @@ PassBindings pass_bindings(const ShaderContext& context) {
     bindings.images = present_uses(pass.images, context.params, context.present_inputs);
     bindings.buffers = pass.buffers;
     for (const ParamSpec& spec : manifest.params) {
-        const bool has_file = spec.type == ParamType::file &&
-                              !std::holds_alternative<std::monostate>(context.file_of(spec.name));
+        const bool has_file =
+            is_file_type(spec.type) && !std::holds_alternative<std::monostate>(context.file_of(spec.name));
         if (has_file || is_param_texture(spec.type)) bindings.param_samplers.push_back(&spec);
         if (is_param_buffer(spec.type)) bindings.param_buffers.push_back(&spec);
     }
@@ -111,31 +113,13 @@ bool is_in_block(const ParamSpec& spec) {
 }
 
 void add_param(Std140Writer& block, const ParamSpec& spec, const ParamValue& value) {
-    switch (spec.type) {
-        case ParamType::bool_: block.add(std::int32_t(std::get<bool>(value))); break;
-        case ParamType::int_: block.add(std::int32_t(std::get<std::int64_t>(value))); break;
-        case ParamType::enum_: {
-            const auto found =
-                std::find(spec.values.begin(), spec.values.end(), std::get<std::string>(value));
-            block.add(std::int32_t(found - spec.values.begin()));
-            break;
-        }
-        case ParamType::float_:
-        case ParamType::angle: block.add(float(std::get<double>(value))); break;
-        case ParamType::color:
-        case ParamType::vec2:
-        case ParamType::vec3:
-        case ParamType::vec4: {
-            const auto& components = std::get<std::vector<double>>(value);
-            const std::vector<float> vector(components.begin(), components.end());
-            block.add(std::span<const float>(vector));
-            break;
-        }
-        case ParamType::curve:
-        case ParamType::file:
-        case ParamType::table:
-        case ParamType::objects:
-        case ParamType::scattering_profile: break;  // samplers and storage blocks
+    const std::vector<double> numbers = numbers_of(spec, value);
+    if (spec.type->is_integer)
+        for (const double number : numbers) block.add(std::int32_t(number));
+    else if (numbers.size() == 1) block.add(float(numbers[0]));
+    else {
+        const std::vector<float> vector(numbers.begin(), numbers.end());
+        block.add(std::span<const float>(vector));
     }
 }
 

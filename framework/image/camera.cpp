@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "framework/core/grammar_reader.h"
+#include "framework/core/param_type.h"
 #include "framework/core/units.h"
 
 namespace aftershade {
@@ -36,7 +37,7 @@ const std::vector<std::string>& lens_model_names() {
 
 std::vector<std::string> camera_sources(ParamType type) {
     const std::string camera(kFromCamera);
-    if (type == ParamType::enum_) return {camera + "lens_model"};
+    if (type->is_choice) return {camera + "lens_model"};
     std::vector<std::string> sources;
     for (const CameraField& field : camera_fields()) sources.push_back(camera + field.name);
     return sources;

@@ -21,7 +21,8 @@ std::vector<ChannelRole> make_roles() {
                            meaning, light, false, is_share};
     };
     const auto xyz = [&](const char* name, RoleKind kind, bool filterable, const char* meaning) {
-        return ChannelRole{name, 3, real, filterable, 0, layer(name, "XYZ"), PixelType::float32, meaning, kind};
+        return ChannelRole{name,    3,   real, filterable, 0, layer(name, "XYZ"), PixelType::float32,
+                           meaning, kind};
     };
     const auto xy = [&](const char* name, bool to_next, const char* meaning) {
         return ChannelRole{name,    2,      real,   false, 0, layer(name, "XY"), PixelType::float32,

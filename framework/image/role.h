@@ -13,8 +13,8 @@
 
 namespace aftershade {
 
-/// What a role's values measure. Whoever treats roles differently asks for their kind, so that a new role needs
-/// no change there.
+/// What a role's values measure. Whoever treats roles differently asks for their kind, so that a new role
+/// needs no change there.
 enum class RoleKind {
     light,      ///< scene-linear colours in the capture's primaries
     distance,   ///< m along the view axis
@@ -26,9 +26,9 @@ enum class RoleKind {
     display,    ///< made by effects, never by renderers: encoded for a screen
     other       ///< "aov:<name>": passed through
 };
-inline constexpr std::array kRoleKinds = {
-    RoleKind::light, RoleKind::distance, RoleKind::motion,  RoleKind::direction, RoleKind::place,
-    RoleKind::id,    RoleKind::coverage, RoleKind::display, RoleKind::other};
+inline constexpr std::array kRoleKinds = {RoleKind::light,     RoleKind::distance, RoleKind::motion,
+                                          RoleKind::direction, RoleKind::place,    RoleKind::id,
+                                          RoleKind::coverage,  RoleKind::display,  RoleKind::other};
 
 // The roles that code means by themselves.
 inline constexpr const char* kColorRole = "color";      ///< what a look starts from and ends with

@@ -28,9 +28,12 @@ std::string delta_name(bool next, bool reversed) {
 
 std::string role_name(const VelocitySettings& settings) {
     const auto roles = channel_roles();
-    return std::ranges::find_if(roles, [&](const ChannelRole& role) {
-               return role.kind == RoleKind::motion && role.to_next == settings.is_next();
-           })->name;
+    return std::ranges::find_if(roles,
+                                [&](const ChannelRole& role) {
+                                    return role.kind == RoleKind::motion &&
+                                           role.to_next == settings.is_next();
+                                })
+        ->name;
 }
 
 std::string percent(double score) {

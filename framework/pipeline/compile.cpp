@@ -230,8 +230,8 @@ private:
                 diagnostics_.error(value.place, step.name + "." + name + ": no file '" + path + "'");
         };
         auto* literal = std::get_if<ParamValue>(&*parsed);
-        if (spec->type == ParamType::file && literal) complete(*literal);
-        if (auto* keyed = std::get_if<KeyedValue>(&*parsed); keyed && spec->type == ParamType::file)
+        if (is_file_type(spec->type) && literal) complete(*literal);
+        if (auto* keyed = std::get_if<KeyedValue>(&*parsed); keyed && is_file_type(spec->type))
             for (auto& [frame, file] : keyed->keys) complete(file);
         step.values[name] = std::move(*parsed);
         step.origins[name] = origin;

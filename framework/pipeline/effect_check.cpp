@@ -22,30 +22,12 @@ struct Setting {
     std::set<std::string> absent;
 };
 
-void add_numbers(const ParamSpec& spec, std::vector<Setting>& settings) {
-    for (const auto& [end, limit] : {std::pair("min", spec.min), {"max", spec.max}}) {
-        if (!limit) continue;
-        ParamValue value = *limit;
-        if (spec.type == ParamType::int_) value = std::int64_t(std::llround(*limit));
-        else if (component_count(spec.type) > 1)
-            value = std::vector<double>(std::size_t(component_count(spec.type)), *limit);
-        settings.push_back(
-            {spec.name + " at its " + end + ", " + format_value(spec, value), {{spec.name, value}}, {}});
-    }
-}
-
 std::vector<Setting> settings_of(const EffectManifest& manifest) {
     std::vector<Setting> settings{{"the defaults", {}, {}}};
-    for (const ParamSpec& spec : manifest.params) {
-        if (spec.type == ParamType::bool_)
-            settings.push_back({spec.name + " " + format_value(!std::get<bool>(spec.default_value)),
-                                {{spec.name, !std::get<bool>(spec.default_value)}},
-                                {}});
-        else if (spec.type == ParamType::enum_)
-            for (const std::string& value : spec.values)
-                settings.push_back({spec.name + " " + value, {{spec.name, value}}, {}});
-        else if (is_block_type(spec.type)) add_numbers(spec, settings);
-    }
+    for (const ParamSpec& spec : manifest.params)
+        for (const auto& [how, value] : sweep_values(spec))
+            if (value != spec.default_value)
+                settings.push_back({spec.name + " " + how, {{spec.name, value}}, {}});
     for (const PresetSpec& preset : manifest.presets)
         settings.push_back({"preset " + preset.name, preset.values, {}});
     for (const InputSpec& input : manifest.inputs)
@@ -143,8 +125,7 @@ Capture make_test_capture(int width, int height, int frame) {
             point.u = float(x) / float(width);
             point.y = float(y);
             point.light = lamp ? 500.0f : 0.2f + point.u;
-            point.depth_m =
-                box ? 2.0f : sky ? std::numeric_limits<float>::infinity() : 4.0f + 8.0f * point.u;
+            point.depth_m = box ? 2.0f : sky ? std::numeric_limits<float>::infinity() : 4.0f + 8.0f * point.u;
             point.box = box;
             point.sky = sky;
             for (auto& [name, image] : capture.images) put(*find_role(name), point, image, x, y);

@@ -2,8 +2,10 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "framework/core/param_type.h"
 #include "framework/core/units.h"
 #include "framework/effect/manifest.h"
+#include "framework/effect/param_types.h"
 #include "framework/image/camera.h"
 #include "framework/image/role.h"
 #include "framework/pipeline/pass_schema.h"
@@ -19,48 +21,53 @@ namespace {
 
 constexpr int kMaxElements = 1 << 25;  // of 4 bytes, in a block of 128 MiB
 
+/// Of a parameter, or of a table's column.
+std::vector<ParamType> types_of(bool column) {
+    std::vector<ParamType> types;
+    for (const ParamType type : param_types())
+        if (!column || is_block_type(type)) types.push_back(type);
+    return types;
+}
+
 /// What a parameter of this type has, and has not, beside what all have.
 json rules_of(ParamType type, bool column) {
     ParamSpec any;
     any.type = type;
     any.domain = {-std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
-    const bool has_unit = type == ParamType::curve ||
-                          (is_block_type(type) && type != ParamType::bool_ && type != ParamType::enum_);
+    const bool has_unit = type->has_range, is_block = is_block_type(type);
     if (has_unit) any.unit = schema::kAnyUnit;
-    std::vector<std::string> absent;
+    std::vector<std::string> absent, required;
     if (!has_unit) absent = {"unit", "min", "max", "ui"};
-    if (type != ParamType::enum_) absent.push_back("values");
-    if (!column) {
-        if (type != ParamType::curve) absent.push_back("domain");
-        if (type != ParamType::file) absent.insert(absent.end(), {"kind", "space"});
-        if (type != ParamType::table) absent.push_back("columns");
-        if (!is_block_type(type)) absent.insert(absent.end(), {"from"});
-        if (type != ParamType::float_ && type != ParamType::int_ && type != ParamType::angle)
-            absent.push_back("requires");
-    }
+    if (type->has_default) required.push_back("default");
+    for (const ParamType other : types_of(column))
+        for (const OwnKey& key : other->own_keys) {
+            if (other != type) absent.push_back(key.name);
+            else if (key.required) required.push_back(key.name);
+        }
+    if (!column && !is_block) absent.insert(absent.end(), {"from"});
+    if (!column && !type->is_scalar) absent.push_back("requires");
     json rules = without(absent);
     rules["properties"]["default"] = schema::literal(any);
     if (!column) rules["properties"]["identity"] = schema::literal(any);
-    if (!column && !is_block_type(type)) rules["properties"]["bind"] = {{"const", "uniform"}};
+    if (!column && !is_block) rules["properties"]["bind"] = {{"const", "uniform"}};
     const std::string of_enums = camera_sources(ParamType::enum_).front();
-    if (!column && type == ParamType::enum_) rules["properties"]["from"] = {{"const", of_enums}};
-    if (!column && is_block_type(type) && type != ParamType::enum_)
-        rules["properties"]["from"] = {{"not", {{"const", of_enums}}}};
-    if (type == ParamType::table) rules["required"] = {"columns"};
-    else if (type == ParamType::enum_) rules["required"] = {"default", "values"};
-    else if (type == ParamType::file) rules["required"] = {"default", "kind"};
-    else rules["required"] = {"default"};
+    if (!column && type->is_choice) rules["properties"]["from"] = {{"const", of_enums}};
+    else if (!column && is_block) rules["properties"]["from"] = {{"not", {{"const", of_enums}}}};
+    rules["required"] = required;
     return rules;
+}
+
+/// The keys that only some types have; those of the types of columns go first.
+void add_own_keys(json& keys, bool of_block, const json& column) {
+    for (const ParamType type : param_types())
+        for (const OwnKey& key : type->own_keys)
+            if (is_block_type(type) == of_block) keys[key.name] = key.schema(column);
 }
 
 json param(bool column) {
     std::vector<std::string> types;
     json rules = json::array();
-    for (const ParamType type :
-         {ParamType::float_, ParamType::int_, ParamType::bool_, ParamType::enum_, ParamType::angle,
-          ParamType::color, ParamType::vec2, ParamType::vec3, ParamType::vec4, ParamType::curve,
-          ParamType::file, ParamType::table, ParamType::objects, ParamType::scattering_profile}) {
-        if (column && !is_block_type(type)) continue;
+    for (const ParamType type : types_of(column)) {
         types.emplace_back(param_type_name(type));
         rules.push_back(where("type", types.back(), rules_of(type, column)));
     }
@@ -70,9 +77,8 @@ json param(bool column) {
                  {"default", json::object()},
                  {"min", kNumber},
                  {"max", kNumber},
-                 {"ui", schema::array_of(kNumber, 2, 2)},
-                 {"values", schema::array_of({{"type", "string"}, {"pattern", "^[a-z0-9_]+$"}}, 2)}};
-    keys["values"]["uniqueItems"] = true;
+                 {"ui", schema::array_of(kNumber, 2, 2)}};
+    add_own_keys(keys, true, {});
     if (!column) {
         std::vector<std::string> sources = camera_sources(ParamType::enum_);
         for (std::string& source : camera_sources(ParamType::float_)) sources.push_back(std::move(source));
@@ -81,12 +87,7 @@ json param(bool column) {
         keys["identity"] = json::object();
         keys["requires"] =
             schema::array_of({{"type", "string"}, {"pattern", R"(^\s*(<|<=|>|>=)\s*[a-z][a-z0-9_]*\s*$)"}});
-        keys["domain"] = schema::array_of(kNumber, 2, 2);
-        keys["kind"] = schema::one_of({"image", "lut"});
-        keys["space"] = schema::one_of({"srgb", "data"});
-        keys["columns"] = schema::named(param(true));
-        keys["columns"]["minProperties"] = 1;
-        keys["columns"]["properties"] = without({"object", "objects", "name"})["properties"];
+        add_own_keys(keys, false, param(true));
     }
     json result = schema::object(keys, {"type", "doc"});
     result["allOf"] = rules;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "framework/core/error.h"
+#include "framework/core/param_type.h"
 #include "framework/image/cryptomatte.h"
 
 namespace aftershade {
@@ -56,7 +57,8 @@ public:
         const ParamValue& value = params(binding.step).get(binding.spec->name);
         if (binding.given == value) return;
         if (gpu::Buffer* buffer = binding.buffer ? executor_.buffer(*binding.buffer) : nullptr)
-            buffer->write(table_buffer(*binding.spec, table_of(value), object_id_of_name));
+            buffer->write(
+                table_buffer(*binding.spec, binding.spec->type->table.rows(value), object_id_of_name));
         if (gpu::Texture* texture = binding.texture ? executor_.texture(*binding.texture) : nullptr)
             upload(texture_of(binding, value), *texture);
         binding.given = value;
@@ -74,13 +76,11 @@ public:
     }
 
     void operator()(const BlockBinding& binding) const {
-        const auto first =
-            std::lower_bound(binding.passes.begin(), binding.passes.end(), feed_.first_pass);
+        const auto first = std::lower_bound(binding.passes.begin(), binding.passes.end(), feed_.first_pass);
         if (first == binding.passes.end()) return;
         const std::vector<std::byte> bytes = block(binding.kind, binding.step);
-        std::for_each(first, binding.passes.end(), [&](int pass) {
-            executor_.set_uniforms(pass, gl_binding(binding.kind), bytes);
-        });
+        std::for_each(first, binding.passes.end(),
+                      [&](int pass) { executor_.set_uniforms(pass, gl_binding(binding.kind), bytes); });
     }
 
 private:
@@ -88,9 +88,7 @@ private:
     const ParamSet& params(int step) const { return feed_.frame.params[std::size_t(step)]; }
 
     ParamTexture texture_of(const ParamBinding& binding, const ParamValue& value) const {
-        if (const auto* scattering = std::get_if<ScatteringValue>(&value))
-            return scattering_texture(*scattering);
-        if (const auto* curve = std::get_if<CurveValue>(&value)) return curve_texture(*binding.spec, *curve);
+        if (is_param_texture(binding.spec->type)) return param_texture(*binding.spec, value);
         const auto& files = feed_.files.of_step(binding.step, step(binding.step), params(binding.step));
         return file_texture(files.at(binding.spec->name));
     }

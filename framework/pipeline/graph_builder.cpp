@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "framework/core/error.h"
+#include "framework/core/param_type.h"
 #include "framework/image/role.h"
 #include "framework/pipeline/step_build.h"
 
@@ -242,19 +243,17 @@ void GraphBuilder::declare_params(StepBuild& build) {
         const std::string name = build.prefix() + spec.name;
         ParamBinding binding{build.index, &spec};
         if (is_param_buffer(spec.type))
-            binding.buffer = build.param_buffers[spec.name] = graph_.import_buffer(
-                name, {table_buffer_bytes(spec, build.params.table_entries(spec.name))});
-        if (spec.type == ParamType::scattering_profile) {
-            const int rows = kScatteringRows * build.params.profile_count(spec.name);
-            binding.texture = graph_.import_texture(
-                name + ".curves", {kScatteringSamples, rows, gpu::TextureFormat::rgba32f});
-        } else if (spec.type == ParamType::curve) {
-            binding.texture = graph_.import_texture(name, {kCurveSamples, 1, gpu::TextureFormat::r32f});
-        } else if (spec.type == ParamType::file &&
-                   !std::holds_alternative<std::monostate>(files.at(spec.name))) {
+            binding.buffer = build.param_buffers[spec.name] =
+                graph_.import_buffer(name, {table_buffer_bytes(spec, build.params.table_entries(spec))});
+        if (is_param_texture(spec.type)) {
+            const TexelSize size = build.params.texture_size(spec);
+            binding.texture =
+                graph_.import_texture(name + std::string(spec.type->texture.label),
+                                      {size.width, size.height, param_texture_format(size.channels)});
+        } else if (is_file_type(spec.type) && !std::holds_alternative<std::monostate>(files.at(spec.name))) {
             const ParamTexture texture = file_texture(files.at(spec.name));
-            binding.texture = graph_.import_texture(
-                name, {texture.width, texture.height, texture.format, texture.layers});
+            binding.texture =
+                graph_.import_texture(name, {texture.width, texture.height, texture.format, texture.layers});
         }
         if (binding.texture) build.param_textures[spec.name] = *binding.texture;
         if (binding.texture || binding.buffer) params_.push_back(binding);

@@ -23,8 +23,11 @@ ParamValue answer_to(const GraphQuestion& question, const GraphFrame& frame) {
         case About::image: return frame.inputs.has_image(name, question.of);
         case About::wanted_role:
             return std::find(frame.roles.begin(), frame.roles.end(), name) != frame.roles.end();
-        case About::param:
-            return aspect_of(frame.params[std::size_t(question.of)].get(name), question.aspect);
+        case About::param: {
+            const PipelineStep& step = frame.pipeline.steps[std::size_t(question.of)];
+            return aspect_of(*step.manifest->find_param(name),
+                             frame.params[std::size_t(question.of)].get(name), question.aspect);
+        }
         case About::native_enabled: return found_or(native().enabled, name, true);
         case About::native_turns: return std::int64_t(found_or(native().repeats, name, -1));
         case About::native_table: break;

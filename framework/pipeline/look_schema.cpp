@@ -3,6 +3,7 @@
 
 #include "framework/core/grammar_schema.h"
 #include "framework/core/schema_pieces.h"
+#include "framework/core/param_type.h"
 #include "framework/core/units.h"
 #include "framework/effect/describe.h"
 #include "framework/image/camera.h"
@@ -32,21 +33,17 @@ json keyed(const json& literal) {
                           {"keys"});
 }
 
-bool is_number(const ParamSpec& spec) {
-    return spec.type == ParamType::float_ || spec.type == ParamType::angle || spec.type == ParamType::int_;
-}
-
 /// Values of the capture that a parameter may take.
 std::vector<json> captured(const ParamSpec& spec) {
     std::vector<json> forms;
     std::vector<std::string> fields;
-    if (spec.type == ParamType::enum_) fields = camera_sources(spec.type);
-    if (is_number(spec))
+    if (spec.type->is_choice) fields = camera_sources(spec.type);
+    if (is_scalar_type(spec.type))
         for (const CameraField& field : camera_fields())
             if (converts_to(field, spec)) fields.push_back(std::string(kFromCamera) + field.name);
     if (!fields.empty())
         forms.push_back(schema::object({{"from", or_variable(schema::one_of(fields))}}, {"from"}));
-    if (!is_number(spec) || !convert_unit(1, "m", spec.unit)) return forms;
+    if (!is_scalar_type(spec.type) || !convert_unit(1, "m", spec.unit)) return forms;
     const json depth = or_variable({{"const", "depth"}});
     const json side = or_variable({{"type", "number"}, {"minimum", 0}, {"maximum", 1}});
     const json point = or_variable(schema::array_of(side, 2, 2));
@@ -74,7 +71,7 @@ grammar::Key value_key(const ParamSpec& spec) {
     const std::string range = range_text(spec);
     return grammar::optional(spec.name, form_of(value_of(spec)),
                              spec.doc + " [" + type_text(spec) + (range.empty() ? "" : ", " + range) + "]",
-                             spec.type == ParamType::table ? "" : format_value(spec, spec.default_value));
+                             spec.type->has_default ? format_value(spec, spec.default_value) : "");
 }
 
 grammar::Form params_of(const EffectManifest& effect) {

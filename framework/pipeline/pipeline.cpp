@@ -107,7 +107,7 @@ int Pipeline::last_accumulating_step() const {
 }
 
 ParamValue with_file(const ParamSpec& spec, ParamValue value, const std::filesystem::path& folder) {
-    if (spec.type != ParamType::file) return value;
+    if (!is_file_type(spec.type)) return value;
     auto& path = std::get<std::string>(value);
     if (!path.empty()) path = (folder / path).string();
     return value;

@@ -24,7 +24,7 @@ const std::map<std::string, ParamFile>& StepFiles::of_step(int index, const Pipe
                                                            const ParamReader& params) {
     std::map<std::string, std::string> paths;
     for (const ParamSpec& spec : step.manifest->params)
-        if (spec.type == ParamType::file) paths[spec.name] = std::get<std::string>(params.get(spec.name));
+        if (is_file_type(spec.type)) paths[spec.name] = std::get<std::string>(params.get(spec.name));
     const auto known = steps_.find(index);
     if (known != steps_.end() && known->second.paths == paths) return known->second.files;
     Loaded loaded{paths, {}};

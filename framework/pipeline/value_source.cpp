@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "framework/core/error.h"
+#include "framework/core/param_type.h"
 #include "framework/core/text.h"
 #include "framework/core/units.h"
 #include "framework/image/cryptomatte.h"
@@ -71,7 +72,7 @@ struct SourceReader {
             return std::nullopt;
         }
         const std::string field = source->substr(kFromCamera.size());
-        if (spec.type == ParamType::enum_) return CameraValue{field};
+        if (spec.type->is_choice) return CameraValue{field};
         if (!is_scalar(place)) return std::nullopt;
         const CameraField& camera_field = *find_camera_field(field);
         if (!converts_to(camera_field, spec)) {
@@ -115,8 +116,7 @@ struct SourceReader {
     }
 
     bool is_scalar(const Place& place) {
-        const bool scalar =
-            spec.type == ParamType::float_ || spec.type == ParamType::angle || spec.type == ParamType::int_;
+        const bool scalar = is_scalar_type(spec.type);
         if (!scalar)
             diagnostics.error(place, label + " is a " + std::string(param_type_name(spec.type)) +
                                          ", which a single number of the capture cannot fill");
@@ -135,8 +135,7 @@ ParamValue fitted(double number, const ParamSpec& spec, const std::string& label
         throw Error(ExitCode::capture, header.path.string() + ": " + origin + " is " + format_number(number) +
                                            ", outside the range of " + label +
                                            " (set the parameter in the look, or mend the capture's camera)");
-    if (spec.type == ParamType::int_) return std::int64_t(std::llround(number));
-    return number;
+    return value_of_numbers(spec, {number});
 }
 
 double median_depth_m(const std::vector<TableKey>& objects, const std::string& label,
@@ -222,7 +221,7 @@ std::vector<std::string> roles_of(const ValueSource& source) {
 
 std::optional<ParamValue> camera_value(const ParamSpec& spec, const std::string& field,
                                        const std::string& label, const CaptureHeader& header) {
-    if (spec.type == ParamType::enum_) {
+    if (spec.type->is_choice) {
         const std::string& name = header.camera.lens_model;
         if (name.empty()) return std::nullopt;
         if (std::find(spec.values.begin(), spec.values.end(), name) == spec.values.end())

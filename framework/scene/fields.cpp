@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "framework/image/document_forms.h"
+#include "framework/scattering/scattering_form.h"
 
 namespace aftershade::scene {
 

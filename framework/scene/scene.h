@@ -9,7 +9,7 @@
 
 #include "framework/core/diagnostics.h"
 #include "framework/core/document.h"
-#include "framework/core/scattering_profile.h"
+#include "framework/scattering/scattering_profile.h"
 #include "framework/scene/animated.h"
 #include "framework/scene/mesh.h"
 

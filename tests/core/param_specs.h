@@ -9,16 +9,18 @@
 namespace aftershade::test {
 
 /// The parameter "p"; the test fails where the declaration has faults.
-inline ParamSpec spec_of(const std::string& declaration, const std::string& name = "p") {
+inline ParamSpec spec_of(const std::string& declaration, const std::string& name = "p",
+                         std::span<const ParamType> types = core_param_types()) {
     Diagnostics diagnostics;
-    const auto spec = parse_param_spec(name, parsed(declaration), diagnostics);
+    const auto spec = parse_param_spec(name, parsed(declaration), diagnostics, types);
     EXPECT_EQ(lines_of(diagnostics), Lines{}) << declaration;
     return spec.value_or(ParamSpec{});
 }
 
-inline Lines spec_faults(const std::string& declaration) {
-    return faults_of(declaration, [](const Node& node, Diagnostics& diagnostics) {
-        EXPECT_FALSE(parse_param_spec("p", node, diagnostics).has_value());
+inline Lines spec_faults(const std::string& declaration,
+                         std::span<const ParamType> types = core_param_types()) {
+    return faults_of(declaration, [&](const Node& node, Diagnostics& diagnostics) {
+        EXPECT_FALSE(parse_param_spec("p", node, diagnostics, types).has_value());
     });
 }
 

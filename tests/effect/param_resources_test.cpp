@@ -6,6 +6,7 @@
 #include <map>
 #include <random>
 
+#include "framework/core/param_types/curve.h"
 #include "framework/image/png_file.h"
 #include "tests/core/param_specs.h"
 #include "tests/effect/param_resources_on.h"
@@ -51,10 +52,10 @@ TEST_P(ParamResourcesOn, ReadACurveWithinTheBoundThatTheHeaderGives) {
         // largest second derivative is that of the fall from 4 to 0 over 1.25, 6 * 4 / 1.25^2.
         const double corner = h / 4 * (is_smooth ? 3 : 6.2) + rounding;
         const double smooth = (is_smooth ? h * h / 8 * 6 * 4 / 1.25 / 1.25 : h / 4 * 6.2) + rounding;
-        const gpu::Texture texture = uploaded(curve_texture(spec, curve));
+        const gpu::Texture texture = uploaded(param_texture(spec, curve));
         const auto inputs = random_inputs(-3, 4);
         const auto outputs =
-            computed(param_resource_glsl(spec, {}, 5), "vec4(falloff(v.x))", inputs, &texture);
+            computed(param_sampler_glsl(spec, {}, 5), "vec4(falloff(v.x))", inputs, &texture);
         for (std::size_t i = 0; i < kCount; ++i) {
             const double x = std::clamp(double(inputs[i][0]), -2.0, 3.0);
             const bool is_inside = x > -1.5 + h && x < 2.5 - h;
@@ -126,7 +127,7 @@ TEST_P(ParamResourcesOn, InterpolateInACubeByTetrahedra) {
         const gpu::Texture texture = uploaded(file_texture(lut));
         const auto inputs = random_inputs(-0.75f, 2.25f);
         const auto outputs =
-            computed(param_resource_glsl(lut_spec(), lut, 5), "vec4(grade(v.rgb), 0.0)", inputs, &texture);
+            computed(param_sampler_glsl(lut_spec(), lut, 5), "vec4(grade(v.rgb), 0.0)", inputs, &texture);
         for (std::size_t i = 0; i < kCount; ++i)
             for (std::size_t c = 0; c < 3; ++c)
                 ASSERT_NEAR(outputs[i][c], tetrahedral(lut, inputs[i])[c], 3e-6 * size) << size << " " << i;
@@ -139,7 +140,7 @@ TEST_P(ParamResourcesOn, InterpolateEachChannelOfAOneDimensionalLut) {
         const gpu::Texture texture = uploaded(file_texture(lut));
         const auto inputs = random_inputs(-0.75f, 2.25f);
         const auto outputs =
-            computed(param_resource_glsl(lut_spec(), lut, 5), "vec4(grade(v.rgb), 0.0)", inputs, &texture);
+            computed(param_sampler_glsl(lut_spec(), lut, 5), "vec4(grade(v.rgb), 0.0)", inputs, &texture);
         // A position is known to a float's rounding, and neighbours of this table differ by up to 3.
         const double bound = 1e-6 + 3 * 3e-7 * size;
         for (std::size_t i = 0; i < kCount; ++i)
@@ -159,7 +160,7 @@ TEST_P(ParamResourcesOn, ReadAnImageByItsNameAndSize) {
     const auto file = load_param_file(spec, folder / "a.png", diagnostics);
     ASSERT_TRUE(file.has_value());
     const gpu::Texture texture = uploaded(file_texture(*file));
-    const std::string glsl = param_resource_glsl(spec, *file, 5);
+    const std::string glsl = param_sampler_glsl(spec, *file, 5);
     const std::vector<Vec4> inputs = {{2, 1, 0, 0}, {0, 1, 0, 0}};
     const auto texels = computed(glsl, "texelFetch(stain, ivec2(v.xy), HAS_STAIN - 1)", inputs, &texture);
     EXPECT_EQ(texels[0], (Vec4{5 / 255.0f, 5 / 255.0f, 5 / 255.0f, 1}));
@@ -263,7 +264,7 @@ TEST_P(ParamResourcesOn, FindATablesRowByObject) {
     }
     const gpu::Buffer buffer = uploaded(table_buffer(spec, table, ids_of(names)));
     const std::string id = "(uint(v.x) << 16 | uint(v.y))";
-    const std::string glsl = param_resource_glsl(spec, {}, 3) +
+    const std::string glsl = param_table_glsl(spec, 3) +
                              "vec4 packed_row(ObjectScalesRow row) {\n"
                              "    bool soft = row.mode == OBJECT_SCALES_MODE_SOFT;\n"
                              "    return vec4(row.scale, row.on ? 1.0 : 0.0, soft ? 1.0 : 0.0,\n"
@@ -286,7 +287,7 @@ TEST(ParamResources, DeclareNothingForAFileThatIsNotThere) {
     Diagnostics diagnostics;
     const auto none = load_param_file(lut_spec(), "", diagnostics);
     ASSERT_TRUE(none.has_value());
-    EXPECT_EQ(param_resource_glsl(lut_spec(), *none, 0), "");
+    EXPECT_EQ(param_sampler_glsl(lut_spec(), *none, 0), "");
     EXPECT_FALSE(diagnostics.has_errors());
 }
 

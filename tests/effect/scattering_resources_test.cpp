@@ -3,6 +3,8 @@
 #include <numbers>
 
 #include "framework/effect/param_resources.h"
+#include "framework/effect/param_types.h"
+#include "framework/scattering/param_scattering.h"
 #include "tests/core/param_specs.h"
 #include "tests/effect/param_resources_on.h"
 #include "tests/reference/burley.h"
@@ -20,7 +22,7 @@ ON_SOFTWARE_BACKENDS(ObjectsOn);
 
 TEST_P(ObjectsOn, SayWhetherAListHasAnObject) {
     const ParamSpec spec = spec_of(R"({"type": "objects", "default": [], "doc": "."})", "object_ids");
-    const std::string glsl = param_resource_glsl(spec, {}, 3);
+    const std::string glsl = param_table_glsl(spec, 3);
     std::vector<Vec4> inputs;
     for (int id = 0; id < 64; ++id) inputs.push_back({float(id), 0, 0, 0});
     inputs.push_back({65535, 65535, 0, 0});
@@ -50,9 +52,10 @@ const std::string kProfiles = R"({"default": {"type": "burley", "d_mm": [3, 0.7,
 class ScatteringResourcesOn : public test::ParamResourcesOn {
 protected:
     std::vector<Vec4> evaluated(const std::string& expression, const std::vector<Vec4>& inputs) {
-        const std::string glsl = scattering_sampler_glsl(spec_, 5) + param_resource_glsl(spec_, {}, 3);
-        const gpu::Texture texture = uploaded(scattering_texture(value_));
-        const gpu::Buffer buffer = uploaded(table_buffer(spec_, table_of(value_), ids_of({{"Marble", 4}})));
+        const std::string glsl = param_sampler_glsl(spec_, {}, 5) + param_table_glsl(spec_, 3);
+        const gpu::Texture texture = uploaded(param_texture(spec_, given_));
+        const gpu::Buffer buffer =
+            uploaded(table_buffer(spec_, scattering_table(value_), ids_of({{"Marble", 4}})));
         return computed(glsl, expression, inputs, &texture, &buffer);
     }
 
@@ -69,8 +72,10 @@ protected:
         return value_.rows[object < 3 ? 0 : std::size_t(object) - 2].second;
     }
 
-    ParamSpec spec_ = spec_of(R"({"type": "scattering_profile", "default": "skin", "doc": "."})", "glow");
-    ScatteringValue value_ = std::get<ScatteringValue>(value_of(spec_, kProfiles));
+    ParamSpec spec_ =
+        spec_of(R"({"type": "scattering_profile", "default": "skin", "doc": "."})", "glow", param_types());
+    ParamValue given_ = value_of(spec_, kProfiles);
+    const ScatteringValue& value_ = *scattering_of(given_);
 };
 ON_SOFTWARE_BACKENDS(ScatteringResourcesOn);
 

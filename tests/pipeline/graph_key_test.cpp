@@ -41,7 +41,8 @@ void main() {
     out_color = vec4(tone(value), texelFetch(work, p, 0).r, 0.0, 1.0);
 })";
 
-/// A step's value that is `first` in frame 1 and `then` in frame 9: a gap, so that no history is between them.
+/// A step's value that is `first` in frame 1 and `then` in frame 9: a gap, so that no history is between
+/// them.
 std::string keyed(const std::string& name, const std::string& first, const std::string& then) {
     return "\"" + name + R"(": { "keys": { "1": )" + first + R"(, "9": )" + then +
            R"( }, "interpolation": "step" })";
@@ -67,8 +68,7 @@ protected:
     }
     int graphs_of(const std::string& params, const Capture& first, const Capture& then,
                   const std::string& step = "") {
-        Bench bench(effects_,
-                    look_of(R"({ "effect": "shaped", "params": {)" + params + "}" + step + " }"));
+        Bench bench(effects_, look_of(R"({ "effect": "shaped", "params": {)" + params + "}" + step + " }"));
         bench.run(first);
         bench.run(then);
         return bench.renderer().graphs_built();
@@ -107,7 +107,8 @@ TEST_F(GraphKeys, DoNotHoldWhereTheFormChanges) {
 }
 
 TEST_F(GraphKeys, KnowOnlyTheConditionsAndCountsThatWereLookedAt) {
-    EXPECT_EQ(graphs_of(R"("mode": "plain", )" + keyed("turns", "1", "3")), 1) << "of a pass that does not run";
+    EXPECT_EQ(graphs_of(R"("mode": "plain", )" + keyed("turns", "1", "3")), 1)
+        << "of a pass that does not run";
     EXPECT_EQ(graphs_of(R"("mode": "plain", )" + keyed("really", "true", "false")), 1)
         << "after a condition that does not hold";
     EXPECT_EQ(graphs_of(R"("mode": "soft", )" + keyed("really", "true", "false")), 2);
@@ -140,8 +141,8 @@ TEST_F(GraphKeys, GiveEachFrameWhatAGraphOfItsOwnGives) {
         const std::string look = look_of(R"({ "effect": "shaped", "params": {)" + params + "} }");
         Bench used(effects_, look), fresh(effects_, look);
         used.run(capture_of(1));
-        EXPECT_TRUE(std::ranges::equal(used.color(capture_of(9)).floats(),
-                                       fresh.color(capture_of(9)).floats()))
+        EXPECT_TRUE(
+            std::ranges::equal(used.color(capture_of(9)).floats(), fresh.color(capture_of(9)).floats()))
             << params;
     }
 }
@@ -172,6 +173,9 @@ TableValue table_with(const TableKey& key) {
 
 TEST(GraphFrameReader, MakesAKeyOfWhatItWasAskedAndOfNothingElse) {
     EffectManifest manifest;
+    ParamSpec& rows = manifest.params.emplace_back();
+    rows.name = "rows";
+    rows.type = ParamType::table;
     Pipeline pipeline;
     pipeline.steps.emplace_back().manifest = &manifest;
     const NativeSteps natives({});
@@ -194,7 +198,7 @@ TEST(GraphFrameReader, MakesAKeyOfWhatItWasAskedAndOfNothingElse) {
     EXPECT_TRUE(reader.wants("color"));
     const ParamReader of_step = reader.params(0);
     EXPECT_EQ(std::get<double>(of_step.get("asked")), 1.0);
-    EXPECT_EQ(of_step.table_entries("rows"), 1U);
+    EXPECT_EQ(of_step.table_entries(rows), 1U);
     const GraphKey key = reader.key();
 
     using About = GraphQuestion::About;
@@ -218,7 +222,9 @@ TEST(GraphFrameReader, MakesAKeyOfWhatItWasAskedAndOfNothingElse) {
     };
     holds_not_after([&] { params[0].set("asked", 1.5); }, [&] { params[0].set("asked", 1.0); });
     holds_not_after([&] { params[0].set("rows", TableValue{}); },
-                    [&] { params[0].set("rows", table_with({2, 2, ""})); });
+                    [&] {
+                        params[0].set("rows", table_with({2, 2, ""}));
+                    });
     holds_not_after([&] { capture.header.data_window.max_x = 16; },
                     [&] { capture.header.data_window.max_x = 15; });
     holds_not_after([&] { capture.images.erase("depth"); },

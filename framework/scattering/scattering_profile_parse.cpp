@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/core/data_path.h"
-#include "framework/core/scattering_profile.h"
 #include "framework/core/text.h"
 #include "framework/core/units.h"
+#include "framework/scattering/scattering_profile.h"
 
 namespace aftershade {
 

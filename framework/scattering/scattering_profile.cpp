@@ -1,4 +1,4 @@
-#include "framework/core/scattering_profile.h"
+#include "framework/scattering/scattering_profile.h"
 
 #include <algorithm>
 #include <cmath>

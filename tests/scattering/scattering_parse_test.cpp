@@ -5,8 +5,10 @@
 #include <cstdlib>
 
 #include "framework/core/data_path.h"
+#include "framework/core/param_type.h"
+#include "framework/scattering/param_scattering.h"
 #include "tests/core/param_specs.h"
-#include "tests/core/scattering_profiles.h"
+#include "tests/scattering/scattering_profiles.h"
 #include "tests/temporary_folder.h"
 
 namespace aftershade {
@@ -14,11 +16,21 @@ namespace {
 
 using test::Lines;
 using test::profile_of;
-using test::spec_faults;
-using test::spec_of;
 using test::value_faults;
 using test::value_of;
 using Type = ScatteringProfile::Type;
+
+/// The parameter "p" where scattering_profile is a type.
+const ParamType kTypes[] = {kScatteringParam};
+ParamSpec spec_of(const std::string& declaration) {
+    return test::spec_of(declaration, "p", kTypes);
+}
+Lines spec_faults(const std::string& declaration) {
+    return test::spec_faults(declaration, kTypes);
+}
+ScatteringValue scattering_value_of(const ParamSpec& spec, const std::string& value) {
+    return *scattering_of(value_of(spec, value));
+}
 
 const std::string kThree = R"({"type": "gaussians", "gaussians": [
     {"variance_mm2": 0.25, "weight": [0.5, 1, 0.25]}, {"variance_mm2": [4, 5, 6], "weight": [0.5, 0, 0.75]}]})";
@@ -240,11 +252,11 @@ ParamSpec profile_spec() {
 
 TEST(ScatteringParam, IsOneProfileOrRowsByObject) {
     const ParamSpec spec = profile_spec();
-    EXPECT_EQ(std::get<ScatteringValue>(spec.default_value).usual.d_mm, (Rgb{1, 1, 1}));
-    const auto value = std::get<ScatteringValue>(value_of(spec, R"({"default": "skin", "rows": [
+    EXPECT_EQ(scattering_of(spec.default_value)->usual.d_mm, (Rgb{1, 1, 1}));
+    const auto value = scattering_value_of(spec, R"({"default": "skin", "rows": [
         {"objects": "3-7,9", "profile": {"type": "burley", "d_mm": 2}},
         {"name": "Ear", "profile": {"type": "dipole", "absorption_per_mm": 1, "reduced_scattering_per_mm": 2}},
-        {"object": 1, "profile": {"type": "burley", "d_mm": 2}}]})"));
+        {"object": 1, "profile": {"type": "burley", "d_mm": 2}}]})");
     EXPECT_EQ(value.usual.name, "skin");
     ASSERT_EQ(value.rows.size(), 4u);
     EXPECT_EQ(value.rows[0].first, (TableKey{3, 7, ""}));
@@ -255,13 +267,12 @@ TEST(ScatteringParam, IsOneProfileOrRowsByObject) {
     ASSERT_EQ(profiles.size(), 3u) << "two rows have one";
     EXPECT_EQ(profiles[2].type, Type::dipole);
     EXPECT_FALSE(is_burley(value));
-    EXPECT_TRUE(is_burley(std::get<ScatteringValue>(spec.default_value)));
+    EXPECT_TRUE(is_burley(*scattering_of(spec.default_value)));
 }
 
 TEST(ScatteringParam, GivesShadersARowForEachKey) {
-    const auto value =
-        std::get<ScatteringValue>(value_of(profile_spec(), R"({"default": {"type": "artist"}, "rows": [
-        {"object": 4, "profile": {"type": "burley", "d_mm": [1, 2, 3]}}]})"));
+    const auto value = scattering_value_of(profile_spec(), R"({"default": {"type": "artist"}, "rows": [
+        {"object": 4, "profile": {"type": "burley", "d_mm": [1, 2, 3]}}]})");
     const TableValue table = scattering_table(value);
     const ScatteringProfile artist = profile_of(R"({"type": "artist"})");
     EXPECT_EQ(table.default_row[0], std::vector<double>{0});
@@ -339,65 +350,6 @@ TEST(ScatteringParam, IsNoColumnAndHasNoRange) {
                "a buffer"}));
     EXPECT_EQ(spec_faults(R"({"type": "scattering_profile", "doc": "."})"),
               Lines{"doc.json:1:1: error: parameter 'p' has no 'default'"});
-}
-
-ParamSpec objects_spec() {
-    return spec_of(R"({"type": "objects", "default": [], "doc": "."})");
-}
-
-TEST(Objects, AreIdsRangesAndNames) {
-    const ParamSpec spec = objects_spec();
-    const auto none = std::get<TableValue>(spec.default_value);
-    EXPECT_EQ(none.default_row, (TableValue::Row{{1}})) << "an empty list has them all";
-    EXPECT_TRUE(none.rows.empty());
-    const auto some = std::get<TableValue>(value_of(spec, R"([4294967295, "3-7", " 9 ", "Left ear", "3d"])"));
-    const TableValue::Row listed = {{1}};
-    const std::vector<std::pair<TableKey, TableValue::Row>> rows = {{{4294967295u, 4294967295u, ""}, listed},
-                                                                    {{3, 7, ""}, listed},
-                                                                    {{9, 9, ""}, listed},
-                                                                    {{0, 0, "Left ear"}, listed},
-                                                                    {{0, 0, "3d"}, listed}};
-    EXPECT_EQ(some.default_row, (TableValue::Row{{0}}));
-    EXPECT_EQ(some.rows, rows);
-}
-
-TEST(Objects, SayWhichItemIsWrong) {
-    const ParamSpec spec = objects_spec();
-    EXPECT_EQ(value_faults(spec, "3"),
-              Lines{"doc.json:1:1: error: p: expected an array of objects' ids, ranges such as "
-                    "\"3-7\" and names, not an integer"});
-    EXPECT_EQ(
-        value_faults(spec, R"([-1, 1.5, "", ["a"]])", "sss.object_ids"),
-        (Lines{
-            "doc.json:1:2: error: sss.object_ids[0]: -1 is not an object's id, a number from 0 to 4294967295",
-            "doc.json:1:6: error: sss.object_ids[1]: expected an object's id, a range of ids such as \"3-7\" "
-            "or "
-            "a name",
-            "doc.json:1:11: error: sss.object_ids[2]: expected an object's id, a range of ids such as "
-            "\"3-7\" "
-            "or a name",
-            "doc.json:1:15: error: sss.object_ids[3]: expected an object's id, a range of ids such as "
-            "\"3-7\" "
-            "or a name"}));
-    EXPECT_EQ(
-        value_faults(spec, R"([5, "3-7", "a", "a"])"),
-        (Lines{"doc.json:1:17: error: p[3]: 'a' is taken already by 'a' of p[2], doc.json:1:12",
-               "doc.json:1:5: error: p[1]: objects 3-7 is taken already by object 5 of p[0], doc.json:1:2"}));
-}
-
-TEST(Objects, AreFormattedAsADocumentWritesThem) {
-    const ParamSpec spec = objects_spec();
-    for (const std::string text : {"[]", R"([4, "6-9", "Left \"ear\""])"})
-        EXPECT_EQ(format_value(spec, value_of(spec, text)), text);
-}
-
-TEST(Objects, HaveNoColumnsNoUnitAndNoSource) {
-    EXPECT_EQ(
-        spec_faults(
-            R"({"type": "objects", "columns": {}, "unit": "mm", "from": "camera.x", "default": [], "doc": "."})"),
-        (Lines{"doc.json:1:44: error: a list of objects has no unit",
-               "doc.json:1:32: error: only a table has 'columns'",
-               "doc.json:1:58: error: a list of objects has no 'from'"}));
 }
 
 }  // namespace

@@ -1,8 +1,9 @@
-// JSON Schema of scattering profiles: what scattering_profile_parse.cpp takes.
+#include "framework/scattering/scattering_schema.h"
+
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "framework/core/schema_pieces.h"
+#include "framework/scattering/scattering_profile.h"
 
 namespace aftershade::schema {
 

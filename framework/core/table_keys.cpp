@@ -1,9 +1,9 @@
-// Which objects a row, or a list, is for.
+#include "framework/core/table_keys.h"
+
 #include <algorithm>
-#include <cstdint>
 #include <map>
 
-#include "framework/core/param_internal.h"
+#include "framework/core/text.h"
 
 namespace aftershade {
 
@@ -77,6 +77,11 @@ void TableKeyReader::report_overlap(std::size_t later, std::size_t earlier) {
     diagnostics_.error(here.place, here.label + ": " + object_text(here.key) + " is taken already by " +
                                        object_text(there.key) + " of " + there.label + ", " +
                                        to_string(there.place));
+}
+
+std::string format_key(const TableKey& key) {
+    if (!key.name.empty()) return "\"name\": " + json_string(key.name);
+    return (key.first == key.last ? "\"object\": " : "\"objects\": ") + format_object_keys({&key, 1});
 }
 
 }  // namespace aftershade

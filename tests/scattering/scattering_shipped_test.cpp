@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-#include "tests/core/scattering_profiles.h"
+#include "tests/scattering/scattering_profiles.h"
 
 namespace aftershade {
 namespace {

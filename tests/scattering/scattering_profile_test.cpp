@@ -1,4 +1,4 @@
-#include "framework/core/scattering_profile.h"
+#include "framework/scattering/scattering_profile.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <functional>
 #include <numbers>
 
-#include "tests/core/scattering_profiles.h"
 #include "tests/reference/burley.h"
+#include "tests/scattering/scattering_profiles.h"
 
 namespace aftershade {
 namespace {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <string>
 
-#include "framework/core/scattering_profile.h"
+#include "framework/scattering/scattering_profile.h"
 #include "tests/documents.h"
 
 namespace aftershade::test {

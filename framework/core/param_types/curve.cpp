@@ -1,13 +1,18 @@
-#include "framework/core/param_internal.h"
-
+// A function of one variable; shaders read its samples from a texture.
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <utility>
 
+#include "framework/core/glsl_text.h"
+#include "framework/core/param_type.h"
+#include "framework/core/param_types/curve.h"
+#include "framework/core/schema_pieces.h"
+#include "framework/core/units.h"
+
 namespace aftershade {
 
-namespace {
+namespace curve_type {
 
 using Points = std::vector<std::array<double, 2>>;
 
@@ -70,7 +75,7 @@ std::optional<std::array<double, 2>> read_point(const ValueReader& reader, const
     return std::array<double, 2>{x, *y};
 }
 
-}  // namespace
+}  // namespace curve_type
 
 double CurveValue::at(double x) const {
     assert(!points.empty());
@@ -82,11 +87,14 @@ double CurveValue::at(double x) const {
     const auto& a = points[i];
     const auto& b = points[i + 1];
     if (interpolation == Interpolation::linear) return std::lerp(a[1], b[1], (x - a[0]) / (b[0] - a[0]));
-    const std::vector<double> slopes = monotone_slopes(points);
-    return hermite(a, b, slopes[i], slopes[i + 1], x);
+    const std::vector<double> slopes = curve_type::monotone_slopes(points);
+    return curve_type::hermite(a, b, slopes[i], slopes[i + 1], x);
 }
 
-std::optional<ParamValue> ValueReader::curve(const Node& node) const {
+namespace curve_type {
+
+std::optional<ParamValue> parse(const ValueReader& value_reader, const Node& node) {
+    const auto& [spec, label, diagnostics] = value_reader;
     CurveValue value;
     const int errors_before = diagnostics.error_count();
     const Node* points = &node;
@@ -98,7 +106,8 @@ std::optional<ParamValue> ValueReader::curve(const Node& node) const {
         reader.finish();
         points_label += ".points";
     } else if (!node.is_array()) {
-        return wrong_kind(node, "points, [[x, y], ...], or an object with 'points' and 'interpolation'");
+        return value_reader.wrong_kind(
+            node, "points, [[x, y], ...], or an object with 'points' and 'interpolation'");
     }
     if (!points) return std::nullopt;
     const std::size_t count = points->items.size();
@@ -119,5 +128,98 @@ std::optional<ParamValue> ValueReader::curve(const Node& node) const {
     if (diagnostics.error_count() > errors_before) return std::nullopt;
     return value;
 }
+
+schema::json domain_schema(const schema::json&) {
+    return schema::array_of({{"type", "number"}}, 2, 2);
+}
+
+constexpr OwnKey kKeys[] = {{"domain", "a ", false, domain_schema}};
+
+void read_declaration(const SpecReader& reader, ParamSpec& spec) {
+    const Node* domain = reader.object.array("domain");
+    if (!domain) return;
+    const auto& ends = domain->items;
+    if (ends.size() == 2 && ends[0].is_number() && ends[1].is_number() && ends[0].number < ends[1].number)
+        spec.domain = {ends[0].number, ends[1].number};
+    else reader.diagnostics.error(domain->place, "'domain' holds two numbers that rise, the ends of x");
+}
+
+schema::json literal(const ParamSpec& spec, const schema::LiteralParts& parts) {
+    const schema::json x = {{"type", "number"}, {"minimum", spec.domain[0]}, {"maximum", spec.domain[1]}};
+    ParamSpec y = spec;
+    y.type = ParamType::float_;
+    const schema::json point = {{"type", "array"},
+                                {"prefixItems", {parts.part(x), parts.part(schema::quantity(y))}},
+                                {"minItems", 2},
+                                {"maxItems", 2}};
+    const schema::json points = schema::array_of(parts.part(point), 1, int(kMaxCurvePoints));
+    const schema::json interpolation = parts.part(schema::one_of({"linear", "smooth"}));
+    return schema::any_of(
+        {points,
+         schema::object({{"points", parts.part(points)}, {"interpolation", interpolation}}, {"points"})});
+}
+
+schema::json describe(const ParamSpec& spec) {
+    return {{"domain", spec.domain}};
+}
+
+ParamValue scale(const ParamSpec& spec, const ParamValue& value, double factor) {
+    CurveValue curve = std::get<CurveValue>(value);
+    if (spec.unit == "px")
+        for (auto& point : curve.points) point[1] = scaled_px(spec, point[1], factor);
+    return curve;
+}
+
+TexelSize texture_size(const ParamValue&) {
+    return {kCurveSamples, 1, 1};
+}
+
+std::vector<float> texels(const ParamSpec& spec, const ParamValue& value) {
+    const auto& curve = std::get<CurveValue>(value);
+    std::vector<float> samples;
+    for (int i = 0; i < kCurveSamples; ++i)
+        samples.push_back(
+            float(curve.at(std::lerp(spec.domain[0], spec.domain[1], double(i) / (kCurveSamples - 1)))));
+    return samples;
+}
+
+constexpr std::string_view kCurve = R"(layout(binding = $binding) uniform sampler2D $texture;
+float $name(float x) {
+    float at = clamp((x - $low) * $scale, 0.0, $last);
+    int i = min(int(at), int($last) - 1);
+    float a = texelFetch($texture, ivec2(i, 0), 0).r;
+    float b = texelFetch($texture, ivec2(i + 1, 0), 0).r;
+    return mix(a, b, at - float(i));
+}
+)";
+
+std::string glsl(const ParamSpec& spec, int binding) {
+    const auto [low, high] = spec.domain;
+    return filled(kCurve, {{"name", spec.name},
+                           {"texture", spec.name + "_curve"},
+                           {"binding", std::to_string(binding)},
+                           {"low", glsl_float(low)},
+                           {"scale", glsl_float((kCurveSamples - 1) / (high - low))},
+                           {"last", glsl_float(kCurveSamples - 1)}});
+}
+
+constexpr ParamTypeTraits type() {
+    ParamTypeTraits traits;
+    traits.name = "curve";
+    traits.home = ParamHome::resource;
+    traits.has_range = true;  // of y
+    traits.own_keys = kKeys;
+    traits.read_declaration = read_declaration;
+    traits.parse = parse;
+    traits.schema = literal;
+    traits.describe = describe;
+    traits.scale = scale;
+    traits.texture = {"", texture_size, texels, glsl};
+    return traits;
+}
+
+}  // namespace curve_type
+
+constinit const ParamTypeTraits kCurveParam = curve_type::type();
 
 }  // namespace aftershade
