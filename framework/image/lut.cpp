@@ -17,7 +17,7 @@ namespace aftershade {
 namespace {
 
 constexpr int kMaxFaults = 20;
-constexpr std::uintmax_t kMaxFileBytes = 1024u * 1024 * 1024;
+constexpr std::uintmax_t kMaxCubeBytes = 1024u * 1024 * 1024;
 constexpr int kMaxSize1d = 65536;
 constexpr int kMaxSize3d = 256;
 
@@ -186,7 +186,7 @@ std::optional<Lut> parse_lut(std::string_view text, const std::string& file, Dia
 
 std::optional<Lut> read_lut(const std::filesystem::path& path, Diagnostics& diagnostics) {
     std::string fault;
-    const std::string text = read_regular_file(path, kMaxFileBytes, fault);
+    const std::string text = read_regular_file(path, kMaxCubeBytes, fault);
     if (fault.empty()) return parse_lut(text, path.string(), diagnostics);
     diagnostics.error({path.string()}, fault);
     return std::nullopt;

@@ -28,7 +28,7 @@ using stb::fail;
 
 namespace {
 
-constexpr std::uintmax_t kMaxFileBytes = 512u * 1024 * 1024;
+constexpr std::uintmax_t kMaxPngBytes = 512u * 1024 * 1024;
 constexpr int kMaxSidePx = STBI_MAX_DIMENSIONS;
 
 std::uint8_t to_byte(float value) {
@@ -57,7 +57,7 @@ std::string read_bytes(const fs::path& path) {
     std::error_code ignored;
     if (fs::is_directory(path, ignored)) fail(path, "is a folder, not a PNG file");
     std::string fault;
-    std::string bytes = read_regular_file(path, kMaxFileBytes, fault);
+    std::string bytes = read_regular_file(path, kMaxPngBytes, fault);
     if (!fault.empty()) fail(path, fault);
     if (bytes.empty()) fail(path, "the file is empty");
     return bytes;
