@@ -3,6 +3,7 @@
 #include "cli/capture_options.h"
 #include "cli/effect_options.h"
 #include "framework/batch/golden_grammar.h"
+#include "framework/batch/golden_suite.h"
 #include "framework/core/data_path.h"
 #include "framework/core/schema_pieces.h"
 #include "framework/image/capture_grammar.h"
