@@ -3,12 +3,8 @@
 #include <limits>
 
 #include "framework/core/grammar_schema.h"
-#include "framework/core/text.h"
-#include "framework/core/units.h"
 #include "framework/image/camera.h"
 #include "framework/image/document_forms.h"
-#include "framework/image/light.h"
-#include "framework/image/sequence.h"
 
 namespace aftershade {
 
@@ -93,7 +89,6 @@ grammar::Rule frames_rule() {
 }
 
 Block make_capture_block() {
-    const Sequence usual;
     const Form range = frame_range_form("'{}' is not a frame range such as \"1-100x2,120\"");
     const Form frame_number =
         grammar::integer(std::numeric_limits<int>::min(), std::numeric_limits<int>::max());
@@ -106,13 +101,13 @@ Block make_capture_block() {
                  optional("frames", text(),
                           "The main files, from this document's folder: `gbuffer_####.exr`."),
                  optional("range", range, "Frames that there are; else those on the disk."),
-                 optional("fps", grammar::number({.above = 0}), "Frames a second.", format_number(usual.fps)),
+                 optional("fps", grammar::number({.above = 0}), "Frames a second.", "24"),
                  optional("profile", text(), "Conventions of the producer; auto: found by the file's header.",
-                          json_string(usual.profile)),
+                          "\"auto\""),
                  optional("view", text(), "Of a multi-view file; default: its first."),
                  optional("color_space", color_space_form(),
                           "Of the stored colours; auto: the profile's, else the file's chromaticities.",
-                          json_string(usual.color_space)),
+                          "\"auto\""),
                  optional("channels", decodings(), "Instead of the profile's."),
                  optional("camera", grammar::object(capture_camera_block()),
                           "Instead of what the files say."),
@@ -123,7 +118,7 @@ Block make_capture_block() {
                  optional("cuts", grammar::list(frame_number), "Frames that begin a shot."),
                  optional("subframes", grammar::integer(1, 1024),
                           "N: files N * frame to N * frame + N - 1 are the exposure of one frame.",
-                          std::to_string(usual.subframes))},
+                          "1")},
         .rules = {frames_rule()},
         .is_document = true};
 }

@@ -31,7 +31,11 @@ std::array<double, 3> direction_of(const grammar::Reader& reader) {
 }  // namespace
 
 const std::vector<std::string>& light_kind_names() {
-    static const std::vector<std::string> names = {"point", "directional", "area"};
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> found;
+        for (const grammar::Block& kind : capture_light_block().kinds) found.push_back(kind.name);
+        return found;
+    }();
     return names;
 }
 

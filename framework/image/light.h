@@ -28,7 +28,7 @@ struct CaptureLight {
     bool operator==(const CaptureLight&) const = default;
 };
 
-/// "point", "directional", "area".
+/// "point", "directional", "area": in the order of CaptureLight::Kind, which is that of the grammar's kinds.
 const std::vector<std::string>& light_kind_names();
 
 /// An entry of "lights" of a capture.json, which has been checked.

@@ -1,11 +1,9 @@
-#include "framework/core/grammar.h"
+#include "framework/core/grammar_form.h"
 
 #include <algorithm>
 #include <cassert>
 #include <map>
 #include <regex>
-
-#include "framework/core/grammar_form.h"
 
 namespace aftershade::grammar {
 
