@@ -142,9 +142,9 @@ bool matches(const std::string& pattern, const std::string& text) {
     return std::regex_search(text, found->second);
 }
 
-Node parsed_json(const std::string& json) {
+Node parsed_json(const std::string& text) {
     Diagnostics diagnostics;
-    const auto node = parse_document(json, "the grammar", diagnostics);
+    const auto node = parse_document(text, "the grammar", diagnostics);
     assert(node && "JSON of a declaration");
     return *node;
 }
