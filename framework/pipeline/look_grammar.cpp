@@ -4,7 +4,7 @@
 
 #include "framework/core/schema_pieces.h"
 #include "framework/core/text.h"
-#include "framework/image/document_forms.h"
+#include "framework/capture/document_forms.h"
 
 namespace aftershade {
 
