@@ -135,7 +135,8 @@ ExitCode run(const RunArguments& options) {
     const ProgressStyle progress = parse_progress(options.progress);
     auto bound = bind_look(options, diagnostics);
     std::vector<Profile> profiles = load_profiles(options.capture.profile_paths, diagnostics);
-    const std::optional<Sequence> sequence = find_sequence(options.capture, profiles, diagnostics);
+    std::optional<Sequence> sequence = find_sequence(options.capture, profiles, diagnostics);
+    if (sequence) sequence->object_names = bound->pipeline.object_names();
     OutputOptions outputs = output_options(options);
     check_outputs(outputs, sequence.value_or(Sequence{}), diagnostics);
     RunOptions settings = run_options(options, diagnostics);

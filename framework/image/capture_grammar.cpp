@@ -110,6 +110,7 @@ Block make_capture_block() {
                  optional("profile", text(), "Conventions of the producer; auto: found by the file's header.",
                           json_string(usual.profile)),
                  optional("view", text(), "Of a multi-view file; default: its first."),
+                 optional("layer", text(), "Of a file with several layers, such as Blender's view layers; default: its first."),
                  optional("color_space", color_space_form(),
                           "Of the stored colours; auto: the profile's, else the file's chromaticities.",
                           json_string(usual.color_space)),

@@ -58,6 +58,9 @@ struct Pipeline {
 
     /// Roles that some step takes from the capture, required or not, and `color` for the outputs.
     std::vector<std::string> capture_roles() const;
+    /// Objects that parameters of steps name, for which object_id must hold the hashes of names; masks take
+    /// their coverage instead.
+    std::vector<std::string> object_names() const;
     /// Roles that some input takes from the capture before (-1) or after (+1).
     std::vector<std::string> neighbour_roles(int offset) const;
     bool writes_role(const std::string& role) const;
