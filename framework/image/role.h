@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "framework/core/object_keys.h"
-#include "framework/image/exr_file.h"
 #include "framework/image/image.h"
+#include "framework/image/pixel_type.h"
 
 namespace aftershade {
 

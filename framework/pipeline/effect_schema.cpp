@@ -4,7 +4,7 @@
 
 #include "framework/core/param_type.h"
 #include "framework/core/units.h"
-#include "framework/effect/manifest.h"
+#include "framework/effect/manifest/manifest.h"
 #include "framework/effect/param_types.h"
 #include "framework/image/camera.h"
 #include "framework/image/role.h"

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "framework/effect/manifest.h"
+#include "framework/effect/manifest/manifest.h"
 
 namespace aftershade::schema_of_effect {
 
