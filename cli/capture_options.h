@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "framework/core/diagnostics.h"
-#include "framework/file/exr_file.h"
 #include "framework/capture/profile.h"
 #include "framework/capture/sequence.h"
+#include "framework/core/diagnostics.h"
+#include "framework/file/exr_file.h"
 
 namespace CLI {
 class App;

@@ -12,8 +12,8 @@
 #include "cli/inspect_report.h"
 #include "cli/verbs.h"
 #include "framework/core/data_path.h"
-#include "framework/inspect/contact_sheet.h"
 #include "framework/file/png_file.h"
+#include "framework/inspect/contact_sheet.h"
 
 namespace aftershade::cli {
 
@@ -108,8 +108,8 @@ ExitCode inspect(const InspectOptions& options) {
 
     set_exr_threads(int(std::thread::hardware_concurrency()));
     const CaptureReader reader(*sequence, std::move(profiles), options.capture.limits);
-    Inspection inspection = inspect_frame(*sequence, sequence->file_number(sequence->frames.front()),
-                                                reader, options.capture.limits);
+    Inspection inspection = inspect_frame(*sequence, sequence->file_number(sequence->frames.front()), reader,
+                                          options.capture.limits);
     if (options.cryptomatte) add_coverage(*options.cryptomatte, reader, inspection);
     std::cout << (options.json ? json_of(inspection) + "\n" : text_of(inspection)) << std::flush;
     const std::string file = inspection.file.string() + ": ";
@@ -136,8 +136,9 @@ Verb add_inspect(CLI::App& app) {
     capture->required(false)->excludes(check);
     add_capture_options(app, options->capture, "The frame to look at (default: the first)");
     app.add_flag("--json", options->json, "Machine-readable output");
-    app.add_option("--cryptomatte", options->cryptomatte,
-                   "List the objects of this Cryptomatte with their coverage (without a name: of the one of objects)")
+    app.add_option(
+           "--cryptomatte", options->cryptomatte,
+           "List the objects of this Cryptomatte with their coverage (without a name: of the one of objects)")
         ->expected(0, 1);
     app.add_option("--contact-sheet", options->contact_sheet,
                    "Write every role in false colour to this .png file");

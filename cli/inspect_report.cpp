@@ -100,7 +100,8 @@ std::string cryptomatte_lines(const Inspection& inspection) {
 Json cryptomattes_json(const Inspection& inspection) {
     Json json = Json::array();
     for (const CryptomatteLayer& matte : inspection.cryptomattes) {
-        Json one{{"name", matte.name}, {"ranks", 2 * matte.ranks.size()}, {"names", matte.object_names.size()}};
+        Json one{
+            {"name", matte.name}, {"ranks", 2 * matte.ranks.size()}, {"names", matte.object_names.size()}};
         if (matte.name == inspection.coverage_of)
             for (const ObjectCoverage& object : inspection.coverage)
                 one["objects"][object.name] = object.coverage_px;

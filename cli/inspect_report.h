@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "framework/capture/capture.h"
-#include "framework/inspect/channel_statistics.h"
 #include "framework/file/exr_file.h"
+#include "framework/inspect/channel_statistics.h"
 
 namespace aftershade::cli {
 
@@ -33,7 +33,8 @@ struct Inspection {
 };
 
 std::string text_of(const Inspection& inspection);
-/// {file, parts, profile, layer, layers, notes, roles, missing, camera, lights, cryptomattes}, indented, without a line end.
+/// {file, parts, profile, layer, layers, notes, roles, missing, camera, lights, cryptomattes}, indented,
+/// without a line end.
 std::string json_of(const Inspection& inspection);
 
 }  // namespace aftershade::cli

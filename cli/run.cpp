@@ -73,9 +73,9 @@ ExitCode render(const RunSession& session, const Pipeline& pipeline, const std::
                                         reporter.observer(), stop);
     if (!session.arguments.graph.empty()) write_graph(session.arguments.graph, report.graph_dot);
     if (!session.arguments.telemetry_plot.empty())
-        write_text_file(
-            session.arguments.telemetry_plot,
-            telemetry_plot(report.telemetry, std::filesystem::path(session.arguments.look).filename().string()));
+        write_text_file(session.arguments.telemetry_plot,
+                        telemetry_plot(report.telemetry,
+                                       std::filesystem::path(session.arguments.look).filename().string()));
     const gpu::ContextInfo& gl = session.context.info();
     if (session.progress != ProgressStyle::none)
         std::cerr << gpu::backend_name(gl.backend) << ": " << gl.renderer << ", " << gl.version << "\n";

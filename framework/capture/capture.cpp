@@ -4,11 +4,11 @@
 #include <set>
 #include <utility>
 
-#include "framework/core/error.h"
 #include "framework/capture/camera_metadata.h"
 #include "framework/capture/camera_motion.h"
 #include "framework/capture/cryptomatte.h"
 #include "framework/capture/decode.h"
+#include "framework/core/error.h"
 #include "framework/image/role.h"
 
 namespace aftershade {

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "framework/core/error.h"
 #include "framework/capture/capture_internal.h"
 #include "framework/capture/common_names.h"
+#include "framework/core/error.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
@@ -52,8 +52,9 @@ void CaptureReader::choose_layer(OpenFrame& open) const {
         if (header.layers.empty()) return;
         header.layer = header.layers.front();
         if (header.layers.size() > 1)
-            header.notes.push_back("the file has the layers " + list_of_names(header.layers, "and") +
-                                   "; '" + header.layer + "' is read (choose with --layer, or 'layer' in capture.json)");
+            header.notes.push_back("the file has the layers " + list_of_names(header.layers, "and") + "; '" +
+                                   header.layer +
+                                   "' is read (choose with --layer, or 'layer' in capture.json)");
         return;
     }
     if (is_among(header.layers, sequence_.layer)) return;
@@ -62,11 +63,10 @@ void CaptureReader::choose_layer(OpenFrame& open) const {
         return;
     }
     const std::vector<std::string> known = header.layers.empty() ? color_layers(part) : header.layers;
-    throw Error(ExitCode::usage,
-                header.path.string() + ": has no layer '" + sequence_.layer + "'" +
-                    (known.empty() ? std::string("; it has no layers")
-                                   : did_you_mean(sequence_.layer, known) + " (it has " +
-                                         list_of_names(known, "and") + ")"));
+    throw Error(ExitCode::usage, header.path.string() + ": has no layer '" + sequence_.layer + "'" +
+                                     (known.empty() ? std::string("; it has no layers")
+                                                    : did_you_mean(sequence_.layer, known) + " (it has " +
+                                                          list_of_names(known, "and") + ")"));
 }
 
 std::optional<FoundChannels> CaptureReader::find_role_channels(const OpenFrame& open, const FrameFile& file,
@@ -77,7 +77,8 @@ std::optional<FoundChannels> CaptureReader::find_role_channels(const OpenFrame& 
     const std::string layer = is_own_file ? find_layer(*open.profile, part) : open.header.layer;
     const bool is_foreign = open.is_foreign_layer && !is_own_file;
     if (!decoding.layers.empty())
-        if (auto found = find_channels(is_foreign ? below_layer(decoding) : decoding, layer, part)) return found;
+        if (auto found = find_channels(is_foreign ? below_layer(decoding) : decoding, layer, part))
+            return found;
     // What capture.json says is what the user wants, and nothing else.
     if (sequence_.channels.contains(role)) return std::nullopt;
     if (role == kColorRole) return find_common_color(part, layer);
@@ -95,7 +96,8 @@ void CaptureReader::take_data_of_other_layer(OpenFrame& open) const {
     const std::string first = std::exchange(header.layer, header.layers.back());
     std::vector<std::string> taken;
     for (const auto& [role, decoding] : open.profile->roles) {
-        if (open.roles.contains(role) || sequence_.channels.contains(role) || !takes_layer(decoding)) continue;
+        if (open.roles.contains(role) || sequence_.channels.contains(role) || !takes_layer(decoding))
+            continue;
         add_role(open, role, decoding);
         if (open.roles.contains(role)) taken.push_back(role);
     }
@@ -110,7 +112,7 @@ void CaptureReader::take_data_of_other_layer(OpenFrame& open) const {
 const FrameFile& CaptureReader::cryptomatte_file(const OpenFrame& open) const {
     const auto own = open.role_files.find(kObjectIdRole);
     return own != open.role_files.end() && !find_cryptomattes(*own->second).empty() ? *own->second
-                                                                                   : *open.main;
+                                                                                    : *open.main;
 }
 
 std::optional<CryptomatteLayer> CaptureReader::find_cryptomatte(const OpenFrame& open,
@@ -139,7 +141,8 @@ void CaptureReader::find_cryptomatte_roles(OpenFrame& open) const {
     if (!is_named && !is_own_file && open.roles.contains(kObjectIdRole)) return;
     if (is_named)
         open.header.notes.push_back(
-            "the look names objects, so object_id is read from a Cryptomatte; ids by number find nothing there");
+            "the look names objects, so object_id is read from a Cryptomatte; ids by number find nothing "
+            "there");
     open.roles[kObjectIdRole] = source;
     open.header.role_channels.erase(kObjectIdRole);
 }
@@ -171,7 +174,8 @@ Image CaptureReader::read_coverage(const OpenFrame& open, const std::string& rol
     Image object_id;
     Capture unused;
     if (open.roles.contains(kObjectIdRole)) object_id = read_role(open, kObjectIdRole, nullptr, unused);
-    if (!matte) require_names(open, object_id, names);
+    if (!matte && !names.empty()) require_names(open, object_id, names);
+    if (object_id.empty()) return mask;
     const std::vector<IdRange> ranges = id_ranges(matte ? ids : objects);
     for (std::size_t i = 0; i < mask.floats().size(); ++i)
         if (contains(ranges, object_id.uints()[i])) mask.floats()[i] = 1;
@@ -188,11 +192,14 @@ void CaptureReader::require_names(const OpenFrame& open, const Image& ids,
         const RoleSource& found = source->second;
         if (found.from_cryptomatte) return;
         const auto values = ids.uints();
-        const bool has_hash = std::any_of(values.begin(), values.end(), [](std::uint32_t id) { return id >= kSmallestHash; });
-        const bool is_empty = std::all_of(values.begin(), values.end(), [](std::uint32_t id) { return id == 0; });
+        const bool has_hash =
+            std::any_of(values.begin(), values.end(), [](std::uint32_t id) { return id >= kSmallestHash; });
+        const bool is_empty =
+            std::all_of(values.begin(), values.end(), [](std::uint32_t id) { return id == 0; });
         const std::string& channel = found.channels[0][0];
         if (has_hash || (is_empty && found.file->type_of(channel) == PixelType::uint32)) return;
-        instead = "object_id is read from " + channel + ", which holds numbers, and the file has no Cryptomatte";
+        instead =
+            "object_id is read from " + channel + ", which holds numbers, and the file has no Cryptomatte";
     }
     const std::vector<std::string> declared = declared_cryptomattes(cryptomatte_file(open));
     if (!declared.empty())

@@ -56,9 +56,12 @@ std::set<std::string> cryptomatte_names(const ExrPart& part) {
 /// By the last word of its name: "N" of "beauty.N".
 bool holds_data(const std::string& layer) {
     static const std::set<std::string> words = {
-        "n",        "normal", "normals", "ng",     "ns",       "p",       "position", "positions", "posw",
-        "normw",    "pos",    "z",       "depth",  "velocity", "vector",  "vectors",  "motion",    "mvec",
-        "motionvector", "motionvec", "forward", "backward", "uv", "st",   "tangent",  "mask",      "id"};
+        "n",       "normal",   "normals",   "ng",           "ns",
+        "p",       "position", "positions", "posw",         "normw",
+        "pos",     "z",        "depth",     "velocity",     "vector",
+        "vectors", "motion",   "mvec",      "motionvector", "motionvec",
+        "forward", "backward", "uv",        "st",           "tangent",
+        "mask",    "id"};
     if (layer.empty()) return false;
     const std::string word = in_lower_case(layer.substr(layer.rfind('.') + 1));
     return words.contains(word) || word.find("crypto") != std::string::npos || find_role(word).has_value();
@@ -66,7 +69,8 @@ bool holds_data(const std::string& layer) {
 
 /// Of several layers, the one that a person would take for the picture.
 std::optional<std::string> usual_layer(const std::vector<std::string>& layers) {
-    constexpr std::array kUsual = {"", "image", "combined", "composite", "rgba", "beauty", "color", "c", "ci"};
+    constexpr std::array kUsual = {"",       "image", "combined", "composite", "rgba",
+                                   "beauty", "color", "c",        "ci"};
     for (const char* usual : kUsual)
         for (const std::string& layer : layers)
             if (in_lower_case(layer.substr(layer.rfind('.') + 1)) == usual) return layer;
@@ -77,9 +81,8 @@ std::optional<std::string> usual_layer(const std::vector<std::string>& layers) {
 }  // namespace
 
 bool has_layer(const ExrPart& part, const std::string& layer) {
-    return std::any_of(part.channels.begin(), part.channels.end(), [&](const ExrChannel& channel) {
-        return channel.name.starts_with(layer + ".");
-    });
+    return std::any_of(part.channels.begin(), part.channels.end(),
+                       [&](const ExrChannel& channel) { return channel.name.starts_with(layer + "."); });
 }
 
 std::vector<std::string> color_layers(const ExrPart& part) {

@@ -11,9 +11,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "framework/capture/frame_file.h"
 #include "framework/core/diagnostics.h"
 #include "framework/core/error.h"
-#include "framework/capture/frame_file.h"
 #include "framework/core/text.h"
 
 namespace aftershade {
@@ -159,7 +159,8 @@ const CryptomatteLayer& cryptomatte_with(const std::vector<CryptomatteLayer>& la
     std::vector<const CryptomatteLayer*> fitting;
     for (const CryptomatteLayer& layer : layers)
         if (!unknown_object(layer, objects)) fitting.push_back(&layer);
-    if (fitting.size() > 1 && std::any_of(fitting.begin(), fitting.end(), [](auto* l) { return says_object(*l); }))
+    if (fitting.size() > 1 &&
+        std::any_of(fitting.begin(), fitting.end(), [](auto* l) { return says_object(*l); }))
         std::erase_if(fitting, [](const CryptomatteLayer* layer) { return !says_object(*layer); });
     if (fitting.size() == 1) return *fitting.front();
     if (fitting.empty()) refuse_unknown_object(layers, *unknown_object(layers.front(), objects), file);

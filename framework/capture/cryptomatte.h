@@ -60,8 +60,8 @@ Image cryptomatte_mask(const FrameFile& file, const CryptomatteLayer& layer,
                        const std::vector<std::string>& objects, const Window& grid);
 /// How much of the grid an object covers.
 struct ObjectCoverage {
-    std::string name;         ///< of the manifest; the id as eight hexadecimal digits where it has none
-    double coverage_px = 0;   ///< summed over all pixels and ranks
+    std::string name;        ///< of the manifest; the id as eight hexadecimal digits where it has none
+    double coverage_px = 0;  ///< summed over all pixels and ranks
 };
 /// Of all objects of the manifest and all ids in the pixels, those that cover most first. Throws as
 /// cryptomatte_mask does.

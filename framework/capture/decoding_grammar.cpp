@@ -2,9 +2,9 @@
 #include <cctype>
 #include <map>
 
-#include "framework/core/text.h"
 #include "framework/capture/capture_grammar.h"
 #include "framework/capture/document_forms.h"
+#include "framework/core/text.h"
 
 namespace aftershade {
 

@@ -60,7 +60,7 @@ std::string layer_of(const ExrPart& part, const std::string& view) {
 }
 
 bool is_color_layer(const std::string& layer) {
-    constexpr std::array<std::string_view, 8> kNames = {"",      "rgba",  "rgb",      "beauty",
+    constexpr std::array<std::string_view, 8> kNames = {"",      "rgba", "rgb",      "beauty",
                                                         "color", "main", "combined", "c"};
     std::string lower = layer;
     std::transform(lower.begin(), lower.end(), lower.begin(),

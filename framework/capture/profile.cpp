@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
-#include "framework/core/error.h"
 #include "framework/capture/common_names.h"
+#include "framework/core/error.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
@@ -23,9 +23,8 @@ std::vector<std::string> split_alternatives(const std::string& text) {
 }
 
 bool same_in_any_case(const std::string& a, const std::string& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
-        return std::tolower(x) == std::tolower(y);
-    });
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
 }
 
 /// The channel that goes by the name; "" where none does.

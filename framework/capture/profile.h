@@ -111,8 +111,9 @@ struct ProfileChoice {
 };
 
 /// The profile that fits a part's header: by attribute first, else the one that names the most channels, else
-/// `native` where the file has a plain colour. What we wrote under native names is `native`. Throws Error(ExitCode::capture) where none does and Error(ExitCode::usage) where several do alike, naming
-/// the remedy.
+/// `native` where the file has a plain colour. What we wrote under native names is `native`. Throws
+/// Error(ExitCode::capture) where none does and Error(ExitCode::usage) where several do alike, naming the
+/// remedy.
 ProfileChoice detect_profile(const std::vector<Profile>& profiles, const ExrPart& part,
                              const std::string& path);
 

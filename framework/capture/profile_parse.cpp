@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "framework/core/grammar_reader.h"
-#include "framework/image/camera.h"
 #include "framework/capture/capture_grammar.h"
 #include "framework/capture/profile.h"
 #include "framework/capture/profile_grammar.h"
+#include "framework/core/grammar_reader.h"
+#include "framework/image/camera.h"
 #include "framework/image/role.h"
 
 namespace aftershade {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "framework/capture/capture_grammar.h"
 #include "framework/core/document.h"
 #include "framework/core/error.h"
 #include "framework/core/grammar_reader.h"
-#include "framework/capture/capture_grammar.h"
 #include "framework/image/role.h"
 
 namespace aftershade {

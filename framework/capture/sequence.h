@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "framework/core/diagnostics.h"
-#include "framework/image/camera.h"
 #include "framework/capture/frame_range.h"
 #include "framework/capture/light.h"
 #include "framework/capture/profile.h"
+#include "framework/core/diagnostics.h"
+#include "framework/image/camera.h"
 
 namespace aftershade {
 

@@ -69,8 +69,8 @@ struct ExrPart {
     float pixel_aspect = 1;
     std::vector<ExrChannel> channels;  ///< in the file's order
     ExrMetadata metadata;
-    /// Second names of channels, each with the first: "Beauty.R" for "R" of a part that is called Beauty. Only
-    /// FrameFile::merged() has any.
+    /// Second names of channels, each with the first: "Beauty.R" for "R" of a part that is called Beauty.
+    /// Only FrameFile::merged() has any.
     std::map<std::string, std::string> other_names;
 };
 

@@ -42,11 +42,24 @@ const T* value_as(const Imf::Attribute& attribute) {
 }
 
 bool describes_one_part(std::string_view name) {
-    constexpr std::array<std::string_view, 18> kNames = {
-        "channels",    "compression",      "dataWindow",         "displayWindow",     "lineOrder",
-        "name",        "pixelAspectRatio", "screenWindowCenter", "screenWindowWidth", "tiles",
-        "type",        "view",             "version",            "chunkCount",        "preview",
-        "multiView",   "colorInteropID",   "maxSamplesPerPixel"};
+    constexpr std::array<std::string_view, 18> kNames = {"channels",
+                                                         "compression",
+                                                         "dataWindow",
+                                                         "displayWindow",
+                                                         "lineOrder",
+                                                         "name",
+                                                         "pixelAspectRatio",
+                                                         "screenWindowCenter",
+                                                         "screenWindowWidth",
+                                                         "tiles",
+                                                         "type",
+                                                         "view",
+                                                         "version",
+                                                         "chunkCount",
+                                                         "preview",
+                                                         "multiView",
+                                                         "colorInteropID",
+                                                         "maxSamplesPerPixel"};
     return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
 }
 
@@ -126,7 +139,8 @@ void ExrMetadata::complete_from(const ExrMetadata& other, bool only_texts) {
     std::shared_ptr<Impl> merged;  // made when there is something to take over
     for (auto entry = other.impl->header.begin(); entry != other.impl->header.end(); ++entry) {
         const bool is_text = value_as<std::string>(entry.attribute()) != nullptr;
-        if (describes_one_part(entry.name()) || (only_texts && !is_text) || find_attribute(impl, entry.name()))
+        if (describes_one_part(entry.name()) || (only_texts && !is_text) ||
+            find_attribute(impl, entry.name()))
             continue;
         if (!merged) merged = impl ? std::make_shared<Impl>(*impl) : std::make_shared<Impl>();
         merged->header.insert(entry.name(), entry.attribute());

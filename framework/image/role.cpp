@@ -89,10 +89,14 @@ std::optional<ChannelRole> find_role(std::string_view name) {
     for (const ChannelRole& role : roles())
         if (role.name == name) return role;
     if (is_coverage_role(name))
-        return ChannelRole{std::string(name),  1,
-                           ComponentType::float32, true,
-                           0,                  {std::string(name)},
-                           PixelType::half,    "share that objects cover, 0 to 1",
+        return ChannelRole{std::string(name),
+                           1,
+                           ComponentType::float32,
+                           true,
+                           0,
+                           {std::string(name)},
+                           PixelType::half,
+                           "share that objects cover, 0 to 1",
                            RoleKind::coverage};
     constexpr std::string_view kAov = "aov:";
     if (name.starts_with(kAov) && name.size() > kAov.size()) {

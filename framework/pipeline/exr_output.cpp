@@ -4,8 +4,8 @@
 #include <deque>
 #include <utility>
 
-#include "framework/core/error.h"
 #include "framework/capture/camera_metadata.h"
+#include "framework/core/error.h"
 #include "framework/image/role.h"
 #include "framework/image/window.h"
 

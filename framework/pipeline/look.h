@@ -25,15 +25,17 @@ struct WiringSpec {
 
 /// "mask": where a step works. One of role, objects and file is set.
 struct MaskSpec {
-    std::string role;               ///< of the capture, with one channel: "mask", "aov:hair"
-    std::vector<TableKey> objects;  ///< ids, ranges of ids, or names; needs the role object_id or a Cryptomatte
-    std::filesystem::path file;     ///< picture over the display window; its first channel, as stored
+    std::string role;  ///< of the capture, with one channel: "mask", "aov:hair"
+    std::vector<TableKey>
+        objects;                 ///< ids, ranges of ids, or names; needs the role object_id or a Cryptomatte
+    std::filesystem::path file;  ///< picture over the display window; its first channel, as stored
     bool invert = false;
     Place place;
 
     /// Whether some of the objects are named, and not numbered.
     bool names_objects() const {
-        return std::any_of(objects.begin(), objects.end(), [](const TableKey& key) { return !key.name.empty(); });
+        return std::any_of(objects.begin(), objects.end(),
+                           [](const TableKey& key) { return !key.name.empty(); });
     }
 };
 

@@ -147,10 +147,14 @@ const ParamSpec& mix_spec() {
 
 void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header) {
     const auto missing = [&](const std::string& who, const std::string& role) {
-        throw Error(ExitCode::capture, header.path.string() + ": " + who + " needs the role '" + role +
-                                           "', which the profile '" + header.profile +
-                                           "' does not find among the channels " +
-                                           list_channels(header.channels));
+        throw Error(ExitCode::capture,
+                    header.path.string() + ": " + who + " needs the role '" + role +
+                        "', which the profile '" + header.profile + "' does not find among the channels " +
+                        list_channels(header.channels) +
+                        (header.layer.empty() ? "" : ", in the layer '" + header.layer + "'") +
+                        " (say its channels as \"channels\": {\"" + role +
+                        "\": {\"channels\": [...]}} in capture.json, or choose another "
+                        "--profile or --layer)");
     };
     for (const PipelineStep& step : pipeline.steps) {
         for (const InputSpec& input : step.manifest->inputs) {

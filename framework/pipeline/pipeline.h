@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "framework/capture/capture.h"
 #include "framework/core/diagnostics.h"
 #include "framework/core/param.h"
 #include "framework/effect/manifest/manifest.h"
 #include "framework/effect/registry.h"
-#include "framework/capture/capture.h"
 #include "framework/pipeline/look.h"
 #include "framework/pipeline/value_source.h"
 
@@ -101,7 +101,7 @@ struct PipelineOptions {
 /// otherwise. Faults go to `diagnostics`, all of them; the result is
 /// usable if there was none.
 Pipeline bind_pipeline(const Look& look, EffectRegistry& effects, const PipelineOptions& options,
-                          Diagnostics& diagnostics);
+                       Diagnostics& diagnostics);
 
 /// The value with the path of a file, where it is one, named from `folder`; "" stays "".
 ParamValue with_file(const ParamSpec& spec, ParamValue value, const std::filesystem::path& folder);
