@@ -65,7 +65,7 @@ class Check:
         with tempfile.TemporaryDirectory() as folder:
             look = pathlib.Path(folder) / "look.json"
             look.write_text(json.dumps({"aftershade": 1, "steps": [
-                {"use": "visualize", "mask": {"object": ["Suzanne"]}}]}))
+                {"effect": "color_grade", "params": {"exposure": 1}, "mask": {"object": ["Suzanne"]}}]}))
             done = subprocess.run([self.program, "run", str(look), str(self.folder / "multi_0003.exr"), "-o",
                                    folder + "/out.exr"], capture_output=True, text=True)
             if done.returncode != 0:
