@@ -37,6 +37,15 @@ bool takes_layer(const RoleDecoding& decoding) {
     return false;
 }
 
+/// The one called `name` in the layer, else in any.
+const CryptomatteLayer& named_cryptomatte(const std::vector<CryptomatteLayer>& mattes,
+                                          const std::string& name, const std::string& layer,
+                                          const FrameFile& file) {
+    for (const CryptomatteLayer& matte : mattes)
+        if (matte.name == layer + "." + name) return matte;
+    return choose_cryptomatte(mattes, name, file);
+}
+
 bool is_among(const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -120,7 +129,7 @@ std::optional<CryptomatteLayer> CaptureReader::find_cryptomatte(const OpenFrame&
     const FrameFile& file = cryptomatte_file(open);
     std::vector<CryptomatteLayer> mattes = find_cryptomattes(file);
     if (sequence_.cryptomatte && !sequence_.cryptomatte->layer.empty())
-        return choose_cryptomatte(mattes, sequence_.cryptomatte->layer, file);
+        return named_cryptomatte(mattes, sequence_.cryptomatte->layer, open.header.layer, file);
     if (mattes.empty()) return std::nullopt;
     const auto is_elsewhere = [&](const CryptomatteLayer& matte) {
         return !matte.name.starts_with(open.header.layer + ".");
@@ -202,12 +211,16 @@ void CaptureReader::require_names(const OpenFrame& open, const Image& ids,
             "object_id is read from " + channel + ", which holds numbers, and the file has no Cryptomatte";
     }
     const std::vector<std::string> declared = declared_cryptomattes(cryptomatte_file(open));
-    if (!declared.empty())
+    std::string remedy = "render a Cryptomatte of objects, or name the object by its number";
+    if (!declared.empty()) {
         instead += "; its header tells of " + list_of_names(declared, "and") +
-                   ", whose channels are not in the file (write multilayer EXR)";
-    throw Error(ExitCode::capture,
-                open.header.path.string() + ": the look names the object '" + names.front() + "', but " +
-                    instead + " (render a Cryptomatte of objects, or name the object by its number)");
+                   ", whose channels are not in the file";
+        remedy =
+            "write multilayer EXR, or name the file with the Cryptomatte as \"files\": "
+            "{\"object_id\": ...} in capture.json";
+    }
+    throw Error(ExitCode::capture, open.header.path.string() + ": the look names the object '" +
+                                       names.front() + "', but " + instead + " (" + remedy + ")");
 }
 
 std::vector<CryptomatteLayer> CaptureReader::cryptomattes(int frame) const {
@@ -219,10 +232,7 @@ std::string CaptureReader::cryptomatte_name(int frame, const std::string& name) 
     const OpenFrame open = this->open(frame);
     const FrameFile& file = cryptomatte_file(open);
     const std::vector<CryptomatteLayer> mattes = find_cryptomattes(file);
-    const std::string own = open.header.layer + "." + name;
-    for (const CryptomatteLayer& matte : mattes)
-        if (matte.name == own) return own;
-    if (!name.empty()) return choose_cryptomatte(mattes, name, file).name;
+    if (!name.empty()) return named_cryptomatte(mattes, name, open.header.layer, file).name;
     const auto matte = find_cryptomatte(open, {});
     if (!matte) throw Error(ExitCode::capture, file.path().string() + ": has no Cryptomatte");
     return matte->name;

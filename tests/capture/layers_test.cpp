@@ -115,6 +115,21 @@ TEST_F(LayeredFile, HasEveryRoleOfTheLayerThatWasChosen) {
     EXPECT_NE(message.find("it has 'Far' and 'Near objects'"), std::string::npos) << message;
 }
 
+TEST_F(LayeredFile, HasTheCryptomatteOfTheLayerThatWasChosen) {
+    Attributes attributes = kBlender;
+    Names channels;
+    for (const std::string layer : {"Far", "Near"}) {
+        attributes["cryptomatte/" + layer + "/name"] = layer + ".CryptoObject";
+        channels = channels + below(layer, {"Combined.R", "Combined.G", "Combined.B", "CryptoObject00.r",
+                                            "CryptoObject00.g", "CryptoObject00.b", "CryptoObject00.a"});
+    }
+    write(channels, attributes);
+    EXPECT_EQ(reader().cryptomatte_name(1, "CryptoObject"), "Far.CryptoObject");
+    sequence_.layer = "Near";
+    EXPECT_EQ(reader().cryptomatte_name(1, "CryptoObject"), "Near.CryptoObject");
+    EXPECT_EQ(reader().cryptomatte_name(1, ""), "Near.CryptoObject");
+}
+
 TEST_F(LayeredFile, LacksWhatItsLayerLacksAlthoughAnotherHasIt) {
     write(below("A", {"Combined.R", "Combined.G", "Combined.B", "Depth.Z"}) + below("B", kShortPasses),
           kBlender);

@@ -83,7 +83,7 @@ TEST_P(BlenderVersion, HasItsObjectsMaskedByNameAsFarAsTheyCoverAPixel) {
 
 TEST_P(BlenderVersion, HasAllThatEffectsOfScatteringNeed) {
     AFTERSHADE_REQUIRE_CAPTURE(capture, std::string("blender-versions/") + GetParam() + "/multi_0003.exr");
-    for (const std::string effect : {"sss_separable", "sss_burley", "sss_adaptive", "transmittance"}) {
+    for (const std::string effect : {"sss_separable", "sss_burley", "sss_exact", "sss_adaptive"}) {
         const TemporaryFolder folder;
         const CommandResult result =
             run_look(folder, R"({"aftershade": 1, "steps": [{"effect": ")" + effect + R"("}]})",
