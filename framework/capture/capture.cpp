@@ -4,11 +4,11 @@
 #include <set>
 #include <utility>
 
-#include "framework/core/error.h"
 #include "framework/capture/camera_metadata.h"
 #include "framework/capture/camera_motion.h"
 #include "framework/capture/cryptomatte.h"
 #include "framework/capture/decode.h"
+#include "framework/core/error.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
@@ -105,8 +105,7 @@ void CaptureReader::add_role(OpenFrame& open, const std::string& role, const Rol
     RoleSource source;
     source.file = &file;
     source.decoding = decoding;
-    const std::string layer = find_layer(*open.profile, file.merged());
-    auto found = decoding.layers.empty() ? std::nullopt : find_channels(decoding, layer, file.merged());
+    auto found = find_role_channels(open, file, role, decoding);
     if (!found && own_file != open.role_files.end())
         for (const auto& names : plain_names(find_role(role)->channels)) {
             RoleDecoding plain;
@@ -114,10 +113,10 @@ void CaptureReader::add_role(OpenFrame& open, const std::string& role, const Rol
             if (!found) found = find_channels(plain, "", file.merged());
         }
     RoleDecoding luminance;
-    luminance.layers = {{decoding.luminance}};
+    luminance.layers = {{decoding.luminance.empty() && role == kColorRole ? "Y" : decoding.luminance}};
     if (found) source.channels = std::move(*found);
-    else if (!decoding.luminance.empty() && find_channels(luminance, "", file.merged()))
-        source.luminance = decoding.luminance;
+    else if (!luminance.layers[0][0].empty() && find_channels(luminance, "", file.merged()))
+        source.luminance = luminance.layers[0][0];
     else return;
     open.header.role_channels[role] =
         source.luminance.empty() ? listed(source.channels) : std::vector{source.luminance};
@@ -136,13 +135,10 @@ void CaptureReader::find_roles(OpenFrame& open) const {
         else if (profiled != open.profile->roles.end()) add_role(open, name, profiled->second);
         else add_role(open, name, RoleDecoding{});
     }
-    if (sequence_.cryptomatte) {
-        RoleSource source;
-        source.file = open.main.get();
-        source.from_cryptomatte = true;
-        if (!sequence_.cryptomatte->mask.empty()) open.roles[kMaskRole] = source;
-        if (!open.roles.contains(kObjectIdRole)) open.roles[kObjectIdRole] = source;
-    }
+    if (!sequence_.channels.contains(kColorRole) && !names.contains(kColorRole))
+        add_role(open, kColorRole, RoleDecoding{});
+    take_data_of_other_layer(open);
+    find_cryptomatte_roles(open);
     for (const auto& [role, source] : open.roles) {
         open.header.roles.push_back(role);
         if (source.file != open.main.get() || source.channels.empty()) open.header.derived_roles.insert(role);
@@ -165,6 +161,7 @@ CaptureReader::OpenFrame CaptureReader::open(int frame) const {
     for (const ExrChannel& channel : part.channels) header.channels.push_back(channel.name);
     open.profile = &choose_profile(part, header);
     header.profile = open.profile->id;
+    choose_layer(open);
     header.camera = sequence_.camera;
     header.camera.complete_from(camera_of_metadata(part, *open.profile, sequence_.camera));
     header.lights = sequence_.lights ? *sequence_.lights : lights_of_metadata(part.metadata, header.path);
@@ -228,13 +225,7 @@ Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, c
     const ChannelRole role = *find_role(name);
     const RoleSource& source = open.roles.at(name);
     const FrameFile& file = *source.file;
-    if (source.from_cryptomatte) {
-        const auto layers = find_cryptomattes(file);
-        const CryptomatteLayer& layer = choose_cryptomatte(layers, sequence_.cryptomatte->layer, file);
-        return role.kind == RoleKind::coverage
-                   ? cryptomatte_mask(file, layer, sequence_.cryptomatte->mask, header.data_window)
-                   : cryptomatte_ids(file, layer, header.data_window);
-    }
+    if (source.from_cryptomatte) return read_cryptomatte_role(open, role.kind);
     if (role.type == ComponentType::uint32) {
         if (file.type_of(source.channels[0][0]) == PixelType::uint32)
             return file.read_uints(source.channels[0], header.data_window);
@@ -290,6 +281,11 @@ Capture CaptureReader::read(int frame, std::span<const std::string> roles) const
         if (role != kColorRole && wants(role))
             capture.images[role] = read_role(open, role, color.empty() ? nullptr : &color, capture);
     if (wants(kColorRole)) capture.images[kColorRole] = std::move(color);
+    for (const std::string& role : roles)
+        if (is_coverage_role(role)) capture.images[role] = read_coverage(open, role);
+    if (const auto ids = capture.images.find(kObjectIdRole);
+        ids != capture.images.end() && !sequence_.object_names.empty())
+        require_names(open, ids->second, sequence_.object_names);
     capture.header = std::move(open.header);
     return capture;
 }

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "framework/capture/capture_grammar.h"
 #include "framework/core/document.h"
 #include "framework/core/error.h"
 #include "framework/core/grammar_reader.h"
-#include "framework/capture/capture_grammar.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
@@ -46,6 +46,7 @@ std::optional<Sequence> read_capture_document(const fs::path& path, Diagnostics&
     sequence.fps = reader.number("fps");
     sequence.profile = reader.text("profile");
     sequence.view = reader.text("view");
+    sequence.layer = reader.text("layer");
     sequence.color_space = reader.text("color_space");
     if (const Node* channels = reader.find("channels")) sequence.channels = read_decodings(*channels);
     if (const auto camera = reader.object("camera")) sequence.camera = read_camera(*camera);
