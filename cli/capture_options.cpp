@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iostream>
 
+#include "framework/capture/capture_grammar.h"
 #include "framework/capture/frame_range.h"
 #include "framework/core/data_path.h"
 #include "framework/core/error.h"
@@ -63,6 +64,9 @@ void add_capture_options(CLI::App& app, CaptureOptions& options, const std::stri
     app.add_option(
         "--layer", options.layer,
         "Layer of a file with several, such as a view layer of Blender (default: the file's first)");
+    app.add_option("--alpha", options.alpha,
+                   "Alpha of color: keep, or opaque where the stored one means nothing (default: the capture's)")
+        ->check(CLI::IsMember(alpha_names()));
     app.add_option("--color-space", options.color_space,
                    "Primaries of the stored colours: auto, rec709, acescg, ap0, rec2020");
     app.add_option("--max-size", options.limits.max_side_px, "Refuse images with a side above this, px")
@@ -93,6 +97,7 @@ std::optional<Sequence> find_sequence(const CaptureOptions& options, const std::
     if (!options.profile.empty()) sequence->profile = options.profile;
     if (!options.view.empty()) sequence->view = options.view;
     if (!options.layer.empty()) sequence->layer = options.layer;
+    if (!options.alpha.empty()) sequence->alpha_is_opaque = options.alpha == kOpaqueAlpha;
     for (const std::string& text : options.role_files) add_role_file(*sequence, text, diagnostics);
     choose_color_space(options, *sequence, diagnostics);
     std::vector<std::string> ids{"auto"};

@@ -23,6 +23,7 @@ struct CaptureOptions {
     std::string profile;                     ///< "" for the capture's own
     std::vector<std::string> profile_paths;  ///< folders, searched before the shipped profiles
     std::vector<std::string> role_files;     ///< "depth=z.####.exr"
+    std::string alpha;                       ///< "" for the capture's own
     std::string view;                        ///< "" for the capture's own
     std::string layer;                       ///< "" for the capture's own
     std::string color_space;                 ///< "" for the capture's own

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "framework/capture/camera_metadata.h"
@@ -75,6 +76,22 @@ Image read_layers(const FrameFile& file, const FoundChannels& channels, const Wi
         for (std::size_t j = 0; j < layer.floats().size(); ++j) image.floats()[j] += layer.floats()[j];
     }
     return image;
+}
+
+/// Engines leave 0 in the alpha of their buffers, which makes every pixel of a PNG transparent.
+void read_alpha(Image& color, bool is_opaque, CaptureHeader& header) {
+    if (color.channels() != 4) return;
+    const std::span<float> values = color.floats();
+    bool has_alpha = false, has_light = false;
+    for (std::size_t i = 0; i < values.size(); i += 4) {
+        if (is_opaque) values[i + 3] = 1;
+        has_alpha = has_alpha || values[i + 3] != 0;
+        has_light = has_light || values[i] != 0 || values[i + 1] != 0 || values[i + 2] != 0;
+    }
+    if (has_light && !has_alpha)
+        header.notes.push_back(
+            "the alpha of color is 0 everywhere, so a PNG of it is transparent; --alpha opaque, or \"alpha\": "
+            "\"opaque\" in capture.json, reads it as 1");
 }
 
 }  // namespace
@@ -280,6 +297,7 @@ Capture CaptureReader::read(int frame, std::span<const std::string> roles) const
     for (const auto& [role, source] : open.roles)
         if (role != kColorRole && wants(role))
             capture.images[role] = read_role(open, role, color.empty() ? nullptr : &color, capture);
+    read_alpha(color, sequence_.alpha_is_opaque, open.header);
     if (wants(kColorRole)) capture.images[kColorRole] = std::move(color);
     for (const std::string& role : roles)
         if (is_coverage_role(role)) capture.images[role] = read_coverage(open, role);

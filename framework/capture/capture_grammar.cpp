@@ -110,6 +110,8 @@ Block make_capture_block() {
              optional("color_space", color_space_form(),
                       "Of the stored colours; auto: the profile's, else the file's chromaticities.",
                       "\"auto\""),
+             optional("alpha", grammar::choice(alpha_names()),
+                      "Of color; opaque: the stored alpha means nothing, and is read as 1.", R"("keep")"),
              optional("channels", decodings(), "Instead of the profile's."),
              optional("camera", grammar::object(capture_camera_block()), "Instead of what the files say."),
              optional("lights", grammar::list(grammar::object(capture_light_block())),
@@ -124,6 +126,11 @@ Block make_capture_block() {
 }
 
 }  // namespace
+
+const std::vector<std::string>& alpha_names() {
+    static const std::vector<std::string> names = {"keep", std::string(kOpaqueAlpha)};
+    return names;
+}
 
 const Block& capture_camera_block() {
     static const Block block = make_camera_block();

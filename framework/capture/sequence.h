@@ -32,6 +32,7 @@ struct Sequence {
     std::string color_space = "auto";  ///< of the stored colours; auto: the profile's
     std::string view;                  ///< of multi-view files; "" for the default
     std::string layer;                 ///< of files with several layers; "" for the first
+    bool alpha_is_opaque = false;      ///< the stored alpha of color means nothing: it is read as 1
     double fps = 24;
     int subframes = 1;  ///< a frame is this many captures: the files subframes * frame + 0 .. subframes - 1
     Camera camera;      ///< of capture.json
