@@ -126,7 +126,8 @@ std::string camera_lines(const Camera& camera) {
         text += fmt::format("  {:<14}  {:g} {}\n", name, value, field ? field->unit : "");
     }
     if (!camera.lens_model.empty()) text += fmt::format("  {:<14}  {}\n", "lens_model", camera.lens_model);
-    if (camera.camera_from_world) text += "  camera_from_world and the rest of its place are known\n";
+    if (!camera.matrices_found.empty()) text += fmt::format("  {:<14}  {}\n", "matrices", camera.matrices_found);
+    if (!camera.matrices_fault.empty()) text += fmt::format("  {:<14}  {}\n", "not taken", camera.matrices_fault);
     if (camera.jitter_px)
         text += fmt::format("  {:<14}  {} {} px\n", "jitter", (*camera.jitter_px)[0], (*camera.jitter_px)[1]);
     return text.empty() ? "camera: nothing is known\n" : "camera:\n" + text;
@@ -183,6 +184,8 @@ Json camera_json(const Camera& camera) {
     if (!camera.lens_model.empty()) json["lens_model"] = camera.lens_model;
     if (camera.camera_from_world) json["camera_from_world"] = *camera.camera_from_world;
     if (camera.ndc_from_world) json["ndc_from_world"] = *camera.ndc_from_world;
+    if (!camera.matrices_found.empty()) json["matrices"] = camera.matrices_found;
+    if (!camera.matrices_fault.empty()) json["matrices_fault"] = camera.matrices_fault;
     if (camera.jitter_px) json["jitter_px"] = *camera.jitter_px;
     return json;
 }

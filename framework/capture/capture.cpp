@@ -163,7 +163,7 @@ CaptureReader::OpenFrame CaptureReader::open(int frame) const {
     header.profile = open.profile->id;
     choose_layer(open);
     header.camera = sequence_.camera;
-    header.camera.complete_from(camera_of_metadata(part.metadata, *open.profile));
+    header.camera.complete_from(camera_of_metadata(part, *open.profile, sequence_.camera));
     header.lights = sequence_.lights ? *sequence_.lights : lights_of_metadata(part.metadata, header.path);
     find_roles(open);
 
@@ -211,7 +211,7 @@ void CaptureReader::read_motion(const OpenFrame& open, const std::string& role, 
         !std::filesystem::exists(before, unreadable))
         return;
     const FrameFile previous(before, limits_, sequence_.view);
-    const Camera camera = camera_of_metadata(previous.merged().metadata, *open.profile);
+    const Camera camera = camera_of_metadata(previous.merged(), *open.profile, sequence_.camera);
     if (!knows_motion(header.camera, camera)) return;
     const Image depth = read_role(open, kDepthRole, nullptr, capture);
     fill_camera_velocity(velocity, missing, depth, header.data_window, header.display_window, header.camera,
