@@ -28,24 +28,24 @@ void add_level(const std::string& word, const std::string& many, const Tolerance
                          const std::string& default_text = "") {
         keys.push_back(optional(name, form, doc, default_text));
     };
-    add(word, grammar::number({.min = 0}), "A pixel is one too many where a channel differs by more.",
+    add(word, grammar::number({.min = 0}), "Largest difference of a channel at which a pixel passes.",
         number(&Tolerance::limit));
-    add(word + "_percent", grammar::number({.min = 0, .max = 100}), "Of the pixels may be.",
+    add(word + "_percent", grammar::number({.min = 0, .max = 100}), "Percentage of pixels that may exceed it.",
         number(&Tolerance::percent));
-    add("hard_" + word, grammar::number({.min = 0}), "No pixel may differ by more; without it any may.");
-    add("allow_" + many, grammar::integer(0), "Pixels that may be, however few there are.",
+    add("hard_" + word, grammar::number({.min = 0}), "Largest difference of any pixel; default: no limit.");
+    add("allow_" + many, grammar::integer(0), "Number of pixels that may exceed it, whatever the percentage.",
         usual ? std::to_string(usual->allowed) : "");
-    add(word + "_flip", share, "The most that the mean of FLIP may be.");
-    add(word + "_ssim", share, "The least that SSIM may be.");
+    add(word + "_flip", share, "Largest mean FLIP.");
+    add(word + "_ssim", share, "Smallest SSIM.");
 }
 
 Block tolerance_block() {
     const Tolerance usual;
-    Block block{.name = "tolerance", .thing = "the tolerance", .doc = "Compare's flags."};
+    Block block{.name = "tolerance", .thing = "the tolerance", .doc = "Limits, as the options of `compare`."};
     add_level("fail", "failures", &usual, block.keys);
     add_level("warn", "warnings", nullptr, block.keys);
     block.keys.push_back(
-        optional("nan_equal", grammar::boolean(), "NaN in both images is no difference.", "false"));
+        optional("nan_equal", grammar::boolean(), "Whether NaN in both images counts as equal.", "false"));
     return block;
 }
 
@@ -57,15 +57,15 @@ std::vector<Key> common_keys() {
                            .fault = "'{}' is not 'step.texture'",
                            .type = "`step.texture`"});
     return {
-        required("capture", text(), "What `run` takes: capture.json, EXR file, pattern, folder."),
-        optional("frames", range, "Without it the capture's. Effects with history need the frames before."),
-        optional("steps", steps, "The steps of the look themselves."),
-        optional("set", texts(), "As `run --set`: `step.param=value`."),
-        optional("taps", grammar::list(tap), "Each an image of its own."),
-        optional("outputs", grammar::list(role_form()), "Each an image of its own.", R"(["color"])"),
-        optional("tolerance", grammar::object(golden_tolerance_block()), "How far images may be apart."),
-        optional("tags", texts(), "Words for `--filter`, no other case's name."),
-        optional("skip", text({.fault = "'skip' says why", .min_length = 1}), "Why the case is not run.")};
+        required("capture", text(), "Capture, as for `run`: capture.json, EXR file, pattern or folder."),
+        optional("frames", range, "Default: the capture's. Effects with history need the preceding frames."),
+        optional("steps", steps, "Steps, instead of a look's file."),
+        optional("set", texts(), "Values, as for `run --set`: `step.param=value`."),
+        optional("taps", grammar::list(tap), "Textures to compare, an image each."),
+        optional("outputs", grammar::list(role_form()), "Roles to compare, an image each.", R"(["color"])"),
+        optional("tolerance", grammar::object(golden_tolerance_block()), "How far the images may differ."),
+        optional("tags", texts(), "Words for `--filter`; none may be another case's name."),
+        optional("skip", text({.fault = "'skip' says why", .min_length = 1}), "Reason for not running the case.")};
 }
 
 Block case_block() {
@@ -75,8 +75,8 @@ Block case_block() {
     Block block{.name = "case",
                 .thing = "the case",
                 .doc = "A look over a capture.",
-                .keys = {required("name", name, "Begins the images' names: letters, digits, `_`, `-`."),
-                         optional("look", text(), "A look's file.")},
+                .keys = {required("name", name, "Prefix of the images' names: letters, digits, `_`, `-`."),
+                         optional("look", text(), "File of the look.")},
                 .rules = {grammar::exactly_one_of({"look", "steps"},
                                                   "a case has a 'look' (a file) or 'steps', one of both")}};
     for (Key& key : common_keys()) block.keys.push_back(std::move(key));
@@ -95,14 +95,14 @@ const Block& golden_suite_block() {
         .name = "suite",
         .thing = "the suite",
         .doc = "The document.",
-        .keys = {optional("goldens", text(), "Folder of the approved images, the suite's own.",
+        .keys = {optional("goldens", text(), "Folder of the approved images, used by this suite alone.",
                           R"("goldens")"),
-                 optional("effect_paths", texts(), "Folders of effects, searched before the shipped ones."),
+                 optional("effect_paths", texts(), "Folders of effects, searched before the shipped effects."),
                  optional("cases", grammar::list(grammar::object(case_block())),
-                          "What is rendered and compared."),
+                          "Cases to render and compare."),
                  optional(
                      "cases_of_effects", grammar::boolean(),
-                     "Also `<id>/cases/*.json` of every effect in `effect_paths`, or of the shipped ones.",
+                     "Whether to include `<id>/cases/*.json` of every effect in `effect_paths`, or of the shipped effects.",
                      "false")},
         .is_document = true};
     return block;

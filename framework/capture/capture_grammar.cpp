@@ -29,12 +29,12 @@ Form files_by_role() {
 
 Block cryptomatte_block() {
     return {.name = "cryptomatte",
-            .keys = {optional("layer", text(), "Default: the only one."),
-                     optional("mask", grammar::list(text()), "Objects whose coverage is the role mask.")}};
+            .keys = {optional("layer", text(), "Which Cryptomatte; required if there are several."),
+                     optional("mask", grammar::list(text()), "Names of objects; the role mask is their coverage.")}};
 }
 
 Block make_camera_block() {
-    Block block{.name = "camera", .thing = "the camera", .doc = "What is known of the camera."};
+    Block block{.name = "camera", .thing = "the camera", .doc = "Camera values."};
     for (const CameraField& field : camera_fields()) {
         ParamSpec spec;
         spec.name = field.name;
@@ -43,7 +43,7 @@ Block make_camera_block() {
         block.keys.push_back(optional(field.name, grammar::literal(spec), field.doc));
     }
     block.keys.push_back(optional("lens_model", grammar::choice(lens_model_names()),
-                                  "Whether the circle of confusion is a thin lens's or A f / S1."));
+                                  "Circle of confusion of a thin lens, or of a pinhole model (A f / S1)."));
     return block;
 }
 
@@ -58,16 +58,16 @@ Block make_light_block() {
         return required(name, grammar::literal(spec, {.has_length = name == std::string("direction")}), doc);
     };
     const Key position =
-        numbers(ParamType::vec3, "position", "m", "Of an area light its centre; world space.");
+        numbers(ParamType::vec3, "position", "m", "World space; the centre of an area light.");
     const Key direction =
-        numbers(ParamType::vec3, "direction", "", "The way that the light shines; of any length.");
-    const Key size = numbers(ParamType::vec2, "size", "m", "Its sides.", kMinSize_m);
+        numbers(ParamType::vec3, "direction", "", "Direction in which the light shines; any length.");
+    const Key size = numbers(ParamType::vec2, "size", "m", "Lengths of the two sides.", kMinSize_m);
     return {.name = "light",
             .thing = "the light",
             .doc = "A light of the capture, in world space.",
-            .keys = {optional("name", text(), "As messages have it."),
+            .keys = {optional("name", text(), "Name for messages."),
                      numbers(ParamType::vec3, "intensity", "",
-                             "W/sr of a point, W/m^2 across a directional light, W/(m^2 sr) of an area.", 0)},
+                             "RGB: W/sr for a point, W/m^2 for a directional light, W/(m^2 sr) for an area.", 0)},
             .selector = "type",
             .kinds = {{.name = "point", .keys = {position}},
                       {.name = "directional", .keys = {direction}},
@@ -85,7 +85,7 @@ grammar::Rule frames_rule() {
     return grammar::custom_rule({.check = check,
                                  .schema = R"({"anyOf": [{"required": ["frames"]}, {"required": ["files"],
                                      "properties": {"files": {"required": ["color"]}}}]})",
-                                 .sentence = "`frames`, or a file for color in `files`."});
+                                 .sentence = "`frames` is required unless `files` has a file for color."});
 }
 
 Block make_capture_block() {
@@ -98,29 +98,29 @@ Block make_capture_block() {
         .doc = "The document.",
         .keys =
             {optional("files", files_by_role(),
-                      "Patterns of roles that lie in files of their own, beside or instead of frames."),
-             optional("frames", text(), "The main files, from this document's folder: `gbuffer_####.exr`."),
-             optional("range", range, "Frames that there are; else those on the disk."),
-             optional("fps", grammar::number({.above = 0}), "Frames a second.", "24"),
-             optional("profile", text(), "Conventions of the producer; auto: found by the file's header.",
+                      "File patterns of roles that are stored in separate files."),
+             optional("frames", text(), "Pattern of the main files, relative to this document: `gbuffer_####.exr`."),
+             optional("range", range, "Frames to use; default: every file that matches the pattern."),
+             optional("fps", grammar::number({.above = 0}), "Frames per second.", "24"),
+             optional("profile", text(), "Producer profile; auto: detected from the file's header.",
                       "\"auto\""),
-             optional("view", text(), "Of a multi-view file; default: its first."),
+             optional("view", text(), "View of a multi-view file; default: the first."),
              optional("layer", text(),
-                      "Of a file with several layers, such as Blender's view layers; default: its first."),
+                      "Layer of a file with several, such as Blender's view layers; default: the first."),
              optional("color_space", color_space_form(),
-                      "Of the stored colours; auto: the profile's, else the file's chromaticities.",
+                      "Primaries of the stored colours; auto: the profile's, else the file's chromaticities.",
                       "\"auto\""),
              optional("alpha", grammar::choice(alpha_names()),
-                      "Of color; opaque: the stored alpha means nothing, and is read as 1.", R"("keep")"),
-             optional("channels", decodings(), "Instead of the profile's."),
-             optional("camera", grammar::object(capture_camera_block()), "Instead of what the files say."),
+                      "Alpha of color; opaque: ignore the stored alpha and read 1.", R"("keep")"),
+             optional("channels", decodings(), "Decoding by role, instead of the profile's."),
+             optional("camera", grammar::object(capture_camera_block()), "Camera values, instead of the files'."),
              optional("lights", grammar::list(grammar::object(capture_light_block())),
-                      "Instead of the files'."),
+                      "Lights, instead of the files'."),
              optional("cryptomatte", grammar::object(cryptomatte_block()),
-                      "Gives the roles mask and object_id."),
-             optional("cuts", grammar::list(frame_number), "Frames that begin a shot."),
+                      "Source of the roles mask and object_id."),
+             optional("cuts", grammar::list(frame_number), "First frame of each shot."),
              optional("subframes", grammar::integer(1, 1024),
-                      "N: files N * frame to N * frame + N - 1 are the exposure of one frame.", "1")},
+                      "Files per frame: files N * frame to N * frame + N - 1 are one exposure.", "1")},
         .rules = {frames_rule()},
         .is_document = true};
 }

@@ -53,15 +53,12 @@ std::set<std::string> cryptomatte_names(const ExrPart& part) {
     return names;
 }
 
-/// By the last word of its name: "N" of "beauty.N".
+/// By the last word of its name, such as "N" of "beauty.N": a usual one, or a role's.
 bool holds_data(const std::string& layer) {
     static const std::set<std::string> words = {
-        "n",       "normal",   "normals",   "ng",           "ns",
-        "p",       "position", "positions", "posw",         "normw",
-        "pos",     "z",        "depth",     "velocity",     "vector",
-        "vectors", "motion",   "mvec",      "motionvector", "motionvec",
-        "forward", "backward", "uv",        "st",           "tangent",
-        "mask",    "id"};
+        "n",      "normals", "ng",   "ns",           "normw",     "p",       "positions", "posw",
+        "pos",    "z",       "uv",   "st",           "tangent",   "id",      "vector",    "vectors",
+        "motion", "mvec",    "motionvector", "motionvec", "forward", "backward"};
     if (layer.empty()) return false;
     const std::string word = in_lower_case(layer.substr(layer.rfind('.') + 1));
     return words.contains(word) || word.find("crypto") != std::string::npos || find_role(word).has_value();

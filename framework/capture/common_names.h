@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "framework/capture/profile.h"
+#include "framework/capture/found_channels.h"
+#include "framework/file/exr_file.h"
 
 namespace aftershade {
 

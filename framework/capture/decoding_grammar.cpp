@@ -21,11 +21,10 @@ using grammar::text;
 namespace {
 
 constexpr const char* kChannelsDoc =
-    "Names in the role's order; `{layer}.` stands for the layer's name, `a|b` for alternatives, a final `?` "
-    "for one that "
-    "may be absent. A colour's alpha may be left out; it is 1 then.";
-constexpr const char* kSumDoc = "Lists of channels to add up.";
-constexpr const char* kComponentDoc = "One channel by its component.";
+    "Channel names in the role's order. `{layer}.` is the layer's name, `a|b` are alternatives, a final `?` marks "
+    "an optional channel. Without an alpha channel, a colour's alpha is 1.";
+constexpr const char* kSumDoc = "Lists of channels to add.";
+constexpr const char* kComponentDoc = "Channel of one component.";
 
 Key length(const char* name, const char* doc) {
     ParamSpec spec;
@@ -38,18 +37,18 @@ Key length(const char* name, const char* doc) {
 std::vector<Key> distance_keys() {
     return {
         optional("encoding", choice(depth_encoding_names()),
-                 "inverse is 1 / distance, normalized is linear between near and far.", R"("linear")"),
-        optional("reversed", boolean(), "1 is near and 0 is far.", "false"),
+                 "inverse: 1 / distance; normalized: linear from near to far.", R"("linear")"),
+        optional("reversed", boolean(), "1 is near, 0 is far.", "false"),
         optional(
             "kind", choice({"planar", "radial"}),
-            "Along the camera's axis, or from its point (needs the camera's focal_length and sensor_width).",
+            "Distance along the camera's axis, or from its position (needs focal_length and sensor_width).",
             R"("planar")"),
-        length("near", "Of z_buffer and normalized; else the camera's."),
-        length("far", "Of z_buffer and normalized; else the camera's."),
-        optional("scale", number(), "Metres for one stored unit.", "1"),
-        optional("no_hit", number(), "Stored values from here up mean that nothing was hit."),
-        optional("no_hit_stored", number(), "What the producer writes there; else no_hit."),
-        optional("zero_is_no_hit", boolean(), "0 means that nothing was hit.", "false")};
+        length("near", "For z_buffer and normalized; default: the camera's."),
+        length("far", "For z_buffer and normalized; default: the camera's."),
+        optional("scale", number(), "Metres per stored unit.", "1"),
+        optional("no_hit", number(), "Stored values at or above this mean no hit."),
+        optional("no_hit_stored", number(), "Value that the producer writes for no hit; default: no_hit."),
+        optional("zero_is_no_hit", boolean(), "Whether a stored 0 means no hit.", "false")};
 }
 
 Key delta_key(const ChannelRole& role) {
@@ -61,7 +60,7 @@ Key delta_key(const ChannelRole& role) {
         "' cannot be decoded from '{}': 'next' vectors fill velocity_next and no other role";
     const auto& words = role.to_next ? next : previous;
     return optional("delta", choice(words, {role.to_next ? previous : next, fault}),
-                    "Which two frames it subtracts.", json_string(words.front()));
+                    "Which two frames are subtracted.", json_string(words.front()));
 }
 
 std::vector<Key> motion_keys(const ChannelRole& role) {
@@ -69,19 +68,19 @@ std::vector<Key> motion_keys(const ChannelRole& role) {
                                        "'scale' of a velocity is a number, or one for x and one for y");
     return {
         delta_key(role),
-        optional("unit", choice(velocity_unit_names()), "uv: 1 is the image's side; ndc: 2 is.", R"("px")"),
-        optional("y_axis", choice({"up", "down"}), "Where y grows to.", R"("down")"),
-        optional("bias", number(), "The stored value of no motion.", "0"),
-        optional("scale", scale, "A factor, or one for x and one for y.", "1"),
-        optional("premultiplied", boolean(), "Divided by alpha first.", "false"),
-        optional("no_motion_above", number(), "A stored x above this has no motion data."),
-        optional("shutter_frames", number({.above = 0}), "Frames that the vector spans.", "1")};
+        optional("unit", choice(velocity_unit_names()), "px; uv: 1 is the image's side; ndc: 2 is the image's side.", R"("px")"),
+        optional("y_axis", choice({"up", "down"}), "Direction in which y grows.", R"("down")"),
+        optional("bias", number(), "Stored value that means no motion.", "0"),
+        optional("scale", scale, "Factor, or one each for x and y.", "1"),
+        optional("premultiplied", boolean(), "Whether the vectors are multiplied by alpha.", "false"),
+        optional("no_motion_above", number(), "A stored x above this means no motion data."),
+        optional("shutter_frames", number({.above = 0}), "Number of frames that a vector spans.", "1")};
 }
 
 /// What roles of its kind have beside the names of channels.
 std::vector<Key> keys_of_kind(const ChannelRole& role) {
     if (role.has_optional_alpha())
-        return {optional("luminance", text(), "The Y channel of luminance-chroma files.")};
+        return {optional("luminance", text(), "Y channel of luminance-chroma files.")};
     if (role.kind == RoleKind::distance) return distance_keys();
     return role.kind == RoleKind::motion ? motion_keys(role) : std::vector<Key>{};
 }

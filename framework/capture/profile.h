@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/capture/found_channels.h"
 #include "framework/core/diagnostics.h"
 #include "framework/core/document.h"
 #include "framework/file/exr_file.h"
@@ -92,10 +93,8 @@ std::optional<Profile> parse_profile(const Node& node, Diagnostics& diagnostics)
 /// "roles" of a profile, or "channels" of a capture.json, which has been checked.
 std::map<std::string, RoleDecoding> read_decodings(const Node& node);
 
-/// The stored channels that a role's decoding finds in a part: per layer, per component; "" for an optional
-/// one that is absent. nullopt where a required one is missing. Names are first taken as they are, then in
+/// The stored channels that a role's decoding finds in a part. nullopt where a required one is missing. Names are first taken as they are, then in
 /// any case.
-using FoundChannels = std::vector<std::vector<std::string>>;
 std::optional<FoundChannels> find_channels(const RoleDecoding& decoding, const std::string& layer,
                                            const ExrPart& part);
 

@@ -20,10 +20,10 @@ Block detect_block() {
     return {
         .name = "detect",
         .doc =
-            "What tells that a file is the producer's; without any key the profile is chosen by name only.",
+            "How the producer's files are detected; without any key the profile is chosen by name only.",
         .keys = {
-            optional("attributes", grammar::list(text()), "Any of these in the header; `*` is any text."),
-            optional("channels", grammar::list(text()), "All of these; `a|b` for alternatives."),
+            optional("attributes", grammar::list(text()), "Header attributes, any of which is enough; `*` matches any text."),
+            optional("channels", grammar::list(text()), "Channels, all of which are required; `a|b` are alternatives."),
             optional(
                 "rewrites", grammar::boolean(),
                 "The program also writes other producers' files again: where another profile's attributes "
@@ -34,13 +34,13 @@ Block detect_block() {
 Block source_block(const CameraField& field) {
     Block block{.name = "camera",
                 .thing = "camera." + field.name,
-                .doc = "Where the header has a value of the camera.",
+                .doc = "Source of a camera value in the header.",
                 .keys = {optional("attributes", grammar::list(text()),
-                                  "The first of these that is there; `*` is any text.")}};
+                                  "Attributes; the first that is present counts. `*` matches any text.")}};
     if (!field.unit.empty())
         block.keys.push_back(optional(
             "unit", grammar::choice(compatible_units(field.unit)),
-            "That the attribute is in; default: the value's own, as in [capture.json](captures.md#camera)."));
+            "Unit of the attribute; default: the value's unit in [capture.json](captures.md#camera)."));
     return block;
 }
 
@@ -55,10 +55,10 @@ Form camera_sources() {
 Block fact_block() {
     return {.name = "fact",
             .thing = "the fact",
-            .doc = "One thing that is known of the producer.",
-            .keys = {required("fact", text(), "What is so."),
-                     optional("verified", text(), "The real file that showed it."),
-                     required("source", text(), "Who says so.")}};
+            .doc = "A fact about the producer's files.",
+            .keys = {required("fact", text(), "The fact."),
+                     optional("verified", text(), "Real file that shows it."),
+                     required("source", text(), "Source of the fact.")}};
 }
 
 }  // namespace
@@ -68,17 +68,17 @@ const Block& profile_block() {
         .name = "profile",
         .thing = "the profile",
         .doc = "The document.",
-        .keys = {required("id", text(), "What `--profile` and capture.json name it by."),
+        .keys = {required("id", text(), "Name for `--profile` and capture.json."),
                  required("summary", text(), "One sentence."),
-                 required("detect", grammar::object(detect_block()), "How its files are known."),
+                 required("detect", grammar::object(detect_block()), "How its files are detected."),
                  optional("color_space", color_space_form(),
-                          "Of the stored colours; auto: the file's chromaticities.", R"("auto")"),
+                          "Primaries of the stored colours; auto: the file's chromaticities.", R"("auto")"),
                  optional("lens_model", grammar::choice(lens_model_names()),
-                          "The producer's; default: not known."),
+                          "Lens model of the producer; default: unknown."),
                  required("roles", decodings(), "How stored channels become images."),
-                 optional("camera", camera_sources(), "Attributes of the header with values of the camera."),
+                 optional("camera", camera_sources(), "Camera values by the header attributes that hold them."),
                  optional("facts", grammar::list(grammar::object(fact_block())),
-                          "What is known of the producer.")},
+                          "Facts about the producer's files.")},
         .is_document = true};
     return block;
 }

@@ -37,12 +37,12 @@ Form objects() {
 Block make_mask_block() {
     return {.name = "mask",
             .thing = "the mask",
-            .doc = "Where the step works: a role of one channel, objects, or a picture.",
-            .keys = {optional("role", role_form(), "Of the capture, with one channel."),
-                     optional("object", objects(), "By the role object_id."),
+            .doc = "Where the step applies: a role with one channel, objects, or a picture.",
+            .keys = {optional("role", role_form(), "Role of the capture with one channel."),
+                     optional("object", objects(), "Objects, by the role object_id."),
                      optional("file", text({.min_length = 1, .type = "path from the look's folder"}),
-                              "A picture over the display window."),
-                     optional("invert", grammar::boolean(), "Everywhere else.", "false")},
+                              "Picture over the display window."),
+                     optional("invert", grammar::boolean(), "Applies the step everywhere else.", "false")},
             .rules = {grammar::exactly_one_of({"role", "object", "file"},
                                               "a mask has one of 'role', 'object' and 'file'")},
             .definition = "Mask"};
@@ -73,23 +73,23 @@ const Block& look_step_block() {
     static const Block block{
         .name = "step",
         .thing = "the step",
-        .doc = "An effect in its turn.",
+        .doc = "One use of an effect.",
         .keys = {
             required("effect",
                      text({.fault = "'effect' is empty: it is the id of an effect", .min_length = 1}),
-                     "Its id; a second step of one effect needs a `name`."),
-            optional("name", step_name(), "Of the step; default: the effect's id."),
-            optional("enabled", grammar::boolean(), "false leaves it out, and still checks it.", "true"),
-            optional("preset", text(), "A preset of the effect."),
-            optional("params", any_object("[value](#values)"), "Values above the preset's."),
+                     "Id of the effect; a second step of the same effect needs a `name`."),
+            optional("name", step_name(), "Name of the step; default: the effect's id."),
+            optional("enabled", grammar::boolean(), "false skips the step, but still checks it.", "true"),
+            optional("preset", text(), "Preset of the effect."),
+            optional("params", any_object("[value](#values)"), "Values, which override the preset's."),
             optional(
                 "in", grammar::map(look_wire(), {.by = "input"}),
-                "Else each input takes its role from the nearest earlier step that outputs it, else from "
-                "the capture; [below](#wiring)."),
+                "Sources of inputs; default: the nearest earlier step that outputs the role, else the "
+                "capture ([wiring](#wiring))."),
             optional("mix", grammar::custom({.type = "[value](#values), 0 to 1"}),
-                     "From the image before the step to the one it made."),
+                     "Blend from the image before the step to its result."),
             optional("mask", grammar::with_variables(grammar::object(look_mask_block())),
-                     "Where the step works.")}};
+                     "Where the step applies.")}};
     return block;
 }
 
@@ -98,10 +98,10 @@ const Block& look_use_block() {
         .name = "use",
         .thing = "the step",
         .doc = "The steps of another look.",
-        .keys = {required("use", text(), "The other look's file, from this one's folder."),
-                 optional("name", grammar::snake_case(), "Goes before its steps' names: `base_...`."),
-                 optional("enabled", grammar::boolean(), "false leaves all its steps out.", "true"),
-                 optional("vars", any_object("[value](#values)"), "Above its own.")}};
+        .keys = {required("use", text(), "File of the other look, relative to this one."),
+                 optional("name", grammar::snake_case(), "Prefix of its steps' names: `base_...`."),
+                 optional("enabled", grammar::boolean(), "false skips all its steps.", "true"),
+                 optional("vars", any_object("[value](#values)"), "Values of variables, which override its own.")}};
     return block;
 }
 
@@ -113,8 +113,8 @@ const Block& look_block() {
         .keys = {optional("summary", text(), "One sentence."),
                  optional("vars",
                           grammar::named(grammar::custom({.type = "[value](#values)"}), "the variable"),
-                          "Values by name, put in where {\"var\": \"name\"} stands."),
-                 required("steps", grammar::list(grammar::custom({.type = "step"})), "In their order.")},
+                          "Values by name, for {\"var\": \"name\"}."),
+                 required("steps", grammar::list(grammar::custom({.type = "step"})), "Steps, in order.")},
         .is_document = true};
     return block;
 }

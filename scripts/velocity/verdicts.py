@@ -39,16 +39,17 @@ def thing(index, **changes):
     return lambda scene: scene["objects"][index].update(changes)
 
 
-# name: (change of the scene, whether its speed changes so that frames tell the two directions in time apart)
+# name: (change of the scene, misreadings that nobody could tell from frames 1 and 2: at one speed the two directions in
+# time look the same, and so do the directions of y where nothing moves along it)
 MOTIONS = {
-    "uniform pan": (camera(position=keys(lambda f: [0.12 * f, 0.3, 4]), target=keys(lambda f: [0.12 * f, 0, 0])), False),
-    "uniform truck past a target": (camera(position=keys(lambda f: [-0.4 + 0.15 * f, 0.3, 4])), False),
-    "dolly": (camera(position=keys(lambda f: [0, 0.3, 4 - 0.18 * f])), False),
-    "turn": (camera(target=keys(lambda f: [0.2 * f - 0.3, 0.05 * f, 0])), False),
-    "faster and faster": (camera(position=keys(lambda f: [0.05 * f * f, 0.3, 4]), target=keys(lambda f: [0.05 * f * f, 0.02 * f * f, 0])), True),
-    "a ball at one speed": (thing(2, position=keys(lambda f: [0.9 - 0.2 * f, 0.05 * f, 0.6])), False),
-    "a ball that bounces": (thing(2, position=keys(lambda f: [0.9 - 0.12 * f, 0.35 * abs(f - 1.5) - 0.2, 0.6])), True),
-    "a box that turns": (thing(1, rotation=keys(lambda f: [0, 30 + 9 * f, 0])), False),
+    "uniform pan": (camera(position=keys(lambda f: [0.12 * f, 0.3, 4]), target=keys(lambda f: [0.12 * f, 0, 0])), ("time", "y axis")),
+    "uniform truck past a target": (camera(position=keys(lambda f: [-0.4 + 0.15 * f, 0.3, 4])), ("time",)),
+    "dolly": (camera(position=keys(lambda f: [0, 0.3, 4 - 0.18 * f])), ("time",)),
+    "turn": (camera(target=keys(lambda f: [0.2 * f - 0.3, 0.05 * f, 0])), ("time",)),
+    "faster and faster": (camera(position=keys(lambda f: [0.05 * f * f, 0.3, 4]), target=keys(lambda f: [0.05 * f * f, 0.02 * f * f, 0])), ()),
+    "a ball at one speed": (thing(2, position=keys(lambda f: [0.9 - 0.2 * f, 0.05 * f, 0.6])), ("time",)),
+    "a ball that bounces": (thing(2, position=keys(lambda f: [0.9 - 0.12 * f, 0.35 * abs(f - 1.2) - 0.2, 0.6])), ()),
+    "a box that turns": (thing(1, rotation=keys(lambda f: [0, 30 + 9 * f, 0])), ("time",)),
 }
 PROFILES = ["native", "blender", "unreal", "nuke", "arnold", "vray", "moonray"]
 OPPOSITE = {"cur-prev": "prev-cur", "prev-cur": "cur-prev", "next-cur": "cur-next", "cur-next": "next-cur"}
@@ -101,7 +102,7 @@ def scales(decoding):
 
 def main():
     accused, named, tellable, silent, true_checks = [], 0, 0, [], 0
-    for motion, (change, tells_time) in MOTIONS.items():
+    for motion, (change, untold) in MOTIONS.items():
         scene = copy.deepcopy(SCENE)
         change(scene)
         for profile in PROFILES:
@@ -122,7 +123,7 @@ def main():
             declared = read_profile(profile)
             for role in truth:
                 for name, wrong in misreadings(declared, role):
-                    if name == "time" and not tells_time:
+                    if name in untold:
                         continue
                     (folder / name).mkdir(exist_ok=True)
                     (folder / name / f"{profile}.json").write_text(json.dumps(wrong))
