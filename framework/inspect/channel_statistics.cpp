@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
+#include <type_traits>
 
 #include "framework/core/error.h"
 
@@ -10,25 +12,41 @@ namespace aftershade {
 
 namespace {
 
+/// One channel's figures while pixels pass by.
 template <class Value>
-ChannelStatistics statistics_of(std::span<const Value> values, std::size_t channel, std::size_t channels) {
-    ChannelStatistics result;
-    Value min{}, max{};
-    bool any_finite = false;
-    for (std::size_t i = channel; i < values.size(); i += channels) {
-        const Value value = values[i];
-        result.negative += double(value) < 0;
-        if (std::isnan(double(value))) {
-            ++result.nan;
-        } else if (std::isinf(double(value))) {
-            ++result.infinite;
-        } else {
-            min = any_finite ? std::min(min, value) : value;
-            max = any_finite ? std::max(max, value) : value;
-            any_finite = true;
+struct Running {
+    ChannelStatistics figures;
+    Value min = std::numeric_limits<Value>::max();
+    Value max = std::numeric_limits<Value>::lowest();
+
+    void add(Value value) {
+        if constexpr (std::is_floating_point_v<Value>) {
+            if (!std::isfinite(value)) {
+                if (std::isnan(value)) ++figures.nan;
+                else ++figures.infinite;
+                figures.negative += value < 0;
+                return;
+            }
         }
+        figures.negative += value < 0;
+        min = std::min(min, value);
+        max = std::max(max, value);
     }
-    if (any_finite) result.min = min, result.max = max;
+    ChannelStatistics finished() const {
+        ChannelStatistics result = figures;
+        if (min <= max) result.min = min, result.max = max;
+        return result;
+    }
+};
+
+/// In one pass: an image of many channels is larger than any cache.
+template <class Value>
+std::vector<ChannelStatistics> statistics_of(std::span<const Value> values, std::size_t channels) {
+    std::vector<Running<Value>> running(channels);
+    for (std::size_t i = 0; i + channels <= values.size(); i += channels)
+        for (std::size_t c = 0; c < channels; ++c) running[c].add(values[i + c]);
+    std::vector<ChannelStatistics> result;
+    for (const Running<Value>& one : running) result.push_back(one.finished());
     return result;
 }
 
@@ -52,8 +70,8 @@ void read_batch(const ExrFile& file, int part, const Batch& batch) {
     try {
         const bool is_uint = batch.front()->channel.type == PixelType::uint32;
         const Image image = is_uint ? file.read_uints(part, names) : file.read_floats(part, names);
-        for (std::size_t i = 0; i < batch.size(); ++i)
-            batch[i]->statistics = channel_statistics(image, int(i));
+        const std::vector<ChannelStatistics> statistics = channel_statistics(image);
+        for (std::size_t i = 0; i < batch.size(); ++i) batch[i]->statistics = statistics[i];
     } catch (const Error& error) {
         for (InspectedChannel* inspected : batch) {
             inspected->reason = without_path(error.what(), file);
@@ -64,10 +82,10 @@ void read_batch(const ExrFile& file, int part, const Batch& batch) {
 
 }  // namespace
 
-ChannelStatistics channel_statistics(const Image& image, int channel) {
-    const std::size_t first = std::size_t(channel), channels = std::size_t(image.channels());
-    if (image.type() == ComponentType::uint32) return statistics_of(image.uints(), first, channels);
-    return statistics_of(image.floats(), first, channels);
+std::vector<ChannelStatistics> channel_statistics(const Image& image) {
+    const std::size_t channels = std::size_t(image.channels());
+    if (image.type() == ComponentType::uint32) return statistics_of(image.uints(), channels);
+    return statistics_of(image.floats(), channels);
 }
 
 std::vector<InspectedChannel> inspect_channels(const ExrFile& file, int part, const ReadLimits& limits) {
@@ -80,7 +98,7 @@ std::vector<InspectedChannel> inspect_channels(const ExrFile& file, int part, co
     const std::uint64_t bytes =
         std::uint64_t(header.data_window.width()) * std::uint64_t(header.data_window.height()) * 4;
     const std::size_t most =
-        std::max<std::uint64_t>(1, limits.max_image_bytes / 2 / std::max<std::uint64_t>(bytes, 1));
+        std::max<std::uint64_t>(1, limits.max_image_bytes / 4 * 3 / std::max<std::uint64_t>(bytes, 1));
     for (const bool uints : {false, true}) {
         Batch batch;
         for (InspectedChannel& inspected : channels) {

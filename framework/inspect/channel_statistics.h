@@ -18,7 +18,8 @@ struct ChannelStatistics {
     std::uint64_t negative = 0;  ///< below zero, -inf too, -0 not
 };
 
-ChannelStatistics channel_statistics(const Image& image, int channel);
+/// Of each channel.
+std::vector<ChannelStatistics> channel_statistics(const Image& image);
 
 /// A channel of a file, with its figures or why there are none.
 struct InspectedChannel {
@@ -30,7 +31,7 @@ struct InspectedChannel {
 };
 
 /// Every channel of a part, in the file's order. Deep parts and subsampled channels have a reason instead of
-/// figures. At most half of `limits.max_image_bytes` is read at once, or a single channel.
+/// figures. At most three quarters of `limits.max_image_bytes` is read at once, or a single channel.
 std::vector<InspectedChannel> inspect_channels(const ExrFile& file, int part, const ReadLimits& limits);
 
 }  // namespace aftershade

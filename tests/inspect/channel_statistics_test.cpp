@@ -24,7 +24,7 @@ Image image_of(int channels, const std::vector<float>& values) {
 
 TEST(ChannelStatistics, CountWhatIsNotFiniteAndLeaveItOutOfTheRange) {
     const Image image = image_of(1, {3, kNan, -2, kInf, -kInf, kNan, kNan, 0.5f, -0.0f});
-    const ChannelStatistics statistics = channel_statistics(image, 0);
+    const ChannelStatistics statistics = channel_statistics(image)[0];
     EXPECT_EQ(statistics.min, -2);
     EXPECT_EQ(statistics.max, 3);
     EXPECT_EQ(statistics.nan, 3);
@@ -33,7 +33,7 @@ TEST(ChannelStatistics, CountWhatIsNotFiniteAndLeaveItOutOfTheRange) {
 }
 
 TEST(ChannelStatistics, HaveNoRangeWhereNothingIsFinite) {
-    const ChannelStatistics statistics = channel_statistics(image_of(1, {kNan, kInf}), 0);
+    const ChannelStatistics statistics = channel_statistics(image_of(1, {kNan, kInf}))[0];
     EXPECT_EQ(statistics.min, std::nullopt);
     EXPECT_EQ(statistics.max, std::nullopt);
     EXPECT_EQ(statistics.nan, 1);
@@ -42,20 +42,20 @@ TEST(ChannelStatistics, HaveNoRangeWhereNothingIsFinite) {
 
 TEST(ChannelStatistics, AreOfOneChannelOfSeveral) {
     const Image image = image_of(3, {1, -5, 10, 2, kNan, 30, 3, -7, 20});
-    EXPECT_EQ(channel_statistics(image, 0).max, 3);
-    EXPECT_EQ(channel_statistics(image, 1).min, -7);
-    EXPECT_EQ(channel_statistics(image, 1).max, -5);
-    EXPECT_EQ(channel_statistics(image, 1).nan, 1);
-    EXPECT_EQ(channel_statistics(image, 1).negative, 2);
-    EXPECT_EQ(channel_statistics(image, 2).nan, 0);
-    EXPECT_EQ(channel_statistics(image, 2).max, 30);
+    EXPECT_EQ(channel_statistics(image)[0].max, 3);
+    EXPECT_EQ(channel_statistics(image)[1].min, -7);
+    EXPECT_EQ(channel_statistics(image)[1].max, -5);
+    EXPECT_EQ(channel_statistics(image)[1].nan, 1);
+    EXPECT_EQ(channel_statistics(image)[1].negative, 2);
+    EXPECT_EQ(channel_statistics(image)[2].nan, 0);
+    EXPECT_EQ(channel_statistics(image)[2].max, 30);
 }
 
 TEST(ChannelStatistics, KeepEveryBitOfUnsignedIntegers) {
     Image ids(2, 1, 1, ComponentType::uint32);
     ids.uints()[0] = 4294967295u;
     ids.uints()[1] = 16777217u;  // the first that a float has not
-    const ChannelStatistics statistics = channel_statistics(ids, 0);
+    const ChannelStatistics statistics = channel_statistics(ids)[0];
     EXPECT_EQ(statistics.max, 4294967295.0);
     EXPECT_EQ(statistics.min, 16777217.0);
     EXPECT_EQ(statistics.negative, 0);
