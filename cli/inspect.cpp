@@ -13,7 +13,9 @@
 #include "cli/verbs.h"
 #include "framework/core/data_path.h"
 #include "framework/file/png_file.h"
+#include "framework/image/role.h"
 #include "framework/inspect/contact_sheet.h"
+#include "framework/inspect/depth_kind.h"
 
 namespace aftershade::cli {
 
@@ -58,6 +60,26 @@ Inspection inspect_frame(const Sequence& sequence, int frame, const CaptureReade
         inspection.no_profile_reason = without_path(error.what(), inspection.file);
     }
     return inspection;
+}
+
+/// The depth as the profile decodes it, held to the positions of its pixels.
+void find_depth_kind_of(const CaptureReader& reader, Inspection& inspection) {
+    if (!inspection.capture) return;
+    std::string depth, position;
+    for (const std::string& role : inspection.capture->roles) {
+        if (kind_of_role(role) == RoleKind::distance) depth = role;
+        if (kind_of_role(role) == RoleKind::place) position = role;
+    }
+    if (depth.empty() || position.empty()) return;
+    try {
+        const Capture capture = reader.read(inspection.capture->frame, std::vector{depth, position});
+        const DepthKind kind = find_depth_kind(capture.images.at(depth), capture.images.at(position));
+        inspection.depth_kind = kind.text();
+        if (kind.verdict() == DepthKind::Verdict::radial)
+            inspection.depth_kind += "; declare it in the profile or capture.json: \"kind\": \"radial\"";
+    } catch (const Error&) {
+        // Said where the role's channels are listed, or by whoever needs the role.
+    }
 }
 
 /// "-" is the only Cryptomatte, or the one of objects.
@@ -110,6 +132,7 @@ ExitCode inspect(const InspectOptions& options) {
     const CaptureReader reader(*sequence, std::move(profiles), options.capture.limits);
     Inspection inspection = inspect_frame(*sequence, sequence->file_number(sequence->frames.front()), reader,
                                           options.capture.limits);
+    find_depth_kind_of(reader, inspection);
     if (options.cryptomatte) add_coverage(*options.cryptomatte, reader, inspection);
     std::cout << (options.json ? json_of(inspection) + "\n" : text_of(inspection)) << std::flush;
     const std::string file = inspection.file.string() + ": ";

@@ -67,6 +67,7 @@ std::string role_lines(const Inspection& inspection) {
             text += fmt::format(
                 "  {:<14}  {}\n", role,
                 printable(fmt::format("{}", fmt::join(channels_of(*inspection.capture, role), " "))));
+    if (!inspection.depth_kind.empty()) text += fmt::format("  {:<14}  {}\n", "(depth)", inspection.depth_kind);
     return text + fmt::format("  {:<14}  {}\n", "(missing)", fmt::join(inspection.missing_roles(), ", "));
 }
 
@@ -241,6 +242,7 @@ std::string json_of(const Inspection& inspection) {
     if (inspection.capture)
         for (const std::string& role : inspection.capture->roles)
             json["roles"][role] = channels_of(*inspection.capture, role);
+    json["depth_kind"] = inspection.depth_kind;
     json["missing"] = inspection.missing_roles();
     json["camera"] = camera_json(inspection.capture ? inspection.capture->camera : Camera{});
     json["lights"] =

@@ -22,6 +22,7 @@ struct Inspection {
     std::vector<InspectedPart> parts;
     std::optional<CaptureHeader> capture;  ///< nullopt where no profile fits
     std::string no_profile_reason;
+    std::string depth_kind;  ///< "planar, fits position to 0.02 %"; "" where no position tells it
     std::vector<CryptomatteLayer> cryptomattes;
     std::string coverage_of;               ///< the Cryptomatte of `coverage`; "" where none was asked for
     std::vector<ObjectCoverage> coverage;  ///< of its objects
@@ -33,7 +34,7 @@ struct Inspection {
 };
 
 std::string text_of(const Inspection& inspection);
-/// {file, parts, profile, layer, layers, notes, roles, missing, camera, lights, cryptomattes}, indented,
+/// {file, parts, profile, layer, layers, notes, roles, depth_kind, missing, camera, lights, cryptomattes}, indented,
 /// without a line end.
 std::string json_of(const Inspection& inspection);
 
