@@ -152,8 +152,8 @@ void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header
                         "', which the profile '" + header.profile + "' does not find among the channels " +
                         list_channels(header.channels) +
                         (header.layer.empty() ? "" : ", in the layer '" + header.layer + "'") +
-                        " (say its channels as \"channels\": {\"" + role +
-                        "\": {\"channels\": [...]}} in capture.json, or choose another "
+                        " (name its channels in capture.json, as \"channels\": {\"" + role +
+                        "\": {\"channels\": [...]}}, or choose another "
                         "--profile or --layer)");
     };
     for (const PipelineStep& step : pipeline.steps) {
