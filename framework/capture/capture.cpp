@@ -122,7 +122,8 @@ void CaptureReader::add_role(OpenFrame& open, const std::string& role, const Rol
     else if (own_file != open.role_files.end() && &file != &cryptomatte_file(open))
         throw Error(ExitCode::capture,
                     file.path().string() + ": " +
-                        no_channels_for_role(*find_role(role), file.merged(), sequence_.channels.contains(role)));
+                        no_channels_for_role(*find_role(role), file.merged(),
+                                             sequence_.channels.contains(role)));
     else return;
     open.header.role_channels[role] =
         source.luminance.empty() ? listed(source.channels) : std::vector{source.luminance};
