@@ -4,11 +4,11 @@
 #include "cli/effect_options.h"
 #include "framework/batch/golden_grammar.h"
 #include "framework/batch/golden_suite.h"
-#include "framework/core/data_path.h"
-#include "framework/core/schema_pieces.h"
 #include "framework/capture/capture_grammar.h"
 #include "framework/capture/profile.h"
 #include "framework/capture/profile_grammar.h"
+#include "framework/core/data_path.h"
+#include "framework/core/schema_pieces.h"
 #include "framework/image/role.h"
 #include "framework/pipeline/look_grammar.h"
 #include "framework/pipeline/schema.h"
@@ -36,13 +36,20 @@ std::string roles_of(const Profile& profile) {
     return text;
 }
 
+std::string real_files_of(const Profile& profile) {
+    std::string text;
+    for (const std::string& file : profile.seen_on) text += (text.empty() ? "`" : ", `") + file + "`";
+    return text.empty() ? "**none**" : text;
+}
+
 /// What the shipped profiles say of themselves.
 grammar::Tables tables_of_profiles() {
-    std::string shipped = "| profile | what it is | roles |\n|---|---|---|\n";
+    std::string shipped = "| profile | what it is | roles | seen on real files |\n|---|---|---|---|\n";
     std::string facts = "| profile | fact | verified on | source |\n|---|---|---|---|\n";
     Diagnostics diagnostics;
     for (const Profile& profile : read_profiles(data_path() / "profiles", diagnostics)) {
-        shipped += "| `" + profile.id + "` | " + profile.summary + " | " + roles_of(profile) + " |\n";
+        shipped += "| `" + profile.id + "` | " + profile.summary + " | " + roles_of(profile) + " | " +
+                   real_files_of(profile) + " |\n";
         for (const ProfileFact& fact : profile.facts)
             facts += "| `" + profile.id + "` | " + fact.fact + " | " +
                      (fact.verified.empty() ? "**no**" : fact.verified) + " | " + fact.source + " |\n";

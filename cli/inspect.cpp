@@ -57,6 +57,8 @@ Inspection inspect_frame(const Sequence& sequence, int frame, const CaptureReade
         inspection.cryptomattes = reader.cryptomattes(frame);
     } catch (const Error& error) {
         // The files are sound, but what they mean is not known: no profile, several, no such view.
+        inspection.no_profile_code = error.exit_code();
+        inspection.no_profile_message = error.what();
         inspection.no_profile_reason = without_path(error.what(), inspection.file);
     }
     return inspection;
@@ -80,6 +82,12 @@ void find_depth_kind_of(const CaptureReader& reader, Inspection& inspection) {
     } catch (const Error&) {
         // Said where the role's channels are listed, or by whoever needs the role.
     }
+}
+
+/// The files are shown, but what the user asked of them is not there: a layer, a view, the role of a file.
+void require_what_was_asked(const Sequence& sequence, const Inspection& inspection) {
+    const bool asks = !sequence.layer.empty() || !sequence.view.empty() || !sequence.role_files.empty();
+    if (!inspection.capture && asks) throw Error(inspection.no_profile_code, inspection.no_profile_message);
 }
 
 /// "-" is the only Cryptomatte, or the one of objects.
@@ -138,6 +146,7 @@ ExitCode inspect(const InspectOptions& options) {
     const std::string file = inspection.file.string() + ": ";
     if (const InspectedChannel* channel = inspection.first_unreadable())
         throw Error(ExitCode::capture, file + channel->reason);
+    require_what_was_asked(*sequence, inspection);
     if (options.contact_sheet.empty()) return ExitCode::done;
     if (!inspection.capture)
         throw Error(ExitCode::capture,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "framework/capture/capture.h"
+#include "framework/core/error.h"
 #include "framework/file/exr_file.h"
 #include "framework/inspect/channel_statistics.h"
 
@@ -21,7 +22,9 @@ struct Inspection {
     std::filesystem::path file;
     std::vector<InspectedPart> parts;
     std::optional<CaptureHeader> capture;  ///< nullopt where no profile fits
-    std::string no_profile_reason;
+    std::string no_profile_reason;         ///< without the file's name
+    std::string no_profile_message;        ///< with it
+    ExitCode no_profile_code = ExitCode::capture;
     std::string depth_kind;  ///< "planar, fits position to 0.02 %"; "" where no position tells it
     std::vector<CryptomatteLayer> cryptomattes;
     std::string coverage_of;               ///< the Cryptomatte of `coverage`; "" where none was asked for

@@ -4,9 +4,9 @@
 #include <array>
 #include <utility>
 
+#include "framework/capture/stored_matrices.h"
 #include "framework/core/error.h"
 #include "framework/core/units.h"
-#include "framework/capture/stored_matrices.h"
 
 namespace aftershade {
 
@@ -36,14 +36,17 @@ Camera camera_of_metadata(const ExrPart& part, const Profile& profile, const Cam
     const ExrMetadata& metadata = part.metadata;
     Camera camera;
     const std::vector<std::string> names = metadata.names();
+    const std::optional<double> sensor_width = known.get("sensor_width");
     for (const auto& [name, source] : profile.camera) {
         const CameraField& field = *find_camera_field(name);
+        if (source.times_sensor_width && !sensor_width) continue;
         for (const std::string& pattern : source.attributes) {
             const auto fits = [&](const std::string& n) { return matches_pattern(n, pattern); };
             const auto found = std::find_if(names.begin(), names.end(), fits);
             if (found == names.end()) continue;
-            const auto stored = metadata.number(*found);
-            const bool same = source.unit == field.unit;
+            auto stored = metadata.number(*found);
+            if (stored && source.times_sensor_width) *stored *= *sensor_width;
+            const bool same = source.times_sensor_width || source.unit == field.unit;
             set_if_known(camera, field,
                          stored && !same ? convert_unit(*stored, source.unit, field.unit) : stored, *found);
         }

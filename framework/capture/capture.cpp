@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "framework/capture/bare_channels.h"
 #include "framework/capture/camera_metadata.h"
 #include "framework/capture/camera_motion.h"
 #include "framework/capture/cryptomatte.h"
@@ -15,16 +16,6 @@
 namespace aftershade {
 
 namespace {
-
-/// What a file of one role may call its channels, by their number.
-std::vector<std::vector<std::string>> plain_names(int channels) {
-    switch (channels) {
-        case 1: return {{"Z"}, {"Y"}, {"R"}, {"V"}, {"X"}, {"I"}};
-        case 2: return {{"R", "G"}, {"X", "Y"}, {"x", "y"}, {"u", "v"}, {"U", "V"}};
-        case 3: return {{"R", "G", "B"}, {"X", "Y", "Z"}};
-        default: return {{"R", "G", "B", "A?"}};
-    }
-}
 
 std::vector<std::string> listed(const FoundChannels& found) {
     std::vector<std::string> names;
@@ -123,17 +114,16 @@ void CaptureReader::add_role(OpenFrame& open, const std::string& role, const Rol
     source.file = &file;
     source.decoding = decoding;
     auto found = find_role_channels(open, file, role, decoding);
-    if (!found && own_file != open.role_files.end())
-        for (const auto& names : plain_names(find_role(role)->channels)) {
-            RoleDecoding plain;
-            plain.layers = {names};
-            if (!found) found = find_channels(plain, "", file.merged());
-        }
     RoleDecoding luminance;
     luminance.layers = {{decoding.luminance.empty() && role == kColorRole ? "Y" : decoding.luminance}};
     if (found) source.channels = std::move(*found);
     else if (!luminance.layers[0][0].empty() && find_channels(luminance, "", file.merged()))
         source.luminance = luminance.layers[0][0];
+    else if (own_file != open.role_files.end() && &file != &cryptomatte_file(open))
+        throw Error(ExitCode::capture,
+                    file.path().string() + ": " +
+                        no_channels_for_role(*find_role(role), file.merged(),
+                                             sequence_.channels.contains(role)));
     else return;
     open.header.role_channels[role] =
         source.luminance.empty() ? listed(source.channels) : std::vector{source.luminance};

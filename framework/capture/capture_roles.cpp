@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "framework/capture/bare_channels.h"
 #include "framework/capture/capture_internal.h"
 #include "framework/capture/common_names.h"
 #include "framework/core/error.h"
@@ -71,7 +72,8 @@ void CaptureReader::choose_layer(OpenFrame& open) const {
         open.is_foreign_layer = true;
         return;
     }
-    const std::vector<std::string> known = header.layers.empty() ? color_layers(part) : header.layers;
+    std::vector<std::string> known = header.layers.empty() ? color_layers(part) : header.layers;
+    std::erase(known, "");
     throw Error(ExitCode::usage, header.path.string() + ": has no layer '" + sequence_.layer + "'" +
                                      (known.empty() ? std::string("; it has no layers")
                                                     : did_you_mean(sequence_.layer, known) + " (it has " +
@@ -85,13 +87,16 @@ std::optional<FoundChannels> CaptureReader::find_role_channels(const OpenFrame& 
     const bool is_own_file = &file != open.main.get();
     const std::string layer = is_own_file ? find_layer(*open.profile, part) : open.header.layer;
     const bool is_foreign = open.is_foreign_layer && !is_own_file;
-    if (!decoding.layers.empty())
-        if (auto found = find_channels(is_foreign ? below_layer(decoding) : decoding, layer, part))
-            return found;
+    const bool is_named_by_user = sequence_.channels.contains(role);
+    const bool may_be_bare = role == kColorRole || is_named_by_user || (is_own_file && has_one_layer(part));
+    const RoleDecoding names = may_be_bare ? decoding : without_bare_names(decoding);
+    if (!names.layers.empty())
+        if (auto found = find_channels(is_foreign ? below_layer(names) : names, layer, part)) return found;
     // What capture.json says is what the user wants, and nothing else.
-    if (sequence_.channels.contains(role)) return std::nullopt;
+    if (is_named_by_user && !decoding.layers.empty()) return std::nullopt;
     if (role == kColorRole) return find_common_color(part, layer);
-    if (role == kDepthRole && !is_own_file) return find_common_depth(part, layer);
+    if (is_own_file) return find_only_channels(*find_role(role), part);
+    if (role == kDepthRole) return find_common_depth(part, layer);
     return std::nullopt;
 }
 

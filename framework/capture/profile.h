@@ -60,7 +60,8 @@ struct RoleDecoding {
 /// A camera value out of the header: the first of these attributes that is there. "*" stands for any text.
 struct CameraSource {
     std::vector<std::string> attributes;
-    std::string unit;  ///< that the attribute is in
+    std::string unit;                 ///< that the attribute is in
+    bool times_sensor_width = false;  ///< it counts in widths of the sensor instead
 };
 
 /// One thing that is known of the producer, for the table of the docs.
@@ -81,6 +82,7 @@ struct Profile {
     std::string lens_model;  ///< "thin" or "pinhole"; "" where not known
     std::map<std::string, RoleDecoding> roles;
     std::map<std::string, CameraSource> camera;  ///< by camera field
+    std::vector<std::string> seen_on;            ///< real files, below the folder of captures for tests
     std::vector<ProfileFact> facts;
 };
 

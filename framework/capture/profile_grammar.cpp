@@ -19,11 +19,12 @@ namespace {
 Block detect_block() {
     return {
         .name = "detect",
-        .doc =
-            "How the producer's files are detected; without any key the profile is chosen by name only.",
+        .doc = "How the producer's files are detected; without any key the profile is chosen by name only.",
         .keys = {
-            optional("attributes", grammar::list(text()), "Header attributes, any of which is enough; `*` matches any text."),
-            optional("channels", grammar::list(text()), "Channels, all of which are required; `a|b` are alternatives."),
+            optional("attributes", grammar::list(text()),
+                     "Header attributes, any of which is enough; `*` matches any text."),
+            optional("channels", grammar::list(text()),
+                     "Channels, all of which are required; `a|b` are alternatives."),
             optional(
                 "rewrites", grammar::boolean(),
                 "The program also writes other producers' files again: where another profile's attributes "
@@ -37,6 +38,10 @@ Block source_block(const CameraField& field) {
                 .doc = "Source of a camera value in the header.",
                 .keys = {optional("attributes", grammar::list(text()),
                                   "Attributes; the first that is present counts. `*` matches any text.")}};
+    if (counts_in_sensor_widths(field))
+        block.keys.push_back(optional("times_sensor_width", grammar::boolean(),
+                                      "The attribute counts in widths of the sensor, given in capture.json.",
+                                      "false"));
     if (!field.unit.empty())
         block.keys.push_back(optional(
             "unit", grammar::choice(compatible_units(field.unit)),
@@ -63,6 +68,10 @@ Block fact_block() {
 
 }  // namespace
 
+bool counts_in_sensor_widths(const CameraField& field) {
+    return field.name == "focal_length";
+}
+
 const Block& profile_block() {
     static const Block block{
         .name = "profile",
@@ -76,7 +85,11 @@ const Block& profile_block() {
                  optional("lens_model", grammar::choice(lens_model_names()),
                           "Lens model of the producer; default: unknown."),
                  required("roles", decodings(), "How stored channels become images."),
-                 optional("camera", camera_sources(), "Camera values by the header attributes that hold them."),
+                 optional("camera", camera_sources(),
+                          "Camera values by the header attributes that hold them."),
+                 optional(
+                     "seen_on", grammar::list(text()),
+                     "Real files that tests read with it; none: the profile is from documentation only."),
                  optional("facts", grammar::list(grammar::object(fact_block())),
                           "Facts about the producer's files.")},
         .is_document = true};

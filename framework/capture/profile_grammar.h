@@ -7,6 +7,10 @@
 
 namespace aftershade {
 
+struct CameraField;
+/// Whether a header may give this value in widths of the sensor: "times_sensor_width".
+bool counts_in_sensor_widths(const CameraField& field);
+
 /// profiles/<id>.json
 const grammar::Block& profile_block();
 

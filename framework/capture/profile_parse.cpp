@@ -112,9 +112,11 @@ std::optional<Profile> parse_profile(const Node& node, Diagnostics& diagnostics)
         for (const CameraField& field : camera_fields())
             if (const auto source = camera->object(field.name)) {
                 const bool has_unit = !field.unit.empty() && source->has("unit");
-                profile.camera[field.name] = {source->texts("attributes"),
-                                              has_unit ? source->text("unit") : field.unit};
+                profile.camera[field.name] = {
+                    source->texts("attributes"), has_unit ? source->text("unit") : field.unit,
+                    counts_in_sensor_widths(field) && source->boolean("times_sensor_width")};
             }
+    profile.seen_on = reader.texts("seen_on");
     for (const grammar::Reader& fact : reader.objects("facts"))
         profile.facts.push_back({fact.text("fact"), fact.text("verified"), fact.text("source")});
     return profile;

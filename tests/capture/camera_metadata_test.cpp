@@ -101,6 +101,27 @@ TEST(CameraMetadata, ReadsUnrealsAttributesInTheirUnits) {
     EXPECT_EQ(*header.camera.get("blades"), 7);
 }
 
+/// Arnold's 45 degrees are CameraFocalLength 1 / (2 tan 22.5 degrees) = 1.2071 sensors wide.
+TEST(CameraMetadata, HasArnoldsFocalLengthWhereTheWidthOfTheSensorIsKnown) {
+    const TemporaryFolder folder;
+    const Image image(2, 2, 3);
+    std::vector<ExrOutputChannel> channels;
+    for (int c = 0; c < 3; ++c) channels.push_back({std::string(1, "RGB"[c]), PixelType::half, &image, c});
+    ExrWriteOptions options;
+    options.data_window = options.display_window = {0, 0, 1, 1};
+    options.attributes = {{"arnold/version", std::string("Arnold 7.5.0.0")},
+                          {"CameraFocalLength", 1.2071068f}};
+    write_exr(folder / "arnold.0001.exr", channels, options);
+    Sequence sequence;
+    sequence.files = FramePattern((folder / "arnold.0001.exr").string());
+    Diagnostics diagnostics;
+    const CaptureReader reader(sequence, read_profiles(AFTERSHADE_SOURCE_DIR "/profiles", diagnostics), {});
+    EXPECT_FALSE(reader.read_header(1).camera.get("focal_length"));
+    sequence.camera.set("sensor_width", 36);
+    EXPECT_NEAR(reader.read_header(1).camera.get("focal_length").value_or(0), 18 * (1 + std::numbers::sqrt2),
+                1e-5);
+}
+
 TEST(CameraMetadata, ReadsOpenExrsStandardAttributes) {
     const TemporaryFolder folder;
     const Image image(2, 2, 1);

@@ -24,8 +24,22 @@ struct Expected {
     std::map<std::string, double> camera = {};
     std::string lens_model = {};
     std::string layer = {};
-    std::string view = {};  ///< to ask for
+    std::string view = {};                               ///< to ask for
+    std::string chosen = "auto";                         ///< the profile to ask for
+    std::map<std::string, std::string> role_files = {};  ///< to give beside it
 };
+
+/// Falcor writes a file for each pass, and none tells of its producer.
+std::string falcor_pass(const std::string& pass) {
+    return "producers/falcor/" + pass + ".0.exr";
+}
+
+Expected falcors_frame(const std::string& main, Names roles, std::map<std::string, std::string> role_files) {
+    Expected row{falcor_pass(main), "falcor", std::move(roles)};
+    row.chosen = "falcor";
+    row.role_files = std::move(role_files);
+    return row;
+}
 
 const Names kCyclesPasses = {"albedo", "color",     "depth",    "emission", "irradiance",
                              "normal", "object_id", "position", "velocity", "velocity_next"};
@@ -94,12 +108,12 @@ const std::vector<Expected>& table() {
          {"has_*_asterisk", "sphere_?_2"},
          {{"focal_length", 35}, {"sensor_width", 35.99992752}, {"f_number", 8}}},
         {"producers/karma/karma_cpu_solaris_one_crypto.exr",
-         "native",
+         "karma",
          {"color"},
          {"CryptoObject"},
          {"/sphere1", "/cube1", "/grid1/mesh_0"}},
         {"producers/clarisse/clarisse_two_crypto.exr",
-         "native",
+         "clarisse",
          {"color"},
          {"cryptomatte_material", "cryptomatte_asset"}},
         {"producers/nuke/channelTestNukeSinglePart.exr", "nuke", {"color", "depth"}},
@@ -120,7 +134,22 @@ const std::vector<Expected>& table() {
          {"color"},
          {"special_chars"},
          {"name, with, comma", "name_containing/slash", "\u0440\u0430\u0432\u043d\u0438\u043d\u0430"}},
-        {"producers/falcor/svgf.PathTracer.color.0.exr", "native", {"color"}},
+        {falcor_pass("svgf.PathTracer.color"), "native", {"color"}},
+        falcors_frame("svgf.PathTracer.color", {"color"}, {}),
+        falcors_frame("svgf.PathTracer.color", {"color", "depth", "normal", "velocity"},
+                      {{"depth", falcor_pass("svgf.GBufferRT.linearZ")},
+                       {"normal", falcor_pass("svgf.GBufferRT.guideNormalW")},
+                       {"velocity", falcor_pass("svgf.GBufferRT.mvec")}}),
+        falcors_frame("arcade.GBufferRT.diffuseOpacity",
+                      {"albedo", "color", "depth", "emission", "normal", "position", "velocity"},
+                      {{"albedo", falcor_pass("arcade.GBufferRT.diffuseOpacity")},
+                       {"depth", falcor_pass("arcade.GBufferRT.linearZ")},
+                       {"emission", falcor_pass("arcade.GBufferRT.emissive")},
+                       {"normal", falcor_pass("arcade.GBufferRT.normW")},
+                       {"position", falcor_pass("arcade.GBufferRT.posW")},
+                       {"velocity", falcor_pass("arcade.GBufferRT.mvec")}}),
+        {falcor_pass("arcade.GBufferRT.viewW"), "native", {"color"}},
+        {"producers/gaffer/zero_offset_table.exr", "native", {"color"}},
         {"producers/gaffer/multipart_depth.Z.exr", "native", {"color", "depth"}},
     };
     return rows;
@@ -134,6 +163,11 @@ TEST_P(ProducerTable, SaysWhatTheFileHolds) {
     Sequence sequence;
     sequence.files = FramePattern(path->string());
     sequence.view = row.view;
+    sequence.profile = row.chosen;
+    for (const auto& [role, file] : row.role_files) {
+        AFTERSHADE_REQUIRE_CAPTURE(role_path, file);
+        sequence.role_files.insert_or_assign(role, FramePattern(role_path->string()));
+    }
     Diagnostics diagnostics;
     const CaptureReader reader(sequence, read_profiles(AFTERSHADE_SOURCE_DIR "/profiles", diagnostics), {});
     const CaptureHeader header = reader.read_header(1);
@@ -162,11 +196,26 @@ TEST_P(ProducerTable, SaysWhatTheFileHolds) {
 }
 
 INSTANTIATE_TEST_SUITE_P(RealFiles, ProducerTable, testing::ValuesIn(table()), [](const auto& row) {
-    std::string name = row.param.file + row.param.view;
+    std::string name =
+        row.param.file + row.param.view + row.param.chosen + std::to_string(row.param.role_files.size());
     std::replace_if(
         name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
     return name;
 });
+
+TEST(ShippedProfiles, ClaimOnlyRealFilesThatTestsCanRead) {
+    Diagnostics diagnostics;
+    for (const Profile& profile : read_profiles(AFTERSHADE_SOURCE_DIR "/profiles", diagnostics)) {
+        const auto is_verified = [](const ProfileFact& fact) { return !fact.verified.empty(); };
+        EXPECT_EQ(std::any_of(profile.facts.begin(), profile.facts.end(), is_verified),
+                  !profile.seen_on.empty())
+            << profile.id;
+        for (const std::string& file : profile.seen_on) {
+            AFTERSHADE_REQUIRE_CAPTURE(path, file);
+            EXPECT_TRUE(std::filesystem::exists(*path)) << profile.id << ": " << file;
+        }
+    }
+}
 
 /// 16 x 16 px of a constant each, by Gaffer's own tests: the layer depth has 0.09998, character's Z 0.5.
 TEST(NukesPartPerLayer, HasTheDepthOfThePartThatIsCalledDepth) {

@@ -4,6 +4,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <tuple>
 
 #include "framework/core/error.h"
 #include "framework/file/png_file.h"
@@ -162,6 +163,23 @@ TEST_F(Inspect, RefusesWrongWords) {
     EXPECT_NE(told({kSuzanne, "--frames", "3-4"}).find("inspect looks at one"), std::string::npos);
     EXPECT_NE(told({"a.exr", "--contact-sheet", "a.exr"}).find("a contact sheet is a .png file"),
               std::string::npos);
+}
+
+TEST_F(Inspect, FailsWhereALayerAViewOrARoleThatWasAskedForIsNotThere) {
+    const std::string file =
+        write_channels("f.exr", {"R", "G", "B", "diffuse.R", "diffuse.G", "diffuse.B"}).string();
+    for (const auto& [words, code, told] :
+         {std::tuple{std::vector<std::string>{"--layer", "beauty"}, ExitCode::usage,
+                     "has no layer 'beauty' (it has 'diffuse')"},
+          {{"--view", "left"}, ExitCode::capture, "has no view 'left'"},
+          {{"--role", "depth=" + file}, ExitCode::capture, "which channel is depth is not known"}}) {
+        std::vector<std::string> arguments = {file};
+        arguments.insert(arguments.end(), words.begin(), words.end());
+        const CommandResult result = inspect(arguments, code);
+        EXPECT_NE(result.err.find("f.exr: " + std::string(told)), std::string::npos) << result.err;
+        EXPECT_NE(result.out.find("diffuse.R"), std::string::npos) << "the channels are listed all the same";
+    }
+    EXPECT_EQ(json({kSuzanne, "--layer", "Nowhere"}, ExitCode::usage)["profile"]["id"], nullptr);
 }
 
 TEST_F(Inspect, PutsEveryRoleOnAContactSheet) {
