@@ -5,6 +5,7 @@
 #include "framework/batch/golden_grammar.h"
 #include "framework/core/data_path.h"
 #include "framework/core/schema_pieces.h"
+#include "framework/effect/manifest_grammar.h"
 #include "framework/image/capture_grammar.h"
 #include "framework/image/profile.h"
 #include "framework/image/profile_grammar.h"
@@ -61,8 +62,8 @@ const std::vector<Document>& documents() {
     static const std::vector<Document> all = {
         {"look", schema_of_looks, {&look_block(), &look_step_block(), &look_use_block()}},
         {"capture", schema_by(capture_schema), {&capture_block(), &decoding_table()}},
-        {"effect", schema_by(effect_schema)},
-        {"module", schema_by(module_schema)},
+        {"effect", schema_by(effect_schema), {&effect_block()}},
+        {"module", schema_by(module_schema), {&module_block()}},
         {"scene", schema_by(scene::scene_schema)},  // its tables are a page: scene-reference.md
         {"profile", schema_by(profile_schema), {&profile_block()}},
         {"scattering_profile", schema_by(schema::scattering_profile_schema)},

@@ -108,7 +108,7 @@ TEST(TileLists, SayWhatIsWrong) {
     expect(R"("far": {"doc": "."})", over + "\"far\"}",
            {"8: tile list 'far' is 'of' a texture's channel or has a 'predicate', one of the two"});
     expect(R"("far": {"predicate": "", "tile": 8, "doc": "."})", over + "\"far\"}",
-           {"8: tile list 'far': 'predicate' names no file"});
+           {"8: 'predicate' is empty: it names a file"});
     expect("", over + "\"\"}", {"6: 'over' names no tile list"});
     expect(R"("far": {"of": "mark.r", "doc": "."})", over + "\"far\"}",
            {"8: tile list 'far', of: 'mark' is not a texture of the effect with one layer of floats; did you mean "
@@ -118,7 +118,7 @@ TEST(TileLists, SayWhatIsWrong) {
     expect(R"("far": {"of": "marks.b", "doc": "."})", over + "\"far\"}",
            {"8: tile list 'far', of: 'marks.b' must end in a channel of 'marks', one of rg: \"marks.r\""});
     expect(R"("far": {"of": "marks.r", "tile": 8, "doc": "."})", over + "\"far\"}",
-           {"8: tile list 'far' has no key 'tile'"});
+           {"8: tile list 'far' has no key 'tile' where it has 'of'"});
     expect(kMarked, R"({"name": "x", "shader": "b.frag", "writes": ["marks"], "over": "marked"})",
            {"6: pass 'x': runs over tiles, so what it writes, 'marks', must have a 'scale' of the working grid, and be "
             "its level 0"});

@@ -16,6 +16,7 @@
 #include "framework/core/document.h"
 #include "framework/core/error.h"
 #include "framework/core/schema_pieces.h"
+#include "framework/effect/manifest_grammar.h"
 #include "framework/effect/registry.h"
 #include "framework/image/capture_grammar.h"
 #include "framework/image/profile.h"
