@@ -7,7 +7,7 @@
 #include "framework/core/data_path.h"
 #include "framework/core/error.h"
 #include "framework/image/color_space.h"
-#include "framework/image/frame_range.h"
+#include "framework/capture/frame_range.h"
 
 namespace aftershade::cli {
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "framework/core/diagnostics.h"
-#include "framework/image/exr_file.h"
-#include "framework/image/profile.h"
-#include "framework/image/sequence.h"
+#include "framework/file/exr_file.h"
+#include "framework/capture/profile.h"
+#include "framework/capture/sequence.h"
 
 namespace CLI {
 class App;

@@ -7,10 +7,10 @@
 #include <thread>
 #include <utility>
 
-#include "framework/image/capture.h"
+#include "framework/capture/capture.h"
 #include "framework/image/role.h"
-#include "framework/image/velocity_check.h"
-#include "framework/image/velocity_report.h"
+#include "framework/inspect/velocity_check.h"
+#include "framework/inspect/velocity_report.h"
 #include "framework/image/window.h"
 
 namespace aftershade::cli {

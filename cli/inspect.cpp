@@ -12,8 +12,8 @@
 #include "cli/inspect_report.h"
 #include "cli/verbs.h"
 #include "framework/core/data_path.h"
-#include "framework/image/contact_sheet.h"
-#include "framework/image/png_file.h"
+#include "framework/inspect/contact_sheet.h"
+#include "framework/file/png_file.h"
 
 namespace aftershade::cli {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "framework/image/capture.h"
-#include "framework/image/channel_statistics.h"
-#include "framework/image/exr_file.h"
+#include "framework/capture/capture.h"
+#include "framework/inspect/channel_statistics.h"
+#include "framework/file/exr_file.h"
 
 namespace aftershade::cli {
 

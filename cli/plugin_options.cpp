@@ -12,7 +12,7 @@
 #include "framework/batch/worker.h"
 #include "framework/core/atomic_file.h"
 #include "framework/core/status.h"
-#include "framework/effect/native_library.h"
+#include "framework/effect/native/native_library.h"
 
 namespace aftershade::cli {
 

@@ -8,7 +8,7 @@
 #include "cli/capture_options.h"
 #include "cli/interrupt.h"
 #include "cli/verbs.h"
-#include "framework/image/frame_range.h"
+#include "framework/capture/frame_range.h"
 #include "framework/scene/job.h"
 
 namespace aftershade::cli {

@@ -28,7 +28,7 @@ function(aftershade_native_effects TARGET FOLDER FUNCTION)
   file(CONFIGURE OUTPUT ${LISTING} @ONLY CONTENT [[// Written by cmake/native.cmake.
 #include <array>
 
-#include "framework/effect/native_library.h"
+#include "framework/effect/native/native_library.h"
 
 @DECLARATIONS@
 namespace aftershade {

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/compare/metrics.h"
-#include "framework/image/capture.h"
+#include "framework/capture/capture.h"
 #include "tests/lens.h"
 #include "tests/look_runner.h"
 #include "tests/polygon.h"

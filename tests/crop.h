@@ -1,7 +1,7 @@
 // A window cut out of a capture, as a renderer's region or overscan gives it.
 #pragma once
 
-#include "framework/image/capture_window.h"
+#include "framework/capture/capture_window.h"
 
 namespace aftershade::test {
 

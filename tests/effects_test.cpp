@@ -12,7 +12,7 @@
 #include "framework/batch/golden_case.h"
 #include "framework/core/param_type.h"
 #include "framework/effect/usage_check.h"
-#include "framework/image/frame_range.h"
+#include "framework/capture/frame_range.h"
 #include "tests/every_effect.h"
 
 namespace aftershade::test {

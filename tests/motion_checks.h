@@ -11,9 +11,9 @@
 #include <fmt/format.h>
 
 #include "framework/compare/metrics.h"
-#include "framework/image/exr_file.h"
-#include "framework/image/profile.h"
-#include "framework/image/sequence.h"
+#include "framework/file/exr_file.h"
+#include "framework/capture/profile.h"
+#include "framework/capture/sequence.h"
 #include "framework/scene/renderer.h"
 #include "tests/look_runner.h"
 #include "tests/scene/scene_text.h"

@@ -15,9 +15,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "framework/image/capture.h"
-#include "framework/image/profile.h"
-#include "framework/image/sequence.h"
+#include "framework/capture/capture.h"
+#include "framework/capture/profile.h"
+#include "framework/capture/sequence.h"
 #include "tests/look_runner.h"
 #include "tests/reference/burley.h"
 #include "tests/synthetic_capture.h"

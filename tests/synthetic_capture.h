@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "framework/image/capture.h"
+#include "framework/capture/capture.h"
 #include "framework/image/role.h"
 
 namespace aftershade::test {

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/image/exr_file.h"
+#include "framework/file/exr_file.h"
 #include "tests/cli/command.h"
 #include "tests/crop.h"
 #include "tests/look_runner.h"

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "effects/bokeh/bokeh_test.h"
-#include "framework/image/capture.h"
+#include "framework/capture/capture.h"
 #include "tests/aperture_checks.h"
 #include "tests/look_runner.h"
 #include "tests/synthetic_capture.h"

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "framework/image/capture.h"
+#include "framework/capture/capture.h"
 #include "tests/look_runner.h"
 
 namespace aftershade::test::bokeh {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "framework/image/exr_file.h"
+#include "framework/file/exr_file.h"
 #include "tests/cli/command.h"
 
 namespace aftershade::test {

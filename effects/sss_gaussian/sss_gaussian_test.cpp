@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/image/exr_file.h"
+#include "framework/file/exr_file.h"
 #include "framework/scattering/scattering_profile.h"
 #include "tests/cli/command.h"
 #include "tests/look_runner.h"

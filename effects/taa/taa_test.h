@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "framework/image/capture.h"
+#include "framework/capture/capture.h"
 #include "tests/look_runner.h"
 #include "tests/synthetic_capture.h"
 

@@ -8,7 +8,7 @@
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/text.h"
-#include "framework/image/frame_range.h"
+#include "framework/capture/frame_range.h"
 
 namespace aftershade {
 

@@ -6,7 +6,7 @@
 #include "framework/core/grammar_reader.h"
 #include "framework/core/text.h"
 #include "framework/core/units.h"
-#include "framework/image/frame_range.h"
+#include "framework/capture/frame_range.h"
 #include "framework/pipeline/look.h"
 
 namespace aftershade {

@@ -2,7 +2,8 @@
 
 #include "framework/compare/compare_files.h"
 #include "framework/core/units.h"
-#include "framework/image/document_forms.h"
+#include "framework/capture/document_forms.h"
+#include "framework/image/image_forms.h"
 
 namespace aftershade {
 

@@ -10,10 +10,10 @@
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
 #include "framework/core/text.h"
-#include "framework/image/exr_file.h"
-#include "framework/image/frame_range.h"
+#include "framework/file/exr_file.h"
+#include "framework/capture/frame_range.h"
 #include "framework/image/role.h"
-#include "framework/image/sequence.h"
+#include "framework/capture/sequence.h"
 
 namespace aftershade {
 

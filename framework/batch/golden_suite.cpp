@@ -13,7 +13,7 @@
 #include "framework/core/data_path.h"
 #include "framework/core/grammar_reader.h"
 #include "framework/core/grammar_schema.h"
-#include "framework/image/frame_range.h"
+#include "framework/capture/frame_range.h"
 
 namespace aftershade {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "framework/core/error.h"
-#include "framework/image/exr_file.h"
-#include "framework/image/png_file.h"
+#include "framework/file/exr_file.h"
+#include "framework/file/png_file.h"
 #include "framework/image/window.h"
 
 namespace aftershade {

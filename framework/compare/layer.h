@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "framework/image/exr_file.h"
+#include "framework/file/exr_file.h"
 #include "framework/image/image.h"
 
 namespace aftershade {

@@ -12,8 +12,8 @@
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
-#include "framework/image/hdr_file.h"
-#include "framework/image/png_file.h"
+#include "framework/file/hdr_file.h"
+#include "framework/file/png_file.h"
 
 namespace aftershade {
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "framework/core/grammar.h"
@@ -92,7 +93,7 @@ std::string filled(const std::string& text, const std::string& value);
 /// std::regex recurses for each of them.
 bool matches(const std::string& pattern, const std::string& text);
 /// JSON of our own as a node, without a place.
-Node parsed_json(const std::string& json);
+Node parsed_json(const std::string& text);
 bool equals(const Node& a, const Node& b);  ///< of scalars; a number is equal to the integer of its value
 
 void check_block(const Node& node, const Block& block, const Spot& spot, Diagnostics& diagnostics);

@@ -6,7 +6,7 @@
 
 #include "framework/core/param_type.h"
 #include "framework/core/units.h"
-#include "framework/effect/manifest_when.h"
+#include "framework/effect/manifest/manifest_when.h"
 
 namespace aftershade {
 

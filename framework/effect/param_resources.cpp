@@ -10,7 +10,7 @@
 #include "framework/core/error.h"
 #include "framework/core/param_type.h"
 #include "framework/effect/std430.h"
-#include "framework/image/picture.h"
+#include "framework/file/picture.h"
 
 namespace aftershade {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "framework/core/diagnostics.h"
-#include "framework/effect/manifest.h"
+#include "framework/effect/manifest/manifest.h"
 
 namespace aftershade {
 

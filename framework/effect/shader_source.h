@@ -18,7 +18,7 @@
 
 #include "framework/core/diagnostics.h"
 #include "framework/core/param.h"
-#include "framework/effect/manifest.h"
+#include "framework/effect/manifest/manifest.h"
 #include "framework/effect/param_reader.h"
 #include "framework/effect/param_resources.h"
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "framework/core/diagnostics.h"
-#include "framework/effect/manifest.h"
+#include "framework/effect/manifest/manifest.h"
 
 namespace aftershade {
 

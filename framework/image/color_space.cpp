@@ -114,15 +114,6 @@ bool is_xyz(const Chromaticities& p) {
     return p[0] == 1 && p[1] == 0 && p[2] == 0 && p[3] == 1 && p[4] == 0 && p[5] == 0;
 }
 
-Chromaticities stored_primaries(const ExrMetadata& metadata) {
-    Chromaticities primaries = kRec709;
-    const auto value = metadata.value("chromaticities");
-    const auto* stored = value ? std::get_if<std::vector<float>>(&*value) : nullptr;
-    if (stored && stored->size() == primaries.size())
-        std::copy(stored->begin(), stored->end(), primaries.begin());
-    return primaries;
-}
-
 ColorMatrix conversion_matrix(const Chromaticities& from, const Chromaticities& to) {
     if (from == to) return {1, 0, 0, 0, 1, 0, 0, 0, 1};  // to the last bit
     const ColorMatrix xyz = multiply(adaptation(from, to), xyz_from_rgb(from));

@@ -7,7 +7,6 @@
 #include <string_view>
 #include <vector>
 
-#include "framework/image/exr_file.h"
 #include "framework/image/image.h"
 
 namespace aftershade {
@@ -26,9 +25,6 @@ std::optional<Chromaticities> color_space_primaries(std::string_view name);
 std::vector<std::string> color_space_names();
 /// The name of known primaries, to 0.0005 a coordinate; "" for others.
 std::string name_of_primaries(const Chromaticities& primaries);
-
-/// The header's attribute; Rec. 709, as the OpenEXR specification says, where there is none.
-Chromaticities stored_primaries(const ExrMetadata& metadata);
 
 /// CIE XYZ stored as RGB: its values are absolute, so nothing is adapted to another white.
 bool is_xyz(const Chromaticities& primaries);

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "framework/image/exr_file.h"
 #include "framework/image/image.h"
+#include "framework/image/pixel_type.h"
 
 namespace aftershade {
 

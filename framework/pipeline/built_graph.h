@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/effect/manifest.h"
+#include "framework/effect/manifest/manifest.h"
 #include "framework/graph/executor.h"
 #include "framework/pipeline/graph_bindings.h"
 #include "framework/pipeline/graph_key.h"

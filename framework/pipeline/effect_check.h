@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "framework/core/diagnostics.h"
-#include "framework/effect/manifest.h"
+#include "framework/effect/manifest/manifest.h"
 #include "framework/gpu/context.h"
 #include "framework/pipeline/native_steps.h"
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "framework/core/error.h"
-#include "framework/image/camera_metadata.h"
+#include "framework/capture/camera_metadata.h"
 #include "framework/image/role.h"
 #include "framework/image/window.h"
 

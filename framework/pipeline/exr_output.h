@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "framework/image/capture.h"
+#include "framework/capture/capture.h"
 #include "framework/pipeline/output_options.h"
 #include "framework/pipeline/renderer.h"
 

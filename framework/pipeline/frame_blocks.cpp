@@ -9,7 +9,7 @@
 #include "framework/core/error.h"
 #include "framework/core/text.h"
 #include "framework/image/camera_matrix.h"
-#include "framework/image/cryptomatte.h"
+#include "framework/capture/cryptomatte.h"
 
 namespace aftershade {
 

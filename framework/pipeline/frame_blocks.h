@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "framework/effect/shader_source.h"
+#include "framework/pipeline/look_grammar.h"
 #include "framework/pipeline/pipeline.h"
 
 namespace aftershade {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "framework/image/capture_window.h"
+#include "framework/capture/capture_window.h"
 
 namespace aftershade {
 

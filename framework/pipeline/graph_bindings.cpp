@@ -7,7 +7,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/param_type.h"
-#include "framework/image/cryptomatte.h"
+#include "framework/capture/cryptomatte.h"
 
 namespace aftershade {
 

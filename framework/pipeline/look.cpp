@@ -138,8 +138,8 @@ private:
         for (Member& member : copy.members) {
             if (member.key == "params")
                 for (Member& value : member.value.members) value.value = with_variables(value.value, scope);
-            if (member.key == "mix" || member.key == "mask")
-                member.value = with_variables(member.value, scope);
+            for (const char* key : {"mix", "mask"})
+                if (member.key == key) member.value = with_variables(member.value, scope);
         }
         return copy;
     }

@@ -22,9 +22,6 @@ struct WiringSpec {
     Place place;
 };
 
-/// Most ids, ranges of ids and names of one mask: what a uniform block of 16 KiB, GL's least, holds.
-inline constexpr std::size_t kMaxMaskObjects = 1000;
-
 /// "mask": where a step works. One of role, objects and file is set.
 struct MaskSpec {
     std::string role;               ///< of the capture, with one channel: "mask", "aov:hair"

@@ -4,8 +4,7 @@
 
 #include "framework/core/schema_pieces.h"
 #include "framework/core/text.h"
-#include "framework/image/document_forms.h"
-#include "framework/pipeline/look.h"
+#include "framework/image/image_forms.h"
 
 namespace aftershade {
 
@@ -31,7 +30,7 @@ Form any_object(const std::string& type) {
 
 /// Objects are read, and refused, by whoever reads the mask.
 Form objects() {
-    const Form one = grammar::custom({.type = "[entry](#objects)", .schema = schema::object_key().dump()});
+    const Form one = grammar::custom({.type = "[entry](params.md#objects)", .schema = schema::object_key().dump()});
     return grammar::any_of({one, grammar::list(one, {.min = 1, .max = int(kMaxMaskObjects)})});
 }
 

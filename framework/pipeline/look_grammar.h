@@ -2,9 +2,14 @@
 // each effect are its manifest says.
 #pragma once
 
+#include <cstddef>
+
 #include "framework/core/grammar.h"
 
 namespace aftershade {
+
+/// Most ids, ranges of ids and names of one mask: what a uniform block of 16 KiB, GL's least, holds.
+inline constexpr std::size_t kMaxMaskObjects = 1000;
 
 /// The document. Its steps are checked one by one, when variables are put in.
 const grammar::Block& look_block();

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "framework/core/status.h"
-#include "framework/effect/native_effect.h"
-#include "framework/effect/native_library.h"
+#include "framework/effect/native/native_effect.h"
+#include "framework/effect/native/native_library.h"
 #include "framework/gpu/texture.h"
 #include "framework/pipeline/pipeline.h"
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "framework/core/diagnostics.h"
-#include "framework/image/capture.h"
-#include "framework/image/frame_range.h"
+#include "framework/capture/capture.h"
+#include "framework/capture/frame_range.h"
 #include "framework/pipeline/output_options.h"
 #include "framework/pipeline/renderer.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/image/exr_file.h"
+#include "framework/file/exr_file.h"
 
 namespace aftershade {
 

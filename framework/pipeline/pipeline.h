@@ -9,9 +9,9 @@
 
 #include "framework/core/diagnostics.h"
 #include "framework/core/param.h"
-#include "framework/effect/manifest.h"
+#include "framework/effect/manifest/manifest.h"
 #include "framework/effect/registry.h"
-#include "framework/image/capture.h"
+#include "framework/capture/capture.h"
 #include "framework/pipeline/look.h"
 #include "framework/pipeline/value_source.h"
 

@@ -12,7 +12,7 @@
 
 #include "framework/effect/pass_program.h"
 #include "framework/graph/executor.h"
-#include "framework/image/capture.h"
+#include "framework/capture/capture.h"
 #include "framework/pipeline/audit.h"
 #include "framework/pipeline/native_steps.h"
 #include "framework/pipeline/pipeline.h"

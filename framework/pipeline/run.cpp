@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "framework/image/capture_window.h"
+#include "framework/capture/capture_window.h"
 #include "framework/image/window.h"
 #include "framework/pipeline/frame_loader.h"
 #include "framework/pipeline/output.h"

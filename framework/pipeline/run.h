@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/image/capture.h"
+#include "framework/capture/capture.h"
 #include "framework/pipeline/output_options.h"
 #include "framework/pipeline/pipeline.h"
 #include "framework/pipeline/renderer.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/effect/manifest.h"
+#include "framework/effect/manifest/manifest.h"
 
 namespace aftershade {
 

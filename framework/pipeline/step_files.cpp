@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "framework/core/error.h"
-#include "framework/image/picture.h"
+#include "framework/file/picture.h"
 
 namespace aftershade {
 

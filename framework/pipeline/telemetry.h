@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/effect/manifest.h"
+#include "framework/effect/manifest/manifest.h"
 #include "framework/graph/executor.h"
 #include "framework/image/image.h"
 

@@ -9,7 +9,7 @@
 #include "framework/core/param_type.h"
 #include "framework/core/text.h"
 #include "framework/core/units.h"
-#include "framework/image/cryptomatte.h"
+#include "framework/capture/cryptomatte.h"
 #include "framework/image/role.h"
 
 namespace aftershade {

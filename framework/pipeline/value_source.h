@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "framework/core/param.h"
-#include "framework/image/capture.h"
+#include "framework/capture/capture.h"
 
 namespace aftershade {
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "framework/core/diagnostics.h"
-#include "framework/effect/manifest.h"
+#include "framework/effect/manifest/manifest.h"
 #include "framework/pipeline/pipeline.h"
 
 namespace aftershade {

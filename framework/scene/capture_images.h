@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "framework/image/capture.h"
+#include "framework/capture/capture.h"
 #include "framework/scene/world.h"
 
 namespace aftershade::scene {

@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "framework/image/document_forms.h"
+#include "framework/capture/document_forms.h"
 #include "framework/scattering/scattering_form.h"
 
 namespace aftershade::scene {

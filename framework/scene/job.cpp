@@ -10,8 +10,8 @@
 
 #include "framework/core/error.h"
 #include "framework/core/units.h"
-#include "framework/image/capture_writer.h"
-#include "framework/image/light.h"
+#include "framework/capture/capture_writer.h"
+#include "framework/capture/light.h"
 #include "framework/scene/samples.h"
 
 namespace aftershade::scene {

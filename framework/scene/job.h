@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "framework/core/diagnostics.h"
-#include "framework/image/exr_file.h"
-#include "framework/image/profile.h"
+#include "framework/file/exr_file.h"
+#include "framework/capture/profile.h"
 #include "framework/scene/renderer.h"
 #include "framework/scene/scene.h"
 

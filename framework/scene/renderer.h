@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "framework/image/capture.h"
+#include "framework/capture/capture.h"
 #include "framework/scene/world.h"
 
 namespace aftershade::scene {

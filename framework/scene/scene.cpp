@@ -4,7 +4,7 @@
 #include <array>
 
 #include "framework/core/error.h"
-#include "framework/image/frame_range.h"
+#include "framework/capture/frame_range.h"
 #include "framework/scene/scene_reader.h"
 
 namespace aftershade::scene {

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/image/color_space.h"
-#include "framework/image/exr_file.h"
-#include "framework/image/png_file.h"
+#include "framework/file/exr_file.h"
+#include "framework/file/png_file.h"
 #include "tests/cli/command.h"
 #include "tests/real_captures.h"
 #include "tests/synthetic_capture.h"

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "framework/image/exr_file.h"
+#include "framework/file/exr_file.h"
 #include "tests/cli/command.h"
 #include "tests/compare/pictures.h"
 

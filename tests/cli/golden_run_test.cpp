@@ -5,7 +5,7 @@
 #include <set>
 #include <thread>
 
-#include "framework/image/png_file.h"
+#include "framework/file/png_file.h"
 #include "tests/cli/golden_suite.h"
 
 namespace aftershade::test {

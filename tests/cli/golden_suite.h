@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/image/exr_file.h"
+#include "framework/file/exr_file.h"
 #include "tests/cli/command.h"
 #include "tests/synthetic_capture.h"
 

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "framework/core/error.h"
-#include "framework/image/png_file.h"
+#include "framework/file/png_file.h"
 #include "tests/cli/command.h"
 #include "tests/real_captures.h"
 #include "tests/synthetic_capture.h"

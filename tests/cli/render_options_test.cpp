@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "framework/image/png_file.h"
+#include "framework/file/png_file.h"
 #include "tests/cli/command.h"
 #include "tests/synthetic_capture.h"
 

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "framework/image/exr_file.h"
+#include "framework/file/exr_file.h"
 #include "tests/cli/command.h"
 #include "tests/temporary_folder.h"
 

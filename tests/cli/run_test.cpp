@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/core/error.h"
-#include "framework/image/png_file.h"
+#include "framework/file/png_file.h"
 #include "tests/cli/command.h"
 #include "tests/synthetic_capture.h"
 

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "framework/image/exr_file.h"
+#include "framework/file/exr_file.h"
 #include "framework/image/image.h"
-#include "framework/image/png_file.h"
+#include "framework/file/png_file.h"
 #include "tests/temporary_folder.h"
 
 namespace aftershade::test {

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "framework/effect/manifest.h"
+#include "framework/effect/manifest/manifest.h"
 #include "tests/documents.h"
 #include "tests/temporary_folder.h"
 

@@ -1,4 +1,4 @@
-#include "framework/effect/manifest.h"
+#include "framework/effect/manifest/manifest.h"
 
 #include <algorithm>
 

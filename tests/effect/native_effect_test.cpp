@@ -1,4 +1,4 @@
-#include "framework/effect/native_effect.h"
+#include "framework/effect/native/native_effect.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "framework/core/error.h"
-#include "framework/effect/native_library.h"
+#include "framework/effect/native/native_library.h"
 
 namespace aftershade {
 

@@ -1,4 +1,4 @@
-#include "framework/effect/native_library.h"
+#include "framework/effect/native/native_library.h"
 
 #include <gtest/gtest.h>
 

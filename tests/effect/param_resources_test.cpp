@@ -7,7 +7,7 @@
 #include <random>
 
 #include "framework/core/param_types/curve.h"
-#include "framework/image/png_file.h"
+#include "framework/file/png_file.h"
 #include "tests/core/param_specs.h"
 #include "tests/effect/param_resources_on.h"
 #include "tests/temporary_folder.h"

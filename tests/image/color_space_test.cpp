@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/image/image_files.h"
+#include "tests/file/image_files.h"
 
 namespace aftershade::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/image/cryptomatte.h"
+#include "framework/capture/cryptomatte.h"
 #include "tests/pipeline/effect_fixture.h"
 
 namespace aftershade::test {

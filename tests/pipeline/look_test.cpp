@@ -4,6 +4,8 @@
 
 #include <sstream>
 
+#include "framework/pipeline/look_grammar.h"
+
 namespace aftershade {
 namespace {
 

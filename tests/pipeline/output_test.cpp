@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "framework/core/error.h"
-#include "framework/image/png_file.h"
+#include "framework/file/png_file.h"
 #include "tests/synthetic_capture.h"
 #include "tests/temporary_folder.h"
 

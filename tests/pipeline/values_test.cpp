@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
-#include "framework/image/cryptomatte.h"
-#include "framework/image/png_file.h"
+#include "framework/capture/cryptomatte.h"
+#include "framework/file/png_file.h"
 #include "tests/pipeline/effect_fixture.h"
 
 namespace aftershade::test {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "framework/core/error.h"
-#include "framework/effect/native_effect.h"
-#include "framework/effect/native_library.h"
+#include "framework/effect/native/native_effect.h"
+#include "framework/effect/native/native_library.h"
 
 namespace {
 

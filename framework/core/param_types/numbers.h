@@ -1,6 +1,8 @@
 // What the types that are numbers share. Internal to framework/core/param_types.
 #pragma once
 
+#include <string_view>
+
 #include "framework/core/param_type.h"
 
 namespace aftershade {

@@ -1,0 +1,159 @@
+#include <algorithm>
+#include <cmath>
+
+#include "framework/batch/golden_run.h"
+#include "framework/compare/difference_picture.h"
+#include "framework/core/atomic_file.h"
+#include "framework/core/error.h"
+#include "framework/file/png_file.h"
+
+namespace aftershade {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<std::string> reasons_of(const Comparison& comparison) {
+    std::vector<std::string> reasons = comparison.faults;
+    for (const LayerComparison& layer : comparison.layers)
+        for (const std::string& reason : layer.reasons) reasons.push_back(layer.label + ": " + reason);
+    return reasons;
+}
+
+/// The image against one approved image.
+void compare_with(const ApprovedImage& approved, const GoldenCase& test, const RenderedImage& rendered,
+                  const std::string& look_hash, const GoldenEnvironment& environment, GoldenImage& result) {
+    result.approved = approved;
+    result.comparison = compare_files(approved.file, rendered.file, test.rules);
+    result.bits_equal = has_equal_bits(*result.comparison);
+    result.verdict = result.comparison->verdict;
+    result.reasons = reasons_of(*result.comparison);
+    result.exact_tier = approved.sidecar && !look_hash.empty() && approved.sidecar->look_hash == look_hash &&
+                        approved.sidecar->environment.equals(environment);
+    if (!result.exact_tier || result.bits_equal) return;
+    result.verdict = std::max(result.verdict, Verdict::warning);
+    result.reasons.push_back("bits differ although renderer, driver, CPU, look and effects are those of " +
+                             approved.file.filename().string());
+}
+
+/// The layer to look at: that of the worst verdict, of equal ones the first with colours.
+class PictureTaker {
+public:
+    void add(const LayerComparison& layer, const LayerImages& images) {
+        const int rank = 2 * int(layer.verdict) + is_perceptual(layer.role);
+        if (rank <= best_ || images.reference.empty()) return;
+        best_ = rank;
+        row_ = side_by_side_row(layer, images);
+    }
+    const std::optional<SideBySideRow>& row() const { return row_; }
+
+private:
+    int best_ = -1;
+    std::optional<SideBySideRow> row_;
+};
+
+/// Eight times what `fail` lets pass is white, or the largest difference where that is smaller: of light a
+/// few pixels would leave all others black.
+double difference_scale(const GoldenImage& result, const CompareRules& rules) {
+    double largest = 0;
+    if (result.comparison)
+        for (const LayerComparison& layer : result.comparison->layers)
+            if (largest == 0 || is_perceptual(layer.role))
+                largest = std::max(largest, layer.differences.largest.value);
+    const double white = std::min(largest, 8 * rules.fail.limit);
+    return white > 0 && std::isfinite(white) ? 1 / white : 1;
+}
+
+void copy_into(const fs::path& from, const fs::path& to) {
+    AtomicFile file(to);
+    std::error_code failure;
+    fs::copy_file(from, file.temporary_path(), fs::copy_options::overwrite_existing, failure);
+    if (failure) throw Error(ExitCode::output, to.string() + ": " + failure.message());
+    file.commit();
+}
+
+/// The names in the result begin with that of the report's folder of pictures.
+void write_pictures(const GoldenCase& test, const RenderedImage& rendered, ReportPictures& report,
+                    GoldenImage& result) {
+    std::string stem = test.name + "." + rendered.name.substr(test.stem.size() + 1);
+    std::ranges::replace(stem, '/', '.');
+    const auto path = [&](const std::string& kind, const char* extension = ".png") {
+        return report.add(stem + "." + kind + extension);
+    };
+    const auto told = [&](const fs::path& file) {
+        return (report.folder().filename() / file.filename()).string();
+    };
+    GoldenPictures& pictures = result.pictures;
+    copy_into(rendered.file, path("test", ".exr"));
+    pictures.test_exr = told(path("test", ".exr"));
+    // Without an approved image the new one stands for both; there is no difference to be seen.
+    const fs::path reference = result.approved ? result.approved->file : rendered.file;
+    PictureTaker taker;
+    pictures.difference_scale = difference_scale(result, test.rules);
+    ComparisonPictures all({true, pictures.difference_scale}, true, true, true);
+    const Comparison comparison = compare_files(reference, rendered.file, test.rules,
+                                                [&](const LayerComparison& layer, LayerImages& images) {
+                                                    taker.add(layer, images);
+                                                    all.add(layer, images);
+                                                });
+    if (result.approved) {
+        copy_into(reference, path("reference", ".exr"));
+        pictures.reference_exr = told(path("reference", ".exr"));
+    }
+    if (!taker.row()) return;  // nothing could be compared
+    const SideBySideRow& row = *taker.row();
+    write_png(path("test"), row.pictures[1]);
+    pictures.test = told(path("test"));
+    if (!result.approved) return;
+    write_png(path("reference"), row.pictures[0]);
+    pictures.reference = told(path("reference"));
+    if (result.bits_equal) return;
+    all.write_difference(path("difference"));
+    pictures.difference = told(path("difference"));
+    all.write_side_by_side(path("side_by_side"), result.name);
+    pictures.side_by_side = told(path("side_by_side"));
+    if (std::ranges::none_of(comparison.layers,
+                             [](const LayerComparison& layer) { return layer.hdr_flip || layer.ldr_flip; }))
+        return;
+    all.write_heat_map(path("flip"));
+    pictures.heat_map = told(path("flip"));
+}
+
+}  // namespace
+
+bool has_equal_bits(const Comparison& comparison) {
+    return comparison.verdict <= Verdict::failure && comparison.faults.empty() &&
+           std::ranges::all_of(comparison.layers,
+                               [](const LayerComparison& layer) { return layer.differences.bits_equal; });
+}
+
+GoldenImage judge_image(const GoldenCase& test, const RenderedImage& rendered, const std::string& look_hash,
+                        const GoldenEnvironment& environment, ReportPictures* pictures) {
+    const std::vector<ApprovedImage> approved = approved_images(test.goldens, rendered.name, environment);
+    GoldenImage best;
+    bool own_bits_differ = false;
+    for (const ApprovedImage& candidate : approved) {
+        GoldenImage result;
+        compare_with(candidate, test, rendered, look_hash, environment, result);
+        own_bits_differ |= result.exact_tier && !result.bits_equal;
+        if (!best.approved || result.verdict < best.verdict) best = std::move(result);
+        if (best.verdict == Verdict::same || (own_bits_differ && best.verdict == Verdict::warning)) break;
+    }
+    best.name = rendered.name, best.output = rendered.output, best.frame = rendered.frame;
+    best.approved_count = approved.size();
+    // Another renderer's image may let the picture pass, but not the bits.
+    if (own_bits_differ && best.verdict == Verdict::same) {
+        best.verdict = Verdict::warning;
+        best.reasons.push_back(
+            "bits differ from this renderer's own approved image, although renderer, "
+            "driver, CPU, look and effects are the same");
+    }
+    if (approved.empty()) {
+        best.verdict = Verdict::failure;
+        best.reasons = {"no golden " + (test.goldens / (rendered.name + ".exr")).string()};
+    }
+    if (pictures) write_pictures(test, rendered, *pictures, best);
+    return best;
+}
+
+}  // namespace aftershade

@@ -1,0 +1,125 @@
+#include "framework/capture/camera_metadata.h"
+
+#include <algorithm>
+#include <array>
+
+#include "framework/core/error.h"
+#include "framework/core/units.h"
+
+namespace aftershade {
+
+namespace {
+
+/// OpenEXR's standard attributes, ImfStandardAttributes.h: focus in metres, lengths in millimetres.
+struct StandardAttribute {
+    const char* attribute;
+    const char* field;
+};
+constexpr std::array kStandard = {
+    StandardAttribute{"focus", "focus_distance"},
+    StandardAttribute{"aperture", "f_number"},
+    StandardAttribute{"nominalFocalLength", "focal_length"},
+    StandardAttribute{"effectiveFocalLength", "focal_length"},
+};
+
+void set_if_known(Camera& camera, const CameraField& field, std::optional<double> value,
+                  const std::string& attribute) {
+    if (value && *value >= field.min && !camera.get(field.name))
+        camera.set(field.name, *value, "attribute " + attribute);
+}
+
+/// EXR's matrices act on row vectors.
+std::optional<CameraMatrix> transposed_matrix(const ExrMetadata& metadata, const char* name) {
+    const auto value = metadata.value(name);
+    const auto* stored = value ? std::get_if<std::vector<float>>(&*value) : nullptr;
+    if (!stored || stored->size() != 16) return std::nullopt;
+    CameraMatrix matrix{};
+    for (std::size_t row = 0; row < 4; ++row)
+        for (std::size_t column = 0; column < 4; ++column)
+            matrix[row * 4 + column] = (*stored)[column * 4 + row];
+    return matrix;
+}
+
+std::vector<float> row_vector_matrix(const CameraMatrix& matrix) {
+    std::vector<float> stored(16);
+    for (std::size_t row = 0; row < 4; ++row)
+        for (std::size_t column = 0; column < 4; ++column)
+            stored[column * 4 + row] = float(matrix[row * 4 + column]);
+    return stored;
+}
+
+}  // namespace
+
+Camera camera_of_metadata(const ExrMetadata& metadata, const Profile& profile) {
+    Camera camera;
+    const std::vector<std::string> names = metadata.names();
+    for (const auto& [name, source] : profile.camera) {
+        const CameraField& field = *find_camera_field(name);
+        for (const std::string& pattern : source.attributes) {
+            const auto fits = [&](const std::string& n) { return matches_pattern(n, pattern); };
+            const auto found = std::find_if(names.begin(), names.end(), fits);
+            if (found == names.end()) continue;
+            const auto stored = metadata.number(*found);
+            const bool same = source.unit == field.unit;
+            set_if_known(camera, field,
+                         stored && !same ? convert_unit(*stored, source.unit, field.unit) : stored, *found);
+        }
+    }
+    for (const CameraField& field : camera_fields()) {
+        const std::string own = "aftershade/camera/" + field.name;
+        set_if_known(camera, field, metadata.number(own), own);
+    }
+    for (const StandardAttribute& standard : kStandard)
+        set_if_known(camera, *find_camera_field(standard.field), metadata.number(standard.attribute),
+                     standard.attribute);
+    const auto sensor = metadata.value("sensorOverallDimensions");
+    if (const auto* size = sensor ? std::get_if<std::vector<float>>(&*sensor) : nullptr;
+        size && !size->empty())
+        set_if_known(camera, *find_camera_field("sensor_width"), size->front(), "sensorOverallDimensions");
+    const std::string own_model = "aftershade/camera/lens_model";
+    if (const auto model = metadata.text(own_model)) camera.set_lens_model(*model, "attribute " + own_model);
+    else if (!profile.lens_model.empty()) camera.set_lens_model(profile.lens_model, "profile " + profile.id);
+    camera.camera_from_world = transposed_matrix(metadata, "worldToCamera");
+    camera.ndc_from_world = transposed_matrix(metadata, "worldToNDC");
+    const auto jitter = metadata.value("aftershade/jitter_px");
+    if (const auto* px = jitter ? std::get_if<std::vector<float>>(&*jitter) : nullptr; px && px->size() == 2)
+        camera.jitter_px = {double((*px)[0]), double((*px)[1])};
+    return camera;
+}
+
+void add_attributes(const Camera& camera, const std::vector<CaptureLight>& lights,
+                    std::map<std::string, ExrValue>& attributes) {
+    for (const auto& [field, value] : camera.values())
+        attributes["aftershade/camera/" + field] = float(value);
+    if (!camera.lens_model.empty()) attributes["aftershade/camera/lens_model"] = camera.lens_model;
+    const auto add = [&](const char* field, const char* attribute) {
+        if (const auto value = camera.get(field)) attributes[attribute] = float(*value);
+    };
+    add("focus_distance", "focus");
+    add("f_number", "aperture");
+    add("focal_length", "nominalFocalLength");
+    if (camera.camera_from_world) attributes["worldToCamera"] = row_vector_matrix(*camera.camera_from_world);
+    if (camera.ndc_from_world) attributes["worldToNDC"] = row_vector_matrix(*camera.ndc_from_world);
+    if (camera.jitter_px)
+        attributes["aftershade/jitter_px"] =
+            std::vector<float>{float((*camera.jitter_px)[0]), float((*camera.jitter_px)[1])};
+    if (!lights.empty()) attributes["aftershade/lights"] = format_lights(lights);
+}
+
+std::vector<CaptureLight> lights_of_metadata(const ExrMetadata& metadata, const std::filesystem::path& path) {
+    const std::string name = "aftershade/lights";
+    const auto text = metadata.text(name);
+    const auto names = metadata.names();
+    if (!text && std::find(names.begin(), names.end(), name) != names.end())
+        throw Error(ExitCode::capture, path.string() + ": attribute " + name + " is no text");
+    if (!text) return {};
+    Diagnostics diagnostics;
+    std::vector<CaptureLight> lights;
+    if (const auto node = parse_document(*text, name, diagnostics)) lights = parse_lights(*node, diagnostics);
+    if (!diagnostics.has_errors()) return lights;
+    const Diagnostic& fault = diagnostics.all().front();
+    throw Error(ExitCode::capture,
+                path.string() + ": attribute " + to_string(fault.place) + ": " + fault.message);
+}
+
+}  // namespace aftershade

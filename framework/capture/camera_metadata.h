@@ -1,0 +1,30 @@
+// The camera and the lights out of a file's header.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "framework/image/camera.h"
+#include "framework/file/exr_file.h"
+#include "framework/capture/light.h"
+#include "framework/capture/profile.h"
+
+namespace aftershade {
+
+/// The profile's own attributes first, then OpenEXR's standard ones (focus, aperture, nominalFocalLength,
+/// sensorOverallDimensions, worldToCamera, worldToNDC) and aftershade/camera/<field>. Values that are not
+/// positive where the field must be are taken as not known: producers write 0 for that.
+Camera camera_of_metadata(const ExrMetadata& metadata, const Profile& profile);
+
+/// The way back: aftershade/camera/..., OpenEXR's own focus, aperture and nominalFocalLength, both matrices,
+/// aftershade/jitter_px and aftershade/lights, each where it is known.
+void add_attributes(const Camera& camera, const std::vector<CaptureLight>& lights,
+                    std::map<std::string, ExrValue>& attributes);
+
+/// The attribute aftershade/lights; none where there is no such text. Throws Error(ExitCode::capture) that
+/// begins with `path` where the text is no list of lights.
+std::vector<CaptureLight> lights_of_metadata(const ExrMetadata& metadata, const std::filesystem::path& path);
+
+}  // namespace aftershade

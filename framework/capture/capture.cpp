@@ -1,0 +1,297 @@
+#include "framework/capture/capture_internal.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "framework/core/error.h"
+#include "framework/capture/camera_metadata.h"
+#include "framework/capture/camera_motion.h"
+#include "framework/capture/cryptomatte.h"
+#include "framework/capture/decode.h"
+#include "framework/image/role.h"
+
+namespace aftershade {
+
+namespace {
+
+/// What a file of one role may call its channels, by their number.
+std::vector<std::vector<std::string>> plain_names(int channels) {
+    switch (channels) {
+        case 1: return {{"Z"}, {"Y"}, {"R"}, {"V"}, {"X"}, {"I"}};
+        case 2: return {{"R", "G"}, {"X", "Y"}, {"x", "y"}, {"u", "v"}, {"U", "V"}};
+        case 3: return {{"R", "G", "B"}, {"X", "Y", "Z"}};
+        default: return {{"R", "G", "B", "A?"}};
+    }
+}
+
+std::vector<std::string> listed(const FoundChannels& found) {
+    std::vector<std::string> names;
+    for (const auto& layer : found)
+        for (const std::string& name : layer)
+            if (!name.empty()) names.push_back(name);
+    return names;
+}
+
+Window grid_of(const FrameFile& file, const FoundChannels& channels, const std::string& luminance) {
+    if (!luminance.empty()) return file.window_of(luminance);
+    return channels.empty() ? file.merged().data_window : file.window_of(channels[0][0]);
+}
+
+std::vector<std::string> present_of(const std::vector<std::string>& names) {
+    std::vector<std::string> present;
+    for (const std::string& name : names)
+        if (!name.empty()) present.push_back(name);
+    return present;
+}
+
+/// One layer over the grid, in the role's channel order. Of a component that the file lacks, alpha is 1 and
+/// others 0.
+Image read_layer(const FrameFile& file, const std::vector<std::string>& names, const Window& grid,
+                 float outside) {
+    const std::vector<std::string> present = present_of(names);
+    if (present.empty()) return Image(grid.width(), grid.height(), int(names.size()));
+    Image stored = file.read_floats(present, grid, outside);
+    if (present.size() == names.size()) return stored;
+
+    constexpr std::size_t kAlpha = 3;
+    Image filled(stored.width(), stored.height(), int(names.size()));
+    const std::size_t pixels = stored.floats().size() / present.size();
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+        std::size_t next = 0;
+        for (std::size_t c = 0; c < names.size(); ++c) {
+            const float absent = c == kAlpha ? 1.0f : 0.0f;
+            filled.floats()[pixel * names.size() + c] =
+                names[c].empty() ? absent : stored.floats()[pixel * present.size() + next++];
+        }
+    }
+    return filled;
+}
+
+Image read_layers(const FrameFile& file, const FoundChannels& channels, const Window& grid, float outside) {
+    Image image = read_layer(file, channels[0], grid, outside);
+    for (std::size_t i = 1; i < channels.size(); ++i) {
+        const Image layer = read_layer(file, channels[i], grid, outside);
+        for (std::size_t j = 0; j < layer.floats().size(); ++j) image.floats()[j] += layer.floats()[j];
+    }
+    return image;
+}
+
+}  // namespace
+
+CaptureReader::CaptureReader(const Sequence& sequence, std::vector<Profile> profiles, ReadLimits limits)
+    : sequence_(sequence), profiles_(std::move(profiles)), limits_(limits) {}
+
+CaptureReader::~CaptureReader() = default;
+
+const Profile& CaptureReader::choose_profile(const ExrPart& part, CaptureHeader& header) const {
+    if (sequence_.profile == "auto") {
+        const ProfileChoice choice = detect_profile(profiles_, part, header.path.string());
+        header.profile_reason = choice.reason;
+        return *choice.profile;
+    }
+    header.profile_reason = "chosen by name";
+    for (const Profile& profile : profiles_)
+        if (profile.id == sequence_.profile) return profile;
+    std::vector<std::string> ids;
+    for (const Profile& profile : profiles_) ids.push_back(profile.id);
+    throw Error(ExitCode::usage,
+                "no profile '" + sequence_.profile + "'; known: " + list_of_names(ids, "and"));
+}
+
+void CaptureReader::add_role(OpenFrame& open, const std::string& role, const RoleDecoding& decoding) const {
+    const auto own_file = open.role_files.find(role);
+    const FrameFile& file = own_file == open.role_files.end() ? *open.main : *own_file->second;
+    RoleSource source;
+    source.file = &file;
+    source.decoding = decoding;
+    const std::string layer = find_layer(*open.profile, file.merged());
+    auto found = decoding.layers.empty() ? std::nullopt : find_channels(decoding, layer, file.merged());
+    if (!found && own_file != open.role_files.end())
+        for (const auto& names : plain_names(find_role(role)->channels)) {
+            RoleDecoding plain;
+            plain.layers = {names};
+            if (!found) found = find_channels(plain, "", file.merged());
+        }
+    RoleDecoding luminance;
+    luminance.layers = {{decoding.luminance}};
+    if (found) source.channels = std::move(*found);
+    else if (!decoding.luminance.empty() && find_channels(luminance, "", file.merged()))
+        source.luminance = decoding.luminance;
+    else return;
+    open.header.role_channels[role] =
+        source.luminance.empty() ? listed(source.channels) : std::vector{source.luminance};
+    open.roles[role] = std::move(source);
+}
+
+void CaptureReader::find_roles(OpenFrame& open) const {
+    std::set<std::string> names;  // aov:<name> too, which no table lists
+    for (const auto& [name, decoding] : open.profile->roles) names.insert(name);
+    for (const auto& [name, decoding] : sequence_.channels) names.insert(name);
+    for (const auto& [name, file] : open.role_files) names.insert(name);
+    for (const std::string& name : names) {
+        const auto own = sequence_.channels.find(name);
+        const auto profiled = open.profile->roles.find(name);
+        if (own != sequence_.channels.end()) add_role(open, name, own->second);
+        else if (profiled != open.profile->roles.end()) add_role(open, name, profiled->second);
+        else add_role(open, name, RoleDecoding{});
+    }
+    if (sequence_.cryptomatte) {
+        RoleSource source;
+        source.file = open.main.get();
+        source.from_cryptomatte = true;
+        if (!sequence_.cryptomatte->mask.empty()) open.roles[kMaskRole] = source;
+        if (!open.roles.contains(kObjectIdRole)) open.roles[kObjectIdRole] = source;
+    }
+    for (const auto& [role, source] : open.roles) {
+        open.header.roles.push_back(role);
+        if (source.file != open.main.get() || source.channels.empty()) open.header.derived_roles.insert(role);
+    }
+}
+
+CaptureReader::OpenFrame CaptureReader::open(int frame) const {
+    OpenFrame open;
+    open.main = std::make_unique<FrameFile>(sequence_.path_of(frame), limits_, sequence_.view);
+    for (const auto& [role, pattern] : sequence_.role_files)
+        open.role_files[role] = std::make_unique<FrameFile>(pattern.path(frame), limits_, sequence_.view);
+    const ExrPart& part = open.main->merged();
+    CaptureHeader& header = open.header;
+    header.frame = header.source_frame = frame;
+    header.path = open.main->path();
+    header.view = open.main->view();
+    header.display_window = part.display_window;
+    header.pixel_aspect = part.pixel_aspect;
+    header.metadata = part.metadata;
+    for (const ExrChannel& channel : part.channels) header.channels.push_back(channel.name);
+    open.profile = &choose_profile(part, header);
+    header.profile = open.profile->id;
+    header.camera = sequence_.camera;
+    header.camera.complete_from(camera_of_metadata(part.metadata, *open.profile));
+    header.lights = sequence_.lights ? *sequence_.lights : lights_of_metadata(part.metadata, header.path);
+    find_roles(open);
+
+    const auto color = open.roles.find(kColorRole);
+    header.data_window = color == open.roles.end()
+                             ? part.data_window
+                             : grid_of(*color->second.file, color->second.channels, color->second.luminance);
+    const std::string& space =
+        sequence_.color_space == "auto" ? open.profile->color_space : sequence_.color_space;
+    open.stored_primaries = space == "auto" ? stored_primaries(part.metadata) : *color_space_primaries(space);
+    // XYZ has no primaries that light could have: effects see it as Rec. 709.
+    header.primaries = is_xyz(open.stored_primaries) ? kRec709 : open.stored_primaries;
+    return open;
+}
+
+bool CaptureReader::has_frame(int frame) const {
+    std::error_code unreadable;
+    const auto exists = [&](const auto& role_file) {
+        return std::filesystem::exists(role_file.second.path(frame), unreadable);
+    };
+    return std::filesystem::exists(sequence_.path_of(frame), unreadable) &&
+           std::all_of(sequence_.role_files.begin(), sequence_.role_files.end(), exists);
+}
+
+CaptureHeader CaptureReader::read_header(int frame) const {
+    return open(frame).header;
+}
+
+void CaptureReader::read_motion(const OpenFrame& open, const std::string& role, Image& velocity,
+                                const Image* color, Capture& capture) const {
+    const CaptureHeader& header = open.header;
+    const RoleSource& source = open.roles.at(role);
+    const DecodeContext context{header.path.string(), header.data_window, header.display_window,
+                                header.camera, color};
+    const std::vector<std::size_t> missing = decode_velocity(velocity, source.decoding, context);
+    if (find_role(role)->to_next || missing.empty()) return;
+    const auto& cuts = sequence_.cuts;
+    const bool begins_shot =
+        header.frame % sequence_.subframes == 0 &&
+        std::find(cuts.begin(), cuts.end(), header.frame / sequence_.subframes) != cuts.end();
+    capture.pixels_without_motion = missing.size();
+    const std::filesystem::path before = sequence_.path_of(header.frame - sequence_.subframes);
+    std::error_code unreadable;
+    if (begins_shot || !open.roles.contains(kDepthRole) || !sequence_.files.has_frame() ||
+        !std::filesystem::exists(before, unreadable))
+        return;
+    const FrameFile previous(before, limits_, sequence_.view);
+    const Camera camera = camera_of_metadata(previous.merged().metadata, *open.profile);
+    if (!knows_motion(header.camera, camera)) return;
+    const Image depth = read_role(open, kDepthRole, nullptr, capture);
+    fill_camera_velocity(velocity, missing, depth, header.data_window, header.display_window, header.camera,
+                         camera);
+    capture.motion_from_camera = true;
+}
+
+Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, const Image* color,
+                               Capture& capture) const {
+    const CaptureHeader& header = open.header;
+    const ChannelRole role = *find_role(name);
+    const RoleSource& source = open.roles.at(name);
+    const FrameFile& file = *source.file;
+    if (source.from_cryptomatte) {
+        const auto layers = find_cryptomattes(file);
+        const CryptomatteLayer& layer = choose_cryptomatte(layers, sequence_.cryptomatte->layer, file);
+        return role.kind == RoleKind::coverage
+                   ? cryptomatte_mask(file, layer, sequence_.cryptomatte->mask, header.data_window)
+                   : cryptomatte_ids(file, layer, header.data_window);
+    }
+    if (role.type == ComponentType::uint32) {
+        if (file.type_of(source.channels[0][0]) == PixelType::uint32)
+            return file.read_uints(source.channels[0], header.data_window);
+        return decode_ids(file.read_floats(source.channels[0], header.data_window, 0),
+                          file.path().string() + ": " + source.channels[0][0]);
+    }
+    // A stored value beyond the data window is none: it gets the role's value after decoding, except where
+    // decoding itself turns it into that.
+    const float outside = role.kind == RoleKind::distance ? source.decoding.no_hit : role.outside;
+    Image image = source.luminance.empty() ? read_layers(file, source.channels, header.data_window, outside)
+                                           : file.read_luminance_chroma(source.luminance, header.data_window);
+    if (role.kind == RoleKind::distance)
+        decode_depth(
+            image, source.decoding,
+            {file.path().string(), header.data_window, header.display_window, header.camera, nullptr});
+    if (role.kind == RoleKind::motion) read_motion(open, name, image, color, capture);
+    if (role.kind == RoleKind::light && open.stored_primaries != header.primaries)
+        convert_colors(image, conversion_matrix(open.stored_primaries, header.primaries));
+    return image;
+}
+
+void CaptureReader::prefetch(const OpenFrame& open, std::span<const std::string> roles) const {
+    std::map<const FrameFile*, std::vector<FrameFile::Request>> requests;
+    for (const std::string& role : roles) {
+        const auto found = open.roles.find(role);
+        if (found == open.roles.end()) continue;
+        const RoleSource& source = found->second;
+        if (source.from_cryptomatte || !source.luminance.empty()) continue;
+        const bool reads_uints = find_role(role)->type == ComponentType::uint32 &&
+                                 source.file->type_of(source.channels[0][0]) == PixelType::uint32;
+        for (const std::vector<std::string>& layer : source.channels)
+            requests[source.file].push_back(
+                {present_of(layer), reads_uints ? ComponentType::uint32 : ComponentType::float32});
+    }
+    for (const auto& [file, wanted] : requests) file->prefetch(wanted);
+}
+
+Capture CaptureReader::read(int frame, std::span<const std::string> roles) const {
+    OpenFrame open = this->open(frame);
+    Capture capture;
+    const auto wants = [&](const std::string& role) {
+        return open.roles.contains(role) && std::find(roles.begin(), roles.end(), role) != roles.end();
+    };
+    const auto is_premultiplied = [&](const auto& entry) {
+        return entry.second.decoding.premultiplied && wants(entry.first);
+    };
+    prefetch(open, roles);
+    Image color;
+    const bool needs_color = std::any_of(open.roles.begin(), open.roles.end(), is_premultiplied);
+    if (open.roles.contains(kColorRole) && (wants(kColorRole) || needs_color))
+        color = read_role(open, kColorRole, nullptr, capture);
+    for (const auto& [role, source] : open.roles)
+        if (role != kColorRole && wants(role))
+            capture.images[role] = read_role(open, role, color.empty() ? nullptr : &color, capture);
+    if (wants(kColorRole)) capture.images[kColorRole] = std::move(color);
+    capture.header = std::move(open.header);
+    return capture;
+}
+
+}  // namespace aftershade

@@ -1,0 +1,107 @@
+// One frame in memory: images by role, camera and metadata.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "framework/image/camera.h"
+#include "framework/image/color_space.h"
+#include "framework/file/exr_file.h"
+#include "framework/image/image.h"
+#include "framework/capture/light.h"
+#include "framework/capture/profile.h"
+#include "framework/capture/sequence.h"
+
+namespace aftershade {
+
+/// The header of one frame, read before its pixels: what it has, and where.
+struct CaptureHeader {
+    int frame = 0;         ///< its number in the output
+    int source_frame = 0;  ///< the number that it was read under; another where a missing frame is held
+    std::filesystem::path path;
+    std::string profile;         ///< id
+    std::string profile_reason;  ///< why: "chosen by name", "attribute BlenderMultiChannel"
+    std::string view;            ///< of a multi-view file
+    Window data_window;          ///< colour's: the working grid
+    Window display_window;
+    float pixel_aspect = 1;
+    std::vector<std::string> roles;                                 ///< that can be read, sorted
+    std::map<std::string, std::vector<std::string>> role_channels;  ///< the stored channels of each
+    /// Roles that the main file does not store as they are: from files of their own, luminance, Cryptomatte.
+    std::set<std::string> derived_roles;
+    std::vector<std::string> channels;   ///< of the file, in this view
+    Chromaticities primaries = kRec709;  ///< of the colours as they are in memory
+    Camera camera;                       ///< capture.json's, completed by the file's metadata
+    std::vector<CaptureLight> lights;    ///< capture.json's, else those of the file's metadata
+    ExrMetadata metadata;
+};
+
+/// One frame. Every image has the size of the data window, the working grid.
+struct Capture {
+    CaptureHeader header;
+    std::map<std::string, Image> images;  ///< by role
+    std::size_t pixels_without_motion =
+        0;  ///< of velocity: filled, from the camera where that is known, else with 0
+    bool motion_from_camera = false;
+};
+
+/// One channel as the file stores it.
+struct StoredChannel {
+    std::string name;
+    PixelType type = PixelType::half;
+    Image image;  ///< over the working grid
+};
+
+/// Opens frames of a sequence, by the number in the file's name: Sequence::file_number(). [read() and
+/// read_header() may be called from several threads]
+class CaptureReader {
+public:
+    /// `sequence` must outlive the reader.
+    CaptureReader(const Sequence& sequence, std::vector<Profile> profiles, ReadLimits limits);
+    ~CaptureReader();
+
+    /// Whether the frame's main file is there.
+    bool has_frame(int frame) const;
+    /// Throws Error(ExitCode::capture): no such file, not readable, no profile.
+    CaptureHeader read_header(int frame) const;
+    /// Reads the header and the roles asked for. A role that the files lack is left out of `images`.
+    Capture read(int frame, std::span<const std::string> roles) const;
+
+    /// How the roles of a frame are decoded: its profile's ways, or capture.json's.
+    std::map<std::string, RoleDecoding> decodings(int frame) const;
+
+    /// Every channel of the frame's main file, in this view, bit for bit and under its own name; but the
+    /// channels of the roles in `changed` hold those images, brought back to the producer's conventions. Of a
+    /// role that the file stores as a sum of layers the first layer holds all. Channels of another data
+    /// window are placed in the working grid.
+    std::vector<StoredChannel> read_stored_channels(int frame,
+                                                    const std::map<std::string, const Image*>& changed) const;
+
+private:
+    struct OpenFrame;
+    struct RoleSource;
+    OpenFrame open(int frame) const;
+    const Profile& choose_profile(const ExrPart& part, CaptureHeader& header) const;
+    void find_roles(OpenFrame& open) const;
+    void add_role(OpenFrame& open, const std::string& role, const RoleDecoding& decoding) const;
+    /// Unpacks what read_role will ask for of these roles.
+    void prefetch(const OpenFrame& open, std::span<const std::string> roles) const;
+    Image read_role(const OpenFrame& open, const std::string& role, const Image* color,
+                    Capture& capture) const;
+    void read_motion(const OpenFrame& open, const std::string& role, Image& velocity, const Image* color,
+                     Capture& capture) const;
+
+    std::map<std::string, Image> encode_role(const OpenFrame& open, const std::string& role,
+                                             const Image& canonical) const;
+
+    const Sequence& sequence_;
+    std::vector<Profile> profiles_;
+    ReadLimits limits_;
+};
+
+}  // namespace aftershade

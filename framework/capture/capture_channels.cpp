@@ -1,0 +1,64 @@
+#include <algorithm>
+#include <utility>
+
+#include "framework/capture/capture_internal.h"
+#include "framework/capture/encode_role.h"
+#include "framework/image/role.h"
+
+namespace aftershade {
+
+/// The role's image as the file stores it: one image per stored channel.
+std::map<std::string, Image> CaptureReader::encode_role(const OpenFrame& open, const std::string& name,
+                                                        const Image& canonical) const {
+    const RoleSource& source = open.roles.at(name);
+    if (source.channels.empty() || source.file != open.main.get()) return {};
+    const CaptureHeader& header = open.header;
+    Image image = canonical;
+    Image color;
+    Capture unused;
+    if (source.decoding.premultiplied && open.roles.contains(kColorRole))
+        color = read_role(open, kColorRole, nullptr, unused);
+    const DecodeContext context{header.path.string(), header.data_window, header.display_window,
+                                header.camera, color.empty() ? nullptr : &color};
+    if (kind_of_role(name) == RoleKind::light && open.stored_primaries != header.primaries)
+        convert_colors(image, conversion_matrix(header.primaries, open.stored_primaries));
+    const bool ids_as_uint = source.file->type_of(source.channels[0][0]) == PixelType::uint32;
+    return aftershade::encode_role(name, std::move(image), source.decoding, source.channels, ids_as_uint,
+                                   context);
+}
+
+std::map<std::string, RoleDecoding> CaptureReader::decodings(int frame) const {
+    std::map<std::string, RoleDecoding> decodings;
+    for (const auto& [role, source] : open(frame).roles) decodings[role] = source.decoding;
+    return decodings;
+}
+
+std::vector<StoredChannel> CaptureReader::read_stored_channels(
+    int frame, const std::map<std::string, const Image*>& changed) const {
+    const OpenFrame open = this->open(frame);
+    std::map<std::string, Image> encoded;
+    for (const auto& [role, image] : changed)
+        if (open.roles.contains(role)) encoded.merge(encode_role(open, role, *image));
+
+    std::vector<StoredChannel> channels;
+    const Window& grid = open.header.data_window;
+    std::vector<FrameFile::Request> unchanged;
+    for (const ExrChannel& channel : open.main->merged().channels)
+        if (!encoded.contains(channel.name))
+            unchanged.push_back(
+                {{channel.name},
+                 channel.type == PixelType::uint32 ? ComponentType::uint32 : ComponentType::float32});
+    open.main->prefetch(unchanged);
+    for (const ExrChannel& channel : open.main->merged().channels) {
+        StoredChannel stored{channel.name, channel.type, {}};
+        const std::vector<std::string> one{channel.name};
+        if (const auto replaced = encoded.find(channel.name); replaced != encoded.end())
+            stored.image = std::move(replaced->second);
+        else if (channel.type == PixelType::uint32) stored.image = open.main->read_uints(one, grid);
+        else stored.image = open.main->read_floats(one, grid, 0);
+        channels.push_back(std::move(stored));
+    }
+    return channels;
+}
+
+}  // namespace aftershade

@@ -1,0 +1,31 @@
+// Shared by the sources of CaptureReader; nobody else includes it.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "framework/capture/capture.h"
+#include "framework/capture/frame_file.h"
+
+namespace aftershade {
+
+/// Where one role's pixels lie and how they are decoded.
+struct CaptureReader::RoleSource {
+    const FrameFile* file = nullptr;
+    RoleDecoding decoding;
+    FoundChannels channels;  // empty for luminance and Cryptomatte
+    std::string luminance;   // the Y channel that stands for color
+    bool from_cryptomatte = false;
+};
+
+struct CaptureReader::OpenFrame {
+    std::unique_ptr<FrameFile> main;
+    std::map<std::string, std::unique_ptr<FrameFile>> role_files;
+    const Profile* profile = nullptr;
+    std::map<std::string, RoleSource> roles;
+    Chromaticities stored_primaries{};
+    CaptureHeader header;
+};
+
+}  // namespace aftershade

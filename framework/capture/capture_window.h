@@ -1,0 +1,24 @@
+// A capture at another scale, or a part of it.
+#pragma once
+
+#include "framework/capture/capture.h"
+
+namespace aftershade {
+
+/// The capture at 1/divisor of its size. Pixels of the display window are taken in blocks of divisor x
+/// divisor from its top left: roles that may be filtered are the mean over the block's pixels inside the data
+/// window, of the others (depth, ids, vectors) one pixel stands for its block: the one nearest its middle.
+/// Velocities are in pixels and shrink along.
+void scale_capture(Capture& capture, int divisor);
+
+/// `window` at 1/divisor, as scale_capture scales it.
+Window scaled_window(const Window& window, const Window& display, int divisor);
+
+/// The pixels of `window` that the data window covers; the display window stays. Throws
+/// Error(ExitCode::capture) where they have none in common.
+void crop_capture(Capture& capture, const Window& window);
+
+/// What two windows have in common; width or height 0 or below where that is nothing.
+Window intersection(const Window& a, const Window& b);
+
+}  // namespace aftershade

@@ -1,0 +1,130 @@
+#include "framework/capture/capture_writer.h"
+
+#include <algorithm>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "framework/core/error.h"
+#include "framework/capture/camera_metadata.h"
+#include "framework/capture/capture_internal.h"
+#include "framework/capture/encode_role.h"
+#include "framework/file/output_stream.h"
+#include "framework/image/role.h"
+
+namespace aftershade {
+
+namespace {
+
+/// The first alternative of "a|b?", with the layer's name put in.
+std::string channel_name(std::string pattern) {
+    pattern = pattern.substr(0, pattern.find('|'));
+    if (pattern.ends_with('?')) pattern.pop_back();
+    const std::string layer = "{layer}";
+    if (const std::size_t at = pattern.find(layer); at != std::string::npos)
+        pattern.replace(at, layer.size(), "ViewLayer");
+    return pattern;
+}
+
+FoundChannels channel_names(const RoleDecoding& decoding, int channels) {
+    FoundChannels names;
+    for (const auto& layer : decoding.layers) {
+        names.emplace_back();
+        for (std::size_t c = 0; c < std::min(layer.size(), std::size_t(channels)); ++c)
+            names.back().push_back(channel_name(layer[c]));
+    }
+    return names;
+}
+
+/// What makes detect_profile() choose the profile, where an attribute does.
+void add_mark(const Profile& profile, std::map<std::string, ExrValue>& attributes) {
+    if (profile.detect_attributes.empty()) return;
+    std::string name = profile.detect_attributes.front();
+    std::replace(name.begin(), name.end(), '*', '_');
+    attributes.emplace(name, std::string("written by Aftershade"));
+}
+
+void require_exact_ids(const std::filesystem::path& path, const Image& image, bool ids_as_uint) {
+    constexpr std::uint32_t kLargestExactFloat = 1u << 24;
+    if (image.type() != ComponentType::uint32 || ids_as_uint) return;
+    const auto ids = image.uints();
+    const auto largest = std::max_element(ids.begin(), ids.end());
+    if (largest != ids.end() && *largest > kLargestExactFloat)
+        throw Error(ExitCode::output,
+                    path.string() + ": object id " + std::to_string(*largest) +
+                        " is above 16777216, which the profile's floats cannot hold; use native");
+}
+
+}  // namespace
+
+std::vector<std::string> write_capture(const std::filesystem::path& path, const Capture& capture,
+                                       const Profile& profile, const CaptureWriteOptions& options) {
+    const CaptureHeader& header = capture.header;
+    const auto color = capture.images.find(kColorRole);
+    const DecodeContext context{path.string(), header.data_window, header.display_window, header.camera,
+                                color == capture.images.end() ? nullptr : &color->second};
+    const Chromaticities primaries =
+        profile.color_space == "auto" ? header.primaries : *color_space_primaries(profile.color_space);
+    std::vector<std::string> left_out;
+    std::map<std::string, Image> stored;
+    for (const auto& [role, image] : capture.images) {
+        const auto found = profile.roles.find(role);
+        if (found == profile.roles.end() || found->second.layers.empty()) {
+            left_out.push_back(role);
+            continue;
+        }
+        Image encoded = image;
+        if (kind_of_role(role) == RoleKind::light && primaries != header.primaries)
+            convert_colors(encoded, conversion_matrix(header.primaries, primaries));
+        // A producer that is not ours stores ids as floats, as every one of them does.
+        const bool ids_as_uint = profile.id == "native";
+        require_exact_ids(path, image, ids_as_uint);
+        stored.merge(encode_role(role, std::move(encoded), found->second,
+                                 channel_names(found->second, image.channels()), ids_as_uint, context));
+    }
+    if (stored.empty())
+        throw Error(ExitCode::output,
+                    path.string() + ": the profile '" + profile.id + "' stores none of the roles");
+    std::vector<ExrOutputChannel> channels;
+    for (const auto& [name, image] : stored)
+        channels.push_back({name,
+                            image.type() == ComponentType::uint32 ? PixelType::uint32 : PixelType::float32,
+                            &image, 0});
+    ExrWriteOptions write;
+    write.data_window = header.data_window;
+    write.display_window = header.display_window;
+    write.pixel_aspect = header.pixel_aspect;
+    write.compression = options.compression;
+    write.attributes = options.attributes;
+    add_mark(profile, write.attributes);
+    add_attributes(header.camera, header.lights, write.attributes);
+    write.attributes["chromaticities"] = std::vector<float>(primaries.begin(), primaries.end());
+    if (options.fps > 0) write.attributes["framesPerSecond"] = float(options.fps);
+    write_exr(path, channels, write);
+    return left_out;
+}
+
+void write_capture_document(const std::filesystem::path& path, const CaptureDocument& document) {
+    nlohmann::ordered_json json = {{"aftershade", 1}, {"frames", document.frames}};
+    std::string range;
+    for (const int frame : document.frame_numbers)
+        range += (range.empty() ? "" : ",") + std::to_string(frame);
+    const auto& numbers = document.frame_numbers;
+    const bool dense = numbers.size() > 2 && numbers.back() - numbers.front() + 1 == int(numbers.size()) &&
+                       std::is_sorted(numbers.begin(), numbers.end());
+    json["range"] = dense ? std::to_string(numbers.front()) + "-" + std::to_string(numbers.back()) : range;
+    json["fps"] = document.fps;
+    json["profile"] = document.profile;
+    if (!document.camera.empty()) json["camera"] = document.camera;
+    if (!document.lens_model.empty()) json["camera"]["lens_model"] = document.lens_model;
+    if (!document.lights.empty())
+        json["lights"] = nlohmann::ordered_json::parse(format_lights(document.lights));
+    json["cuts"] = document.cuts;
+    json["subframes"] = document.subframes;
+    const std::string text = json.dump(2) + "\n";
+    OutputStream out(path);
+    out.write(text.data(), text.size());
+    out.commit();
+}
+
+}  // namespace aftershade

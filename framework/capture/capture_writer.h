@@ -1,0 +1,45 @@
+// Captures as files, under the conventions of any producer that a profile describes.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "framework/capture/capture.h"
+#include "framework/capture/light.h"
+
+namespace aftershade {
+
+struct CaptureWriteOptions {
+    std::string compression = "zip";  ///< a lossless one, for the sake of ids
+    double fps = 0;                   ///< attribute framesPerSecond; 0: none
+    std::map<std::string, ExrValue> attributes{};
+};
+
+/// Writes one frame of floats by rename: every role of `capture.images` that the profile can store, under the
+/// profile's channel names and in its units; of a sum of layers the first holds all and the others 0.
+/// "{layer}" becomes "ViewLayer". With it go the attribute by which the profile is detected, the camera
+/// (aftershade/camera/..., OpenEXR's own names, both matrices), aftershade/jitter_px, aftershade/lights and
+/// chromaticities. Returns the roles that the profile has no way to store. Throws Error(ExitCode::output).
+std::vector<std::string> write_capture(const std::filesystem::path& path, const Capture& capture,
+                                       const Profile& profile, const CaptureWriteOptions& options);
+
+/// What capture.json tells of a sequence. Its camera and lights overrule those of the frames' headers, so
+/// they hold what is the same in all of them.
+struct CaptureDocument {
+    std::string frames = "gbuffer_####.exr";
+    std::vector<int> frame_numbers;
+    double fps = 24;
+    std::string profile = "native";
+    std::map<std::string, double> camera;  ///< by field, in the field's unit
+    std::string lens_model;
+    std::vector<CaptureLight> lights;
+    std::vector<int> cuts;
+    int subframes = 1;
+};
+
+/// By rename. Throws Error(ExitCode::output).
+void write_capture_document(const std::filesystem::path& path, const CaptureDocument& document);
+
+}  // namespace aftershade

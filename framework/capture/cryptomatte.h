@@ -1,0 +1,52 @@
+// Object ids and coverage out of Cryptomatte layers (Friedman and Jones 2015, specification 1.2.0).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "framework/core/object_keys.h"
+#include "framework/capture/frame_file.h"
+
+namespace aftershade {
+
+/// A Cryptomatte of a file: "cryptomatte/<key>/name" of its header, and its channels "<name>00.R" and so on.
+struct CryptomatteLayer {
+    std::string name;  ///< "ViewLayer.CryptoObject"
+    std::vector<std::string>
+        ranks;  ///< channel prefixes, "ViewLayer.CryptoObject00", at most 3: ranks 0 to 5
+    std::vector<std::string> object_names;  ///< of its manifest; empty where the file has none
+};
+
+std::vector<CryptomatteLayer> find_cryptomattes(const FrameFile& file);
+/// The layer whose name is `name`, or ends in ".<name>"; with "" the only one. Throws
+/// Error(ExitCode::capture) with the names there are.
+const CryptomatteLayer& choose_cryptomatte(const std::vector<CryptomatteLayer>& layers,
+                                           const std::string& name, const FrameFile& file);
+
+/// The 32-bit pattern under which an object's name is stored: MurmurHash3_32 with seed 0, its exponent
+/// changed where it would read as zero, denormal, infinite or NaN.
+std::uint32_t cryptomatte_hash(const std::string& object);
+
+/// Ids first..last.
+struct IdRange {
+    std::uint32_t first = 0;
+    std::uint32_t last = 0;
+    bool operator==(const IdRange&) const = default;
+};
+
+/// The ids that the keys stand for, a name by its hash: rising, and a gap between any two.
+std::vector<IdRange> id_ranges(std::span<const TableKey> keys);
+/// Whether an id lies in one of the ranges that id_ranges() gave.
+bool contains(std::span<const IdRange> ranges, std::uint32_t id);
+
+/// Summed coverage of the named objects over all ranks, 0 to 1. Throws Error(ExitCode::capture): ids stored
+/// as half or compressed with loss; a name that the manifest, where there is one, does not have.
+Image cryptomatte_mask(const FrameFile& file, const CryptomatteLayer& layer,
+                       const std::vector<std::string>& objects, const Window& grid);
+/// The id of rank 0, the object that covers most of the pixel; 0 for none.
+Image cryptomatte_ids(const FrameFile& file, const CryptomatteLayer& layer, const Window& grid);
+
+}  // namespace aftershade

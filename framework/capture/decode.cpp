@@ -1,0 +1,181 @@
+#include "framework/capture/decode.h"
+
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "framework/core/error.h"
+
+namespace aftershade {
+
+namespace {
+
+constexpr float kNothingHit = std::numeric_limits<float>::infinity();
+
+struct DepthRange {
+    double near_m = 0;
+    double far_m = 0;
+};
+
+DepthRange depth_range(const RoleDecoding& decoding, const DecodeContext& context) {
+    const auto near_m = decoding.near_m ? decoding.near_m : context.camera.get("near");
+    const auto far_m = decoding.far_m ? decoding.far_m : context.camera.get("far");
+    if (!near_m || !far_m || !(*near_m < *far_m))
+        throw Error(ExitCode::capture,
+                    context.file +
+                        ": this depth needs the camera's near and far, with near < far (give "
+                        "'near' and 'far' in capture.json's camera)");
+    return {*near_m, *far_m};
+}
+
+/// Metres for a stored z-buffer or normalised value. Values at or beyond the far plane are nothing hit.
+float ranged_depth(float stored, const RoleDecoding& decoding, const DepthRange& range) {
+    const double t = decoding.reversed ? 1 - double(stored) : double(stored);
+    if (!(t < 1)) return kNothingHit;
+    if (decoding.encoding == DepthEncoding::normalized)
+        return float(range.near_m + t * (range.far_m - range.near_m));
+    return float(range.near_m * range.far_m / (range.far_m - t * (range.far_m - range.near_m)));
+}
+
+/// The inverse of ranged_depth.
+float ranged_value(float depth_m, const RoleDecoding& decoding, const DepthRange& range) {
+    double t = 1;
+    if (std::isfinite(depth_m)) {
+        const double span_m = range.far_m - range.near_m;
+        const bool normalized = decoding.encoding == DepthEncoding::normalized;
+        t = normalized ? (depth_m - range.near_m) / span_m
+                       : (range.far_m - range.near_m * range.far_m / double(depth_m)) / span_m;
+    }
+    return float(decoding.reversed ? 1 - t : t);
+}
+
+bool is_ranged(const RoleDecoding& decoding) {
+    return decoding.encoding == DepthEncoding::z_buffer || decoding.encoding == DepthEncoding::normalized;
+}
+
+enum class RayScale { to_axis, to_ray };
+
+/// The cosine between a pixel's ray and the view axis turns distance along the ray into distance along the
+/// axis.
+void scale_by_cosine(Image& depth, const DecodeContext& context, RayScale scale) {
+    const auto focal_length_mm = context.camera.get("focal_length"),
+               sensor_width_mm = context.camera.get("sensor_width");
+    if (!focal_length_mm || !sensor_width_mm)
+        throw Error(ExitCode::capture, context.file +
+                                           ": this depth is radial and needs the camera's focal_length and "
+                                           "sensor_width (give them in capture.json's camera)");
+    const double focal_px = *focal_length_mm / *sensor_width_mm * context.display.width();
+    for (int y = 0; y < depth.height(); ++y)
+        for (int x = 0; x < depth.width(); ++x) {
+            const double dx =
+                x + context.grid.min_x - context.display.min_x + 0.5 - 0.5 * context.display.width();
+            const double dy =
+                y + context.grid.min_y - context.display.min_y + 0.5 - 0.5 * context.display.height();
+            const double cosine = focal_px / std::sqrt(focal_px * focal_px + dx * dx + dy * dy);
+            depth.at(x, y, 0) *= float(scale == RayScale::to_axis ? cosine : 1 / cosine);
+        }
+}
+
+/// What a stored component, its bias taken away, is multiplied by: px, cur-prev or next-cur, +y down.
+struct VelocityFactor {
+    float x = 1;
+    float y = 1;
+};
+
+VelocityFactor velocity_factor(const RoleDecoding& decoding, const DecodeContext& context) {
+    const bool reversed =
+        decoding.delta == VelocityDelta::prev_minus_cur || decoding.delta == VelocityDelta::cur_minus_next;
+    const bool px = decoding.unit == VelocityUnit::px;
+    const double part = decoding.unit == VelocityUnit::ndc ? 0.5 : 1;
+    const double per_frame = 1 / decoding.shutter_frames * (reversed ? -1 : 1);
+    const double unit_x = px ? 1 : part * context.display.width(),
+                 unit_y = px ? 1 : part * context.display.height();
+    return {float(unit_x * decoding.velocity_scale[0] * per_frame),
+            float(unit_y * decoding.velocity_scale[1] * per_frame * (decoding.y_axis_up ? -1 : 1))};
+}
+
+/// By which a premultiplied vector is divided.
+float vector_alpha(std::size_t pixel, const RoleDecoding& decoding, const DecodeContext& context) {
+    const float alpha = decoding.premultiplied && context.color ? context.color->floats()[4 * pixel + 3] : 1;
+    return alpha > 0 ? alpha : 1;
+}
+
+}  // namespace
+
+void decode_depth(Image& depth, const RoleDecoding& decoding, const DecodeContext& context) {
+    const bool ranged = is_ranged(decoding);
+    const DepthRange range = ranged ? depth_range(decoding, context) : DepthRange{};
+    for (float& z : depth.floats()) {
+        // Written so that NaN is nothing hit too: effects never see one.
+        const bool nothing_hit = !(z < decoding.no_hit) || (decoding.zero_is_no_hit && z == 0);
+        if (nothing_hit) z = kNothingHit;
+        else if (ranged) z = ranged_depth(z, decoding, range) * decoding.scale;
+        else if (decoding.encoding == DepthEncoding::inverse) z = z == 0 ? kNothingHit : decoding.scale / z;
+        else z *= decoding.scale;
+    }
+    if (decoding.radial) scale_by_cosine(depth, context, RayScale::to_axis);
+}
+
+void encode_depth(Image& depth, const RoleDecoding& decoding, const DecodeContext& context) {
+    const bool ranged = is_ranged(decoding);
+    const DepthRange range = ranged ? depth_range(decoding, context) : DepthRange{};
+    if (decoding.radial) scale_by_cosine(depth, context, RayScale::to_ray);
+    const bool zero = decoding.zero_is_no_hit || decoding.encoding == DepthEncoding::inverse;
+    const float no_hit = zero ? 0 : decoding.no_hit_stored.value_or(decoding.no_hit);
+    for (float& z : depth.floats()) {
+        if (ranged) z = ranged_value(z / decoding.scale, decoding, range);
+        else if (std::isinf(z)) z = no_hit;
+        else if (decoding.encoding == DepthEncoding::inverse) z = decoding.scale / z;
+        else z /= decoding.scale;
+    }
+}
+
+std::vector<std::size_t> decode_velocity(Image& velocity, const RoleDecoding& decoding,
+                                         const DecodeContext& context) {
+    const VelocityFactor factor = velocity_factor(decoding, context);
+    std::vector<std::size_t> without_motion;
+    const std::span<float> values = velocity.floats();
+    for (std::size_t pixel = 0; 2 * pixel + 1 < values.size(); ++pixel) {
+        float& x = values[2 * pixel];
+        float& y = values[2 * pixel + 1];
+        const bool marked = decoding.no_motion_above && x > *decoding.no_motion_above;
+        if (marked || !std::isfinite(x) || !std::isfinite(y)) {
+            x = y = 0;
+            without_motion.push_back(pixel);
+            continue;
+        }
+        const float alpha = vector_alpha(pixel, decoding, context);
+        x = (x / alpha - decoding.bias) * factor.x;
+        y = (y / alpha - decoding.bias) * factor.y;
+    }
+    return without_motion;
+}
+
+void encode_velocity(Image& velocity, const RoleDecoding& decoding, const DecodeContext& context) {
+    const VelocityFactor factor = velocity_factor(decoding, context);
+    const std::span<float> values = velocity.floats();
+    for (std::size_t pixel = 0; 2 * pixel + 1 < values.size(); ++pixel) {
+        const float alpha = vector_alpha(pixel, decoding, context);
+        values[2 * pixel] = (values[2 * pixel] / factor.x + decoding.bias) * alpha;
+        values[2 * pixel + 1] = (values[2 * pixel + 1] / factor.y + decoding.bias) * alpha;
+    }
+}
+
+Image decode_ids(const Image& stored, const std::string& file) {
+    constexpr float kLargest = 4294967040.0f;  // the last float below 2^32
+    Image ids(stored.width(), stored.height(), 1, ComponentType::uint32);
+    const std::span<const float> values = stored.floats();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const float id = values[i];
+        if (!(id >= 0 && id <= kLargest) || id != std::floor(id)) {
+            const std::size_t width = std::size_t(stored.width());
+            throw Error(ExitCode::capture, file + ": object id " + std::to_string(id) + " at pixel (" +
+                                               std::to_string(i % width) + ", " + std::to_string(i / width) +
+                                               ") is not a whole number from 0 to 4294967040");
+        }
+        ids.uints()[i] = std::uint32_t(id);
+    }
+    return ids;
+}
+
+}  // namespace aftershade

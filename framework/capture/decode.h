@@ -1,0 +1,43 @@
+// From a producer's stored values to the canonical image of a role, and back.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "framework/image/camera.h"
+#include "framework/image/image.h"
+#include "framework/capture/profile.h"
+
+namespace aftershade {
+
+/// What a decoding needs beside the stored values.
+struct DecodeContext {
+    std::string file;  ///< begins the message of an error
+    Window grid;       ///< of the image
+    Window display;
+    Camera camera;
+    const Image* color = nullptr;  ///< RGBA of the same grid, for premultiplied vectors
+};
+
+/// Depth in m along the view axis; +inf where nothing was hit. Throws Error(ExitCode::capture) where near and
+/// far, or the lens of a radial depth, are needed and not known.
+void decode_depth(Image& depth, const RoleDecoding& decoding, const DecodeContext& context = {});
+
+/// Current minus previous (velocity_next: next minus current) position, px, +y down. Returns the row-major
+/// indices of the pixels that have no motion data (not finite, or the producer's mark); they are 0.
+std::vector<std::size_t> decode_velocity(Image& velocity, const RoleDecoding& decoding,
+                                         const DecodeContext& context = {});
+
+/// The way back: values whose decoding is the depth, to float precision. +inf becomes the producer's mark for
+/// nothing hit. Throws as decode_depth does.
+void encode_depth(Image& depth, const RoleDecoding& decoding, const DecodeContext& context = {});
+
+/// The way back. Pixels that had no motion data get the motion that they were filled with.
+void encode_velocity(Image& velocity, const RoleDecoding& decoding, const DecodeContext& context = {});
+
+/// Floats as unsigned integers. Throws Error(ExitCode::capture) naming the first pixel that is no whole
+/// number.
+Image decode_ids(const Image& stored, const std::string& file);
+
+}  // namespace aftershade

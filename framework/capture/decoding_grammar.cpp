@@ -1,0 +1,182 @@
+// How the stored channels of a role become its image.
+#include <cctype>
+#include <map>
+
+#include "framework/core/text.h"
+#include "framework/capture/capture_grammar.h"
+#include "framework/image/image_forms.h"
+
+namespace aftershade {
+
+using grammar::Block;
+using grammar::boolean;
+using grammar::choice;
+using grammar::Form;
+using grammar::Key;
+using grammar::list;
+using grammar::number;
+using grammar::optional;
+using grammar::text;
+
+namespace {
+
+constexpr const char* kChannelsDoc =
+    "Names in the role's order; `{layer}.` stands for the layer's name, `a|b` for alternatives, a final `?` "
+    "for one that "
+    "may be absent.";
+constexpr const char* kSumDoc = "Lists of channels to add up.";
+constexpr const char* kComponentDoc = "One channel by its component.";
+
+Key length(const char* name, const char* doc) {
+    ParamSpec spec;
+    spec.name = name;
+    spec.unit = "m";
+    spec.min = 0;
+    return optional(name, grammar::literal(spec), doc);
+}
+
+std::vector<Key> distance_keys() {
+    return {
+        optional("encoding", choice(depth_encoding_names()),
+                 "inverse is 1 / distance, normalized is linear between near and far.", R"("linear")"),
+        optional("reversed", boolean(), "1 is near and 0 is far.", "false"),
+        optional(
+            "kind", choice({"planar", "radial"}),
+            "Along the camera's axis, or from its point (needs the camera's focal_length and sensor_width).",
+            R"("planar")"),
+        length("near", "Of z_buffer and normalized; else the camera's."),
+        length("far", "Of z_buffer and normalized; else the camera's."),
+        optional("scale", number(), "Metres for one stored unit.", "1"),
+        optional("no_hit", number(), "Stored values from here up mean that nothing was hit."),
+        optional("no_hit_stored", number(), "What the producer writes there; else no_hit."),
+        optional("zero_is_no_hit", boolean(), "0 means that nothing was hit.", "false")};
+}
+
+Key delta_key(const ChannelRole& role) {
+    const auto& names = velocity_delta_names();
+    const std::vector<std::string> previous(names.begin(), names.begin() + 2),
+        next(names.begin() + 2, names.end());
+    const std::string fault =
+        "role '" + role.name +
+        "' cannot be decoded from '{}': 'next' vectors fill velocity_next and no other role";
+    const auto& words = role.to_next ? next : previous;
+    return optional("delta", choice(words, {role.to_next ? previous : next, fault}),
+                    "Which two frames it subtracts.", json_string(words.front()));
+}
+
+std::vector<Key> motion_keys(const ChannelRole& role) {
+    const Form scale = grammar::any_of({number(), list(number(), {.min = 2, .max = 2})},
+                                       "'scale' of a velocity is a number, or one for x and one for y");
+    return {
+        delta_key(role),
+        optional("unit", choice(velocity_unit_names()), "uv: 1 is the image's side; ndc: 2 is.", R"("px")"),
+        optional("y_axis", choice({"up", "down"}), "Where y grows to.", R"("down")"),
+        optional("bias", number(), "The stored value of no motion.", "0"),
+        optional("scale", scale, "A factor, or one for x and one for y.", "1"),
+        optional("premultiplied", boolean(), "Divided by alpha first.", "false"),
+        optional("no_motion_above", number(), "A stored x above this has no motion data."),
+        optional("shutter_frames", number({.above = 0}), "Frames that the vector spans.", "1")};
+}
+
+/// What roles of its kind have beside the names of channels.
+std::vector<Key> keys_of_kind(const ChannelRole& role) {
+    if (role.has_optional_alpha())
+        return {optional("luminance", text(), "The Y channel of luminance-chroma files.")};
+    if (role.kind == RoleKind::distance) return distance_keys();
+    return role.kind == RoleKind::motion ? motion_keys(role) : std::vector<Key>{};
+}
+
+void append(std::vector<Key>& keys, std::vector<Key> more) {
+    keys.insert(keys.end(), more.begin(), more.end());
+}
+
+Block make_decoding(const ChannelRole& role) {
+    const bool is_other = role.kind == RoleKind::other;
+    const std::string who = is_other ? "an image that is passed through" : "role '" + role.name + "'";
+    const std::string count = who + " has " + std::to_string(role.channels) + " channels, not {}";
+    const Form names = list(text(), {.min = role.channels, .max = role.channels, .fault = count});
+    Block block{.name = "",
+                .thing = "the decoding of '{}'",
+                .doc = role.meaning,
+                .keys = {optional("channels", names, kChannelsDoc),
+                         optional("sum", list(names, {.min = 1}), kSumDoc)},
+                .type = "object"};
+    std::vector<std::string> components, ways = {"channels", "sum"};
+    for (const std::string& native : role.native_channels) {
+        components.push_back(component_key(native));
+        block.keys.push_back(optional(components.back(), text(), kComponentDoc));
+    }
+    if (role.has_optional_alpha()) {
+        block.rules.push_back(grammar::needs(components.back(), components.front()));
+        components.pop_back();
+    }
+    ways.push_back(components.front());
+    block.rules.push_back(grammar::together(components, count));
+    block.rules.push_back(
+        grammar::at_least_one_of(ways, who + " needs 'channels', or 'sum' with lists of channels"));
+    append(block.keys, keys_of_kind(role));
+    return block;
+}
+
+Block make_table() {
+    Block block{.name = "decoding",
+                .keys = {optional("channels", list(text()), kChannelsDoc),
+                         optional("x`, `y`, `r`, `z`, `...", text(), kComponentDoc),
+                         optional("sum", list(list(text())), kSumDoc)}};
+    for (Key& key : block.keys) key.of = "all";
+    for (const ChannelRole& role : channel_roles())
+        for (Key key : keys_of_kind(role)) {
+            key.of = role.name;
+            block.keys.push_back(std::move(key));
+        }
+    return block;
+}
+
+}  // namespace
+
+std::string component_key(const std::string& native_channel) {
+    return {char(std::tolower(static_cast<unsigned char>(native_channel.back())))};
+}
+
+const std::vector<std::string>& velocity_delta_names() {
+    static const std::vector<std::string> names = {"cur-prev", "prev-cur", "next-cur", "cur-next"};
+    return names;
+}
+
+const std::vector<std::string>& velocity_unit_names() {
+    static const std::vector<std::string> names = {"px", "uv", "ndc"};
+    return names;
+}
+
+const std::vector<std::string>& depth_encoding_names() {
+    static const std::vector<std::string> names = {"linear", "inverse", "z_buffer", "normalized"};
+    return names;
+}
+
+const Block& decoding_block(const std::string& role) {
+    static const std::map<std::string, Block> blocks = [] {
+        std::map<std::string, Block> made;
+        for (const ChannelRole& one : channel_roles()) made.emplace(one.name, make_decoding(one));
+        made.emplace("", make_decoding(*find_role("aov:name")));
+        return made;
+    }();
+    const auto found = blocks.find(role);
+    return found == blocks.end() ? blocks.at("") : found->second;
+}
+
+const Block& decoding_table() {
+    static const Block block = make_table();
+    return block;
+}
+
+Form decodings() {
+    Block block{.name = "",
+                .unknown_key = "'{}' is not a role",
+                .type = "[decoding](captures.md#how-a-role-is-decoded) by role"};
+    for (const ChannelRole& role : channel_roles())
+        block.keys.push_back(optional(role.name, grammar::object(decoding_block(role.name)), role.meaning));
+    block.others = {{kAovPattern, grammar::object(decoding_block(""))}};
+    return grammar::object(std::move(block));
+}
+
+}  // namespace aftershade

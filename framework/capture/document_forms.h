@@ -1,0 +1,13 @@
+// Forms of values that documents about captures share.
+#pragma once
+
+#include <string>
+
+#include "framework/core/grammar.h"
+
+namespace aftershade {
+
+/// "1-100x2,120": at least one frame. `fault` is said of a text that is no range; "{}" is the text.
+grammar::Form frame_range_form(const std::string& fault);
+
+}  // namespace aftershade

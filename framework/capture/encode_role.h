@@ -1,0 +1,20 @@
+// From a canonical image to the channels that a producer stores; for the sources of this folder.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "framework/capture/decode.h"
+#include "framework/image/image.h"
+#include "framework/capture/profile.h"
+
+namespace aftershade {
+
+/// One single-channel image for each stored channel of `role`. Of a sum of layers, which cannot be taken
+/// apart again, the first holds all of it. `ids_as_uint`: whether the file stores ids as integers. Colours
+/// are taken as they are.
+std::map<std::string, Image> encode_role(const std::string& role, Image canonical,
+                                         const RoleDecoding& decoding, const FoundChannels& channels,
+                                         bool ids_as_uint, const DecodeContext& context);
+
+}  // namespace aftershade

@@ -1,0 +1,71 @@
+// One EXR file as one list of channels, whichever parts and views they lie in.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "framework/file/exr_file.h"
+#include "framework/image/image.h"
+
+namespace aftershade {
+
+/// The channels of one view of a file under names without the view: "forward.u" for "forward.left.u" of a
+/// single-part multi-view file, and for "forward.u" in a part whose view is "left". A channel whose name
+/// another part of the view has already taken is called "<part>.<channel>". Channels that belong to no view
+/// are in every view. [one thread at a time]
+class FrameFile {
+public:
+    /// `view` empty: the default view, the first that the file names. Throws Error(ExitCode::capture): not
+    /// readable, no such view (the message lists those there are), nothing but deep data.
+    FrameFile(const std::filesystem::path& path, const ReadLimits& limits, const std::string& view);
+
+    const std::filesystem::path& path() const { return file_.path(); }
+    const std::vector<std::string>& views() const { return views_; }  ///< empty where the file names none
+    const std::string& view() const { return view_; }
+    /// The view's channels, the display window and metadata of the part that holds its colour (else the first
+    /// part), and that part's data window.
+    const ExrPart& merged() const { return merged_; }
+    const ExrFile& file() const { return file_; }
+
+    Window window_of(const std::string& channel) const;
+    PixelType type_of(const std::string& channel) const;
+
+    /// Interleaved in the order given, over `grid`; pixels that a channel's own window does not cover are
+    /// `outside`.
+    Image read_floats(std::span<const std::string> channels, const Window& grid, float outside) const;
+    Image read_uints(std::span<const std::string> channels, const Window& grid) const;
+    /// Channels as read_floats or read_uints will ask for them.
+    struct Request {
+        std::vector<std::string> channels;
+        ComponentType type = ComponentType::float32;
+    };
+    /// Unpacks them together: see ExrFile::prefetch.
+    void prefetch(std::span<const Request> requests) const;
+    /// RGBA of a part stored as luminance (and chroma), over `grid`. `luminance` is the name of its Y
+    /// channel.
+    Image read_luminance_chroma(const std::string& luminance, const Window& grid) const;
+
+private:
+    struct Stored {
+        int part = 0;
+        std::string name;  ///< in the part
+    };
+    void add_part(int index);
+    void choose_view(const std::string& wanted);
+    void describe(int hero_part);
+    const Stored& stored(const std::string& channel) const { return stored_.at(channel); }
+    const ExrPart& part_of(const std::string& channel) const {
+        return file_.parts()[std::size_t(stored(channel).part)];
+    }
+
+    ExrFile file_;
+    std::vector<std::string> views_;
+    std::string view_;
+    ExrPart merged_;
+    std::map<std::string, Stored> stored_;
+};
+
+}  // namespace aftershade

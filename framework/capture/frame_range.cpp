@@ -1,0 +1,158 @@
+#include "framework/capture/frame_range.h"
+
+#include <charconv>
+#include <cstdint>
+#include <cstdlib>
+#include <unordered_set>
+#include <utility>
+
+#include "framework/core/text.h"
+
+namespace aftershade {
+
+namespace {
+
+constexpr std::size_t kMaxFrames = 1'000'000;
+
+std::optional<int> parse_int(std::string_view text) {
+    int value = 0;
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (failure != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+    return value;
+}
+
+bool take(std::string_view& text, std::string_view word) {
+    if (!text.starts_with(word)) return false;
+    text.remove_prefix(word.size());
+    return true;
+}
+
+/// Takes a number of at most nine digits off the front.
+std::optional<int> take_number(std::string_view& text) {
+    constexpr std::size_t kMaxDigits = 9;
+    const std::size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
+    if (digits > kMaxDigits) return std::nullopt;
+    const auto number = parse_int(text.substr(0, digits));
+    text.remove_prefix(digits);
+    return number;
+}
+
+std::optional<int> take_signed_number(std::string_view& text) {
+    const int sign = take(text, "-") ? -1 : 1;
+    const auto number = take_number(text);
+    return number ? std::optional(sign * *number) : std::nullopt;
+}
+
+struct Piece {
+    int first = 0, last = 0, step = 1;
+};
+
+/// "7", "1-100", "1..100x2", "1-100:2", with white space around.
+std::optional<Piece> parse_piece(std::string_view text) {
+    constexpr std::string_view kSpace = " \t\n\v\f\r";
+    text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
+    text = text.substr(0, text.find_last_not_of(kSpace) + 1);
+    const auto first = take_signed_number(text);
+    if (!first) return std::nullopt;
+    Piece piece{*first, *first, 1};
+    if (take(text, "-") || take(text, "..")) {
+        const auto last = take_signed_number(text);
+        const auto step = take(text, "x") || take(text, ":") ? take_number(text) : 1;
+        if (!last || !step) return std::nullopt;
+        piece.last = *last;
+        piece.step = *step;
+    }
+    return text.empty() ? std::optional(piece) : std::nullopt;
+}
+
+/// "%d" or "%04d": how much of the text it is, and the width.
+struct PrintfStyle {
+    std::size_t length = 0;
+    int width = 1;
+};
+
+std::optional<PrintfStyle> parse_printf_style(std::string_view text) {
+    std::string_view rest = text;
+    if (!take(rest, "%")) return std::nullopt;
+    PrintfStyle style;
+    if (take(rest, "0")) {
+        const std::string_view width = rest.substr(0, rest.find_first_not_of("0123456789"));
+        if (width.empty() || width.size() > 2) return std::nullopt;
+        style.width = *take_number(rest);
+    }
+    if (!take(rest, "d")) return std::nullopt;
+    style.length = text.size() - rest.size();
+    return style;
+}
+
+}  // namespace
+
+std::optional<std::vector<int>> parse_frame_range(std::string_view text) {
+    std::vector<int> frames;
+    std::unordered_set<int> seen;
+    for (const std::string_view part : split(text, ',')) {
+        const auto piece = parse_piece(part);
+        if (!piece) return std::nullopt;
+        const auto [first, last, step] = *piece;
+        if (step == 0 || std::size_t(std::abs(last - first) / step) >= kMaxFrames) return std::nullopt;
+        const int direction = last >= first ? step : -step;
+        for (int frame = first; direction > 0 ? frame <= last : frame >= last; frame += direction)
+            if (seen.insert(frame).second) frames.push_back(frame);
+        if (frames.size() > kMaxFrames) return std::nullopt;
+    }
+    return frames;
+}
+
+std::string frame_range_pattern() {
+    const std::string piece = R"(\s*-?[0-9]{1,9}((-|\.\.)-?[0-9]{1,9}([x:](?!0+(?![0-9]))[0-9]{1,9})?)?\s*)";
+    return "^" + piece + "(," + piece + ")*$";
+}
+
+FramePattern::FramePattern(std::string text) : text_(std::move(text)) {
+    const std::size_t folder = text_.rfind('/');
+    const std::size_t name = folder == std::string::npos ? 0 : folder + 1;
+    for (const char mark : {'#', '@'}) {
+        const std::size_t found = text_.find(mark, name);
+        if (found == std::string::npos) continue;
+        start_ = found;
+        length_ = std::min(text_.find_first_not_of(mark, found), text_.size()) - found;
+        width_ = int(length_);
+        return;
+    }
+    for (std::size_t at = text_.find('%', name); at != std::string::npos; at = text_.find('%', at + 1))
+        if (const auto style = parse_printf_style(std::string_view(text_).substr(at))) {
+            start_ = at;
+            length_ = style->length;
+            width_ = style->width;
+            return;
+        }
+}
+
+std::string FramePattern::path(int frame) const {
+    if (!has_frame()) return text_;
+    std::string digits = std::to_string(std::abs(std::int64_t(frame)));
+    const std::size_t width = std::size_t(width_) - (frame < 0 && width_ > 1 ? 1 : 0);
+    if (digits.size() < width) digits.insert(0, width - digits.size(), '0');
+    if (frame < 0) digits.insert(0, "-");
+    return text_.substr(0, start_) + digits + text_.substr(start_ + length_);
+}
+
+std::optional<int> FramePattern::match(std::string_view name) const {
+    const std::size_t fixed = text_.size() - length_;
+    if (!has_frame() || name.size() <= fixed) return std::nullopt;
+    const std::size_t digits = name.size() - fixed;
+    if (name.substr(0, start_) != std::string_view(text_).substr(0, start_)) return std::nullopt;
+    if (name.substr(start_ + digits) != std::string_view(text_).substr(start_ + length_)) return std::nullopt;
+    const auto frame = parse_int(name.substr(start_, digits));
+    return frame && path(*frame) == name ? frame : std::nullopt;
+}
+
+std::optional<int> frame_in_name(std::string_view stem) {
+    const std::size_t last = stem.find_last_of("0123456789");
+    if (last == std::string_view::npos) return std::nullopt;
+    std::size_t first = last;
+    while (first > 0 && stem[first - 1] >= '0' && stem[first - 1] <= '9') --first;
+    return parse_int(stem.substr(first, last - first + 1));
+}
+
+}  // namespace aftershade

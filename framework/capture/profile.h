@@ -1,0 +1,118 @@
+// The conventions of one producer of captures, as data: profiles/<id>.json.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/core/diagnostics.h"
+#include "framework/core/document.h"
+#include "framework/file/exr_file.h"
+
+namespace aftershade {
+
+/// Which two frames a motion vector subtracts. A `next` delta may only fill velocity_next.
+enum class VelocityDelta { cur_minus_prev, prev_minus_cur, next_minus_cur, cur_minus_next };
+
+/// Length 1 of a stored motion vector: a pixel, the image's side, or half of it (from -1 to +1).
+enum class VelocityUnit { px, uv, ndc };
+
+/// What a stored depth is a function of: distance; 1 / distance; a perspective z-buffer; or linear between
+/// near and far.
+enum class DepthEncoding { linear, inverse, z_buffer, normalized };
+
+/// How the stored channels of one role become the canonical image.
+struct RoleDecoding {
+    /// Layers to add up (irradiance = direct + indirect); each names its channels, in the role's order. A
+    /// name may begin with "{layer}." and may list alternatives: "{layer}.Depth.Z|{layer}.Depth.V". A name
+    /// that ends in "?" may be absent.
+    std::vector<std::vector<std::string>> layers;
+    std::string
+        luminance;  ///< color: the Y channel that stands for it in luminance-chroma files; "" for none
+
+    // depth
+    float scale = 1;  ///< metres for one stored unit, after decoding
+    float no_hit =
+        std::numeric_limits<float>::infinity();  ///< stored values from here up mean that nothing was hit
+    std::optional<float> no_hit_stored;          ///< what the producer itself writes there; else no_hit
+    bool zero_is_no_hit = false;
+    DepthEncoding encoding = DepthEncoding::linear;
+    bool reversed = false;                ///< z_buffer and normalized: 1 is near, 0 is far
+    bool radial = false;                  ///< distance to the camera's point, not along its axis
+    std::optional<double> near_m, far_m;  ///< z_buffer and normalized; else the camera's near and far
+
+    // velocity and velocity_next, in the order in which they are undone
+    float bias = 0;              ///< stored value of no motion
+    bool premultiplied = false;  ///< by color's alpha
+    VelocityUnit unit = VelocityUnit::px;
+    std::array<float, 2> velocity_scale = {1, 1};
+    VelocityDelta delta = VelocityDelta::cur_minus_prev;
+    bool y_axis_up = false;
+    std::optional<float> no_motion_above;  ///< a stored x above this marks a pixel without motion data
+    double shutter_frames = 1;             ///< frames that the stored vector spans
+};
+
+/// A camera value out of the header: the first of these attributes that is there. "*" stands for any text.
+struct CameraSource {
+    std::vector<std::string> attributes;
+    std::string unit;  ///< that the attribute is in
+};
+
+/// One thing that is known of the producer, for the table of the docs.
+struct ProfileFact {
+    std::string fact;
+    std::string verified;  ///< the real file that showed it; "" where none has
+    std::string source;
+};
+
+struct Profile {
+    std::string id;
+    std::string summary;
+    std::vector<std::string> detect_attributes;  ///< any of these in the header ...
+    std::vector<std::string> detect_channels;    ///< ... or all of these channels tell that the profile fits
+    std::string color_space =
+        "auto";              ///< of the stored colours; auto: the header's chromaticities, else Rec. 709
+    std::string lens_model;  ///< "thin" or "pinhole"; "" where not known
+    std::map<std::string, RoleDecoding> roles;
+    std::map<std::string, CameraSource> camera;  ///< by camera field
+    std::vector<ProfileFact> facts;
+};
+
+/// All *.json of the folders, in the order of their ids; an earlier folder's profile replaces a later one's
+/// of the same id.
+std::vector<Profile> read_profiles(const std::vector<std::filesystem::path>& folders,
+                                   Diagnostics& diagnostics);
+std::vector<Profile> read_profiles(const std::filesystem::path& folder, Diagnostics& diagnostics);
+std::optional<Profile> parse_profile(const Node& node, Diagnostics& diagnostics);
+/// "roles" of a profile, or "channels" of a capture.json, which has been checked.
+std::map<std::string, RoleDecoding> read_decodings(const Node& node);
+
+/// The stored channels that a role's decoding finds in a part: per layer, per component; "" for an optional
+/// one that is absent. nullopt where a required one is missing.
+using FoundChannels = std::vector<std::vector<std::string>>;
+std::optional<FoundChannels> find_channels(const RoleDecoding& decoding, const std::string& layer,
+                                           const ExrPart& part);
+
+/// What "{layer}" stands for in this part: the prefix before the channels of the color role; "" where none
+/// fits.
+std::string find_layer(const Profile& profile, const ExrPart& part);
+
+struct ProfileChoice {
+    const Profile* profile = nullptr;
+    std::string reason;  ///< "attribute BlenderMultiChannel"
+};
+
+/// The profile that fits a part's header: by attribute first, else the one that names the most channels.
+/// Throws Error(ExitCode::capture) where none does and Error(ExitCode::usage) where several do alike, naming
+/// the remedy.
+ProfileChoice detect_profile(const std::vector<Profile>& profiles, const ExrPart& part,
+                             const std::string& path);
+
+/// Whether `name` is `pattern` with each "*" in it replaced by some text.
+bool matches_pattern(const std::string& name, const std::string& pattern);
+
+}  // namespace aftershade

@@ -1,0 +1,165 @@
+#include "framework/capture/sequence.h"
+
+#include <algorithm>
+
+#include "framework/core/document.h"
+#include "framework/core/error.h"
+#include "framework/core/grammar_reader.h"
+#include "framework/capture/capture_grammar.h"
+#include "framework/image/role.h"
+
+namespace aftershade {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void read_frames(const grammar::Reader& reader, const fs::path& folder, Sequence& sequence,
+                 Diagnostics& diagnostics) {
+    if (const Node* files = reader.find("files"))
+        for (const Member& member : files->members)
+            if (find_role(member.key) && member.value.is_string())
+                sequence.role_files.insert_or_assign(member.key,
+                                                     FramePattern((folder / member.value.string).string()));
+    // Without a main file the colour's own file takes its place.
+    if (reader.has("frames")) sequence.files = FramePattern((folder / reader.text("frames")).string());
+    else if (sequence.role_files.contains(kColorRole)) sequence.files = sequence.role_files.at(kColorRole);
+    if (!reader.has("range")) return;
+    const auto numbers = *parse_frame_range(reader.text("range"));
+    if (numbers.size() > 1 && reader.has("frames") && !sequence.files.has_frame() &&
+        sequence.role_files.empty())
+        diagnostics.error(
+            reader.place("range"),
+            "'range' has " + std::to_string(numbers.size()) +
+                " frames but 'frames' names one file; write the frame number as ####, %04d or @");
+    else sequence.frames = numbers;
+}
+
+std::optional<Sequence> read_capture_document(const fs::path& path, Diagnostics& diagnostics) {
+    const auto node = read_document(path, diagnostics);
+    if (!node) return std::nullopt;
+    const int errors_before = diagnostics.error_count();
+    grammar::check(*node, capture_block(), diagnostics);
+    const grammar::Reader reader(*node, capture_block());
+    Sequence sequence;
+    read_frames(reader, path.parent_path(), sequence, diagnostics);
+    sequence.fps = reader.number("fps");
+    sequence.profile = reader.text("profile");
+    sequence.view = reader.text("view");
+    sequence.color_space = reader.text("color_space");
+    if (const Node* channels = reader.find("channels")) sequence.channels = read_decodings(*channels);
+    if (const auto camera = reader.object("camera")) sequence.camera = read_camera(*camera);
+    if (reader.has("lights")) sequence.lights.emplace();
+    for (const grammar::Reader& light : reader.objects("lights"))
+        sequence.lights->push_back(read_light(light));
+    if (const auto matte = reader.object("cryptomatte"))
+        sequence.cryptomatte = CryptomatteChoice{matte->text("layer"), matte->texts("mask")};
+    if (const Node* cuts = reader.find("cuts"))
+        for (const Node& cut : cuts->items) sequence.cuts.push_back(int(cut.integer));
+    sequence.subframes = int(reader.integer("subframes"));
+    if (diagnostics.error_count() > errors_before) return std::nullopt;
+    return sequence;
+}
+
+/// The pattern that most *.exr files of a folder share: their names with the last group of digits left open.
+FramePattern pattern_of_folder(const fs::path& folder) {
+    std::map<std::string, int> counts;
+    std::error_code failure;
+    for (const auto& entry : fs::directory_iterator(folder, failure)) {
+        const std::string name = entry.path().filename().string();
+        const std::size_t last = entry.path().stem().string().find_last_of("0123456789");
+        if (entry.path().extension() != ".exr" || last == std::string::npos || name.starts_with('.'))
+            continue;
+        std::size_t first = last;
+        while (first > 0 && name[first - 1] >= '0' && name[first - 1] <= '9') --first;
+        const std::size_t digits = last - first + 1;
+        ++counts[name.substr(0, first) + (digits == 1 ? "%d" : std::string(digits, '#')) +
+                 name.substr(last + 1)];
+    }
+    if (counts.empty()) throw Error(ExitCode::capture, folder.string() + ": holds no numbered .exr files");
+    const auto most = std::max_element(counts.begin(), counts.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (std::count_if(counts.begin(), counts.end(), [&](const auto& c) { return c.second == most->second; }) >
+        1)
+        throw Error(ExitCode::capture, folder.string() +
+                                           ": holds several sequences; name one by its pattern, such as " +
+                                           (folder / most->first).string());
+    return FramePattern((folder / most->first).string());
+}
+
+/// Frames all of whose sub-frames are among `files`, which are sorted.
+std::vector<int> whole_frames(const std::vector<int>& files, int subframes) {
+    if (subframes == 1) return files;
+    std::map<int, int> counts;
+    for (const int file : files) ++counts[(file < 0 ? file - subframes + 1 : file) / subframes];
+    std::vector<int> frames;
+    for (const auto& [frame, count] : counts)
+        if (count == subframes) frames.push_back(frame);
+    return frames;
+}
+
+void find_missing_range(Sequence& sequence, const std::string& argument) {
+    sequence.frames_declared = !sequence.frames.empty() || !sequence.files.has_frame();
+    if (!sequence.frames.empty()) return;
+    if (sequence.files.has_frame()) {
+        sequence.frames = whole_frames(find_frames(sequence.files), sequence.subframes);
+        if (sequence.frames.empty())
+            throw Error(ExitCode::capture,
+                        argument + ": no file fits the pattern " + sequence.files.text() +
+                            (sequence.subframes > 1 ? ", or no frame has all its " +
+                                                          std::to_string(sequence.subframes) + " sub-frames"
+                                                    : ""));
+        return;
+    }
+    const fs::path file = sequence.files.text();
+    if (std::error_code failure; !fs::exists(file, failure))
+        throw Error(ExitCode::capture, file.string() + ": no such file");
+    sequence.frames = {frame_in_name(file.stem().string()).value_or(1)};
+}
+
+}  // namespace
+
+std::vector<int> find_frames(const FramePattern& pattern) {
+    // As it is written: a path in normal form would not match the text of "shots//f_####.exr".
+    const std::string prefix = pattern.text().substr(0, pattern.text().rfind('/') + 1);
+    const fs::path folder = prefix.empty() ? "." : prefix;
+    std::vector<int> frames;
+    std::error_code failure;
+    for (const auto& entry : fs::directory_iterator(folder, failure))
+        if (const auto frame = pattern.match(prefix + entry.path().filename().string()))
+            frames.push_back(*frame);
+    std::sort(frames.begin(), frames.end());
+    return frames;
+}
+
+std::optional<Sequence> open_sequence(const std::string& argument, Diagnostics& diagnostics) {
+    fs::path path = argument;
+    Sequence sequence;
+    // A folder with a capture.json is that capture.
+    if (std::error_code failure; fs::exists(path / "capture.json", failure)) path /= "capture.json";
+    if (path.extension() == ".json") {
+        if (std::error_code failure; !fs::exists(path, failure))
+            throw Error(ExitCode::capture, argument + ": no such file");
+        auto read = read_capture_document(path, diagnostics);
+        if (!read) return std::nullopt;
+        sequence = std::move(*read);
+    } else if (std::error_code failure; fs::is_directory(path, failure)) {
+        sequence.files = pattern_of_folder(path);
+    } else {
+        sequence.files = FramePattern(argument);
+    }
+    find_missing_range(sequence, argument);
+    return sequence;
+}
+
+void add_role_file(Sequence& sequence, const std::string& text, Diagnostics& diagnostics) {
+    const Place place{"--role " + text};
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals + 1 == text.size())
+        diagnostics.error(place, "expected role=file, such as depth=z.####.exr");
+    else if (const std::string role = text.substr(0, equals); !find_role(role))
+        diagnostics.error(place, "'" + role + "' is not a role" + did_you_mean(role, role_names()));
+    else sequence.role_files.insert_or_assign(role, FramePattern(text.substr(equals + 1)));
+}
+
+}  // namespace aftershade

@@ -1,0 +1,56 @@
+// Which frames there are, where they lie and how they are read.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/core/diagnostics.h"
+#include "framework/image/camera.h"
+#include "framework/capture/frame_range.h"
+#include "framework/capture/light.h"
+#include "framework/capture/profile.h"
+
+namespace aftershade {
+
+/// "cryptomatte": {"layer": "CryptoObject", "mask": ["Suzanne"]} of a capture.json.
+struct CryptomatteChoice {
+    std::string layer;              ///< "" for the only one
+    std::vector<std::string> mask;  ///< objects whose coverage is the role `mask`; empty: none
+};
+
+/// Ordered captures. Made from a capture.json, a bare EXR file, a pattern of files, or a folder of them.
+struct Sequence {
+    std::vector<int> frames;       ///< in the order to be run
+    bool frames_declared = false;  ///< by a capture.json's range or a bare file, not by what lies on disk
+    FramePattern files{""};        ///< absolute, or relative to the working directory
+    std::map<std::string, FramePattern> role_files;  ///< roles that lie in files of their own
+    std::map<std::string, RoleDecoding> channels;    ///< of capture.json, instead of the profile's
+    std::string profile = "auto";
+    std::string color_space = "auto";  ///< of the stored colours; auto: the profile's
+    std::string view;                  ///< of multi-view files; "" for the default
+    double fps = 24;
+    int subframes = 1;  ///< a frame is this many captures: the files subframes * frame + 0 .. subframes - 1
+    Camera camera;      ///< of capture.json
+    std::optional<std::vector<CaptureLight>> lights;  ///< of capture.json
+    std::vector<int> cuts;                            ///< frames that begin a shot
+    std::optional<CryptomatteChoice> cryptomatte;
+
+    /// The number in the name of a frame's file, by which a CaptureReader reads it.
+    int file_number(int frame, int subframe = 0) const { return frame * subframes + subframe; }
+    std::filesystem::path path_of(int file) const { return files.path(file); }
+};
+
+/// `argument` is CAPTURE of the command line. Faults of capture.json go to `diagnostics`; a file, pattern or
+/// folder that holds nothing is Error(ExitCode::capture).
+std::optional<Sequence> open_sequence(const std::string& argument, Diagnostics& diagnostics);
+
+/// Adds "--role depth=z.####.exr".
+void add_role_file(Sequence& sequence, const std::string& text, Diagnostics& diagnostics);
+
+/// Frames that exist for a pattern, sorted.
+std::vector<int> find_frames(const FramePattern& pattern);
+
+}  // namespace aftershade

@@ -1,0 +1,162 @@
+#include "framework/effect/manifest/manifest.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "framework/effect/manifest/manifest_check.h"
+#include "framework/effect/manifest/manifest_expand.h"
+#include "framework/effect/manifest/manifest_grammar.h"
+#include "framework/effect/manifest/manifest_parser.h"
+#include "framework/effect/param_types.h"
+#include "framework/image/camera.h"
+
+namespace aftershade {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+template <typename T>
+const T* find_named(const std::vector<T>& list, const std::string& name) {
+    const auto found =
+        std::find_if(list.begin(), list.end(), [&](const T& item) { return item.name == name; });
+    return found == list.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+void ManifestParser::identity(const Reader& document) {
+    const Node* id = document.node().find("id");
+    manifest_.id = document.text("id");
+    const std::string folder = manifest_.folder.filename().string();
+    if (id && id->is_string() && id->string != folder)
+        fault(id->place, "the id '" + id->string + "' is not the name of its folder, '" + folder + "'");
+    manifest_.version = document.text("version");
+    manifest_.summary = document.text("summary");
+    manifest_.sources = document.texts("sources");
+    manifest_.accumulates_subframes = document.has("accumulates");
+}
+
+void ManifestParser::uses(const Reader& document) {
+    if (const Node* names = document.find("uses"))
+        for (const Node& item : names->items)
+            if (item.string == "lights" && !manifest_.uses_lights) manifest_.uses_lights = item.place;
+}
+
+void ManifestParser::params(const Reader& document) {
+    const Node* section = document.find("params");
+    if (!section) return;
+    for (const Member& member : section->members) {
+        if (!is_new("parameter", member)) continue;
+        const auto spec = parse_param_spec(member.key, member.value, diagnostics_, param_types());
+        if (!spec) {
+            faulty_params_.insert(member.key);
+            continue;
+        }
+        if (const Node* from = member.value.find("from")) check_from(*spec, from->place);
+        manifest_.params.push_back(*spec);
+    }
+}
+
+void ManifestParser::check_from(const ParamSpec& spec, const Place& place) {
+    const std::vector<std::string> known = camera_sources(spec.type);
+    if (std::find(known.begin(), known.end(), spec.from) == known.end())
+        fault(place, unknown_source(spec.from, known));
+}
+
+void ManifestParser::presets(const Reader& document) {
+    if (const Node* section = document.find("presets"))
+        for (const Member& member : section->members) preset(member);
+}
+
+void ManifestParser::preset(const Member& member) {
+    PresetSpec preset;
+    preset.name = member.key;
+    for (const Member& value : member.value.members) {
+        if (faulty_params_.contains(value.key)) continue;
+        const ParamSpec* spec = manifest_.find_param(value.key);
+        if (!spec) {
+            fault(value.key_place, "preset '" + member.key + "' sets '" + value.key +
+                                       "', which is not a parameter" +
+                                       did_you_mean(value.key, manifest_.param_names()));
+            continue;
+        }
+        const std::string label = "preset " + member.key + ", " + value.key;
+        if (auto parsed = parse_param_value(*spec, value.value, label, diagnostics_))
+            preset.values[value.key] = std::move(*parsed);
+    }
+    manifest_.presets.push_back(std::move(preset));
+}
+
+const InputSpec* EffectManifest::find_input(const std::string& name) const {
+    return find_named(inputs, name);
+}
+const OutputSpec* EffectManifest::find_output(const std::string& name) const {
+    return find_named(outputs, name);
+}
+const ParamSpec* EffectManifest::find_param(const std::string& name) const {
+    return find_named(params, name);
+}
+const TextureSpec* EffectManifest::find_texture(const std::string& name) const {
+    return find_named(textures, name);
+}
+const BufferSpec* EffectManifest::find_buffer(const std::string& name) const {
+    return find_named(buffers, name);
+}
+const TileListSpec* EffectManifest::find_tile_list(const std::string& name) const {
+    return find_named(tiles, name);
+}
+const PresetSpec* EffectManifest::find_preset(const std::string& name) const {
+    return find_named(presets, name);
+}
+
+bool EffectManifest::has_history() const {
+    const auto any = [](const auto& list) {
+        return std::any_of(list.begin(), list.end(), [](const auto& item) { return item.history; });
+    };
+    return any(inputs) || any(textures) || any(buffers);
+}
+
+std::vector<std::string> EffectManifest::param_names() const {
+    std::vector<std::string> names;
+    for (const ParamSpec& spec : params) names.push_back(spec.name);
+    return names;
+}
+
+int EffectManifest::most_of(const CountSpec& count) const {
+    const ParamSpec* spec = find_param(count.param);
+    return spec && spec->max ? int(*spec->max) : count.number;
+}
+
+std::optional<EffectManifest> parse_manifest(const Node& node, const fs::path& folder,
+                                             Diagnostics& diagnostics, const fs::path& glsl_folder) {
+    const int errors_before = diagnostics.error_count();
+    grammar::check(node, effect_block(), diagnostics);
+    if (!node.is_object()) return std::nullopt;
+    EffectManifest manifest;
+    manifest.folder = folder;
+    const grammar::Reader document(node, effect_block());
+    ManifestParser parser(manifest, diagnostics);
+    parser.identity(document);
+    parser.modules(document, glsl_folder);
+    parser.inputs(document);
+    parser.outputs(document);
+    parser.declarations(document, &ManifestParser::uses);
+    parser.declarations(document, &ManifestParser::params);
+    check_relation_declarations(manifest.params, diagnostics);
+    parser.declarations(document, &ManifestParser::textures);
+    parser.declarations(document, &ManifestParser::buffers);
+    parser.declarations(document, &ManifestParser::tiles);
+    parser.native(document);
+    parser.declarations(document, &ManifestParser::passes);
+    // Whatever uses what a module would declare, or a shader cannot say, would seem to be wrong.
+    if (parser.has_all_modules()) {
+        parser.telemetry(document);
+        parser.presets(document);
+        if (write_out(manifest, glsl_folder, diagnostics)) check_manifest(manifest, diagnostics);
+    }
+    if (diagnostics.error_count() > errors_before) return std::nullopt;
+    return manifest;
+}
+
+}  // namespace aftershade

@@ -1,0 +1,191 @@
+#include "framework/effect/manifest/manifest_check.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <regex>
+#include <set>
+#include <utility>
+
+#include "framework/effect/glsl_names.h"
+
+namespace aftershade {
+
+namespace {
+
+/// Lower-case keywords and reserved words of GLSL 4.50, section 3.6; vectors and matrices are is_word's.
+const std::set<std::string> kWords = {
+    "active",     "asm",      "atomic_uint", "attribute", "bool",          "break",
+    "buffer",     "case",     "cast",        "centroid",  "class",         "coherent",
+    "common",     "const",    "continue",    "default",   "discard",       "do",
+    "double",     "else",     "enum",        "extern",    "external",      "false",
+    "filter",     "fixed",    "flat",        "float",     "for",           "goto",
+    "half",       "highp",    "if",          "in",        "inline",        "inout",
+    "input",      "int",      "interface",   "invariant", "layout",        "long",
+    "lowp",       "mediump",  "namespace",   "noinline",  "noperspective", "out",
+    "output",     "packed",   "partition",   "patch",     "precise",       "precision",
+    "public",     "readonly", "resource",    "restrict",  "return",        "sample",
+    "shared",     "short",    "sizeof",      "smooth",    "static",        "struct",
+    "subroutine", "superp",   "switch",      "template",  "this",          "true",
+    "typedef",    "uint",     "uniform",     "union",     "unsigned",      "using",
+    "varying",    "void",     "volatile",    "while",     "writeonly"};
+
+/// Functions that a global name would hide, and the host's own blocks. GLSL 4.50, chapter 8.
+const std::set<std::string> kTaken = {
+    "param",       "frame",      "camera",      "pass",      "native",      "main",    "radians", "degrees",
+    "sin",         "cos",        "tan",         "asin",      "acos",        "atan",    "sinh",    "cosh",
+    "tanh",        "asinh",      "acosh",       "atanh",     "pow",         "exp",     "log",     "exp2",
+    "log2",        "sqrt",       "inversesqrt", "abs",       "sign",        "floor",   "trunc",   "round",
+    "ceil",        "fract",      "mod",         "modf",      "min",         "max",     "clamp",   "mix",
+    "step",        "smoothstep", "isnan",       "isinf",     "fma",         "frexp",   "ldexp",   "length",
+    "distance",    "dot",        "cross",       "normalize", "faceforward", "reflect", "refract", "transpose",
+    "determinant", "inverse",    "equal",       "any",       "all",         "not",     "texture", "barrier",
+    "fwidth",      "noise1"};
+
+bool is_word(const std::string& name) {
+    static const std::regex types("[bdiuhf]?vec[234]|d?mat[234](x[234])?");
+    return kWords.contains(name) || std::regex_match(name, types);
+}
+
+class NameChecker {
+public:
+    NameChecker(const EffectManifest& manifest, Diagnostics& diagnostics)
+        : manifest_(manifest), diagnostics_(diagnostics) {}
+
+    void check() {
+        if (manifest_.uses_lights)
+            for (const char* name : {"lights", "Light", "LIGHT_POINT", "LIGHT_DIRECTIONAL", "LIGHT_AREA"})
+                claim(name, "block 'lights'", *manifest_.uses_lights);
+        for (const InputSpec& input : manifest_.inputs) {
+            sampled("input", input);
+            if (input.optional)
+                claim("HAS_" + upper_case(input.name), "input '" + input.name + "'", input.place);
+        }
+        for (const OutputSpec& output : manifest_.outputs) {
+            word("output", output.name, output.place);
+            claim("out_" + output.name, "output '" + output.name + "'", output.place);
+        }
+        for (const TextureSpec& texture : manifest_.textures) {
+            sampled("texture", texture);
+            claim("out_" + texture.name, "texture '" + texture.name + "'", texture.place);
+        }
+        for (const BufferSpec& buffer : manifest_.buffers) stored(buffer);
+        for (const TileListSpec& list : manifest_.tiles) tile_list(list);
+        for (const ParamSpec& param : manifest_.params) parameter(param);
+        if (manifest_.native) native(*manifest_.native);
+        for (const PassSpec& pass : manifest_.passes) passes(pass);
+    }
+
+private:
+    /// A name that no GLSL identifier may be.
+    void word(const std::string& thing, const std::string& name, const Place& place) {
+        if (is_word(name)) diagnostics_.error(place, thing + " '" + name + "' is a word of GLSL");
+        else if (name.starts_with("gl_") || name.find("__") != std::string::npos)
+            diagnostics_.error(place, thing + " '" + name + "' has gl_ or __, which GLSL keeps for itself");
+    }
+    /// A name that stands alone in a shader.
+    void global(const std::string& thing, const std::string& name, const Place& place) {
+        word(thing, name, place);
+        if (kTaken.contains(name))
+            diagnostics_.error(place, thing + " '" + name + "' would hide GLSL's or the host's own '" + name +
+                                          "' in its shaders");
+        claim(name, thing + " '" + name + "'", place);
+    }
+    void claim(const std::string& identifier, const std::string& owner, const Place& place) {
+        const auto [known, is_new] = owners_.emplace(identifier, Owner{owner, place});
+        if (is_new || known->second.name == owner) return;
+        if (told_.emplace(known->second.name, owner).second)
+            diagnostics_.error(place, owner + " needs the GLSL name '" + identifier + "', which the " +
+                                          known->second.seen_from(place) + " has");
+    }
+
+    template <typename Spec>
+    void sampled(const std::string& thing, const Spec& spec) {
+        const std::string owner = thing + " '" + spec.name + "'";
+        global(thing, spec.name, spec.place);
+        claim(spec.name + "_size", owner, spec.place);
+        if (!spec.history) return;
+        claim(spec.name + "_prev", owner, spec.place);
+        claim(spec.name + "_prev_size", owner, spec.place);
+    }
+    void stored(const BufferSpec& buffer) {
+        const std::string owner = "buffer '" + buffer.name + "'";
+        global("buffer", buffer.name, buffer.place);
+        claim(storage_block_name(buffer.name), owner, buffer.place);
+        if (!buffer.history) return;
+        claim(buffer.name + "_prev", owner, buffer.place);
+        claim(storage_block_name(buffer.name + "_prev"), owner, buffer.place);
+    }
+    void tile_list(const TileListSpec& list) {
+        for (const char* name : {"TILE_RUNS", "TILE_ARGS", "TILE_SIDE", "tile_grid_size"})
+            claim(name, "section 'tiles'", list.place);
+        if (list.of) return;
+        global("tile list", list.name, list.place);
+        claim("is_listed", "section 'tiles'", list.place);
+    }
+    void parameter(const ParamSpec& param) {
+        const std::string owner = "parameter '" + param.name + "'";
+        if (is_block_type(param.type)) word("parameter", param.name, param.place);
+        else global("parameter", param.name, param.place);
+        if (param.bind == ParamBind::define) claim(upper_case(param.name), owner, param.place);
+        for (const std::string& value : param.values)
+            claim(upper_case(param.name) + "_" + upper_case(value), owner, param.place);
+    }
+    void native(const NativeSpec& native) {
+        for (const NativeUniformSpec& uniform : native.uniforms)
+            word("native uniform", uniform.name, uniform.place);
+        for (const NativeTableSpec& table : native.tables) global("native table", table.name, table.place);
+    }
+    void passes(const PassSpec& pass) {
+        word("pass", pass.name, pass.place);
+        for (const ReadSpec& read : pass.reads)
+            if (!read.when.empty()) presence(read.glsl_name(), read.name, read.place);
+        for (const WriteSpec& write : pass.writes)
+            if (!write.when.empty()) presence("out_" + write.name, write.name, write.place);
+        for (const auto& [name, value] : pass.defines) {
+            const auto known = owners_.find(name);
+            if (known != owners_.end())
+                diagnostics_.error(pass.place, "pass '" + pass.name + "' defines '" + name + "', which the " +
+                                                   known->second.seen_from(pass.place) +
+                                                   " has as its GLSL name");
+            else if (is_word(name) || kTaken.contains(name))
+                diagnostics_.error(pass.place, "pass '" + pass.name + "' defines '" + name +
+                                                   "', a word of GLSL or the host");
+        }
+    }
+
+    /// The define of what a pass reads or writes only under conditions.
+    void presence(const std::string& glsl_name, const std::string& name, const Place& place) {
+        const std::string thing = manifest_.find_input(name)     ? "input"
+                                  : manifest_.find_texture(name) ? "texture"
+                                                                 : "output";
+        claim("HAS_" + upper_case(glsl_name), thing + " '" + name + "'", place);
+    }
+
+    const EffectManifest& manifest_;
+    Diagnostics& diagnostics_;
+    struct Owner {
+        std::string name;
+        Place place;
+        /// With its place, if in another document.
+        std::string seen_from(const Place& other) const {
+            return place.file == other.file ? name : name + " (" + to_string(place) + ")";
+        }
+    };
+    std::map<std::string, Owner> owners_;  // by GLSL identifier
+    std::set<std::pair<std::string, std::string>> told_;
+};
+
+}  // namespace
+
+void check_names(const EffectManifest& manifest, Diagnostics& diagnostics) {
+    NameChecker(manifest, diagnostics).check();
+}
+
+void check_manifest(const EffectManifest& manifest, Diagnostics& diagnostics) {
+    check_names(manifest, diagnostics);
+    check_passes(manifest, diagnostics);
+    check_tiles(manifest, diagnostics);
+}
+
+}  // namespace aftershade

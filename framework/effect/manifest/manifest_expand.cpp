@@ -1,0 +1,137 @@
+#include "framework/effect/manifest/manifest_expand.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace aftershade {
+
+namespace {
+
+void append(std::vector<WhenSpec>& conditions, const std::vector<WhenSpec>& more) {
+    conditions.insert(conditions.end(), more.begin(), more.end());
+}
+
+/// One work group takes 16 x 16 tiles: glsl/host/list_tiles.comp.
+constexpr int kTilesOfAGroup = 16;
+
+class TileListWriter {
+public:
+    TileListWriter(EffectManifest& manifest, Diagnostics& diagnostics)
+        : manifest_(manifest), diagnostics_(diagnostics) {}
+
+    /// Buffers first: passes count by them.
+    void write() {
+        for (const TileListSpec& list : manifest_.tiles)
+            if (is_used(list)) add_buffers(list);
+        std::vector<PassSpec> passes;
+        for (PassSpec& pass : manifest_.passes) {
+            if (const TileListSpec* list = manifest_.find_tile_list(pass.over)) {
+                const auto fills = [&](const PassSpec& other) { return other.lists == list->name; };
+                if (std::none_of(passes.begin(), passes.end(), fills)) passes.push_back(listing_pass(*list));
+                confine(pass, *list);
+            }
+            passes.push_back(std::move(pass));
+        }
+        manifest_.passes = std::move(passes);
+    }
+
+private:
+    bool is_used(const TileListSpec& list) const {
+        return std::any_of(manifest_.passes.begin(), manifest_.passes.end(),
+                           [&](const PassSpec& pass) { return pass.over == list.name; });
+    }
+
+    void add_buffers(const TileListSpec& list) {
+        for (const std::string& name : {list.runs(), list.args()})
+            if (manifest_.find_buffer(name))
+                diagnostics_.error(list.place, "the tile list '" + list.name + "' needs the name '" + name +
+                                                   "' for a buffer of its own, but one is declared already");
+        BufferSpec runs;
+        runs.name = list.runs();
+        runs.element = "uvec4";
+        runs.grid = tiles_of(list);
+        runs.place = list.place;
+        BufferSpec args;
+        args.name = list.args();
+        args.element = "uint";
+        args.count.number = 4;
+        args.clear = {4, 0, 0, 0};  // the corners of a quad
+        args.indirect = true;
+        args.place = list.place;
+        manifest_.buffers.push_back(std::move(runs));
+        manifest_.buffers.push_back(std::move(args));
+    }
+
+    /// A place for each tile, in tiles of the working grid.
+    GridSpec tiles_of(const TileListSpec& list) const {
+        GridSpec grid;
+        grid.kind = GridSpec::Kind::tile;
+        grid.tile = list.tile;
+        const TextureSpec* on = manifest_.find_texture(list.on);
+        if (on && on->grid.kind == GridSpec::Kind::scale)
+            grid.tile.number = std::max(1, int(std::floor(list.tile.number / on->grid.scale)));
+        return grid;
+    }
+
+    static PassSpec listing_pass(const TileListSpec& list) {
+        PassSpec pass;
+        pass.name = list.name;
+        pass.lists = list.name;
+        pass.kind = PassKind::compute;
+        pass.folder = list.folder;
+        pass.module = list.module;
+        pass.shader = list.predicate;
+        pass.reads = list.reads;
+        pass.infers_reads = list.infers_reads;
+        pass.when = list.when;
+        pass.buffers = {access(list.runs(), AccessSpec::Kind::write, list.place),
+                        access(list.args(), AccessSpec::Kind::atomic, list.place)};
+        pass.dispatch.tile.number = kTilesOfAGroup * (list.of ? 1 : list.tile.number);
+        pass.dispatch.over = list.of ? list.of->texture : list.on;
+        pass.place = list.place;
+        return pass;
+    }
+
+    static void confine(PassSpec& pass, const TileListSpec& list) {
+        pass.instances.emplace();
+        pass.instances->indirect = list.args();
+        pass.buffers.push_back(access(list.runs(), AccessSpec::Kind::read, pass.place));
+        append(pass.when, list.when);
+    }
+
+    static AccessSpec access(const std::string& name, AccessSpec::Kind kind, const Place& place) {
+        AccessSpec access;
+        access.name = name;
+        access.kind = kind;
+        access.place = place;
+        return access;
+    }
+
+    EffectManifest& manifest_;
+    Diagnostics& diagnostics_;
+};
+
+/// A texture is there or not for all its uses at once.
+void hand_down_conditions(EffectManifest& manifest) {
+    const auto hand_down = [&](auto& uses) {
+        for (auto& use : uses)
+            if (const TextureSpec* texture = manifest.find_texture(use.name)) append(use.when, texture->when);
+    };
+    for (PassSpec& pass : manifest.passes) {
+        hand_down(pass.reads);
+        hand_down(pass.writes);
+        hand_down(pass.images);
+    }
+}
+
+}  // namespace
+
+bool write_out(EffectManifest& manifest, const std::filesystem::path& glsl_folder, Diagnostics& diagnostics) {
+    TileListWriter(manifest, diagnostics).write();
+    if (!infer_uses(manifest, glsl_folder, diagnostics)) return false;
+    hand_down_conditions(manifest);
+    return true;
+}
+
+}  // namespace aftershade

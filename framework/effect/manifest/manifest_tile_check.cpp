@@ -1,0 +1,51 @@
+// The tile lists of a manifest, and the passes over them.
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "framework/effect/manifest/manifest_check.h"
+
+namespace aftershade {
+
+namespace {
+
+/// Tiles lie on what they are of, and on targets, by the scales of both.
+bool has_scale(const EffectManifest& manifest, const std::string& name) {
+    const TextureSpec* texture = manifest.find_texture(name);
+    return !texture || texture->grid.kind == GridSpec::Kind::scale;
+}
+
+void check_grid(const EffectManifest& manifest, const TileListSpec& list, Diagnostics& diagnostics) {
+    if (!has_scale(manifest, list.on))
+        diagnostics.error(list.place, "the tile list '" + list.name + "' is on '" + list.on +
+                                          "', which has no 'scale' of the working grid");
+}
+
+void check_over(const EffectManifest& manifest, const PassSpec& pass, Diagnostics& diagnostics) {
+    const std::string label = label_of(manifest, pass) + ": ";
+    std::vector<std::string> lists;
+    for (const TileListSpec& list : manifest.tiles) lists.push_back(list.name);
+    if (!manifest.find_tile_list(pass.over))
+        diagnostics.error(pass.place, label + "runs over '" + pass.over + "', which is no tile list" +
+                                          did_you_mean(pass.over, lists));
+    for (const WriteSpec& write : pass.writes)
+        if (!has_scale(manifest, write.name) || write.level != 0)
+            diagnostics.error(write.place,
+                              label + "runs over tiles, so what it writes, '" + write.name +
+                                  "', must have a 'scale' of the working grid, and be its level 0");
+}
+
+}  // namespace
+
+void check_tiles(const EffectManifest& manifest, Diagnostics& diagnostics) {
+    for (const TileListSpec& list : manifest.tiles) {
+        check_grid(manifest, list, diagnostics);
+        const auto runs_over = [&](const PassSpec& pass) { return pass.over == list.name; };
+        if (std::none_of(manifest.passes.begin(), manifest.passes.end(), runs_over))
+            diagnostics.error(list.place, "no pass runs over the tile list '" + list.name + "'");
+    }
+    for (const PassSpec& pass : manifest.passes)
+        if (!pass.over.empty()) check_over(manifest, pass, diagnostics);
+}
+
+}  // namespace aftershade

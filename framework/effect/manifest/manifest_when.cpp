@@ -1,0 +1,75 @@
+// The conditions of a manifest.
+#include "framework/effect/manifest/manifest_when.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "framework/core/param_type.h"
+#include "framework/effect/manifest/manifest_parser.h"
+
+namespace aftershade {
+
+namespace {
+
+/// A condition that could never hold is a mistake.
+bool may_equal(const ParamSpec& spec, const ParamValue& value) {
+    if (!spec.type->is_integer || value.index() != spec.default_value.index()) return false;
+    return !spec.type->is_choice || std::find(spec.values.begin(), spec.values.end(),
+                                              std::get<std::string>(value)) != spec.values.end();
+}
+
+}  // namespace
+
+void add_conditions(const grammar::Reader& owner, std::vector<WhenSpec>& conditions) {
+    const Node* section = owner.find("when");
+    if (!section) return;
+    for (const Member& member : section->members) {
+        WhenSpec condition;
+        condition.subject = member.key;
+        condition.place = member.key_place;
+        const auto add = [&](const Node& value) {
+            if (value.kind == Node::Kind::boolean) condition.values.emplace_back(value.boolean);
+            else if (value.kind == Node::Kind::integer) condition.values.emplace_back(value.integer);
+            else if (value.is_string()) condition.values.emplace_back(value.string);
+        };
+        if (member.value.is_array())
+            for (const Node& item : member.value.items) add(item);
+        else add(member.value);
+        conditions.push_back(std::move(condition));
+    }
+}
+
+std::vector<std::string> faults_of_condition(const EffectManifest& manifest, const WhenSpec& condition) {
+    const std::string subject = "'" + condition.subject + "'";
+    if (condition.subject.starts_with(kHasInput)) {
+        const InputSpec* input = manifest.find_input(condition.subject.substr(kHasInput.size()));
+        if (input && input->optional) return {};
+        return {subject + " does not name an optional input"};
+    }
+    const ParamSpec* spec = manifest.find_param(condition.subject);
+    if (!spec)
+        return {"the condition " + subject + " is not a parameter" +
+                did_you_mean(condition.subject, manifest.param_names())};
+    std::vector<std::string> faults;
+    for (const ParamValue& value : condition.values)
+        if (!may_equal(*spec, value))
+            faults.push_back(format_value(value) + " is not a value of '" + spec->name + "'");
+    return faults;
+}
+
+bool conditions_hold(const std::vector<WhenSpec>& conditions, const ParamReader& params,
+                     const std::vector<std::string>& present_inputs) {
+    const auto holds = [&](const WhenSpec& condition) {
+        ParamValue actual;
+        if (condition.subject.starts_with(kHasInput)) {
+            const std::string input = condition.subject.substr(kHasInput.size());
+            actual = std::find(present_inputs.begin(), present_inputs.end(), input) != present_inputs.end();
+        } else {
+            actual = params.get(condition.subject);
+        }
+        return std::find(condition.values.begin(), condition.values.end(), actual) != condition.values.end();
+    };
+    return std::all_of(conditions.begin(), conditions.end(), holds);
+}
+
+}  // namespace aftershade

@@ -1,0 +1,24 @@
+// Conditions on parameters and optional inputs. Internal to framework/effect.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "framework/core/param.h"
+#include "framework/effect/manifest/manifest.h"
+#include "framework/effect/param_reader.h"
+
+namespace aftershade {
+
+/// What a condition on an optional input begins with: "has.velocity".
+inline constexpr std::string_view kHasInput = "has.";
+
+/// Why a condition cannot be asked, or never holds: what it names and the values that it compares with.
+std::vector<std::string> faults_of_condition(const EffectManifest& manifest, const WhenSpec& condition);
+
+/// Whether all of them hold with these values and these inputs.
+bool conditions_hold(const std::vector<WhenSpec>& conditions, const ParamReader& params,
+                     const std::vector<std::string>& present_inputs);
+
+}  // namespace aftershade

@@ -1,0 +1,152 @@
+// Reading and writing OpenEXR files by channel name.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "framework/image/color_space.h"
+#include "framework/image/image.h"
+#include "framework/image/pixel_type.h"
+
+namespace aftershade {
+
+/// What a reader accepts before it allocates anything.
+struct ReadLimits {
+    int max_side_px = 16384;  ///< of the data and the display window
+    std::uint64_t max_image_bytes =
+        512ull * 1024 * 1024;  ///< of the channels asked for, as this program stores them
+};
+
+struct ExrChannel {
+    std::string name;
+    PixelType type = PixelType::half;
+    int x_sampling = 1;
+    int y_sampling = 1;
+};
+
+using ExrValue = std::variant<std::string, int, float, std::vector<float>>;
+
+/// The header attributes of one part, kept whole so that they can be carried to an output bit for bit.
+/// [thread-safe to read; cheap to copy]
+class ExrMetadata {
+public:
+    ExrMetadata();
+    std::vector<std::string> names() const;
+    /// string, int, float, double (as float); v2i/v2f/v3i/v3f, m33f, m44f, box2i, floatvector and
+    /// chromaticities (red, green, blue, white) as float vectors, row by row as EXR stores them; nullopt
+    /// where absent or of another type.
+    std::optional<ExrValue> value(const std::string& name) const;
+    std::optional<std::string> text(const std::string& name) const;  ///< string attributes only
+    std::optional<std::vector<std::string>> texts(
+        const std::string& name) const;  ///< stringvector attributes only
+    /// Numbers, rationals (framesPerSecond), and strings that are wholly a number.
+    std::optional<double> number(const std::string& name) const;
+
+    struct Impl;  ///< an Imf::Header
+    std::shared_ptr<const Impl> impl;
+};
+
+/// The attribute "chromaticities"; Rec. 709, as the OpenEXR specification says, where there is none.
+Chromaticities stored_primaries(const ExrMetadata& metadata);
+
+struct ExrPart {
+    std::string name;
+    std::string view;
+    std::string type;         ///< "scanlineimage", "tiledimage", "deepscanline", "deeptile"
+    std::string compression;  ///< "none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"
+    Window data_window;
+    Window display_window;
+    float pixel_aspect = 1;
+    std::vector<ExrChannel> channels;  ///< in the file's order
+    ExrMetadata metadata;
+};
+
+/// What one call of read_floats or read_uints asks for.
+struct ExrRequest {
+    int part = 0;
+    std::vector<std::string> channels;
+    ComponentType type = ComponentType::float32;
+    bool operator==(const ExrRequest&) const = default;
+};
+
+/// Whether it is a file that begins as OpenEXR files do.
+bool is_exr_file(const std::filesystem::path& path);
+
+/// An open file. Headers are read and held against the limits on construction; nothing larger than a header
+/// is allocated before. Every failure is Error(ExitCode::capture) that begins with the path. [one thread at a
+/// time]
+class ExrFile {
+public:
+    explicit ExrFile(const std::filesystem::path& path, const ReadLimits& limits = {});
+    ~ExrFile();
+    ExrFile(ExrFile&&) noexcept;
+    ExrFile& operator=(ExrFile&&) noexcept;
+
+    const std::filesystem::path& path() const;
+    const std::vector<ExrPart>& parts() const;
+
+    /// The named channels of a part, interleaved in the order given, over the part's data window (level 0 of
+    /// a tiled part). half and uint channels are widened to float by read_floats (uint values above 2^24 lose
+    /// bits: use read_uints, which takes uint channels only). Deep parts, subsampled channels, incomplete
+    /// files and channels that do not exist are errors.
+    Image read_floats(int part, std::span<const std::string> channels) const;
+    Image read_uints(int part, std::span<const std::string> channels) const;
+    /// Unpacks what these reads will ask for in one pass over each part, instead of one for each read: all
+    /// channels of a block are compressed together. The next read of exactly a request's channels takes what
+    /// is kept for it. Never fails: what cannot be read, or would be more than the limits allow, is left to
+    /// the reads, which tell; so is a request that shares a channel with one before it.
+    void prefetch(std::span<const ExrRequest> requests) const;
+    /// RGBA of a part that stores luminance Y, or Y with subsampled RY and BY, as OpenEXR's own RgbaInputFile
+    /// converts it, to half precision.
+    Image read_luminance_chroma(int part) const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// One channel to write: component `component` of `image`, stored as `type`.
+struct ExrOutputChannel {
+    std::string name;
+    PixelType type = PixelType::half;
+    const Image* image = nullptr;
+    int component = 0;
+};
+
+struct ExrWriteOptions {
+    Window data_window;  ///< the images' size
+    Window display_window;
+    float pixel_aspect = 1;
+    std::string compression = "zip";
+    /// Every attribute but windows, pixel aspect, channels, compression, type, name, line order, tiles,
+    /// preview.
+    std::optional<ExrMetadata> carry_over;
+    /// Instead of those carried over. Vectors of 2, 3, 9 and 16 become v2f, v3f, m33f and m44f,
+    /// "chromaticities" of 8 its own type, others floatvector; "framesPerSecond" becomes a rational.
+    std::map<std::string, ExrValue> attributes;
+};
+
+/// Writes one scan-line part: to a temporary file in the same folder, flushed, then renamed over `path`.
+/// Throws Error(ExitCode::output) that begins with the path; then no temporary file remains and an older file
+/// is whole.
+void write_exr(const std::filesystem::path& path, std::span<const ExrOutputChannel> channels,
+               const ExrWriteOptions& options);
+
+/// What ExrWriteOptions::compression may be.
+const std::vector<std::string>& exr_compression_names();
+
+/// Whether a compression may change values: b44, b44a, dwaa, dwab, and pxr24, which shortens floats.
+bool is_lossy_compression(std::string_view name);
+
+/// Threads that OpenEXR uses for compression, process-wide; 0 does the work on the caller's thread.
+void set_exr_threads(int count);
+
+}  // namespace aftershade

@@ -1,0 +1,122 @@
+// Shared by the EXR sources of this folder; nobody else includes it.
+#pragma once
+
+#include "framework/core/error.h"
+#include "framework/core/text.h"
+#include "framework/file/exr_file.h"
+
+#include <OpenEXR/ImfCompression.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfPixelType.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <new>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace aftershade {
+
+struct ExrMetadata::Impl {
+    Imf::Header header;
+};
+
+namespace exr {
+
+/// By Imf::Compression.
+inline constexpr std::array<std::string_view, 10> kCompressionNames = {
+    "none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"};
+static_assert(kCompressionNames.size() == Imf::NUM_COMPRESSION_METHODS);
+
+inline constexpr int kMaxNameLength = 255;  ///< Imf::Name cuts longer ones without a word
+
+struct FileCloser {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using FileHandle = std::unique_ptr<std::FILE, FileCloser>;
+
+/// A regular file as Imf reads it. Knows its size, so that sizes claimed in it can be checked.
+class FileStream final : public Imf::IStream {
+public:
+    /// Throws Error(ExitCode::capture) where `path` is missing, unreadable, empty or no regular file.
+    explicit FileStream(const std::filesystem::path& path);
+
+    bool read(char bytes[], int count) override;
+    std::uint64_t tellg() override { return position_; }
+    void seekg(std::uint64_t position) override;
+    void clear() override;
+
+    std::uint64_t size() const { return size_; }
+    /// Leaves the position as it is.
+    void read_at(std::uint64_t offset, std::span<char> bytes);
+
+private:
+    FileHandle file_;
+    std::uint64_t size_ = 0;
+    std::uint64_t position_ = 0;
+};
+
+/// What the header of a file says before the library has allocated anything for it.
+struct FileLayout {
+    bool multi_part = false;
+    std::vector<Imf::Header> headers;
+    std::vector<std::uint64_t> block_tables;  ///< byte position of each part's table of block offsets
+    std::uint64_t largest_block_bytes = 0;    ///< decoded
+};
+
+/// Reads the headers and holds them against the limits; throws Error(ExitCode::capture).
+FileLayout read_layout(FileStream& file, const std::filesystem::path& path, const ReadLimits& limits);
+
+/// Every block of a flat part (of level 0 where tiled) lies whole in the file, has pixels and, where not
+/// compressed, all of them: the library reads a short block as what its buffer held before. Throws
+/// Error(ExitCode::capture).
+void check_blocks(FileStream& file, const std::filesystem::path& path, const FileLayout& layout, int part);
+
+/// What every file begins with.
+inline constexpr std::string_view kMagic = "\x76\x2f\x31\x01";
+
+ExrPart describe_part(const Imf::Header& header);
+
+/// "part 2 'left.depth'", or nothing to say where there is one part: then "the file".
+std::string part_label(const std::vector<ExrPart>& parts, int part);
+
+[[noreturn]] inline void fail(const std::filesystem::path& path, const std::string& what,
+                              ExitCode code = ExitCode::capture) {
+    throw Error(code, path.string() + ": " + printable(what));
+}
+
+/// The reason out of a message of the library, which repeats the file's name and ends with a full stop.
+std::string library_reason(const std::exception& error);
+
+/// Runs `work`; whatever it throws leaves as Error(code), "<path>: <what>: <reason>".
+template <class Work>
+decltype(auto) translate_errors(const std::filesystem::path& path, ExitCode code, const char* what,
+                                Work&& work) {
+    try {
+        return std::forward<Work>(work)();
+    } catch (const Error&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        fail(path, std::string(what) + ": not enough memory", code);
+    } catch (const std::exception& error) {
+        fail(path, std::string(what) + ": " + library_reason(error), code);
+    } catch (...) {
+        fail(path, std::string(what) + ": unknown reason", code);
+    }
+}
+
+Window to_window(const Imath::Box2i& box);
+Imath::Box2i to_box(const Window& window);
+Imf::PixelType to_imf(PixelType type);
+
+}  // namespace exr
+}  // namespace aftershade

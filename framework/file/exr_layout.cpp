@@ -1,0 +1,425 @@
+// What a file claims, checked before the library believes it: OpenEXR 3.1 allocates attributes, block tables
+// and decoding buffers from the sizes in the file, and fills what a short block lacks with what its buffers
+// held before.
+#include "framework/file/exr_internal.h"
+
+#include <Imath/ImathBox.h>
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfTileDescription.h>
+#include <OpenEXR/ImfVersion.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+
+namespace aftershade::exr {
+
+namespace fs = std::filesystem;
+
+static_assert(std::endian::native == std::endian::little, "EXR files are read here as little-endian");
+
+namespace {
+
+constexpr int kMaxChannels = 1024;
+constexpr int kMaxParts = 1024;
+constexpr int kMaxAttributes =
+    65536;  // of the whole file; an empty one takes 9 bytes there and 400 in memory
+
+struct FixedSize {
+    std::string_view type;
+    int bytes;
+};
+
+// Types whose stored size the library does not look at. One that lied would make it read the next attribute
+// elsewhere than this check does. openexr.com, "OpenEXR File Layout", attribute types.
+constexpr FixedSize kFixedSizes[] = {{"box2f", 16},
+                                     {"box2i", 16},
+                                     {"chromaticities", 32},
+                                     {"compression", 1},
+                                     {"deepImageState", 1},
+                                     {"double", 8},
+                                     {"envmap", 1},
+                                     {"float", 4},
+                                     {"int", 4},
+                                     {"keycode", 28},
+                                     {"lineOrder", 1},
+                                     {"m33d", 72},
+                                     {"m33f", 36},
+                                     {"m44d", 128},
+                                     {"m44f", 64},
+                                     {"rational", 8},
+                                     {"tiledesc", 9},
+                                     {"timecode", 8},
+                                     {"v2d", 16},
+                                     {"v2f", 8},
+                                     {"v2i", 8},
+                                     {"v3d", 24},
+                                     {"v3f", 12},
+                                     {"v3i", 12}};
+
+/// Walks the headers without keeping anything.
+class HeaderScan {
+public:
+    HeaderScan(FileStream& file, const fs::path& path) : file_(file), path_(path) {}
+
+    /// Returns the version field; the end of the headers is then the file's position.
+    int run() {
+        const int version = read_version();
+        int parts = 0;
+        while (scan_part() && Imf::isMultiPart(version)) {
+            if (++parts > kMaxParts)
+                fail(path_, fmt::format("more than {} parts, which is the limit", kMaxParts));
+        }
+        return version;
+    }
+
+private:
+    int read_version() {
+        unsigned char magic[4] = {};
+        file_.read_at(
+            0, {reinterpret_cast<char*>(magic), std::size_t(std::min<std::uint64_t>(4, file_.size()))});
+        if (std::string_view(reinterpret_cast<const char*>(magic), sizeof magic) != kMagic) {
+            fail(path_,
+                 fmt::format("not an OpenEXR file (it begins with the bytes {:02x} {:02x} {:02x} {:02x}, "
+                             "expected 76 2f 31 01)",
+                             magic[0], magic[1], magic[2], magic[3]));
+        }
+        file_.seekg(4);
+        const int version = read_int();
+        if (Imf::getVersion(version) != Imf::EXR_VERSION || !Imf::supportsFlags(Imf::getFlags(version))) {
+            fail(path_, fmt::format("OpenEXR version field {:#010x} is not supported (format version 2 is)",
+                                    unsigned(version)));
+        }
+        return version;
+    }
+
+    /// False for the empty header that ends a multi-part list.
+    bool scan_part() {
+        int count = 0;
+        for (std::string name = read_name("attribute"); !name.empty(); name = read_name("attribute")) {
+            ++count;
+            if (++attributes_ > kMaxAttributes) {
+                fail(path_,
+                     fmt::format("more than {} header attributes, which is the limit", kMaxAttributes));
+            }
+            const std::string type = read_name("attribute type");
+            scan_value(name, type, read_int());
+        }
+        return count > 0;
+    }
+
+    void scan_value(const std::string& name, const std::string& type, int size) {
+        const std::uint64_t begin = file_.tellg();
+        if (size < 0 || std::uint64_t(size) > file_.size() - begin) {
+            fail(path_, fmt::format("header attribute '{}' claims {} bytes, {} are left in the file", name,
+                                    size, file_.size() - begin));
+        }
+        const auto* fixed = std::ranges::find(kFixedSizes, std::string_view(type), &FixedSize::type);
+        bool sound = fixed == std::end(kFixedSizes) || fixed->bytes == size;
+        const std::uint64_t end = begin + std::uint64_t(size);
+        if (type == "floatvector") sound = size % 4 == 0;
+        if (type == "chlist") sound = channels_end(end) == end;
+        if (type == "stringvector") sound = strings_end(end) == end;
+        if (!sound)
+            fail(path_,
+                 fmt::format("header attribute '{}' is not a well-formed {} of {} bytes", name, type, size));
+        file_.seekg(end);
+    }
+
+    std::uint64_t channels_end(std::uint64_t limit) {
+        int count = 0;
+        while (file_.tellg() < limit && !read_name("channel").empty()) {
+            if (++count > kMaxChannels)
+                fail(path_, fmt::format("more than {} channels, which is the limit", kMaxChannels));
+            file_.seekg(std::min(file_.size(), file_.tellg() + 16));
+        }
+        return file_.tellg();
+    }
+
+    std::uint64_t strings_end(std::uint64_t limit) {
+        while (file_.tellg() + 4 <= limit) {
+            const int length = read_int();
+            if (length < 0 || std::uint64_t(length) > limit - file_.tellg()) break;
+            file_.seekg(file_.tellg() + std::uint64_t(length));
+        }
+        return file_.tellg();
+    }
+
+    std::string read_name(const char* of_what) {
+        std::string name;
+        for (char letter = read_char(); letter != 0; letter = read_char()) {
+            name.push_back(letter);
+            if (name.size() > kMaxNameLength) {
+                fail(path_,
+                     fmt::format("damaged header: {} name longer than {} bytes", of_what, kMaxNameLength));
+            }
+        }
+        return name;
+    }
+
+    char read_char() {
+        char value = 0;
+        file_.read(&value, 1);
+        return value;
+    }
+
+    int read_int() {
+        int value = 0;
+        file_.read(reinterpret_cast<char*>(&value), sizeof value);
+        return value;
+    }
+
+    FileStream& file_;
+    const fs::path& path_;
+    int attributes_ = 0;
+};
+
+std::int64_t side(int first, int last) {
+    return std::int64_t(last) - first + 1;
+}
+
+void check_window(const fs::path& path, const char* what, const Imath::Box2i& box, const ReadLimits& limits) {
+    const std::int64_t width = side(box.min.x, box.max.x);
+    const std::int64_t height = side(box.min.y, box.max.y);
+    if (width < 1 || height < 1) {
+        fail(path, fmt::format("{} ({}, {})-({}, {}) holds no pixel", what, box.min.x, box.min.y, box.max.x,
+                               box.max.y));
+    }
+    if (width > limits.max_side_px || height > limits.max_side_px) {
+        fail(path, fmt::format("{} is {} x {} px, the limit is {} px a side (crop it or scale it down)", what,
+                               width, height, limits.max_side_px));
+    }
+}
+
+int lines_per_block(Imf::Compression compression) {
+    switch (compression) {
+        case Imf::ZIP_COMPRESSION:
+        case Imf::PXR24_COMPRESSION: return 16;
+        case Imf::PIZ_COMPRESSION:
+        case Imf::B44_COMPRESSION:
+        case Imf::B44A_COMPRESSION:
+        case Imf::DWAA_COMPRESSION: return 32;
+        case Imf::DWAB_COMPRESSION: return 256;
+        default: return 1;
+    }
+}
+
+std::uint64_t bytes_per_pixel(const Imf::Header& header) {
+    std::uint64_t bytes = 0;
+    for (auto i = header.channels().begin(); i != header.channels().end(); ++i) {
+        bytes += i.channel().type == Imf::HALF ? 2 : 4;
+    }
+    return bytes;
+}
+
+bool is_tiled_part(const Imf::Header& header) {
+    return header.hasType() && Imf::isTiled(header.type());
+}
+
+std::uint64_t block_bytes(const Imf::Header& header) {
+    const Imath::Box2i& box = header.dataWindow();
+    if (is_tiled_part(header)) {
+        const Imf::TileDescription& tiles = header.tileDescription();
+        return std::uint64_t(tiles.xSize) * tiles.ySize * bytes_per_pixel(header);
+    }
+    const std::int64_t lines =
+        std::min<std::int64_t>(lines_per_block(header.compression()), side(box.min.y, box.max.y));
+    return std::uint64_t(side(box.min.x, box.max.x)) * std::uint64_t(lines) * bytes_per_pixel(header);
+}
+
+void check_part(const fs::path& path, const Imf::Header& header, const ReadLimits& limits) {
+    check_window(path, "data window", header.dataWindow(), limits);
+    check_window(path, "display window", header.displayWindow(), limits);
+    if (is_tiled_part(header) && header.hasTileDescription()) {
+        const Imf::TileDescription& tiles = header.tileDescription();
+        if (std::max(tiles.xSize, tiles.ySize) > unsigned(limits.max_side_px)) {
+            fail(path, fmt::format("tiles are {} x {} px, the limit is {} px a side", tiles.xSize,
+                                   tiles.ySize, limits.max_side_px));
+        }
+    }
+    header.sanityCheck(is_tiled_part(header));
+    if (block_bytes(header) > limits.max_image_bytes) {
+        fail(
+            path,
+            fmt::format(
+                "one block of pixels takes {} bytes decoded, the limit is {} (write it with smaller tiles or "
+                "another compression)",
+                block_bytes(header), limits.max_image_bytes));
+    }
+}
+
+int level_count(int size, Imf::LevelRoundingMode rounding) {
+    const auto value = unsigned(size);
+    return rounding == Imf::ROUND_UP ? std::bit_width(value - 1) + 1 : std::bit_width(value);
+}
+
+std::uint64_t tiles_across(int size, int level, unsigned tile, Imf::LevelRoundingMode rounding) {
+    const std::uint64_t divisor = std::uint64_t(1) << level;
+    const std::uint64_t rounded =
+        rounding == Imf::ROUND_UP ? std::uint64_t(size) + divisor - 1 : std::uint64_t(size);
+    return (std::max<std::uint64_t>(1, rounded / divisor) + tile - 1) / tile;
+}
+
+std::uint64_t tile_count(const Imf::TileDescription& tiles, int width, int height) {
+    const Imf::LevelRoundingMode rounding = tiles.roundingMode;
+    const auto count = [&](int x_level, int y_level) {
+        return tiles_across(width, x_level, tiles.xSize, rounding) *
+               tiles_across(height, y_level, tiles.ySize, rounding);
+    };
+    if (tiles.mode == Imf::ONE_LEVEL) return count(0, 0);
+    std::uint64_t result = 0;
+    if (tiles.mode == Imf::MIPMAP_LEVELS) {
+        for (int level = 0; level < level_count(std::max(width, height), rounding); ++level)
+            result += count(level, level);
+        return result;
+    }
+    for (int y = 0; y < level_count(height, rounding); ++y) {
+        for (int x = 0; x < level_count(width, rounding); ++x) result += count(x, y);
+    }
+    return result;
+}
+
+std::uint64_t block_count(const Imf::Header& header) {
+    if (header.hasType() && !Imf::isSupportedType(header.type())) {
+        return header.hasChunkCount() ? std::uint64_t(std::max(0, header.chunkCount())) : 0;
+    }
+    const Imath::Box2i& box = header.dataWindow();
+    const int width = int(side(box.min.x, box.max.x));
+    const int height = int(side(box.min.y, box.max.y));
+    if (is_tiled_part(header)) return tile_count(header.tileDescription(), width, height);
+    const int lines = lines_per_block(header.compression());
+    return std::uint64_t((height + lines - 1) / lines);
+}
+
+/// One block of level 0: its pixels' rectangle.
+Imath::Box2i block_box(const Imf::Header& header, std::uint64_t index) {
+    const Imath::Box2i& all = header.dataWindow();
+    Imath::Box2i box = all;
+    if (!is_tiled_part(header)) {
+        const int lines = lines_per_block(header.compression());
+        box.min.y = all.min.y + int(index) * lines;
+        box.max.y = std::min(all.max.y, box.min.y + lines - 1);
+        return box;
+    }
+    const Imf::TileDescription& tiles = header.tileDescription();
+    const std::uint64_t across = (std::uint64_t(side(all.min.x, all.max.x)) + tiles.xSize - 1) / tiles.xSize;
+    box.min = all.min + Imath::V2i(int(index % across * tiles.xSize), int(index / across * tiles.ySize));
+    box.max.x = std::min(all.max.x, box.min.x + int(tiles.xSize) - 1);
+    box.max.y = std::min(all.max.y, box.min.y + int(tiles.ySize) - 1);
+    return box;
+}
+
+std::string block_label(const Imf::Header& header, std::uint64_t index) {
+    const Imath::Box2i box = block_box(header, index);
+    if (!is_tiled_part(header)) return fmt::format("lines {} to {}", box.min.y, box.max.y);
+    return fmt::format("the tile at ({}, {})", box.min.x, box.min.y);
+}
+
+/// Fewer bytes than this cannot hold the block's pixels.
+std::uint64_t least_stored_bytes(const Imf::Header& header, std::uint64_t index) {
+    if (header.compression() != Imf::NO_COMPRESSION) return 1;
+    const Imath::Box2i box = block_box(header, index);
+    std::uint64_t bytes = 0;
+    for (auto i = header.channels().begin(); i != header.channels().end(); ++i) {
+        const Imf::Channel& channel = i.channel();
+        if (!is_tiled_part(header) && box.min.y % channel.ySampling != 0) continue;
+        const std::uint64_t samples = std::uint64_t(side(box.min.x, box.max.x) / channel.xSampling) *
+                                      std::uint64_t(side(box.min.y, box.max.y));
+        bytes += samples * (channel.type == Imf::HALF ? 2 : 4);
+    }
+    return bytes;
+}
+
+/// Of level 0, which comes first in the table.
+std::vector<std::uint64_t> block_offsets(FileStream& file, const Imf::Header& header, std::uint64_t table) {
+    std::uint64_t count = 0;
+    if (is_tiled_part(header)) {
+        const Imath::Box2i& box = header.dataWindow();
+        Imf::TileDescription level_0 = header.tileDescription();
+        level_0.mode = Imf::ONE_LEVEL;
+        count = tile_count(level_0, int(side(box.min.x, box.max.x)), int(side(box.min.y, box.max.y)));
+    } else {
+        count = block_count(header);
+    }
+    std::vector<std::uint64_t> offsets(count);
+    file.read_at(table, {reinterpret_cast<char*>(offsets.data()), offsets.size() * sizeof(std::uint64_t)});
+    return offsets;
+}
+
+void check_block(FileStream& file, const fs::path& path, const Imf::Header& header, std::uint64_t index,
+                 std::uint64_t offset, std::size_t head_words) {
+    const auto cut_off = [&] {
+        fail(path, fmt::format("cut off or damaged: the file has {} bytes, {} should reach beyond that",
+                               file.size(), block_label(header, index)));
+    };
+    if (offset > file.size() || file.size() - offset < head_words * 4) cut_off();
+    std::array<std::int32_t, 6> head = {};
+    file.read_at(offset, {reinterpret_cast<char*>(head.data()), head_words * 4});
+    const std::int64_t stored = head[head_words - 1];
+    if (stored < 0 || std::uint64_t(stored) < least_stored_bytes(header, index)) {
+        fail(path, fmt::format("damaged: {} stored in {} bytes, too few for the pixels",
+                               block_label(header, index), stored));
+    }
+    if (std::uint64_t(stored) > file.size() - offset - head_words * 4) cut_off();
+}
+
+}  // namespace
+
+FileLayout read_layout(FileStream& file, const fs::path& path, const ReadLimits& limits) {
+    int version = HeaderScan(file, path).run();
+    const std::uint64_t headers_end = file.tellg();
+    FileLayout layout;
+    layout.multi_part = Imf::isMultiPart(version);
+    file.seekg(8);
+    while (true) {
+        Imf::Header header;
+        header.readFrom(file, version);
+        if (header.readsNothing()) break;
+        // As the library does: the version field decides for flat single-part files, whatever the attribute
+        // says.
+        const bool flat_single = !layout.multi_part && !Imf::isNonImage(version);
+        if (flat_single || !header.hasType()) {
+            header.setType(Imf::isTiled(version) ? Imf::TILEDIMAGE : Imf::SCANLINEIMAGE);
+        }
+        check_part(path, header, limits);
+        layout.headers.push_back(header);
+        if (!layout.multi_part) break;
+    }
+    if (file.tellg() != headers_end)
+        fail(path, "damaged header: its attributes do not end where their sizes say");
+    std::uint64_t table = headers_end;
+    for (const Imf::Header& header : layout.headers) {
+        layout.block_tables.push_back(table);
+        table += block_count(header) * sizeof(std::uint64_t);
+        layout.largest_block_bytes = std::max(layout.largest_block_bytes, block_bytes(header));
+    }
+    if (table > file.size()) {
+        fail(path, fmt::format("cut off: the file has {} bytes, its headers and block tables take {}",
+                               file.size(), table));
+    }
+    file.seekg(0);
+    return layout;
+}
+
+void check_blocks(FileStream& file, const fs::path& path, const FileLayout& layout, int part) {
+    const Imf::Header& header = layout.headers[std::size_t(part)];
+    const std::vector<std::uint64_t> offsets =
+        block_offsets(file, header, layout.block_tables[std::size_t(part)]);
+    const auto missing = std::uint64_t(std::ranges::count(offsets, std::uint64_t(0)));
+    if (missing > 0) {
+        const auto first = std::uint64_t(std::ranges::find(offsets, std::uint64_t(0)) - offsets.begin());
+        fail(path,
+             fmt::format(
+                 "incomplete: {} of {} blocks are missing, the first is {} (its writer was stopped; write "
+                 "it again)",
+                 missing, offsets.size(), block_label(header, first)));
+    }
+    // A part number, then a line or a tile's two coordinates and two levels, then the size; all of 4 bytes.
+    const std::size_t words = (layout.multi_part ? 1u : 0u) + (is_tiled_part(header) ? 4u : 1u) + 1u;
+    for (std::uint64_t i = 0; i < offsets.size(); ++i) {
+        check_block(file, path, header, i, offsets[i], words);
+    }
+}
+
+}  // namespace aftershade::exr

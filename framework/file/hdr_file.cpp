@@ -1,0 +1,68 @@
+#include "framework/file/hdr_file.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <memory>
+
+#include "framework/core/atomic_file.h"
+
+#define STBI_ONLY_HDR
+#include "framework/file/stb_internal.h"
+
+namespace aftershade {
+
+namespace fs = std::filesystem;
+using stb::fail;
+
+namespace {
+
+/// What stb reads from, and whether it asked for more than there is.
+struct Source {
+    std::ifstream file;
+    bool past_end = false;
+};
+
+int read_source(void* user, char* bytes, int count) {
+    Source& source = *static_cast<Source*>(user);
+    source.file.read(bytes, count);
+    const int got = int(source.file.gcount());
+    if (got == 0) source.past_end = true;
+    return got;
+}
+
+void skip_source(void* user, int count) {
+    static_cast<Source*>(user)->file.seekg(count, std::ios::cur);
+}
+
+int is_at_end(void* user) {
+    return static_cast<Source*>(user)->file.eof() ? 1 : 0;
+}
+
+}  // namespace
+
+bool is_hdr_file(const fs::path& path) {
+    return file_begins_with(path, "#?RADI") || file_begins_with(path, "#?RGBE");
+}
+
+Image read_hdr(const fs::path& path) {
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (error) fail(path, fmt::format("cannot be opened: {}", error.message()));
+    if (!fs::is_regular_file(status)) fail(path, "is not a regular file");
+    Source source{std::ifstream(path, std::ios::binary), false};
+    if (!source.file) fail(path, fmt::format("cannot be opened: {}", std::strerror(errno)));
+    const stbi_io_callbacks callbacks = {read_source, skip_source, is_at_end};
+    int width = 0, height = 0, channels = 0;
+    const std::unique_ptr<float, decltype(&stbi_image_free)> pixels(
+        stbi_loadf_from_callbacks(&callbacks, &source, &width, &height, &channels, 3), &stbi_image_free);
+    if (!pixels) fail(path, fmt::format("damaged: {}", stbi_failure_reason()));
+    if (source.past_end) fail(path, "cut off: the file ends before its pixels do");
+    Image image(width, height, 3);
+    std::memcpy(image.floats().data(), pixels.get(), image.floats().size_bytes());
+    return image;
+}
+
+}  // namespace aftershade

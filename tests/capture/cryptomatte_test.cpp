@@ -1,0 +1,111 @@
+#include "framework/capture/cryptomatte.h"
+
+#include <bit>
+
+#include <gtest/gtest.h>
+
+#include "framework/capture/capture.h"
+#include "tests/file/image_files.h"
+
+namespace aftershade::test {
+namespace {
+
+/// The example manifest of the Cryptomatte specification 1.2.0: {"bunny":"13851a76","default":"42c9679f"}.
+TEST(Cryptomatte, HashesNamesAsItsSpecificationDoes) {
+    EXPECT_EQ(cryptomatte_hash("bunny"), 0x13851a76u);
+    EXPECT_EQ(cryptomatte_hash("default"), 0x42c9679fu);
+}
+
+TEST(Cryptomatte, NeverHashesToAnInfiniteOrDenormalFloat) {
+    for (int i = 0; i < 200000; ++i) {
+        const std::uint32_t exponent = cryptomatte_hash("object" + std::to_string(i)) >> 23 & 0xff;
+        ASSERT_TRUE(exponent != 0 && exponent != 0xff) << i;
+    }
+}
+
+TEST(IdRanges, RiseWithAGapBetweenAnyTwo) {
+    using Ranges = std::vector<IdRange>;
+    const auto of = [](const std::vector<TableKey>& keys) { return id_ranges(keys); };
+    EXPECT_EQ(of({}), Ranges{});
+    EXPECT_EQ(of({{7, 9, ""}, {1, 3, ""}}), (Ranges{{1, 3}, {7, 9}}));
+    EXPECT_EQ(of({{5, 5, ""}, {4, 4, ""}, {6, 6, ""}}), (Ranges{{4, 6}})) << "ids that follow one another";
+    EXPECT_EQ(of({{1, 9, ""}, {3, 4, ""}, {9, 12, ""}}), (Ranges{{1, 12}}));
+    EXPECT_EQ(of({{4294967295u, 4294967295u, ""}, {0, 4294967294u, ""}}), (Ranges{{0, 4294967295u}}));
+    EXPECT_EQ(of({{0, 0, "bunny"}, {1, 1, ""}}), (Ranges{{1, 1}, {0x13851a76u, 0x13851a76u}}));
+}
+
+TEST(IdRanges, HaveTheirEnds) {
+    const std::vector<IdRange> ranges = {{1, 3}, {7, 7}, {9, 4294967295u}};
+    for (const std::uint32_t id : {1u, 2u, 3u, 7u, 9u, 4294967295u}) EXPECT_TRUE(contains(ranges, id)) << id;
+    for (const std::uint32_t id : {0u, 4u, 6u, 8u}) EXPECT_FALSE(contains(ranges, id)) << id;
+    EXPECT_FALSE(contains({}, 0));
+}
+
+struct Coverage {
+    std::string object;
+    float amount = 0;
+};
+
+/// One pixel with up to four covering objects, under the names that Blender gives.
+std::filesystem::path write_matte(const TemporaryFolder& folder, const std::vector<Coverage>& objects,
+                                  PixelType type, const std::string& compression = "zip") {
+    Image image(2, 1, 8);
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        image.at(0, 0, int(2 * i)) = std::bit_cast<float>(cryptomatte_hash(objects[i].object));
+        image.at(0, 0, int(2 * i + 1)) = objects[i].amount;
+    }
+    const Image color(2, 1, 3);
+    std::vector<ExrOutputChannel> channels;
+    for (int c = 0; c < 3; ++c) channels.push_back({std::string(1, "RGB"[c]), PixelType::half, &color, c});
+    for (int c = 0; c < 8; ++c)
+        channels.push_back(
+            {"ViewLayer.CryptoObject0" + std::to_string(c / 4) + "." + "RGBA"[c % 4], type, &image, c});
+    ExrWriteOptions options;
+    options.data_window = options.display_window = {0, 0, 1, 0};
+    options.compression = compression;
+    options.attributes["cryptomatte/3ae39a5/name"] = "ViewLayer.CryptoObject";
+    options.attributes["cryptomatte/3ae39a5/manifest"] =
+        R"({"Suzanne":"0","Cube":"0","Ball":"0","Pole":"0"})";
+    const auto path = folder / "matte.exr";
+    write_exr(path, channels, options);
+    return path;
+}
+
+Capture read_with(const std::filesystem::path& path, std::vector<std::string> mask) {
+    Sequence sequence;
+    sequence.files = FramePattern(path.string());
+    sequence.cryptomatte = CryptomatteChoice{"CryptoObject", std::move(mask)};
+    Diagnostics diagnostics;
+    const CaptureReader reader(sequence, read_profiles(AFTERSHADE_SOURCE_DIR "/profiles", diagnostics), {});
+    return reader.read(1, std::vector<std::string>{"mask", "object_id", "color"});
+}
+
+TEST(Cryptomatte, SumsTheCoverageOfNamedObjectsOverAllRanks) {
+    const TemporaryFolder folder;
+    const auto path =
+        write_matte(folder, {{"Cube", 0.5f}, {"Suzanne", 0.25f}, {"Ball", 0.125f}, {"Pole", 0.0625f}},
+                    PixelType::float32);
+    EXPECT_FLOAT_EQ(read_with(path, {"Suzanne", "Pole"}).images.at("mask").at(0, 0, 0), 0.3125f);
+    EXPECT_FLOAT_EQ(read_with(path, {"Cube"}).images.at("mask").at(1, 0, 0), 0);
+    EXPECT_EQ(read_with(path, {"Cube"}).images.at("object_id").uint_at(0, 0, 0), cryptomatte_hash("Cube"));
+}
+
+TEST(Cryptomatte, KnowsTheObjectsOfItsManifest) {
+    const TemporaryFolder folder;
+    const auto path = write_matte(folder, {{"Cube", 1}}, PixelType::float32);
+    const std::string message = capture_error([&] { read_with(path, {"Suzane"}); });
+    EXPECT_NE(message.find("did you mean 'Suzanne'?"), std::string::npos) << message;
+}
+
+TEST(Cryptomatte, RefusesIdsThatStorageHasDestroyed) {
+    const TemporaryFolder folder;
+    EXPECT_NE(capture_error([&] {
+                  read_with(write_matte(folder, {{"Cube", 1}}, PixelType::half), {"Cube"});
+              }).find("half"),
+              std::string::npos);
+    const auto lossy = write_matte(folder, {{"Cube", 1}}, PixelType::float32, "dwaa");
+    EXPECT_NE(capture_error([&] { read_with(lossy, {"Cube"}); }).find("dwaa"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace aftershade::test

@@ -1,0 +1,146 @@
+#include "framework/capture/sequence.h"
+
+#include "tests/documents.h"
+#include "tests/file/image_files.h"
+
+namespace aftershade {
+namespace {
+
+using test::capture_error;
+using test::Lines;
+using test::TemporaryFolder;
+using test::write_text;
+using Frames = std::vector<int>;
+
+Sequence opened(const std::string& argument) {
+    Diagnostics diagnostics;
+    const auto sequence = open_sequence(argument, diagnostics);
+    EXPECT_EQ(test::lines_of(diagnostics), Lines{}) << argument;
+    return sequence.value_or(Sequence{});
+}
+
+/// The faults of a capture.json, without their folder.
+Lines faults_of_capture(const std::string& text) {
+    const TemporaryFolder folder;
+    write_text(folder / "capture.json", text);
+    Diagnostics diagnostics;
+    EXPECT_FALSE(open_sequence((folder / "capture.json").string(), diagnostics).has_value());
+    Lines lines = test::lines_of(diagnostics);
+    for (std::string& line : lines) line = line.substr(folder.path().string().size() + 1);
+    return lines;
+}
+
+TEST(Sequence, OfACaptureDocumentHasAllThatItSays) {
+    const TemporaryFolder folder;
+    write_text(folder / "capture.json", R"({ "aftershade": 1, "$schema": "x", // a comment
+        "frames": "gbuffer_####.exr", "range": "3-4,8", "fps": 23.976, "profile": "blender",
+        "camera": { "focal_length": "5 cm", "sensor_width": 36, "rotation": "0.5 turn" }, "cuts": [4, 8] })");
+    const Sequence sequence = opened((folder / "capture.json").string());
+    EXPECT_EQ(sequence.frames, (Frames{3, 4, 8}));
+    EXPECT_EQ(sequence.path_of(3), folder / "gbuffer_0003.exr");
+    EXPECT_EQ(sequence.fps, 23.976);
+    EXPECT_EQ(sequence.profile, "blender");
+    EXPECT_EQ(sequence.cuts, (Frames{4, 8}));
+    EXPECT_EQ(sequence.camera.get("focal_length"), 50.0);
+    EXPECT_EQ(sequence.camera.get("sensor_width"), 36.0);
+    EXPECT_EQ(sequence.camera.get("rotation"), 180.0);
+    EXPECT_EQ(sequence.camera.get("focus_distance"), std::nullopt);
+}
+
+TEST(Sequence, OfTheShippedCaptureIsItsTwoFrames) {
+    const Sequence sequence = opened(AFTERSHADE_SOURCE_DIR "/scenes/suzanne/capture.json");
+    EXPECT_EQ(sequence.frames, (Frames{3, 4}));
+    EXPECT_TRUE(std::filesystem::exists(sequence.path_of(3)));
+    EXPECT_TRUE(std::filesystem::exists(sequence.path_of(4)));
+    EXPECT_EQ(sequence.camera.get("focal_length"), 50.0);
+}
+
+TEST(Sequence, WithoutARangeIsTheFilesThatThereAre) {
+    const TemporaryFolder folder;
+    for (const char* name :
+         {"f_0010.exr", "f_0002.exr", "f_-001.exr", "f_12.exr", "f_0003.png", "g_0001.exr", "f_.exr"})
+        write_text(folder / name, "");
+    write_text(folder / "capture.json", R"({"aftershade": 1, "frames": "f_####.exr"})");
+    const Frames expected = {-1, 2, 10};
+    EXPECT_EQ(opened((folder / "capture.json").string()).frames, expected);
+    EXPECT_EQ(opened((folder / "f_####.exr").string()).frames, expected);
+    EXPECT_EQ(opened((folder / "f_%04d.exr").string()).frames, expected);
+    EXPECT_EQ(opened(folder.path().string() + "//f_####.exr").frames, expected)
+        << "two slashes name the same folder";
+    EXPECT_EQ(opened(folder.path().string() + "/./f_####.exr").frames, expected);
+}
+
+TEST(Sequence, OfABareFileIsNumberedByItsName) {
+    const TemporaryFolder folder;
+    for (const char* name : {"v2_gbuffer_0004.exr", "still.exr"}) write_text(folder / name, "");
+    const Sequence numbered = opened((folder / "v2_gbuffer_0004.exr").string());
+    EXPECT_EQ(numbered.frames, Frames{4});
+    EXPECT_EQ(numbered.path_of(4), folder / "v2_gbuffer_0004.exr");
+    EXPECT_EQ(numbered.profile, "auto");
+    const Sequence still = opened((folder / "still.exr").string());
+    EXPECT_EQ(still.frames, Frames{1});
+    EXPECT_EQ(still.path_of(1), folder / "still.exr");
+}
+
+TEST(Sequence, ThatIsNotThereIsACaptureError) {
+    const TemporaryFolder folder;
+    Diagnostics diagnostics;
+    const auto error = [&](const std::string& name) {
+        const std::string argument = (folder / name).string();
+        const std::string message = capture_error([&] { open_sequence(argument, diagnostics); });
+        EXPECT_TRUE(message.starts_with(argument + ": ")) << message;
+        return message.substr(std::min(message.size(), argument.size() + 2));
+    };
+    EXPECT_EQ(error("none.json"), "no such file");
+    EXPECT_EQ(error("none_0001.exr"), "no such file");
+    EXPECT_EQ(error("f_####.exr"), "no file fits the pattern " + (folder / "f_####.exr").string());
+    EXPECT_EQ(error("none/f_####.exr"), "no file fits the pattern " + (folder / "none/f_####.exr").string());
+    EXPECT_EQ(error("f_@.exr"), "no file fits the pattern " + (folder / "f_@.exr").string());
+}
+
+TEST(CaptureDocument, ListsAllItsFaults) {
+    const Lines expected = {
+        "capture.json:2:15: error: document version 2 is not known; this program reads version 1",
+        "capture.json:3:11: error: '1-5x0' is not a frame range such as \"1-100x2,120\"",
+        "capture.json:3:28: error: 'fps' must be above 0, not 0",
+        "capture.json:5:3: error: camera.focal_length: '50 deg' cannot be converted to mm; write 'um', 'mm', "
+        "'cm', 'm', "
+        "'km', 'in' or 'ft'",
+        "capture.json:6:18: error: camera.f_number: 0 is below the minimum 0.01",
+        "capture.json:6:21: error: the camera has no key 'focus'; did you mean 'focus_distance'?",
+        "capture.json:7:14: error: 'cuts' holds integers, not a string",
+        "capture.json:8:3: error: the capture has no key 'profil'; did you mean 'profile'?",
+    };
+    EXPECT_EQ(faults_of_capture("{\n"
+                                "\"aftershade\": 2, \"frames\": \"f_####.exr\",\n"
+                                "\"range\" : \"1-5x0\", \"fps\" : 0,\n"
+                                "\"camera\": { \"focal_length\":\n"
+                                "  \"50 deg\",\n"
+                                "     \"f_number\": 0, \"focus\": 3 },\n"
+                                "\"cuts\": [ 1, \"2\" ],\n"
+                                "  \"profil\": \"blender\" }"),
+              expected);
+}
+
+TEST(CaptureDocument, NeedsFrames) {
+    EXPECT_EQ(faults_of_capture(R"({"aftershade": 1})"),
+              Lines{"capture.json:1:1: error: the capture has no 'frames'"});
+    EXPECT_EQ(faults_of_capture(R"({"aftershade": 1, "frames": 3})"),
+              Lines{"capture.json:1:29: error: 'frames' must be a string, not an integer"});
+    EXPECT_EQ(faults_of_capture("[]").front(),
+              "capture.json:1:1: error: the capture must be an object, not an array");
+}
+
+TEST(CaptureDocument, RefusesARangeOfOneFile) {
+    EXPECT_EQ(faults_of_capture(R"({"aftershade": 1, "frames": "still.exr", "range": "1-3"})"),
+              Lines{"capture.json:1:51: error: 'range' has 3 frames but 'frames' names one file; write the "
+                    "frame number "
+                    "as ####, %04d or @"});
+    const TemporaryFolder folder;
+    write_text(folder / "still.exr", "");
+    write_text(folder / "capture.json", R"({"aftershade": 1, "frames": "still.exr", "range": "12"})");
+    EXPECT_EQ(opened((folder / "capture.json").string()).frames, Frames{12});
+}
+
+}  // namespace
+}  // namespace aftershade

@@ -1,0 +1,120 @@
+#include "framework/file/png_file.h"
+
+#include "tests/file/image_files.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace aftershade {
+namespace {
+
+namespace fs = std::filesystem;
+using test::TemporaryFolder;
+
+TEST(PngFile, KeepsEveryByteForOneThreeAndFourChannels) {
+    const TemporaryFolder folder;
+    for (const int channels : {1, 3, 4}) {
+        Image image(16, 16, channels);
+        for (std::size_t i = 0; i < image.floats().size(); ++i) {
+            image.floats()[i] = float((i * 37 + i / 256) % 256) / 255.0f;
+        }
+        write_png(folder / "a.png", image);
+        const Image read = read_png(folder / "a.png");
+        ASSERT_EQ(read.channels(), channels);
+        EXPECT_TRUE(std::ranges::equal(read.floats(), image.floats()));
+    }
+    EXPECT_EQ(folder.file_count(), 1u);
+}
+
+TEST(PngFile, RoundsAndClampsAndWritesNanAsZero) {
+    const TemporaryFolder folder;
+    const float infinity = std::numeric_limits<float>::infinity();
+    const float values[] = {-1, 0.49f / 255, 0.51f / 255, 254.6f / 255,
+                            7,  infinity,    -infinity,   std::nanf("")};
+    const float expected[] = {0, 0, 1, 255, 255, 255, 0, 0};
+    Image image(8, 1, 1);
+    std::ranges::copy(values, image.floats().begin());
+    write_png(folder / "a.png", image);
+    const Image read = read_png(folder / "a.png");
+    for (int x = 0; x < 8; ++x) EXPECT_EQ(read.at(x, 0, 0) * 255, expected[x]) << x;
+}
+
+TEST(PngFile, IsReadAsOiiotoolReadsIt) {
+    if (std::system("command -v oiiotool >/dev/null") != 0) GTEST_SKIP() << "SKIPPED: no oiiotool";
+    const TemporaryFolder folder;
+    write_png(folder / "a.png", test::pattern_image(31, 17, 3));
+    const std::string command =
+        "oiiotool '" + (folder / "a.png").string() + "' -o '" + (folder / "a.ppm").string() + "' >/dev/null";
+    ASSERT_EQ(std::system(command.c_str()), 0);
+    const Image read = read_png(folder / "a.png");
+    std::string expected;
+    for (const float value : read.floats()) expected.push_back(static_cast<char>(std::lround(value * 255)));
+    // OpenImageIO ends a PPM file with its pixels.
+    const std::string bytes = test::read_text(folder / "a.ppm");
+    ASSERT_GT(bytes.size(), expected.size());
+    EXPECT_TRUE(bytes.ends_with(expected));
+}
+
+TEST(PngFile, SaysWhatIsWrongWithAFileThatCannotBeRead) {
+    const TemporaryFolder folder;
+    const auto message = [&](const fs::path& path) { return test::capture_error([&] { read_png(path); }); };
+    EXPECT_EQ(message(folder / "none.png"), (folder / "none.png").string() + ": no such file");
+    EXPECT_EQ(message(folder.path()), folder.path().string() + ": is a folder, not a PNG file");
+    test::write_text(folder / "empty.png", "");
+    EXPECT_EQ(message(folder / "empty.png"), (folder / "empty.png").string() + ": the file is empty");
+    test::write_text(folder / "text.png", "not a picture");
+    EXPECT_NE(message(folder / "text.png").find("text.png: not a PNG file"), std::string::npos);
+    write_png(folder / "good.png", test::pattern_image(64, 64, 3));
+    const std::string good = test::read_text(folder / "good.png");
+    for (std::size_t length = 1; length < good.size(); length += 7) {
+        test::write_text(folder / "cut.png", good.substr(0, length));
+        EXPECT_NE(message(folder / "cut.png").find("cut.png: "), std::string::npos) << length;
+    }
+}
+
+TEST(PngFile, IsRefusedWithAnyBitChanged) {
+    const TemporaryFolder folder;
+    write_png(folder / "good.png", test::pattern_image(8, 8, 3));
+    const std::string good = test::read_text(folder / "good.png");
+    for (std::size_t i = 0; i < good.size(); ++i) {
+        std::string bad = good;
+        bad[i] = char(bad[i] ^ (1 << i % 8));
+        test::write_text(folder / "bad.png", bad);
+        // A chunk whose type lost the bit that makes it critical ends in a file without it, which is refused
+        // too.
+        EXPECT_NE(test::capture_error([&] { read_png(folder / "bad.png"); }).find("bad.png: "),
+                  std::string::npos)
+            << i;
+    }
+    test::write_text(folder / "longer.png", good + "what other programs append");
+    EXPECT_NO_THROW(read_png(folder / "longer.png"));
+}
+
+TEST(PngFile, IsReadWithSixteenBitsAChannel) {
+    const TemporaryFolder folder;
+    test::write_text(folder / "a.png", test::wide_png());
+    const Image read = read_png(folder / "a.png");
+    ASSERT_EQ(read.channels(), 1);
+    const float expected[] = {0, 1, 256, 65535};
+    for (int x = 0; x < 4; ++x) EXPECT_EQ(read.at(x, 0, 0), expected[x] / 65535.0f) << x;
+}
+
+TEST(PngFile, LeavesNothingBehindWhenItCannotBeWritten) {
+    const TemporaryFolder folder;
+    const Image image = test::pattern_image(4, 4, 3);
+    fs::create_directory(folder / "folder.png");
+    const auto message = [&](const fs::path& path) {
+        return test::error_of(ExitCode::output, [&] { write_png(path, image); });
+    };
+    EXPECT_EQ(message(folder / "folder.png"),
+              (folder / "folder.png").string() + ": is a folder, a file name is expected");
+    EXPECT_EQ(message(folder / "none/a.png"), (folder / "none/a.png").string() + ": there is no folder '" +
+                                                  (folder / "none").string() + "' (create it first)");
+    EXPECT_EQ(folder.file_count(), 1u);
+}
+
+}  // namespace
+}  // namespace aftershade

@@ -1,0 +1,450 @@
+#include "framework/inspect/velocity_check.h"
+
+#include "framework/core/error.h"
+#include "framework/file/exr_file.h"
+#include "framework/inspect/velocity_report.h"
+#include "tests/real_captures.h"
+#include "tests/synthetic_capture.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace aftershade {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Vector {
+    float x = 0, y = 0;
+};
+
+/// Two frames with the vectors of both roles, canonical.
+struct Pair {
+    Image color_a, color_b, velocity_a, velocity_b, next_a, next_b;
+};
+
+VelocityCheckInput claim_velocity(const Pair& pair, VelocitySettings settings = {}) {
+    return {&pair.color_a, &pair.color_b, &pair.velocity_a, &pair.velocity_b, settings};
+}
+
+VelocityCheckInput claim_next(const Pair& pair) {
+    return {&pair.color_a, &pair.color_b, &pair.next_a, &pair.next_b, {.delta = "next-cur"}};
+}
+
+/// What a decoding that is wrong in this way makes of right vectors.
+Image undo(const Image& right, const VelocityHypothesis& hypothesis) {
+    Image wrong = right;
+    for (int y = 0; y < right.height(); ++y)
+        for (int x = 0; x < right.width(); ++x) {
+            const float u = right.at(x, y, 0) / float(hypothesis.scale_x);
+            const float v = right.at(x, y, 1) / float(hypothesis.scale_y);
+            wrong.at(x, y, 0) = hypothesis.swapped ? v : u;
+            wrong.at(x, y, 1) = hypothesis.swapped ? u : v;
+        }
+    return wrong;
+}
+
+/// The role's image, with the vector of the box replaced.
+Image with_vector(const Capture& capture, Vector vector) {
+    Image image = capture.images.at("velocity");
+    for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x) {
+            if (capture.images.at("object_id").uint_at(x, y, 0) != 2) continue;
+            image.at(x, y, 0) = vector.x;
+            image.at(x, y, 1) = vector.y;
+        }
+    return image;
+}
+
+/// A box that moves by `motion` from A to B, by `before` into A and by `after` out of B.
+Pair make_pair(Vector motion, Vector before, Vector after) {
+    test::SyntheticScene scene;
+    scene.width = 128;
+    scene.height = 96;
+    scene.background = {0.05f, 0.1f, 0.2f};
+    scene.box = {44, 36, 32, 24, int(motion.x), int(motion.y), 1, {0.9f, 0.2f, 0.1f}};
+    const Capture a = test::make_capture(scene, 0), b = test::make_capture(scene, 1);
+    return {a.images.at("color"),   b.images.at("color"),   with_vector(a, before),
+            with_vector(b, motion), with_vector(a, motion), with_vector(b, after)};
+}
+
+const Vector kMotion{10, 4}, kOther{7, -7};
+
+std::string name_of(const VelocityHypothesis& h) {
+    return std::string(h.other_time ? "other time, " : "") + (h.swapped ? "swapped, " : "") +
+           std::to_string(h.scale_x) + ", " + std::to_string(h.scale_y);
+}
+
+TEST(VelocityCheck, EveryListedHypothesisIsFoundWhereItIsTrue) {
+    const Pair pair = make_pair(kMotion, kOther, kOther);
+    for (const bool next : {false, true})
+        for (const VelocityScore& listed : check_velocity(claim_velocity(pair)).hypotheses) {
+            const VelocityHypothesis& truth = listed.hypothesis;
+            const bool in_a = next != truth.other_time;
+            const Image a = undo(in_a ? pair.next_a : pair.velocity_a, truth);
+            const Image b = undo(in_a ? pair.next_b : pair.velocity_b, truth);
+            const VelocityCheck check = check_velocity(
+                {&pair.color_a, &pair.color_b, &a, &b, {.delta = next ? "next-cur" : "cur-prev"}});
+            EXPECT_EQ(check.best.hypothesis, truth)
+                << name_of(check.best.hypothesis) << " for " << name_of(truth);
+            EXPECT_EQ(check.verdict,
+                      truth == VelocityHypothesis{} ? VelocityVerdict::confirmed : VelocityVerdict::wrong)
+                << name_of(truth) << ": " << check.sentence;
+            EXPECT_GT(check.best.score, 0.95) << name_of(truth);
+            EXPECT_EQ(check.hypotheses.size(), 48u);
+        }
+}
+
+TEST(VelocityCheck, CorrectedSettingsDecodeAsTheHypothesisSays) {
+    // Stored values decoded by hand under both settings.
+    const auto decode = [](const VelocitySettings& s, Vector stored) {
+        if (s.exchange_channels) std::swap(stored.x, stored.y);
+        const double sign = s.delta == "cur-prev" || s.delta == "next-cur" ? 1 : -1;
+        const double unit = s.unit == "uv" ? 100 : s.unit == "ndc" ? 50 : 1;
+        return Vector{float(sign * unit * s.scale[0] * stored.x),
+                      float((s.y_axis == "up" ? -1 : 1) * sign * unit * s.scale[1] * stored.y)};
+    };
+    const Pair pair = make_pair(kMotion, kOther, kOther);
+    for (const VelocityScore& listed : check_velocity(claim_velocity(pair)).hypotheses)
+        for (const char* delta : {"cur-prev", "prev-cur", "next-cur", "cur-next"})
+            for (const char* y_axis : {"up", "down"})
+                for (const char* unit : {"px", "uv", "ndc"}) {
+                    const VelocityHypothesis& h = listed.hypothesis;
+                    const VelocitySettings before{
+                        .delta = delta, .y_axis = y_axis, .unit = unit, .scale = {3, 5}};
+                    const VelocitySettings after = correct_settings(before, h);
+                    const Vector was = decode(before, {0.25f, 1.5f}), is = decode(after, {0.25f, 1.5f});
+                    EXPECT_FLOAT_EQ(is.x, float(h.scale_x) * (h.swapped ? was.y : was.x)) << name_of(h);
+                    EXPECT_FLOAT_EQ(is.y, float(h.scale_y) * (h.swapped ? was.x : was.y)) << name_of(h);
+                    EXPECT_EQ(after.is_next(), before.is_next() != h.other_time);
+                }
+    EXPECT_EQ(correct_settings({.unit = "uv"}, {false, false, 0.5, 0.5}).unit, "ndc");
+    EXPECT_EQ(correct_settings({.unit = "ndc"}, {false, false, 2, 2}).unit, "uv");
+}
+
+TEST(VelocityCheck, AStaticPairSaysThatNothingMoves) {
+    const Pair pair = make_pair({0, 0}, {0, 0}, {0, 0});
+    const VelocityCheck check = check_velocity(claim_velocity(pair));
+    EXPECT_EQ(check.verdict, VelocityVerdict::untestable);
+    EXPECT_FALSE(check.confirmed());
+    EXPECT_NE(check.sentence.find("nothing moves"), std::string::npos) << check.sentence;
+    EXPECT_FALSE(check.fit);
+    EXPECT_EQ(check.suggested, check.settings);
+}
+
+TEST(VelocityCheck, VectorsOverTwoEqualPicturesTellNothing) {
+    Pair pair = make_pair(kMotion, kMotion, kMotion);
+    pair.color_b = pair.color_a;
+    const VelocityCheck check = check_velocity(claim_next(pair));
+    EXPECT_EQ(check.verdict, VelocityVerdict::untestable);
+    EXPECT_NE(check.sentence.find("the same"), std::string::npos) << check.sentence;
+}
+
+TEST(VelocityCheck, VectorsBelowAPixelNameTheUnit) {
+    Pair pair = make_pair(kMotion, kMotion, kMotion);
+    pair.velocity_b = undo(pair.velocity_b, {false, false, 128, 96});
+    pair.velocity_a = undo(pair.velocity_a, {false, false, 128, 96});
+    const VelocityCheck check = check_velocity(claim_velocity(pair));
+    EXPECT_EQ(check.verdict, VelocityVerdict::untestable);
+    EXPECT_NE(check.sentence.find("set the unit"), std::string::npos) << check.sentence;
+}
+
+TEST(VelocityCheck, SteadyMotionDoesNotTellTheTime) {
+    const VelocityCheck check = check_velocity(claim_velocity(make_pair(kMotion, kMotion, kMotion)));
+    EXPECT_EQ(check.verdict, VelocityVerdict::undecided);
+    EXPECT_EQ(check.untold, std::vector<std::string>{"delta (cur-prev or next-cur)"}) << check.sentence;
+}
+
+TEST(VelocityCheck, MotionAlongOneAxisDoesNotTellTheOther) {
+    const VelocityCheck check = check_velocity(claim_velocity(make_pair({12, 0}, {3, 9}, {3, 9})));
+    EXPECT_EQ(check.verdict, VelocityVerdict::undecided);
+    EXPECT_EQ(check.untold, std::vector<std::string>{"y_axis"}) << check.sentence;
+    ASSERT_TRUE(check.fit && check.fit->scale_x);
+    EXPECT_NEAR(*check.fit->scale_x, 1, 0.03);
+    EXPECT_FALSE(check.fit->scale_y);
+}
+
+TEST(VelocityCheck, WithoutTheOtherFramesVectorsTheTimeIsNotTold) {
+    const Pair pair = make_pair(kMotion, kOther, kOther);
+    VelocityCheckInput input = claim_velocity(pair);
+    input.vectors_a = nullptr;
+    const VelocityCheck check = check_velocity(input);
+    EXPECT_EQ(check.verdict, VelocityVerdict::undecided);
+    EXPECT_EQ(check.untold, std::vector<std::string>{"delta (cur-prev or next-cur)"}) << check.sentence;
+    input.vectors_b = nullptr;
+    EXPECT_EQ(check_velocity(input).verdict, VelocityVerdict::untestable);
+    input.vectors_a = &pair.velocity_a;
+    const VelocityCheck claim_untested = check_velocity(input);
+    EXPECT_EQ(claim_untested.verdict, VelocityVerdict::untestable);
+    EXPECT_NE(claim_untested.sentence.find("read in frame B"), std::string::npos) << claim_untested.sentence;
+}
+
+TEST(VelocityCheck, AScaleThatIsNotListedIsFitted) {
+    Pair pair = make_pair({12, 10}, {-4, 9}, {-4, 9});
+    pair.velocity_b = undo(pair.velocity_b, {false, false, 3, -0.7});
+    const VelocityCheck check = check_velocity(claim_velocity(pair));
+    EXPECT_EQ(check.verdict, VelocityVerdict::no_fit) << check.sentence;
+    ASSERT_TRUE(check.fit && check.fit->scale_x && check.fit->scale_y);
+    EXPECT_NEAR(*check.fit->scale_x, 3, 0.05);
+    EXPECT_NEAR(*check.fit->scale_y, -0.7, 0.02);
+    EXPECT_EQ(check.suggested.y_axis, "up");
+}
+
+TEST(VelocityCheck, VectorsOfAnotherShotFitNothing) {
+    Pair pair = make_pair({0, 0}, {0, 0}, {0, 0});
+    for (int y = 0; y < 96; ++y)
+        for (int x = 0; x < 128; ++x) {
+            pair.color_a.at(x, y, 0) = float((x * 7919 + y * 104729) % 97) / 97;
+            pair.color_b.at(x, y, 0) = float((x * 5171 + y * 31337) % 89) / 89;
+            pair.velocity_a.at(x, y, 0) = pair.velocity_b.at(x, y, 0) = 8;
+        }
+    const VelocityCheck check = check_velocity(claim_velocity(pair));
+    EXPECT_EQ(check.verdict, VelocityVerdict::no_fit);
+    EXPECT_EQ(check.suggested, check.settings) << check.sentence;
+}
+
+TEST(VelocityCheck, WhereEveryReadingMakesItWorseTheFitSaysSo) {
+    // The vectors move a bright line that in truth stays where it is: a warp can only add errors.
+    Pair pair = make_pair({0, 0}, {0, 0}, {0, 0});
+    for (int y = 0; y < 96; ++y)
+        for (int x = 0; x < 128; ++x) {
+            const bool lit = x == 64;
+            pair.color_a.at(x, y, 0) = pair.color_b.at(x, y, 0) = lit ? 0.6f : 0.0f;
+            if (lit) pair.color_b.at(x, y, 0) = 0.7f;
+            if (lit) pair.velocity_b.at(x, y, 0) = 30;
+        }
+    const VelocityCheck check = check_velocity(claim_velocity(pair));
+    EXPECT_EQ(check.verdict, VelocityVerdict::no_fit) << check.sentence;
+    EXPECT_LT(check.best.score, -0.3);
+    EXPECT_EQ(check.suggested, check.settings);
+}
+
+TEST(VelocityCheck, NanPixelsAndWildVectorsDoNotMatter) {
+    const Pair clean = make_pair(kMotion, kOther, kOther);
+    Pair dirty = clean;
+    const float nan = std::numeric_limits<float>::quiet_NaN(),
+                infinity = std::numeric_limits<float>::infinity();
+    for (int i = 0; i < 90; ++i) {
+        dirty.color_a.at((i * 37) % 128, i, 0) = i % 2 ? nan : -infinity;
+        dirty.color_b.at((i * 53) % 128, i, 1) = i % 2 ? nan : infinity;
+        dirty.velocity_b.at((i * 41) % 128, i, i % 2) = i % 3 == 0 ? nan : i % 3 == 1 ? infinity : 1e10f;
+    }
+    const VelocityCheck check = check_velocity(claim_velocity(dirty));
+    EXPECT_TRUE(check.confirmed()) << check.sentence;
+    EXPECT_NEAR(check.identity.score, check_velocity(claim_velocity(clean)).identity.score, 0.05);
+    EXPECT_LT(check.longest_px, 20);
+}
+
+TEST(VelocityCheck, AnObjectThatEntersThePictureDoesNotMislead) {
+    // Half of the box comes from outside in B; the other direction in time, less right, has all of its pixels
+    // inside.
+    test::SyntheticScene scene;
+    scene.width = 128;
+    scene.height = 96;
+    scene.background = {0.05f, 0.1f, 0.2f};
+    scene.box = {-16, 36, 32, 24, 16, 5, 1, {0.9f, 0.2f, 0.1f}};
+    const Capture a = test::make_capture(scene, 0), b = test::make_capture(scene, 1);
+    const Image velocity_a = with_vector(a, {11, 9}), velocity_b = with_vector(b, {16, 5});
+    const VelocityCheck check =
+        check_velocity({&a.images.at("color"), &b.images.at("color"), &velocity_a, &velocity_b, {}});
+    EXPECT_TRUE(check.confirmed()) << format_velocity_check(check);
+}
+
+TEST(VelocityCheck, TheReportShowsTheClaimItsRivalsAndTheFreeScale) {
+    const std::string report =
+        format_velocity_check(check_velocity(claim_velocity(make_pair(kMotion, kOther, kOther))));
+    for (const char* part : {"velocity: The profile is right", "as claimed    100 %",
+                             "delta cur-prev, y_axis down", "free scale", "times the decoded vectors"})
+        EXPECT_NE(report.find(part), std::string::npos) << part << " in\n" << report;
+}
+
+TEST(VelocityCheck, ExposureDoesNotMatter) {
+    const Pair pair = make_pair(kMotion, kOther, kOther);
+    const double score = check_velocity(claim_velocity(pair)).rival.score;
+    for (const float gain : {1e-4f, 1e4f}) {
+        Pair other = pair;
+        for (Image* image : {&other.color_a, &other.color_b})
+            for (float& value : image->floats()) value *= gain;
+        EXPECT_NEAR(check_velocity(claim_velocity(other)).rival.score, score, 1e-3);
+    }
+}
+
+TEST(VelocityCheck, FramesOfTwoSizesAreAnError) {
+    Pair pair = make_pair(kMotion, kOther, kOther);
+    pair.color_b = Image(10, 10, 4);
+    try {
+        check_velocity(claim_velocity(pair));
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.exit_code(), ExitCode::capture);
+        EXPECT_NE(std::string(error.what()).find("10x10"), std::string::npos) << error.what();
+    }
+}
+
+/// Channels 0 and 1, or 2 and 3, of Blender's Vector, decoded here by hand: rows down, (-X, +Y) and (-Z, +W).
+Image blender_vectors(const Image& vector, int first) {
+    Image image(vector.width(), vector.height(), 2);
+    for (int y = 0; y < vector.height(); ++y)
+        for (int x = 0; x < vector.width(); ++x) {
+            image.at(x, y, 0) = -vector.at(x, y, first);
+            image.at(x, y, 1) = vector.at(x, y, first + 1);
+        }
+    return image;
+}
+
+Pair read_suzanne(const fs::path& folder, int frame = 3) {
+    const std::vector<std::string> color = {"ViewLayer.Combined.R", "ViewLayer.Combined.G",
+                                            "ViewLayer.Combined.B"};
+    const std::vector<std::string> vector = {"ViewLayer.Vector.X", "ViewLayer.Vector.Y", "ViewLayer.Vector.Z",
+                                             "ViewLayer.Vector.W"};
+    const auto path = [&](int number) { return folder / ("gbuffer_000" + std::to_string(number) + ".exr"); };
+    const ExrFile a(path(frame)), b(path(frame + 1));
+    const Image vector_a = a.read_floats(0, vector), vector_b = b.read_floats(0, vector);
+    return {a.read_floats(0, color),      b.read_floats(0, color),      blender_vectors(vector_a, 0),
+            blender_vectors(vector_b, 0), blender_vectors(vector_a, 2), blender_vectors(vector_b, 2)};
+}
+
+void expect_confirmed(const VelocityCheck& check) {
+    SCOPED_TRACE(format_velocity_check(check));
+    EXPECT_TRUE(check.confirmed());
+    EXPECT_GT(check.identity.score, 0.7);
+    EXPECT_GT(check.identity.score - check.rival.score, 0.1);
+    ASSERT_TRUE(check.fit && check.fit->scale_x && check.fit->scale_y);
+    EXPECT_NEAR(*check.fit->scale_x, 1, 0.1);
+    EXPECT_NEAR(*check.fit->scale_y, 1, 0.1);
+    EXPECT_EQ(check.suggested, check.settings);
+}
+
+const VelocitySettings kBlenderVelocity{.delta = "prev-cur", .y_axis = "up"};
+const VelocitySettings kBlenderNext{.delta = "cur-next", .y_axis = "up"};
+
+TEST(VelocityCheckOnSuzanne, TheBlenderProfileIsConfirmed) {
+    AFTERSHADE_REQUIRE_CAPTURE(folder, "suzanne/large");
+    const Pair pair = read_suzanne(*folder);
+    expect_confirmed(check_velocity(claim_velocity(pair, kBlenderVelocity)));
+    VelocityCheckInput next = claim_next(pair);
+    next.settings = kBlenderNext;
+    expect_confirmed(check_velocity(next));
+}
+
+TEST(VelocityCheckOnSuzanne, TheFramesOfTheRepositoryConfirmItToo) {
+    const Pair pair = read_suzanne(fs::path(AFTERSHADE_SOURCE_DIR) / "scenes/suzanne");
+    expect_confirmed(check_velocity(claim_velocity(pair, kBlenderVelocity)));
+    VelocityCheckInput next = claim_next(pair);
+    next.settings = kBlenderNext;
+    expect_confirmed(check_velocity(next));
+}
+
+TEST(VelocityCheckOnSuzanne, NoPairOfFramesSpeaksAgainstTheBlenderProfile) {
+    // Among them one in which the ball enters the picture, one in which it hardly rises, and steady ones.
+    AFTERSHADE_REQUIRE_CAPTURE(folder, "suzanne/small");
+    int confirmed = 0;
+    for (int frame = 1; frame <= 7; ++frame) {
+        const Pair pair = read_suzanne(*folder, frame);
+        VelocityCheckInput next = claim_next(pair);
+        next.settings = kBlenderNext;
+        for (const VelocityCheckInput& input : {claim_velocity(pair, kBlenderVelocity), next}) {
+            const VelocityCheck check = check_velocity(input);
+            EXPECT_TRUE(check.confirmed() || check.verdict == VelocityVerdict::undecided)
+                << frame << ", " << format_velocity_check(check);
+            EXPECT_EQ(check.suggested, input.settings);
+            confirmed += check.confirmed();
+        }
+    }
+    EXPECT_GE(confirmed, 9);  // of 14
+}
+
+/// Checks vectors decoded wrongly on purpose and returns the settings that the check suggests. Both roles
+/// come to the same, as the truth of the wrong decoding is Blender's.
+VelocitySettings suggestion(const Pair& pair, const VelocityHypothesis& mistake, bool next) {
+    const Image a = undo(next ? pair.next_a : pair.velocity_a, mistake);
+    const Image b = undo(next ? pair.next_b : pair.velocity_b, mistake);
+    const VelocityCheck check = check_velocity(
+        {&pair.color_a, &pair.color_b, &a, &b, {.delta = next ? "next-cur" : "cur-prev", .y_axis = "down"}});
+    SCOPED_TRACE(format_velocity_check(check));
+    EXPECT_EQ(check.verdict, VelocityVerdict::wrong);
+    EXPECT_EQ(check.best.hypothesis, mistake);
+    EXPECT_GT(check.hypotheses[0].score - check.hypotheses[1].score, 0.1);
+    EXPECT_TRUE(check.untold.empty());
+    return check.suggested;
+}
+
+TEST(VelocityCheckOnSuzanne, EveryMistakeIsNamedInTheProfilesWords) {
+    AFTERSHADE_REQUIRE_CAPTURE(folder, "suzanne/large");
+    const Pair pair = read_suzanne(*folder);
+    for (const bool next : {false, true}) {
+        const std::string right = next ? "next-cur" : "cur-prev", reversed = next ? "cur-next" : "prev-cur";
+        EXPECT_EQ(suggestion(pair, {false, false, -1, -1}, next), (VelocitySettings{.delta = reversed}));
+        EXPECT_EQ(suggestion(pair, {false, false, 1, -1}, next),
+                  (VelocitySettings{.delta = right, .y_axis = "up"}));
+        EXPECT_EQ(suggestion(pair, {false, false, -1, 1}, next),
+                  (VelocitySettings{.delta = reversed, .y_axis = "up"}));
+        EXPECT_EQ(suggestion(pair, {false, false, 0.5, 0.5}, next),
+                  (VelocitySettings{.delta = right, .scale = {0.5, 0.5}}));
+        EXPECT_EQ(suggestion(pair, {false, false, 2, 2}, next),
+                  (VelocitySettings{.delta = right, .scale = {2, 2}}));
+        EXPECT_EQ(suggestion(pair, {false, true, 1, 1}, next),
+                  (VelocitySettings{.delta = right, .exchange_channels = true}));
+    }
+}
+
+TEST(VelocityCheckOnSuzanne, VelocityAndVelocityNextAreToldFromEachOther) {
+    AFTERSHADE_REQUIRE_CAPTURE(folder, "suzanne/large");
+    const Pair pair = read_suzanne(*folder);
+    const VelocityCheck next_as_velocity =
+        check_velocity({&pair.color_a, &pair.color_b, &pair.next_a, &pair.next_b, {.delta = "cur-prev"}});
+    EXPECT_EQ(next_as_velocity.verdict, VelocityVerdict::wrong);
+    EXPECT_EQ(next_as_velocity.suggested.delta, "next-cur");
+    EXPECT_NE(next_as_velocity.sentence.find("belong to role velocity_next"), std::string::npos);
+    const VelocityCheck velocity_as_next = check_velocity(
+        {&pair.color_a, &pair.color_b, &pair.velocity_a, &pair.velocity_b, {.delta = "next-cur"}});
+    EXPECT_EQ(velocity_as_next.verdict, VelocityVerdict::wrong);
+    EXPECT_EQ(velocity_as_next.suggested.delta, "cur-prev");
+}
+
+/// A part's channels in the grid of the display window, 0 outside.
+Image read_part(const ExrFile& file, const std::string& name, const std::vector<std::string>& channels) {
+    const auto& parts = file.parts();
+    const auto part =
+        std::find_if(parts.begin(), parts.end(), [&](const ExrPart& p) { return p.name == name; });
+    const Image stored = file.read_floats(int(part - parts.begin()), channels);
+    const Window& window = part->data_window;
+    Image placed(part->display_window.width(), part->display_window.height(), stored.channels());
+    for (int y = 0; y < stored.height(); ++y)
+        for (int x = 0; x < stored.width(); ++x)
+            for (int c = 0; c < stored.channels(); ++c)
+                if (part->display_window.contains(window.min_x + x, window.min_y + y))
+                    placed.at(window.min_x + x, window.min_y + y, c) = stored.at(x, y, c);
+    return placed;
+}
+
+TEST(VelocityCheckOnBeachball, TheForwardVectorsNeedAScaleThatIsNotListed) {
+    AFTERSHADE_REQUIRE_CAPTURE(folder, "beachball");
+    const ExrFile a(*folder / "multipart.0003.exr"), b(*folder / "multipart.0004.exr");
+    const Image color_a = read_part(a, "rgba_right", {"R", "G", "B"}),
+                color_b = read_part(b, "rgba_right", {"R", "G", "B"});
+    const Image forward_a = read_part(a, "forward_right", {"forward.u", "forward.v"});
+    const Image forward_b = read_part(b, "forward_right", {"forward.u", "forward.v"});
+    const VelocityCheck check =
+        check_velocity({&color_a, &color_b, &forward_a, &forward_b, {.delta = "next-cur"}});
+    SCOPED_TRACE(format_velocity_check(check));
+    EXPECT_EQ(check.verdict, VelocityVerdict::no_fit);
+    EXPECT_EQ(check.suggested.delta, "next-cur");
+    EXPECT_EQ(check.suggested.y_axis, "down");
+    ASSERT_TRUE(check.fit && check.fit->scale_x && check.fit->scale_y);
+    // Mean forward: (42.0, -18.0). Measured apart from this code: the outline moves by (105.2, -22.5), that
+    // is 2.50 and 1.25 times as much; the pattern on the turning ball by (112, -25.5), 2.67 and 1.42 times.
+    EXPECT_GT(*check.fit->scale_x, 2.45);
+    EXPECT_LT(*check.fit->scale_x, 2.75);
+    EXPECT_GT(*check.fit->scale_y, 1.2);
+    EXPECT_LT(*check.fit->scale_y, 1.55);
+    EXPECT_GT(check.fit->score - check.best.score, 0.15);
+}
+
+}  // namespace
+}  // namespace aftershade
