@@ -1,5 +1,7 @@
 #include "cli/documents.h"
 
+#include <utility>
+
 #include "cli/capture_options.h"
 #include "cli/effect_options.h"
 #include "framework/batch/golden_grammar.h"
@@ -81,9 +83,10 @@ std::vector<std::string> document_names() {
 
 grammar::Tables document_tables() {
     grammar::Tables tables = tables_of_profiles();
+    std::vector<std::pair<std::string, const grammar::Block*>> blocks;
     for (const Document& document : documents())
-        for (const grammar::Block* block : document.blocks)
-            tables.merge(grammar::tables_of(document.name, *block));
+        for (const grammar::Block* block : document.blocks) blocks.emplace_back(document.name, block);
+    tables.merge(grammar::tables_of(blocks));
     return tables;
 }
 

@@ -313,7 +313,10 @@ Form map(Form value, MapNames names) {
 
 Form named(Form value, const std::string& thing, int min) {
     return map(std::move(value),
-               {.pattern = schema::kSnakeCase, .fault = thing + " '{}' " + kMustBeSnakeCase, .min = min});
+               {.pattern = schema::kSnakeCase,
+                .fits = [](const std::string& name) { return is_snake_case(name); },
+                .fault = thing + " '{}' " + kMustBeSnakeCase,
+                .min = min});
 }
 
 Form object(Block block) {

@@ -283,6 +283,20 @@ TEST(Manifest, ListsTheFaultsOfAllSectionsAtOnce) {
                "5: texture 'small' has no 'doc'", "7: preset strong, gain: -1 m is below the minimum 0 m"}));
 }
 
+TEST(Manifest, DoesNotRunOutOfStackOnALongText) {
+    const std::string digits(300000, '1'), letters(300000, 'a');
+    const auto head = [](const std::string& version) {
+        return R"("aftershade": 1, "id": "demo", "summary": ".", "version": ")" + version + '"';
+    };
+    EXPECT_EQ(faults_of_manifest(demo_manifest({{test::kHead, head(digits + ".0.0")}})), Lines{});
+    EXPECT_EQ(faults_of_manifest(demo_manifest({{test::kHead, head(digits)}})).size(), 1u);
+    EXPECT_EQ(faults_of_second_pass(kGoodPass + R"(, "defines": {")" + letters + "\": 1}}"), Lines{});
+    EXPECT_EQ(faults_of_second_pass(kGoodPass + R"(, "defines": {")" + letters + " \": 1}}").size(), 1u);
+    EXPECT_EQ(faults_of_second_pass(R"({"name": "two", "shader": "b.frag", "reads": [{"small": {"level": "pass.index + )" +
+                                    digits + R"("}}], "writes": ["color"]})"),
+              Lines{R"(6: 'level' is an integer, "pass.index", "pass.index + 1" or "pass.index - 1")"});
+}
+
 TEST(Manifest, IsAnObject) {
     EXPECT_EQ(faults_of_manifest("[]"), Lines{"1: the manifest must be an object, not an array"});
 }

@@ -8,7 +8,6 @@
 #include "framework/effect/manifest/manifest_grammar.h"
 #include "framework/effect/manifest/manifest_parser.h"
 #include "framework/effect/param_types.h"
-#include "framework/image/camera.h"
 
 namespace aftershade {
 
@@ -48,20 +47,14 @@ void ManifestParser::params(const Reader& document) {
     if (!section) return;
     for (const Member& member : section->members) {
         if (!is_new("parameter", member)) continue;
-        const auto spec = parse_param_spec(member.key, member.value, diagnostics_, param_types());
-        if (!spec) {
-            faulty_params_.insert(member.key);
-            continue;
-        }
-        if (const Node* from = member.value.find("from")) check_from(*spec, from->place);
-        manifest_.params.push_back(*spec);
+        // Their faults are told already.
+        Diagnostics faults;
+        const bool is_sound = grammar::check(member.value, manifest_param_block(), faults);
+        auto spec = is_sound ? read_param_spec(member.key, member.value, diagnostics_, param_types())
+                             : std::nullopt;
+        if (spec) manifest_.params.push_back(std::move(*spec));
+        else faulty_params_.insert(member.key);
     }
-}
-
-void ManifestParser::check_from(const ParamSpec& spec, const Place& place) {
-    const std::vector<std::string> known = camera_sources(spec.type);
-    if (std::find(known.begin(), known.end(), spec.from) == known.end())
-        fault(place, unknown_source(spec.from, known));
 }
 
 void ManifestParser::presets(const Reader& document) {

@@ -60,6 +60,7 @@ grammar::Key when_key(std::string doc, bool is_required = false);
 /// Those of an input, which name parameters alone.
 grammar::Key input_when_key(std::string doc);
 
+const grammar::Block& manifest_param_block();
 const grammar::Block& texture_block();
 const grammar::Block& buffer_block();
 const grammar::Block& tile_list_block();

@@ -3,10 +3,13 @@
 #include <algorithm>
 
 #include "framework/core/grammar_schema.h"
+#include "framework/core/param_grammar.h"
 #include "framework/core/schema_pieces.h"
+#include "framework/core/text.h"
 #include "framework/core/units.h"
 #include "framework/effect/manifest/manifest_blocks.h"
-#include "framework/effect/param_schema.h"
+#include "framework/effect/param_types.h"
+#include "framework/image/camera.h"
 #include "framework/image/image_forms.h"
 
 namespace aftershade {
@@ -148,7 +151,7 @@ Block statistic_block() {
             .thing = "statistic '{}'",
             .doc = "A number of each frame for `--telemetry`. A pass whose textures only telemetry or a tap needs "
                    "does not run otherwise.",
-            .keys = {required("of", channel_form(), "The mean over its texels."),
+            .keys = {required("of", channel_form(), "Its texels are summed up: count, sum, mean, deviation, extremes."),
                      optional("where", channel_form(),
                               "Only the texels where this is above 0, of a texture of the same size."),
                      optional("squared", boolean(), "Its square: of a deviation the variance.", "false"),
@@ -160,7 +163,7 @@ Block statistic_block() {
 Block preset_block() {
     return {.name = "",
             .thing = "preset '{}'",
-            .others = {{"", grammar::custom({.type = "value"})}},
+            .others = {{"^", grammar::custom({.type = "value"})}},
             .type = "values by parameter"};
 }
 
@@ -168,15 +171,14 @@ Form uses_form() {
     return grammar::list(grammar::name_of({"lights"}, "a block that shaders can use"), {.unique = true});
 }
 
-Form params_form() {
-    return grammar::named(grammar::custom({.type = "[parameter](params.md)", .schema = param_schema()}),
-                          "parameter");
-}
 
 /// What effects and modules both declare.
 std::vector<Key> shared_keys() {
     return {optional("uses", uses_form(), "`[\"lights\"]`: shaders have the block [`lights`](#shaders)."),
-            optional("params", params_form(), "What users set."),
+            optional("params",
+                     grammar::shown_as(grammar::named(grammar::object(manifest_param_block), "parameter"),
+                                       "[parameter](params.md) by name"),
+                     "What users set."),
             optional("textures", grammar::named(grammar::object(texture_block), "texture"), "Images between passes."),
             optional("buffers", grammar::named(grammar::object(buffer_block), "buffer"), "Arrays."),
             optional("tiles", grammar::named(grammar::object(tile_list_block), "tile list"),
@@ -230,6 +232,11 @@ Block make_module_block() {
 }
 
 }  // namespace
+
+const Block& manifest_param_block() {
+    static const Block block = param_block(param_types(), camera_sources);
+    return block;
+}
 
 const Block& effect_block() {
     static const Block block = make_effect_block();

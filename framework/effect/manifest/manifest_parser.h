@@ -58,7 +58,6 @@ private:
     /// Whether no module before has a `thing` of this name; otherwise a fault.
     bool is_new(const std::string& thing, const Member& member);
     void fault(const Place& place, std::string text) { diagnostics_.error(place, std::move(text)); }
-    void check_from(const ParamSpec& spec, const Place& place);
     void preset(const Member& member);
     void statistic(const Reader::Named& declared);
     std::optional<TextureChannel> channel(const Reader& reader, const std::string& key,
