@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <iostream>
 
+#include "framework/capture/capture_grammar.h"
+#include "framework/capture/frame_range.h"
 #include "framework/core/data_path.h"
 #include "framework/core/error.h"
 #include "framework/image/color_space.h"
-#include "framework/capture/frame_range.h"
 
 namespace aftershade::cli {
 
@@ -60,6 +61,12 @@ void add_capture_options(CLI::App& app, CaptureOptions& options, const std::stri
                    "role=file or pattern, for a role in files of its own; repeatable")
         ->allow_extra_args(false);
     app.add_option("--view", options.view, "View of a multi-view file (default: the file's first)");
+    app.add_option(
+        "--layer", options.layer,
+        "Layer of a file with several, such as a view layer of Blender (default: the file's first)");
+    app.add_option("--alpha", options.alpha,
+                   "Alpha of color: keep, or opaque where the stored one means nothing (default: the capture's)")
+        ->check(CLI::IsMember(alpha_names()));
     app.add_option("--color-space", options.color_space,
                    "Primaries of the stored colours: auto, rec709, acescg, ap0, rec2020");
     app.add_option("--max-size", options.limits.max_side_px, "Refuse images with a side above this, px")
@@ -89,6 +96,8 @@ std::optional<Sequence> find_sequence(const CaptureOptions& options, const std::
     if (!sequence) return std::nullopt;
     if (!options.profile.empty()) sequence->profile = options.profile;
     if (!options.view.empty()) sequence->view = options.view;
+    if (!options.layer.empty()) sequence->layer = options.layer;
+    if (!options.alpha.empty()) sequence->alpha_is_opaque = options.alpha == kOpaqueAlpha;
     for (const std::string& text : options.role_files) add_role_file(*sequence, text, diagnostics);
     choose_color_space(options, *sequence, diagnostics);
     std::vector<std::string> ids{"auto"};

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "framework/core/diagnostics.h"
-#include "framework/file/exr_file.h"
 #include "framework/capture/profile.h"
 #include "framework/capture/sequence.h"
+#include "framework/core/diagnostics.h"
+#include "framework/file/exr_file.h"
 
 namespace CLI {
 class App;
@@ -23,15 +23,17 @@ struct CaptureOptions {
     std::string profile;                     ///< "" for the capture's own
     std::vector<std::string> profile_paths;  ///< folders, searched before the shipped profiles
     std::vector<std::string> role_files;     ///< "depth=z.####.exr"
+    std::string alpha;                       ///< "" for the capture's own
     std::string view;                        ///< "" for the capture's own
+    std::string layer;                       ///< "" for the capture's own
     std::string color_space;                 ///< "" for the capture's own
     ReadLimits limits;
 };
 
 /// The argument CAPTURE; add it where it belongs in the order of the verb's arguments.
 CLI::Option* add_capture_argument(CLI::App& app, CaptureOptions& options);
-/// --frames (what they are for is the verb's), --profile, --profile-path, --role, --view, --color-space and
-/// the limits.
+/// --frames (what they are for is the verb's), --profile, --profile-path, --role, --view, --layer,
+/// --color-space and the limits.
 void add_capture_options(CLI::App& app, CaptureOptions& options, const std::string& frames_help);
 
 /// The profiles of --profile-path and the shipped ones.

@@ -12,8 +12,8 @@
 #include "cli/inspect_report.h"
 #include "cli/verbs.h"
 #include "framework/core/data_path.h"
-#include "framework/inspect/contact_sheet.h"
 #include "framework/file/png_file.h"
+#include "framework/inspect/contact_sheet.h"
 
 namespace aftershade::cli {
 
@@ -23,6 +23,7 @@ struct InspectOptions {
     CaptureOptions capture;
     std::string contact_sheet;
     std::vector<std::string> check_velocity;
+    std::optional<std::string> cryptomatte;
     bool json = false;
 };
 
@@ -51,11 +52,21 @@ Inspection inspect_frame(const Sequence& sequence, int frame, const CaptureReade
         inspection.parts.push_back({file.parts()[i], inspect_channels(file, int(i), limits)});
     try {
         inspection.capture = reader.read_header(frame);
+        inspection.cryptomattes = reader.cryptomattes(frame);
     } catch (const Error& error) {
         // The files are sound, but what they mean is not known: no profile, several, no such view.
         inspection.no_profile_reason = without_path(error.what(), inspection.file);
     }
     return inspection;
+}
+
+/// "-" is the only Cryptomatte, or the one of objects.
+void add_coverage(const std::string& name, const CaptureReader& reader, Inspection& inspection) {
+    if (!inspection.capture || inspection.cryptomattes.empty())
+        throw Error(ExitCode::capture, inspection.file.string() + ": has no Cryptomatte");
+    const int frame = inspection.capture->frame;
+    inspection.coverage_of = reader.cryptomatte_name(frame, name);
+    inspection.coverage = reader.cryptomatte_coverage(frame, inspection.coverage_of);
 }
 
 /// One role that cannot be decoded does not hide the others.
@@ -97,8 +108,9 @@ ExitCode inspect(const InspectOptions& options) {
 
     set_exr_threads(int(std::thread::hardware_concurrency()));
     const CaptureReader reader(*sequence, std::move(profiles), options.capture.limits);
-    const Inspection inspection = inspect_frame(*sequence, sequence->file_number(sequence->frames.front()),
-                                                reader, options.capture.limits);
+    Inspection inspection = inspect_frame(*sequence, sequence->file_number(sequence->frames.front()), reader,
+                                          options.capture.limits);
+    if (options.cryptomatte) add_coverage(*options.cryptomatte, reader, inspection);
     std::cout << (options.json ? json_of(inspection) + "\n" : text_of(inspection)) << std::flush;
     const std::string file = inspection.file.string() + ": ";
     if (const InspectedChannel* channel = inspection.first_unreadable())
@@ -124,6 +136,10 @@ Verb add_inspect(CLI::App& app) {
     capture->required(false)->excludes(check);
     add_capture_options(app, options->capture, "The frame to look at (default: the first)");
     app.add_flag("--json", options->json, "Machine-readable output");
+    app.add_option(
+           "--cryptomatte", options->cryptomatte,
+           "List the objects of this Cryptomatte with their coverage (without a name: of the one of objects)")
+        ->expected(0, 1);
     app.add_option("--contact-sheet", options->contact_sheet,
                    "Write every role in false colour to this .png file");
     return [options] {

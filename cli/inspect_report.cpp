@@ -70,6 +70,46 @@ std::string role_lines(const Inspection& inspection) {
     return text + fmt::format("  {:<14}  {}\n", "(missing)", fmt::join(inspection.missing_roles(), ", "));
 }
 
+std::string layer_lines(const CaptureHeader& capture) {
+    std::string text;
+    if (!capture.layer.empty()) text += fmt::format("layer: {}\n", printable(capture.layer));
+    for (const std::string& note : capture.notes) text += fmt::format("note: {}\n", printable(note));
+    return text;
+}
+
+double percent_of(const ObjectCoverage& object, const Window& grid) {
+    return 100 * object.coverage_px / (double(grid.width()) * grid.height());
+}
+
+std::string cryptomatte_lines(const Inspection& inspection) {
+    std::string text = inspection.cryptomattes.empty() ? "" : "cryptomattes:\n";
+    for (const CryptomatteLayer& matte : inspection.cryptomattes) {
+        const std::size_t count = matte.object_names.size();
+        text += fmt::format("  {:<14}  {} ranks, {}\n", printable(matte.name), 2 * matte.ranks.size(),
+                            count == 0 ? std::string("no manifest") : fmt::format("{} names", count));
+    }
+    if (inspection.coverage_of.empty()) return text;
+    text += fmt::format("objects of {}, with the share of the image that they cover:\n",
+                        printable(inspection.coverage_of));
+    for (const ObjectCoverage& object : inspection.coverage)
+        text += fmt::format("  {:>8.4f} %  {}\n", percent_of(object, inspection.capture->data_window),
+                            printable(object.name));
+    return text;
+}
+
+Json cryptomattes_json(const Inspection& inspection) {
+    Json json = Json::array();
+    for (const CryptomatteLayer& matte : inspection.cryptomattes) {
+        Json one{
+            {"name", matte.name}, {"ranks", 2 * matte.ranks.size()}, {"names", matte.object_names.size()}};
+        if (matte.name == inspection.coverage_of)
+            for (const ObjectCoverage& object : inspection.coverage)
+                one["objects"][object.name] = object.coverage_px;
+        json.push_back(std::move(one));
+    }
+    return json;
+}
+
 std::string light_lines(const std::vector<CaptureLight>& lights) {
     std::string text = lights.empty() ? "" : "lights:\n";
     for (const CaptureLight& light : lights)
@@ -86,7 +126,8 @@ std::string camera_lines(const Camera& camera) {
         text += fmt::format("  {:<14}  {:g} {}\n", name, value, field ? field->unit : "");
     }
     if (!camera.lens_model.empty()) text += fmt::format("  {:<14}  {}\n", "lens_model", camera.lens_model);
-    if (camera.camera_from_world) text += "  camera_from_world and the rest of its place are known\n";
+    if (!camera.matrices_found.empty()) text += fmt::format("  {:<14}  {}\n", "matrices", camera.matrices_found);
+    if (!camera.matrices_fault.empty()) text += fmt::format("  {:<14}  {}\n", "not taken", camera.matrices_fault);
     if (camera.jitter_px)
         text += fmt::format("  {:<14}  {} {} px\n", "jitter", (*camera.jitter_px)[0], (*camera.jitter_px)[1]);
     return text.empty() ? "camera: nothing is known\n" : "camera:\n" + text;
@@ -143,6 +184,8 @@ Json camera_json(const Camera& camera) {
     if (!camera.lens_model.empty()) json["lens_model"] = camera.lens_model;
     if (camera.camera_from_world) json["camera_from_world"] = *camera.camera_from_world;
     if (camera.ndc_from_world) json["ndc_from_world"] = *camera.ndc_from_world;
+    if (!camera.matrices_found.empty()) json["matrices"] = camera.matrices_found;
+    if (!camera.matrices_fault.empty()) json["matrices_fault"] = camera.matrices_fault;
     if (camera.jitter_px) json["jitter_px"] = *camera.jitter_px;
     return json;
 }
@@ -177,9 +220,11 @@ std::string text_of(const Inspection& inspection) {
     else text += fmt::format("profile: none ({})\n", printable(inspection.no_profile_reason));
     if (inspection.capture && !inspection.capture->view.empty())
         text += fmt::format("view: {}\n", printable(inspection.capture->view));
+    if (inspection.capture) text += layer_lines(*inspection.capture);
     return text + role_lines(inspection) +
            camera_lines(inspection.capture ? inspection.capture->camera : Camera{}) +
-           light_lines(inspection.capture ? inspection.capture->lights : std::vector<CaptureLight>());
+           light_lines(inspection.capture ? inspection.capture->lights : std::vector<CaptureLight>()) +
+           cryptomatte_lines(inspection);
 }
 
 std::string json_of(const Inspection& inspection) {
@@ -189,6 +234,9 @@ std::string json_of(const Inspection& inspection) {
         json["profile"] = {{"id", inspection.capture->profile},
                            {"reason", inspection.capture->profile_reason}};
     else json["profile"] = {{"id", nullptr}, {"reason", inspection.no_profile_reason}};
+    json["layer"] = inspection.capture ? inspection.capture->layer : "";
+    json["layers"] = inspection.capture ? inspection.capture->layers : std::vector<std::string>();
+    json["notes"] = inspection.capture ? inspection.capture->notes : std::vector<std::string>();
     json["roles"] = Json::object();
     if (inspection.capture)
         for (const std::string& role : inspection.capture->roles)
@@ -197,6 +245,7 @@ std::string json_of(const Inspection& inspection) {
     json["camera"] = camera_json(inspection.capture ? inspection.capture->camera : Camera{});
     json["lights"] =
         lights_json(inspection.capture ? inspection.capture->lights : std::vector<CaptureLight>());
+    json["cryptomattes"] = cryptomattes_json(inspection);
     // Names in files need not be UTF-8.
     return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "framework/capture/capture.h"
-#include "framework/inspect/channel_statistics.h"
 #include "framework/file/exr_file.h"
+#include "framework/inspect/channel_statistics.h"
 
 namespace aftershade::cli {
 
@@ -22,6 +22,9 @@ struct Inspection {
     std::vector<InspectedPart> parts;
     std::optional<CaptureHeader> capture;  ///< nullopt where no profile fits
     std::string no_profile_reason;
+    std::vector<CryptomatteLayer> cryptomattes;
+    std::string coverage_of;               ///< the Cryptomatte of `coverage`; "" where none was asked for
+    std::vector<ObjectCoverage> coverage;  ///< of its objects
 
     /// The fixed roles that the capture lacks; all where no profile fits.
     std::vector<std::string> missing_roles() const;
@@ -30,7 +33,8 @@ struct Inspection {
 };
 
 std::string text_of(const Inspection& inspection);
-/// {file, parts, profile, roles, missing, camera}, indented, without a line end.
+/// {file, parts, profile, layer, layers, notes, roles, missing, camera, lights, cryptomattes}, indented,
+/// without a line end.
 std::string json_of(const Inspection& inspection);
 
 }  // namespace aftershade::cli

@@ -73,9 +73,9 @@ ExitCode render(const RunSession& session, const Pipeline& pipeline, const std::
                                         reporter.observer(), stop);
     if (!session.arguments.graph.empty()) write_graph(session.arguments.graph, report.graph_dot);
     if (!session.arguments.telemetry_plot.empty())
-        write_text_file(
-            session.arguments.telemetry_plot,
-            telemetry_plot(report.telemetry, std::filesystem::path(session.arguments.look).filename().string()));
+        write_text_file(session.arguments.telemetry_plot,
+                        telemetry_plot(report.telemetry,
+                                       std::filesystem::path(session.arguments.look).filename().string()));
     const gpu::ContextInfo& gl = session.context.info();
     if (session.progress != ProgressStyle::none)
         std::cerr << gpu::backend_name(gl.backend) << ": " << gl.renderer << ", " << gl.version << "\n";
@@ -135,7 +135,8 @@ ExitCode run(const RunArguments& options) {
     const ProgressStyle progress = parse_progress(options.progress);
     auto bound = bind_look(options, diagnostics);
     std::vector<Profile> profiles = load_profiles(options.capture.profile_paths, diagnostics);
-    const std::optional<Sequence> sequence = find_sequence(options.capture, profiles, diagnostics);
+    std::optional<Sequence> sequence = find_sequence(options.capture, profiles, diagnostics);
+    if (sequence) sequence->object_names = bound->pipeline.object_names();
     OutputOptions outputs = output_options(options);
     check_outputs(outputs, sequence.value_or(Sequence{}), diagnostics);
     RunOptions settings = run_options(options, diagnostics);

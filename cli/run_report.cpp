@@ -5,6 +5,8 @@
 
 #include <cstdio>
 
+#include "framework/core/text.h"
+
 namespace aftershade::cli {
 
 ProgressStyle parse_progress(const std::string& name) {
@@ -30,6 +32,11 @@ RunObserver RunReporter::observer() {
             clear_line();
             fmt::print(stderr, "{}: {}\n", header.path.string(), profile);
             profile_ = profile;
+        }
+        for (const std::string& note : header.notes) {
+            if (!notes_.insert(note).second) continue;
+            clear_line();
+            fmt::print(stderr, "{}: note: {}\n", header.path.string(), printable(note));
         }
         if (capture.pixels_without_motion > 0) {
             clear_line();

@@ -2,6 +2,7 @@
 // stdout holds the paths of the files written, one a line.
 #pragma once
 
+#include <set>
 #include <string>
 
 #include "framework/pipeline/run.h"
@@ -27,6 +28,7 @@ private:
     int started_ = 0;
     bool has_line_ = false;
     std::string profile_;
+    std::set<std::string> notes_;  ///< that have been told
 };
 
 }  // namespace aftershade::cli

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "framework/core/error.h"
 #include "framework/core/units.h"
+#include "framework/capture/stored_matrices.h"
 
 namespace aftershade {
 
@@ -28,29 +30,10 @@ void set_if_known(Camera& camera, const CameraField& field, std::optional<double
         camera.set(field.name, *value, "attribute " + attribute);
 }
 
-/// EXR's matrices act on row vectors.
-std::optional<CameraMatrix> transposed_matrix(const ExrMetadata& metadata, const char* name) {
-    const auto value = metadata.value(name);
-    const auto* stored = value ? std::get_if<std::vector<float>>(&*value) : nullptr;
-    if (!stored || stored->size() != 16) return std::nullopt;
-    CameraMatrix matrix{};
-    for (std::size_t row = 0; row < 4; ++row)
-        for (std::size_t column = 0; column < 4; ++column)
-            matrix[row * 4 + column] = (*stored)[column * 4 + row];
-    return matrix;
-}
-
-std::vector<float> row_vector_matrix(const CameraMatrix& matrix) {
-    std::vector<float> stored(16);
-    for (std::size_t row = 0; row < 4; ++row)
-        for (std::size_t column = 0; column < 4; ++column)
-            stored[column * 4 + row] = float(matrix[row * 4 + column]);
-    return stored;
-}
-
 }  // namespace
 
-Camera camera_of_metadata(const ExrMetadata& metadata, const Profile& profile) {
+Camera camera_of_metadata(const ExrPart& part, const Profile& profile, const Camera& known) {
+    const ExrMetadata& metadata = part.metadata;
     Camera camera;
     const std::vector<std::string> names = metadata.names();
     for (const auto& [name, source] : profile.camera) {
@@ -79,8 +62,13 @@ Camera camera_of_metadata(const ExrMetadata& metadata, const Profile& profile) {
     const std::string own_model = "aftershade/camera/lens_model";
     if (const auto model = metadata.text(own_model)) camera.set_lens_model(*model, "attribute " + own_model);
     else if (!profile.lens_model.empty()) camera.set_lens_model(profile.lens_model, "profile " + profile.id);
-    camera.camera_from_world = transposed_matrix(metadata, "worldToCamera");
-    camera.ndc_from_world = transposed_matrix(metadata, "worldToNDC");
+    Camera lens = known;
+    lens.complete_from(camera);
+    StoredMatrices matrices = read_matrices(part, lens);
+    camera.camera_from_world = matrices.camera_from_world;
+    camera.ndc_from_world = matrices.ndc_from_world;
+    camera.matrices_found = std::move(matrices.found);
+    camera.matrices_fault = std::move(matrices.fault);
     const auto jitter = metadata.value("aftershade/jitter_px");
     if (const auto* px = jitter ? std::get_if<std::vector<float>>(&*jitter) : nullptr; px && px->size() == 2)
         camera.jitter_px = {double((*px)[0]), double((*px)[1])};
@@ -98,8 +86,7 @@ void add_attributes(const Camera& camera, const std::vector<CaptureLight>& light
     add("focus_distance", "focus");
     add("f_number", "aperture");
     add("focal_length", "nominalFocalLength");
-    if (camera.camera_from_world) attributes["worldToCamera"] = row_vector_matrix(*camera.camera_from_world);
-    if (camera.ndc_from_world) attributes["worldToNDC"] = row_vector_matrix(*camera.ndc_from_world);
+    add_matrices(camera, attributes);
     if (camera.jitter_px)
         attributes["aftershade/jitter_px"] =
             std::vector<float>{float((*camera.jitter_px)[0]), float((*camera.jitter_px)[1])};

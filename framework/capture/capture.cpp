@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 #include <utility>
 
-#include "framework/core/error.h"
 #include "framework/capture/camera_metadata.h"
 #include "framework/capture/camera_motion.h"
 #include "framework/capture/cryptomatte.h"
 #include "framework/capture/decode.h"
+#include "framework/core/error.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
@@ -77,6 +78,22 @@ Image read_layers(const FrameFile& file, const FoundChannels& channels, const Wi
     return image;
 }
 
+/// Engines leave 0 in the alpha of their buffers, which makes every pixel of a PNG transparent.
+void read_alpha(Image& color, bool is_opaque, CaptureHeader& header) {
+    if (color.channels() != 4) return;
+    const std::span<float> values = color.floats();
+    bool has_alpha = false, has_light = false;
+    for (std::size_t i = 0; i < values.size(); i += 4) {
+        if (is_opaque) values[i + 3] = 1;
+        has_alpha = has_alpha || values[i + 3] != 0;
+        has_light = has_light || values[i] != 0 || values[i + 1] != 0 || values[i + 2] != 0;
+    }
+    if (has_light && !has_alpha)
+        header.notes.push_back(
+            "the alpha of color is 0 everywhere, so a PNG of it is transparent; --alpha opaque, or \"alpha\": "
+            "\"opaque\" in capture.json, reads it as 1");
+}
+
 }  // namespace
 
 CaptureReader::CaptureReader(const Sequence& sequence, std::vector<Profile> profiles, ReadLimits limits)
@@ -105,8 +122,7 @@ void CaptureReader::add_role(OpenFrame& open, const std::string& role, const Rol
     RoleSource source;
     source.file = &file;
     source.decoding = decoding;
-    const std::string layer = find_layer(*open.profile, file.merged());
-    auto found = decoding.layers.empty() ? std::nullopt : find_channels(decoding, layer, file.merged());
+    auto found = find_role_channels(open, file, role, decoding);
     if (!found && own_file != open.role_files.end())
         for (const auto& names : plain_names(find_role(role)->channels)) {
             RoleDecoding plain;
@@ -114,10 +130,10 @@ void CaptureReader::add_role(OpenFrame& open, const std::string& role, const Rol
             if (!found) found = find_channels(plain, "", file.merged());
         }
     RoleDecoding luminance;
-    luminance.layers = {{decoding.luminance}};
+    luminance.layers = {{decoding.luminance.empty() && role == kColorRole ? "Y" : decoding.luminance}};
     if (found) source.channels = std::move(*found);
-    else if (!decoding.luminance.empty() && find_channels(luminance, "", file.merged()))
-        source.luminance = decoding.luminance;
+    else if (!luminance.layers[0][0].empty() && find_channels(luminance, "", file.merged()))
+        source.luminance = luminance.layers[0][0];
     else return;
     open.header.role_channels[role] =
         source.luminance.empty() ? listed(source.channels) : std::vector{source.luminance};
@@ -136,13 +152,10 @@ void CaptureReader::find_roles(OpenFrame& open) const {
         else if (profiled != open.profile->roles.end()) add_role(open, name, profiled->second);
         else add_role(open, name, RoleDecoding{});
     }
-    if (sequence_.cryptomatte) {
-        RoleSource source;
-        source.file = open.main.get();
-        source.from_cryptomatte = true;
-        if (!sequence_.cryptomatte->mask.empty()) open.roles[kMaskRole] = source;
-        if (!open.roles.contains(kObjectIdRole)) open.roles[kObjectIdRole] = source;
-    }
+    if (!sequence_.channels.contains(kColorRole) && !names.contains(kColorRole))
+        add_role(open, kColorRole, RoleDecoding{});
+    take_data_of_other_layer(open);
+    find_cryptomatte_roles(open);
     for (const auto& [role, source] : open.roles) {
         open.header.roles.push_back(role);
         if (source.file != open.main.get() || source.channels.empty()) open.header.derived_roles.insert(role);
@@ -165,8 +178,9 @@ CaptureReader::OpenFrame CaptureReader::open(int frame) const {
     for (const ExrChannel& channel : part.channels) header.channels.push_back(channel.name);
     open.profile = &choose_profile(part, header);
     header.profile = open.profile->id;
+    choose_layer(open);
     header.camera = sequence_.camera;
-    header.camera.complete_from(camera_of_metadata(part.metadata, *open.profile));
+    header.camera.complete_from(camera_of_metadata(part, *open.profile, sequence_.camera));
     header.lights = sequence_.lights ? *sequence_.lights : lights_of_metadata(part.metadata, header.path);
     find_roles(open);
 
@@ -214,7 +228,7 @@ void CaptureReader::read_motion(const OpenFrame& open, const std::string& role, 
         !std::filesystem::exists(before, unreadable))
         return;
     const FrameFile previous(before, limits_, sequence_.view);
-    const Camera camera = camera_of_metadata(previous.merged().metadata, *open.profile);
+    const Camera camera = camera_of_metadata(previous.merged(), *open.profile, sequence_.camera);
     if (!knows_motion(header.camera, camera)) return;
     const Image depth = read_role(open, kDepthRole, nullptr, capture);
     fill_camera_velocity(velocity, missing, depth, header.data_window, header.display_window, header.camera,
@@ -228,13 +242,7 @@ Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, c
     const ChannelRole role = *find_role(name);
     const RoleSource& source = open.roles.at(name);
     const FrameFile& file = *source.file;
-    if (source.from_cryptomatte) {
-        const auto layers = find_cryptomattes(file);
-        const CryptomatteLayer& layer = choose_cryptomatte(layers, sequence_.cryptomatte->layer, file);
-        return role.kind == RoleKind::coverage
-                   ? cryptomatte_mask(file, layer, sequence_.cryptomatte->mask, header.data_window)
-                   : cryptomatte_ids(file, layer, header.data_window);
-    }
+    if (source.from_cryptomatte) return read_cryptomatte_role(open, role.kind);
     if (role.type == ComponentType::uint32) {
         if (file.type_of(source.channels[0][0]) == PixelType::uint32)
             return file.read_uints(source.channels[0], header.data_window);
@@ -289,7 +297,13 @@ Capture CaptureReader::read(int frame, std::span<const std::string> roles) const
     for (const auto& [role, source] : open.roles)
         if (role != kColorRole && wants(role))
             capture.images[role] = read_role(open, role, color.empty() ? nullptr : &color, capture);
+    read_alpha(color, sequence_.alpha_is_opaque, open.header);
     if (wants(kColorRole)) capture.images[kColorRole] = std::move(color);
+    for (const std::string& role : roles)
+        if (is_coverage_role(role)) capture.images[role] = read_coverage(open, role);
+    if (const auto ids = capture.images.find(kObjectIdRole);
+        ids != capture.images.end() && !sequence_.object_names.empty())
+        require_names(open, ids->second, sequence_.object_names);
     capture.header = std::move(open.header);
     return capture;
 }

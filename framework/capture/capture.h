@@ -9,13 +9,15 @@
 #include <string>
 #include <vector>
 
-#include "framework/image/camera.h"
-#include "framework/image/color_space.h"
-#include "framework/file/exr_file.h"
-#include "framework/image/image.h"
+#include "framework/capture/cryptomatte.h"
 #include "framework/capture/light.h"
 #include "framework/capture/profile.h"
 #include "framework/capture/sequence.h"
+#include "framework/file/exr_file.h"
+#include "framework/image/camera.h"
+#include "framework/image/color_space.h"
+#include "framework/image/image.h"
+#include "framework/image/role.h"
 
 namespace aftershade {
 
@@ -24,10 +26,13 @@ struct CaptureHeader {
     int frame = 0;         ///< its number in the output
     int source_frame = 0;  ///< the number that it was read under; another where a missing frame is held
     std::filesystem::path path;
-    std::string profile;         ///< id
-    std::string profile_reason;  ///< why: "chosen by name", "attribute BlenderMultiChannel"
-    std::string view;            ///< of a multi-view file
-    Window data_window;          ///< colour's: the working grid
+    std::string profile;              ///< id
+    std::string profile_reason;       ///< why: "chosen by name", "attribute BlenderMultiChannel"
+    std::string view;                 ///< of a multi-view file
+    std::string layer;                ///< that the roles are taken from; "" where the file has none
+    std::vector<std::string> layers;  ///< that there are to choose from, by the profile
+    std::vector<std::string> notes;   ///< on what was chosen for the user, in whole sentences
+    Window data_window;               ///< colour's: the working grid
     Window display_window;
     float pixel_aspect = 1;
     std::vector<std::string> roles;                                 ///< that can be read, sorted
@@ -69,8 +74,18 @@ public:
     bool has_frame(int frame) const;
     /// Throws Error(ExitCode::capture): no such file, not readable, no profile.
     CaptureHeader read_header(int frame) const;
-    /// Reads the header and the roles asked for. A role that the files lack is left out of `images`.
+    /// Reads the header and the roles asked for. A role that the files lack is left out of `images`. The role
+    /// coverage_role() is the share of each pixel that the objects cover, by the file's Cryptomatte; without
+    /// one it is 0 or 1, by object_id. Throws Error(ExitCode::capture) where objects are asked for by names
+    /// that the file cannot have.
     Capture read(int frame, std::span<const std::string> roles) const;
+
+    /// The Cryptomattes of a frame, and how much of its pixels the objects of one cover.
+    std::vector<CryptomatteLayer> cryptomattes(int frame) const;
+    std::vector<ObjectCoverage> cryptomatte_coverage(int frame, const std::string& name) const;
+    /// The full name of the one that is called `name` or "<layer>.<name>"; with "" of the one that objects
+    /// are looked for in. Throws Error(ExitCode::capture) where there is none, or where several would do.
+    std::string cryptomatte_name(int frame, const std::string& name) const;
 
     /// How the roles of a frame are decoded: its profile's ways, or capture.json's.
     std::map<std::string, RoleDecoding> decodings(int frame) const;
@@ -87,7 +102,19 @@ private:
     struct RoleSource;
     OpenFrame open(int frame) const;
     const Profile& choose_profile(const ExrPart& part, CaptureHeader& header) const;
+    void choose_layer(OpenFrame& open) const;
+    void take_data_of_other_layer(OpenFrame& open) const;
     void find_roles(OpenFrame& open) const;
+    void find_cryptomatte_roles(OpenFrame& open) const;
+    std::optional<FoundChannels> find_role_channels(const OpenFrame& open, const FrameFile& file,
+                                                    const std::string& role,
+                                                    const RoleDecoding& decoding) const;
+    std::optional<CryptomatteLayer> find_cryptomatte(const OpenFrame& open,
+                                                     std::span<const std::string> objects) const;
+    const FrameFile& cryptomatte_file(const OpenFrame& open) const;
+    Image read_cryptomatte_role(const OpenFrame& open, RoleKind kind) const;
+    Image read_coverage(const OpenFrame& open, const std::string& role) const;
+    void require_names(const OpenFrame& open, const Image& ids, std::span<const std::string> names) const;
     void add_role(OpenFrame& open, const std::string& role, const RoleDecoding& decoding) const;
     /// Unpacks what read_role will ask for of these roles.
     void prefetch(const OpenFrame& open, std::span<const std::string> roles) const;

@@ -2,9 +2,9 @@
 
 #include <limits>
 
+#include "framework/capture/document_forms.h"
 #include "framework/core/grammar_schema.h"
 #include "framework/image/camera.h"
-#include "framework/capture/document_forms.h"
 #include "framework/image/image_forms.h"
 
 namespace aftershade {
@@ -97,34 +97,41 @@ Block make_capture_block() {
         .name = "capture",
         .thing = "the capture",
         .doc = "The document.",
-        .keys = {optional("files", files_by_role(),
-                          "Patterns of roles that lie in files of their own, beside or instead of frames."),
-                 optional("frames", text(),
-                          "The main files, from this document's folder: `gbuffer_####.exr`."),
-                 optional("range", range, "Frames that there are; else those on the disk."),
-                 optional("fps", grammar::number({.above = 0}), "Frames a second.", "24"),
-                 optional("profile", text(), "Conventions of the producer; auto: found by the file's header.",
-                          "\"auto\""),
-                 optional("view", text(), "Of a multi-view file; default: its first."),
-                 optional("color_space", color_space_form(),
-                          "Of the stored colours; auto: the profile's, else the file's chromaticities.",
-                          "\"auto\""),
-                 optional("channels", decodings(), "Instead of the profile's."),
-                 optional("camera", grammar::object(capture_camera_block()),
-                          "Instead of what the files say."),
-                 optional("lights", grammar::list(grammar::object(capture_light_block())),
-                          "Instead of the files'."),
-                 optional("cryptomatte", grammar::object(cryptomatte_block()),
-                          "Gives the roles mask and object_id."),
-                 optional("cuts", grammar::list(frame_number), "Frames that begin a shot."),
-                 optional("subframes", grammar::integer(1, 1024),
-                          "N: files N * frame to N * frame + N - 1 are the exposure of one frame.",
-                          "1")},
+        .keys =
+            {optional("files", files_by_role(),
+                      "Patterns of roles that lie in files of their own, beside or instead of frames."),
+             optional("frames", text(), "The main files, from this document's folder: `gbuffer_####.exr`."),
+             optional("range", range, "Frames that there are; else those on the disk."),
+             optional("fps", grammar::number({.above = 0}), "Frames a second.", "24"),
+             optional("profile", text(), "Conventions of the producer; auto: found by the file's header.",
+                      "\"auto\""),
+             optional("view", text(), "Of a multi-view file; default: its first."),
+             optional("layer", text(),
+                      "Of a file with several layers, such as Blender's view layers; default: its first."),
+             optional("color_space", color_space_form(),
+                      "Of the stored colours; auto: the profile's, else the file's chromaticities.",
+                      "\"auto\""),
+             optional("alpha", grammar::choice(alpha_names()),
+                      "Of color; opaque: the stored alpha means nothing, and is read as 1.", R"("keep")"),
+             optional("channels", decodings(), "Instead of the profile's."),
+             optional("camera", grammar::object(capture_camera_block()), "Instead of what the files say."),
+             optional("lights", grammar::list(grammar::object(capture_light_block())),
+                      "Instead of the files'."),
+             optional("cryptomatte", grammar::object(cryptomatte_block()),
+                      "Gives the roles mask and object_id."),
+             optional("cuts", grammar::list(frame_number), "Frames that begin a shot."),
+             optional("subframes", grammar::integer(1, 1024),
+                      "N: files N * frame to N * frame + N - 1 are the exposure of one frame.", "1")},
         .rules = {frames_rule()},
         .is_document = true};
 }
 
 }  // namespace
+
+const std::vector<std::string>& alpha_names() {
+    static const std::vector<std::string> names = {"keep", std::string(kOpaqueAlpha)};
+    return names;
+}
 
 const Block& capture_camera_block() {
     static const Block block = make_camera_block();

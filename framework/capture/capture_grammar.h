@@ -2,12 +2,17 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "framework/core/grammar.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
+
+/// How the stored alpha of color is read: "keep", or "opaque", as 1.
+const std::vector<std::string>& alpha_names();
+inline constexpr std::string_view kOpaqueAlpha = "opaque";
 
 /// capture.json
 const grammar::Block& capture_block();

@@ -23,6 +23,7 @@ struct CaptureReader::OpenFrame {
     std::unique_ptr<FrameFile> main;
     std::map<std::string, std::unique_ptr<FrameFile>> role_files;
     const Profile* profile = nullptr;
+    bool is_foreign_layer = false;  // the user chose a layer that the profile does not know as such
     std::map<std::string, RoleSource> roles;
     Chromaticities stored_primaries{};
     CaptureHeader header;

@@ -1,19 +1,26 @@
 #include "framework/capture/cryptomatte.h"
 
+#include <fmt/format.h>
 #include <murmurhash.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cctype>
+#include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 
+#include "framework/capture/frame_file.h"
 #include "framework/core/diagnostics.h"
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 
 namespace aftershade {
 
 namespace {
 
-constexpr int kMaxRankPairs = 3;  // six ranks, two to a set of four channels
+constexpr int kMaxRankPairs = 50;  // two ranks to a set of four channels, which two digits count
 
 bool has_channel(const FrameFile& file, const std::string& name) {
     const auto& channels = file.merged().channels;
@@ -30,20 +37,35 @@ std::vector<std::string> manifest_names(const std::optional<std::string>& manife
     return names;
 }
 
-std::vector<std::string> rank_prefixes(const FrameFile& file, const std::string& name) {
-    std::vector<std::string> ranks;
+using RankChannels = std::array<std::string, 4>;
+
+/// Empty where the file has not all four.
+std::optional<RankChannels> rank_channels(const FrameFile& file, const std::string& prefix) {
+    constexpr std::array<std::array<const char*, 4>, 3> kComponents = {
+        {{".R", ".G", ".B", ".A"}, {".r", ".g", ".b", ".a"}, {".red", ".green", ".blue", ".alpha"}}};
+    for (const auto& components : kComponents) {
+        RankChannels channels;
+        for (std::size_t i = 0; i < channels.size(); ++i) channels[i] = prefix + components[i];
+        if (std::all_of(channels.begin(), channels.end(),
+                        [&](const std::string& name) { return has_channel(file, name); }))
+            return channels;
+    }
+    return std::nullopt;
+}
+
+std::vector<RankChannels> channels_of_ranks(const FrameFile& file, const std::string& name) {
+    std::vector<RankChannels> ranks;
     for (int pair = 0; pair < kMaxRankPairs; ++pair) {
-        const std::string prefix = name + "0" + std::to_string(pair);
-        if (!has_channel(file, prefix + ".R") || !has_channel(file, prefix + ".A")) break;
-        ranks.push_back(prefix);
+        const auto channels = rank_channels(file, name + (pair < 10 ? "0" : "") + std::to_string(pair));
+        if (!channels) break;
+        ranks.push_back(*channels);
     }
     return ranks;
 }
 
 /// id, coverage, id, coverage of two ranks.
-Image read_ranks(const FrameFile& file, const std::string& prefix, const Window& grid) {
-    const std::vector<std::string> channels = {prefix + ".R", prefix + ".G", prefix + ".B", prefix + ".A"};
-    const std::string& compression = file.merged().compression;
+Image read_ranks(const FrameFile& file, const RankChannels& channels, const Window& grid) {
+    const std::string& compression = file.compression_of(channels[0]);
     const bool lossy = is_lossy_compression(compression);
     if (lossy || file.type_of(channels[0]) != PixelType::float32)
         throw Error(ExitCode::capture,
@@ -51,6 +73,40 @@ Image read_ranks(const FrameFile& file, const std::string& prefix, const Window&
                         (lossy ? "compressed with loss (" + compression + ")" : "stored as half") +
                         ", which destroys them (write them as float, zip)");
     return file.read_floats(channels, grid, 0);
+}
+
+std::vector<std::string> names_of(std::span<const CryptomatteLayer> layers) {
+    std::vector<std::string> names;
+    for (const CryptomatteLayer& layer : layers) names.push_back(layer.name);
+    return names;
+}
+
+/// The first object that the manifest does not have; a matte without one may have any.
+std::optional<std::string> unknown_object(const CryptomatteLayer& layer,
+                                          std::span<const std::string> objects) {
+    const auto& known = layer.object_names;
+    for (const std::string& object : objects)
+        if (!known.empty() && std::find(known.begin(), known.end(), object) == known.end()) return object;
+    return std::nullopt;
+}
+
+[[noreturn]] void refuse_unknown_object(std::span<const CryptomatteLayer> layers, const std::string& object,
+                                        const FrameFile& file) {
+    std::vector<std::string> known;
+    for (const CryptomatteLayer& layer : layers)
+        known.insert(known.end(), layer.object_names.begin(), layer.object_names.end());
+    throw Error(ExitCode::capture, file.path().string() + ": the Cryptomatte" +
+                                       (layers.size() == 1 ? " " : "s ") + joined(names_of(layers), ", ") +
+                                       (layers.size() == 1 ? " has" : " have") + " no object '" + object +
+                                       "'" + did_you_mean(object, known) +
+                                       " (inspect --cryptomatte lists them)");
+}
+
+bool says_object(const CryptomatteLayer& layer) {
+    std::string lower = layer.name;
+    std::transform(lower.begin(), lower.end(), lower.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    return lower.find("object") != std::string::npos;
 }
 
 std::uint32_t id_bits(const Image& ranks, std::size_t pixel, std::size_t rank) {
@@ -67,12 +123,22 @@ std::vector<CryptomatteLayer> find_cryptomattes(const FrameFile& file) {
         if (!attribute.starts_with(kHead) || !attribute.ends_with(kName)) continue;
         CryptomatteLayer layer;
         layer.name = metadata.text(attribute).value_or("");
-        layer.ranks = rank_prefixes(file, layer.name);
+        layer.ranks = channels_of_ranks(file, layer.name);
+        if (layer.ranks.empty()) continue;
         const std::string base = attribute.substr(0, attribute.size() - kName.size());
         layer.object_names = manifest_names(metadata.text(base + "/manifest"));
-        if (!layer.ranks.empty()) layers.push_back(std::move(layer));
+        layers.push_back(std::move(layer));
     }
     return layers;
+}
+
+std::vector<std::string> declared_cryptomattes(const FrameFile& file) {
+    std::vector<std::string> names;
+    const ExrMetadata& metadata = file.merged().metadata;
+    for (const std::string& attribute : metadata.names())
+        if (attribute.starts_with("cryptomatte/") && attribute.ends_with("/name"))
+            names.push_back(metadata.text(attribute).value_or(""));
+    return names;
 }
 
 const CryptomatteLayer& choose_cryptomatte(const std::vector<CryptomatteLayer>& layers,
@@ -86,6 +152,21 @@ const CryptomatteLayer& choose_cryptomatte(const std::vector<CryptomatteLayer>& 
     if (layers.empty()) throw Error(ExitCode::capture, file.path().string() + ": has no Cryptomatte");
     throw Error(ExitCode::capture,
                 file.path().string() + ": name one of its Cryptomattes, " + list_of_names(names));
+}
+
+const CryptomatteLayer& cryptomatte_with(const std::vector<CryptomatteLayer>& layers,
+                                         std::span<const std::string> objects, const FrameFile& file) {
+    std::vector<const CryptomatteLayer*> fitting;
+    for (const CryptomatteLayer& layer : layers)
+        if (!unknown_object(layer, objects)) fitting.push_back(&layer);
+    if (fitting.size() > 1 &&
+        std::any_of(fitting.begin(), fitting.end(), [](auto* l) { return says_object(*l); }))
+        std::erase_if(fitting, [](const CryptomatteLayer* layer) { return !says_object(*layer); });
+    if (fitting.size() == 1) return *fitting.front();
+    if (fitting.empty()) refuse_unknown_object(layers, *unknown_object(layers.front(), objects), file);
+    throw Error(ExitCode::capture, file.path().string() + ": name one of its Cryptomattes, " +
+                                       list_of_names(names_of(layers)) +
+                                       ", as \"cryptomatte\": {\"layer\": ...} in capture.json");
 }
 
 std::uint32_t cryptomatte_hash(const std::string& object) {
@@ -118,18 +199,13 @@ bool contains(std::span<const IdRange> ranges, std::uint32_t id) {
 
 Image cryptomatte_mask(const FrameFile& file, const CryptomatteLayer& layer,
                        const std::vector<std::string>& objects, const Window& grid) {
+    if (const auto unknown = unknown_object(layer, objects))
+        refuse_unknown_object(std::span(&layer, 1), *unknown, file);
     std::vector<std::uint32_t> wanted;
-    for (const std::string& object : objects) {
-        const auto& known = layer.object_names;
-        if (!known.empty() && std::find(known.begin(), known.end(), object) == known.end())
-            throw Error(ExitCode::capture, file.path().string() + ": the Cryptomatte " + layer.name +
-                                               " has no object '" + object + "'" +
-                                               did_you_mean(object, known));
-        wanted.push_back(cryptomatte_hash(object));
-    }
+    for (const std::string& object : objects) wanted.push_back(cryptomatte_hash(object));
     Image mask(grid.width(), grid.height(), 1);
-    for (const std::string& prefix : layer.ranks) {
-        const Image ranks = read_ranks(file, prefix, grid);
+    for (const RankChannels& channels : layer.ranks) {
+        const Image ranks = read_ranks(file, channels, grid);
         for (std::size_t pixel = 0; pixel < mask.floats().size(); ++pixel)
             for (std::size_t rank = 0; rank < 2; ++rank)
                 if (std::find(wanted.begin(), wanted.end(), id_bits(ranks, pixel, rank)) != wanted.end())
@@ -137,6 +213,26 @@ Image cryptomatte_mask(const FrameFile& file, const CryptomatteLayer& layer,
     }
     for (float& coverage : mask.floats()) coverage = std::clamp(coverage, 0.0f, 1.0f);
     return mask;
+}
+
+std::vector<ObjectCoverage> coverage_of_objects(const FrameFile& file, const CryptomatteLayer& layer,
+                                                const Window& grid) {
+    std::map<std::uint32_t, ObjectCoverage> by_id;
+    for (const std::string& name : layer.object_names) by_id[cryptomatte_hash(name)] = {name, 0};
+    for (const RankChannels& channels : layer.ranks) {
+        const Image ranks = read_ranks(file, channels, grid);
+        for (std::size_t pixel = 0; pixel < ranks.floats().size() / 4; ++pixel)
+            for (std::size_t rank = 0; rank < 2; ++rank)
+                if (const float amount = ranks.floats()[4 * pixel + 2 * rank + 1]; amount > 0)
+                    by_id[id_bits(ranks, pixel, rank)].coverage_px += double(amount);
+    }
+    std::vector<ObjectCoverage> objects;
+    for (auto& [id, object] : by_id) {
+        if (object.name.empty()) object.name = fmt::format("{:08x}", id);
+        objects.push_back(std::move(object));
+    }
+    std::ranges::stable_sort(objects, std::ranges::greater{}, &ObjectCoverage::coverage_px);
+    return objects;
 }
 
 Image cryptomatte_ids(const FrameFile& file, const CryptomatteLayer& layer, const Window& grid) {

@@ -1,6 +1,7 @@
 // Object ids and coverage out of Cryptomatte layers (Friedman and Jones 2015, specification 1.2.0).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -8,23 +9,34 @@
 #include <vector>
 
 #include "framework/core/object_keys.h"
-#include "framework/capture/frame_file.h"
+#include "framework/image/image.h"
 
 namespace aftershade {
+
+class FrameFile;
 
 /// A Cryptomatte of a file: "cryptomatte/<key>/name" of its header, and its channels "<name>00.R" and so on.
 struct CryptomatteLayer {
     std::string name;  ///< "ViewLayer.CryptoObject"
-    std::vector<std::string>
-        ranks;  ///< channel prefixes, "ViewLayer.CryptoObject00", at most 3: ranks 0 to 5
+    /// The channels of two ranks each, id, coverage, id, coverage: R, G, B, A, in upper or lower case or in
+    /// full (`red`).
+    std::vector<std::array<std::string, 4>> ranks;
     std::vector<std::string> object_names;  ///< of its manifest; empty where the file has none
 };
 
+/// Those whose channels are there, by their names' order in the header.
 std::vector<CryptomatteLayer> find_cryptomattes(const FrameFile& file);
+/// What the header names, whether the channels are there or not.
+std::vector<std::string> declared_cryptomattes(const FrameFile& file);
 /// The layer whose name is `name`, or ends in ".<name>"; with "" the only one. Throws
 /// Error(ExitCode::capture) with the names there are.
 const CryptomatteLayer& choose_cryptomatte(const std::vector<CryptomatteLayer>& layers,
                                            const std::string& name, const FrameFile& file);
+
+/// The one that has all the objects; of several the one whose name says that it is of objects. `layers` has
+/// one at least. Throws Error(ExitCode::capture) where none has them, or where several do alike.
+const CryptomatteLayer& cryptomatte_with(const std::vector<CryptomatteLayer>& layers,
+                                         std::span<const std::string> objects, const FrameFile& file);
 
 /// The 32-bit pattern under which an object's name is stored: MurmurHash3_32 with seed 0, its exponent
 /// changed where it would read as zero, denormal, infinite or NaN.
@@ -46,6 +58,16 @@ bool contains(std::span<const IdRange> ranges, std::uint32_t id);
 /// as half or compressed with loss; a name that the manifest, where there is one, does not have.
 Image cryptomatte_mask(const FrameFile& file, const CryptomatteLayer& layer,
                        const std::vector<std::string>& objects, const Window& grid);
+/// How much of the grid an object covers.
+struct ObjectCoverage {
+    std::string name;        ///< of the manifest; the id as eight hexadecimal digits where it has none
+    double coverage_px = 0;  ///< summed over all pixels and ranks
+};
+/// Of all objects of the manifest and all ids in the pixels, those that cover most first. Throws as
+/// cryptomatte_mask does.
+std::vector<ObjectCoverage> coverage_of_objects(const FrameFile& file, const CryptomatteLayer& layer,
+                                                const Window& grid);
+
 /// The id of rank 0, the object that covers most of the pixel; 0 for none.
 Image cryptomatte_ids(const FrameFile& file, const CryptomatteLayer& layer, const Window& grid);
 

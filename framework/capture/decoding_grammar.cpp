@@ -2,8 +2,8 @@
 #include <cctype>
 #include <map>
 
-#include "framework/core/text.h"
 #include "framework/capture/capture_grammar.h"
+#include "framework/core/text.h"
 #include "framework/image/image_forms.h"
 
 namespace aftershade {
@@ -23,7 +23,7 @@ namespace {
 constexpr const char* kChannelsDoc =
     "Names in the role's order; `{layer}.` stands for the layer's name, `a|b` for alternatives, a final `?` "
     "for one that "
-    "may be absent.";
+    "may be absent. A colour's alpha may be left out; it is 1 then.";
 constexpr const char* kSumDoc = "Lists of channels to add up.";
 constexpr const char* kComponentDoc = "One channel by its component.";
 
@@ -94,7 +94,8 @@ Block make_decoding(const ChannelRole& role) {
     const bool is_other = role.kind == RoleKind::other;
     const std::string who = is_other ? "an image that is passed through" : "role '" + role.name + "'";
     const std::string count = who + " has " + std::to_string(role.channels) + " channels, not {}";
-    const Form names = list(text(), {.min = role.channels, .max = role.channels, .fault = count});
+    const int least = role.channels - (role.has_optional_alpha() ? 1 : 0);
+    const Form names = list(text(), {.min = least, .max = role.channels, .fault = count});
     Block block{.name = "",
                 .thing = "the decoding of '{}'",
                 .doc = role.meaning,

@@ -1,6 +1,8 @@
 #include "framework/capture/frame_file.h"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 
 #include "framework/core/diagnostics.h"
 #include "framework/core/error.h"
@@ -36,6 +38,36 @@ std::string name_in_view(const std::string& name, const std::vector<std::string>
     return is_default || name.find('.') != std::string::npos ? name : "";
 }
 
+bool has_channel(const ExrPart& part, std::string_view name) {
+    return std::any_of(part.channels.begin(), part.channels.end(),
+                       [&](const ExrChannel& channel) { return channel.name == name; });
+}
+
+bool holds_depth_alone(const ExrPart& part) {
+    return std::all_of(part.channels.begin(), part.channels.end(), [](const ExrChannel& channel) {
+        return channel.name == "Z" || channel.name == "ZBack";
+    });
+}
+
+/// The part's name without its view: "depth" for "depth.main" or "depth_main" in the view "main".
+std::string layer_of(const ExrPart& part, const std::string& view) {
+    const std::string& name = part.name;
+    if (view.empty()) return name;
+    if (name == view) return "";
+    const bool ends_in_view = name.size() > view.size() + 1 && name.ends_with(view);
+    const std::size_t end = name.size() - view.size() - 1;
+    return ends_in_view && (name[end] == '.' || name[end] == '_') ? name.substr(0, end) : name;
+}
+
+bool is_color_layer(const std::string& layer) {
+    constexpr std::array<std::string_view, 8> kNames = {"",      "rgba", "rgb",      "beauty",
+                                                        "color", "main", "combined", "c"};
+    std::string lower = layer;
+    std::transform(lower.begin(), lower.end(), lower.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    return std::find(kNames.begin(), kNames.end(), lower) != kNames.end() || lower.starts_with("rgba");
+}
+
 }  // namespace
 
 FrameFile::FrameFile(const std::filesystem::path& path, const ReadLimits& limits, const std::string& view)
@@ -46,14 +78,31 @@ FrameFile::FrameFile(const std::filesystem::path& path, const ReadLimits& limits
         throw Error(
             ExitCode::capture,
             path.string() + ": holds nothing but deep data, which is not supported (flatten it first)");
-    for (int i = 0; i < int(parts.size()); ++i) add_part(i);
+    const int color_part = find_color_part();
+    for (int i = 0; i < int(parts.size()); ++i) add_part(i, color_part);
+    for (const auto& [other, name] : merged_.other_names) stored_.emplace(other, stored_.at(name));
     const auto color = stored_.find("R");
     int hero = color != stored_.end() ? color->second.part : -1;
     for (int i = 0; hero < 0 && i < int(parts.size()); ++i)
-        if (!is_deep(parts[std::size_t(i)]) &&
-            (parts[std::size_t(i)].view == view_ || parts[std::size_t(i)].view.empty()))
-            hero = i;
+        if (is_in_view(parts[std::size_t(i)])) hero = i;
     describe(std::max(hero, 0));
+}
+
+bool FrameFile::is_in_view(const ExrPart& part) const {
+    return !is_deep(part) && (part.view.empty() || part.view == view_);
+}
+
+/// The part that "R" is taken from: the first that has it and is called as a picture usually is, else the
+/// first that has it; -1 where none has.
+int FrameFile::find_color_part() const {
+    int first = -1;
+    for (int i = 0; i < int(file_.parts().size()); ++i) {
+        const ExrPart& part = file_.parts()[std::size_t(i)];
+        if (!is_in_view(part) || !has_channel(part, "R")) continue;
+        if (is_color_layer(layer_of(part, view_))) return i;
+        if (first < 0) first = i;
+    }
+    return first;
 }
 
 void FrameFile::choose_view(const std::string& wanted) {
@@ -70,19 +119,33 @@ void FrameFile::choose_view(const std::string& wanted) {
                                                        : "; it has " + list_of_names(views_, "and")));
 }
 
-void FrameFile::add_part(int index) {
+void FrameFile::add_part(int index, int color_part) {
     const ExrPart& part = file_.parts()[std::size_t(index)];
-    if (is_deep(part) || (!part.view.empty() && part.view != view_)) return;
+    if (!is_in_view(part)) return;
     const bool views_in_names = part.view.empty() && !views_.empty();
+    const bool is_layer = file_.parts().size() > 1;
+    const std::string layer = is_layer ? layer_of(part, view_) : "";
     for (const ExrChannel& channel : part.channels) {
         std::string name = views_in_names ? name_in_view(channel.name, views_, view_) : channel.name;
         if (name.empty()) continue;
-        if (stored_.contains(name)) name = part.name + "." + name;
-        stored_.emplace(name, Stored{index, channel.name});
-        ExrChannel named = channel;
-        named.name = name;
-        merged_.channels.push_back(std::move(named));
+        const bool names_no_layer = name.find('.') == std::string::npos;
+        const bool keeps_name = layer.empty() || !names_no_layer || index == color_part;
+        add_channel(index, channel, keeps_name ? name : layer + "." + name,
+                    names_no_layer && !layer.empty() ? layer : "");
     }
+}
+
+/// Under `name`; and, if it names no layer in its part, which is called `layer`, under its other name.
+void FrameFile::add_channel(int index, const ExrChannel& channel, std::string name,
+                            const std::string& layer) {
+    const ExrPart& part = file_.parts()[std::size_t(index)];
+    if (stored_.contains(name)) name = part.name + "." + name;
+    stored_.insert_or_assign(name, Stored{index, channel.name});
+    if (!layer.empty() && name == channel.name) merged_.other_names.emplace(layer + "." + name, name);
+    else if (!layer.empty() && holds_depth_alone(part)) merged_.other_names.emplace(channel.name, name);
+    ExrChannel named = channel;
+    named.name = std::move(name);
+    merged_.channels.push_back(std::move(named));
 }
 
 void FrameFile::describe(int hero_part) {
@@ -95,10 +158,19 @@ void FrameFile::describe(int hero_part) {
     merged_.display_window = hero.display_window;
     merged_.pixel_aspect = hero.pixel_aspect;
     merged_.metadata = hero.metadata;
+    // Some producers write what is true of the whole file into its first part only. Of another view the
+    // camera differs, but not what its texts tell: the producer.
+    for (const ExrPart& part : file_.parts())
+        if (part.view.empty() || part.view == view_) merged_.metadata.complete_from(part.metadata, false);
+    for (const ExrPart& part : file_.parts()) merged_.metadata.complete_from(part.metadata, true);
 }
 
 Window FrameFile::window_of(const std::string& channel) const {
     return part_of(channel).data_window;
+}
+
+const std::string& FrameFile::compression_of(const std::string& channel) const {
+    return part_of(channel).compression;
 }
 
 PixelType FrameFile::type_of(const std::string& channel) const {

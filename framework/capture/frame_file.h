@@ -15,7 +15,9 @@ namespace aftershade {
 /// The channels of one view of a file under names without the view: "forward.u" for "forward.left.u" of a
 /// single-part multi-view file, and for "forward.u" in a part whose view is "left". A channel whose name
 /// another part of the view has already taken is called "<part>.<channel>". Channels that belong to no view
-/// are in every view. [one thread at a time]
+/// are in every view. The name of a part is the layer of those of its channels that name none: "depth.Z" for
+/// "Z" of the part "depth.main" in the view "main". Only the colour's part keeps "R", "G", "B" and "A", which
+/// go by the layer's name as well. [one thread at a time]
 class FrameFile {
 public:
     /// `view` empty: the default view, the first that the file names. Throws Error(ExitCode::capture): not
@@ -26,12 +28,13 @@ public:
     const std::vector<std::string>& views() const { return views_; }  ///< empty where the file names none
     const std::string& view() const { return view_; }
     /// The view's channels, the display window and metadata of the part that holds its colour (else the first
-    /// part), and that part's data window.
+    /// part), completed by the other parts' metadata, and that part's data window.
     const ExrPart& merged() const { return merged_; }
     const ExrFile& file() const { return file_; }
 
     Window window_of(const std::string& channel) const;
     PixelType type_of(const std::string& channel) const;
+    const std::string& compression_of(const std::string& channel) const;
 
     /// Interleaved in the order given, over `grid`; pixels that a channel's own window does not cover are
     /// `outside`.
@@ -53,7 +56,10 @@ private:
         int part = 0;
         std::string name;  ///< in the part
     };
-    void add_part(int index);
+    bool is_in_view(const ExrPart& part) const;
+    int find_color_part() const;
+    void add_part(int index, int color_part);
+    void add_channel(int index, const ExrChannel& channel, std::string name, const std::string& layer);
     void choose_view(const std::string& wanted);
     void describe(int hero_part);
     const Stored& stored(const std::string& channel) const { return stored_.at(channel); }

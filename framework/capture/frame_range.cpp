@@ -128,6 +128,12 @@ FramePattern::FramePattern(std::string text) : text_(std::move(text)) {
         }
 }
 
+FramePattern FramePattern::of_file(std::string name) {
+    FramePattern file("");
+    file.text_ = std::move(name);
+    return file;
+}
+
 std::string FramePattern::path(int frame) const {
     if (!has_frame()) return text_;
     std::string digits = std::to_string(std::abs(std::int64_t(frame)));
@@ -145,6 +151,10 @@ std::optional<int> FramePattern::match(std::string_view name) const {
     if (name.substr(start_ + digits) != std::string_view(text_).substr(start_ + length_)) return std::nullopt;
     const auto frame = parse_int(name.substr(start_, digits));
     return frame && path(*frame) == name ? frame : std::nullopt;
+}
+
+FramePattern FramePattern::padded(int width) const {
+    return FramePattern(text_.substr(0, start_) + std::string(std::size_t(width), '#') + text_.substr(start_ + length_));
 }
 
 std::optional<int> frame_in_name(std::string_view stem) {

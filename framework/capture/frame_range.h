@@ -22,11 +22,15 @@ std::string frame_range_pattern();
 class FramePattern {
 public:
     explicit FramePattern(std::string text);
+    /// A name without a frame number, whatever marks it holds.
+    static FramePattern of_file(std::string name);
     bool has_frame() const { return length_ > 0; }
     const std::string& text() const { return text_; }
     std::string path(int frame) const;
     /// The frame number in `name` if the pattern fits it.
     std::optional<int> match(std::string_view name) const;
+    /// The same with so many #.
+    FramePattern padded(int width) const;
 
 private:
     std::string text_;

@@ -28,8 +28,8 @@ enum class DepthEncoding { linear, inverse, z_buffer, normalized };
 /// How the stored channels of one role become the canonical image.
 struct RoleDecoding {
     /// Layers to add up (irradiance = direct + indirect); each names its channels, in the role's order. A
-    /// name may begin with "{layer}." and may list alternatives: "{layer}.Depth.Z|{layer}.Depth.V". A name
-    /// that ends in "?" may be absent.
+    /// name may begin with "{layer}.", which stands for nothing where a file has no layers, and may list
+    /// alternatives: "{layer}.Depth.Z|{layer}.Depth.V". A name that ends in "?" may be absent.
     std::vector<std::vector<std::string>> layers;
     std::string
         luminance;  ///< color: the Y channel that stands for it in luminance-chroma files; "" for none
@@ -74,6 +74,7 @@ struct Profile {
     std::string summary;
     std::vector<std::string> detect_attributes;  ///< any of these in the header ...
     std::vector<std::string> detect_channels;    ///< ... or all of these channels tell that the profile fits
+    bool rewrites = false;  ///< also writes other producers' files again, whose attributes then say more
     std::string color_space =
         "auto";              ///< of the stored colours; auto: the header's chromaticities, else Rec. 709
     std::string lens_model;  ///< "thin" or "pinhole"; "" where not known
@@ -92,13 +93,16 @@ std::optional<Profile> parse_profile(const Node& node, Diagnostics& diagnostics)
 std::map<std::string, RoleDecoding> read_decodings(const Node& node);
 
 /// The stored channels that a role's decoding finds in a part: per layer, per component; "" for an optional
-/// one that is absent. nullopt where a required one is missing.
+/// one that is absent. nullopt where a required one is missing. Names are first taken as they are, then in
+/// any case.
 using FoundChannels = std::vector<std::vector<std::string>>;
 std::optional<FoundChannels> find_channels(const RoleDecoding& decoding, const std::string& layer,
                                            const ExrPart& part);
 
-/// What "{layer}" stands for in this part: the prefix before the channels of the color role; "" where none
-/// fits.
+/// What "{layer}" may stand for in this part: the prefixes before the channels of the color role, in the
+/// part's order.
+std::vector<std::string> find_layers(const Profile& profile, const ExrPart& part);
+/// The first of them; "" where none fits.
 std::string find_layer(const Profile& profile, const ExrPart& part);
 
 struct ProfileChoice {
@@ -106,9 +110,10 @@ struct ProfileChoice {
     std::string reason;  ///< "attribute BlenderMultiChannel"
 };
 
-/// The profile that fits a part's header: by attribute first, else the one that names the most channels.
-/// Throws Error(ExitCode::capture) where none does and Error(ExitCode::usage) where several do alike, naming
-/// the remedy.
+/// The profile that fits a part's header: by attribute first, else the one that names the most channels, else
+/// `native` where the file has a plain colour. What we wrote under native names is `native`. Throws
+/// Error(ExitCode::capture) where none does and Error(ExitCode::usage) where several do alike, naming the
+/// remedy.
 ProfileChoice detect_profile(const std::vector<Profile>& profiles, const ExrPart& part,
                              const std::string& path);
 

@@ -1,9 +1,9 @@
 #include "framework/capture/profile_grammar.h"
 
+#include "framework/capture/capture_grammar.h"
 #include "framework/core/grammar_schema.h"
 #include "framework/core/units.h"
 #include "framework/image/camera.h"
-#include "framework/capture/capture_grammar.h"
 #include "framework/image/image_forms.h"
 
 namespace aftershade {
@@ -23,7 +23,12 @@ Block detect_block() {
             "What tells that a file is the producer's; without any key the profile is chosen by name only.",
         .keys = {
             optional("attributes", grammar::list(text()), "Any of these in the header; `*` is any text."),
-            optional("channels", grammar::list(text()), "All of these; `a|b` for alternatives.")}};
+            optional("channels", grammar::list(text()), "All of these; `a|b` for alternatives."),
+            optional(
+                "rewrites", grammar::boolean(),
+                "The program also writes other producers' files again: where another profile's attributes "
+                "are there too, that profile is chosen.",
+                "false")}};
 }
 
 Block source_block(const CameraField& field) {

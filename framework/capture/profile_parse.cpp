@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "framework/core/grammar_reader.h"
-#include "framework/image/camera.h"
 #include "framework/capture/capture_grammar.h"
 #include "framework/capture/profile.h"
 #include "framework/capture/profile_grammar.h"
+#include "framework/core/grammar_reader.h"
+#include "framework/image/camera.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
@@ -29,6 +29,9 @@ void read_layers(const grammar::Reader& reader, const ChannelRole& role, RoleDec
     if (role.has_optional_alpha() && by_component.size() + 1 == std::size_t(role.channels))
         by_component.push_back("A?");
     if (!by_component.empty()) decoding.layers.push_back(by_component);
+    // A name that stands for no channel and may be absent.
+    for (auto& names : decoding.layers)
+        if (role.has_optional_alpha() && names.size() + 1 == std::size_t(role.channels)) names.push_back("?");
 }
 
 std::optional<float> number_if(const grammar::Reader& reader, std::string_view key) {
@@ -100,6 +103,7 @@ std::optional<Profile> parse_profile(const Node& node, Diagnostics& diagnostics)
     if (const auto detect = reader.object("detect")) {
         profile.detect_attributes = detect->texts("attributes");
         profile.detect_channels = detect->texts("channels");
+        profile.rewrites = detect->boolean("rewrites");
     }
     profile.color_space = reader.text("color_space");
     profile.lens_model = reader.text("lens_model");

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "framework/capture/capture_grammar.h"
 #include "framework/core/document.h"
 #include "framework/core/error.h"
 #include "framework/core/grammar_reader.h"
-#include "framework/capture/capture_grammar.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
@@ -14,15 +14,21 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// A file that has this very name, else what the marks in it stand for.
+FramePattern file_or_pattern(const std::string& text) {
+    std::error_code failure;
+    return fs::is_regular_file(text, failure) ? FramePattern::of_file(text) : FramePattern(text);
+}
+
 void read_frames(const grammar::Reader& reader, const fs::path& folder, Sequence& sequence,
                  Diagnostics& diagnostics) {
     if (const Node* files = reader.find("files"))
         for (const Member& member : files->members)
             if (find_role(member.key) && member.value.is_string())
                 sequence.role_files.insert_or_assign(member.key,
-                                                     FramePattern((folder / member.value.string).string()));
+                                                     file_or_pattern((folder / member.value.string).string()));
     // Without a main file the colour's own file takes its place.
-    if (reader.has("frames")) sequence.files = FramePattern((folder / reader.text("frames")).string());
+    if (reader.has("frames")) sequence.files = file_or_pattern((folder / reader.text("frames")).string());
     else if (sequence.role_files.contains(kColorRole)) sequence.files = sequence.role_files.at(kColorRole);
     if (!reader.has("range")) return;
     const auto numbers = *parse_frame_range(reader.text("range"));
@@ -46,7 +52,9 @@ std::optional<Sequence> read_capture_document(const fs::path& path, Diagnostics&
     sequence.fps = reader.number("fps");
     sequence.profile = reader.text("profile");
     sequence.view = reader.text("view");
+    sequence.layer = reader.text("layer");
     sequence.color_space = reader.text("color_space");
+    sequence.alpha_is_opaque = reader.text("alpha") == kOpaqueAlpha;
     if (const Node* channels = reader.find("channels")) sequence.channels = read_decodings(*channels);
     if (const auto camera = reader.object("camera")) sequence.camera = read_camera(*camera);
     if (reader.has("lights")) sequence.lights.emplace();
@@ -98,6 +106,16 @@ std::vector<int> whole_frames(const std::vector<int>& files, int subframes) {
     return frames;
 }
 
+/// "; f_#.exr fits 12 files": the pattern with the padding that the files have. "" where none helps.
+std::string other_padding(const FramePattern& pattern) {
+    for (int width = 1; width <= 8; ++width) {
+        const FramePattern other = pattern.padded(width);
+        if (const std::size_t count = find_frames(other).size())
+            return "; " + other.text() + " fits " + std::to_string(count) + (count == 1 ? " file" : " files");
+    }
+    return "";
+}
+
 void find_missing_range(Sequence& sequence, const std::string& argument) {
     sequence.frames_declared = !sequence.frames.empty() || !sequence.files.has_frame();
     if (!sequence.frames.empty()) return;
@@ -108,7 +126,7 @@ void find_missing_range(Sequence& sequence, const std::string& argument) {
                         argument + ": no file fits the pattern " + sequence.files.text() +
                             (sequence.subframes > 1 ? ", or no frame has all its " +
                                                           std::to_string(sequence.subframes) + " sub-frames"
-                                                    : ""));
+                                                    : other_padding(sequence.files)));
         return;
     }
     const fs::path file = sequence.files.text();
@@ -146,7 +164,7 @@ std::optional<Sequence> open_sequence(const std::string& argument, Diagnostics& 
     } else if (std::error_code failure; fs::is_directory(path, failure)) {
         sequence.files = pattern_of_folder(path);
     } else {
-        sequence.files = FramePattern(argument);
+        sequence.files = file_or_pattern(argument);
     }
     find_missing_range(sequence, argument);
     return sequence;
@@ -159,7 +177,7 @@ void add_role_file(Sequence& sequence, const std::string& text, Diagnostics& dia
         diagnostics.error(place, "expected role=file, such as depth=z.####.exr");
     else if (const std::string role = text.substr(0, equals); !find_role(role))
         diagnostics.error(place, "'" + role + "' is not a role" + did_you_mean(role, role_names()));
-    else sequence.role_files.insert_or_assign(role, FramePattern(text.substr(equals + 1)));
+    else sequence.role_files.insert_or_assign(role, file_or_pattern(text.substr(equals + 1)));
 }
 
 }  // namespace aftershade

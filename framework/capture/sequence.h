@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "framework/core/diagnostics.h"
-#include "framework/image/camera.h"
 #include "framework/capture/frame_range.h"
 #include "framework/capture/light.h"
 #include "framework/capture/profile.h"
+#include "framework/core/diagnostics.h"
+#include "framework/image/camera.h"
 
 namespace aftershade {
 
@@ -31,12 +31,16 @@ struct Sequence {
     std::string profile = "auto";
     std::string color_space = "auto";  ///< of the stored colours; auto: the profile's
     std::string view;                  ///< of multi-view files; "" for the default
+    std::string layer;                 ///< of files with several layers; "" for the first
+    bool alpha_is_opaque = false;      ///< the stored alpha of color means nothing: it is read as 1
     double fps = 24;
     int subframes = 1;  ///< a frame is this many captures: the files subframes * frame + 0 .. subframes - 1
     Camera camera;      ///< of capture.json
     std::optional<std::vector<CaptureLight>> lights;  ///< of capture.json
     std::vector<int> cuts;                            ///< frames that begin a shot
     std::optional<CryptomatteChoice> cryptomatte;
+    /// Objects that the role object_id is asked for by name: it is read from the Cryptomatte that has them.
+    std::vector<std::string> object_names;
 
     /// The number in the name of a frame's file, by which a CaptureReader reads it.
     int file_number(int frame, int subframe = 0) const { return frame * subframes + subframe; }

@@ -86,6 +86,10 @@ json LiteralParts::one_key() {
     return {{{"required", {"object"}}}, {{"required", {"objects"}}}, {{"required", {"name"}}}};
 }
 
+json LiteralParts::literal(const ParamSpec& spec) const {
+    return schema::literal(spec, variables_);
+}
+
 json LiteralParts::keyed_row(json cells) const {
     cells["object"] = part({{"type", "integer"}, {"minimum", 0}, {"maximum", UINT32_MAX}});
     cells["objects"] = part({{"type", "string"},

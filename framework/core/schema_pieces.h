@@ -45,7 +45,7 @@ public:
     /// A variable may stand for the part where there are variables.
     json part(json form) const;
     /// Of the parameter, or the column, that is part of another.
-    json literal(const ParamSpec& spec) const { return schema::literal(spec, variables_); }
+    json literal(const ParamSpec& spec) const;
     /// A table's row: the cells, and by one key which objects it is for.
     json keyed_row(json cells) const;
     static json one_key();
@@ -53,6 +53,7 @@ public:
 private:
     Variables variables_;
 };
+
 /// Id of an object, ids and ranges of ids, or a Cryptomatte name.
 json object_key();
 /// Head of a document: "$schema" of the schema itself, title, and "aftershade": 1 among the properties.

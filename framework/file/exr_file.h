@@ -49,6 +49,8 @@ public:
         const std::string& name) const;  ///< stringvector attributes only
     /// Numbers, rationals (framesPerSecond), and strings that are wholly a number.
     std::optional<double> number(const std::string& name) const;
+    /// Takes over what `other` has beside it; but nothing that describes the pixels of one part.
+    void complete_from(const ExrMetadata& other, bool only_texts);
 
     struct Impl;  ///< an Imf::Header
     std::shared_ptr<const Impl> impl;
@@ -67,6 +69,9 @@ struct ExrPart {
     float pixel_aspect = 1;
     std::vector<ExrChannel> channels;  ///< in the file's order
     ExrMetadata metadata;
+    /// Second names of channels, each with the first: "Beauty.R" for "R" of a part that is called Beauty.
+    /// Only FrameFile::merged() has any.
+    std::map<std::string, std::string> other_names;
 };
 
 /// What one call of read_floats or read_uints asks for.

@@ -71,8 +71,14 @@ struct FileLayout {
     std::vector<Imf::Header> headers;
     std::vector<std::uint64_t> block_tables;  ///< byte position of each part's table of block offsets
     std::uint64_t largest_block_bytes = 0;    ///< decoded
+    /// By part, the positions of its blocks; empty unless the tables are, and the blocks are whole.
+    std::vector<std::vector<std::uint64_t>> found_blocks;
 };
 
+/// Walks the headers without keeping anything, and returns the version field; the file's position is then their
+/// end. Throws Error(ExitCode::capture) for sizes that the file cannot hold, for more parts, channels or
+/// attributes than the limits, and for compressions that this build's library does not read.
+int scan_headers(FileStream& file, const std::filesystem::path& path);
 /// Reads the headers and holds them against the limits; throws Error(ExitCode::capture).
 FileLayout read_layout(FileStream& file, const std::filesystem::path& path, const ReadLimits& limits);
 

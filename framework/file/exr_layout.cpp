@@ -21,160 +21,6 @@ static_assert(std::endian::native == std::endian::little, "EXR files are read he
 
 namespace {
 
-constexpr int kMaxChannels = 1024;
-constexpr int kMaxParts = 1024;
-constexpr int kMaxAttributes =
-    65536;  // of the whole file; an empty one takes 9 bytes there and 400 in memory
-
-struct FixedSize {
-    std::string_view type;
-    int bytes;
-};
-
-// Types whose stored size the library does not look at. One that lied would make it read the next attribute
-// elsewhere than this check does. openexr.com, "OpenEXR File Layout", attribute types.
-constexpr FixedSize kFixedSizes[] = {{"box2f", 16},
-                                     {"box2i", 16},
-                                     {"chromaticities", 32},
-                                     {"compression", 1},
-                                     {"deepImageState", 1},
-                                     {"double", 8},
-                                     {"envmap", 1},
-                                     {"float", 4},
-                                     {"int", 4},
-                                     {"keycode", 28},
-                                     {"lineOrder", 1},
-                                     {"m33d", 72},
-                                     {"m33f", 36},
-                                     {"m44d", 128},
-                                     {"m44f", 64},
-                                     {"rational", 8},
-                                     {"tiledesc", 9},
-                                     {"timecode", 8},
-                                     {"v2d", 16},
-                                     {"v2f", 8},
-                                     {"v2i", 8},
-                                     {"v3d", 24},
-                                     {"v3f", 12},
-                                     {"v3i", 12}};
-
-/// Walks the headers without keeping anything.
-class HeaderScan {
-public:
-    HeaderScan(FileStream& file, const fs::path& path) : file_(file), path_(path) {}
-
-    /// Returns the version field; the end of the headers is then the file's position.
-    int run() {
-        const int version = read_version();
-        int parts = 0;
-        while (scan_part() && Imf::isMultiPart(version)) {
-            if (++parts > kMaxParts)
-                fail(path_, fmt::format("more than {} parts, which is the limit", kMaxParts));
-        }
-        return version;
-    }
-
-private:
-    int read_version() {
-        unsigned char magic[4] = {};
-        file_.read_at(
-            0, {reinterpret_cast<char*>(magic), std::size_t(std::min<std::uint64_t>(4, file_.size()))});
-        if (std::string_view(reinterpret_cast<const char*>(magic), sizeof magic) != kMagic) {
-            fail(path_,
-                 fmt::format("not an OpenEXR file (it begins with the bytes {:02x} {:02x} {:02x} {:02x}, "
-                             "expected 76 2f 31 01)",
-                             magic[0], magic[1], magic[2], magic[3]));
-        }
-        file_.seekg(4);
-        const int version = read_int();
-        if (Imf::getVersion(version) != Imf::EXR_VERSION || !Imf::supportsFlags(Imf::getFlags(version))) {
-            fail(path_, fmt::format("OpenEXR version field {:#010x} is not supported (format version 2 is)",
-                                    unsigned(version)));
-        }
-        return version;
-    }
-
-    /// False for the empty header that ends a multi-part list.
-    bool scan_part() {
-        int count = 0;
-        for (std::string name = read_name("attribute"); !name.empty(); name = read_name("attribute")) {
-            ++count;
-            if (++attributes_ > kMaxAttributes) {
-                fail(path_,
-                     fmt::format("more than {} header attributes, which is the limit", kMaxAttributes));
-            }
-            const std::string type = read_name("attribute type");
-            scan_value(name, type, read_int());
-        }
-        return count > 0;
-    }
-
-    void scan_value(const std::string& name, const std::string& type, int size) {
-        const std::uint64_t begin = file_.tellg();
-        if (size < 0 || std::uint64_t(size) > file_.size() - begin) {
-            fail(path_, fmt::format("header attribute '{}' claims {} bytes, {} are left in the file", name,
-                                    size, file_.size() - begin));
-        }
-        const auto* fixed = std::ranges::find(kFixedSizes, std::string_view(type), &FixedSize::type);
-        bool sound = fixed == std::end(kFixedSizes) || fixed->bytes == size;
-        const std::uint64_t end = begin + std::uint64_t(size);
-        if (type == "floatvector") sound = size % 4 == 0;
-        if (type == "chlist") sound = channels_end(end) == end;
-        if (type == "stringvector") sound = strings_end(end) == end;
-        if (!sound)
-            fail(path_,
-                 fmt::format("header attribute '{}' is not a well-formed {} of {} bytes", name, type, size));
-        file_.seekg(end);
-    }
-
-    std::uint64_t channels_end(std::uint64_t limit) {
-        int count = 0;
-        while (file_.tellg() < limit && !read_name("channel").empty()) {
-            if (++count > kMaxChannels)
-                fail(path_, fmt::format("more than {} channels, which is the limit", kMaxChannels));
-            file_.seekg(std::min(file_.size(), file_.tellg() + 16));
-        }
-        return file_.tellg();
-    }
-
-    std::uint64_t strings_end(std::uint64_t limit) {
-        while (file_.tellg() + 4 <= limit) {
-            const int length = read_int();
-            if (length < 0 || std::uint64_t(length) > limit - file_.tellg()) break;
-            file_.seekg(file_.tellg() + std::uint64_t(length));
-        }
-        return file_.tellg();
-    }
-
-    std::string read_name(const char* of_what) {
-        std::string name;
-        for (char letter = read_char(); letter != 0; letter = read_char()) {
-            name.push_back(letter);
-            if (name.size() > kMaxNameLength) {
-                fail(path_,
-                     fmt::format("damaged header: {} name longer than {} bytes", of_what, kMaxNameLength));
-            }
-        }
-        return name;
-    }
-
-    char read_char() {
-        char value = 0;
-        file_.read(&value, 1);
-        return value;
-    }
-
-    int read_int() {
-        int value = 0;
-        file_.read(reinterpret_cast<char*>(&value), sizeof value);
-        return value;
-    }
-
-    FileStream& file_;
-    const fs::path& path_;
-    int attributes_ = 0;
-};
-
 std::int64_t side(int first, int last) {
     return std::int64_t(last) - first + 1;
 }
@@ -366,8 +212,64 @@ void check_block(FileStream& file, const fs::path& path, const Imf::Header& head
 
 }  // namespace
 
+namespace {
+
+/// Of a block's head: a part number, then a line or a tile's two coordinates and two levels, then the size; all
+/// of 4 bytes.
+std::size_t head_words(const FileLayout& layout, const Imf::Header& header) {
+    return (layout.multi_part ? 1u : 0u) + (is_tiled_part(header) ? 4u : 1u) + 1u;
+}
+
+bool has_empty_table(FileStream& file, const FileLayout& layout) {
+    for (std::size_t part = 0; part < layout.headers.size(); ++part) {
+        std::uint64_t first = 0;
+        const std::uint64_t count = block_count(layout.headers[part]);
+        if (count > 0)
+            file.read_at(layout.block_tables[part], {reinterpret_cast<char*>(&first), sizeof first});
+        if (first != 0) return false;
+        std::vector<std::uint64_t> offsets(count);
+        file.read_at(layout.block_tables[part],
+                     {reinterpret_cast<char*>(offsets.data()), offsets.size() * sizeof(std::uint64_t)});
+        if (std::ranges::any_of(offsets, [](std::uint64_t offset) { return offset != 0; })) return false;
+    }
+    return true;
+}
+
+/// The blocks of a file whose writer left its tables empty, walked from the end of the tables; {} where they do
+/// not add up to whole parts of scan lines.
+std::vector<std::vector<std::uint64_t>> found_blocks(FileStream& file, const FileLayout& layout,
+                                                     std::uint64_t position) {
+    std::vector<std::vector<std::uint64_t>> found;
+    std::uint64_t missing = 0;
+    for (const Imf::Header& header : layout.headers) {
+        if (is_tiled_part(header) || (header.hasType() && header.type() != Imf::SCANLINEIMAGE)) return {};
+        found.emplace_back(block_count(header));
+        missing += found.back().size();
+    }
+    for (; missing > 0; --missing) {
+        std::array<std::int32_t, 3> head = {};
+        const std::size_t words = layout.multi_part ? 3 : 2;
+        if (file.size() - position < words * 4) return {};
+        file.read_at(position, {reinterpret_cast<char*>(head.data()), words * 4});
+        const std::size_t part = layout.multi_part ? std::size_t(std::uint32_t(head[0])) : 0;
+        if (part >= found.size()) return {};
+        const Imf::Header& header = layout.headers[part];
+        const std::int64_t line = std::int64_t(head[words - 2]) - header.dataWindow().min.y;
+        const std::int64_t lines = lines_per_block(header.compression());
+        if (line < 0 || line % lines != 0 || std::uint64_t(line / lines) >= found[part].size()) return {};
+        std::uint64_t& offset = found[part][std::size_t(line / lines)];
+        if (offset != 0 || head[words - 1] < 0) return {};
+        offset = position;
+        position += words * 4 + std::uint64_t(head[words - 1]);
+        if (position > file.size()) return {};
+    }
+    return found;
+}
+
+}  // namespace
+
 FileLayout read_layout(FileStream& file, const fs::path& path, const ReadLimits& limits) {
-    int version = HeaderScan(file, path).run();
+    int version = scan_headers(file, path);
     const std::uint64_t headers_end = file.tellg();
     FileLayout layout;
     layout.multi_part = Imf::isMultiPart(version);
@@ -398,6 +300,7 @@ FileLayout read_layout(FileStream& file, const fs::path& path, const ReadLimits&
         fail(path, fmt::format("cut off: the file has {} bytes, its headers and block tables take {}",
                                file.size(), table));
     }
+    if (has_empty_table(file, layout)) layout.found_blocks = found_blocks(file, layout, table);
     file.seekg(0);
     return layout;
 }
@@ -405,7 +308,8 @@ FileLayout read_layout(FileStream& file, const fs::path& path, const ReadLimits&
 void check_blocks(FileStream& file, const fs::path& path, const FileLayout& layout, int part) {
     const Imf::Header& header = layout.headers[std::size_t(part)];
     const std::vector<std::uint64_t> offsets =
-        block_offsets(file, header, layout.block_tables[std::size_t(part)]);
+        layout.found_blocks.empty() ? block_offsets(file, header, layout.block_tables[std::size_t(part)])
+                                    : layout.found_blocks[std::size_t(part)];
     const auto missing = std::uint64_t(std::ranges::count(offsets, std::uint64_t(0)));
     if (missing > 0) {
         const auto first = std::uint64_t(std::ranges::find(offsets, std::uint64_t(0)) - offsets.begin());
@@ -415,8 +319,7 @@ void check_blocks(FileStream& file, const fs::path& path, const FileLayout& layo
                  "it again)",
                  missing, offsets.size(), block_label(header, first)));
     }
-    // A part number, then a line or a tile's two coordinates and two levels, then the size; all of 4 bytes.
-    const std::size_t words = (layout.multi_part ? 1u : 0u) + (is_tiled_part(header) ? 4u : 1u) + 1u;
+    const std::size_t words = head_words(layout, header);
     for (std::uint64_t i = 0; i < offsets.size(); ++i) {
         check_block(file, path, header, i, offsets[i], words);
     }

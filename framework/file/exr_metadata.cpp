@@ -41,6 +41,28 @@ const T* value_as(const Imf::Attribute& attribute) {
     return typed ? &typed->value() : nullptr;
 }
 
+bool describes_one_part(std::string_view name) {
+    constexpr std::array<std::string_view, 18> kNames = {"channels",
+                                                         "compression",
+                                                         "dataWindow",
+                                                         "displayWindow",
+                                                         "lineOrder",
+                                                         "name",
+                                                         "pixelAspectRatio",
+                                                         "screenWindowCenter",
+                                                         "screenWindowWidth",
+                                                         "tiles",
+                                                         "type",
+                                                         "view",
+                                                         "version",
+                                                         "chunkCount",
+                                                         "preview",
+                                                         "multiView",
+                                                         "colorInteropID",
+                                                         "maxSamplesPerPixel"};
+    return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
+}
+
 template <class Vector>
 std::vector<float> components(const Vector& vector) {
     std::vector<float> result;
@@ -110,6 +132,20 @@ std::optional<ExrValue> ExrMetadata::value(const std::string& name) const {
     if (const auto* v = value_as<double>(*attribute)) return static_cast<float>(*v);
     if (std::optional<std::vector<float>> v = vector_value(*attribute)) return std::move(*v);
     return std::nullopt;
+}
+
+void ExrMetadata::complete_from(const ExrMetadata& other, bool only_texts) {
+    if (!other.impl) return;
+    std::shared_ptr<Impl> merged;  // made when there is something to take over
+    for (auto entry = other.impl->header.begin(); entry != other.impl->header.end(); ++entry) {
+        const bool is_text = value_as<std::string>(entry.attribute()) != nullptr;
+        if (describes_one_part(entry.name()) || (only_texts && !is_text) ||
+            find_attribute(impl, entry.name()))
+            continue;
+        if (!merged) merged = impl ? std::make_shared<Impl>(*impl) : std::make_shared<Impl>();
+        merged->header.insert(entry.name(), entry.attribute());
+    }
+    if (merged) impl = std::move(merged);
 }
 
 std::optional<std::string> ExrMetadata::text(const std::string& name) const {

@@ -162,9 +162,8 @@ ExrFile::Impl::Impl(const fs::path& file_path, const ReadLimits& file_limits)
         stream = std::make_unique<exr::FileStream>(path);
         layout = exr::read_layout(*stream, path, limits);
         const int threads = layout.largest_block_bytes > kThreadedBlockBytes ? 0 : Imf::globalThreadCount();
-        // Without reconstruction of the block tables: an incomplete part is refused, so the search would be
-        // in vain.
-        file = std::make_unique<Imf::MultiPartInputFile>(*stream, threads, false);
+        // An incomplete part is refused, so the library looks for blocks only where all were found.
+        file = std::make_unique<Imf::MultiPartInputFile>(*stream, threads, !layout.found_blocks.empty());
         for (int i = 0; i < file->parts(); ++i) parts.push_back(exr::describe_part(file->header(i)));
     });
 }

@@ -71,6 +71,8 @@ void Camera::complete_from(const Camera& other) {
     values_.insert(other.values_.begin(), other.values_.end());
     if (lens_model.empty()) lens_model = other.lens_model;
     origins_.insert(other.origins_.begin(), other.origins_.end());
+    if (matrices_found.empty()) matrices_found = other.matrices_found;
+    if (matrices_fault.empty()) matrices_fault = other.matrices_fault;
     if (!camera_from_world) camera_from_world = other.camera_from_world;
     if (!ndc_from_world) ndc_from_world = other.ndc_from_world;
     if (!jitter_px) jitter_px = other.jitter_px;

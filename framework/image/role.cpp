@@ -1,10 +1,16 @@
 #include "framework/image/role.h"
 
 #include <limits>
+#include <utility>
+
+#include "framework/core/document.h"
+#include "framework/core/text.h"
 
 namespace aftershade {
 
 namespace {
+
+constexpr std::string_view kCoverage = "coverage:";
 
 std::vector<std::string> layer(const std::string& name, std::string_view components) {
     std::vector<std::string> channels;
@@ -82,6 +88,16 @@ std::span<const ChannelRole> channel_roles() {
 std::optional<ChannelRole> find_role(std::string_view name) {
     for (const ChannelRole& role : roles())
         if (role.name == name) return role;
+    if (is_coverage_role(name))
+        return ChannelRole{std::string(name),
+                           1,
+                           ComponentType::float32,
+                           true,
+                           0,
+                           {std::string(name)},
+                           PixelType::half,
+                           "share that objects cover, 0 to 1",
+                           RoleKind::coverage};
     constexpr std::string_view kAov = "aov:";
     if (name.starts_with(kAov) && name.size() > kAov.size()) {
         const std::string aov(name.substr(kAov.size()));
@@ -96,6 +112,25 @@ std::vector<std::string> role_names() {
     std::vector<std::string> names;
     for (const ChannelRole& role : roles()) names.push_back(role.name);
     return names;
+}
+
+std::string coverage_role(std::span<const TableKey> objects) {
+    std::vector<std::string> entries;
+    for (const TableKey& key : objects) entries.push_back(format_object_keys(std::span(&key, 1)));
+    return std::string(kCoverage) + "[" + joined(entries, ", ") + "]";
+}
+
+bool is_coverage_role(std::string_view name) {
+    return name.starts_with(kCoverage);
+}
+
+std::vector<TableKey> objects_of_coverage(std::string_view role) {
+    Diagnostics unused;  // it is our own text
+    std::vector<TableKey> objects;
+    if (const auto list = parse_document(std::string(role.substr(kCoverage.size())), "", unused))
+        for (const Node& entry : list->items)
+            for (TableKey& key : parse_object_keys(entry, "", unused)) objects.push_back(std::move(key));
+    return objects;
 }
 
 RoleKind kind_of_role(std::string_view name) {

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "framework/core/object_keys.h"
 #include "framework/image/image.h"
 #include "framework/image/pixel_type.h"
 
@@ -57,9 +58,18 @@ struct ChannelRole {
 
 /// The fixed roles, in the order of the documentation.
 std::span<const ChannelRole> channel_roles();
-/// nullopt for an unknown name; "aov:<name>" is a one-to-four channel image passed through.
+/// nullopt for an unknown name; a coverage_role() is one; "aov:<name>" is a one-to-four channel image passed
+/// through.
 std::optional<ChannelRole> find_role(std::string_view name);
 std::vector<std::string> role_names();
+
+/// The role of the share of a pixel, 0 to 1, that some objects cover. The program asks captures for it where
+/// a look names the objects of a mask; no document can.
+std::string coverage_role(std::span<const TableKey> objects);
+bool is_coverage_role(std::string_view name);
+/// The objects that coverage_role() was made of.
+std::vector<TableKey> objects_of_coverage(std::string_view role);
+
 /// RoleKind::other for a name that is no role's.
 RoleKind kind_of_role(std::string_view name);
 

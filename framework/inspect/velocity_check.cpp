@@ -20,6 +20,8 @@ namespace {
 constexpr double kClearScore = 0.05;    // two hypotheses further apart are told from each other ...
 constexpr double kClearDispute = 0.15;  // ... or those whose errors differ so, where they disagree
 constexpr double kExplains = 0.25;      // below, a score may be chance
+constexpr double kExplainsWell = 0.5;    // a rival in time that does, where the claim does not explain
+constexpr double kRest = 0.1;            // ... or that leaves no more of what the claim leaves
 constexpr double kStillError = 1e-4;    // below, the two pictures are one
 constexpr double kFitSlack = 0.03;      // fits closer than this are one
 constexpr double kHopeless = 0.3;       // worse starts of the fit are left out
@@ -102,6 +104,39 @@ bool is_clearly_better(const Tests& tests, const VelocityScore& better, const Ve
     if (better.hypothesis.other_time != worse.hypothesis.other_time) return false;
     const WarpTest* test = tests.at(better.hypothesis.other_time);
     return test && test->dispute(map_of(better.hypothesis), map_of(worse.hypothesis)) >= kClearDispute;
+}
+
+/// Whether the frames tell that a reading in the other direction in time is better: it must win in both
+/// directions, where both frames see the surface. Under uniform motion both readings say the same, and
+/// uncovered background and the picture's borders make the difference of their scores.
+bool wins_in_time(const Tests& tests, const VelocityScore& rival, const VelocityScore& claim) {
+    if (!tests.claimed() || !tests.other()) return false;
+    const VectorMap of_rival = map_of(rival.hypothesis), of_claim = map_of(claim.hypothesis);
+    const TimeDispute there = tests.other()->dispute_in_time(of_rival, *tests.claimed(), of_claim);
+    const TimeDispute here = tests.claimed()->dispute_in_time(of_claim, *tests.other(), of_rival);
+    const double limit = 1 - kClearDispute;
+    const bool wins_there = there.told && there.own < limit * there.other;
+    // A claim under which nothing moves has no samples.
+    const bool wins_here = tests.claimed()->empty() || (here.told && here.other < limit * here.own);
+    if (wins_there && wins_here) return true;
+    // Flat surfaces show their motion by their outlines alone, which those pixels leave out.
+    const bool claim_wins = (there.told && there.other < limit * there.own) ||
+                            (here.told && here.own < limit * here.other);
+    const bool explains_all = 1 - rival.score < kRest * (1 - claim.score) && claim.score < kExplainsWell;
+    const bool explains_alone = claim.score < kExplains && rival.score >= kExplainsWell;
+    return !claim_wins && (explains_all || explains_alone);
+}
+
+/// The best hypothesis that refutes the claim; nullptr where none does.
+const VelocityScore* find_refutation(const Tests& tests, const VelocityCheck& check) {
+    for (const VelocityScore& score : check.hypotheses) {
+        if (!score.tested || score.score < kExplains || score.hypothesis == VelocityHypothesis{}) break;
+        if (!is_clearly_better(tests, score, check.identity)) continue;
+        if (score.hypothesis.other_time ? wins_in_time(tests, score, check.identity)
+                                        : score.score >= check.best.score - kClearScore)
+            return &score;
+    }
+    return nullptr;
 }
 
 struct ScoredMap {
@@ -249,12 +284,12 @@ void judge(const Tests& tests, VelocityCheck& check) {
         check.verdict = VelocityVerdict::no_fit;
         return;
     }
-    const bool refuted =
-        check.best.hypothesis != VelocityHypothesis{} && is_clearly_better(tests, check.best, check.identity);
-    const VelocityScore& leader = refuted ? check.best : check.identity;
+    const VelocityScore* refutation = find_refutation(tests, check);
+    if (refutation) check.best = *refutation;
+    const VelocityScore& leader = refutation ? check.best : check.identity;
     check.suggested = correct_settings(check.settings, leader.hypothesis);
     check.untold = list_untold(tests, check, leader);
-    if (refuted) check.verdict = VelocityVerdict::wrong;
+    if (refutation) check.verdict = VelocityVerdict::wrong;
     else check.verdict = check.untold.empty() ? VelocityVerdict::confirmed : VelocityVerdict::undecided;
 }
 

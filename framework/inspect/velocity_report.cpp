@@ -16,6 +16,8 @@ namespace {
 /// A shaded ball seems to move 5 % less than it does, as its light stays where it is; listed scales are an
 /// octave apart.
 constexpr double kFitOctaves = 0.25;
+/// Of the difference between the frames: a rival that removes so much more is mentioned.
+constexpr double kClearlyMore = 0.05;
 
 bool is_reversed(const VelocitySettings& settings) {
     return settings.delta == "prev-cur" || settings.delta == "cur-next";
@@ -190,6 +192,14 @@ std::string describe_verdict(const VelocityCheck& check) {
                 "best other reading {}",
                 settings, own, percent(check.rival.score));
         case VelocityVerdict::undecided:
+            if (check.best.score >= check.identity.score + kClearlyMore)
+                return fmt::format(
+                    "Cannot tell: with {} the vectors remove {} of the difference between the frames, with {} "
+                    "{}, but uniform motion and uncovered background explain that too; take frames in which "
+                    "things turn, bounce or change their speed",
+                    settings, own,
+                    describe_settings(correct_settings(check.settings, check.best.hypothesis)),
+                    percent(check.best.score));
             return fmt::format(
                 "The profile fits ({}: {} of the difference between the frames removed), but these frames do "
                 "not tell {}; take frames in which things turn, bounce or change their speed",

@@ -13,6 +13,8 @@ constexpr std::size_t kRoughStride = 10;
 constexpr std::size_t kRoughSamples = 1000;  // at least, where there are as many
 constexpr int kMinMovingPx = 16;             // fewer moving pixels tell nothing
 constexpr double kMinDisputed = 0.01;        // share of the samples
+constexpr double kSameSurface_px = 0.5;      // vectors of one surface differ by less, ...
+constexpr double kSameSurface = 0.1;         // ... or by this share of their length
 constexpr double kMinInside = 0.3;           // share of the samples; a score from fewer is worth less
 constexpr double kWeightLimit =
     0.1;  // of the diagonal: longer vectors weigh no more, so that a few wild ones do not rule
@@ -102,7 +104,7 @@ ComparedFrame make_compared(const Image& color, double pivot) {
 
 WarpTest::WarpTest(const ComparedFrame& source, const ComparedFrame& target, const Image& vectors,
                    double direction)
-    : target_(target), direction_(direction) {
+    : target_(target), vectors_(vectors), direction_(direction) {
     const std::vector<float> weights = weigh(source, vectors);
     if (moving_px_ >= kMinMovingPx) draw_samples(source, vectors, weights);
 }
@@ -210,6 +212,38 @@ double WarpTest::dispute(const VectorMap& better, const VectorMap& worse) const 
     }
     if (double(count) < kMinDisputed * double(samples_.size()) || sum_worse <= 0) return 0;
     return 1 - sum_better / sum_worse;
+}
+
+std::optional<Move> WarpTest::move_at(double x, double y, const VectorMap& map) const {
+    const int column = int(std::lround(x)), row = int(std::lround(y));
+    if (column < 0 || row < 0 || column >= vectors_.width() || row >= vectors_.height()) return std::nullopt;
+    const Move move = map.apply(double(vectors_.at(column, row, 0)), double(vectors_.at(column, row, 1)));
+    if (!std::isfinite(move.x) || !std::isfinite(move.y)) return std::nullopt;
+    return move;
+}
+
+TimeDispute WarpTest::dispute_in_time(const VectorMap& map, const WarpTest& other,
+                                      const VectorMap& other_map) const {
+    TimeDispute dispute;
+    for (const Sample& sample : samples_) {
+        const Move own = map.apply(sample.vector_x, sample.vector_y);
+        const auto there =
+            other.move_at(sample.x + direction_ * own.x, sample.y + direction_ * own.y, other_map);
+        if (!there || std::hypot(there->x - own.x, there->y - own.y) < 1) continue;
+        // Where the other reading says that the sample is: its vectors must agree that it is this surface.
+        const auto again =
+            other.move_at(sample.x + direction_ * there->x, sample.y + direction_ * there->y, other_map);
+        const double slack_px = kSameSurface_px + kSameSurface * std::hypot(there->x, there->y);
+        if (!again || std::hypot(again->x - there->x, again->y - there->y) > slack_px) continue;
+        const float error_own = error(sample, own), error_other = error(sample, *there);
+        if (error_own < 0 || error_other < 0) continue;
+        dispute.own += error_own;
+        dispute.other += error_other;
+        ++dispute.count;
+    }
+    dispute.told = dispute.count >= std::size_t(kMinMovingPx) &&
+                   double(dispute.count) >= kMinDisputed * double(samples_.size());
+    return dispute;
 }
 
 }  // namespace aftershade

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "framework/image/image.h"
@@ -41,6 +42,13 @@ struct VectorMap {
     }
 };
 
+/// Errors of two readings at the same samples.
+struct TimeDispute {
+    double own = 0, other = 0;  ///< sums
+    std::size_t count = 0;
+    bool told = false;  ///< there are enough samples
+};
+
 /// One frame's pixels, followed along its vectors into the other frame. Samples are drawn in proportion to
 /// the length of the vectors, as a slow pan of the whole picture tells less than the one object that flies
 /// through it.
@@ -61,6 +69,10 @@ public:
     /// 1 - error of `better` / error of `worse` where the two land at least a pixel apart; 0 where too few
     /// samples do.
     double dispute(const VectorMap& better, const VectorMap& worse) const;
+    /// `other` follows the target's pixels back into this source by its own vectors. Compares both readings at
+    /// this test's samples whose surface both frames see by the other's reading, where they are at least a
+    /// pixel apart: uncovered background and what leaves the picture say nothing of time.
+    TimeDispute dispute_in_time(const VectorMap& map, const WarpTest& other, const VectorMap& other_map) const;
 
 private:
     struct Sample {
@@ -68,11 +80,14 @@ private:
         std::array<float, 3> color;
         float still_error;
     };
+    /// The mapped vector of the source's pixel nearest to a place; nullopt where there is none.
+    std::optional<Move> move_at(double x, double y, const VectorMap& map) const;
     std::vector<float> weigh(const ComparedFrame& source, const Image& vectors);
     void draw_samples(const ComparedFrame& source, const Image& vectors, const std::vector<float>& weights);
     float error(const Sample& sample, Move move) const;
 
     const ComparedFrame& target_;
+    const Image& vectors_;
     double direction_ = 1;
     int moving_px_ = 0;
     double longest_px_ = 0;

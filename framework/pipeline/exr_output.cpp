@@ -4,8 +4,8 @@
 #include <deque>
 #include <utility>
 
-#include "framework/core/error.h"
 #include "framework/capture/camera_metadata.h"
+#include "framework/core/error.h"
 #include "framework/image/role.h"
 #include "framework/image/window.h"
 
@@ -103,6 +103,7 @@ ExrWriteOptions exr_write_options(const OutputOptions& options, const CaptureHea
     write.attributes["aftershade/look"] = options.look;
     write.attributes["aftershade/renderer"] = options.renderer;
     write.attributes["aftershade/profile"] = header.profile;
+    write.attributes["aftershade/channels"] = std::string(options.keep_channels ? "kept" : "native");
     write.attributes["aftershade/frame"] = header.frame;
     add_attributes(header.camera, header.lights, write.attributes);
     // A file without the attribute is Rec. 709, so colours of other primaries must say so.

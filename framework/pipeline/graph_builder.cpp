@@ -316,6 +316,10 @@ void GraphBuilder::add_mix(StepBuild& build) {
         if (step.mask && !step.mask->role.empty()) {
             defines = {"MASK_IMAGE"};
             pass.reads.push_back({import(step.mask->role), 2});
+        } else if (step.mask && step.mask->names_objects() &&
+                   frame_.has_image(coverage_role(step.mask->objects), 0)) {
+            defines = {"MASK_IMAGE"};
+            pass.reads.push_back({import(coverage_role(step.mask->objects)), 2});
         } else if (step.mask && !step.mask->objects.empty()) {
             defines = {"MASK_OBJECTS"};
             pass.reads.push_back({import(kObjectIdRole), 2});

@@ -1,6 +1,7 @@
 // The user's JSON: ordered steps, no paths of captures or outputs inside.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
 #include <map>
@@ -24,11 +25,18 @@ struct WiringSpec {
 
 /// "mask": where a step works. One of role, objects and file is set.
 struct MaskSpec {
-    std::string role;               ///< of the capture, with one channel: "mask", "aov:hair"
-    std::vector<TableKey> objects;  ///< ids, ranges of ids, or Cryptomatte names; needs the role object_id
-    std::filesystem::path file;     ///< picture over the display window; its first channel, as stored
+    std::string role;  ///< of the capture, with one channel: "mask", "aov:hair"
+    std::vector<TableKey>
+        objects;                 ///< ids, ranges of ids, or names; needs the role object_id or a Cryptomatte
+    std::filesystem::path file;  ///< picture over the display window; its first channel, as stored
     bool invert = false;
     Place place;
+
+    /// Whether some of the objects are named, and not numbered.
+    bool names_objects() const {
+        return std::any_of(objects.begin(), objects.end(),
+                           [](const TableKey& key) { return !key.name.empty(); });
+    }
 };
 
 struct LookStep {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "framework/core/error.h"
+#include "framework/core/param_type.h"
 #include "framework/core/units.h"
 #include "framework/image/role.h"
 
@@ -32,7 +33,8 @@ std::vector<std::string> host_roles(const PipelineStep& step) {
     for (const auto& [name, value] : step.values)
         for (const std::string& role : roles_of(value)) add_once(roles, role);
     if (step.mask && !step.mask->role.empty()) add_once(roles, step.mask->role);
-    if (step.mask && !step.mask->objects.empty()) add_once(roles, kObjectIdRole);
+    if (step.mask && !step.mask->objects.empty())
+        add_once(roles, step.mask->names_objects() ? coverage_role(step.mask->objects) : kObjectIdRole);
     return roles;
 }
 
@@ -72,6 +74,23 @@ std::vector<std::string> Pipeline::capture_roles() const {
         for (const std::string& role : host_roles(step)) add_once(roles, role);
     }
     return roles;
+}
+
+std::vector<std::string> Pipeline::object_names() const {
+    std::vector<std::string> names;
+    const auto add = [&](const TableKey& key) {
+        if (!key.name.empty()) add_once(names, key.name);
+    };
+    for (const PipelineStep& step : steps) {
+        for (const auto& [name, value] : step.values)
+            if (const auto* depth = std::get_if<DepthValue>(&value))
+                std::for_each(depth->objects.begin(), depth->objects.end(), add);
+        for (const ParamSpec& spec : step.manifest->params)
+            for (const ParamValue& value : step.known_values(spec))
+                if (is_param_buffer(spec.type))
+                    for (const auto& [key, row] : spec.type->table.rows(value).rows) add(key);
+    }
+    return names;
 }
 
 std::vector<std::string> Pipeline::neighbour_roles(int offset) const {
@@ -128,10 +147,14 @@ const ParamSpec& mix_spec() {
 
 void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header) {
     const auto missing = [&](const std::string& who, const std::string& role) {
-        throw Error(ExitCode::capture, header.path.string() + ": " + who + " needs the role '" + role +
-                                           "', which the profile '" + header.profile +
-                                           "' does not find among the channels " +
-                                           list_channels(header.channels));
+        throw Error(ExitCode::capture,
+                    header.path.string() + ": " + who + " needs the role '" + role +
+                        "', which the profile '" + header.profile + "' does not find among the channels " +
+                        list_channels(header.channels) +
+                        (header.layer.empty() ? "" : ", in the layer '" + header.layer + "'") +
+                        " (say its channels as \"channels\": {\"" + role +
+                        "\": {\"channels\": [...]}} in capture.json, or choose another "
+                        "--profile or --layer)");
     };
     for (const PipelineStep& step : pipeline.steps) {
         for (const InputSpec& input : step.manifest->inputs) {
@@ -143,7 +166,7 @@ void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header
             if (source.step < 0 && !contains(header.roles, source.output))
                 missing("the mix of step '" + step.name + "'", source.output);
         for (const std::string& role : host_roles(step))
-            if (!contains(header.roles, role))
+            if (!contains(header.roles, role) && !is_coverage_role(role))
                 missing("a value or the mask of step '" + step.name + "'", role);
     }
     if (!contains(header.roles, kColorRole)) missing("the output", kColorRole);

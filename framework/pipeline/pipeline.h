@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "framework/capture/capture.h"
 #include "framework/core/diagnostics.h"
 #include "framework/core/param.h"
 #include "framework/effect/manifest/manifest.h"
 #include "framework/effect/registry.h"
-#include "framework/capture/capture.h"
 #include "framework/pipeline/look.h"
 #include "framework/pipeline/value_source.h"
 
@@ -58,6 +58,9 @@ struct Pipeline {
 
     /// Roles that some step takes from the capture, required or not, and `color` for the outputs.
     std::vector<std::string> capture_roles() const;
+    /// Objects that parameters of steps name, for which object_id must hold the hashes of names; masks take
+    /// their coverage instead.
+    std::vector<std::string> object_names() const;
     /// Roles that some input takes from the capture before (-1) or after (+1).
     std::vector<std::string> neighbour_roles(int offset) const;
     bool writes_role(const std::string& role) const;
@@ -98,7 +101,7 @@ struct PipelineOptions {
 /// otherwise. Faults go to `diagnostics`, all of them; the result is
 /// usable if there was none.
 Pipeline bind_pipeline(const Look& look, EffectRegistry& effects, const PipelineOptions& options,
-                          Diagnostics& diagnostics);
+                       Diagnostics& diagnostics);
 
 /// The value with the path of a file, where it is one, named from `folder`; "" stays "".
 ParamValue with_file(const ParamSpec& spec, ParamValue value, const std::filesystem::path& folder);

@@ -48,7 +48,8 @@ struct Coverage {
 
 /// One pixel with up to four covering objects, under the names that Blender gives.
 std::filesystem::path write_matte(const TemporaryFolder& folder, const std::vector<Coverage>& objects,
-                                  PixelType type, const std::string& compression = "zip") {
+                                  PixelType type, const std::string& compression = "zip",
+                                  const std::vector<std::string>& components = {"R", "G", "B", "A"}) {
     Image image(2, 1, 8);
     for (std::size_t i = 0; i < objects.size(); ++i) {
         image.at(0, 0, int(2 * i)) = std::bit_cast<float>(cryptomatte_hash(objects[i].object));
@@ -59,7 +60,8 @@ std::filesystem::path write_matte(const TemporaryFolder& folder, const std::vect
     for (int c = 0; c < 3; ++c) channels.push_back({std::string(1, "RGB"[c]), PixelType::half, &color, c});
     for (int c = 0; c < 8; ++c)
         channels.push_back(
-            {"ViewLayer.CryptoObject0" + std::to_string(c / 4) + "." + "RGBA"[c % 4], type, &image, c});
+            {"ViewLayer.CryptoObject0" + std::to_string(c / 4) + "." + components[std::size_t(c % 4)], type,
+             &image, c});
     ExrWriteOptions options;
     options.data_window = options.display_window = {0, 0, 1, 0};
     options.compression = compression;
@@ -88,6 +90,98 @@ TEST(Cryptomatte, SumsTheCoverageOfNamedObjectsOverAllRanks) {
     EXPECT_FLOAT_EQ(read_with(path, {"Suzanne", "Pole"}).images.at("mask").at(0, 0, 0), 0.3125f);
     EXPECT_FLOAT_EQ(read_with(path, {"Cube"}).images.at("mask").at(1, 0, 0), 0);
     EXPECT_EQ(read_with(path, {"Cube"}).images.at("object_id").uint_at(0, 0, 0), cryptomatte_hash("Cube"));
+}
+
+// Blender's, and those of Clarisse and of what Nuke writes again.
+TEST(Cryptomatte, IsReadWhicheverWayItsComponentsAreSpelled) {
+    for (const std::vector<std::string>& components :
+         {std::vector<std::string>{"r", "g", "b", "a"}, {"red", "green", "blue", "alpha"}}) {
+        const TemporaryFolder folder;
+        const auto path = write_matte(folder, {{"Cube", 0.5f}, {"Suzanne", 0.25f}, {"Ball", 0.125f}},
+                                      PixelType::float32, "zip", components);
+        EXPECT_FLOAT_EQ(read_with(path, {"Suzanne", "Ball"}).images.at("mask").at(0, 0, 0), 0.375f);
+    }
+}
+
+CaptureReader reader_of(Sequence& sequence, const std::filesystem::path& path) {
+    sequence.files = FramePattern(path.string());
+    Diagnostics diagnostics;
+    return CaptureReader(sequence, read_profiles(AFTERSHADE_SOURCE_DIR "/profiles", diagnostics), {});
+}
+
+TEST(Coverage, OfObjectsThatALookNamesNeedsNothingInTheCapture) {
+    const TemporaryFolder folder;
+    const auto path = write_matte(folder, {{"Cube", 0.5f}, {"Suzanne", 0.25f}}, PixelType::float32);
+    Sequence sequence;
+    const std::string role = coverage_role(std::vector<TableKey>{{0, 0, "Suzanne"}, {0, 0, "Pole"}});
+    EXPECT_EQ(find_role(role)->kind, RoleKind::coverage);
+    const Capture capture = reader_of(sequence, path).read(1, std::vector<std::string>{role});
+    EXPECT_FLOAT_EQ(capture.images.at(role).at(0, 0, 0), 0.25f);
+    EXPECT_FLOAT_EQ(capture.images.at(role).at(1, 0, 0), 0);
+}
+
+TEST(Coverage, OfAnObjectThatTheManifestLacksIsRefused) {
+    const TemporaryFolder folder;
+    Sequence sequence;
+    const CaptureReader reader = reader_of(sequence, write_matte(folder, {{"Cube", 1}}, PixelType::float32));
+    const std::vector<std::string> roles = {coverage_role(std::vector<TableKey>{{0, 0, "Cub"}})};
+    const std::string message = capture_error([&] { reader.read(1, roles); });
+    EXPECT_NE(message.find("has no object 'Cub'; did you mean 'Cube'?"), std::string::npos) << message;
+}
+
+TEST(Coverage, IsRefusedWhereObjectsHaveNumbersAndNoNames) {
+    const TemporaryFolder folder;
+    const Image image = [] {
+        Image values(2, 1, 1);
+        values.at(0, 0, 0) = 7;
+        return values;
+    }();
+    std::vector<ExrOutputChannel> channels;
+    for (const char* name : {"V.Combined.R", "V.Combined.G", "V.Combined.B", "V.IndexOB.X"})
+        channels.push_back({name, PixelType::float32, &image, 0});
+    ExrWriteOptions options;
+    options.data_window = options.display_window = {0, 0, 1, 0};
+    write_exr(folder / "ids.exr", channels, options);
+    Sequence sequence;
+    const CaptureReader reader = reader_of(sequence, folder / "ids.exr");
+    const std::vector<std::string> roles = {coverage_role(std::vector<TableKey>{{0, 0, "Suzanne"}})};
+    const std::string message = capture_error([&] { reader.read(1, roles); });
+    EXPECT_NE(message.find("names the object 'Suzanne', but object_id is read from V.IndexOB.X, which holds "
+                           "numbers, and the file has no Cryptomatte (render a Cryptomatte of objects"),
+              std::string::npos)
+        << message;
+    const std::vector<std::string> by_number = {coverage_role(std::vector<TableKey>{{7, 7, ""}})};
+    EXPECT_EQ(reader.read(1, by_number).images.at(by_number[0]).at(0, 0, 0), 1);
+}
+
+TEST(Cryptomatte, TellsWhatItsObjectsCover) {
+    const TemporaryFolder folder;
+    const auto path = write_matte(folder, {{"Cube", 0.5f}, {"Suzanne", 0.25f}}, PixelType::float32);
+    Sequence sequence;
+    const CaptureReader reader = reader_of(sequence, path);
+    const auto objects = reader.cryptomatte_coverage(1, reader.cryptomatte_name(1, ""));
+    ASSERT_EQ(objects.size(), 4u);
+    EXPECT_EQ(objects[0].name, "Cube");
+    EXPECT_DOUBLE_EQ(objects[0].coverage_px, 0.5);
+    EXPECT_EQ(objects[1].name, "Suzanne");
+    EXPECT_DOUBLE_EQ(objects[3].coverage_px, 0);
+}
+
+// "files": {"object_id": "crypto.exr"} beside "frames" of the beauty.
+TEST(Cryptomatte, InAFileOfItsOwnGivesTheIdsOfObjects) {
+    const TemporaryFolder folder;
+    const auto matte = write_matte(folder, {{"Cube", 1}}, PixelType::float32);
+    const Image image(2, 1, 3);
+    std::vector<ExrOutputChannel> channels;
+    for (int c = 0; c < 3; ++c) channels.push_back({std::string(1, "RGB"[c]), PixelType::half, &image, c});
+    ExrWriteOptions options;
+    options.data_window = options.display_window = {0, 0, 1, 0};
+    write_exr(folder / "beauty.exr", channels, options);
+    Sequence sequence;
+    sequence.role_files.emplace("object_id", FramePattern(matte.string()));
+    const Capture capture =
+        reader_of(sequence, folder / "beauty.exr").read(1, std::vector<std::string>{"object_id"});
+    EXPECT_EQ(capture.images.at("object_id").uint_at(0, 0, 0), cryptomatte_hash("Cube"));
 }
 
 TEST(Cryptomatte, KnowsTheObjectsOfItsManifest) {

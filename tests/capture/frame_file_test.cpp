@@ -1,60 +1,18 @@
 #include "framework/capture/frame_file.h"
 
-#include <OpenEXR/ImfChannelList.h>
-#include <OpenEXR/ImfFrameBuffer.h>
-#include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfMultiPartOutputFile.h>
-#include <OpenEXR/ImfOutputPart.h>
-#include <OpenEXR/ImfPartType.h>
 #include <gtest/gtest.h>
 
+#include "tests/capture/part_files.h"
 #include "tests/file/image_files.h"
 
 namespace aftershade::test {
 namespace {
 
-struct TestPart {
-    std::string name;
-    std::string view;
-    std::vector<std::string> channels;
-    Imath::Box2i data_window;
-    float value = 0;
-};
-
-/// Every pixel of a part holds its value, plus a tenth for each channel.
-void write_parts(const std::filesystem::path& path, const std::vector<TestPart>& parts) {
-    std::vector<Imf::Header> headers;
-    for (const TestPart& part : parts) {
-        Imf::Header header(Imath::Box2i({0, 0}, {15, 7}), part.data_window);
-        header.setName(part.name);
-        header.setType(Imf::SCANLINEIMAGE);
-        if (!part.view.empty()) header.setView(part.view);
-        for (const std::string& channel : part.channels)
-            header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
-        headers.push_back(header);
-    }
-    Imf::MultiPartOutputFile file(path.c_str(), headers.data(), int(headers.size()));
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        const Imath::Box2i window = parts[i].data_window;
-        const std::size_t width = std::size_t(window.max.x - window.min.x + 1);
-        const std::size_t height = std::size_t(window.max.y - window.min.y + 1);
-        std::vector<std::vector<float>> planes;
-        Imf::FrameBuffer frame;
-        for (std::size_t c = 0; c < parts[i].channels.size(); ++c)
-            planes.emplace_back(width * height, parts[i].value + 0.1f * float(c));
-        for (std::size_t c = 0; c < planes.size(); ++c)
-            frame.insert(parts[i].channels[c], Imf::Slice::Make(Imf::FLOAT, planes[c].data(), window));
-        Imf::OutputPart output(file, int(i));
-        output.setFrameBuffer(frame);
-        output.writePixels(int(height));
-    }
-}
-
 std::vector<std::string> names_of(const FrameFile& file) {
     return channel_names(file.merged());
 }
 
-const Imath::Box2i kWhole({0, 0}, {15, 7});
+const Imath::Box2i kWhole = kWholePart;
 const Window kGrid{0, 0, 15, 7};
 
 TEST(FrameFile, PutsTheChannelsOfAllPartsTogether) {
@@ -62,7 +20,7 @@ TEST(FrameFile, PutsTheChannelsOfAllPartsTogether) {
     write_parts(folder / "a.exr",
                 {{"beauty", "", {"R", "G", "B"}, kWhole, 1}, {"depth", "", {"Z"}, kWhole, 5}});
     const FrameFile file(folder / "a.exr", {}, "");
-    EXPECT_EQ(names_of(file), (std::vector<std::string>{"B", "G", "R", "Z"}));
+    EXPECT_EQ(names_of(file), (std::vector<std::string>{"B", "G", "R", "depth.Z"}));
     const Image image = file.read_floats(std::vector<std::string>{"R", "Z"}, kGrid, 0);
     EXPECT_FLOAT_EQ(image.at(3, 3, 0), 1);
     EXPECT_FLOAT_EQ(image.at(3, 3, 1), 5);
@@ -74,6 +32,32 @@ TEST(FrameFile, NamesAChannelByItsPartWhereAnotherPartHasTheNameAlready) {
     const FrameFile file(folder / "a.exr", {}, "");
     EXPECT_EQ(names_of(file), (std::vector<std::string>{"R", "Depth.R"}));
     EXPECT_FLOAT_EQ(file.read_floats(std::vector<std::string>{"Depth.R"}, kGrid, 0).at(0, 0, 0), 5);
+}
+
+// As Nuke writes a part for each layer (producers/nuke/channelTestNukePartPerLayer.exr).
+TEST(FrameFile, TakesThePartsNameWithoutItsViewForTheLayer) {
+    const TemporaryFolder folder;
+    write_parts(folder / "a.exr", {{"character.main", "main", {"Z", "red"}, kWhole, 1},
+                                   {"rgba.main", "main", {"R", "G", "B"}, kWhole, 2},
+                                   {"depth.main", "main", {"Z"}, kWhole, 3},
+                                   {"forward_main", "main", {"u", "v"}, kWhole, 4}});
+    const FrameFile file(folder / "a.exr", {}, "");
+    EXPECT_EQ(names_of(file), (std::vector<std::string>{"character.Z", "character.red", "B", "G", "R",
+                                                        "depth.Z", "forward.u", "forward.v"}));
+    // The part that holds depth alone is what Z means; its name with the layer is another name of it.
+    for (const std::string name : {"Z", "depth.Z"})
+        EXPECT_FLOAT_EQ(file.read_floats(std::vector<std::string>{name}, kGrid, 0).at(0, 0, 0), 3) << name;
+    EXPECT_FLOAT_EQ(file.read_floats(std::vector<std::string>{"rgba.R"}, kGrid, 0).at(0, 0, 0), 2);
+}
+
+// As Nuke writes a part for each view: its own attributes stand in the first alone.
+TEST(FrameFile, HasTheTextsOfEveryPart) {
+    const TemporaryFolder folder;
+    write_parts(folder / "a.exr", {{"right", "right", {"R"}, kWhole, 1, {{"nuke/version", "13.2v1"}}},
+                                   {"left", "left", {"R"}, kWhole, 2}});
+    const FrameFile left(folder / "a.exr", {}, "left");
+    EXPECT_EQ(left.merged().metadata.text("nuke/version"), "13.2v1");
+    EXPECT_EQ(left.merged().metadata.text("view"), "left");
 }
 
 TEST(FrameFile, ReadsOneViewAndWhatBelongsToNone) {

@@ -82,6 +82,27 @@ TEST(Sequence, OfABareFileIsNumberedByItsName) {
     EXPECT_EQ(still.path_of(1), folder / "still.exr");
 }
 
+TEST(Sequence, OfAFileWithMarksInItsNameIsThatFile) {
+    for (const char* name : {"final#2.exr", "shot@home.exr", "50%d.exr"}) {
+        const TemporaryFolder folder;
+        write_text(folder / name, "");
+        const Sequence sequence = opened((folder / name).string());
+        ASSERT_EQ(sequence.frames.size(), 1u) << name;
+        EXPECT_EQ(sequence.path_of(sequence.frames[0]), folder / name);
+    }
+}
+
+TEST(Sequence, OfAnotherPaddingIsNamed) {
+    const TemporaryFolder folder;
+    for (const char* name : {"f_8.exr", "f_9.exr", "f_10.exr"}) write_text(folder / name, "");
+    const std::string fault = capture_error([&] {
+        Diagnostics diagnostics;
+        open_sequence((folder / "f_####.exr").string(), diagnostics);
+    });
+    EXPECT_NE(fault.find("no file fits the pattern"), std::string::npos) << fault;
+    EXPECT_NE(fault.find("f_#.exr fits 3 files"), std::string::npos) << fault;
+}
+
 TEST(Sequence, ThatIsNotThereIsACaptureError) {
     const TemporaryFolder folder;
     Diagnostics diagnostics;

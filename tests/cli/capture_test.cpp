@@ -269,6 +269,31 @@ float red_of(const fs::path& file) {
     return ExrFile(file).read_floats(0, Args{"R"}).at(0, 0, 0);
 }
 
+/// Engines' buffers: light, and an alpha that nobody wrote.
+TEST(Alpha, ThatIsZeroEverywhereIsSaidAndCanBeReadAsOne) {
+    const TemporaryFolder folder;
+    Image color(4, 4, 4);
+    for (std::size_t i = 0; i < color.floats().size(); ++i) color.floats()[i] = i % 4 == 3 ? 0.0f : 0.5f;
+    std::vector<ExrOutputChannel> channels;
+    for (int c = 0; c < 4; ++c) channels.push_back({std::string(1, "RGBA"[c]), PixelType::half, &color, c});
+    ExrWriteOptions options;
+    options.data_window = options.display_window = {0, 0, 3, 3};
+    write_exr(folder / "a.exr", channels, options);
+    const auto alpha_of = [&](Args more) {
+        Args args{"run", (folder / "look.json").string(), (folder / "a.exr").string(), "-o",
+                  (folder / "out.png").string(), "--progress", "plain", "--backend", "osmesa"};
+        args.insert(args.end(), more.begin(), more.end());
+        write_text(folder / "look.json", kEmptyLook);
+        const CommandResult result = run_aftershade(args, folder.path());
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        const bool is_said = result.err.find("alpha of color is 0 everywhere") != std::string::npos;
+        return std::pair(read_png(folder / "out.png").at(1, 1, 3), is_said);
+    };
+    EXPECT_EQ(alpha_of({}), std::pair(0.0f, true));
+    EXPECT_EQ(alpha_of({"--alpha", "opaque"}), std::pair(1.0f, false));
+    EXPECT_EQ(alpha_of({"--alpha", "keep"}), std::pair(0.0f, true));
+}
+
 TEST(MissingFrame, IsAFailureUnlessSkippedOrHeld) {
     const TemporaryFolder failed, skipped, held;
     EXPECT_EQ(run(failed, kEmptyLook, gappy_sequence(failed, "error")).exit_code, 1);

@@ -1,0 +1,248 @@
+// Which layer and which Cryptomatte of a file the roles are taken from.
+#include <algorithm>
+#include <utility>
+
+#include "framework/capture/capture_internal.h"
+#include "framework/capture/common_names.h"
+#include "framework/core/error.h"
+#include "framework/image/role.h"
+
+namespace aftershade {
+
+namespace {
+
+constexpr std::string_view kLayerPrefix = "{layer}.";
+
+/// The decoding with every channel below the layer.
+RoleDecoding below_layer(RoleDecoding decoding) {
+    for (auto& names : decoding.layers)
+        for (std::string& alternatives : names) {
+            std::string prefixed;
+            for (std::size_t start = 0; start <= alternatives.size();) {
+                const std::size_t bar = std::min(alternatives.find('|', start), alternatives.size());
+                const std::string one = alternatives.substr(start, bar - start);
+                prefixed += (start > 0 ? "|" : "") +
+                            (one.starts_with(kLayerPrefix) ? one : std::string(kLayerPrefix) + one);
+                start = bar + 1;
+            }
+            alternatives = prefixed;
+        }
+    return decoding;
+}
+
+bool takes_layer(const RoleDecoding& decoding) {
+    for (const auto& names : decoding.layers)
+        for (const std::string& name : names)
+            if (name.starts_with(kLayerPrefix)) return true;
+    return false;
+}
+
+/// The one called `name` in the layer, else in any.
+const CryptomatteLayer& named_cryptomatte(const std::vector<CryptomatteLayer>& mattes,
+                                          const std::string& name, const std::string& layer,
+                                          const FrameFile& file) {
+    for (const CryptomatteLayer& matte : mattes)
+        if (matte.name == layer + "." + name) return matte;
+    return choose_cryptomatte(mattes, name, file);
+}
+
+bool is_among(const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+}  // namespace
+
+void CaptureReader::choose_layer(OpenFrame& open) const {
+    const ExrPart& part = open.main->merged();
+    CaptureHeader& header = open.header;
+    header.layers = find_layers(*open.profile, part);
+    header.layer = sequence_.layer;
+    if (sequence_.layer.empty()) {
+        if (header.layers.empty()) return;
+        header.layer = header.layers.front();
+        if (header.layers.size() > 1)
+            header.notes.push_back("the file has the layers " + list_of_names(header.layers, "and") + "; '" +
+                                   header.layer +
+                                   "' is read (choose with --layer, or 'layer' in capture.json)");
+        return;
+    }
+    if (is_among(header.layers, sequence_.layer)) return;
+    if (has_layer(part, sequence_.layer)) {
+        open.is_foreign_layer = true;
+        return;
+    }
+    const std::vector<std::string> known = header.layers.empty() ? color_layers(part) : header.layers;
+    throw Error(ExitCode::usage, header.path.string() + ": has no layer '" + sequence_.layer + "'" +
+                                     (known.empty() ? std::string("; it has no layers")
+                                                    : did_you_mean(sequence_.layer, known) + " (it has " +
+                                                          list_of_names(known, "and") + ")"));
+}
+
+std::optional<FoundChannels> CaptureReader::find_role_channels(const OpenFrame& open, const FrameFile& file,
+                                                               const std::string& role,
+                                                               const RoleDecoding& decoding) const {
+    const ExrPart& part = file.merged();
+    const bool is_own_file = &file != open.main.get();
+    const std::string layer = is_own_file ? find_layer(*open.profile, part) : open.header.layer;
+    const bool is_foreign = open.is_foreign_layer && !is_own_file;
+    if (!decoding.layers.empty())
+        if (auto found = find_channels(is_foreign ? below_layer(decoding) : decoding, layer, part))
+            return found;
+    // What capture.json says is what the user wants, and nothing else.
+    if (sequence_.channels.contains(role)) return std::nullopt;
+    if (role == kColorRole) return find_common_color(part, layer);
+    if (role == kDepthRole && !is_own_file) return find_common_depth(part, layer);
+    return std::nullopt;
+}
+
+/// A compositor's result comes as a layer of its own beside the one that it was made from. Its colour is the
+/// picture, and the rest is the other layer's, if there is but one.
+void CaptureReader::take_data_of_other_layer(OpenFrame& open) const {
+    CaptureHeader& header = open.header;
+    if (!sequence_.layer.empty() || header.layers.size() != 2) return;
+    for (const auto& [role, source] : open.roles)
+        if (role != kColorRole && source.file == open.main.get() && takes_layer(source.decoding)) return;
+    const std::string first = std::exchange(header.layer, header.layers.back());
+    std::vector<std::string> taken;
+    for (const auto& [role, decoding] : open.profile->roles) {
+        if (open.roles.contains(role) || sequence_.channels.contains(role) || !takes_layer(decoding))
+            continue;
+        add_role(open, role, decoding);
+        if (open.roles.contains(role)) taken.push_back(role);
+    }
+    header.layer = first;
+    if (taken.empty()) return;
+    header.notes = {"the layer '" + first + "' has a colour alone; " + list_of_names(taken, "and") +
+                    (taken.size() == 1 ? " is" : " are") + " read from the layer '" + header.layers.back() +
+                    "' (choose one layer for all with --layer, or 'layer' in capture.json)"};
+}
+
+/// The file that Cryptomattes are read from: object_id's own, if it has any, else the main one.
+const FrameFile& CaptureReader::cryptomatte_file(const OpenFrame& open) const {
+    const auto own = open.role_files.find(kObjectIdRole);
+    return own != open.role_files.end() && !find_cryptomattes(*own->second).empty() ? *own->second
+                                                                                    : *open.main;
+}
+
+std::optional<CryptomatteLayer> CaptureReader::find_cryptomatte(const OpenFrame& open,
+                                                                std::span<const std::string> objects) const {
+    const FrameFile& file = cryptomatte_file(open);
+    std::vector<CryptomatteLayer> mattes = find_cryptomattes(file);
+    if (sequence_.cryptomatte && !sequence_.cryptomatte->layer.empty())
+        return named_cryptomatte(mattes, sequence_.cryptomatte->layer, open.header.layer, file);
+    if (mattes.empty()) return std::nullopt;
+    const auto is_elsewhere = [&](const CryptomatteLayer& matte) {
+        return !matte.name.starts_with(open.header.layer + ".");
+    };
+    if (!open.header.layer.empty() && !std::all_of(mattes.begin(), mattes.end(), is_elsewhere))
+        std::erase_if(mattes, is_elsewhere);
+    return cryptomatte_with(mattes, objects, file);
+}
+
+void CaptureReader::find_cryptomatte_roles(OpenFrame& open) const {
+    RoleSource source;
+    source.from_cryptomatte = true;
+    source.file = &cryptomatte_file(open);
+    const bool is_own_file = source.file != open.main.get(), is_named = !sequence_.object_names.empty();
+    if (!sequence_.cryptomatte && !is_named && !is_own_file) return;
+    if (!sequence_.cryptomatte && find_cryptomattes(*source.file).empty()) return;
+    if (sequence_.cryptomatte && !sequence_.cryptomatte->mask.empty()) open.roles[kMaskRole] = source;
+    if (!is_named && !is_own_file && open.roles.contains(kObjectIdRole)) return;
+    if (is_named)
+        open.header.notes.push_back(
+            "the look names objects, so object_id is read from a Cryptomatte; ids by number find nothing "
+            "there");
+    open.roles[kObjectIdRole] = source;
+    open.header.role_channels.erase(kObjectIdRole);
+}
+
+Image CaptureReader::read_cryptomatte_role(const OpenFrame& open, RoleKind kind) const {
+    static const std::vector<std::string> kNoNames;
+    const bool is_mask = kind == RoleKind::coverage;
+    const auto& objects = is_mask ? sequence_.cryptomatte->mask : sequence_.object_names;
+    const FrameFile& file = cryptomatte_file(open);
+    const auto matte = find_cryptomatte(open, objects);
+    if (!matte) throw Error(ExitCode::capture, file.path().string() + ": has no Cryptomatte");
+    const Window& grid = open.header.data_window;
+    return is_mask ? cryptomatte_mask(file, *matte, objects, grid) : cryptomatte_ids(file, *matte, grid);
+}
+
+Image CaptureReader::read_coverage(const OpenFrame& open, const std::string& role) const {
+    const Window& grid = open.header.data_window;
+    const std::vector<TableKey> objects = objects_of_coverage(role);
+    std::vector<std::string> names;
+    std::vector<TableKey> ids;
+    for (const TableKey& key : objects) {
+        if (key.name.empty()) ids.push_back(key);
+        else names.push_back(key.name);
+    }
+    const auto matte = find_cryptomatte(open, names);
+    Image mask(grid.width(), grid.height(), 1);
+    if (matte) mask = cryptomatte_mask(cryptomatte_file(open), *matte, names, grid);
+    if ((matte && ids.empty()) || (matte && !open.roles.contains(kObjectIdRole))) return mask;
+    Image object_id;
+    Capture unused;
+    if (open.roles.contains(kObjectIdRole)) object_id = read_role(open, kObjectIdRole, nullptr, unused);
+    if (!matte && !names.empty()) require_names(open, object_id, names);
+    if (object_id.empty()) return mask;
+    const std::vector<IdRange> ranges = id_ranges(matte ? ids : objects);
+    for (std::size_t i = 0; i < mask.floats().size(); ++i)
+        if (contains(ranges, object_id.uints()[i])) mask.floats()[i] = 1;
+    return mask;
+}
+
+/// A name stands for a hash, and no hash is below 2^23: its exponent is never 0.
+void CaptureReader::require_names(const OpenFrame& open, const Image& ids,
+                                  std::span<const std::string> names) const {
+    constexpr std::uint32_t kSmallestHash = 1u << 23;
+    const auto source = open.roles.find(kObjectIdRole);
+    std::string instead = "the file has neither a Cryptomatte nor the role object_id";
+    if (source != open.roles.end()) {
+        const RoleSource& found = source->second;
+        if (found.from_cryptomatte) return;
+        const auto values = ids.uints();
+        const bool has_hash =
+            std::any_of(values.begin(), values.end(), [](std::uint32_t id) { return id >= kSmallestHash; });
+        const bool is_empty =
+            std::all_of(values.begin(), values.end(), [](std::uint32_t id) { return id == 0; });
+        const std::string& channel = found.channels[0][0];
+        if (has_hash || (is_empty && found.file->type_of(channel) == PixelType::uint32)) return;
+        instead =
+            "object_id is read from " + channel + ", which holds numbers, and the file has no Cryptomatte";
+    }
+    const std::vector<std::string> declared = declared_cryptomattes(cryptomatte_file(open));
+    std::string remedy = "render a Cryptomatte of objects, or name the object by its number";
+    if (!declared.empty()) {
+        instead += "; its header tells of " + list_of_names(declared, "and") +
+                   ", whose channels are not in the file";
+        remedy =
+            "write multilayer EXR, or name the file with the Cryptomatte as \"files\": "
+            "{\"object_id\": ...} in capture.json";
+    }
+    throw Error(ExitCode::capture, open.header.path.string() + ": the look names the object '" +
+                                       names.front() + "', but " + instead + " (" + remedy + ")");
+}
+
+std::vector<CryptomatteLayer> CaptureReader::cryptomattes(int frame) const {
+    const OpenFrame open = this->open(frame);
+    return find_cryptomattes(cryptomatte_file(open));
+}
+
+std::string CaptureReader::cryptomatte_name(int frame, const std::string& name) const {
+    const OpenFrame open = this->open(frame);
+    const FrameFile& file = cryptomatte_file(open);
+    const std::vector<CryptomatteLayer> mattes = find_cryptomattes(file);
+    if (!name.empty()) return named_cryptomatte(mattes, name, open.header.layer, file).name;
+    const auto matte = find_cryptomatte(open, {});
+    if (!matte) throw Error(ExitCode::capture, file.path().string() + ": has no Cryptomatte");
+    return matte->name;
+}
+
+std::vector<ObjectCoverage> CaptureReader::cryptomatte_coverage(int frame, const std::string& name) const {
+    const OpenFrame open = this->open(frame);
+    const FrameFile& file = cryptomatte_file(open);
+    const std::vector<CryptomatteLayer> mattes = find_cryptomattes(file);
+    return coverage_of_objects(file, choose_cryptomatte(mattes, name, file), open.header.data_window);
+}
+
+}  // namespace aftershade

@@ -1,0 +1,122 @@
+#include "framework/capture/common_names.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <set>
+#include <string_view>
+
+#include "framework/image/role.h"
+
+namespace aftershade {
+
+namespace {
+
+using Components = std::array<const char*, 4>;
+constexpr std::array kColorComponents = {Components{"R", "G", "B", "A"}, Components{"r", "g", "b", "a"},
+                                         Components{"red", "green", "blue", "alpha"},
+                                         Components{"Red", "Green", "Blue", "Alpha"}};
+
+std::string in_lower_case(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    return text;
+}
+
+std::string joined_name(const std::string& layer, const std::string& component) {
+    return layer.empty() ? component : layer + "." + component;
+}
+
+bool part_has(const ExrPart& part, const std::string& name) {
+    return std::any_of(part.channels.begin(), part.channels.end(),
+                       [&](const ExrChannel& channel) { return channel.name == name; });
+}
+
+/// The channels of the layer's colour; "" for an alpha that is absent.
+std::optional<std::vector<std::string>> color_of_layer(const ExrPart& part, const std::string& layer) {
+    for (const Components& components : kColorComponents) {
+        std::vector<std::string> names;
+        for (const char* component : components) names.push_back(joined_name(layer, component));
+        if (!part_has(part, names[0]) || !part_has(part, names[1]) || !part_has(part, names[2])) continue;
+        if (!part_has(part, names[3])) names[3].clear();
+        return names;
+    }
+    return std::nullopt;
+}
+
+/// What the file's header calls a Cryptomatte has a preview, which looks like a colour.
+std::set<std::string> cryptomatte_names(const ExrPart& part) {
+    std::set<std::string> names;
+    for (const std::string& attribute : part.metadata.names())
+        if (attribute.starts_with("cryptomatte/") && attribute.ends_with("/name"))
+            names.insert(part.metadata.text(attribute).value_or(""));
+    return names;
+}
+
+/// By the last word of its name: "N" of "beauty.N".
+bool holds_data(const std::string& layer) {
+    static const std::set<std::string> words = {
+        "n",       "normal",   "normals",   "ng",           "ns",
+        "p",       "position", "positions", "posw",         "normw",
+        "pos",     "z",        "depth",     "velocity",     "vector",
+        "vectors", "motion",   "mvec",      "motionvector", "motionvec",
+        "forward", "backward", "uv",        "st",           "tangent",
+        "mask",    "id"};
+    if (layer.empty()) return false;
+    const std::string word = in_lower_case(layer.substr(layer.rfind('.') + 1));
+    return words.contains(word) || word.find("crypto") != std::string::npos || find_role(word).has_value();
+}
+
+/// Of several layers, the one that a person would take for the picture.
+std::optional<std::string> usual_layer(const std::vector<std::string>& layers) {
+    constexpr std::array kUsual = {"",       "image", "combined", "composite", "rgba",
+                                   "beauty", "color", "c",        "ci"};
+    for (const char* usual : kUsual)
+        for (const std::string& layer : layers)
+            if (in_lower_case(layer.substr(layer.rfind('.') + 1)) == usual) return layer;
+    if (layers.size() == 1) return layers.front();
+    return std::nullopt;
+}
+
+}  // namespace
+
+bool has_layer(const ExrPart& part, const std::string& layer) {
+    return std::any_of(part.channels.begin(), part.channels.end(),
+                       [&](const ExrChannel& channel) { return channel.name.starts_with(layer + "."); });
+}
+
+std::vector<std::string> color_layers(const ExrPart& part) {
+    const std::set<std::string> mattes = cryptomatte_names(part);
+    const auto is_rank = [&](const std::string& layer) {
+        return layer.size() > 2 && mattes.contains(layer.substr(0, layer.size() - 2));
+    };
+    std::vector<std::string> layers;
+    for (const ExrChannel& channel : part.channels) {
+        const std::size_t dot = channel.name.rfind('.');
+        const std::string layer = dot == std::string::npos ? "" : channel.name.substr(0, dot);
+        if (std::find(layers.begin(), layers.end(), layer) != layers.end() || holds_data(layer) ||
+            mattes.contains(layer) || is_rank(layer))
+            continue;
+        if (color_of_layer(part, layer)) layers.push_back(layer);
+    }
+    return layers;
+}
+
+std::optional<FoundChannels> find_common_color(const ExrPart& part, const std::string& layer) {
+    std::vector<std::string> candidates = color_layers(part);
+    if (!layer.empty()) {
+        if (const auto own = color_of_layer(part, layer)) return FoundChannels{*own};
+        std::erase_if(candidates, [&](const std::string& one) { return !one.starts_with(layer + "."); });
+    }
+    const auto chosen = usual_layer(candidates);
+    if (!chosen) return std::nullopt;
+    return FoundChannels{*color_of_layer(part, *chosen)};
+}
+
+std::optional<FoundChannels> find_common_depth(const ExrPart& part, const std::string& layer) {
+    for (const char* name : {"depth.Z", "Depth.Z", "Depth.V", "depth.V", "Z"})
+        if (part_has(part, joined_name(layer, name))) return FoundChannels{{joined_name(layer, name)}};
+    return std::nullopt;
+}
+
+}  // namespace aftershade

@@ -1,0 +1,27 @@
+// Names of channels that many programs use, for files in which a producer's profile finds nothing.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/capture/profile.h"
+
+namespace aftershade {
+
+/// Layers that hold a colour: every prefix before R, G and B, in upper or lower case or in full (`red`), in
+/// the file's order; "" for none. Without Cryptomattes and layers whose name says that they are no picture.
+std::vector<std::string> color_layers(const ExrPart& part);
+
+/// The colour of a file whose profile does not name it: of `layer`, or of a layer below it. With "" the
+/// channels without a layer, else the layer that has one of the usual names, else the only one. nullopt where
+/// there is none or several would do.
+std::optional<FoundChannels> find_common_color(const ExrPart& part, const std::string& layer);
+
+/// Depth under one of the usual names, below `layer`.
+std::optional<FoundChannels> find_common_depth(const ExrPart& part, const std::string& layer);
+
+/// Whether a channel lies in the layer or in one below it.
+bool has_layer(const ExrPart& part, const std::string& layer);
+
+}  // namespace aftershade

@@ -1,0 +1,300 @@
+#include "framework/capture/stored_matrices.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "framework/image/camera_matrix.h"
+
+namespace aftershade {
+
+namespace {
+
+constexpr const char* kVersionAttribute = "aftershade/matrices";
+/// Matrices by OpenEXR's definition.
+constexpr int kOpenExrVersion = 2;
+
+/// Producers store float, some of them after products of several matrices.
+constexpr double kTolerance = 2e-3;
+/// Of a pixel's width over its height, which producers round or leave out.
+constexpr double kAspectTolerance = 0.05;
+
+using Rows = std::array<glm::dvec4, 4>;
+
+Rows rows_of(const glm::dmat4& matrix) {
+    const glm::dmat4 turned = glm::transpose(matrix);
+    return {turned[0], turned[1], turned[2], turned[3]};
+}
+
+glm::dmat4 matrix_of(const Rows& rows) {
+    return glm::transpose(glm::dmat4(rows[0], rows[1], rows[2], rows[3]));
+}
+
+CameraMatrix camera_matrix(const glm::dmat4& matrix) {
+    CameraMatrix result{};
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column) result[std::size_t(row * 4 + column)] = matrix[column][row];
+    return result;
+}
+
+/// As it acts on column vectors. EXR's act on row vectors, so GLM's columns are its rows.
+std::optional<glm::dmat4> stored_matrix(const ExrMetadata& metadata, const char* name) {
+    const auto value = metadata.value(name);
+    const auto* stored = value ? std::get_if<std::vector<float>>(&*value) : nullptr;
+    if (!stored || stored->size() != 16) return std::nullopt;
+    if (!std::all_of(stored->begin(), stored->end(), [](float v) { return std::isfinite(v); }))
+        return std::nullopt;
+    glm::dmat4 matrix;
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row) matrix[column][row] = (*stored)[std::size_t(column * 4 + row)];
+    return matrix;
+}
+
+std::vector<float> stored_values(const glm::dmat4& matrix) {
+    std::vector<float> stored(16);
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row) stored[std::size_t(column * 4 + row)] = float(matrix[column][row]);
+    return stored;
+}
+
+bool is_affine(const glm::dmat4& matrix) {
+    const glm::dvec4 last = rows_of(matrix)[3];
+    return glm::length(last - glm::dvec4(0, 0, 0, 1)) < kTolerance;
+}
+
+/// Axes at right angles and of one length: a turn, a mirror and a uniform scale.
+bool is_rigid(const glm::dmat4& matrix) {
+    const glm::dmat3 axes(matrix);
+    const double scale = glm::length(axes[0]);
+    if (!(scale > 0)) return false;
+    for (int i = 0; i < 3; ++i) {
+        if (std::abs(glm::length(axes[i]) / scale - 1) > kTolerance) return false;
+        if (std::abs(glm::dot(axes[i], axes[(i + 1) % 3])) > kTolerance * scale * scale) return false;
+    }
+    return true;
+}
+
+bool nearly_equal(const glm::dmat4& a, const glm::dmat4& b) {
+    double difference = 0, size = 0;
+    for (int i = 0; i < 4; ++i) {
+        difference += glm::dot(a[i] - b[i], a[i] - b[i]);
+        size += glm::dot(a[i], a[i]);
+    }
+    return difference <= kTolerance * kTolerance * size;
+}
+
+/// One matrix of the view, and its two conventions.
+struct View {
+    glm::dmat4 camera_from_world{1};  ///< as stored, acting on column vectors
+    double ahead = 0;                 ///< +1: +z is ahead, -1: -z, 0: not known
+    bool transposed = false;
+};
+
+/// The row that a projection divides by is the distance ahead: a multiple of the view's z.
+double ahead_by(const glm::dmat4& ndc_from_world, const View& view) {
+    const glm::dvec4 divisor = rows_of(ndc_from_world)[3], z = rows_of(view.camera_from_world)[2];
+    const double factor = glm::dot(divisor, z) / glm::dot(z, z);
+    if (glm::length(divisor - factor * z) > kTolerance * glm::length(divisor)) return 0;
+    return factor > 0 ? 1 : factor < 0 ? -1 : 0;
+}
+
+/// As stored and, for pbrt-v4, transposed; a camera at the origin may be both. Which way is ahead, they do not know.
+std::vector<View> views_of(const glm::dmat4& stored) {
+    std::vector<View> views;
+    for (const bool transposed : {false, true}) {
+        const glm::dmat4 matrix = transposed ? glm::transpose(stored) : stored;
+        if (is_affine(matrix) && is_rigid(matrix)) views.push_back({matrix, 0, transposed});
+    }
+    return views;
+}
+
+class Projection {
+public:
+    /// `ndc_from_world` divides by a multiple of the view's z, or by 1.
+    Projection(const glm::dmat4& ndc_from_world, const View& view, const ExrPart& part)
+        : ndc_(rows_of(ndc_from_world)),
+          by_camera_(rows_of(ndc_from_world * glm::inverse(view.camera_from_world))) {
+        const bool is_orthographic = std::abs(by_camera_[3].w) > std::abs(by_camera_[3].z);
+        divisor_ = is_orthographic ? by_camera_[3].w : by_camera_[3].z;
+        middle_ = is_orthographic ? glm::dvec2(by_camera_[0].w, by_camera_[1].w) / divisor_
+                                  : glm::dvec2(by_camera_[0].z, by_camera_[1].z) / divisor_;
+        width_ = part.display_window.width() * double(part.pixel_aspect);
+        height_ = part.display_window.height();
+    }
+
+    /// Why it is no projection onto the display window; "" where it is.
+    std::string fault() const {
+        const double x = by_camera_[0].x, y = by_camera_[1].y;
+        if (!(x != 0 && y != 0) || std::abs(by_camera_[0].y) > kTolerance * std::abs(x) ||
+            std::abs(by_camera_[1].x) > kTolerance * std::abs(y))
+            return "does not project along the axes of worldToCamera";
+        if (x / std::abs(divisor_) < 0) return "mirrors the picture";
+        const double aspect = std::abs(x) * width_ / (std::abs(y) * height_);
+        if (std::abs(aspect - 1) > kAspectTolerance)
+            return "is for a picture of another aspect ratio than the display window";
+        return "";
+    }
+
+    /// From 0 to 1, not from -1 to 1. The lens decides where it is known, else where the view's axis meets the
+    /// picture, which is near its middle.
+    bool is_unsigned(const Camera& lens) const {
+        const auto focal_length = lens.get("focal_length"), sensor_width = lens.get("sensor_width");
+        if (focal_length && sensor_width) {
+            const double slope = std::abs(by_camera_[0].x / divisor_) * *sensor_width / *focal_length;
+            if (std::abs(slope - 1) < 0.05) return true;
+            if (std::abs(slope - 2) < 0.1) return false;
+        }
+        const glm::dvec2 from_half = middle_ - glm::dvec2(0.5);
+        return glm::dot(from_half, from_half) < glm::dot(middle_, middle_);
+    }
+    bool is_down() const { return by_camera_[1].y < 0; }
+
+    /// From -1 to 1 with y up, dividing by a positive multiple of the distance.
+    glm::dmat4 normalized(bool is_unsigned) const {
+        Rows rows = ndc_;
+        if (is_unsigned)
+            for (const int row : {0, 1})
+                rows[std::size_t(row)] = 2.0 * rows[std::size_t(row)] - rows[3];
+        if (is_down()) rows[1] = -rows[1];
+        return matrix_of(rows);
+    }
+
+private:
+    Rows ndc_, by_camera_;
+    double divisor_ = 1;
+    glm::dvec2 middle_{0};  ///< of a point on the view's axis
+    double width_ = 1, height_ = 1;
+};
+
+/// View space looks along -z.
+glm::dmat4 looking_back(const View& view) {
+    if (view.ahead < 0) return view.camera_from_world;
+    Rows rows = rows_of(view.camera_from_world);
+    rows[2] = -rows[2];
+    return matrix_of(rows);
+}
+
+std::optional<glm::dmat4> ndc_of_lens(const glm::dmat4& camera_from_world, const ExrPart& part,
+                                      const Camera& lens) {
+    const auto focal_length = lens.get("focal_length"), sensor_width = lens.get("sensor_width");
+    if (!focal_length || !sensor_width) return std::nullopt;
+    const double slope = 2 * *focal_length / *sensor_width;
+    const double aspect =
+        part.display_window.width() * double(part.pixel_aspect) / part.display_window.height();
+    const Rows view = rows_of(camera_from_world);
+    return matrix_of({slope * view[0], slope * aspect * view[1], -view[2], -view[2]});
+}
+
+StoredMatrices of_version_2(const ExrPart& part) {
+    StoredMatrices result;
+    if (const auto stored = stored_matrix(part.metadata, "worldToCamera"))
+        result.camera_from_world = camera_matrix(looking_back({*stored, 1, false}));
+    if (const auto stored = stored_matrix(part.metadata, "worldToNDC")) {
+        Rows rows = rows_of(*stored);
+        rows[0] = 2.0 * rows[0] - rows[3];
+        rows[1] = rows[3] - 2.0 * rows[1];
+        result.ndc_from_world = camera_matrix(matrix_of(rows));
+    }
+    result.found = "by OpenEXR's definition";
+    return result;
+}
+
+/// A projection of the header and the view that it fits.
+struct Fit {
+    View view;
+    glm::dmat4 ndc_from_world{1};
+    std::string found;  ///< "worldToNDC, 0 to 1 with y down"
+};
+
+/// nullopt with a sentence in `fault` where the matrix does not project as the view does.
+std::optional<Fit> fit_of(const char* name, const glm::dmat4& stored, View view, const ExrPart& part,
+                          const Camera& lens, std::string& fault) {
+    const glm::dmat4 ndc_from_world = view.transposed ? glm::transpose(stored) : stored;
+    if (nearly_equal(ndc_from_world, view.camera_from_world)) {
+        fault = std::string(name) + " equals worldToCamera: it does not project";
+        return std::nullopt;
+    }
+    const glm::dvec4 divisor = rows_of(ndc_from_world)[3];
+    const bool is_orthographic = glm::length(glm::dvec3(divisor)) < kTolerance * std::abs(divisor.w);
+    view.ahead = ahead_by(ndc_from_world, view);
+    if (view.ahead == 0 && !is_orthographic) {
+        fault = std::string(name) + " does not divide by the distance that worldToCamera gives";
+        return std::nullopt;
+    }
+    const Projection projection(ndc_from_world, view, part);
+    if (const std::string why = projection.fault(); !why.empty()) {
+        fault = std::string(name) + " " + why;
+        return std::nullopt;
+    }
+    const bool is_unsigned = projection.is_unsigned(lens);
+    return Fit{view, projection.normalized(is_unsigned),
+               std::string(name) + (is_unsigned ? ", 0 to 1" : ", -1 to 1") +
+                   (projection.is_down() ? " with y down" : " with y up")};
+}
+
+/// Of an orthographic or unknown projection: of a right-handed world, OpenEXR's view is mirrored.
+double ahead_by_handedness(const View& view) {
+    return glm::determinant(glm::dmat3(view.camera_from_world)) < 0 ? 1 : -1;
+}
+
+}  // namespace
+
+StoredMatrices read_matrices(const ExrPart& part, const Camera& lens) {
+    if (part.metadata.number(kVersionAttribute) == kOpenExrVersion) return of_version_2(part);
+    StoredMatrices result;
+    const auto stored = stored_matrix(part.metadata, "worldToCamera");
+    if (!stored) return result;
+    const std::vector<View> views = views_of(*stored);
+    if (views.empty()) {
+        result.fault = "worldToCamera is not a camera's: its axes are not at right angles and of one length";
+        return result;
+    }
+    std::optional<Fit> fit;
+    for (const View& view : views)
+        for (const char* name : {"worldToNDC", "worldToScreen"}) {
+            const auto ndc = fit ? std::nullopt : stored_matrix(part.metadata, name);
+            std::string fault;
+            if (ndc) fit = fit_of(name, *ndc, view, part, lens, fault);
+            if (result.fault.empty()) result.fault = fault;
+        }
+    View view = fit ? fit->view : views.front();
+    if (view.ahead == 0) view.ahead = ahead_by_handedness(view);
+    const glm::dmat4 camera_from_world = looking_back(view);
+    result.camera_from_world = camera_matrix(camera_from_world);
+    result.found = std::string("worldToCamera, ") + (view.ahead > 0 ? "+z" : "-z") + " ahead" +
+                   (view.transposed ? ", transposed" : "");
+    if (fit) {
+        result.ndc_from_world = camera_matrix(fit->ndc_from_world);
+        result.found += "; " + fit->found;
+        result.fault.clear();
+    } else if (const auto ndc = ndc_of_lens(camera_from_world, part, lens)) {
+        result.ndc_from_world = camera_matrix(*ndc);
+        result.found += "; projection of the lens";
+    }
+    return result;
+}
+
+void add_matrices(const Camera& camera, std::map<std::string, ExrValue>& attributes) {
+    if (camera.camera_from_world) {
+        Rows rows = rows_of(glm_matrix(*camera.camera_from_world));
+        rows[2] = -rows[2];
+        attributes["worldToCamera"] = stored_values(matrix_of(rows));
+    }
+    if (camera.ndc_from_world) {
+        Rows rows = rows_of(glm_matrix(*camera.ndc_from_world));
+        rows[0] = 0.5 * (rows[0] + rows[3]);
+        rows[1] = 0.5 * (rows[3] - rows[1]);
+        attributes["worldToNDC"] = stored_values(matrix_of(rows));
+    }
+    if (camera.camera_from_world || camera.ndc_from_world) attributes[kVersionAttribute] = kOpenExrVersion;
+}
+
+}  // namespace aftershade
