@@ -249,7 +249,7 @@ struct When {
     std::vector<std::string> required = {};
     std::vector<std::string> absent = {};
     std::vector<std::pair<std::string, Form>> narrowed = {};  ///< keys whose values are also of this form
-    std::string fault = {};                                   ///< once, instead of what each part says; "{}" is the thing
+    std::string fault = {};  ///< once, instead of what each part says; "{}" is the thing
 };
 Rule when(When when);
 

@@ -95,8 +95,7 @@ public:
                                         (names_.min == 1 && names_.max < 2 ? " member" : " members") +
                                         ", not " + std::to_string(count));
         for (const Member& member : node.members) {
-            if (!fits(member.key))
-                diagnostics.error(member.key_place, filled(names_.fault, member.key));
+            if (!fits(member.key)) diagnostics.error(member.key_place, filled(names_.fault, member.key));
             value_.type().check(member.value, spot.entry(member.key), diagnostics);
         }
     }
@@ -312,11 +311,10 @@ Form map(Form value, MapNames names) {
 }
 
 Form named(Form value, const std::string& thing, int min) {
-    return map(std::move(value),
-               {.pattern = schema::kSnakeCase,
-                .fits = [](const std::string& name) { return is_snake_case(name); },
-                .fault = thing + " '{}' " + kMustBeSnakeCase,
-                .min = min});
+    return map(std::move(value), {.pattern = schema::kSnakeCase,
+                                  .fits = [](const std::string& name) { return is_snake_case(name); },
+                                  .fault = thing + " '{}' " + kMustBeSnakeCase,
+                                  .min = min});
 }
 
 Form object(Block block) {

@@ -102,8 +102,8 @@ public:
     void check(const Node& node, const std::string& thing, Diagnostics& diagnostics) const override {
         const Node* value = node.find(key_);
         if (!value || node.find(other_)) return;
-        diagnostics.error(value->place, fault_.empty() ? "'" + key_ + "' needs '" + other_ + "'"
-                                                       : filled(fault_, thing));
+        diagnostics.error(value->place,
+                          fault_.empty() ? "'" + key_ + "' needs '" + other_ + "'" : filled(fault_, thing));
     }
     json schema(SchemaScope&) const override { return {{"dependentRequired", {{key_, {other_}}}}}; }
     std::string sentence() const override { return "`" + key_ + "` needs `" + other_ + "`."; }

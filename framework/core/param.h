@@ -165,8 +165,8 @@ struct SweepValue {
 std::vector<SweepValue> sweep_values(const ParamSpec& spec);
 
 /// Reads one entry of a manifest's "params", which is of one of `types`; check() has found it sound by
-/// param_block() (param_grammar.h). nullopt after a fault that leaves nothing usable. What `requires` names is
-/// checked by check_relation_declarations, once all parameters are known.
+/// param_block() (param_grammar.h). nullopt after a fault that leaves nothing usable. What `requires` names
+/// is checked by check_relation_declarations, once all parameters are known.
 std::optional<ParamSpec> read_param_spec(const std::string& name, const Node& node, Diagnostics& diagnostics,
                                          std::span<const ParamType> types);
 /// The same with the check.

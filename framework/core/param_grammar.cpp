@@ -51,17 +51,19 @@ std::string a_type(ParamType type) {
 
 Form bind_form(ParamType type) {
     if (is_block_type(type)) return grammar::choice({"uniform", "define"});
-    return grammar::choice({"uniform"}, {.words = {"define"},
-                                         .fault = a_type(type) + " cannot be a define: it reaches a shader as a "
-                                                                 "texture or a buffer"});
+    return grammar::choice({"uniform"},
+                           {.words = {"define"},
+                            .fault = a_type(type) + " cannot be a define: it reaches a shader as a "
+                                                    "texture or a buffer"});
 }
 
 Form requires_form() {
-    return grammar::list(grammar::text(
-        {.pattern = R"(^\s*(<|<=|>|>=)\s*[a-z][a-z0-9_]*\s*$)",
-         .fits = [](const std::string& text) { return parse_relation(text, {}).has_value(); },
-         .fault = "'{}' is no relation; write '<', '<=', '>' or '>=' and the name of a parameter: \"> focal_length\"",
-         .type = "[relation](#relations)"}));
+    return grammar::list(
+        grammar::text({.pattern = R"(^\s*(<|<=|>|>=)\s*[a-z][a-z0-9_]*\s*$)",
+                       .fits = [](const std::string& text) { return parse_relation(text, {}).has_value(); },
+                       .fault = "'{}' is no relation; write '<', '<=', '>' or '>=' and the name of a "
+                                "parameter: \"> focal_length\"",
+                       .type = "[relation](#relations)"}));
 }
 
 /// Of numbers.
@@ -80,13 +82,15 @@ std::vector<Key> range_keys() {
 std::vector<Key> manifest_keys(ParamType type, const ParamSources& sources) {
     std::vector<Key> keys = {
         optional("bind", bind_form(type), "`define`: one program per value used.", "\"uniform\""),
-        optional("identity", grammar::make_form<AnyValue>(type), "The value that leaves the image as it is.")};
+        optional("identity", grammar::make_form<AnyValue>(type),
+                 "The value that leaves the image as it is.")};
     if (is_block_type(type))
-        keys.push_back(optional("from",
-                                grammar::shown_as(sources ? grammar::name_of(sources(type), "a value of the capture")
-                                                          : grammar::text(),
-                                                  "`camera.<field>`"),
-                                "The default where the capture has that value."));
+        keys.push_back(
+            optional("from",
+                     grammar::shown_as(sources ? grammar::name_of(sources(type), "a value of the capture")
+                                               : grammar::text(),
+                                       "`camera.<field>`"),
+                     "The default where the capture has that value."));
     if (type->is_scalar)
         keys.push_back(optional("requires", requires_form(), "How it stands to other parameters."));
     return keys;

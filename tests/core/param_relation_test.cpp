@@ -79,7 +79,8 @@ TEST(ParamRelation, IsReadWithItsPlace) {
                      "doc.json:1:75: error: '= far' is no relation" + remedy,
                      "doc.json:1:84: error: 'requires' holds strings, not an integer"}));
     EXPECT_EQ(spec_faults(R"({"type": "vec2", "default": [0, 0], "requires": ["> a"], "doc": "."})"),
-              Lines{"doc.json:1:37: error: parameter 'p' has no key 'requires'; it is a key of type 'float', 'int' or "
+              Lines{"doc.json:1:37: error: parameter 'p' has no key 'requires'; it is a key of type 'float', "
+                    "'int' or "
                     "'angle'"});
 }
 

@@ -24,16 +24,17 @@ inline Lines spec_faults(const std::string& declaration,
     });
 }
 
-/// What a declaration is told of a key that only numbers have.
+/// The fault of a key that only numbers have.
 inline std::string only_numbers_have(const std::string& key) {
     return "error: parameter 'p' has no key '" + key +
            "'; it is a key of type 'float', 'int', 'angle', 'color', 'vec2', 'vec3', 'vec4' or 'curve'";
 }
 
-/// Likewise of one that only types have which stand in the block of parameters.
+/// The fault of a key that only block types have.
 inline std::string only_block_types_have(const std::string& key) {
     return "error: parameter 'p' has no key '" + key +
-           "'; it is a key of type 'float', 'int', 'bool', 'enum', 'angle', 'color', 'vec2', 'vec3' or 'vec4'";
+           "'; it is a key of type 'float', 'int', 'bool', 'enum', 'angle', 'color', 'vec2', 'vec3' or "
+           "'vec4'";
 }
 
 inline ParamValue value_of(const ParamSpec& spec, const std::string& value) {

@@ -114,8 +114,9 @@ TEST(Table, RefusesTwoRowsForOneObjectAndNamesBoth) {
 }
 
 TEST(Table, HasOnlyColumnsThatABlockCouldHold) {
-    const std::string name = " must be snake_case: a-z, 0-9 and _, beginning with a letter, and not 'object', 'objects' "
-                             "or 'name', by which a row says for which object it is";
+    const std::string name =
+        " must be snake_case: a-z, 0-9 and _, beginning with a letter, and not 'object', 'objects' "
+        "or 'name', by which a row says for which object it is";
     EXPECT_EQ(
         spec_faults(R"({"type": "table", "columns": {
 "a": {"type": "curve", "default": [[0, 0]], "doc": "."},

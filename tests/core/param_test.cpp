@@ -167,7 +167,8 @@ const std::vector<BrokenSpec> kBrokenSpecs = {
      {"doc.json:1:10: error: 'type' is 'flaot' but must be 'float', 'int', 'bool', 'enum', 'angle', 'color', "
       "'vec2', 'vec3', 'vec4', 'curve', 'file', 'table' or 'objects'; did you mean 'float'?"}},
     {R"({"type": "float", "unit": "mn", "default": 1, "doc": "."})",
-     {"doc.json:1:27: error: 'unit' is 'mn' but must be 'um', 'mm', 'cm', 'm', 'km', 'in', 'ft', 'deg', 'rad', "
+     {"doc.json:1:27: error: 'unit' is 'mn' but must be 'um', 'mm', 'cm', 'm', 'km', 'in', 'ft', 'deg', "
+      "'rad', "
       "'turn', 'px', 's', 'ms' or 'ev'; did you mean 'mm'?"}},
     {R"({"type": "bool", "unit": "m", "default": true, "doc": "."})",
      {"doc.json:1:18: " + test::only_numbers_have("unit")}},

@@ -145,7 +145,8 @@ TEST(ManifestPasses, SayWhatIsWrongWithADraw) {
     expect_pass_faults({
         {draw(R"("writes": ["small"], "kind": "copy")"),
          {"'kind' is 'copy' but must be 'draw', 'compute' or 'clear'"}},
-        {draw(R"("writes": ["small"], "dispatch": {"tile": 8})"), {"the pass has no key 'dispatch'; it is a key of kind 'compute'"}},
+        {draw(R"("writes": ["small"], "dispatch": {"tile": 8})"),
+         {"the pass has no key 'dispatch'; it is a key of kind 'compute'"}},
         {draw(R"("writes": ["small"], "blend": "over")"),
          {"'blend' is 'over' but must be 'add', 'min' or 'max'"}},
         {draw(R"("writes": ["ids"], "blend": "max")"),
@@ -241,8 +242,7 @@ TEST(ManifestPasses, SayWhatIsWrongWithCompute) {
         {compute(R"("buffers": {"sum": "write"})"),
          {x + "has the buffer 'sum', which is not declared; did you mean 'sums'?"}},
         {compute(R"("buffers": {"sums": "append"})"),
-         {"'sums' is 'append' but must be 'read', 'write' or 'atomic'",
-          x + "writes no image and no buffer"}},
+         {"'sums' is 'append' but must be 'read', 'write' or 'atomic'", x + "writes no image and no buffer"}},
         {compute(R"("buffers": {"sums": "write", "list.prev": "read"})"),
          {x + "reads 'list.prev', but 'list' has no 'history'"}},
         {compute(R"("images": {"pyramid": "atomic"})"),
@@ -259,9 +259,9 @@ TEST(ManifestPasses, SayWhatIsWrongWithCompute) {
         {shader + R"(, "dispatch": {"groups": [1, 0, 1]}})", {"'groups' must be from 1 to 65535, not 0"}},
         {shader + R"(, "dispatch": {"tile": 8, "over": "smal"}})",
          {x + "dispatches over 'smal', which is no texture; did you mean 'small'?"}},
-        {shader + R"(, "dispatch": {"groups": [1, 1, 1], "over": "small"}})",
-         {"'over' needs 'tile'"}},
-        {shader + R"(, "dispatch": {"tile": 8}, "blend": "add"})", {"the compute pass has no key 'blend'; it is a key of kind 'draw'"}},
+        {shader + R"(, "dispatch": {"groups": [1, 1, 1], "over": "small"}})", {"'over' needs 'tile'"}},
+        {shader + R"(, "dispatch": {"tile": 8}, "blend": "add"})",
+         {"the compute pass has no key 'blend'; it is a key of kind 'draw'"}},
     });
 }
 

@@ -155,8 +155,8 @@ const std::vector<Broken> kBrokenSections = {
     {test::kMore, R"("uses": "lights")", {"8: 'uses' must be an array, not a string"}},
     {test::kMore,
      R"("uses": ["ligths", 3, "lights", "lights"])",
-     {"8: 'ligths' is not a block that shaders can use; did you mean 'lights'?", "8: 'uses' holds 'lights' twice",
-      "8: 'uses' holds strings, not an integer"}},
+     {"8: 'ligths' is not a block that shaders can use; did you mean 'lights'?",
+      "8: 'uses' holds 'lights' twice", "8: 'uses' holds strings, not an integer"}},
     {test::kMore,
      R"("uses": ["lights"], "buffers": {"lights": {"element": "uint", "count": 4, "clear": 0, "doc": "."}})",
      {"8: buffer 'lights' needs the GLSL name 'lights', which the block 'lights' has",
@@ -239,7 +239,8 @@ const std::vector<BrokenPass> kBrokenPasses = {
     {kGoodPass + R"(, "when": {"mode": []}})", {"6: a condition without a value never holds"}},
     {kGoodPass + R"(, "when": {"taps": 2.5}})",
      {"6: a condition compares with true, false, an integer or a name"}},
-    {kGoodPass + R"(, "defines": {"A B": 1}})", {"6: 'A B' cannot name a define: letters, 0-9 and _ only; GLSL keeps GL_... and __ for itself"}},
+    {kGoodPass + R"(, "defines": {"A B": 1}})",
+     {"6: 'A B' cannot name a define: letters, 0-9 and _ only; GLSL keeps GL_... and __ for itself"}},
     {kGoodPass + R"(, "defines": {"A": 1.5}})", {"6: a define is a string or an integer"}},
     {kGoodPass + R"(, "wehn": {}})", {"6: the pass has no key 'wehn'; did you mean 'when'?"}},
 };
@@ -292,8 +293,9 @@ TEST(Manifest, DoesNotRunOutOfStackOnALongText) {
     EXPECT_EQ(faults_of_manifest(demo_manifest({{test::kHead, head(digits)}})).size(), 1u);
     EXPECT_EQ(faults_of_second_pass(kGoodPass + R"(, "defines": {")" + letters + "\": 1}}"), Lines{});
     EXPECT_EQ(faults_of_second_pass(kGoodPass + R"(, "defines": {")" + letters + " \": 1}}").size(), 1u);
-    EXPECT_EQ(faults_of_second_pass(R"({"name": "two", "shader": "b.frag", "reads": [{"small": {"level": "pass.index + )" +
-                                    digits + R"("}}], "writes": ["color"]})"),
+    EXPECT_EQ(faults_of_second_pass(
+                  R"({"name": "two", "shader": "b.frag", "reads": [{"small": {"level": "pass.index + )" +
+                  digits + R"("}}], "writes": ["color"]})"),
               Lines{R"(6: 'level' is an integer, "pass.index", "pass.index + 1" or "pass.index - 1")"});
 }
 

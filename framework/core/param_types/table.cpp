@@ -78,13 +78,14 @@ bool is_column(const std::string& name) {
 void declare(grammar::Block& declaration, const grammar::Block& column) {
     declaration.keys.push_back(grammar::required(
         "columns",
-        grammar::map(grammar::object(column),
-                     {.pattern = "^(?!(object|objects|name)$)[a-z][a-z0-9_]*$",
-                      .fits = is_column,
-                      .fault = std::string("column '{}' ") + kMustBeSnakeCase +
-                               ", and not 'object', 'objects' or 'name', by which a row says for which object it is",
-                      .min = 1,
-                      .count_fault = "a table has at least one column"}),
+        grammar::map(
+            grammar::object(column),
+            {.pattern = "^(?!(object|objects|name)$)[a-z][a-z0-9_]*$",
+             .fits = is_column,
+             .fault = std::string("column '{}' ") + kMustBeSnakeCase +
+                      ", and not 'object', 'objects' or 'name', by which a row says for which object it is",
+             .min = 1,
+             .count_fault = "a table has at least one column"}),
         "As parameters, of the block types."));
 }
 

@@ -47,11 +47,11 @@ void ManifestParser::params(const Reader& document) {
     if (!section) return;
     for (const Member& member : section->members) {
         if (!is_new("parameter", member)) continue;
-        // Their faults are told already.
+        // The check of the whole document has reported its faults.
         Diagnostics faults;
         const bool is_sound = grammar::check(member.value, manifest_param_block(), faults);
-        auto spec = is_sound ? read_param_spec(member.key, member.value, diagnostics_, param_types())
-                             : std::nullopt;
+        auto spec =
+            is_sound ? read_param_spec(member.key, member.value, diagnostics_, param_types()) : std::nullopt;
         if (spec) manifest_.params.push_back(std::move(*spec));
         else faulty_params_.insert(member.key);
     }

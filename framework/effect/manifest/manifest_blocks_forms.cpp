@@ -26,9 +26,7 @@ constexpr const char* kPerFault = R"('per' is "pixel", {"tile": 16} or {"scale":
 /// One value, or several of which one must be there.
 Form one_or_more(const Form& value, const std::string& fault) {
     return grammar::by_kind(
-        {value,
-         grammar::list(value, {.min = 1, .fault = "a condition without a value never holds"})},
-        fault);
+        {value, grammar::list(value, {.min = 1, .fault = "a condition without a value never holds"})}, fault);
 }
 
 Form condition_on_input() {
@@ -52,8 +50,9 @@ Block conditions_block() {
 Block conditions_of_input_block() {
     return {.name = "",
             .others = {{kOnParam, condition_on_param()}},
-            .unknown_key = "whether an input is there is asked by passes; the conditions of an input are on "
-                           "parameters",
+            .unknown_key =
+                "whether an input is there is asked by passes; the conditions of an input are on "
+                "parameters",
             .type = "[conditions](#conditions) on parameters"};
 }
 
@@ -120,9 +119,9 @@ Form grid_scale_form() {
 }
 
 Form per_form() {
-    return grammar::by_kind({grammar::with_fault(grammar::constant("\"pixel\""), kPerFault),
-                             grammar::object(per_block())},
-                            kPerFault);
+    return grammar::by_kind(
+        {grammar::with_fault(grammar::constant("\"pixel\""), kPerFault), grammar::object(per_block())},
+        kPerFault);
 }
 
 Key when_key(std::string doc, bool is_required) {

@@ -24,7 +24,8 @@ constexpr int kMaxGroups = 65535;  // GL_MAX_COMPUTE_WORK_GROUP_COUNT is at leas
 const std::vector<std::string> kFilters{"nearest", "linear"};
 
 Form file_form(const std::string& key) {
-    return text({.fault = "'" + key + "' is empty: it names a shader's file", .min_length = 1, .type = "file"});
+    return text(
+        {.fault = "'" + key + "' is empty: it names a shader's file", .min_length = 1, .type = "file"});
 }
 
 /// Of a texture's levels, or layers.
@@ -32,10 +33,11 @@ Form level_form(const std::string& key, int most) {
     const std::string fault =
         "'" + key + R"(' is an integer, "pass.index", "pass.index + 1" or "pass.index - 1")";
     return grammar::by_kind(
-        {integer(0, most), text({.pattern = R"(^pass\.index( *[-+] *[0-9]{1,2})?$)",
-                                 .fits = [](const std::string& turn) { return pass_offset(turn).has_value(); },
-                                 .fault = fault,
-                                 .type = "`\"pass.index + 1\"`"})},
+        {integer(0, most),
+         text({.pattern = R"(^pass\.index( *[-+] *[0-9]{1,2})?$)",
+               .fits = [](const std::string& turn) { return pass_offset(turn).has_value(); },
+               .fault = fault,
+               .type = "`\"pass.index + 1\"`"})},
         fault);
 }
 
@@ -61,7 +63,9 @@ Form accesses_form() {
 
 /// As GLSL names macros.
 bool is_define(const std::string& name) {
-    const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+    const auto is_letter = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    };
     const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
     if (name.empty() || is_digit(name[0]) || name.starts_with("GL_")) return false;
     for (std::size_t i = 0; i < name.size(); ++i)
@@ -82,75 +86,83 @@ Block instances_block() {
     return {.name = "instances",
             .doc = "What a draw with a vertex shader draws, and how often.",
             .keys = {required("of", choice({"quads", "points"}), "A strip of 4 vertices, or 1."),
-                     optional("count", count_form(kInstanceCount), "In all; with `per`, for each texel of that grid."),
+                     optional("count", count_form(kInstanceCount),
+                              "In all; with `per`, for each texel of that grid."),
                      optional("per", per_form(), "The grid by whose texels instances are counted."),
                      optional("indirect", text({.min_length = 1, .type = "name of a buffer"}),
                               "Instead: a buffer with `indirect` that counts them.")},
-            .rules = {grammar::at_least_one_of({"count", "per", "indirect"},
-                                               "'instances' have no 'count', 'per' or 'indirect' buffer"),
-                      when({.key = "indirect",
-                            .absent = {"count", "per"},
-                            .fault = "'instances' are counted by their 'indirect' buffer or by 'count' and 'per', "
-                                     "not both"})}};
+            .rules = {
+                grammar::at_least_one_of({"count", "per", "indirect"},
+                                         "'instances' have no 'count', 'per' or 'indirect' buffer"),
+                when({.key = "indirect",
+                      .absent = {"count", "per"},
+                      .fault = "'instances' are counted by their 'indirect' buffer or by 'count' and 'per', "
+                               "not both"})}};
 }
 
 Block dispatch_block() {
     const Form groups = grammar::shown_as(
         grammar::list(integer(1, kMaxGroups), {.min = 3, .max = 3, .fault = "'groups' holds 3 integers"}),
         "[x, y, z], up to " + std::to_string(kMaxGroups));
-    return {.name = "dispatch",
-            .doc = "How many work groups a compute pass has.",
-            .keys = {optional("tile", count_form(kGroupTileCount), "A work group for each tile of so many texels a side."),
-                     optional("over", text({.type = "name of a texture"}),
-                              "The texture that has the texels; without, the working grid."),
-                     optional("groups", groups, "So many."),
-                     optional("indirect", text({.min_length = 1, .type = "name of a buffer"}),
-                              "A buffer with `indirect` that counts them.")},
-            .rules = {grammar::exactly_one_of({"tile", "groups", "indirect"}), grammar::needs("over", "tile")}};
+    return {
+        .name = "dispatch",
+        .doc = "How many work groups a compute pass has.",
+        .keys = {optional("tile", count_form(kGroupTileCount),
+                          "A work group for each tile of so many texels a side."),
+                 optional("over", text({.type = "name of a texture"}),
+                          "The texture that has the texels; without, the working grid."),
+                 optional("groups", groups, "So many."),
+                 optional("indirect", text({.min_length = 1, .type = "name of a buffer"}),
+                          "A buffer with `indirect` that counts them.")},
+        .rules = {grammar::exactly_one_of({"tile", "groups", "indirect"}), grammar::needs("over", "tile")}};
 }
 
 /// Of passes that run a shader.
 std::vector<Key> shader_keys() {
-    const std::string bound =
-        "'max_iterations' must be from 1 to " + std::to_string(kMaxIterations) +
-        ": llvmpipe silently ends the loops of one invocation after 65535; split the work over a repeated pass";
-    return {
-        required("shader", file_form("shader"), "In the effect's folder; of a module's pass, in the module's."),
-        optional("reads", reads_form(),
-                 "Left out, or with `\"*\"` among them: [what the shaders name](#what-shaders-name)."),
-        optional("images", accesses_form(), "Level 0 of a texture; atomics need r32ui or r32i."),
-        optional("buffers", accesses_form(), "The same for buffers; `{\"name.prev\": \"read\"}`."),
-        optional("defines", grammar::shown_as(defines_form(), "text or int by name"), "Preprocessor symbols."),
-        optional("repeat", count_form(kRepeatCount),
-                 "Times in a row; the shader has `pass.index` and `pass.count`."),
-        optional("max_iterations", grammar::with_fault(integer(1, kMaxIterations), bound),
-                 "Upper bound of the loop iterations of one invocation.")};
+    const std::string bound = "'max_iterations' must be from 1 to " + std::to_string(kMaxIterations) +
+                              ": llvmpipe silently ends the loops of one invocation after 65535; split the "
+                              "work over a repeated pass";
+    return {required("shader", file_form("shader"),
+                     "In the effect's folder; of a module's pass, in the module's."),
+            optional("reads", reads_form(),
+                     "Left out, or with `\"*\"` among them: [what the shaders name](#what-shaders-name)."),
+            optional("images", accesses_form(), "Level 0 of a texture; atomics need r32ui or r32i."),
+            optional("buffers", accesses_form(), "The same for buffers; `{\"name.prev\": \"read\"}`."),
+            optional("defines", grammar::shown_as(defines_form(), "text or int by name"),
+                     "Preprocessor symbols."),
+            optional("repeat", count_form(kRepeatCount),
+                     "Times in a row; the shader has `pass.index` and `pass.count`."),
+            optional("max_iterations", grammar::with_fault(integer(1, kMaxIterations), bound),
+                     "Upper bound of the loop iterations of one invocation.")};
 }
 
 Block draw_kind() {
     constexpr const char* kNoInstances = "a 'vertex' shader needs 'instances' to place";
-    std::vector<Key> keys = {
-        optional("writes", writes_form(),
-                 "Up to 8 outputs and textures of one size; left out, or with `\"*\"`: what the shader names.")};
+    std::vector<Key> keys = {optional(
+        "writes", writes_form(),
+        "Up to 8 outputs and textures of one size; left out, or with `\"*\"`: what the shader names.")};
     for (Key& key : shader_keys()) keys.push_back(std::move(key));
     keys.push_back(optional("vertex", file_form("vertex"), "Places instances, or tiles."));
     keys.push_back(optional("instances", grammar::object(instances_block()), "Instead of the full screen."));
-    keys.push_back(optional("over",
-                            text({.fault = "'over' names no tile list", .min_length = 1, .type = "name of a tile list"}),
-                            "The tile list to which the draw is confined."));
+    keys.push_back(optional(
+        "over", text({.fault = "'over' names no tile list", .min_length = 1, .type = "name of a tile list"}),
+        "The tile list to which the draw is confined."));
     keys.push_back(optional("blend", choice({"add", "min", "max"}),
                             "`add` takes float formats; the target must have been written or cleared."));
     const auto check_vertex = [](const Node& node, const std::string&, Diagnostics& diagnostics) {
         const Node* vertex = node.find("vertex");
-        if (vertex && !node.find("instances") && !node.find("over")) diagnostics.error(vertex->place, kNoInstances);
+        if (vertex && !node.find("instances") && !node.find("over"))
+            diagnostics.error(vertex->place, kNoInstances);
     };
-    return {.name = "draw",
-            .keys = std::move(keys),
-            .rules = {grammar::at_most_one_of({"instances", "over"},
-                                              "a draw has 'instances' or is 'over' a list of tiles, not both"),
-                      grammar::needs("instances", "vertex", "'instances' need a 'vertex' shader, which places them"),
-                      grammar::custom_rule({.check = check_vertex,
-                                            .schema = R"({"dependentSchemas": {"vertex": {"anyOf": [
+    return {
+        .name = "draw",
+        .keys = std::move(keys),
+        .rules = {
+            grammar::at_most_one_of({"instances", "over"},
+                                    "a draw has 'instances' or is 'over' a list of tiles, not both"),
+            grammar::needs("instances", "vertex", "'instances' need a 'vertex' shader, which places them"),
+            grammar::custom_rule(
+                {.check = check_vertex, .schema = R"({"dependentSchemas": {"vertex": {"anyOf": [
                                                 {"required": ["instances"]}, {"required": ["over"]}]}}})"})}};
 }
 
@@ -208,12 +220,13 @@ std::optional<int> pass_offset(std::string_view text) {
 }
 
 Form reads_form() {
-    const Form filter = grammar::with_fault(choice(kFilters), "the filter of a read is 'nearest' or 'linear'");
+    const Form filter =
+        grammar::with_fault(choice(kFilters), "the filter of a read is 'nearest' or 'linear'");
     const Form options = grammar::by_kind({filter, grammar::object(read_block)},
                                           "the filter of a read is 'nearest' or 'linear'");
-    return grammar::list(
-        named_use(options, "a read is a name, or an object of one name with its filter: {\"color\": \"linear\"}",
-                  R"(name, `name.prev`, `{"name": "linear"}` or `{"name": `[read](#read)`}`)"));
+    return grammar::list(named_use(
+        options, "a read is a name, or an object of one name with its filter: {\"color\": \"linear\"}",
+        R"(name, `name.prev`, `{"name": "linear"}` or `{"name": `[read](#read)`}`)"));
 }
 
 const Block& read_block() {
@@ -231,12 +244,13 @@ const Block& read_block() {
 }
 
 const Block& write_block() {
-    static const Block block{.name = "write",
-                             .thing = "the write of '{}'",
-                             .doc = "Where in a texture a pass writes.",
-                             .keys = {optional("level", level_form("level", kMaxLevel), "Of its mips.", "0"),
-                                      optional("layer", level_form("layer", kMaxLayers - 1), "Of its layers.", "0"),
-                                      when_key("Without them there is no target.")}};
+    static const Block block{
+        .name = "write",
+        .thing = "the write of '{}'",
+        .doc = "Where in a texture a pass writes.",
+        .keys = {optional("level", level_form("level", kMaxLevel), "Of its mips.", "0"),
+                 optional("layer", level_form("layer", kMaxLayers - 1), "Of its layers.", "0"),
+                 when_key("Without them there is no target.")}};
     return block;
 }
 

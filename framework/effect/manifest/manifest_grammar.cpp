@@ -51,37 +51,42 @@ Form version_form() {
 
 Block input_block() {
     constexpr const char* kShotsEnd = "an input of another frame must be 'optional': shots begin and end";
-    const Form frame =
-        grammar::shown_as(grammar::any_of({grammar::constant("-1"), grammar::constant("1")},
-                                          "'frame' is -1 or 1: the capture before or after"),
-                          "`-1` or `1`");
+    const Form frame = grammar::shown_as(grammar::any_of({grammar::constant("-1"), grammar::constant("1")},
+                                                         "'frame' is -1 or 1: the capture before or after"),
+                                         "`-1` or `1`");
     const auto is_optional = std::pair<std::string, Form>{"optional", grammar::constant("true")};
     return {
         .name = "input",
         .thing = "input '{}'",
         .doc = "An image that the effect takes.",
-        .keys = {required("role", role_form(),
-                          "`aov:<name>` takes any image of floats that a look wires to it, an earlier step's texture "
-                          "too, in its own size: ask `name_size`."),
-                 optional("optional", boolean(), "The shader has `HAS_<NAME>` where the image is there.", "false"),
-                 optional("history", boolean(), "Last frame's image may be read as `name.prev`.", "false"),
-                 optional("frame", frame, "The capture before or after; such an input is `optional`."),
-                 optional("from", choice({"capture"}),
-                          "The capture's own image even where an earlier step makes that role, unless the look's "
-                          "`in` says otherwise."),
-                 input_when_key("Of optional inputs: without them the input is absent and its image is not read."),
-                 optional("doc", text(), "One sentence.")},
-        .rules = {when({.key = "frame", .required = {"optional"}, .narrowed = {is_optional}, .fault = kShotsEnd}),
-                  when({.key = "frame",
-                        .narrowed = {{"history", grammar::constant("false")}},
-                        .fault = "an input has 'frame' or 'history', not both"}),
-                  when({.key = "frame",
-                        .absent = {"from"},
-                        .fault = "an input has 'frame' or 'from', not both: other frames are the capture's anyway"}),
-                  when({.key = "when",
-                        .required = {"optional"},
-                        .narrowed = {is_optional},
-                        .fault = "an input with 'when' must be 'optional'"})}};
+        .keys =
+            {required(
+                 "role", role_form(),
+                 "`aov:<name>` takes any image of floats that a look wires to it, an earlier step's texture "
+                 "too, in its own size: ask `name_size`."),
+             optional("optional", boolean(), "The shader has `HAS_<NAME>` where the image is there.",
+                      "false"),
+             optional("history", boolean(), "Last frame's image may be read as `name.prev`.", "false"),
+             optional("frame", frame, "The capture before or after; such an input is `optional`."),
+             optional("from", choice({"capture"}),
+                      "The capture's own image even where an earlier step makes that role, unless the look's "
+                      "`in` says otherwise."),
+             input_when_key(
+                 "Of optional inputs: without them the input is absent and its image is not read."),
+             optional("doc", text(), "One sentence.")},
+        .rules = {
+            when({.key = "frame", .required = {"optional"}, .narrowed = {is_optional}, .fault = kShotsEnd}),
+            when({.key = "frame",
+                  .narrowed = {{"history", grammar::constant("false")}},
+                  .fault = "an input has 'frame' or 'history', not both"}),
+            when(
+                {.key = "frame",
+                 .absent = {"from"},
+                 .fault = "an input has 'frame' or 'from', not both: other frames are the capture's anyway"}),
+            when({.key = "when",
+                  .required = {"optional"},
+                  .narrowed = {is_optional},
+                  .fault = "an input with 'when' must be 'optional'"})}};
 }
 
 Block output_block() {
@@ -103,14 +108,16 @@ Block native_table_block() {
     const Form side = integer(1, kMaxTableSide);
     const Form sides = grammar::any_of(
         {side, grammar::list(side, {.min = 2, .max = 2, .fault = "'count' holds 2 integers"})});
-    return {.name = "table",
-            .thing = "native table '{}'",
-            .doc = "An array of native code.",
-            .keys = {required("element", choice({"float", "vec2", "vec4", "uint", "uvec2", "uvec4"}), "In GLSL."),
-                     required("count",
-                              grammar::shown_as(sides, "int, or [int, int], up to " + std::to_string(kMaxTableSide)),
-                              "Most elements of a row, and how many rows."),
-                     required("doc", text(), "One sentence.")}};
+    return {
+        .name = "table",
+        .thing = "native table '{}'",
+        .doc = "An array of native code.",
+        .keys = {
+            required("element", choice({"float", "vec2", "vec4", "uint", "uvec2", "uvec4"}), "In GLSL."),
+            required("count",
+                     grammar::shown_as(sides, "int, or [int, int], up to " + std::to_string(kMaxTableSide)),
+                     "Most elements of a row, and how many rows."),
+            required("doc", text(), "One sentence.")}};
 }
 
 Block native_block() {
@@ -147,19 +154,23 @@ Form bins_form() {
 }
 
 Block statistic_block() {
-    return {.name = "statistic",
-            .thing = "statistic '{}'",
-            .doc = "A number of each frame for `--telemetry`. A pass whose textures only telemetry or a tap needs "
-                   "does not run otherwise.",
-            .keys = {required("of", channel_form(), "Its texels are summed up: count, sum, mean, deviation, extremes."),
-                     optional("where", channel_form(),
-                              "Only the texels where this is above 0, of a texture of the same size."),
-                     optional("squared", boolean(), "Its square: of a deviation the variance.", "false"),
-                     optional("bins", bins_form(), "Of a histogram; what lies outside goes to the first and last."),
-                     optional("doc", text(), "One sentence with the unit.")}};
+    return {
+        .name = "statistic",
+        .thing = "statistic '{}'",
+        .doc =
+            "A number of each frame for `--telemetry`. A pass whose textures only telemetry or a tap needs "
+            "does not run otherwise.",
+        .keys = {
+            required("of", channel_form(),
+                     "Its texels are summed up: count, sum, mean, deviation, extremes."),
+            optional("where", channel_form(),
+                     "Only the texels where this is above 0, of a texture of the same size."),
+            optional("squared", boolean(), "Its square: of a deviation the variance.", "false"),
+            optional("bins", bins_form(), "Of a histogram; what lies outside goes to the first and last."),
+            optional("doc", text(), "One sentence with the unit.")}};
 }
 
-/// The parser knows the parameters.
+/// The parser checks names and values, which the parameters declare.
 Block preset_block() {
     return {.name = "",
             .thing = "preset '{}'",
@@ -171,7 +182,6 @@ Form uses_form() {
     return grammar::list(grammar::name_of({"lights"}, "a block that shaders can use"), {.unique = true});
 }
 
-
 /// What effects and modules both declare.
 std::vector<Key> shared_keys() {
     return {optional("uses", uses_form(), "`[\"lights\"]`: shaders have the block [`lights`](#shaders)."),
@@ -179,40 +189,42 @@ std::vector<Key> shared_keys() {
                      grammar::shown_as(grammar::named(grammar::object(manifest_param_block), "parameter"),
                                        "[parameter](params.md) by name"),
                      "What users set."),
-            optional("textures", grammar::named(grammar::object(texture_block), "texture"), "Images between passes."),
+            optional("textures", grammar::named(grammar::object(texture_block), "texture"),
+                     "Images between passes."),
             optional("buffers", grammar::named(grammar::object(buffer_block), "buffer"), "Arrays."),
             optional("tiles", grammar::named(grammar::object(tile_list_block), "tile list"),
                      "Lists of tiles that draws are confined to.")};
 }
 
 Block make_effect_block() {
-    // That there is no such module is the parser's to say.
+    // The parser reports a module that does not exist.
     const Form module = reference_form(schema::kSnakeCase, "name");
-    Block block{
-        .name = "effect",
-        .thing = "the manifest",
-        .doc = "The document.",
-        .keys = {required("id", identifier_form("the id"), "The name of its folder."),
-                 required("version", version_form(), "Of the effect."),
-                 required("summary", text(), "One sentence."),
-                 optional("sources", grammar::list(text()), "Papers and pages that it follows."),
-                 optional("accumulates", choice({"subframes"}),
-                          "The effect runs once for each subframe and emits at the last."),
-                 optional("modules", grammar::list(module, {.unique = true}),
-                          "Their declarations stand before the effect's own: [below](#modules)."),
-                 required("inputs", grammar::named(grammar::object(input_block()), "input"), "Images that it takes."),
-                 required("outputs",
-                          grammar::map(grammar::object(output_block()),
-                                       {.pattern = schema::kSnakeCase,
-                                        .fault = std::string("output '{}' ") + kMustBeSnakeCase,
-                                        .min = 1,
-                                        .count_fault = "the effect has no outputs"}),
-                          "Images that it makes.")},
-        .is_document = true};
+    Block block{.name = "effect",
+                .thing = "the manifest",
+                .doc = "The document.",
+                .keys = {required("id", identifier_form("the id"), "The name of its folder."),
+                         required("version", version_form(), "Of the effect."),
+                         required("summary", text(), "One sentence."),
+                         optional("sources", grammar::list(text()), "Papers and pages that it follows."),
+                         optional("accumulates", choice({"subframes"}),
+                                  "The effect runs once for each subframe and emits at the last."),
+                         optional("modules", grammar::list(module, {.unique = true}),
+                                  "Their declarations stand before the effect's own: [below](#modules)."),
+                         required("inputs", grammar::named(grammar::object(input_block()), "input"),
+                                  "Images that it takes."),
+                         required("outputs",
+                                  grammar::map(grammar::object(output_block()),
+                                               {.pattern = schema::kSnakeCase,
+                                                .fault = std::string("output '{}' ") + kMustBeSnakeCase,
+                                                .min = 1,
+                                                .count_fault = "the effect has no outputs"}),
+                                  "Images that it makes.")},
+                .is_document = true};
     for (Key& key : shared_keys()) block.keys.push_back(std::move(key));
     block.keys.push_back(required("passes", passes_form("the effect has no passes"), "In their order."));
     block.keys.push_back(optional("native", grammar::object(native_block()), "Values of native code."));
-    block.keys.push_back(optional("telemetry", grammar::named(grammar::object(statistic_block()), "statistic"),
+    block.keys.push_back(optional("telemetry",
+                                  grammar::named(grammar::object(statistic_block()), "statistic"),
                                   "Numbers of each frame."));
     block.keys.push_back(
         optional("presets", grammar::map(grammar::object(preset_block())), "Values to choose by one name."));

@@ -57,8 +57,8 @@ void ManifestParser::module(const Node& item, const fs::path& glsl_folder) {
     module.spec.summary = reader.text("summary");
     const Node* name = module.document.find("module");
     if (name && name->is_string() && name->string != module.spec.name)
-        fault(name->place, "the module '" + name->string + "' is not the name of its folder, '" +
-                               module.spec.name + "'");
+        fault(name->place,
+              "the module '" + name->string + "' is not the name of its folder, '" + module.spec.name + "'");
     manifest_.modules.push_back(module.spec);
 }
 

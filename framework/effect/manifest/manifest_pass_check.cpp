@@ -244,7 +244,7 @@ private:
 
     void check_writes() {
         const PassSpec& pass = *pass_;
-        // A list without items is a fault that is already told.
+        // The grammar reports an empty list.
         if (pass.kind == PassKind::draw && pass.infers_writes && pass.writes.empty())
             fault(pass.place, is_there(pass.shader)
                                   ? "writes nothing: it has no 'writes', and '" + pass.shader +

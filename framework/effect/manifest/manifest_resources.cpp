@@ -11,7 +11,7 @@ namespace aftershade {
 
 namespace {
 
-/// Of "clear" and "mips", where the number of elements is known.
+/// Whether the number of elements does not depend on the frame.
 bool has_fixed_count(const BufferSpec& buffer) {
     return !buffer.grid && buffer.count.param.empty();
 }
@@ -40,7 +40,8 @@ void ManifestParser::count_by_param(const Node& node, const std::string& key, co
               names + "which is not a parameter" + did_you_mean(node.string, manifest_.param_names()));
     else if (spec->type != ParamType::int_)
         fault(node.place, names + "whose type is " + std::string(param_type_name(spec->type)) + ", not int");
-    else if (!spec->min || *spec->min < limits.least_of_param || !spec->max || *spec->max > double(limits.most))
+    else if (!spec->min || *spec->min < limits.least_of_param || !spec->max ||
+             *spec->max > double(limits.most))
         fault(node.place, names + "which must have a 'min' of at least " +
                               std::to_string(limits.least_of_param) + " and a 'max' of at most " +
                               std::to_string(limits.most));
@@ -79,10 +80,9 @@ void ManifestParser::inputs(const Reader& document) {
         input.from_capture = reader.has("from");
         input.doc = reader.text("doc");
         add_conditions(reader, input.when);
-        // The grammar has refused what is not on a parameter.
-        std::erase_if(input.when, [](const WhenSpec& condition) {
-            return condition.subject.starts_with(kHasInput);
-        });
+        // The grammar reports conditions on other inputs.
+        std::erase_if(input.when,
+                      [](const WhenSpec& condition) { return condition.subject.starts_with(kHasInput); });
         manifest_.inputs.push_back(std::move(input));
     }
 }

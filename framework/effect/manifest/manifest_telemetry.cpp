@@ -27,7 +27,8 @@ std::optional<TextureChannel> ManifestParser::channel(const Reader& reader, cons
     const Place& place = reader.place(key);
     const std::string text = reader.text(key), label = thing + ", " + key;
     const std::size_t dot = text.rfind('.');
-    const std::string name = text.substr(0, dot), letter = dot == std::string::npos ? "" : text.substr(dot + 1);
+    const std::string name = text.substr(0, dot),
+                      letter = dot == std::string::npos ? "" : text.substr(dot + 1);
     std::vector<std::string> known;
     const std::string list = list_of_textures(manifest_, known);
     if (std::find(known.begin(), known.end(), name) == known.end()) {
