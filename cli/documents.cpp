@@ -1,5 +1,7 @@
 #include "cli/documents.h"
 
+#include <utility>
+
 #include "cli/capture_options.h"
 #include "cli/effect_options.h"
 #include "framework/batch/golden_grammar.h"
@@ -9,6 +11,7 @@
 #include "framework/capture/profile_grammar.h"
 #include "framework/core/data_path.h"
 #include "framework/core/schema_pieces.h"
+#include "framework/effect/manifest/manifest_grammar.h"
 #include "framework/image/role.h"
 #include "framework/pipeline/look_grammar.h"
 #include "framework/pipeline/schema.h"
@@ -69,8 +72,8 @@ const std::vector<Document>& documents() {
     static const std::vector<Document> all = {
         {"look", schema_of_looks, {&look_block(), &look_step_block(), &look_use_block()}},
         {"capture", schema_by(capture_schema), {&capture_block(), &decoding_table()}},
-        {"effect", schema_by(effect_schema)},
-        {"module", schema_by(module_schema)},
+        {"effect", schema_by(effect_schema), {&effect_block()}},
+        {"module", schema_by(module_schema), {&module_block()}},
         {"scene", schema_by(scene::scene_schema)},  // its tables are a page: scene-reference.md
         {"profile", schema_by(profile_schema), {&profile_block()}},
         {"scattering_profile", schema_by(schema::scattering_profile_schema)},
@@ -87,9 +90,10 @@ std::vector<std::string> document_names() {
 
 grammar::Tables document_tables() {
     grammar::Tables tables = tables_of_profiles();
+    std::vector<std::pair<std::string, const grammar::Block*>> blocks;
     for (const Document& document : documents())
-        for (const grammar::Block* block : document.blocks)
-            tables.merge(grammar::tables_of(document.name, *block));
+        for (const grammar::Block* block : document.blocks) blocks.emplace_back(document.name, block);
+    tables.merge(grammar::tables_of(blocks));
     return tables;
 }
 

@@ -1,8 +1,9 @@
 #include "framework/batch/golden_grammar.h"
 
+#include "framework/capture/document_forms.h"
 #include "framework/compare/compare_files.h"
 #include "framework/core/units.h"
-#include "framework/capture/document_forms.h"
+#include "framework/image/image_forms.h"
 
 namespace aftershade {
 

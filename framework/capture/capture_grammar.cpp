@@ -5,6 +5,7 @@
 #include "framework/capture/document_forms.h"
 #include "framework/core/grammar_schema.h"
 #include "framework/image/camera.h"
+#include "framework/image/image_forms.h"
 
 namespace aftershade {
 

@@ -3,8 +3,8 @@
 #include <map>
 
 #include "framework/capture/capture_grammar.h"
-#include "framework/capture/document_forms.h"
 #include "framework/core/text.h"
+#include "framework/image/image_forms.h"
 
 namespace aftershade {
 

@@ -1,14 +1,8 @@
 #include "framework/capture/document_forms.h"
 
-#include "framework/image/color_space.h"
 #include "framework/capture/frame_range.h"
-#include "framework/image/role.h"
 
 namespace aftershade {
-
-grammar::Form role_form() {
-    return grammar::name_of(role_names(), "a role", kAovPattern);
-}
 
 grammar::Form frame_range_form(const std::string& fault) {
     const auto is_range = [](const std::string& text) {
@@ -20,12 +14,6 @@ grammar::Form frame_range_form(const std::string& fault) {
                           .fault = fault,
                           .type = "range such as \"1-24\" or \"1-100x2,120\"",
                           .noun = "a range of frames"});
-}
-
-grammar::Form color_space_form() {
-    std::vector<std::string> names = color_space_names();
-    names.insert(names.begin(), "auto");
-    return grammar::choice(std::move(names));
 }
 
 }  // namespace aftershade

@@ -1,10 +1,10 @@
 #include "framework/capture/profile_grammar.h"
 
 #include "framework/capture/capture_grammar.h"
-#include "framework/capture/document_forms.h"
 #include "framework/core/grammar_schema.h"
 #include "framework/core/units.h"
 #include "framework/image/camera.h"
+#include "framework/image/image_forms.h"
 
 namespace aftershade {
 

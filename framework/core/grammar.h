@@ -192,10 +192,13 @@ Form list(Form item, ListLimits limits = {});
 /// The names of an object whose members are all alike.
 struct MapNames {
     std::string pattern = {};  ///< "": any
-    std::string fault = {};    ///< for a name that does not fit; "{}" is the name
-    std::string by = "name";   ///< in tables: "texture by name"
-    int min = 0;               ///< members
+    std::function<bool(const std::string&)> fits =
+        {};                   ///< instead of the pattern, where code knows it better
+    std::string fault = {};   ///< for a name that does not fit; "{}" is the name
+    std::string by = "name";  ///< in tables: "texture by name"
+    int min = 0;              ///< members
     int max = -1;
+    std::string count_fault = {};  ///< instead of what is said of a wrong number of members
 };
 Form map(Form value, MapNames names = {});
 /// Members named in snake_case; `thing` begins what is said of one that is not: "parameter 'Gain' must be
@@ -207,11 +210,17 @@ Form object(const Block& (*block)());
 
 /// `fault` is said of a value that fits none; "": what the form says whose kind of JSON it is.
 Form any_of(std::vector<Form> forms, std::string fault = "");
+/// The first form that takes the value's kind of JSON judges it. `fault` is said of every other kind.
+Form by_kind(std::vector<Form> forms, std::string fault);
+/// `fault` is said of every value that does not fit.
+Form with_fault(Form form, std::string fault);
 /// An object with this key is of one form, every other value of the other.
 Form by_key(std::string key, Form with, Form without);
 /// {"var": "name"} may stand for the value and for each part of it. Names are put in before the value is
 /// checked.
 Form with_variables(Form form);
+/// In tables, `type` stands for what the form would say of itself.
+Form shown_as(Form form, std::string type);
 /// What no other form says.
 struct Custom {
     std::string type;           ///< in tables
@@ -223,7 +232,7 @@ Form custom(Custom custom);
 
 // ---- rules ----
 
-/// `fault` is said instead of the usual sentence.
+/// `fault` is said instead of the usual sentence; in it "{}" is the thing.
 Rule exactly_one_of(std::vector<std::string> keys, std::string fault = "");
 Rule at_most_one_of(std::vector<std::string> keys, std::string fault = "");
 Rule at_least_one_of(std::vector<std::string> keys, std::string fault = "");
@@ -240,7 +249,7 @@ struct When {
     std::vector<std::string> required = {};
     std::vector<std::string> absent = {};
     std::vector<std::pair<std::string, Form>> narrowed = {};  ///< keys whose values are also of this form
-    std::string fault = {};                                   ///< instead of what each part says
+    std::string fault = {};  ///< once, instead of what each part says; "{}" is the thing
 };
 Rule when(When when);
 

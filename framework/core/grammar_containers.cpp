@@ -88,12 +88,14 @@ public:
         if (!node.is_object()) return wrong_kind(node, spot, words(), diagnostics);
         const int count = int(node.members.size());
         if (count < names_.min || (names_.max >= 0 && count > names_.max))
-            diagnostics.error(node.place, "'" + spot.key + "' has " + count_text(names_.min, names_.max) +
-                                              (names_.min == 1 && names_.max < 2 ? " member" : " members") +
-                                              ", not " + std::to_string(count));
+            diagnostics.error(node.place,
+                              !names_.count_fault.empty()
+                                  ? names_.count_fault
+                                  : "'" + spot.key + "' has " + count_text(names_.min, names_.max) +
+                                        (names_.min == 1 && names_.max < 2 ? " member" : " members") +
+                                        ", not " + std::to_string(count));
         for (const Member& member : node.members) {
-            if (!names_.pattern.empty() && !matches(names_.pattern, member.key))
-                diagnostics.error(member.key_place, filled(names_.fault, member.key));
+            if (!fits(member.key)) diagnostics.error(member.key_place, filled(names_.fault, member.key));
             value_.type().check(member.value, spot.entry(member.key), diagnostics);
         }
     }
@@ -113,6 +115,11 @@ public:
     void visit(const BlockVisitor& visitor) const override { value_.type().visit(visitor); }
 
 private:
+    bool fits(const std::string& name) const {
+        if (names_.fits) return names_.fits(name);
+        return names_.pattern.empty() || matches(names_.pattern, name);
+    }
+
     Form value_;
     MapNames names_;
 };
@@ -145,7 +152,10 @@ private:
 
 class AnyOf : public FormType {
 public:
-    AnyOf(std::vector<Form> forms, std::string fault) : forms_(std::move(forms)), fault_(std::move(fault)) {}
+    /// What `fault` is said of.
+    enum class Of { every_value, other_kinds };
+    AnyOf(std::vector<Form> forms, std::string fault, Of of)
+        : forms_(std::move(forms)), fault_(std::move(fault)), of_(of) {}
 
     bool takes(Node::Kind kind) const override {
         return std::any_of(forms_.begin(), forms_.end(),
@@ -153,14 +163,13 @@ public:
     }
     void check(const Node& node, const Spot& spot, Diagnostics& diagnostics) const override {
         if (fitting(node, spot)) return;
-        if (!fault_.empty()) {
-            diagnostics.error(node.place, filled(fault_, node.is_string() ? node.string : spot.key));
-            return;
-        }
+        const bool is_for_all = !fault_.empty() && of_ == Of::every_value;
         // A value says by its kind which form it means.
         for (const Form& form : forms_)
-            if (form.type().takes(node.kind)) return form.type().check(node, spot, diagnostics);
-        wrong_kind(node, spot, words(), diagnostics);
+            if (!is_for_all && form.type().takes(node.kind))
+                return form.type().check(node, spot, diagnostics);
+        if (fault_.empty()) return wrong_kind(node, spot, words(), diagnostics);
+        diagnostics.error(node.place, filled(fault_, node.is_string() ? node.string : spot.key));
     }
     json schema(SchemaScope& scope) const override {
         std::vector<json> all;
@@ -170,6 +179,7 @@ public:
                 for (json& part : one["anyOf"]) all.push_back(std::move(part));
             else all.push_back(std::move(one));
         }
+        if (all.size() == 1) return std::move(all[0]);
         return schema::any_of(std::move(all));
     }
     Words words() const override {
@@ -208,6 +218,7 @@ private:
 
     std::vector<Form> forms_;
     std::string fault_;
+    Of of_;
 };
 
 class ByKey : public FormType {
@@ -240,29 +251,53 @@ private:
     Form with_, without_;
 };
 
-class WithVariables : public FormType {
+/// A form that is another but for what a derived class says.
+class Wrapper : public FormType {
 public:
-    explicit WithVariables(Form form) : form_(std::move(form)) {}
+    explicit Wrapper(Form form) : form_(std::move(form)) {}
 
     bool takes(Node::Kind kind) const override { return form_.type().takes(kind); }
     bool is_container() const override { return form_.type().is_container(); }
     void check(const Node& node, const Spot& spot, Diagnostics& diagnostics) const override {
         form_.type().check(node, spot, diagnostics);
     }
+    json schema(SchemaScope& scope) const override { return form_.type().schema(scope); }
+    Words words() const override { return form_.type().words(); }
+    void visit(const BlockVisitor& visitor) const override { form_.type().visit(visitor); }
+    std::optional<Keyed> keyed(const Node& node) const override { return form_.type().keyed(node); }
+    std::optional<ParamValue> value(const Node& node) const override { return form_.type().value(node); }
+    std::vector<std::string> choices() const override { return form_.type().choices(); }
+    const Form* item() const override { return form_.type().item(); }
+
+protected:
+    Form form_;
+};
+
+class WithVariables : public Wrapper {
+public:
+    using Wrapper::Wrapper;
+
     json schema(SchemaScope& scope) const override {
         const schema::Variables before = std::exchange(scope.variables, schema::Variables::yes);
         json result = scope.of(form_);
         scope.variables = before;
         return result;
     }
-    Words words() const override { return form_.type().words(); }
-    void visit(const BlockVisitor& visitor) const override { form_.type().visit(visitor); }
-    std::optional<Keyed> keyed(const Node& node) const override { return form_.type().keyed(node); }
-    std::optional<ParamValue> value(const Node& node) const override { return form_.type().value(node); }
-    std::vector<std::string> choices() const override { return form_.type().choices(); }
+};
+
+class ShownAs : public Wrapper {
+public:
+    ShownAs(Form form, std::string type) : Wrapper(std::move(form)), type_(std::move(type)) {}
+
+    Words words() const override {
+        Words words = form_.type().words();
+        words.type = words.many = type_;
+        words.range.clear();
+        return words;
+    }
 
 private:
-    Form form_;
+    std::string type_;
 };
 
 }  // namespace
@@ -276,8 +311,10 @@ Form map(Form value, MapNames names) {
 }
 
 Form named(Form value, const std::string& thing, int min) {
-    return map(std::move(value),
-               {.pattern = schema::kSnakeCase, .fault = thing + " '{}' " + kMustBeSnakeCase, .min = min});
+    return map(std::move(value), {.pattern = schema::kSnakeCase,
+                                  .fits = [](const std::string& name) { return is_snake_case(name); },
+                                  .fault = thing + " '{}' " + kMustBeSnakeCase,
+                                  .min = min});
 }
 
 Form object(Block block) {
@@ -294,11 +331,23 @@ Form by_key(std::string key, Form with, Form without) {
 }
 
 Form any_of(std::vector<Form> forms, std::string fault) {
-    return make_form<AnyOf>(std::move(forms), std::move(fault));
+    return make_form<AnyOf>(std::move(forms), std::move(fault), AnyOf::Of::every_value);
+}
+
+Form by_kind(std::vector<Form> forms, std::string fault) {
+    return make_form<AnyOf>(std::move(forms), std::move(fault), AnyOf::Of::other_kinds);
+}
+
+Form with_fault(Form form, std::string fault) {
+    return any_of({std::move(form)}, std::move(fault));
 }
 
 Form with_variables(Form form) {
     return make_form<WithVariables>(std::move(form));
+}
+
+Form shown_as(Form form, std::string type) {
+    return make_form<ShownAs>(std::move(form), std::move(type));
 }
 
 }  // namespace aftershade::grammar

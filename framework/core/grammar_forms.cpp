@@ -218,6 +218,7 @@ Form text(Text rules) {
 
 Form snake_case() {
     return text({.pattern = schema::kSnakeCase,
+                 .fits = [](const std::string& name) { return is_snake_case(name); },
                  .fault = std::string("the name '{}' ") + kMustBeSnakeCase,
                  .type = "name",
                  .noun = "a name"});

@@ -39,7 +39,7 @@ public:
             return;
         const std::string names = list_of_names(keys_, "and");
         diagnostics.error(found.size() > 1 && kind_ == Kind::at_most_one ? found.back()->place : node.place,
-                          !fault_.empty()               ? fault_
+                          !fault_.empty()               ? filled(fault_, thing)
                           : kind_ == Kind::exactly_one  ? thing + " has one of " + names
                           : kind_ == Kind::at_least_one ? thing + " has at least one of " + names
                                                         : "only one of " + names + " may be given");
@@ -99,10 +99,11 @@ public:
     Needs(std::string key, std::string other, std::string fault)
         : key_(std::move(key)), other_(std::move(other)), fault_(std::move(fault)) {}
 
-    void check(const Node& node, const std::string&, Diagnostics& diagnostics) const override {
+    void check(const Node& node, const std::string& thing, Diagnostics& diagnostics) const override {
         const Node* value = node.find(key_);
         if (!value || node.find(other_)) return;
-        diagnostics.error(value->place, fault_.empty() ? "'" + key_ + "' needs '" + other_ + "'" : fault_);
+        diagnostics.error(value->place,
+                          fault_.empty() ? "'" + key_ + "' needs '" + other_ + "'" : filled(fault_, thing));
     }
     json schema(SchemaScope&) const override { return {{"dependentRequired", {{key_, {other_}}}}}; }
     std::string sentence() const override { return "`" + key_ + "` needs `" + other_ + "`."; }
@@ -119,17 +120,21 @@ public:
 
     void check(const Node& node, const std::string& thing, Diagnostics& diagnostics) const override {
         if (!holds(node)) return;
+        Diagnostics faults;
         for (const std::string& key : when_.required)
-            if (!node.find(key)) report(node.place, thing + " has no '" + key + "'", diagnostics);
+            if (!node.find(key)) faults.error(node.place, thing + " has no '" + key + "'");
         for (const std::string& key : when_.absent)
             if (const Node* value = node.find(key))
-                report(value->place, thing + " has no '" + key + "'", diagnostics);
+                faults.error(value->place, thing + " has no key '" + key + "' where " + condition());
         for (const auto& [key, form] : when_.narrowed) {
             const Node* value = node.find(key);
-            if (!value) continue;
-            Diagnostics faults;
-            form.type().check(*value, {key, key, Spot::Within::object}, faults);
-            if (faults.has_errors()) report(value->place, faults.all().front().message, diagnostics);
+            // Of one value one fault is enough.
+            if (value && !has_fault(*value, diagnostics))
+                form.type().check(*value, {key, key, Spot::Within::object}, faults);
+        }
+        for (const Diagnostic& fault : faults.all()) {
+            diagnostics.error(fault.place, when_.fault.empty() ? fault.message : filled(when_.fault, thing));
+            if (!when_.fault.empty()) return;
         }
     }
 
@@ -155,8 +160,17 @@ private:
         return value ? !value_ || equals(*value, *value_) : when_.or_absent;
     }
 
-    void report(const Place& place, const std::string& text, Diagnostics& diagnostics) const {
-        diagnostics.error(place, when_.fault.empty() ? text : when_.fault);
+    /// "'kind' is "lut"", "it has 'of'".
+    std::string condition() const {
+        return value_ ? "'" + when_.key + "' is " + when_.value : "it has '" + when_.key + "'";
+    }
+
+    static bool has_fault(const Node& node, const Diagnostics& diagnostics) {
+        return std::any_of(diagnostics.all().begin(), diagnostics.all().end(), [&](const Diagnostic& fault) {
+            const Place& place = fault.place;
+            return place.line == node.place.line && place.column == node.place.column &&
+                   place.file == node.place.file;
+        });
     }
 
     When when_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include "framework/core/grammar_form.h"
 
@@ -118,9 +119,12 @@ std::string reference_of(const Block& document) {
     return out;
 }
 
-Tables tables_of(const std::string& document, const Block& block) {
+Tables tables_of(const std::vector<std::pair<std::string, const Block*>>& documents) {
     Tables tables;
-    for (const Block* one : blocks_of(block)) tables[document + "." + one->name] = table_of(*one);
+    std::set<const Block*> seen;
+    for (const auto& [document, block] : documents)
+        for (const Block* one : blocks_of(*block))
+            if (seen.insert(one).second) tables[document + "." + one->name] = table_of(*one);
     return tables;
 }
 

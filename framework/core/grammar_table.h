@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "framework/core/grammar.h"
@@ -19,8 +20,9 @@ std::string reference_of(const Block& document);
 
 /// Tables by name: "golden.case".
 using Tables = std::map<std::string, std::string>;
-/// Of every block that the document refers to, as "<document>.<block>".
-Tables tables_of(const std::string& document, const Block& block);
+/// Of every block that the documents refer to, as "<document>.<block>"; of one that two have in common, only
+/// the first's.
+Tables tables_of(const std::vector<std::pair<std::string, const Block*>>& documents);
 
 /// The page with its marked regions written again:
 ///

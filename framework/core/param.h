@@ -164,9 +164,12 @@ struct SweepValue {
 /// Every value of a bool or an enum; the limits of numbers, in each component. None of other types.
 std::vector<SweepValue> sweep_values(const ParamSpec& spec);
 
-/// Reads one entry of a manifest's "params", which is of one of `types`. nullopt after a fault that leaves
-/// nothing usable. What `requires` names is checked by check_relation_declarations, once all parameters are
-/// known.
+/// Reads one entry of a manifest's "params", which is of one of `types`; check() has found it sound by
+/// param_block() (param_grammar.h). nullopt after a fault that leaves nothing usable. What `requires` names
+/// is checked by check_relation_declarations, once all parameters are known.
+std::optional<ParamSpec> read_param_spec(const std::string& name, const Node& node, Diagnostics& diagnostics,
+                                         std::span<const ParamType> types);
+/// The same with the check.
 std::optional<ParamSpec> parse_param_spec(const std::string& name, const Node& node, Diagnostics& diagnostics,
                                           std::span<const ParamType> types = core_param_types());
 

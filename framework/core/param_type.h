@@ -14,6 +14,9 @@
 
 namespace aftershade {
 
+namespace grammar {
+struct Block;
+}
 namespace schema {
 class LiteralParts;
 }
@@ -33,22 +36,12 @@ private:
     std::optional<double> in_range(const Node& node, double value) const;
 };
 
-/// A declaration being read.
+/// A declaration being read, which its grammar (param_grammar.h) has found sound.
 struct SpecReader {
-    ObjectReader& object;
     const Node& node;
     const std::string& label;          ///< "taps"
     std::span<const ParamType> types;  ///< that columns may have
     Diagnostics& diagnostics;
-};
-
-/// A key of declarations that only one type has.
-struct OwnKey {
-    const char* name;     ///< "domain"
-    const char* article;  ///< "a " in "only a curve has a 'domain'"
-    bool required = false;
-    /// Of the key's value; `column` is the schema of a column's declaration.
-    nlohmann::ordered_json (*schema)(const nlohmann::ordered_json& column) = nullptr;
 };
 
 /// How a value reaches shaders.
@@ -97,8 +90,10 @@ struct ParamTypeTraits {
     bool has_default = true;     ///< declarations must give one; else an empty object is read
     bool has_columns = false;    ///< declarations name the columns
     std::string_view usual_unit;
-    std::span<const OwnKey> own_keys;
 
+    /// Adds the keys that only declarations of this type have, and rules; `column` declares a table's column.
+    /// Null: none.
+    void (*declare)(grammar::Block& declaration, const grammar::Block& column) = nullptr;
     /// Reads the type's own keys, or sets what follows from the type; null: nothing.
     void (*read_declaration)(const SpecReader& reader, ParamSpec& spec) = nullptr;
     /// Whether a manifest's default may be that; reports what is wrong. Null: any value.
@@ -141,11 +136,11 @@ std::string format_table(const TableValue& table, const std::vector<ParamSpec>* 
 /// `number` of a spec in px, for images whose sides are `factor` of what it was chosen for.
 double scaled_px(const ParamSpec& spec, double number, double factor);
 
-/// parse_param_spec for what messages call `thing` ("parameter 'taps'") and `label` ("taps"). A column is of
-/// a block type, a uniform, and has no relation to anything else.
+/// read_param_spec() for what messages call `label` ("taps"); of a manifest's parameter, or of a table's
+/// column.
 enum class SpecOwner { manifest, table };
-std::optional<ParamSpec> parse_spec(const std::string& name, const std::string& thing,
-                                    const std::string& label, SpecOwner owner, const Node& node,
-                                    Diagnostics& diagnostics, std::span<const ParamType> types);
+std::optional<ParamSpec> read_spec(const std::string& name, const std::string& label, SpecOwner owner,
+                                   const Node& node, Diagnostics& diagnostics,
+                                   std::span<const ParamType> types);
 
 }  // namespace aftershade

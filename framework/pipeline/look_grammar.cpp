@@ -4,7 +4,7 @@
 
 #include "framework/core/schema_pieces.h"
 #include "framework/core/text.h"
-#include "framework/capture/document_forms.h"
+#include "framework/image/image_forms.h"
 
 namespace aftershade {
 
@@ -30,7 +30,8 @@ Form any_object(const std::string& type) {
 
 /// Objects are read, and refused, by whoever reads the mask.
 Form objects() {
-    const Form one = grammar::custom({.type = "[entry](params.md#objects)", .schema = schema::object_key().dump()});
+    const Form one =
+        grammar::custom({.type = "[entry](params.md#objects)", .schema = schema::object_key().dump()});
     return grammar::any_of({one, grammar::list(one, {.min = 1, .max = int(kMaxMaskObjects)})});
 }
 

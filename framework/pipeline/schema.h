@@ -1,4 +1,4 @@
-// JSON Schema (draft 2020-12) of the documents that users write, made from the declarations.
+// JSON Schema (draft 2020-12) of looks, made from the declarations of the effects that they may use.
 //
 // What an editor completes and marks is what the program takes and refuses, as far as a schema can say it:
 // that names which another document declares (steps, variables) exist, and how two values stand to each
@@ -12,11 +12,7 @@
 
 namespace aftershade {
 
-/// Of a look; one branch for each effect, with its parameters, their docs, units and ranges.
+/// One branch for each effect, with its parameters, their docs, units and ranges.
 std::string look_schema(const std::vector<const EffectManifest*>& effects);
-/// Of an effect.json.
-std::string effect_schema();
-/// Of a module.json.
-std::string module_schema();
 
 }  // namespace aftershade

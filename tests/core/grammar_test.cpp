@@ -276,7 +276,7 @@ TEST(Grammar, HoldsAnObjectToMoreWhereAKeyHasAValue) {
     EXPECT_EQ(faults(R"({"indirect": true, "count": 4, "element": "uint"})", block), Lines{});
     EXPECT_EQ(faults(R"({"indirect": true, "history": true, "element": "vec2"})", block),
               (Lines{"doc.json:1:1: error: the buffer has no 'count'",
-                     "doc.json:1:31: error: the buffer has no 'history'",
+                     "doc.json:1:31: error: the buffer has no key 'history' where 'indirect' is true",
                      "doc.json:1:48: error: 'element' is 'vec2' but must be 'uint'"}));
     const json schema = json::parse(schema_text("", block));
     EXPECT_EQ(schema["if"],
@@ -397,7 +397,9 @@ TEST(GrammarReader, ReadsValuesByFrame) {
 }
 
 TEST(GrammarTable, StandsInTheMarkedRegionsOfAPage) {
-    const Tables tables = tables_of("kit", lens_block());
+    const Block lens = lens_block();
+    const Tables tables = tables_of({{"kit", &lens}, {"bag", &lens}});
+    EXPECT_EQ(tables.size(), 1u) << "a block that two documents have in common";
     std::vector<std::string> faults;
     const std::string page = "# Kit\n<!-- made by aftershade docs: kit.lens -->\nold\n<!-- end -->\nMore.\n";
     const std::string expected = "# Kit\n<!-- made by aftershade docs: kit.lens -->\n" +

@@ -35,12 +35,13 @@ TEST(FileParam, OfAManifestStaysInItsFolder) {
 TEST(FileParam, SaysWhatIsWrongWithItsDeclaration) {
     EXPECT_EQ(test::spec_faults(R"({"type": "file", "unit": "m", "min": 0, "space": "srgb", "default": "",
 "doc": ".", "kind": "lut"})"),
-              (Lines{"doc.json:1:26: error: a file has no unit", "doc.json:1:38: error: a file has no 'min'",
-                     "doc.json:1:50: error: only a file of kind image has a 'space'"}));
+              (Lines{"doc.json:1:50: error: only a file of kind image has a 'space'",
+                     "doc.json:1:18: " + test::only_numbers_have("unit"),
+                     "doc.json:1:31: " + test::only_numbers_have("min")}));
     EXPECT_EQ(test::spec_faults(R"({"type": "file", "default": "", "doc": "."})"),
               Lines{"doc.json:1:1: error: parameter 'p' has no 'kind'"});
     EXPECT_EQ(test::spec_faults(R"({"type": "int", "kind": "lut", "default": 1, "doc": "."})"),
-              Lines{"doc.json:1:25: error: only a file has a 'kind'"});
+              Lines{"doc.json:1:17: error: parameter 'p' has no key 'kind'; it is a key of type 'file'"});
 }
 
 TEST(ParamInterpolation, IsLinearForNumbersOfAContinuousType) {

@@ -131,17 +131,20 @@ TEST(Curve, SaysWhichPointIsWrongAndWhy) {
 }
 
 TEST(Curve, RefusesWhatOnlyValuesOfABlockHave) {
-    EXPECT_EQ(test::spec_faults(R"({"type": "curve", "domain": [1, 0], "bind": "define", "from": "camera.x",
+    EXPECT_EQ(test::spec_faults(R"({"type": "curve", "domain": [1, 0], "default": [[0, 0]], "doc": "."})"),
+              Lines{"doc.json:1:29: error: 'domain' holds two numbers that rise, the ends of x"});
+    EXPECT_EQ(
+        test::spec_faults(R"({"type": "curve", "domain": [1, 0], "bind": "define", "from": "camera.x",
 "requires": ["> a"], "default": [[0, 0]], "doc": "."})"),
-              (Lines{
-                  "doc.json:1:29: error: 'domain' holds two numbers that rise, the ends of x",
-                  "doc.json:2:13: error: a curve has no 'requires': it has no order",
-                  "doc.json:1:63: error: a curve has no 'from'",
-                  "doc.json:1:45: error: a curve cannot be a define: it reaches a shader as a texture or a "
-                  "buffer",
-              }));
+        (Lines{
+            "doc.json:1:45: error: a curve cannot be a define: it reaches a shader as a texture or a "
+            "buffer",
+            "doc.json:1:55: " + test::only_block_types_have("from"),
+            "doc.json:2:1: error: parameter 'p' has no key 'requires'; it is a key of type 'float', 'int' or "
+            "'angle'",
+        }));
     EXPECT_EQ(test::spec_faults(R"({"type": "float", "domain": [0, 1], "default": 0, "doc": "."})"),
-              Lines{"doc.json:1:29: error: only a curve has a 'domain'"});
+              Lines{"doc.json:1:19: error: parameter 'p' has no key 'domain'; it is a key of type 'curve'"});
 }
 
 }  // namespace

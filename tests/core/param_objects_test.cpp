@@ -66,9 +66,9 @@ TEST(Objects, HaveNoColumnsNoUnitAndNoSource) {
     EXPECT_EQ(
         spec_faults(
             R"({"type": "objects", "columns": {}, "unit": "mm", "from": "camera.x", "default": [], "doc": "."})"),
-        (Lines{"doc.json:1:44: error: a list of objects has no unit",
-               "doc.json:1:32: error: only a table has 'columns'",
-               "doc.json:1:58: error: a list of objects has no 'from'"}));
+        (Lines{"doc.json:1:21: error: parameter 'p' has no key 'columns'; it is a key of type 'table'",
+               "doc.json:1:36: " + test::only_numbers_have("unit"),
+               "doc.json:1:50: " + test::only_block_types_have("from")}));
 }
 
 }  // namespace

@@ -24,6 +24,19 @@ inline Lines spec_faults(const std::string& declaration,
     });
 }
 
+/// The fault of a key that only numbers have.
+inline std::string only_numbers_have(const std::string& key) {
+    return "error: parameter 'p' has no key '" + key +
+           "'; it is a key of type 'float', 'int', 'angle', 'color', 'vec2', 'vec3', 'vec4' or 'curve'";
+}
+
+/// The fault of a key that only block types have.
+inline std::string only_block_types_have(const std::string& key) {
+    return "error: parameter 'p' has no key '" + key +
+           "'; it is a key of type 'float', 'int', 'bool', 'enum', 'angle', 'color', 'vec2', 'vec3' or "
+           "'vec4'";
+}
+
 inline ParamValue value_of(const ParamSpec& spec, const std::string& value) {
     Diagnostics diagnostics;
     const auto read = parse_param_value(spec, parsed(value), "p", diagnostics);

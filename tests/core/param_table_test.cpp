@@ -114,6 +114,9 @@ TEST(Table, RefusesTwoRowsForOneObjectAndNamesBoth) {
 }
 
 TEST(Table, HasOnlyColumnsThatABlockCouldHold) {
+    const std::string name =
+        " must be snake_case: a-z, 0-9 and _, beginning with a letter, and not 'object', 'objects' "
+        "or 'name', by which a row says for which object it is";
     EXPECT_EQ(
         spec_faults(R"({"type": "table", "columns": {
 "a": {"type": "curve", "default": [[0, 0]], "doc": "."},
@@ -123,20 +126,20 @@ TEST(Table, HasOnlyColumnsThatABlockCouldHold) {
         (Lines{
             "doc.json:2:15: error: 'type' is 'curve' but must be 'float', 'int', 'bool', 'enum', 'angle', "
             "'color', 'vec2', 'vec3' or 'vec4'",
-            "doc.json:3:38: error: column 'b' of parameter 'p' has no key 'bind'; did you mean 'min'?",
-            "doc.json:3:56: error: column 'b' of parameter 'p' has no key 'from'",
-            "doc.json:3:76: error: column 'b' of parameter 'p' has no key 'requires'",
-            "doc.json:4:1: error: column 'name' of parameter 'p': a row says by this key which object it "
-            "is for",
-            "doc.json:5:1: error: column 'C' of parameter 'p' must be snake_case: a-z, 0-9 and _, "
-            "beginning with a letter",
-            "doc.json:5:35: error: p.columns.C.default: 2 is above the maximum 1",
+            "doc.json:3:38: error: column 'b' has no key 'bind'; did you mean 'min'?",
+            "doc.json:3:56: error: column 'b' has no key 'from'",
+            "doc.json:3:76: error: column 'b' has no key 'requires'",
+            "doc.json:4:1: error: column 'name'" + name,
+            "doc.json:5:1: error: column 'C'" + name,
         }));
+    EXPECT_EQ(spec_faults(R"({"type": "table", "columns": {
+"c": {"type": "float", "default": 2, "max": 1, "doc": "."}}, "doc": "."})"),
+              Lines{"doc.json:2:35: error: p.columns.c.default: 2 is above the maximum 1"});
     EXPECT_EQ(spec_faults(R"({"type": "table", "columns": {}, "min": 0, "doc": "."})"),
-              (Lines{"doc.json:1:41: error: a table has no 'min'",
-                     "doc.json:1:30: error: table parameter 'p' has no columns"}));
+              (Lines{"doc.json:1:30: error: a table has at least one column",
+                     "doc.json:1:34: " + test::only_numbers_have("min")}));
     EXPECT_EQ(spec_faults(R"({"type": "float", "columns": {}, "default": 0, "doc": "."})"),
-              Lines{"doc.json:1:30: error: only a table has 'columns'"});
+              Lines{"doc.json:1:19: error: parameter 'p' has no key 'columns'; it is a key of type 'table'"});
 }
 
 TEST(Table, IsFormattedAsADocumentWritesIt) {

@@ -1,5 +1,6 @@
 #include "framework/core/param.h"
 
+#include "tests/core/param_specs.h"
 #include "tests/documents.h"
 
 namespace aftershade {
@@ -161,30 +162,29 @@ struct BrokenSpec {
 const std::vector<BrokenSpec> kBrokenSpecs = {
     {"[]", {"doc.json:1:1: error: parameter 'p' must be an object, not an array"}},
     {"{}",
-     {"doc.json:1:1: error: parameter 'p' has no 'type'", "doc.json:1:1: error: parameter 'p' has no 'doc'",
-      "doc.json:1:1: error: parameter 'p' has no 'default'"}},
+     {"doc.json:1:1: error: parameter 'p' has no 'type'", "doc.json:1:1: error: parameter 'p' has no 'doc'"}},
     {R"({"type": "flaot", "default": 1, "doc": "."})",
      {"doc.json:1:10: error: 'type' is 'flaot' but must be 'float', 'int', 'bool', 'enum', 'angle', 'color', "
       "'vec2', 'vec3', 'vec4', 'curve', 'file', 'table' or 'objects'; did you mean 'float'?"}},
     {R"({"type": "float", "unit": "mn", "default": 1, "doc": "."})",
-     {"doc.json:1:27: error: 'mn' is not a unit; known: 'um', 'mm', 'cm', 'm', 'km', 'in', 'ft', 'deg', "
-      "'rad', 'turn', "
-      "'px', 's', 'ms' and 'ev'"}},
+     {"doc.json:1:27: error: 'unit' is 'mn' but must be 'um', 'mm', 'cm', 'm', 'km', 'in', 'ft', 'deg', "
+      "'rad', "
+      "'turn', 'px', 's', 'ms' or 'ev'; did you mean 'mm'?"}},
     {R"({"type": "bool", "unit": "m", "default": true, "doc": "."})",
-     {"doc.json:1:26: error: a bool has no unit"}},
+     {"doc.json:1:18: " + test::only_numbers_have("unit")}},
     {R"({"type": "bool", "min": 0, "default": true, "ui": [0, 1], "doc": "."})",
-     {"doc.json:1:25: error: a bool has no 'min'", "doc.json:1:51: error: a bool has no 'ui'"}},
+     {"doc.json:1:18: " + test::only_numbers_have("min"), "doc.json:1:45: " + test::only_numbers_have("ui")}},
     {R"({"type": "enum", "values": ["a"], "default": "a", "doc": "."})",
-     {"doc.json:1:1: error: enum parameter 'p' needs at least two 'values'"}},
+     {"doc.json:1:28: error: an enum needs at least two 'values'"}},
     {R"({"type": "enum", "values": ["a", ""], "default": "a", "doc": "."})",
      {"doc.json:1:34: error: '' cannot name a value: a-z, 0-9 and _ only"}},
     {R"({"type": "enum", "values": ["a", "a b", "a"], "default": "a", "doc": "."})",
      {"doc.json:1:34: error: 'a b' cannot name a value: a-z, 0-9 and _ only",
-      "doc.json:1:41: error: 'a' stands twice in 'values'"}},
+      "doc.json:1:41: error: 'values' holds 'a' twice"}},
     {R"({"type": "int", "values": ["a", "b"], "default": 1, "doc": "."})",
-     {"doc.json:1:27: error: only an enum has 'values'"}},
+     {"doc.json:1:17: error: parameter 'p' has no key 'values'; it is a key of type 'enum'"}},
     {R"({"type": "float", "default": 1, "min": 3, "max": 2, "doc": "."})",
-     {"doc.json:1:1: error: parameter 'p': 'min' is above 'max'"}},
+     {"doc.json:1:1: error: p: 'min' is above 'max'"}},
     {R"({"type": "float", "default": 4, "max": 2, "doc": "."})",
      {"doc.json:1:30: error: p.default: 4 is above the maximum 2"}},
     {R"({"type": "float", "default": 1, "max": 2, "identity": 3, "doc": "."})",

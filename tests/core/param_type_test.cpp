@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <charconv>
 
+#include "framework/core/grammar_schema.h"
+#include "framework/core/grammar_table.h"
+#include "framework/core/param_grammar.h"
 #include "framework/core/schema_pieces.h"
 #include "framework/core/text.h"
 #include "framework/core/units.h"
@@ -51,14 +54,8 @@ std::vector<SweepValue> sweep(const ParamSpec&) {
     return {{"square", 1.0}, {"wide", 4.0}};
 }
 
-schema::json terms_schema(const schema::json&) {
-    return {{"type", "integer"}};
-}
-
-constexpr OwnKey kKeys[] = {{"terms", "a list of ", true, terms_schema}};
-
-void read_declaration(const SpecReader& reader, ParamSpec&) {
-    reader.object.integer("terms", ObjectReader::Presence::required);
+void declare(grammar::Block& declaration, const grammar::Block&) {
+    declaration.keys.push_back(grammar::required("terms", grammar::integer(), "How many."));
 }
 
 constexpr ParamTypeTraits type() {
@@ -66,8 +63,7 @@ constexpr ParamTypeTraits type() {
     traits.name = "ratio";
     traits.glsl_type = "float";
     traits.is_continuous = true;
-    traits.own_keys = kKeys;
-    traits.read_declaration = read_declaration;
+    traits.declare = declare;
     traits.parse = parse;
     traits.schema = literal;
     traits.format = format;
@@ -121,13 +117,26 @@ TEST(ParamType, OfATableEntryMayBeAColumn) {
 TEST(ParamType, HasItsOwnKeysToItself) {
     const auto all = types();
     EXPECT_EQ(test::spec_faults(R"({"type": "int", "terms": 2, "default": 1, "doc": "."})", all),
-              Lines{"doc.json:1:26: error: only a ratio has a list of 'terms'"});
+              Lines{"doc.json:1:17: error: parameter 'p' has no key 'terms'; it is a key of type 'ratio'"});
     EXPECT_EQ(
         test::spec_faults(R"({"type": "ratio", "unit": "mm", "min": 1, "default": "1:1", "doc": "."})", all),
-        (Lines{"doc.json:1:27: error: a ratio has no unit",
-               "doc.json:1:1: error: parameter 'p' has no 'terms'",
-               "doc.json:1:40: error: a ratio has no 'min'"}));
+        (Lines{"doc.json:1:1: error: parameter 'p' has no 'terms'",
+               "doc.json:1:19: " + test::only_numbers_have("unit"),
+               "doc.json:1:33: " + test::only_numbers_have("min")}));
     EXPECT_EQ(test::spec_faults(kRatio).size(), 2u) << "where it is no type, 'type' and 'terms' are wrong";
+}
+
+TEST(ParamType, HasItsOwnKeysInCheckSchemaAndTable) {
+    const auto all = types();
+    const grammar::Block before = param_block(core_param_types()), after = param_block(all);
+    EXPECT_EQ(grammar::table_of(before).find("terms"), std::string::npos);
+    EXPECT_NE(grammar::table_of(after).find("| `terms` | ratio | int |"), std::string::npos)
+        << grammar::table_of(after);
+    EXPECT_EQ(grammar::schema_text("", before).find("terms"), std::string::npos);
+    EXPECT_NE(grammar::schema_text("", after).find("terms"), std::string::npos);
+    Diagnostics diagnostics;
+    EXPECT_TRUE(grammar::check(test::parsed(kRatio), after, diagnostics));
+    EXPECT_FALSE(grammar::check(test::parsed(kRatio), before, diagnostics));
 }
 
 TEST(ParamType, OfEveryEntryIsComplete) {
@@ -138,7 +147,6 @@ TEST(ParamType, OfEveryEntryIsComplete) {
         EXPECT_EQ(type->home == ParamHome::resource, is_param_texture(type) || is_param_buffer(type));
         EXPECT_TRUE(is_block || !(type->is_integer || type->is_continuous || type->is_choice)) << type->name;
         EXPECT_TRUE(!type->is_scalar || (type->has_range && component_count(type) == 1)) << type->name;
-        for (const OwnKey& key : type->own_keys) EXPECT_TRUE(key.schema) << key.name;
         EXPECT_EQ(is_param_texture(type), type->texture.texels && type->texture.glsl) << type->name;
         EXPECT_EQ(is_param_buffer(type), type->table.entries != nullptr) << type->name;
     }

@@ -145,7 +145,8 @@ TEST(ManifestPasses, SayWhatIsWrongWithADraw) {
     expect_pass_faults({
         {draw(R"("writes": ["small"], "kind": "copy")"),
          {"'kind' is 'copy' but must be 'draw', 'compute' or 'clear'"}},
-        {draw(R"("writes": ["small"], "dispatch": {"tile": 8})"), {"the pass has no key 'dispatch'"}},
+        {draw(R"("writes": ["small"], "dispatch": {"tile": 8})"),
+         {"the pass has no key 'dispatch'; it is a key of kind 'compute'"}},
         {draw(R"("writes": ["small"], "blend": "over")"),
          {"'blend' is 'over' but must be 'add', 'min' or 'max'"}},
         {draw(R"("writes": ["ids"], "blend": "max")"),
@@ -192,13 +193,13 @@ TEST(ManifestPasses, SayWhatIsWrongWithADraw) {
          {"'repeat' names 'taps', which must have a 'min' of at least 0 and a 'max' of at most 4096"}},
         {draw(R"("writes": ["small"], "repeat": 4097)"), {"'repeat' must be from 1 to 4096, not 4097"}},
         {draw(R"("writes": ["small"], "max_iterations": 70000)"),
-         {"'max_iterations' is 70000 but may be 60000 at most: llvmpipe silently ends the loops of one "
+         {"'max_iterations' must be from 1 to 60000: llvmpipe silently ends the loops of one "
           "invocation "
           "after 65535; split the work over a repeated pass"}},
         {draw(R"("writes": ["small"], "defines": {"MODE_FAST": 1})"),
          {"pass 'x' defines 'MODE_FAST', which the parameter 'mode' has as its GLSL name"}},
         {draw(R"("writes": ["small"], "defines": {"GL_X": 1})"),
-         {"'GL_X' cannot name a define: GLSL keeps GL_... and __ for itself"}},
+         {"'GL_X' cannot name a define: letters, 0-9 and _ only; GLSL keeps GL_... and __ for itself"}},
         {draw(R"("writes": ["small"], "defines": {"texture": 1})"),
          {"pass 'x' defines 'texture', a word of GLSL or the host"}},
     });
@@ -233,7 +234,7 @@ TEST(ManifestPasses, SayWhatIsWrongWithCompute) {
         R"({"name": "x", "kind": "compute", "shader": "c.comp", "buffers": {"sums": "write"})";
     expect_pass_faults({
         {compute(R"("writes": ["small"], "buffers": {"sums": "write"})"),
-         {"the compute pass has no key 'writes'"}},
+         {"the compute pass has no key 'writes'; it is a key of kind 'draw' or 'clear'"}},
         {compute(R"("buffers": {"sums": "read"}, "images": {"ids": "read"})"),
          {x + "writes no image and no buffer"}},
         {compute(R"("buffers": {"sums": "atomic"})"),
@@ -241,8 +242,7 @@ TEST(ManifestPasses, SayWhatIsWrongWithCompute) {
         {compute(R"("buffers": {"sum": "write"})"),
          {x + "has the buffer 'sum', which is not declared; did you mean 'sums'?"}},
         {compute(R"("buffers": {"sums": "append"})"),
-         {"the access to the buffer 'sums' is 'read', 'write' or 'atomic'",
-          x + "writes no image and no buffer"}},
+         {"'sums' is 'append' but must be 'read', 'write' or 'atomic'", x + "writes no image and no buffer"}},
         {compute(R"("buffers": {"sums": "write", "list.prev": "read"})"),
          {x + "reads 'list.prev', but 'list' has no 'history'"}},
         {compute(R"("images": {"pyramid": "atomic"})"),
@@ -259,22 +259,22 @@ TEST(ManifestPasses, SayWhatIsWrongWithCompute) {
         {shader + R"(, "dispatch": {"groups": [1, 0, 1]}})", {"'groups' must be from 1 to 65535, not 0"}},
         {shader + R"(, "dispatch": {"tile": 8, "over": "smal"}})",
          {x + "dispatches over 'smal', which is no texture; did you mean 'small'?"}},
-        {shader + R"(, "dispatch": {"groups": [1, 1, 1], "over": "small"}})",
-         {"'dispatch' has no key 'over'"}},
-        {shader + R"(, "dispatch": {"tile": 8}, "blend": "add"})", {"the compute pass has no key 'blend'"}},
+        {shader + R"(, "dispatch": {"groups": [1, 1, 1], "over": "small"}})", {"'over' needs 'tile'"}},
+        {shader + R"(, "dispatch": {"tile": 8}, "blend": "add"})",
+         {"the compute pass has no key 'blend'; it is a key of kind 'draw'"}},
     });
 }
 
 TEST(ManifestPasses, SayWhatIsWrongWithAClear) {
     expect_pass_faults({
         {R"({"name": "x", "kind": "clear", "writes": ["small"]})", {"the clear pass has no 'value'"}},
-        {R"({"name": "x", "kind": "clear", "value": 1})", {"pass 'x': writes nothing"}},
+        {R"({"name": "x", "kind": "clear", "value": 1})", {"the clear pass has no 'writes'"}},
         {R"({"name": "x", "kind": "clear", "writes": ["ids"], "value": 0.5})",
          {"pass 'x': 'value' has 0.5, but integers need a whole number"}},
         {R"({"name": "x", "kind": "clear", "writes": ["small"], "value": [1, 2, 3]})",
          {"'value' is one number or four, not 3"}},
         {R"({"name": "x", "kind": "clear", "writes": ["small"], "value": 1, "shader": "a.frag"})",
-         {"the clear pass has no key 'shader'"}},
+         {"the clear pass has no key 'shader'; it is a key of kind 'draw' or 'compute'"}},
     });
 }
 

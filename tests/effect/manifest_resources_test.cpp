@@ -101,7 +101,7 @@ TEST(ManifestResources, SayWhatIsWrongWithATexture) {
     const std::vector<std::pair<std::string, Lines>> broken = {
         {R"("format": "r8", "size": [0, 4])", {"5: 'size' must be from 1 to 16384, not 0"}},
         {R"("format": "r8", "size": [4, 16385])", {"5: 'size' must be from 1 to 16384, not 16385"}},
-        {R"("format": "r8", "size": 4)", {"5: 'size' holds 2 integers"}},
+        {R"("format": "r8", "size": 4)", {"5: 'size' must be an array, not an integer"}},
         {R"("format": "r8", "size": [4, 4], "tile": 8)",
          {"5: only one of 'scale', 'tile' and 'size' may be given"}},
         {R"("format": "r8", "tile": "gain")", {"5: 'tile' names 'gain', whose type is float, not int"}},
@@ -160,7 +160,7 @@ TEST(ManifestResources, SayWhatIsWrongWithABuffer) {
         "8: the indirect buffer 'list' must have 'element' uint and a fixed 'count' of at least 4";
     const std::vector<std::pair<std::string, Lines>> broken = {
         {R"("element": "uint", "count": 4)", {unused}},
-        {R"("element": "uint")", {unused, "8: buffer 'list' has no 'count'"}},
+        {R"("element": "uint")", {unused, "8: buffer 'list' has at least one of 'count' and 'per'"}},
         {R"("element": "vec3", "count": 4)",
          {unused,
           "8: 'element' is 'vec3' but must be 'float', 'int', 'uint', 'vec2', 'vec4', 'ivec2', 'ivec4', "
@@ -172,7 +172,8 @@ TEST(ManifestResources, SayWhatIsWrongWithABuffer) {
         {R"("element": "uint", "per": "texel")",
          {unused, "8: 'per' is \"pixel\", {\"tile\": 16} or {\"scale\": 0.5}"}},
         {R"("element": "uint", "per": {"size": 4})",
-         {unused, "8: 'per' has no key 'size'; did you mean 'tile'?"}},
+         {unused, "8: 'per' has one of 'tile' and 'scale'",
+          "8: 'per' has no key 'size'; did you mean 'tile'?"}},
         {R"("element": "uint", "per": "pixel", "count": 257)",
          {unused, "8: 'count' must be from 1 to 256, not 257"}},
         {R"("element": "uint", "count": 2, "clear": [1, 2, 3])",

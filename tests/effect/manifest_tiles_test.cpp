@@ -30,7 +30,8 @@ Sections tiled(const std::string& tiles, const std::string& passes) {
 }
 
 const std::string kMarked = R"("marked": {"of": "marks.g", "doc": "Where a mark is."})";
-const std::string kNear = R"("near": {"predicate": "near.glsl", "tile": 16, "when": {"mode": "good"}, "doc": "."})";
+const std::string kNear =
+    R"("near": {"predicate": "near.glsl", "tile": 16, "when": {"mode": "good"}, "doc": "."})";
 
 TEST(TileLists, BecomeBuffersAndAPassBeforeTheFirstOverThem) {
     const EffectFolder folder(demo_manifest(tiled(kMarked, R"(
@@ -58,7 +59,8 @@ TEST(TileLists, BecomeBuffersAndAPassBeforeTheFirstOverThem) {
         const PassSpec& over = manifest.passes[i];
         EXPECT_EQ(over.instances->indirect, "marked_args") << over.name;
         EXPECT_EQ(over.buffers.at(0).name, "marked_runs") << over.name;
-        EXPECT_EQ(over.when.back().subject, "flag") << "where the texture is absent, so is what depends on it";
+        EXPECT_EQ(over.when.back().subject, "flag")
+            << "where the texture is absent, so is what depends on it";
     }
     EXPECT_EQ(manifest.passes[4].when.size(), 2U);
 }
@@ -82,8 +84,8 @@ TEST(TileLists, AreListedByTheHostsShader) {
     };
     const ShaderSource of_texture = text(3, ShaderFile::main), over = text(4, ShaderFile::vertex),
                        by_predicate = text(5, ShaderFile::main), fragment = text(4, ShaderFile::main);
-    EXPECT_TRUE(has_line(of_texture,
-                         "bool is_listed(ivec2 tile) { return texelFetch(marks, tile, 0).g > 0.0; }"));
+    EXPECT_TRUE(
+        has_line(of_texture, "bool is_listed(ivec2 tile) { return texelFetch(marks, tile, 0).g > 0.0; }"));
     EXPECT_TRUE(has_line(of_texture, "#define TILE_SIDE 8"));
     EXPECT_TRUE(has_line(of_texture, "#define TILE_RUNS marked_runs"));
     EXPECT_TRUE(has_line(by_predicate, "bool is_listed(ivec2 tile) { return near(tile); }"));
@@ -103,26 +105,30 @@ TEST(TileLists, SayWhatIsWrong) {
     const auto expect = [&](const std::string& tiles, const std::string& pass, const Lines& messages) {
         test::expect_faults(tiled(tiles, pass), messages);
     };
-    expect(kMarked, over + "\"market\"}", {"6: pass 'x': runs over 'market', which is no tile list; did you mean 'marked'?",
-                                           "8: no pass runs over the tile list 'marked'"});
+    expect(kMarked, over + "\"market\"}",
+           {"6: pass 'x': runs over 'market', which is no tile list; did you mean 'marked'?",
+            "8: no pass runs over the tile list 'marked'"});
     expect(R"("far": {"doc": "."})", over + "\"far\"}",
            {"8: tile list 'far' is 'of' a texture's channel or has a 'predicate', one of the two"});
     expect(R"("far": {"predicate": "", "tile": 8, "doc": "."})", over + "\"far\"}",
-           {"8: tile list 'far': 'predicate' names no file"});
+           {"8: 'predicate' is empty: it names a file"});
     expect("", over + "\"\"}", {"6: 'over' names no tile list"});
     expect(R"("far": {"of": "mark.r", "doc": "."})", over + "\"far\"}",
-           {"8: tile list 'far', of: 'mark' is not a texture of the effect with one layer of floats; did you mean "
+           {"8: tile list 'far', of: 'mark' is not a texture of the effect with one layer of floats; did you "
+            "mean "
             "'marks'? (known: 'marks', 'whole' and 'half_size')"});
     expect(R"("far": {"of": "whole.r", "doc": "."})", over + "\"far\"}",
            {"8: tile list 'far', of: 'whole' has no 'tile': each of its texels must stand for one"});
     expect(R"("far": {"of": "marks.b", "doc": "."})", over + "\"far\"}",
            {"8: tile list 'far', of: 'marks.b' must end in a channel of 'marks', one of rg: \"marks.r\""});
     expect(R"("far": {"of": "marks.r", "tile": 8, "doc": "."})", over + "\"far\"}",
-           {"8: tile list 'far' has no key 'tile'"});
+           {"8: tile list 'far' has no key 'tile' where it has 'of'"});
     expect(kMarked, R"({"name": "x", "shader": "b.frag", "writes": ["marks"], "over": "marked"})",
-           {"6: pass 'x': runs over tiles, so what it writes, 'marks', must have a 'scale' of the working grid, and be "
+           {"6: pass 'x': runs over tiles, so what it writes, 'marks', must have a 'scale' of the working "
+            "grid, and be "
             "its level 0"});
-    expect(kMarked, R"({"name": "x", "shader": "b.frag", "vertex": "d.vert", "writes": ["color"], "over": "marked",
+    expect(kMarked,
+           R"({"name": "x", "shader": "b.frag", "vertex": "d.vert", "writes": ["color"], "over": "marked",
         "instances": {"of": "quads", "count": 1}})",
            {"6: a draw has 'instances' or is 'over' a list of tiles, not both"});
     expect(kMarked, R"({"name": "marked", "shader": "b.frag", "writes": ["color"], "over": "marked"})",
@@ -131,9 +137,9 @@ TEST(TileLists, SayWhatIsWrong) {
 
 TEST(TileLists, LieOnTexturesByTheirScale) {
     const auto faults = [](const std::string& on) {
-        const EffectFolder folder(demo_manifest(tiled(
-            R"("far": {"predicate": "far.glsl", "tile": 16, "on": ")" + on + R"(", "doc": "."})",
-            R"({"name": "x", "shader": "b.frag", "writes": ["color"], "over": "far"})")));
+        const EffectFolder folder(demo_manifest(
+            tiled(R"("far": {"predicate": "far.glsl", "tile": 16, "on": ")" + on + R"(", "doc": "."})",
+                  R"({"name": "x", "shader": "b.frag", "writes": ["color"], "over": "far"})")));
         folder.write("far.glsl", "bool far(ivec2 tile) { return true; }\n");
         Diagnostics diagnostics;
         const auto manifest = folder.manifest(diagnostics);
@@ -150,8 +156,9 @@ TEST(TileLists, LieOnTexturesByTheirScale) {
     EXPECT_EQ(faults("half_size"), Lines{});
     EXPECT_EQ(faults("marks"),
               Lines{"the tile list 'far' is on 'marks', which has no 'scale' of the working grid"});
-    EXPECT_EQ(faults("half_sise"), Lines{"tile list 'far': dispatches over 'half_sise', which is no texture; did "
-                                         "you mean 'half_size'?"});
+    EXPECT_EQ(faults("half_sise"),
+              Lines{"tile list 'far': dispatches over 'half_sise', which is no texture; did "
+                    "you mean 'half_size'?"});
 }
 
 TEST(TileLists, NeedTheFileThatDecides) {

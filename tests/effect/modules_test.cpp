@@ -173,9 +173,9 @@ TEST_F(Modules, MayUseLightsForTheEffectsThatTakeThem) {
 
 TEST_F(Modules, ThatAreNotThereAreNamedWithTheNearest) {
     EXPECT_EQ(faults(nullptr, R"(["toen", 3, "tone", "tone"])"),
-              (Lines{"demo/effect.json:8: error: no module 'toen' in glsl; did you mean 'tone'?",
-                     "demo/effect.json:8: error: 'modules' holds names, not an integer",
-                     "demo/effect.json:8: error: the module 'tone' is named twice"}));
+              (Lines{"demo/effect.json:8: error: 'modules' holds strings, not an integer",
+                     "demo/effect.json:8: error: 'modules' holds 'tone' twice",
+                     "demo/effect.json:8: error: no module 'toen' in glsl; did you mean 'tone'?"}));
     // What would come from it is not told to be missing.
     EXPECT_EQ(faults(nullptr, R"(["tones"])", {{test::kPresets, R"("presets": {"strong": {"key": 3}})"}}),
               Lines{"demo/effect.json:8: error: no module 'tones' in glsl; did you mean 'tone'?"});
@@ -233,12 +233,12 @@ TEST_F(Modules, TellTheirOwnFaultsInTheirOwnLines) {
                           {kModuleMore, R"("presets": {}, "pases": [])"}}),
         (Lines{
             "glsl/tone/module.json:1: error: document version 2 is not known; this program reads version 1",
-            "glsl/tone/module.json:1: error: the module 'Tone' is not the name of its folder, 'tone'",
             "glsl/tone/module.json:1: error: the module 'Tone' must be snake_case: a-z, 0-9 and _, "
             "beginning with a letter",
             "glsl/tone/module.json:1: error: the module has no 'summary'",
             "glsl/tone/module.json:6: error: the module has no key 'presets'",
-            "glsl/tone/module.json:6: error: the module has no key 'pases'; did you mean 'passes'?"}));
+            "glsl/tone/module.json:6: error: the module has no key 'pases'; did you mean 'passes'?",
+            "glsl/tone/module.json:1: error: the module 'Tone' is not the name of its folder, 'tone'"}));
     write_module("tone", "[]");
     EXPECT_EQ(faults(), Lines{"glsl/tone/module.json:1: error: the module must be an object, not an array"});
     write_module("tone", "{");

@@ -343,11 +343,10 @@ TEST(ScatteringParam, IsNoColumnAndHasNoRange) {
     EXPECT_EQ(
         spec_faults(
             R"({"type": "scattering_profile", "unit": "mm", "min": 1, "bind": "define", "default": "skin", "doc": "."})"),
-        (Lines{"doc.json:1:40: error: a scattering_profile has no unit",
-               "doc.json:1:53: error: a scattering_profile has no 'min'",
-               "doc.json:1:64: error: a scattering_profile cannot be a define: it reaches a shader as a "
-               "texture or "
-               "a buffer"}));
+        (Lines{"doc.json:1:64: error: a scattering_profile cannot be a define: it reaches a shader as a "
+               "texture or a buffer",
+               "doc.json:1:32: error: parameter 'p' has no key 'unit'",
+               "doc.json:1:46: error: parameter 'p' has no key 'min'; did you mean 'bind'?"}));
     EXPECT_EQ(spec_faults(R"({"type": "scattering_profile", "doc": "."})"),
               Lines{"doc.json:1:1: error: parameter 'p' has no 'default'"});
 }

@@ -13,14 +13,15 @@
 #include <vector>
 
 #include "framework/batch/golden_suite.h"
-#include "framework/core/document.h"
-#include "framework/core/error.h"
-#include "framework/core/schema_pieces.h"
-#include "framework/effect/registry.h"
 #include "framework/capture/capture_grammar.h"
 #include "framework/capture/profile.h"
 #include "framework/capture/profile_grammar.h"
 #include "framework/capture/sequence.h"
+#include "framework/core/document.h"
+#include "framework/core/error.h"
+#include "framework/core/schema_pieces.h"
+#include "framework/effect/manifest/manifest_grammar.h"
+#include "framework/effect/registry.h"
 #include "framework/pipeline/look.h"
 #include "framework/pipeline/pipeline.h"
 #include "framework/pipeline/schema.h"
@@ -300,7 +301,8 @@ TEST_F(SchemaAgreement, OfAManifestChangedEverywhere) {
              "has no key '|is not declared 'indirect'|another pass has this name",
              // One value against another, or their units.
              "is (above|below) |'min' of at least|must rise|has a unit, but|cannot be (compared|converted)",
-             "must lie above|taken already|twice|differ in size|in one turn|but it has|holds|whole number",
+             "must lie above|must go up|taken already|twice|differ in size|has not the size of|in one "
+             "turn|but it has|holds|whole number",
              "words, more than|writes (no image|nothing)|outside the domain|is not a value of '|level",
              "no scattering profile '",            // what is shipped
              "^/presets/|^/params/skins/default",  // as the parameters and columns say

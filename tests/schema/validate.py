@@ -8,12 +8,12 @@ import json
 import sys
 
 from jsonschema import Draft202012Validator
-from jsonschema.exceptions import best_match
 
 with open(sys.argv[1], encoding="utf-8") as file:
     schema = json.load(file)
 Draft202012Validator.check_schema(schema)
 validator = Draft202012Validator(schema)
 for line in sys.stdin:
-    fault = best_match(validator.iter_errors(json.loads(line)))
+    # The first of them: to look for the one that says most takes half as long again.
+    fault = next(validator.iter_errors(json.loads(line)), None)
     print("" if fault is None else f"{fault.json_path}: {fault.message}".replace("\n", " ")[:200])

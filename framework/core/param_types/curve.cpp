@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "framework/core/glsl_text.h"
+#include "framework/core/grammar.h"
 #include "framework/core/param_type.h"
 #include "framework/core/param_types/curve.h"
 #include "framework/core/schema_pieces.h"
@@ -129,19 +130,19 @@ std::optional<ParamValue> parse(const ValueReader& value_reader, const Node& nod
     return value;
 }
 
-schema::json domain_schema(const schema::json&) {
-    return schema::array_of({{"type", "number"}}, 2, 2);
+constexpr const char* kDomainFault = "'domain' holds two numbers that rise, the ends of x";
+
+void declare(grammar::Block& declaration, const grammar::Block&) {
+    declaration.keys.push_back(grammar::optional(
+        "domain", grammar::list(grammar::number(), {.min = 2, .max = 2, .fault = kDomainFault}), "Of x.",
+        "[0, 1]"));
 }
 
-constexpr OwnKey kKeys[] = {{"domain", "a ", false, domain_schema}};
-
 void read_declaration(const SpecReader& reader, ParamSpec& spec) {
-    const Node* domain = reader.object.array("domain");
+    const Node* domain = reader.node.find("domain");
     if (!domain) return;
-    const auto& ends = domain->items;
-    if (ends.size() == 2 && ends[0].is_number() && ends[1].is_number() && ends[0].number < ends[1].number)
-        spec.domain = {ends[0].number, ends[1].number};
-    else reader.diagnostics.error(domain->place, "'domain' holds two numbers that rise, the ends of x");
+    spec.domain = {domain->items[0].number, domain->items[1].number};
+    if (spec.domain[0] >= spec.domain[1]) reader.diagnostics.error(domain->place, kDomainFault);
 }
 
 schema::json literal(const ParamSpec& spec, const schema::LiteralParts& parts) {
@@ -208,7 +209,7 @@ constexpr ParamTypeTraits type() {
     traits.name = "curve";
     traits.home = ParamHome::resource;
     traits.has_range = true;  // of y
-    traits.own_keys = kKeys;
+    traits.declare = declare;
     traits.read_declaration = read_declaration;
     traits.parse = parse;
     traits.schema = literal;

@@ -1,7 +1,7 @@
 // One of a few names.
 #include <algorithm>
-#include <set>
 
+#include "framework/core/grammar.h"
 #include "framework/core/param_type.h"
 #include "framework/core/schema_pieces.h"
 
@@ -9,31 +9,25 @@ namespace aftershade {
 
 namespace enum_type {
 
-schema::json values_schema(const schema::json&) {
-    schema::json values = schema::array_of({{"type", "string"}, {"pattern", "^[a-z0-9_]+$"}}, 2);
-    values["uniqueItems"] = true;
-    return values;
+/// Shaders see a value as a preprocessor symbol: SHAPE_HEXAGON.
+bool is_value(const std::string& name) {
+    return !name.empty() &&
+           name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
 }
 
-constexpr OwnKey kKeys[] = {{"values", "", true, values_schema}};
+void declare(grammar::Block& declaration, const grammar::Block&) {
+    const grammar::Form value = grammar::text({.pattern = "^[a-z0-9_]+$",
+                                               .fits = is_value,
+                                               .fault = "'{}' cannot name a value: a-z, 0-9 and _ only",
+                                               .type = "name"});
+    declaration.keys.push_back(grammar::required(
+        "values",
+        grammar::list(value, {.min = 2, .unique = true, .fault = "an enum needs at least two 'values'"}),
+        "Names of a-z, 0-9 and _."));
+}
 
 void read_declaration(const SpecReader& reader, ParamSpec& spec) {
-    spec.values = reader.object.texts("values");
-    if (spec.values.size() < 2)
-        reader.diagnostics.error(reader.node.place,
-                                 "enum parameter '" + reader.label + "' needs at least two 'values'");
-    if (spec.values.empty()) return;
-    std::set<std::string> seen;
-    for (const Node& item : reader.node.find("values")->items) {
-        if (!item.is_string()) continue;
-        // Shaders see a value as a preprocessor symbol: SHAPE_HEXAGON.
-        if (item.string.empty() ||
-            item.string.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != std::string::npos)
-            reader.diagnostics.error(item.place,
-                                     "'" + item.string + "' cannot name a value: a-z, 0-9 and _ only");
-        if (!seen.insert(item.string).second)
-            reader.diagnostics.error(item.place, "'" + item.string + "' stands twice in 'values'");
-    }
+    for (const Node& item : reader.node.find("values")->items) spec.values.push_back(item.string);
 }
 
 std::optional<ParamValue> parse(const ValueReader& reader, const Node& node) {
@@ -80,7 +74,7 @@ constexpr ParamTypeTraits type() {
     traits.glsl_type = "int";
     traits.is_integer = true;
     traits.is_choice = true;
-    traits.own_keys = kKeys;
+    traits.declare = declare;
     traits.read_declaration = read_declaration;
     traits.parse = parse;
     traits.schema = literal;

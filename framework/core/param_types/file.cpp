@@ -1,6 +1,7 @@
 // The path of a file: a picture or a colour table. What is in it the host reads.
 #include <filesystem>
 
+#include "framework/core/grammar.h"
 #include "framework/core/param_type.h"
 #include "framework/core/schema_pieces.h"
 #include "framework/core/text.h"
@@ -9,24 +10,21 @@ namespace aftershade {
 
 namespace file_type {
 
-schema::json kind_schema(const schema::json&) {
-    return schema::one_of({"image", "lut"});
+void declare(grammar::Block& declaration, const grammar::Block&) {
+    declaration.keys.push_back(
+        grammar::required("kind", grammar::choice({"image", "lut"}), "A picture, or a table of colours."));
+    declaration.keys.push_back(
+        grammar::optional("space", grammar::choice({"srgb", "data"}), "Of a PNG's values.", "\"srgb\""));
+    declaration.rules.push_back(grammar::when({.key = "kind",
+                                               .value = "\"lut\"",
+                                               .absent = {"space"},
+                                               .fault = "only a file of kind image has a 'space'"}));
 }
-
-schema::json space_schema(const schema::json&) {
-    return schema::one_of({"srgb", "data"});
-}
-
-constexpr OwnKey kKeys[] = {{"kind", "a ", true, kind_schema}, {"space", "a ", false, space_schema}};
 
 void read_declaration(const SpecReader& reader, ParamSpec& spec) {
-    static const std::vector<std::string> kinds = {"image", "lut"};
-    static const std::vector<std::string> spaces = {"srgb", "data"};
-    if (reader.object.choice("kind", kinds, ObjectReader::Presence::required) == "lut")
-        spec.file_kind = FileKind::lut;
-    spec.file_is_data = reader.object.choice("space", spaces) == "data";
-    if (const Node* space = reader.node.find("space"); space && spec.file_kind == FileKind::lut)
-        reader.diagnostics.error(space->place, "only a file of kind image has a 'space'");
+    if (reader.node.find("kind")->string == "lut") spec.file_kind = FileKind::lut;
+    const Node* space = reader.node.find("space");
+    spec.file_is_data = space && space->string == "data";
 }
 
 /// A manifest's own files lie in its effect's folder.
@@ -67,7 +65,7 @@ constexpr ParamTypeTraits type() {
     ParamTypeTraits traits;
     traits.name = "file";
     traits.home = ParamHome::file;
-    traits.own_keys = kKeys;
+    traits.declare = declare;
     traits.read_declaration = read_declaration;
     traits.check_default = check_default;
     traits.parse = parse;

@@ -1,6 +1,7 @@
 // Rows by object, of columns that the declaration names.
 #include <utility>
 
+#include "framework/core/grammar.h"
 #include "framework/core/param_type.h"
 #include "framework/core/schema_pieces.h"
 #include "framework/core/table_keys.h"
@@ -70,33 +71,29 @@ std::optional<ParamValue> parse(const ValueReader& reader, const Node& node) {
     return TableReader(reader).read(node);
 }
 
-void read_columns(const Node& node, const SpecReader& reader, ParamSpec& spec) {
-    Diagnostics& diagnostics = reader.diagnostics;
-    if (node.members.empty())
-        diagnostics.error(node.place, "table parameter '" + spec.name + "' has no columns");
-    for (const Member& member : node.members) {
-        const std::string thing = "column '" + member.key + "' of parameter '" + spec.name + "'";
-        if (!is_snake_case(member.key)) diagnostics.error(member.key_place, thing + " " + kMustBeSnakeCase);
-        if (TableKeyReader::is_key(member.key))
-            diagnostics.error(member.key_place, thing + ": a row says by this key which object it is for");
-        auto column = parse_spec(member.key, thing, spec.name + ".columns." + member.key, SpecOwner::table,
-                                 member.value, diagnostics, reader.types);
-        if (column) spec.columns.push_back(std::move(*column));
-    }
+bool is_column(const std::string& name) {
+    return is_snake_case(name) && !TableKeyReader::is_key(name);
 }
 
-schema::json columns_schema(const schema::json& column) {
-    schema::json columns = schema::named(column);
-    columns["minProperties"] = 1;
-    for (const std::string key : {"object", "objects", "name"}) columns["properties"][key] = false;
-    return columns;
+void declare(grammar::Block& declaration, const grammar::Block& column) {
+    declaration.keys.push_back(grammar::required(
+        "columns",
+        grammar::map(
+            grammar::object(column),
+            {.pattern = "^(?!(object|objects|name)$)[a-z][a-z0-9_]*$",
+             .fits = is_column,
+             .fault = std::string("column '{}' ") + kMustBeSnakeCase +
+                      ", and not 'object', 'objects' or 'name', by which a row says for which object it is",
+             .min = 1,
+             .count_fault = "a table has at least one column"}),
+        "As parameters, of the block types."));
 }
-
-constexpr OwnKey kKeys[] = {{"columns", "", true, columns_schema}};
 
 void read_declaration(const SpecReader& reader, ParamSpec& spec) {
-    if (const Node* columns = reader.object.object("columns", ObjectReader::Presence::required))
-        read_columns(*columns, reader, spec);
+    for (const Member& member : reader.node.find("columns")->members)
+        if (auto column = read_spec(member.key, spec.name + ".columns." + member.key, SpecOwner::table,
+                                    member.value, reader.diagnostics, reader.types))
+            spec.columns.push_back(std::move(*column));
 }
 
 schema::json literal(const ParamSpec& spec, const schema::LiteralParts& parts) {
@@ -155,7 +152,7 @@ constexpr ParamTypeTraits type() {
     traits.home = ParamHome::resource;
     traits.has_default = false;
     traits.has_columns = true;
-    traits.own_keys = kKeys;
+    traits.declare = declare;
     traits.read_declaration = read_declaration;
     traits.parse = parse;
     traits.schema = literal;

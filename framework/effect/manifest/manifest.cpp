@@ -1,21 +1,17 @@
 #include "framework/effect/manifest/manifest.h"
 
 #include <algorithm>
-#include <regex>
-#include <set>
 #include <utility>
 
-#include "framework/core/text.h"
 #include "framework/effect/manifest/manifest_check.h"
 #include "framework/effect/manifest/manifest_expand.h"
+#include "framework/effect/manifest/manifest_grammar.h"
 #include "framework/effect/manifest/manifest_parser.h"
 #include "framework/effect/param_types.h"
-#include "framework/image/camera.h"
 
 namespace aftershade {
 
 namespace fs = std::filesystem;
-using Presence = ObjectReader::Presence;
 
 namespace {
 
@@ -28,78 +24,47 @@ const T* find_named(const std::vector<T>& list, const std::string& name) {
 
 }  // namespace
 
-void ManifestParser::identifier(const std::string& name, const Place& place, const std::string& thing) {
-    if (!is_snake_case(name)) fault(place, thing + " '" + name + "' " + kMustBeSnakeCase);
-}
-
-void ManifestParser::identity(ObjectReader& reader, const Node& node) {
-    manifest_.id = reader.text("id", Presence::required).value_or("");
+void ManifestParser::identity(const Reader& document) {
+    const Node* id = document.node().find("id");
+    manifest_.id = document.text("id");
     const std::string folder = manifest_.folder.filename().string();
-    if (const Node* id = node.find("id"); id && id->is_string()) {
-        const Place& place = id->place;
-        if (manifest_.id != folder)
-            fault(place, "the id '" + manifest_.id + "' is not the name of its folder, '" + folder + "'");
-        identifier(manifest_.id, place, "the id");
-    }
-    static const std::regex three_numbers(R"((0|[1-9]\d*)\.(0|[1-9]\d*)\.(0|[1-9]\d*))");
-    const auto version = reader.text("version", Presence::required);
-    if (version && !std::regex_match(*version, three_numbers))
-        fault(node.find("version")->place,
-              "'version' is '" + *version + "' but must be MAJOR.MINOR.PATCH, such as 1.0.0");
-    manifest_.version = version.value_or("");
-    manifest_.summary = reader.text("summary", Presence::required).value_or("");
-    manifest_.sources = reader.texts("sources");
-    static const std::vector<std::string> accumulated{"subframes"};
-    manifest_.accumulates_subframes = reader.choice("accumulates", accumulated).has_value();
+    if (id && id->is_string() && id->string != folder)
+        fault(id->place, "the id '" + id->string + "' is not the name of its folder, '" + folder + "'");
+    manifest_.version = document.text("version");
+    manifest_.summary = document.text("summary");
+    manifest_.sources = document.texts("sources");
+    manifest_.accumulates_subframes = document.has("accumulates");
 }
 
-void ManifestParser::uses(const Node& section) {
-    static const std::vector<std::string> known{"lights"};
-    std::set<std::string> named;
-    for (const Node& item : section.items) {
-        if (!item.is_string()) {
-            fault(item.place, "'uses' holds names, not " + std::string(kind_name(item.kind)));
-        } else if (item.string != known[0]) {
-            fault(item.place, "'" + item.string + "' is nothing that shaders can use" +
-                                  did_you_mean(item.string, known) +
-                                  " (known: " + list_of_names(known, "and") + ")");
-        } else {
-            if (!named.insert(item.string).second) fault(item.place, "'" + item.string + "' is named twice");
-            if (!manifest_.uses_lights) manifest_.uses_lights = item.place;
-        }
-    }
+void ManifestParser::uses(const Reader& document) {
+    if (const Node* names = document.find("uses"))
+        for (const Node& item : names->items)
+            if (item.string == "lights" && !manifest_.uses_lights) manifest_.uses_lights = item.place;
 }
 
-void ManifestParser::params(const Node& section) {
-    for (const Member& member : section.members) {
-        identifier(member.key, member.key_place, "parameter");
+void ManifestParser::params(const Reader& document) {
+    const Node* section = document.find("params");
+    if (!section) return;
+    for (const Member& member : section->members) {
         if (!is_new("parameter", member)) continue;
-        const auto spec = parse_param_spec(member.key, member.value, diagnostics_, param_types());
-        if (!spec) {
-            faulty_params_.insert(member.key);
-            continue;
-        }
-        if (const Node* from = member.value.find("from")) check_from(*spec, from->place);
-        manifest_.params.push_back(*spec);
+        // The check of the whole document has reported its faults.
+        Diagnostics faults;
+        const bool is_sound = grammar::check(member.value, manifest_param_block(), faults);
+        auto spec =
+            is_sound ? read_param_spec(member.key, member.value, diagnostics_, param_types()) : std::nullopt;
+        if (spec) manifest_.params.push_back(std::move(*spec));
+        else faulty_params_.insert(member.key);
     }
 }
 
-void ManifestParser::check_from(const ParamSpec& spec, const Place& place) {
-    const std::vector<std::string> known = camera_sources(spec.type);
-    if (std::find(known.begin(), known.end(), spec.from) == known.end())
-        fault(place, unknown_source(spec.from, known));
-}
-
-void ManifestParser::presets(const Node& section) {
-    for (const Member& member : section.members) preset(member);
+void ManifestParser::presets(const Reader& document) {
+    if (const Node* section = document.find("presets"))
+        for (const Member& member : section->members) preset(member);
 }
 
 void ManifestParser::preset(const Member& member) {
     PresetSpec preset;
     preset.name = member.key;
-    if (!member.value.is_object())
-        fault(member.value.place, "preset '" + member.key + "' must be an object, not " +
-                                      std::string(kind_name(member.value.kind)));
     for (const Member& value : member.value.members) {
         if (faulty_params_.contains(value.key)) continue;
         const ParamSpec* spec = manifest_.find_param(value.key);
@@ -158,34 +123,31 @@ int EffectManifest::most_of(const CountSpec& count) const {
 
 std::optional<EffectManifest> parse_manifest(const Node& node, const fs::path& folder,
                                              Diagnostics& diagnostics, const fs::path& glsl_folder) {
-    ObjectReader reader(node, "the manifest", diagnostics);
-    if (!reader.is_object()) return std::nullopt;
     const int errors_before = diagnostics.error_count();
+    grammar::check(node, effect_block(), diagnostics);
+    if (!node.is_object()) return std::nullopt;
     EffectManifest manifest;
     manifest.folder = folder;
-    check_document_version(reader, node, diagnostics);
-    reader.text("$schema");
+    const grammar::Reader document(node, effect_block());
     ManifestParser parser(manifest, diagnostics);
-    parser.identity(reader, node);
-    if (const Node* section = reader.array("modules")) parser.modules(*section, glsl_folder);
-    if (const Node* section = reader.object("inputs", Presence::required)) parser.inputs(*section);
-    if (const Node* section = reader.object("outputs", Presence::required)) parser.outputs(*section);
-    parser.declarations("uses", reader.array("uses"), &ManifestParser::uses);
-    parser.declarations("params", reader.object("params"), &ManifestParser::params);
+    parser.identity(document);
+    parser.modules(document, glsl_folder);
+    parser.inputs(document);
+    parser.outputs(document);
+    parser.declarations(document, &ManifestParser::uses);
+    parser.declarations(document, &ManifestParser::params);
     check_relation_declarations(manifest.params, diagnostics);
-    parser.declarations("textures", reader.object("textures"), &ManifestParser::textures);
-    parser.declarations("buffers", reader.object("buffers"), &ManifestParser::buffers);
-    parser.declarations("tiles", reader.object("tiles"), &ManifestParser::tiles);
-    if (const Node* section = reader.object("native")) parser.native(*section);
-    parser.declarations("passes", reader.array("passes", Presence::required), &ManifestParser::passes);
-    const Node* telemetry = reader.object("telemetry");
-    if (telemetry && parser.has_all_modules()) parser.telemetry(*telemetry);
-    const Node* presets = reader.object("presets");
-    if (presets && parser.has_all_modules()) parser.presets(*presets);
-    reader.finish();
+    parser.declarations(document, &ManifestParser::textures);
+    parser.declarations(document, &ManifestParser::buffers);
+    parser.declarations(document, &ManifestParser::tiles);
+    parser.native(document);
+    parser.declarations(document, &ManifestParser::passes);
     // Whatever uses what a module would declare, or a shader cannot say, would seem to be wrong.
-    if (parser.has_all_modules() && write_out(manifest, glsl_folder, diagnostics))
-        check_manifest(manifest, node, diagnostics);
+    if (parser.has_all_modules()) {
+        parser.telemetry(document);
+        parser.presets(document);
+        if (write_out(manifest, glsl_folder, diagnostics)) check_manifest(manifest, diagnostics);
+    }
     if (diagnostics.error_count() > errors_before) return std::nullopt;
     return manifest;
 }

@@ -182,9 +182,7 @@ void check_names(const EffectManifest& manifest, Diagnostics& diagnostics) {
     NameChecker(manifest, diagnostics).check();
 }
 
-void check_manifest(const EffectManifest& manifest, const Node& node, Diagnostics& diagnostics) {
-    if (manifest.passes.empty()) diagnostics.error(node.place, "the effect has no passes");
-    if (manifest.outputs.empty()) diagnostics.error(node.place, "the effect has no outputs");
+void check_manifest(const EffectManifest& manifest, Diagnostics& diagnostics) {
     check_names(manifest, diagnostics);
     check_passes(manifest, diagnostics);
     check_tiles(manifest, diagnostics);

@@ -7,7 +7,7 @@
 
 namespace aftershade {
 
-void check_manifest(const EffectManifest& manifest, const Node& node, Diagnostics& diagnostics);
+void check_manifest(const EffectManifest& manifest, Diagnostics& diagnostics);
 
 /// That no name is a word of GLSL or of the host, and that no two things have one name in GLSL.
 void check_names(const EffectManifest& manifest, Diagnostics& diagnostics);

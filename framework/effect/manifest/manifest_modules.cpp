@@ -3,12 +3,12 @@
 #include <utility>
 
 #include "framework/core/data_path.h"
+#include "framework/effect/manifest/manifest_grammar.h"
 #include "framework/effect/manifest/manifest_parser.h"
 
 namespace aftershade {
 
 namespace fs = std::filesystem;
-using Presence = ObjectReader::Presence;
 
 namespace {
 
@@ -26,17 +26,15 @@ std::vector<std::string> module_names(const fs::path& glsl_folder) {
 
 }  // namespace
 
-void ManifestParser::modules(const Node& section, const fs::path& glsl_folder) {
-    if (section.items.empty()) return;
+void ManifestParser::modules(const Reader& document, const fs::path& glsl_folder) {
+    const Node* names = document.find("modules");
+    if (!names || names->items.empty()) return;
     const fs::path folder = glsl_folder.empty() ? data_path() / "glsl" : glsl_folder;
-    for (const Node& item : section.items) module(item, folder);
+    for (const Node& item : names->items)
+        if (item.is_string()) module(item, folder);
 }
 
 void ManifestParser::module(const Node& item, const fs::path& glsl_folder) {
-    if (!item.is_string()) {
-        fault(item.place, "'modules' holds names, not " + std::string(kind_name(item.kind)));
-        return;
-    }
     const std::vector<std::string> known = module_names(glsl_folder);
     if (std::find(known.begin(), known.end(), item.string) == known.end()) {
         fault(item.place, "no module '" + item.string + "' in " + glsl_folder.string() +
@@ -45,49 +43,32 @@ void ManifestParser::module(const Node& item, const fs::path& glsl_folder) {
         return;
     }
     const auto same = [&](const Module& other) { return other.spec.name == item.string; };
-    if (std::any_of(modules_.begin(), modules_.end(), same)) {
-        fault(item.place, "the module '" + item.string + "' is named twice");
-        return;
-    }
+    if (std::any_of(modules_.begin(), modules_.end(), same)) return;
     const fs::path folder = glsl_folder / item.string;
     auto document = read_document(folder / kModuleFile, diagnostics_);
     if (!document) {
         lacks_modules_ = true;
         return;
     }
-    modules_.push_back({{item.string, "", folder}, std::move(*document), {}});
-    modules_.back().sections = module_sections(modules_.back());
-    manifest_.modules.push_back(modules_.back().spec);
+    modules_.push_back({{item.string, "", folder}, std::move(*document)});
+    Module& module = modules_.back();
+    grammar::check(module.document, module_block(), diagnostics_);
+    const Reader reader(module.document, module_block());
+    module.spec.summary = reader.text("summary");
+    const Node* name = module.document.find("module");
+    if (name && name->is_string() && name->string != module.spec.name)
+        fault(name->place,
+              "the module '" + name->string + "' is not the name of its folder, '" + module.spec.name + "'");
+    manifest_.modules.push_back(module.spec);
 }
 
-std::map<std::string, const Node*> ManifestParser::module_sections(Module& module) {
-    const Node& document = module.document;
-    ObjectReader reader(document, "the module", diagnostics_);
-    if (!reader.is_object()) return {};
-    check_document_version(reader, document, diagnostics_);
-    reader.text("$schema");
-    const auto name = reader.text("module", Presence::required);
-    if (name && *name != module.spec.name)
-        fault(document.find("module")->place,
-              "the module '" + *name + "' is not the name of its folder, '" + module.spec.name + "'");
-    if (name) identifier(*name, document.find("module")->place, "the module");
-    module.spec.summary = reader.text("summary", Presence::required).value_or("");
-    std::map<std::string, const Node*> sections;
-    for (const char* key : {"params", "textures", "buffers", "tiles"}) sections[key] = reader.object(key);
-    for (const char* key : {"uses", "passes"}) sections[key] = reader.array(key);
-    reader.finish();
-    return sections;
-}
-
-void ManifestParser::declarations(const std::string& key, const Node* own, SectionReader section_reader) {
+void ManifestParser::declarations(const Reader& effect, SectionReader section_reader) {
     for (const Module& module : modules_) {
-        const auto section = module.sections.find(key);
-        if (section == module.sections.end() || !section->second) continue;
         reading_ = &module;
-        (this->*section_reader)(*section->second);
+        (this->*section_reader)(Reader(module.document, module_block()));
     }
     reading_ = nullptr;
-    if (own) (this->*section_reader)(*own);
+    (this->*section_reader)(effect);
 }
 
 bool ManifestParser::is_new(const std::string& thing, const Member& member) {

@@ -39,16 +39,7 @@ public:
 
     /// Of what is there or not for all passes at once.
     void check_resources() {
-        for (const InputSpec& input : manifest_.inputs) {
-            for (const WhenSpec& condition : input.when)
-                if (condition.subject.starts_with(kHasInput)) {
-                    fault(condition.place,
-                          "whether an input is there is asked by passes; the conditions of an "
-                          "input are on parameters");
-                    asked_.insert(to_string(condition.place));
-                }
-            check_conditions(input.when);
-        }
+        for (const InputSpec& input : manifest_.inputs) check_conditions(input.when);
         for (const TextureSpec& texture : manifest_.textures) check_conditions(texture.when);
         for (const TileListSpec& list : manifest_.tiles) check_conditions(list.when);
     }
@@ -253,8 +244,9 @@ private:
 
     void check_writes() {
         const PassSpec& pass = *pass_;
-        if (pass.kind != PassKind::compute && pass.writes.empty())
-            fault(pass.place, pass.infers_writes && is_there(pass.shader)
+        // The grammar reports an empty list.
+        if (pass.kind == PassKind::draw && pass.infers_writes && pass.writes.empty())
+            fault(pass.place, is_there(pass.shader)
                                   ? "writes nothing: it has no 'writes', and '" + pass.shader +
                                         "' has no 'out_' and the name of an output or a texture"
                                   : "writes nothing");

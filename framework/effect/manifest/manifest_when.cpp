@@ -20,43 +20,37 @@ bool may_equal(const ParamSpec& spec, const ParamValue& value) {
 
 }  // namespace
 
-void ManifestParser::add_conditions(const Node& section, std::vector<WhenSpec>& conditions) {
-    for (const Member& member : section.members) conditions.push_back(when(member));
-}
-
-WhenSpec ManifestParser::when(const Member& member) {
-    WhenSpec condition;
-    condition.subject = member.key;
-    condition.place = member.key_place;
-    const auto add = [&](const Node& value) {
-        if (value.kind == Node::Kind::boolean) condition.values.emplace_back(value.boolean);
-        else if (value.kind == Node::Kind::integer) condition.values.emplace_back(value.integer);
-        else if (value.is_string()) condition.values.emplace_back(value.string);
-        else fault(value.place, "a condition compares with true, false, an integer or a name");
-    };
-    if (member.value.is_array())
-        for (const Node& item : member.value.items) add(item);
-    else add(member.value);
-    if (member.value.is_array() && member.value.items.empty())
-        fault(member.value.place, "the condition '" + member.key + "' has no value, so it never holds");
-    return condition;
+void add_conditions(const grammar::Reader& owner, std::vector<WhenSpec>& conditions) {
+    const Node* section = owner.find("when");
+    if (!section) return;
+    for (const Member& member : section->members) {
+        WhenSpec condition;
+        condition.subject = member.key;
+        condition.place = member.key_place;
+        const auto add = [&](const Node& value) {
+            if (value.kind == Node::Kind::boolean) condition.values.emplace_back(value.boolean);
+            else if (value.kind == Node::Kind::integer) condition.values.emplace_back(value.integer);
+            else if (value.is_string()) condition.values.emplace_back(value.string);
+        };
+        if (member.value.is_array())
+            for (const Node& item : member.value.items) add(item);
+        else add(member.value);
+        conditions.push_back(std::move(condition));
+    }
 }
 
 std::vector<std::string> faults_of_condition(const EffectManifest& manifest, const WhenSpec& condition) {
     const std::string subject = "'" + condition.subject + "'";
-    std::vector<std::string> faults;
     if (condition.subject.starts_with(kHasInput)) {
         const InputSpec* input = manifest.find_input(condition.subject.substr(kHasInput.size()));
-        if (!input || !input->optional) faults.push_back(subject + " does not name an optional input");
-        for (const ParamValue& value : condition.values)
-            if (!std::holds_alternative<bool>(value))
-                faults.push_back(subject + " is true or false, not " + format_value(value));
-        return faults;
+        if (input && input->optional) return {};
+        return {subject + " does not name an optional input"};
     }
     const ParamSpec* spec = manifest.find_param(condition.subject);
     if (!spec)
         return {"the condition " + subject + " is not a parameter" +
                 did_you_mean(condition.subject, manifest.param_names())};
+    std::vector<std::string> faults;
     for (const ParamValue& value : condition.values)
         if (!may_equal(*spec, value))
             faults.push_back(format_value(value) + " is not a value of '" + spec->name + "'");

@@ -1,0 +1,172 @@
+// Textures, buffers and tile lists of a manifest.
+#include "framework/effect/manifest/manifest_blocks.h"
+
+namespace aftershade {
+
+using grammar::Block;
+using grammar::boolean;
+using grammar::Form;
+using grammar::integer;
+using grammar::optional;
+using grammar::required;
+using grammar::Rule;
+using grammar::text;
+using grammar::when;
+
+namespace {
+
+constexpr int kMaxMips = 15;         // of 16384 texels a side
+constexpr int kMaxListedTile = 256;  // 16 of them are a work group's, whose tile is at most 4096
+constexpr int kIndirectWords = 4;
+
+const std::vector<std::string>& buffer_elements() {
+    static const std::vector<std::string> elements = {"float", "int",   "uint",  "vec2", "vec4",
+                                                      "ivec2", "ivec4", "uvec2", "uvec4"};
+    return elements;
+}
+
+Form texture_format_form() {
+    std::vector<std::string> names;
+    for (const auto name : gpu::texture_format_names()) names.emplace_back(name);
+    return grammar::choice(std::move(names));
+}
+
+Form mips_form() {
+    constexpr const char* kFault = "'mips' is \"auto\" or a number of levels";
+    return grammar::by_kind(
+        {grammar::with_fault(grammar::constant("\"auto\""), kFault), integer(1, kMaxMips)}, kFault);
+}
+
+Block make_texture_block() {
+    return {
+        .name = "texture",
+        .thing = "texture '{}'",
+        .doc = "An image between passes.",
+        .keys = {required("format", texture_format_form(), "Of a texel."),
+                 required("doc", text(), "One sentence with the unit."),
+                 optional("scale", grid_scale_form(), "Of the working grid's sides, rounded up.", "1"),
+                 optional("tile", count_form(kTileCount),
+                          "Side in px of the tiles for which a texel stands each."),
+                 optional("size",
+                          grammar::shown_as(
+                              grammar::list(integer(1, kMaxSide),
+                                            {.min = 2, .max = 2, .fault = "'size' holds 2 integers"}),
+                              "[width, height], up to " + std::to_string(kMaxSide)),
+                          "In texels, whatever the working grid."),
+                 optional("layers", integer(1, kMaxLayers), "With more than one it is an array.", "1"),
+                 optional(
+                     "mips", mips_form(),
+                     "Levels that passes write one by one; `\"auto\"`: the host fills levels 1.. after each "
+                     "pass that writes level 0.",
+                     "1"),
+                 optional(
+                     "clear", texel_form(),
+                     "Set at the beginning of each frame; whole for integers, within what the format holds."),
+                 optional(
+                     "history", boolean(),
+                     "Survives into the next frame, where `name.prev` reads it; zero where there was none "
+                     "(`frame.history_valid`).",
+                     "false"),
+                 when_key("Without them every read and write of it is absent.")},
+        .rules = {grammar::at_most_one_of({"scale", "tile", "size"})}};
+}
+
+/// How many elements fit into a buffer, by the type that they have.
+std::vector<Rule> element_count_rules() {
+    std::vector<Rule> rules;
+    for (const std::string& element : buffer_elements())
+        if (components_of(element) > 1)
+            rules.push_back(when({.key = "element",
+                                  .value = "\"" + element + "\"",
+                                  .narrowed = {{"count", count_form(element_count(element))}}}));
+    return rules;
+}
+
+Block make_buffer_block() {
+    Block block{
+        .name = "buffer",
+        .thing = "buffer '{}'",
+        .doc = "An array in GPU memory.",
+        .keys = {required("element", grammar::choice(buffer_elements()), "Type of an element."),
+                 required("doc", text(), "One sentence."),
+                 optional(
+                     "count", count_form(element_count("float")),
+                     "Elements in all, of at most 128 MiB; with `per`, elements per texel of that grid, by "
+                     "default 1."),
+                 optional("per", per_form(), "The grid by whose texels elements are counted."),
+                 optional(
+                     "clear",
+                     grammar::any_of({grammar::number(), grammar::list(grammar::number(), {.min = 1})},
+                                     "'clear' must be a number or an array of numbers"),
+                     "The first words at the beginning of each frame, the rest 0; without, the content is "
+                     "undefined until it is written."),
+                 optional("history", boolean(), "As for textures.", "false"),
+                 optional("indirect", boolean(),
+                          "Holds the arguments of a draw {vertices, instances, first, base} or a dispatch "
+                          "{x, y, z}: `uint`, `count` fixed and at least 4.",
+                          "false")},
+        .rules = {
+            grammar::at_least_one_of({"count", "per"}),
+            when({.key = "per", .narrowed = {{"count", count_form(kPerTexelCount)}}}),
+            when(
+                {.key = "indirect",
+                 .value = "true",
+                 .required = {"count"},
+                 .absent = {"per"},
+                 .narrowed = {{"element", grammar::constant("\"uint\"")}, {"count", integer(kIndirectWords)}},
+                 .fault = "the indirect {} must have 'element' uint and a fixed 'count' of at least 4"}),
+            when({.key = "indirect",
+                  .value = "true",
+                  .narrowed = {{"history", grammar::constant("false")}},
+                  .fault = "the indirect {} cannot have 'history'"})}};
+    for (Rule& rule : element_count_rules()) block.rules.push_back(std::move(rule));
+    return block;
+}
+
+Block make_tile_list_block() {
+    return {
+        .name = "tiles",
+        .thing = "tile list '{}'",
+        .doc = "The tiles of the picture to which draws are confined.",
+        .keys =
+            {required("doc", text(), "One sentence."),
+             optional(
+                 "of", channel_form(),
+                 "Of a texture with a `tile`: the tiles whose texel is above 0 there. Where that texture is "
+                 "absent, so is the list."),
+             optional(
+                 "predicate",
+                 text({.fault = "'predicate' is empty: it names a file", .min_length = 1, .type = "file"}),
+                 "Instead: a file of the effect's folder, without a head, that has `bool far_tiles(ivec2 "
+                 "tile)`, of the list's name. Several lists may share a file."),
+             optional("tile", integer(2, kMaxListedTile), "Of a predicate: a tile's side in texels of `on`."),
+             optional("on", text({.type = "name of a texture"}),
+                      "Of a predicate: a texture with a `scale` whose texels the tiles divide; without, the "
+                      "working grid."),
+             optional("reads", reads_form(), "Of a predicate, as passes have them."),
+             when_key("Without them neither the list nor the passes over it are there.")},
+        .rules = {grammar::exactly_one_of({"of", "predicate"},
+                                          "{} is 'of' a texture's channel or has a 'predicate', one of the "
+                                          "two"),
+                  when({.key = "of", .absent = {"tile", "on", "reads"}}),
+                  when({.key = "predicate", .required = {"tile"}})}};
+}
+
+}  // namespace
+
+const Block& texture_block() {
+    static const Block block = make_texture_block();
+    return block;
+}
+
+const Block& buffer_block() {
+    static const Block block = make_buffer_block();
+    return block;
+}
+
+const Block& tile_list_block() {
+    static const Block block = make_tile_list_block();
+    return block;
+}
+
+}  // namespace aftershade

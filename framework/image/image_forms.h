@@ -1,0 +1,16 @@
+// Forms of values that documents about images share.
+#pragma once
+
+#include "framework/core/grammar.h"
+
+namespace aftershade {
+
+/// What roles beside the fixed ones are named like: "aov:mist".
+inline constexpr const char* kAovPattern = "^aov:.+$";
+
+/// The name of a role.
+grammar::Form role_form();
+/// "auto" and the names of colour spaces.
+grammar::Form color_space_form();
+
+}  // namespace aftershade
