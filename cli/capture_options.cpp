@@ -64,8 +64,9 @@ void add_capture_options(CLI::App& app, CaptureOptions& options, const std::stri
     app.add_option(
         "--layer", options.layer,
         "Layer of a file with several, such as a view layer of Blender (default: the file's first)");
-    app.add_option("--alpha", options.alpha,
-                   "Alpha of color: keep, or opaque where the stored one means nothing (default: the capture's)")
+    app.add_option(
+           "--alpha", options.alpha,
+           "Alpha of color: keep, or opaque where the stored one means nothing (default: the capture's)")
         ->check(CLI::IsMember(alpha_names()));
     app.add_option("--color-space", options.color_space,
                    "Primaries of the stored colours: auto, rec709, acescg, ap0, rec2020");

@@ -9,9 +9,9 @@
 
 #include "framework/capture/capture.h"
 #include "framework/image/role.h"
+#include "framework/image/window.h"
 #include "framework/inspect/velocity_check.h"
 #include "framework/inspect/velocity_report.h"
-#include "framework/image/window.h"
 
 namespace aftershade::cli {
 

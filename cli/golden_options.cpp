@@ -122,7 +122,8 @@ GoldenSetup prepare_golden(const GoldenOptions& options) {
     if (!options.backend.empty()) same.insert(same.end(), {"--backend", options.backend});
     setup.context.with_options = same.empty() ? "" : " " + shell_line(same);
     setup.context.version = AFTERSHADE_VERSION;
-    setup.context.commit = commit_of(setup.suite.file.parent_path().empty() ? "." : setup.suite.file.parent_path());
+    setup.context.commit =
+        commit_of(setup.suite.file.parent_path().empty() ? "." : setup.suite.file.parent_path());
     return setup;
 }
 

@@ -67,7 +67,8 @@ std::string role_lines(const Inspection& inspection) {
             text += fmt::format(
                 "  {:<14}  {}\n", role,
                 printable(fmt::format("{}", fmt::join(channels_of(*inspection.capture, role), " "))));
-    if (!inspection.depth_kind.empty()) text += fmt::format("  {:<14}  {}\n", "(depth)", inspection.depth_kind);
+    if (!inspection.depth_kind.empty())
+        text += fmt::format("  {:<14}  {}\n", "(depth)", inspection.depth_kind);
     return text + fmt::format("  {:<14}  {}\n", "(missing)", fmt::join(inspection.missing_roles(), ", "));
 }
 
@@ -127,8 +128,10 @@ std::string camera_lines(const Camera& camera) {
         text += fmt::format("  {:<14}  {:g} {}\n", name, value, field ? field->unit : "");
     }
     if (!camera.lens_model.empty()) text += fmt::format("  {:<14}  {}\n", "lens_model", camera.lens_model);
-    if (!camera.matrices_found.empty()) text += fmt::format("  {:<14}  {}\n", "matrices", camera.matrices_found);
-    if (!camera.matrices_fault.empty()) text += fmt::format("  {:<14}  {}\n", "not taken", camera.matrices_fault);
+    if (!camera.matrices_found.empty())
+        text += fmt::format("  {:<14}  {}\n", "matrices", camera.matrices_found);
+    if (!camera.matrices_fault.empty())
+        text += fmt::format("  {:<14}  {}\n", "not taken", camera.matrices_fault);
     if (camera.jitter_px)
         text += fmt::format("  {:<14}  {} {} px\n", "jitter", (*camera.jitter_px)[0], (*camera.jitter_px)[1]);
     return text.empty() ? "camera: nothing is known\n" : "camera:\n" + text;

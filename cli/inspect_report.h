@@ -37,8 +37,8 @@ struct Inspection {
 };
 
 std::string text_of(const Inspection& inspection);
-/// {file, parts, profile, layer, layers, notes, roles, depth_kind, missing, camera, lights, cryptomattes}, indented,
-/// without a line end.
+/// {file, parts, profile, layer, layers, notes, roles, depth_kind, missing, camera, lights, cryptomattes},
+/// indented, without a line end.
 std::string json_of(const Inspection& inspection);
 
 }  // namespace aftershade::cli

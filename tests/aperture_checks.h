@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "framework/compare/metrics.h"
 #include "framework/capture/capture.h"
+#include "framework/compare/metrics.h"
 #include "tests/lens.h"
 #include "tests/look_runner.h"
 #include "tests/polygon.h"
@@ -275,8 +275,8 @@ inline SuzanneThroughLens read_suzanne_through_lens(const std::filesystem::path&
 inline const std::string kSuzanneLens = R"("focus_distance": 6.4, "focal_length": 50, "f_number": 0.25,
     "sensor_width": 36, "lens_model": "pinhole")";
 
-/// PSNR, dB, against the renderer's own lens; `folder` is $AFTERSHADE_CAPTURES/suzanne, `more` further members of
-/// "params".
+/// PSNR, dB, against the renderer's own lens; `folder` is $AFTERSHADE_CAPTURES/suzanne, `more` further
+/// members of "params".
 inline double suzanne_through_aperture_db(const std::string& effect, const std::filesystem::path& folder,
                                           const std::string& more = "") {
     const SuzanneThroughLens suzanne = read_suzanne_through_lens(folder);

@@ -10,9 +10,9 @@
 
 #include "framework/batch/approved_image.h"
 #include "framework/batch/golden_case.h"
+#include "framework/capture/frame_range.h"
 #include "framework/core/param_type.h"
 #include "framework/effect/usage_check.h"
-#include "framework/capture/frame_range.h"
 #include "tests/every_effect.h"
 
 namespace aftershade::test {

@@ -11,10 +11,10 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/capture/capture.h"
 #include "framework/core/units.h"
 #include "framework/effect/registry.h"
 #include "framework/gpu/context.h"
-#include "framework/capture/capture.h"
 #include "tests/camera_pose.h"
 #include "tests/look_runner.h"
 #include "tests/synthetic_capture.h"

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 const fs::path kRoot = AFTERSHADE_SOURCE_DIR;
 
 struct Use {
-    std::regex name;               ///< as the standard library spells it
+    std::regex name;                ///< as the standard library spells it
     std::set<std::string> headers;  ///< any of them declares it
 };
 
@@ -83,7 +83,9 @@ TEST(Headers, IncludeTheStandardHeadersOfWhatTheyUse) {
             for (const Use& use : uses()) {
                 std::smatch name;
                 if (!std::regex_search(header.code, name, use.name)) continue;
-                const auto is_included = [&](const std::string& one) { return header.included.contains(one); };
+                const auto is_included = [&](const std::string& one) {
+                    return header.included.contains(one);
+                };
                 EXPECT_TRUE(std::ranges::any_of(use.headers, is_included))
                     << fs::relative(entry.path(), kRoot).string() << " uses " << name.str() << " without <"
                     << *use.headers.begin() << ">";

@@ -10,10 +10,10 @@
 
 #include <fmt/format.h>
 
-#include "framework/compare/metrics.h"
-#include "framework/file/exr_file.h"
 #include "framework/capture/profile.h"
 #include "framework/capture/sequence.h"
+#include "framework/compare/metrics.h"
+#include "framework/file/exr_file.h"
 #include "framework/scene/renderer.h"
 #include "tests/look_runner.h"
 #include "tests/scene/scene_text.h"

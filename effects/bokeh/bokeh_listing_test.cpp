@@ -1,5 +1,5 @@
-// Preset seed_2013 against listings A.1 and A.2 of Post 2013, Depth of Field and Motion Blur in Realtime Computer
-// Graphics, written again in double precision.
+// Preset seed_2013 against listings A.1 and A.2 of Post 2013, Depth of Field and Motion Blur in Realtime
+// Computer Graphics, written again in double precision.
 #include <algorithm>
 #include <array>
 #include <cmath>

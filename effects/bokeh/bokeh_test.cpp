@@ -23,7 +23,8 @@ struct CocCase {
     double diameter_px;
 };
 
-/// f = 50 mm, N = 2, focus 2 m, 1920 px wide, 36 mm: diameters by equation 2.1 of Post 2013 (glsl/lens/coc.glsl).
+/// f = 50 mm, N = 2, focus 2 m, 1920 px wide, 36 mm: diameters by equation 2.1 of Post 2013
+/// (glsl/lens/coc.glsl).
 TEST(BokehCoc, MatchesTheThinLensTableToATenthOfAPercent) {
     constexpr CocCase kTable[] = {{1.0f, 34.19}, {1.5f, 11.40}, {2.0f, 0}, {4.0f, 17.09}, {kInfinity, 34.19}};
     Capture capture = make_capture({.width = 1920, .height = 2});

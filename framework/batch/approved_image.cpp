@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "framework/capture/frame_range.h"
 #include "framework/core/atomic_file.h"
 #include "framework/core/text.h"
-#include "framework/capture/frame_range.h"
 
 namespace aftershade {
 

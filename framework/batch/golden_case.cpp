@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "framework/batch/golden_grammar.h"
+#include "framework/capture/frame_range.h"
 #include "framework/core/grammar_reader.h"
 #include "framework/core/text.h"
 #include "framework/core/units.h"
-#include "framework/capture/frame_range.h"
 #include "framework/pipeline/look.h"
 
 namespace aftershade {

@@ -31,8 +31,8 @@ void add_level(const std::string& word, const std::string& many, const Tolerance
     };
     add(word, grammar::number({.min = 0}), "Largest difference of a channel at which a pixel passes.",
         number(&Tolerance::limit));
-    add(word + "_percent", grammar::number({.min = 0, .max = 100}), "Percentage of pixels that may exceed it.",
-        number(&Tolerance::percent));
+    add(word + "_percent", grammar::number({.min = 0, .max = 100}),
+        "Percentage of pixels that may exceed it.", number(&Tolerance::percent));
     add("hard_" + word, grammar::number({.min = 0}), "Largest difference of any pixel; default: no limit.");
     add("allow_" + many, grammar::integer(0), "Number of pixels that may exceed it, whatever the percentage.",
         usual ? std::to_string(usual->allowed) : "");
@@ -66,7 +66,8 @@ std::vector<Key> common_keys() {
         optional("outputs", grammar::list(role_form()), "Roles to compare, an image each.", R"(["color"])"),
         optional("tolerance", grammar::object(golden_tolerance_block()), "How far the images may differ."),
         optional("tags", texts(), "Words for `--filter`; none may be another case's name."),
-        optional("skip", text({.fault = "'skip' says why", .min_length = 1}), "Reason for not running the case.")};
+        optional("skip", text({.fault = "'skip' says why", .min_length = 1}),
+                 "Reason for not running the case.")};
 }
 
 Block case_block() {
@@ -98,13 +99,14 @@ const Block& golden_suite_block() {
         .doc = "The document.",
         .keys = {optional("goldens", text(), "Folder of the approved images, used by this suite alone.",
                           R"("goldens")"),
-                 optional("effect_paths", texts(), "Folders of effects, searched before the shipped effects."),
+                 optional("effect_paths", texts(),
+                          "Folders of effects, searched before the shipped effects."),
                  optional("cases", grammar::list(grammar::object(case_block())),
                           "Cases to render and compare."),
-                 optional(
-                     "cases_of_effects", grammar::boolean(),
-                     "Whether to include `<id>/cases/*.json` of every effect in `effect_paths`, or of the shipped effects.",
-                     "false")},
+                 optional("cases_of_effects", grammar::boolean(),
+                          "Whether to include `<id>/cases/*.json` of every effect in `effect_paths`, or of "
+                          "the shipped effects.",
+                          "false")},
         .is_document = true};
     return block;
 }

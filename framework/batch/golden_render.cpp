@@ -7,13 +7,13 @@
 #include <set>
 
 #include "framework/batch/worker.h"
+#include "framework/capture/frame_range.h"
+#include "framework/capture/sequence.h"
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
 #include "framework/core/text.h"
 #include "framework/file/exr_file.h"
-#include "framework/capture/frame_range.h"
 #include "framework/image/role.h"
-#include "framework/capture/sequence.h"
 
 namespace aftershade {
 

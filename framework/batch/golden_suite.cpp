@@ -10,10 +10,10 @@
 
 #include "framework/batch/approved_image.h"
 #include "framework/batch/golden_grammar.h"
+#include "framework/capture/frame_range.h"
 #include "framework/core/data_path.h"
 #include "framework/core/grammar_reader.h"
 #include "framework/core/grammar_schema.h"
-#include "framework/capture/frame_range.h"
 
 namespace aftershade {
 

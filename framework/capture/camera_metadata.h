@@ -6,17 +6,17 @@
 #include <string>
 #include <vector>
 
-#include "framework/image/camera.h"
-#include "framework/file/exr_file.h"
 #include "framework/capture/light.h"
 #include "framework/capture/profile.h"
+#include "framework/file/exr_file.h"
+#include "framework/image/camera.h"
 
 namespace aftershade {
 
 /// The profile's own attributes first, then OpenEXR's standard ones (focus, aperture, nominalFocalLength,
-/// sensorOverallDimensions; the matrices as stored_matrices.h has them) and aftershade/camera/<field>. Values that are not
-/// positive where the field must be are taken as not known: producers write 0 for that. The lens of `known` stands above the
-/// header's where matrices are recognized by it.
+/// sensorOverallDimensions; the matrices as stored_matrices.h has them) and aftershade/camera/<field>. Values
+/// that are not positive where the field must be are taken as not known: producers write 0 for that. The lens
+/// of `known` stands above the header's where matrices are recognized by it.
 Camera camera_of_metadata(const ExrPart& part, const Profile& profile, const Camera& known = {});
 
 /// The way back: aftershade/camera/..., OpenEXR's own focus, aperture and nominalFocalLength, both matrices,

@@ -81,7 +81,8 @@ void read_alpha(Image& color, bool is_opaque, CaptureHeader& header) {
     }
     if (has_light && !has_alpha)
         header.notes.push_back(
-            "the alpha of color is 0 everywhere, so a PNG of it is transparent; --alpha opaque, or \"alpha\": "
+            "the alpha of color is 0 everywhere, so a PNG of it is transparent; --alpha opaque, or "
+            "\"alpha\": "
             "\"opaque\" in capture.json, reads it as 1");
 }
 
@@ -120,10 +121,9 @@ void CaptureReader::add_role(OpenFrame& open, const std::string& role, const Rol
     else if (!luminance.layers[0][0].empty() && find_channels(luminance, "", file.merged()))
         source.luminance = luminance.layers[0][0];
     else if (own_file != open.role_files.end() && &file != &cryptomatte_file(open))
-        throw Error(ExitCode::capture,
-                    file.path().string() + ": " +
-                        no_channels_for_role(*find_role(role), file.merged(),
-                                             sequence_.channels.contains(role)));
+        throw Error(ExitCode::capture, file.path().string() + ": " +
+                                           no_channels_for_role(*find_role(role), file.merged(),
+                                                                sequence_.channels.contains(role)));
     else return;
     open.header.role_channels[role] =
         source.luminance.empty() ? listed(source.channels) : std::vector{source.luminance};

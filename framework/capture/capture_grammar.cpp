@@ -31,7 +31,8 @@ Form files_by_role() {
 Block cryptomatte_block() {
     return {.name = "cryptomatte",
             .keys = {optional("layer", text(), "Which Cryptomatte; required if there are several."),
-                     optional("mask", grammar::list(text()), "Names of objects; the role mask is their coverage.")}};
+                     optional("mask", grammar::list(text()),
+                              "Names of objects; the role mask is their coverage.")}};
 }
 
 Block make_camera_block() {
@@ -63,17 +64,18 @@ Block make_light_block() {
     const Key direction =
         numbers(ParamType::vec3, "direction", "", "Direction in which the light shines; any length.");
     const Key size = numbers(ParamType::vec2, "size", "m", "Lengths of the two sides.", kMinSize_m);
-    return {.name = "light",
-            .thing = "the light",
-            .doc = "A light of the capture, in world space.",
-            .keys = {optional("name", text(), "Name for messages."),
-                     numbers(ParamType::vec3, "intensity", "",
-                             "RGB: W/sr for a point, W/m^2 for a directional light, W/(m^2 sr) for an area.", 0)},
-            .selector = "type",
-            .kinds = {{.name = "point", .keys = {position}},
-                      {.name = "directional", .keys = {direction}},
-                      {.name = "area", .keys = {position, direction, size}}},
-            .path = "light"};
+    return {
+        .name = "light",
+        .thing = "the light",
+        .doc = "A light of the capture, in world space.",
+        .keys = {optional("name", text(), "Name for messages."),
+                 numbers(ParamType::vec3, "intensity", "",
+                         "RGB: W/sr for a point, W/m^2 for a directional light, W/(m^2 sr) for an area.", 0)},
+        .selector = "type",
+        .kinds = {{.name = "point", .keys = {position}},
+                  {.name = "directional", .keys = {direction}},
+                  {.name = "area", .keys = {position, direction, size}}},
+        .path = "light"};
 }
 
 /// Without a main file the colour's own file takes its place.
@@ -97,31 +99,33 @@ Block make_capture_block() {
         .name = "capture",
         .thing = "the capture",
         .doc = "The document.",
-        .keys =
-            {optional("files", files_by_role(),
-                      "File patterns of roles that are stored in separate files."),
-             optional("frames", text(), "Pattern of the main files, relative to this document: `gbuffer_####.exr`."),
-             optional("range", range, "Frames to use; default: every file that matches the pattern."),
-             optional("fps", grammar::number({.above = 0}), "Frames per second.", "24"),
-             optional("profile", text(), "Producer profile; auto: detected from the file's header.",
-                      "\"auto\""),
-             optional("view", text(), "View of a multi-view file; default: the first."),
-             optional("layer", text(),
-                      "Layer of a file with several, such as Blender's view layers; default: the first."),
-             optional("color_space", color_space_form(),
-                      "Primaries of the stored colours; auto: the profile's, else the file's chromaticities.",
-                      "\"auto\""),
-             optional("alpha", grammar::choice(alpha_names()),
-                      "Alpha of color; opaque: ignore the stored alpha and read 1.", R"("keep")"),
-             optional("channels", decodings(), "Decoding by role, instead of the profile's."),
-             optional("camera", grammar::object(capture_camera_block()), "Camera values, instead of the files'."),
-             optional("lights", grammar::list(grammar::object(capture_light_block())),
-                      "Lights, instead of the files'."),
-             optional("cryptomatte", grammar::object(cryptomatte_block()),
-                      "Source of the roles mask and object_id."),
-             optional("cuts", grammar::list(frame_number), "First frame of each shot."),
-             optional("subframes", grammar::integer(1, 1024),
-                      "Files per frame: files N * frame to N * frame + N - 1 are one exposure.", "1")},
+        .keys = {optional("files", files_by_role(),
+                          "File patterns of roles that are stored in separate files."),
+                 optional("frames", text(),
+                          "Pattern of the main files, relative to this document: `gbuffer_####.exr`."),
+                 optional("range", range, "Frames to use; default: every file that matches the pattern."),
+                 optional("fps", grammar::number({.above = 0}), "Frames per second.", "24"),
+                 optional("profile", text(), "Producer profile; auto: detected from the file's header.",
+                          "\"auto\""),
+                 optional("view", text(), "View of a multi-view file; default: the first."),
+                 optional("layer", text(),
+                          "Layer of a file with several, such as Blender's view layers; default: the first."),
+                 optional(
+                     "color_space", color_space_form(),
+                     "Primaries of the stored colours; auto: the profile's, else the file's chromaticities.",
+                     "\"auto\""),
+                 optional("alpha", grammar::choice(alpha_names()),
+                          "Alpha of color; opaque: ignore the stored alpha and read 1.", R"("keep")"),
+                 optional("channels", decodings(), "Decoding by role, instead of the profile's."),
+                 optional("camera", grammar::object(capture_camera_block()),
+                          "Camera values, instead of the files'."),
+                 optional("lights", grammar::list(grammar::object(capture_light_block())),
+                          "Lights, instead of the files'."),
+                 optional("cryptomatte", grammar::object(cryptomatte_block()),
+                          "Source of the roles mask and object_id."),
+                 optional("cuts", grammar::list(frame_number), "First frame of each shot."),
+                 optional("subframes", grammar::integer(1, 1024),
+                          "Files per frame: files N * frame to N * frame + N - 1 are one exposure.", "1")},
         .rules = {frames_rule()},
         .is_document = true};
 }

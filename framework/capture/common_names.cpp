@@ -56,8 +56,8 @@ std::set<std::string> cryptomatte_names(const ExrPart& part) {
 /// By the last word of its name, such as "N" of "beauty.N": a usual one, or a role's.
 bool holds_data(const std::string& layer) {
     static const std::set<std::string> words = {
-        "n",      "normals", "ng",   "ns",           "normw",     "p",       "positions", "posw",
-        "pos",    "z",       "uv",   "st",           "tangent",   "id",      "vector",    "vectors",
+        "n",      "normals", "ng",           "ns",        "normw",   "p",       "positions", "posw",
+        "pos",    "z",       "uv",           "st",        "tangent", "id",      "vector",    "vectors",
         "motion", "mvec",    "motionvector", "motionvec", "forward", "backward"};
     if (layer.empty()) return false;
     const std::string word = in_lower_case(layer.substr(layer.rfind('.') + 1));

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "framework/capture/profile.h"
 #include "framework/image/camera.h"
 #include "framework/image/image.h"
-#include "framework/capture/profile.h"
 
 namespace aftershade {
 

@@ -21,7 +21,8 @@ using grammar::text;
 namespace {
 
 constexpr const char* kChannelsDoc =
-    "Channel names in the role's order. `{layer}.` is the layer's name, `a|b` are alternatives, a final `?` marks "
+    "Channel names in the role's order. `{layer}.` is the layer's name, `a|b` are alternatives, a final `?` "
+    "marks "
     "an optional channel. Without an alpha channel, a colour's alpha is 1.";
 constexpr const char* kSumDoc = "Lists of channels to add.";
 constexpr const char* kComponentDoc = "Channel of one component.";
@@ -66,15 +67,15 @@ Key delta_key(const ChannelRole& role) {
 std::vector<Key> motion_keys(const ChannelRole& role) {
     const Form scale = grammar::any_of({number(), list(number(), {.min = 2, .max = 2})},
                                        "'scale' of a velocity is a number, or one for x and one for y");
-    return {
-        delta_key(role),
-        optional("unit", choice(velocity_unit_names()), "px; uv: 1 is the image's side; ndc: 2 is the image's side.", R"("px")"),
-        optional("y_axis", choice({"up", "down"}), "Direction in which y grows.", R"("down")"),
-        optional("bias", number(), "Stored value that means no motion.", "0"),
-        optional("scale", scale, "Factor, or one each for x and y.", "1"),
-        optional("premultiplied", boolean(), "Whether the vectors are multiplied by alpha.", "false"),
-        optional("no_motion_above", number(), "A stored x above this means no motion data."),
-        optional("shutter_frames", number({.above = 0}), "Number of frames that a vector spans.", "1")};
+    return {delta_key(role),
+            optional("unit", choice(velocity_unit_names()),
+                     "px; uv: 1 is the image's side; ndc: 2 is the image's side.", R"("px")"),
+            optional("y_axis", choice({"up", "down"}), "Direction in which y grows.", R"("down")"),
+            optional("bias", number(), "Stored value that means no motion.", "0"),
+            optional("scale", scale, "Factor, or one each for x and y.", "1"),
+            optional("premultiplied", boolean(), "Whether the vectors are multiplied by alpha.", "false"),
+            optional("no_motion_above", number(), "A stored x above this means no motion data."),
+            optional("shutter_frames", number({.above = 0}), "Number of frames that a vector spans.", "1")};
 }
 
 /// What roles of its kind have beside the names of channels.

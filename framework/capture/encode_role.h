@@ -5,8 +5,8 @@
 #include <string>
 
 #include "framework/capture/decode.h"
-#include "framework/image/image.h"
 #include "framework/capture/profile.h"
+#include "framework/image/image.h"
 
 namespace aftershade {
 

@@ -154,7 +154,8 @@ std::optional<int> FramePattern::match(std::string_view name) const {
 }
 
 FramePattern FramePattern::padded(int width) const {
-    return FramePattern(text_.substr(0, start_) + std::string(std::size_t(width), '#') + text_.substr(start_ + length_));
+    return FramePattern(text_.substr(0, start_) + std::string(std::size_t(width), '#') +
+                        text_.substr(start_ + length_));
 }
 
 std::optional<int> frame_in_name(std::string_view stem) {

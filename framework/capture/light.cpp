@@ -4,8 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "framework/core/grammar_reader.h"
 #include "framework/capture/capture_grammar.h"
+#include "framework/core/grammar_reader.h"
 
 namespace aftershade {
 

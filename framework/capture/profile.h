@@ -95,8 +95,8 @@ std::optional<Profile> parse_profile(const Node& node, Diagnostics& diagnostics)
 /// "roles" of a profile, or "channels" of a capture.json, which has been checked.
 std::map<std::string, RoleDecoding> read_decodings(const Node& node);
 
-/// The stored channels that a role's decoding finds in a part. nullopt where a required one is missing. Names are first taken as they are, then in
-/// any case.
+/// The stored channels that a role's decoding finds in a part. nullopt where a required one is missing. Names
+/// are first taken as they are, then in any case.
 std::optional<FoundChannels> find_channels(const RoleDecoding& decoding, const std::string& layer,
                                            const ExrPart& part);
 

@@ -25,8 +25,8 @@ void read_frames(const grammar::Reader& reader, const fs::path& folder, Sequence
     if (const Node* files = reader.find("files"))
         for (const Member& member : files->members)
             if (find_role(member.key) && member.value.is_string())
-                sequence.role_files.insert_or_assign(member.key,
-                                                     file_or_pattern((folder / member.value.string).string()));
+                sequence.role_files.insert_or_assign(
+                    member.key, file_or_pattern((folder / member.value.string).string()));
     // Without a main file the colour's own file takes its place.
     if (reader.has("frames")) sequence.files = file_or_pattern((folder / reader.text("frames")).string());
     else if (sequence.role_files.contains(kColorRole)) sequence.files = sequence.role_files.at(kColorRole);

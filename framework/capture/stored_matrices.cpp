@@ -41,7 +41,8 @@ glm::dmat4 matrix_of(const Rows& rows) {
 CameraMatrix camera_matrix(const glm::dmat4& matrix) {
     CameraMatrix result{};
     for (int row = 0; row < 4; ++row)
-        for (int column = 0; column < 4; ++column) result[std::size_t(row * 4 + column)] = matrix[column][row];
+        for (int column = 0; column < 4; ++column)
+            result[std::size_t(row * 4 + column)] = matrix[column][row];
     return result;
 }
 
@@ -106,7 +107,8 @@ double ahead_by(const glm::dmat4& ndc_from_world, const View& view) {
     return factor > 0 ? 1 : factor < 0 ? -1 : 0;
 }
 
-/// As stored and, for pbrt-v4, transposed; a camera at the origin may be both. Which way is ahead, they do not know.
+/// As stored and, for pbrt-v4, transposed; a camera at the origin may be both. Which way is ahead, they do
+/// not know.
 std::vector<View> views_of(const glm::dmat4& stored) {
     std::vector<View> views;
     for (const bool transposed : {false, true}) {
@@ -143,8 +145,8 @@ public:
         return "";
     }
 
-    /// From 0 to 1, not from -1 to 1. The lens decides where it is known, else where the view's axis meets the
-    /// picture, which is near its middle.
+    /// From 0 to 1, not from -1 to 1. The lens decides where it is known, else where the view's axis meets
+    /// the picture, which is near its middle.
     bool is_unsigned(const Camera& lens) const {
         const auto focal_length = lens.get("focal_length"), sensor_width = lens.get("sensor_width");
         if (focal_length && sensor_width) {
@@ -161,8 +163,7 @@ public:
     glm::dmat4 normalized(bool is_unsigned) const {
         Rows rows = ndc_;
         if (is_unsigned)
-            for (const int row : {0, 1})
-                rows[std::size_t(row)] = 2.0 * rows[std::size_t(row)] - rows[3];
+            for (const int row : {0, 1}) rows[std::size_t(row)] = 2.0 * rows[std::size_t(row)] - rows[3];
         if (is_down()) rows[1] = -rows[1];
         return matrix_of(rows);
     }

@@ -1,7 +1,7 @@
 // Where the camera stands and what it sees, out of a header's matrices. OpenEXR's definition
 // (ImfStandardAttributes.h): worldToCamera is left-handed with +z ahead, worldToNDC goes from 0 to 1 over the
-// display window with y down, both act on row vectors. Producers keep to parts of it, so the convention of each
-// matrix is recognized by what it does.
+// display window with y down, both act on row vectors. Producers keep to parts of it, so the convention of
+// each matrix is recognized by what it does.
 #pragma once
 
 #include <map>

@@ -65,7 +65,8 @@ LayerRole layer_role_of(RoleKind kind) {
     return LayerRole::data;
 }
 
-/// Words in a layer's name that say it is a `layer`: other producers', and our own roles that are compared so.
+/// Words in a layer's name that say it is a `layer`: other producers', and our own roles that are compared
+/// so.
 std::set<std::string> words_of(LayerRole layer, std::set<std::string> words = {}) {
     for (const ChannelRole& role : channel_roles())
         if (layer_role_of(role.kind) == layer) words.insert(role.name);

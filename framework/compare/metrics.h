@@ -26,8 +26,8 @@ struct ImageMetrics {
 /// only with `nan_equal`; otherwise they make every figure infinite, and PSNR minus infinity.
 ImageMetrics compare_images(const Image& reference, const Image& test, int channels, bool nan_equal = false);
 
-/// The PSNR of docs/design.md, Measures: both images clamped to [0, 1], encoded by the piecewise sRGB curve in double
-/// precision without an 8-bit step, mean squared error over all pixels and R, G, B, peak 1.
+/// The PSNR of docs/design.md, Measures: both images clamped to [0, 1], encoded by the piecewise sRGB curve
+/// in double precision without an 8-bit step, mean squared error over all pixels and R, G, B, peak 1.
 double display_psnr_db(const Image& reference, const Image& test);
 
 /// The piecewise sRGB curve of a value clamped to [0, 1]; NaN becomes 0.

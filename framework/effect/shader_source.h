@@ -109,7 +109,8 @@ std::string interface_glsl(const ShaderContext& context, ShaderFile file = Shade
 /// The reads of a pass that are there: textures and inputs that are present, where their conditions hold.
 /// Their order gives the sampler bindings.
 std::vector<ReadSpec> present_reads(const EffectManifest& manifest, const PassSpec& pass,
-                                    const ParamReader& params, const std::vector<std::string>& present_inputs);
+                                    const ParamReader& params,
+                                    const std::vector<std::string>& present_inputs);
 
 /// The writes of a pass whose conditions hold; their order is that of the targets.
 std::vector<WriteSpec> present_writes(const PassSpec& pass, const ParamReader& params,

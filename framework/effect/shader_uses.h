@@ -19,10 +19,10 @@ struct ShaderUses {
     using Uses = std::map<std::string, Place>;  ///< by name, with its first place
 
     std::set<std::string> words;
-    std::set<std::string> own;    ///< words after a type, or after #define: names of the shader's own
-    Uses params;                  ///< x of param.x
-    Uses natives;                 ///< x of native.x
-    Uses outputs;                 ///< x of out_x, but for names that the shader declares itself
+    std::set<std::string> own;  ///< words after a type, or after #define: names of the shader's own
+    Uses params;                ///< x of param.x
+    Uses natives;               ///< x of native.x
+    Uses outputs;               ///< x of out_x, but for names that the shader declares itself
     /// x of texelFetch(x, ...), texture(x, ...), textureLod(x, ...), ..., but for parameters of functions.
     Uses samplers;
     Uses plain_samplers;          ///< those outside of every #if: what stands within may be left out

@@ -144,9 +144,11 @@ private:
         const std::string which = known != std::end(kNewerCompressions)
                                       ? std::string(known->name)
                                       : fmt::format("method {}", int(static_cast<unsigned char>(method)));
-        fail(path_, fmt::format("is compressed with {}, which this build's OpenEXR {} does not read; convert it with a "
-                                "newer one: oiiotool {} --compression zip -o OUT.exr",
-                                which, OPENEXR_VERSION_STRING, shell_line({path_.string()})));
+        fail(path_,
+             fmt::format(
+                 "is compressed with {}, which this build's OpenEXR {} does not read; convert it with a "
+                 "newer one: oiiotool {} --compression zip -o OUT.exr",
+                 which, OPENEXR_VERSION_STRING, shell_line({path_.string()})));
     }
 
     std::uint64_t channels_end(std::uint64_t limit) {

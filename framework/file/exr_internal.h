@@ -75,9 +75,9 @@ struct FileLayout {
     std::vector<std::vector<std::uint64_t>> found_blocks;
 };
 
-/// Walks the headers without keeping anything, and returns the version field; the file's position is then their
-/// end. Throws Error(ExitCode::capture) for sizes that the file cannot hold, for more parts, channels or
-/// attributes than the limits, and for compressions that this build's library does not read.
+/// Walks the headers without keeping anything, and returns the version field; the file's position is then
+/// their end. Throws Error(ExitCode::capture) for sizes that the file cannot hold, for more parts, channels
+/// or attributes than the limits, and for compressions that this build's library does not read.
 int scan_headers(FileStream& file, const std::filesystem::path& path);
 /// Reads the headers and holds them against the limits; throws Error(ExitCode::capture).
 FileLayout read_layout(FileStream& file, const std::filesystem::path& path, const ReadLimits& limits);

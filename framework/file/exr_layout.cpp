@@ -214,8 +214,8 @@ void check_block(FileStream& file, const fs::path& path, const Imf::Header& head
 
 namespace {
 
-/// Of a block's head: a part number, then a line or a tile's two coordinates and two levels, then the size; all
-/// of 4 bytes.
+/// Of a block's head: a part number, then a line or a tile's two coordinates and two levels, then the size;
+/// all of 4 bytes.
 std::size_t head_words(const FileLayout& layout, const Imf::Header& header) {
     return (layout.multi_part ? 1u : 0u) + (is_tiled_part(header) ? 4u : 1u) + 1u;
 }
@@ -235,8 +235,8 @@ bool has_empty_table(FileStream& file, const FileLayout& layout) {
     return true;
 }
 
-/// The blocks of a file whose writer left its tables empty, walked from the end of the tables; {} where they do
-/// not add up to whole parts of scan lines.
+/// The blocks of a file whose writer left its tables empty, walked from the end of the tables; {} where they
+/// do not add up to whole parts of scan lines.
 std::vector<std::vector<std::uint64_t>> found_blocks(FileStream& file, const FileLayout& layout,
                                                      std::uint64_t position) {
     std::vector<std::vector<std::uint64_t>> found;

@@ -50,7 +50,7 @@ bool is_own_attribute(std::string_view name) {
 void check_name(const fs::path& path, const char* what, const std::string& name) {
     if (name.empty() || name.size() > exr::kMaxNameLength || name.find('\0') != std::string::npos) {
         refuse(path, fmt::format("{} name '{}' has {} bytes, 1 to {} are possible", what, name, name.size(),
-                               exr::kMaxNameLength));
+                                 exr::kMaxNameLength));
     }
 }
 
@@ -92,7 +92,7 @@ Imf::Compression find_compression(const fs::path& path, const std::string& name)
     if (found != exr::kCompressionNames.end())
         return Imf::Compression(found - exr::kCompressionNames.begin());
     refuse(path, fmt::format("compression '{}' does not exist; there are {}", name,
-                           fmt::join(exr::kCompressionNames, ", ")));
+                             fmt::join(exr::kCompressionNames, ", ")));
 }
 
 Imf::Header make_header(const fs::path& path, std::span<const ExrOutputChannel> channels,

@@ -61,7 +61,7 @@ public:
     std::string lens_model;                         ///< "thin" or "pinhole"; "" where not known
     std::optional<CameraMatrix> camera_from_world;  ///< view space: right-handed, looks along -z, y up, m
     std::optional<CameraMatrix>
-        ndc_from_world;  ///< projective; x right and y up from -1 to 1 over the display window
+        ndc_from_world;          ///< projective; x right and y up from -1 to 1 over the display window
     std::string matrices_found;  ///< conventions that the header's matrices were read by; for people
     std::string matrices_fault;  ///< why a matrix of the header was not taken; "" where each was
     /// The samples' offset from the pixels' centres, px, +y down; contained neither in velocity nor in the

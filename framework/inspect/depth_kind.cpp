@@ -55,8 +55,8 @@ void normalize(std::vector<PlacedDepth>& samples) {
     }
 }
 
-/// a and b of value = a . position + b, by least squares; positions in one plane leave a free along its normal,
-/// where it becomes 0.
+/// a and b of value = a . position + b, by least squares; positions in one plane leave a free along its
+/// normal, where it becomes 0.
 template <class ValueOf>
 glm::dvec4 affine_fit(const std::vector<PlacedDepth>& samples, ValueOf&& value_of) {
     constexpr double kRidge = 1e-9;
@@ -114,8 +114,9 @@ DepthKind find_depth_kind(const Image& depth, const Image& position) {
     for (const PlacedDepth& one : samples) {
         const glm::dvec4 row(one.position, 1);
         planar.push_back(glm::dot(plane, row) - one.depth);
-        radial.push_back(std::sqrt(std::max(0.0, glm::dot(one.position, one.position) + glm::dot(sphere, row))) -
-                         one.depth);
+        radial.push_back(
+            std::sqrt(std::max(0.0, glm::dot(one.position, one.position) + glm::dot(sphere, row))) -
+            one.depth);
     }
     kind.planar_error = root_mean_square(planar) / median;
     kind.radial_error = root_mean_square(radial) / median;

@@ -8,9 +8,10 @@
 
 namespace aftershade {
 
-/// How well a picture's depth fits its positions in each reading: planar depth is an affine function of position,
-/// with a gradient of length 1; radial depth is the distance to one point. Both are fitted by least squares, so
-/// neither the camera nor the space of the positions matters, as long as depth and position have one unit.
+/// How well a picture's depth fits its positions in each reading: planar depth is an affine function of
+/// position, with a gradient of length 1; radial depth is the distance to one point. Both are fitted by least
+/// squares, so neither the camera nor the space of the positions matters, as long as depth and position have
+/// one unit.
 struct DepthKind {
     double planar_error = 0;  ///< root mean square, as a share of the median depth
     double radial_error = 0;
@@ -22,8 +23,8 @@ struct DepthKind {
     std::string text() const;  ///< "planar, fits position to 0.02 %"; "" where the verdict is unknown
 };
 
-/// `depth` has one channel, m; `position` three. Both of one size. Pixels without a hit, infinite or 0 in both, are
-/// left out. [thread-safe]
+/// `depth` has one channel, m; `position` three. Both of one size. Pixels without a hit, infinite or 0 in
+/// both, are left out. [thread-safe]
 DepthKind find_depth_kind(const Image& depth, const Image& position);
 
 }  // namespace aftershade

@@ -20,8 +20,8 @@ namespace {
 constexpr double kClearScore = 0.05;    // two hypotheses further apart are told from each other ...
 constexpr double kClearDispute = 0.15;  // ... or those whose errors differ so, where they disagree
 constexpr double kExplains = 0.25;      // below, a score may be chance
-constexpr double kExplainsWell = 0.5;    // a rival in time that does, where the claim does not explain
-constexpr double kRest = 0.1;            // ... or that leaves no more of what the claim leaves
+constexpr double kExplainsWell = 0.5;   // a rival in time that does, where the claim does not explain
+constexpr double kRest = 0.1;           // ... or that leaves no more of what the claim leaves
 constexpr double kStillError = 1e-4;    // below, the two pictures are one
 constexpr double kFitSlack = 0.03;      // fits closer than this are one
 constexpr double kHopeless = 0.3;       // worse starts of the fit are left out
@@ -120,8 +120,8 @@ bool wins_in_time(const Tests& tests, const VelocityScore& rival, const Velocity
     const bool wins_here = tests.claimed()->empty() || (here.told && here.other < limit * here.own);
     if (wins_there && wins_here) return true;
     // Flat surfaces show their motion by their outlines alone, which those pixels leave out.
-    const bool claim_wins = (there.told && there.other < limit * there.own) ||
-                            (here.told && here.own < limit * here.other);
+    const bool claim_wins =
+        (there.told && there.other < limit * there.own) || (here.told && here.own < limit * here.other);
     const bool explains_all = 1 - rival.score < kRest * (1 - claim.score) && claim.score < kExplainsWell;
     const bool explains_alone = claim.score < kExplains && rival.score >= kExplainsWell;
     return !claim_wins && (explains_all || explains_alone);

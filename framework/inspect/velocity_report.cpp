@@ -194,11 +194,11 @@ std::string describe_verdict(const VelocityCheck& check) {
         case VelocityVerdict::undecided:
             if (check.best.score >= check.identity.score + kClearlyMore)
                 return fmt::format(
-                    "Cannot tell: with {} the vectors remove {} of the difference between the frames, with {} "
+                    "Cannot tell: with {} the vectors remove {} of the difference between the frames, with "
+                    "{} "
                     "{}, but uniform motion and uncovered background explain that too; take frames in which "
                     "things turn, bounce or change their speed",
-                    settings, own,
-                    describe_settings(correct_settings(check.settings, check.best.hypothesis)),
+                    settings, own, describe_settings(correct_settings(check.settings, check.best.hypothesis)),
                     percent(check.best.score));
             return fmt::format(
                 "The profile fits ({}: {} of the difference between the frames removed), but these frames do "

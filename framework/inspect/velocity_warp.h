@@ -69,10 +69,11 @@ public:
     /// 1 - error of `better` / error of `worse` where the two land at least a pixel apart; 0 where too few
     /// samples do.
     double dispute(const VectorMap& better, const VectorMap& worse) const;
-    /// `other` follows the target's pixels back into this source by its own vectors. Compares both readings at
-    /// this test's samples whose surface both frames see by the other's reading, where they are at least a
+    /// `other` follows the target's pixels back into this source by its own vectors. Compares both readings
+    /// at this test's samples whose surface both frames see by the other's reading, where they are at least a
     /// pixel apart: uncovered background and what leaves the picture say nothing of time.
-    TimeDispute dispute_in_time(const VectorMap& map, const WarpTest& other, const VectorMap& other_map) const;
+    TimeDispute dispute_in_time(const VectorMap& map, const WarpTest& other,
+                                const VectorMap& other_map) const;
 
 private:
     struct Sample {

@@ -26,7 +26,8 @@ struct BuiltGraph {
     int first_single_pass = 0;  ///< passes before it run for every sub-frame, the others once a frame
     std::unique_ptr<graph::Executor> executor;
 
-    /// Gives the graph all that the passes from feed.first_pass on need of a frame. Throws what give() throws.
+    /// Gives the graph all that the passes from feed.first_pass on need of a frame. Throws what give()
+    /// throws.
     void feed(const GraphFeed& feed) {
         for (GraphBinding& binding : bindings) give(binding, feed, *executor);
     }

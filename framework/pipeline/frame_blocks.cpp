@@ -6,10 +6,10 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_inverse.hpp>
 
+#include "framework/capture/cryptomatte.h"
 #include "framework/core/error.h"
 #include "framework/core/text.h"
 #include "framework/image/camera_matrix.h"
-#include "framework/capture/cryptomatte.h"
 
 namespace aftershade {
 

@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "framework/capture/cryptomatte.h"
 #include "framework/core/error.h"
 #include "framework/core/param_type.h"
-#include "framework/capture/cryptomatte.h"
 
 namespace aftershade {
 

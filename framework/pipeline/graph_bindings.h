@@ -70,9 +70,9 @@ struct GraphFeed {
     int first_pass = 0;  ///< blocks of passes before it stay as they are
 };
 
-/// Puts the frame's content into what is bound; textures and buffers of files, curves and tables only where it
-/// changed. Throws Error(ExitCode::effect) for an image that does not fit its role, Error(ExitCode::capture)
-/// for lights and mixes that the capture does not give.
+/// Puts the frame's content into what is bound; textures and buffers of files, curves and tables only where
+/// it changed. Throws Error(ExitCode::effect) for an image that does not fit its role,
+/// Error(ExitCode::capture) for lights and mixes that the capture does not give.
 void give(GraphBinding& binding, const GraphFeed& feed, graph::Executor& executor);
 
 }  // namespace aftershade

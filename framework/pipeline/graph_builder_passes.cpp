@@ -163,7 +163,7 @@ graph::TextureHandle GraphBuilder::write_target(const StepBuild& build, const Pa
     graph::TextureOptions options;
     options.auto_mips = texture.options.auto_mips;
     return graph_.create_texture(build.prefix() + name + "@" + pass.substr(build.prefix().size()),
-                                texture.desc, options);
+                                 texture.desc, options);
 }
 
 void GraphBuilder::set_kind(const StepBuild& build, const PassSpec& spec, graph::Pass& pass) const {

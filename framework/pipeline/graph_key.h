@@ -18,8 +18,8 @@ namespace aftershade {
 struct GraphFrame {
     const Pipeline& pipeline;
     const FrameInputs& inputs;
-    const std::vector<ParamSet>& params;  ///< by step
-    const NativeSteps& natives;           ///< prepared for this frame
+    const std::vector<ParamSet>& params;    ///< by step
+    const NativeSteps& natives;             ///< prepared for this frame
     const std::vector<std::string>& roles;  ///< to be read back
 };
 

@@ -83,10 +83,9 @@ const Block& look_step_block() {
             optional("enabled", grammar::boolean(), "false skips the step, but still checks it.", "true"),
             optional("preset", text(), "Preset of the effect."),
             optional("params", any_object("[value](#values)"), "Values, which override the preset's."),
-            optional(
-                "in", grammar::map(look_wire(), {.by = "input"}),
-                "Sources of inputs; default: the nearest earlier step that outputs the role, else the "
-                "capture ([wiring](#wiring))."),
+            optional("in", grammar::map(look_wire(), {.by = "input"}),
+                     "Sources of inputs; default: the nearest earlier step that outputs the role, else the "
+                     "capture ([wiring](#wiring))."),
             optional("mix", grammar::custom({.type = "[value](#values), 0 to 1"}),
                      "Blend from the image before the step to its result."),
             optional("mask", grammar::with_variables(grammar::object(look_mask_block())),
@@ -102,7 +101,8 @@ const Block& look_use_block() {
         .keys = {required("use", text(), "File of the other look, relative to this one."),
                  optional("name", grammar::snake_case(), "Prefix of its steps' names: `base_...`."),
                  optional("enabled", grammar::boolean(), "false skips all its steps.", "true"),
-                 optional("vars", any_object("[value](#values)"), "Values of variables, which override its own.")}};
+                 optional("vars", any_object("[value](#values)"),
+                          "Values of variables, which override its own.")}};
     return block;
 }
 

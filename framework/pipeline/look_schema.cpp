@@ -2,8 +2,8 @@
 #include <utility>
 
 #include "framework/core/grammar_schema.h"
-#include "framework/core/schema_pieces.h"
 #include "framework/core/param_type.h"
+#include "framework/core/schema_pieces.h"
 #include "framework/core/units.h"
 #include "framework/effect/describe.h"
 #include "framework/image/camera.h"

@@ -7,8 +7,8 @@
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
-#include "framework/image/false_color.h"
 #include "framework/file/png_file.h"
+#include "framework/image/false_color.h"
 #include "framework/image/role.h"
 #include "framework/image/srgb.h"
 #include "framework/pipeline/exr_output.h"

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "framework/core/diagnostics.h"
 #include "framework/capture/capture.h"
 #include "framework/capture/frame_range.h"
+#include "framework/core/diagnostics.h"
 #include "framework/pipeline/output_options.h"
 #include "framework/pipeline/renderer.h"
 

@@ -55,7 +55,8 @@ graph::Executor::PassObserver auditor(const Pipeline& pipeline, std::vector<Audi
         const auto role = role_of_output.find(texture);
         const bool infinity = role != role_of_output.end() && infinity_allowed(role->second);
         const std::vector<float> values = target.read_floats();
-        audit_values({values, desc.width, gpu::channel_count(desc.format), infinity, pass, texture}, findings);
+        audit_values({values, desc.width, gpu::channel_count(desc.format), infinity, pass, texture},
+                     findings);
     };
 }
 
@@ -128,7 +129,8 @@ FrameResult PipelineRenderer::render(const FrameInputs& frame, const std::vector
     double upload_ms = 0;
     if (accumulates) {
         const bool valid = !is_first || frame_fault_.empty();
-        upload_ms += feed(frame, roles, {valid, valid && last_ ? std::optional(last_->camera) : std::nullopt}, 0);
+        upload_ms +=
+            feed(frame, roles, {valid, valid && last_ ? std::optional(last_->camera) : std::nullopt}, 0);
         run_passes(timed, {0, built_->first_single_pass}, result);
     }
     const CaptureHeader& header = frame.capture->header;

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "framework/capture/capture.h"
 #include "framework/effect/pass_program.h"
 #include "framework/graph/executor.h"
-#include "framework/capture/capture.h"
 #include "framework/pipeline/audit.h"
 #include "framework/pipeline/native_steps.h"
 #include "framework/pipeline/pipeline.h"

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <iterator>
 
+#include "framework/capture/cryptomatte.h"
 #include "framework/core/error.h"
 #include "framework/core/param_type.h"
 #include "framework/core/text.h"
 #include "framework/core/units.h"
-#include "framework/capture/cryptomatte.h"
 #include "framework/image/role.h"
 
 namespace aftershade {

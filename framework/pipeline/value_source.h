@@ -8,8 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include "framework/core/param.h"
 #include "framework/capture/capture.h"
+#include "framework/core/param.h"
 
 namespace aftershade {
 

@@ -8,10 +8,10 @@
 #include <set>
 #include <utility>
 
-#include "framework/core/error.h"
-#include "framework/core/units.h"
 #include "framework/capture/capture_writer.h"
 #include "framework/capture/light.h"
+#include "framework/core/error.h"
+#include "framework/core/units.h"
 #include "framework/scene/samples.h"
 
 namespace aftershade::scene {

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "framework/capture/profile.h"
 #include "framework/core/diagnostics.h"
 #include "framework/file/exr_file.h"
-#include "framework/capture/profile.h"
 #include "framework/scene/renderer.h"
 #include "framework/scene/scene.h"
 

@@ -11,7 +11,6 @@ using glm::dvec2;
 
 namespace {
 
-
 /// In [0, 1).
 double unit_hash(std::uint32_t index, std::uint32_t seed) {
     return pcg3d(index, seed, 0x5bd1e995u)[0] / 4294967296.0;
@@ -77,7 +76,8 @@ dvec2 on_aperture(const dvec2& u, int blades, double rotation_rad) {
         if (p == dvec2(0)) return p;
         const bool wide = std::abs(p.x) > std::abs(p.y);
         const double radius = wide ? p.x : p.y;
-        const double angle_rad = wide ? std::numbers::pi / 4 * p.y / p.x : std::numbers::pi / 2 - std::numbers::pi / 4 * p.x / p.y;
+        const double angle_rad =
+            wide ? std::numbers::pi / 4 * p.y / p.x : std::numbers::pi / 2 - std::numbers::pi / 4 * p.x / p.y;
         return radius * dvec2(std::cos(angle_rad), std::sin(angle_rad));
     }
     const double scaled = u.x * blades;

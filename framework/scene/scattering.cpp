@@ -18,7 +18,6 @@ using glm::dvec4;
 
 namespace {
 
-
 /// A sphere stays one where its three axes keep one length and their right angles.
 bool is_round(const glm::dmat4& matrix) {
     const dvec3 x(matrix[0]), y(matrix[1]), z(matrix[2]);

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "framework/core/error.h"
 #include "framework/capture/frame_range.h"
+#include "framework/core/error.h"
 #include "framework/scene/scene_reader.h"
 
 namespace aftershade::scene {

@@ -142,8 +142,10 @@ dvec2 box_uv(const dvec3& p, int axis) {
 
 ShapePoint sphere_point(const dvec3& near, double radius) {
     const dvec3 normal = glm::normalize(near);
-    return {
-        normal * radius, normal, normal, {around(normal), std::acos(std::clamp(normal.y, -1.0, 1.0)) / std::numbers::pi}};
+    return {normal * radius,
+            normal,
+            normal,
+            {around(normal), std::acos(std::clamp(normal.y, -1.0, 1.0)) / std::numbers::pi}};
 }
 
 ShapePoint box_point(const dvec3& near, const dvec3& half_size) {

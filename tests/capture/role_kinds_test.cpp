@@ -7,14 +7,14 @@
 #include <limits>
 #include <memory>
 
-#include "framework/core/grammar.h"
 #include "framework/capture/capture_grammar.h"
 #include "framework/capture/capture_window.h"
 #include "framework/capture/capture_writer.h"
 #include "framework/capture/decode.h"
 #include "framework/capture/encode_role.h"
-#include "framework/image/false_color.h"
 #include "framework/capture/profile.h"
+#include "framework/core/grammar.h"
+#include "framework/image/false_color.h"
 #include "framework/image/role.h"
 #include "tests/documents.h"
 

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
+#include <gtest/gtest.h>
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
-#include <gtest/gtest.h>
 
 #include "framework/image/camera_matrix.h"
 #include "tests/camera_pose.h"
@@ -135,7 +135,8 @@ TEST(StoredMatrices, AreWrittenByOpenExrsDefinition) {
         const auto& m = std::get<std::vector<float>>(attributes.at(name));
         glm::dvec4 result(0.0);
         for (int column = 0; column < 4; ++column)
-            for (int row = 0; row < 4; ++row) result[column] += point[row] * double(m[std::size_t(row * 4 + column)]);
+            for (int row = 0; row < 4; ++row)
+                result[column] += point[row] * double(m[std::size_t(row * 4 + column)]);
         return result;
     };
     EXPECT_NEAR(times("worldToCamera").z, 5, 1e-4);

@@ -232,10 +232,11 @@ TEST_F(Authoring, ListAndDescribeTellWhatThereIs) {
 TEST_F(Authoring, DescribeTellsWhatEachPassTakesAndMakesAndWhatHasNoTap) {
     const std::string folder = std::string(AFTERSHADE_SOURCE_DIR) + "/tests/schema";
     const std::string text = command({"describe", "every_form", "--effect-path", folder}).out;
-    for (const char* line :
-         {"  count   main.comp                color, depth, winner, arguments -> winner, list, arguments, sums\n",
-          "  spread  main.comp                state.prev -> state, coarse\n", "  empty   clear                    -> half_size, slices\n",
-          "  slices     r32f, 4 layers, no tap", "  pyramid    r32f, 64 x 32, 3 levels"})
+    for (const char* line : {"  count   main.comp                color, depth, winner, arguments -> winner, "
+                             "list, arguments, sums\n",
+                             "  spread  main.comp                state.prev -> state, coarse\n",
+                             "  empty   clear                    -> half_size, slices\n",
+                             "  slices     r32f, 4 layers, no tap", "  pyramid    r32f, 64 x 32, 3 levels"})
         EXPECT_NE(text.find(line), std::string::npos) << line << "\n" << text;
 }
 

@@ -8,9 +8,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "framework/image/color_space.h"
 #include "framework/file/exr_file.h"
 #include "framework/file/png_file.h"
+#include "framework/image/color_space.h"
 #include "tests/cli/command.h"
 #include "tests/real_captures.h"
 #include "tests/synthetic_capture.h"
@@ -280,8 +280,15 @@ TEST(Alpha, ThatIsZeroEverywhereIsSaidAndCanBeReadAsOne) {
     options.data_window = options.display_window = {0, 0, 3, 3};
     write_exr(folder / "a.exr", channels, options);
     const auto alpha_of = [&](Args more) {
-        Args args{"run", (folder / "look.json").string(), (folder / "a.exr").string(), "-o",
-                  (folder / "out.png").string(), "--progress", "plain", "--backend", "osmesa"};
+        Args args{"run",
+                  (folder / "look.json").string(),
+                  (folder / "a.exr").string(),
+                  "-o",
+                  (folder / "out.png").string(),
+                  "--progress",
+                  "plain",
+                  "--backend",
+                  "osmesa"};
         args.insert(args.end(), more.begin(), more.end());
         write_text(folder / "look.json", kEmptyLook);
         const CommandResult result = run_aftershade(args, folder.path());

@@ -66,8 +66,8 @@ protected:
 TEST_F(Inspect, TellsTheSuzanneCaptureAsJson) {
     const Json document = json({kSuzanne});
     EXPECT_EQ(keys_of(document),
-              (std::set<std::string>{"file", "parts", "profile", "layer", "layers", "notes", "roles", "depth_kind",
-                                     "missing", "camera", "lights", "cryptomattes"}));
+              (std::set<std::string>{"file", "parts", "profile", "layer", "layers", "notes", "roles",
+                                     "depth_kind", "missing", "camera", "lights", "cryptomattes"}));
     EXPECT_TRUE(document["file"].get<std::string>().ends_with("scenes/suzanne/gbuffer_0003.exr"));
     ASSERT_EQ(document["parts"].size(), 1);
     const Json& part = document["parts"][0];

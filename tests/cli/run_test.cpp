@@ -141,8 +141,8 @@ TEST_F(Run, WritesTapsBesideTheFirstOutput) {
     ASSERT_EQ(coc.parts()[0].channels.size(), 1u);
     EXPECT_EQ(coc.parts()[0].channels[0].name, "Y");
     EXPECT_EQ(coc.parts()[0].channels[0].type, PixelType::float32);
-    // Equation 2.1 of Post 2013 (glsl/lens/coc.glsl), in px of a 64 px wide picture: A f (z - S1) / (z (S1 - f)),
-    // half of the diameter.
+    // Equation 2.1 of Post 2013 (glsl/lens/coc.glsl), in px of a 64 px wide picture: A f (z - S1) / (z (S1 -
+    // f)), half of the diameter.
     const double focal_m = 0.05, focus_m = 2, f_number = 0.5, depth_m = 8, px_per_m = 64 / 0.036;
     const double radius_px = 0.5 * (focal_m / f_number) * focal_m * (depth_m - focus_m) /
                              (depth_m * (focus_m - focal_m)) * px_per_m;

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "framework/file/exr_file.h"
-#include "framework/image/image.h"
 #include "framework/file/png_file.h"
+#include "framework/image/image.h"
 #include "tests/temporary_folder.h"
 
 namespace aftershade::test {

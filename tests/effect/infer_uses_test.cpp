@@ -35,29 +35,33 @@ std::string flow_of(const EffectFolder& folder) {
 
 TEST(InferredUses, AreWhatTheTextFetchesAndAssignsInTheOrderOfDeclarations) {
     const EffectFolder folder(manifest_with(R"("shader": "a.frag")"));
-    folder.write("a.frag", kHead + "#include \"part.glsl\"\nvoid main() {\n"
-                                   "    out_thin = part() + textureLod(wide, vec2(0), 0.0);  // texelFetch(thin)\n"
-                                   "    out_color = texelFetch(small_prev, ivec2(0), 0);\n}\n");
+    folder.write("a.frag",
+                 kHead +
+                     "#include \"part.glsl\"\nvoid main() {\n"
+                     "    out_thin = part() + textureLod(wide, vec2(0), 0.0);  // texelFetch(thin)\n"
+                     "    out_color = texelFetch(small_prev, ivec2(0), 0);\n}\n");
     folder.write("part.glsl", "vec4 part() { return texelFetch(color, ivec2(0), 0) * small_size.x; }\n");
     EXPECT_EQ(flow_of(folder), "color, small, small.prev, wide -> color thin");
 }
 
 TEST(InferredUses, AreNoNamesOfTheShadersOwn) {
     const EffectFolder folder(manifest_with(R"("shader": "a.frag")"));
-    folder.write("a.frag", kHead +
-                               "struct Pair { vec4 wide; };\n"
-                               "vec4 fetched(sampler2D thin) { return texelFetch(thin, ivec2(0), 0); }\n"
-                               "void main() {\n    vec4 out_wide = vec4(0.0), small = vec4(1.0);\n"
-                               "    Pair pair = Pair(small);\n    out_color = pair.wide + out_wide + fetched(color);\n"
-                               "    /* texelFetch(wide, ivec2(0), 0) */\n}\n");
+    folder.write("a.frag",
+                 kHead +
+                     "struct Pair { vec4 wide; };\n"
+                     "vec4 fetched(sampler2D thin) { return texelFetch(thin, ivec2(0), 0); }\n"
+                     "void main() {\n    vec4 out_wide = vec4(0.0), small = vec4(1.0);\n"
+                     "    Pair pair = Pair(small);\n    out_color = pair.wide + out_wide + fetched(color);\n"
+                     "    /* texelFetch(wide, ivec2(0), 0) */\n}\n");
     EXPECT_EQ(flow_of(folder), " -> color")
         << "a sampler that only a function of its own takes must be named";
 }
 
 TEST(InferredUses, MayStandAfterADirective) {
     const EffectFolder folder(manifest_with(R"("shader": "a.frag")"));
-    folder.write("a.frag", kHead + "void main() {\n#if MODE == MODE_GOOD\n    out_thin = vec4(1);\n#endif\n"
-                                   "    out_color = vec4(0);\n}\n");
+    folder.write("a.frag", kHead +
+                               "void main() {\n#if MODE == MODE_GOOD\n    out_thin = vec4(1);\n#endif\n"
+                               "    out_color = vec4(0);\n}\n");
     EXPECT_EQ(flow_of(folder), " -> color thin");
 }
 
@@ -73,14 +77,17 @@ TEST(InferredUses, ComeFromDefinesAndBothShaders) {
 TEST(InferredUses, FillUpWhatIsNamed) {
     const EffectFolder folder(manifest_with(
         R"("shader": "a.frag", "reads": [{"wide": {"filter": "linear", "when": {"flag": true}}}, "*"], "writes": ["thin", "*"])"));
-    folder.write("a.frag", kHead + "void main() { out_thin = texture(wide, vec2(0)) + texelFetch(color, ivec2(0), 0);"
-                                   " out_color = out_thin; }\n");
+    folder.write("a.frag",
+                 kHead +
+                     "void main() { out_thin = texture(wide, vec2(0)) + texelFetch(color, ivec2(0), 0);"
+                     " out_color = out_thin; }\n");
     EXPECT_EQ(flow_of(folder), "color, wide -> color thin");
     const EffectManifest manifest = folder.sound_manifest();
     EXPECT_EQ(manifest.passes.back().reads.at(1).filter, gpu::Filter::linear);
     EXPECT_EQ(manifest.passes.back().reads.at(1).when.size(), 1U);
     const EffectFolder named(manifest_with(R"("shader": "a.frag", "reads": [], "writes": ["thin"])"));
-    named.write("a.frag", kHead + "void main() { out_thin = texelFetch(wide, ivec2(0), 0); out_color = out_thin; }\n");
+    named.write("a.frag",
+                kHead + "void main() { out_thin = texelFetch(wide, ivec2(0), 0); out_color = out_thin; }\n");
     EXPECT_EQ(flow_of(named), " -> thin") << "without '*' nothing is added";
 }
 
@@ -97,10 +104,12 @@ Lines faults_of(const EffectFolder& folder) {
 TEST(InferredUses, SayWhatTheTextNamesWrongly) {
     const EffectFolder folder(manifest_with(R"("shader": "a.frag")"));
     folder.write("a.frag", kHead + "void main() {\n    out_thin = texelFetch(wyde, ivec2(0), 0);\n}\n");
-    EXPECT_EQ(faults_of(folder), Lines{"a.frag:4:27: error: pass 'x': its shader reads 'wyde', which is no input and no "
-                                       "texture; did you mean 'wide'?"});
-    folder.write("a.frag", kHead + "#ifdef HAS_MASK\nvec4 a() { return texelFetch(mask, ivec2(0), 0); }\n#endif\n"
-                                   "void main() { out_thin = vec4(0); }\n");
+    EXPECT_EQ(faults_of(folder),
+              Lines{"a.frag:4:27: error: pass 'x': its shader reads 'wyde', which is no input and no "
+                    "texture; did you mean 'wide'?"});
+    folder.write("a.frag", kHead +
+                               "#ifdef HAS_MASK\nvec4 a() { return texelFetch(mask, ivec2(0), 0); }\n#endif\n"
+                               "void main() { out_thin = vec4(0); }\n");
     EXPECT_EQ(flow_of(folder), " -> thin") << "what other effects have may stand within #if";
     folder.write("a.frag", kHead + "void main() {\n    out_thin = texelFetch(depth_prev, ivec2(0), 0);\n}\n");
     EXPECT_EQ(faults_of(folder),
@@ -116,8 +125,9 @@ TEST(InferredUses, SayThatTheTextWritesNothing) {
     folder.write("a.frag", kHead + "void main() { out_thinn = vec4(0); }\n");
     const Lines lines = faults_of(folder);
     ASSERT_EQ(lines.size(), 1U);
-    EXPECT_TRUE(lines[0].ends_with("pass 'x': writes nothing: it has no 'writes', and 'a.frag' has no 'out_' and the "
-                                   "name of an output or a texture"))
+    EXPECT_TRUE(
+        lines[0].ends_with("pass 'x': writes nothing: it has no 'writes', and 'a.frag' has no 'out_' and the "
+                           "name of an output or a texture"))
         << lines[0];
 }
 

@@ -39,8 +39,8 @@ TEST(Conditions, DecideWhichReadsAndWritesAreThere) {
     const EffectFolder folder(conditional_manifest());
     Assembly make(folder, 0);
     const auto reads = [&](const Assembly& pass) {
-        return names_of(present_reads(pass.manifest, pass.manifest.passes[pass.pass_index], pass.params,
-                                      {"depth"}));
+        return names_of(
+            present_reads(pass.manifest, pass.manifest.passes[pass.pass_index], pass.params, {"depth"}));
     };
     const PassSpec& pass = make.manifest.passes[0];
     EXPECT_EQ(names_of(present_writes(pass, make.params, {})), (std::vector<std::string>{"small"}));
@@ -108,10 +108,12 @@ TEST(Conditions, OfAGroupComeBeforeThoseOfItsPasses) {
 }
 
 TEST(Conditions, SayOnceWhatIsWrongWithThem) {
-    const std::string last = R"(, {"name": "last", "shader": "b.frag", "reads": ["color", "depth"], "writes": ["color", "small"]}])";
+    const std::string last =
+        R"(, {"name": "last", "shader": "b.frag", "reads": ["color", "depth"], "writes": ["color", "small"]}])";
     const auto with = [&](const std::string& pass) {
-        return test::Sections{{test::kTextures, R"("textures": {"small": {"format": "rgba16f", "doc": "."}})"},
-                              {test::kPasses, "\"passes\": [" + pass + last}};
+        return test::Sections{
+            {test::kTextures, R"("textures": {"small": {"format": "rgba16f", "doc": "."}})"},
+            {test::kPasses, "\"passes\": [" + pass + last}};
     };
     const std::string two = R"("passes": [{"name": "a", "shader": "a.frag", "writes": ["small"]},
         {"name": "b", "shader": "a.frag", "writes": ["small"]}]})";
@@ -124,7 +126,8 @@ TEST(Conditions, SayOnceWhatIsWrongWithThem) {
     test::expect_faults(with(R"({"when": {"flag": true}, "name": "x", )" + two),
                         {"6: the group of passes has no key 'name'"});
     test::expect_faults(
-        with(R"({"name": "x", "shader": "a.frag", "reads": [{"color": {"when": {"has.small": true}}}], "writes": [{"small": {"when": {"taps": 1.5}}}]})"),
+        with(
+            R"({"name": "x", "shader": "a.frag", "reads": [{"color": {"when": {"has.small": true}}}], "writes": [{"small": {"when": {"taps": 1.5}}}]})"),
         {"6: a condition compares with true, false, an integer or a name",
          "6: pass 'x': 'has.small' does not name an optional input"});
     test::Sections sections = with(R"({"name": "x", "shader": "a.frag", "writes": ["small"]})");
@@ -134,14 +137,15 @@ TEST(Conditions, SayOnceWhatIsWrongWithThem) {
 }
 
 TEST(Conditions, ClaimTheNamesOfTheirDefines) {
-    test::expect_faults({{test::kParams, R"("params": {
+    test::expect_faults(
+        {{test::kParams, R"("params": {
             "has_small": {"type": "bool", "default": false, "bind": "define", "doc": "."},
             "taps": {"type": "int", "default": 3, "doc": "."}})"},
-                         {test::kPresets, R"("presets": {})"},
-                         {test::kPasses, R"("passes": [
+         {test::kPresets, R"("presets": {})"},
+         {test::kPasses, R"("passes": [
             {"name": "one", "shader": "a.frag", "reads": ["color", "depth"], "writes": ["small"]},
             {"name": "two", "shader": "b.frag", "reads": [{"small": {"when": {"taps": 3}}}], "writes": ["color"]}])"}},
-                        {"6: texture 'small' needs the GLSL name 'HAS_SMALL', which the parameter 'has_small' has"});
+        {"6: texture 'small' needs the GLSL name 'HAS_SMALL', which the parameter 'has_small' has"});
 }
 
 }  // namespace

@@ -70,7 +70,8 @@ TEST(EmptyBlockTable, OfBlocksThatAreNotWholeIsRefused) {
         return error_of(ExitCode::capture,
                         [&] { ExrFile(path).read_floats(0, std::vector<std::string>{"Y"}); });
     };
-    EXPECT_NE(fault_of(bytes.substr(0, bytes.size() - 10)).find("incomplete: 5 of 5 blocks"), std::string::npos);
+    EXPECT_NE(fault_of(bytes.substr(0, bytes.size() - 10)).find("incomplete: 5 of 5 blocks"),
+              std::string::npos);
     std::string twice = bytes;  // the second block claims the first one's lines
     const std::size_t first = table_of(bytes_of(written(folder))) + 8 * kBlocks;
     std::int32_t size = 0;
@@ -91,7 +92,8 @@ TEST(NewerCompression, IsNamedWithTheRemedy) {
     const fs::path path = written(folder);
     const std::string bytes = bytes_of(path), head("compression\0compression\0\1\0\0\0", 28);
     const std::size_t at = bytes.find(head) + head.size();
-    for (const auto& [method, name] : {std::pair(10, "HTJ2K (OpenEXR 3.4)"), {13, "ZSTD (OpenEXR 3.5)"}, {99, "method 99"}}) {
+    for (const auto& [method, name] :
+         {std::pair(10, "HTJ2K (OpenEXR 3.4)"), {13, "ZSTD (OpenEXR 3.5)"}, {99, "method 99"}}) {
         if (method < Imf::NUM_COMPRESSION_METHODS) continue;  // with a newer OpenEXR it is read
         std::string changed = bytes;
         changed[at] = char(method);

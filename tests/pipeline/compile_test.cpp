@@ -187,7 +187,8 @@ TEST_F(Compile, NamesEffectRoleAndChannelsOfAMissingRole) {
         EXPECT_STREQ(
             error.what(),
             "in.exr: step 'haze' (effect fog) needs the role 'depth', which the profile 'native' does not "
-            "find among the channels A, B, G, R (name its channels in capture.json, as \"channels\": {\"depth\": {\"channels\": "
+            "find among the channels A, B, G, R (name its channels in capture.json, as \"channels\": "
+            "{\"depth\": {\"channels\": "
             "[...]}}, or choose another --profile or --layer)");
     }
     EXPECT_NO_THROW(

@@ -186,9 +186,9 @@ struct TileListSpec {
     std::string predicate;  ///< or else the file in `folder` with `bool <name>(ivec2 tile)`, which decides
     CountSpec tile;         ///< side in texels of `on`
     std::string on;         ///< the texture whose texels make up the tiles; "" for the working grid
-    std::vector<ReadSpec> reads;  ///< the predicate's
-    bool infers_reads = false;    ///< they are what the predicate's text names
-    std::vector<WhenSpec> when;   ///< all must hold, or neither the list nor the passes over it are there
+    std::vector<ReadSpec> reads;   ///< the predicate's
+    bool infers_reads = false;     ///< they are what the predicate's text names
+    std::vector<WhenSpec> when;    ///< all must hold, or neither the list nor the passes over it are there
     std::filesystem::path folder;  ///< the effect's, or the module's
     std::string module;            ///< that declares it; "" for the effect itself
     std::string doc;
@@ -220,7 +220,7 @@ struct PassSpec {
     DispatchSpec dispatch;  ///< compute
     gpu::Blend blend = gpu::Blend::none;
     std::vector<double> clear_value;  ///< clear: 1 or 4 numbers
-    int max_iterations = 0;  ///< upper bound of the loop iterations of one invocation; 0: not declared
+    int max_iterations = 0;      ///< upper bound of the loop iterations of one invocation; 0: not declared
     bool infers_reads = false;   ///< the manifest leaves `reads` to the shaders' text
     bool infers_writes = false;  ///< likewise `writes`
     Place place;
@@ -287,7 +287,7 @@ struct EffectManifest {
     std::vector<OutputSpec> outputs;
     std::vector<ParamSpec> params;
     std::vector<TextureSpec> textures;
-    std::vector<BufferSpec> buffers;   ///< with those of tile lists
+    std::vector<BufferSpec> buffers;  ///< with those of tile lists
     std::vector<TileListSpec> tiles;
     std::vector<PassSpec> passes;  ///< with those of tile lists
     std::optional<NativeSpec> native;

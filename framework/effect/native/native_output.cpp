@@ -155,7 +155,8 @@ struct OutputSetters {
         NativeOutput& out = self(output);
         aftershade_status status = check_pass(out, pass);
         if (status == AFTERSHADE_OK)
-            status = check_range(out, "repeat of pass '" + std::string(pass) + "'", count, 1, kMaxNativeRepeat);
+            status =
+                check_range(out, "repeat of pass '" + std::string(pass) + "'", count, 1, kMaxNativeRepeat);
         if (status == AFTERSHADE_OK) out.result_.repeats[pass] = count;
         return status;
     } catch (...) {
