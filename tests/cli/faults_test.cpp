@@ -101,7 +101,7 @@ std::vector<Fault> capture_faults() {
          code,
          {"aftershade: error: rgb\\.exr: step 'bokeh' \\(effect bokeh\\) needs the role 'depth', which the "
           "profile 'native' "
-          "does not find among the channels B, G, R \\(say its channels as .*"},
+          "does not find among the channels B, G, R \\(name its channels in capture.json, as .*"},
          [](const Workplace& work) { write_rgb_only(work / "rgb.exr"); },
          true},
         {"ARoleThatNeitherTheCaptureNorTheLookHas",
