@@ -135,6 +135,14 @@ TEST(Grammar, SaysOfEachFormWhatDoesNotFit) {
         {any_of({integer(1, 9), text()}), "10", "'key' must be from 1 to 9, not 10"},
         {any_of({integer(1, 9), text()}, "'{}' is a number or its name"), "10",
          "'key' is a number or its name"},
+        {by_kind({integer(1, 9), text()}, "a number or its name"), "10", "'key' must be from 1 to 9, not 10"},
+        {by_kind({integer(1, 9), text()}, "a number or its name"), "true", "a number or its name"},
+        {with_fault(integer(1, 9), "'{}' is too much"), "10", "'key' is too much"},
+        {shown_as(integer(1, 9), "digit"), "10", "'key' must be from 1 to 9, not 10"},
+        {map(integer(), {.min = 1, .max = 1, .count_fault = "one name"}), "{}", "one name"},
+        {map(integer(),
+             {.fits = [](const std::string& name) { return name == "x"; }, .fault = "'{}' is no x"}),
+         R"({"y": 1})", "'y' is no x"},
     };
     for (const auto& [form, value, message] : cases) EXPECT_EQ(fault(value, form), message);
 }
@@ -283,6 +291,25 @@ TEST(Grammar, HoldsAnObjectToMoreWhereAKeyHasAValue) {
               json::parse(R"({"properties": {"indirect": {"const": true}}, "required": ["indirect"]})"));
     EXPECT_EQ(schema["then"], json::parse(R"({"required": ["count"], "properties": {"history": false,
         "element": {"const": "uint"}}})"));
+}
+
+TEST(Grammar, ReportsOneFaultOfAValueAndOneOfARuleThatHasItsOwn) {
+    const Block block{.name = "buffer",
+                      .thing = "the buffer",
+                      .keys = {optional("indirect", boolean(), ""), optional("count", integer(1, 9), ""),
+                               optional("per", text(), "")},
+                      .rules = {when({.key = "per", .narrowed = {{"count", integer(1, 4)}}}),
+                                when({.key = "indirect",
+                                      .value = "true",
+                                      .required = {"count"},
+                                      .absent = {"per"},
+                                      .fault = "{} counts by itself"})}};
+    EXPECT_EQ(faults(R"({"count": 10, "per": "x"})", block),
+              Lines{"doc.json:1:11: error: 'count' must be from 1 to 9, not 10"});
+    EXPECT_EQ(faults(R"({"count": 5, "per": "x"})", block),
+              Lines{"doc.json:1:11: error: 'count' must be from 1 to 4, not 5"});
+    EXPECT_EQ(faults(R"({"indirect": true, "per": "x"})", block),
+              Lines{"doc.json:1:1: error: the buffer counts by itself"});
 }
 
 TEST(Grammar, PutsRulesThatSayTheSameWordBesideEachOther) {

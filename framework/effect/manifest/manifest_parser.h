@@ -91,7 +91,7 @@ private:
         Place place;
     };
     std::map<std::string, Declaration> declared_;  // by "texture 'x'"
-    std::set<std::string> faulty_params_;          // declared, but with faults that are already told
+    std::set<std::string> faulty_params_;          // declared, with faults that have been reported
 };
 
 // ---- what passes and tile lists use (manifest_uses.cpp, manifest_when.cpp) ----
