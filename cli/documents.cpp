@@ -15,7 +15,7 @@
 #include "framework/image/role.h"
 #include "framework/pipeline/look_grammar.h"
 #include "framework/pipeline/schema.h"
-#include "framework/scattering/scattering_schema.h"
+#include "framework/scattering/scattering_grammar.h"
 #include "framework/scene/scene_schema.h"
 
 namespace aftershade::cli {
@@ -76,7 +76,7 @@ const std::vector<Document>& documents() {
         {"module", schema_by(module_schema), {&module_block()}},
         {"scene", schema_by(scene::scene_schema)},  // its tables are a page: scene-reference.md
         {"profile", schema_by(profile_schema), {&profile_block()}},
-        {"scattering_profile", schema_by(schema::scattering_profile_schema)},
+        {"scattering_profile", schema_by(scattering_profile_schema), {&scattering_profile_block()}},
         {"golden", schema_by(golden_schema), {&golden_suite_block()}},
         {"case", schema_by(effect_case_schema), {&effect_case_block()}}};
     return all;

@@ -90,12 +90,18 @@ private:
 
     std::optional<std::vector<double>> numbers(const Node& node, const std::string& label,
                                                Diagnostics& diagnostics) const {
+        const std::size_t count = std::size_t(component_count(spec_.type));
         if (forms_.uniform && !node.is_array()) {
             ParamSpec scalar = spec_;
             scalar.type = ParamType::float_;
             const auto value = parse_param_value(scalar, node, label, diagnostics);
             if (!value) return std::nullopt;
-            return std::vector<double>(std::size_t(component_count(spec_.type)), std::get<double>(*value));
+            return std::vector<double>(count, std::get<double>(*value));
+        }
+        if (forms_.uniform && node.items.size() != count) {
+            diagnostics.error(node.place, label + ": expected an array of " + std::to_string(count) +
+                                              " numbers, or one number for all");
+            return std::nullopt;
         }
         const auto value = parse_param_value(spec_, node, label, diagnostics);
         if (!value) return std::nullopt;

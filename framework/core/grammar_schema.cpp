@@ -92,6 +92,7 @@ json SchemaScope::kind(const Block& block, const Block& kind) {
     keys.properties[block.selector] = {{"const", kind.name}};
     if (!kind.doc.empty()) keys.properties[block.selector]["description"] = kind.doc;
     if (kind.name != block.default_kind) keys.required.push_back(block.selector);
+    if (block.is_document) keys.add(head_keys(), *this);
     keys.add(kind.keys, *this);
     keys.add(block.keys, *this);
     json result = object_of(keys, block, *this);

@@ -4,9 +4,10 @@
 #include <filesystem>
 
 #include "framework/core/glsl_text.h"
+#include "framework/core/grammar_form.h"
 #include "framework/core/param_type.h"
 #include "framework/core/table_keys.h"
-#include "framework/scattering/scattering_schema.h"
+#include "framework/scattering/scattering_grammar.h"
 
 namespace aftershade {
 
@@ -89,9 +90,10 @@ TableValue scattering_table(const ScatteringValue& value) {
 namespace {
 
 /// Reads one value.
-class Reader {
+class ScatteringValueReader {
 public:
-    explicit Reader(const ValueReader& reader) : label_(reader.label), diagnostics_(reader.diagnostics) {}
+    explicit ScatteringValueReader(const ValueReader& reader)
+        : label_(reader.label), diagnostics_(reader.diagnostics) {}
 
     std::optional<ParamValue> read(const Node& node) {
         // Of a value of the command line, which has no line, from where the program runs.
@@ -141,7 +143,7 @@ private:
 };
 
 std::optional<ParamValue> parse(const ValueReader& reader, const Node& node) {
-    return Reader(reader).read(node);
+    return ScatteringValueReader(reader).read(node);
 }
 
 void read_declaration(const SpecReader&, ParamSpec& spec) {
@@ -151,7 +153,9 @@ void read_declaration(const SpecReader&, ParamSpec& spec) {
 }
 
 schema::json literal(const ParamSpec&, const schema::LiteralParts& parts) {
-    const schema::json form = schema::scattering_profile(parts.variables());
+    grammar::SchemaScope scope;
+    scope.variables = parts.variables();
+    const schema::json form = scope.of(scattering_object_block());
     const schema::json profile = parts.part(schema::any_of({schema::text(), form}));
     schema::json row = parts.keyed_row({{kRowKey, profile}});
     row["required"] = {kRowKey};

@@ -4,191 +4,102 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/core/data_path.h"
+#include "framework/core/grammar_reader.h"
 #include "framework/core/text.h"
 #include "framework/core/units.h"
+#include "framework/scattering/scattering_grammar.h"
 #include "framework/scattering/scattering_profile.h"
 
 namespace aftershade {
 
 namespace fs = std::filesystem;
-using Presence = ObjectReader::Presence;
+using grammar::Reader;
 using Type = ScatteringProfile::Type;
 
 namespace {
-
-const std::vector<std::string> kMappings = {"searchlight", "diffuse", "dmfp"};
 
 fs::path shipped_folder() {
     return data_path() / "profiles" / "scattering";
 }
 
-/// Reads the keys of one profile; every fault is told with its place.
-class ProfileReader {
-public:
-    ProfileReader(const Node& node, std::string label, Diagnostics& diagnostics)
-        : node_(node),
-          label_(std::move(label)),
-          reader_(node, label_, diagnostics),
-          diagnostics_(diagnostics) {}
+Rgb rgb(const Reader& reader, const char* key) {
+    const std::vector<double> values = reader.components(key);
+    return {values[0], values[1], values[2]};
+}
 
-    std::optional<ScatteringProfile> read(bool is_file) {
-        const int errors_before = diagnostics_.error_count();
-        if (is_file) {
-            check_document_version(reader_, node_, diagnostics_);
-            reader_.text("$schema");
-            profile_.summary = reader_.text("summary", Presence::required).value_or("");
-            profile_.sources = reader_.texts("sources");
-        }
-        const auto type = reader_.choice("type", scattering_type_names(), Presence::required);
-        if (!type) return std::nullopt;
-        const auto& names = scattering_type_names();
-        profile_.type = Type(std::find(names.begin(), names.end(), *type) - names.begin());
-        switch (profile_.type) {
-            case Type::burley: read_burley(); break;
-            case Type::gaussians: read_gaussians(); break;
-            case Type::dipole: read_dipole(); break;
-            case Type::artist: read_artist(); break;
-        }
-        reader_.finish();
-        if (diagnostics_.error_count() > errors_before) return std::nullopt;
-        return std::move(profile_);
+Rgb burley_d(const Reader& reader) {
+    if (reader.has("d_mm")) return rgb(reader, "d_mm");
+    const Rgb path = rgb(reader, "mean_free_path_mm"), albedo = rgb(reader, "albedo");
+    const auto mapping = reader.choice<BurleyMapping>("mapping");
+    Rgb d{};
+    for (std::size_t c = 0; c < d.size(); ++c) d[c] = burley_d_mm(mapping, albedo[c], path[c]);
+    return d;
+}
+
+/// Weights that nearly sum to 1 do so afterwards.
+void normalize(std::vector<ScatteringGaussian>& gaussians, const Reader& reader, const std::string& label,
+               Diagnostics& diagnostics) {
+    constexpr double kSumTolerance = 0.01;
+    constexpr const char* kChannels[] = {"red", "green", "blue"};
+    for (std::size_t c = 0; c < 3; ++c) {
+        double sum = 0;
+        for (const ScatteringGaussian& gaussian : gaussians) sum += gaussian.weight[c];
+        if (std::abs(sum - 1) > kSumTolerance)
+            diagnostics.error(reader.place("gaussians"), label + ": the weights of " + kChannels[c] +
+                                                             " sum to " + format_number(sum) +
+                                                             " but must sum to 1: a profile has no albedo");
+        for (ScatteringGaussian& gaussian : gaussians) gaussian.weight[c] /= sum;
     }
+}
 
-private:
-    void fault(const Node& node, const std::string& text) {
-        diagnostics_.error(node.place, label_ + ": " + text);
-    }
-
-    std::optional<double> number(const Node& node, const std::string& what, double min, double max) {
-        if (!node.is_number())
-            fault(node, what + ": expected a number, not " + std::string(kind_name(node.kind)));
-        else if (node.number < min || node.number > max)
-            fault(node, what + ": " + format_number(node.number) + " is not within " + format_number(min) +
-                            " and " + format_number(max));
-        else return node.number;
-        return std::nullopt;
-    }
-
-    /// Three numbers, or one for all channels.
-    std::optional<Rgb> rgb(const Node& node, const std::string& what, double min, double max) {
-        Rgb result{};
-        if (node.is_number()) {
-            const auto value = number(node, what, min, max);
-            if (!value) return std::nullopt;
-            result.fill(*value);
-            return result;
-        }
-        if (!node.is_array() || node.items.size() != 3) {
-            fault(node, what + ": expected three numbers, for red, green and blue, or one for all");
-            return std::nullopt;
-        }
-        bool whole = true;
-        for (std::size_t c = 0; c < 3; ++c) {
-            const auto value = number(node.items[c], what, min, max);
-            whole = whole && value;
-            result[c] = value.value_or(0);
-        }
-        return whole ? std::optional(result) : std::nullopt;
-    }
-
-    Rgb rgb(const std::string& key, double min, double max, Presence presence, Rgb usual = {}) {
-        const Node* node = reader_.any(key, presence);
-        return node ? rgb(*node, key, min, max).value_or(usual) : usual;
-    }
-
-    void read_burley() {
-        if (node_.find("d_mm")) {
-            for (const char* key : {"albedo", "mean_free_path_mm", "mapping"})
-                if (const Node* other = reader_.any(key))
-                    fault(*other, "'" + std::string(key) + "' cannot stand beside 'd_mm', which says it all");
-            profile_.d_mm = rgb("d_mm", kLeastLength_mm, kMostLength_mm, Presence::required);
-            return;
-        }
-        const Rgb path = rgb("mean_free_path_mm", kLeastLength_mm, kMostLength_mm, Presence::required);
-        const Rgb albedo = rgb("albedo", 0, 1, Presence::required);
-        const std::string mapping = reader_.choice("mapping", kMappings).value_or("dmfp");
-        const auto kind =
-            BurleyMapping(std::find(kMappings.begin(), kMappings.end(), mapping) - kMappings.begin());
-        for (std::size_t c = 0; c < 3; ++c) profile_.d_mm[c] = burley_d_mm(kind, albedo[c], path[c]);
-    }
-
-    void read_gaussians() {
-        const Node* list = reader_.array("gaussians", Presence::required);
-        if (!list) return;
-        if (list->items.empty() || list->items.size() > ScatteringProfile::kMaxGaussians) {
-            fault(*list, "'gaussians' holds 1 to " + std::to_string(ScatteringProfile::kMaxGaussians) +
-                             " Gaussians, not " + std::to_string(list->items.size()));
-            return;
-        }
-        Rgb sum{};
-        const int errors_before = diagnostics_.error_count();
-        for (std::size_t i = 0; i < list->items.size(); ++i) {
-            const std::string which = "gaussians[" + std::to_string(i) + "]";
-            ObjectReader reader(list->items[i], label_ + "." + which, diagnostics_);
-            if (!reader.is_object()) continue;
-            ScatteringGaussian gaussian;
-            const Node* variance = reader.any("variance_mm2", Presence::required);
-            const Node* weight = reader.any("weight", Presence::required);
-            if (variance)
-                gaussian.variance_mm2 =
-                    rgb(*variance, which + ".variance_mm2", kLeastLength_mm * kLeastLength_mm,
-                        kMostLength_mm * kMostLength_mm)
-                        .value_or(Rgb{1, 1, 1});
-            if (weight) gaussian.weight = rgb(*weight, which + ".weight", 0, 1).value_or(Rgb{});
-            reader.finish();
-            for (std::size_t c = 0; c < 3; ++c) sum[c] += gaussian.weight[c];
-            profile_.gaussians.push_back(gaussian);
-        }
-        if (diagnostics_.error_count() > errors_before) return;
-        for (std::size_t c = 0; c < 3; ++c) {
-            if (std::abs(sum[c] - 1) > kSumTolerance)
-                fault(*list, "the weights of " + std::string(kChannels[c]) + " sum to " +
-                                 format_number(sum[c]) + ", not to 1: a profile has no albedo");
-            for (ScatteringGaussian& gaussian : profile_.gaussians) gaussian.weight[c] /= sum[c];
+/// Jimenez' falloff and strength as his Gaussians.
+void read_artist(const Reader& reader, ScatteringProfile& profile) {
+    const Rgb falloff = rgb(reader, "falloff"), strength = rgb(reader, "strength");
+    profile.width_mm = reader.number("width_mm");
+    profile.gaussians.assign(artist_gaussians().size(), {});
+    for (std::size_t c = 0; c < 3; ++c) {
+        // His 0.001 keeps a falloff of 0 above 0.
+        profile.falloff_mm[c] = profile.width_mm * (0.001 + falloff[c]);
+        profile.direct[c] = 1 - strength[c];
+        for (std::size_t k = 0; k < profile.gaussians.size(); ++k) {
+            const auto& [variance, weight] = artist_gaussians()[k];
+            profile.gaussians[k].variance_mm2[c] = variance * profile.falloff_mm[c] * profile.falloff_mm[c];
+            profile.gaussians[k].weight[c] = strength[c] * weight;
         }
     }
+}
 
-    void read_dipole() {
-        const double least = ScatteringProfile::kLeastAbsorption;
-        profile_.absorption =
-            rgb("absorption_per_mm", least, ScatteringProfile::kMostAbsorption, Presence::required);
-        profile_.scattering =
-            rgb("reduced_scattering_per_mm", least, ScatteringProfile::kMostScattering, Presence::required);
-        if (const Node* ior = reader_.any("ior"))
-            profile_.ior = number(*ior, "ior", 1, 3).value_or(profile_.ior);
+/// The values of a profile whose grammar is sound.
+ScatteringProfile profile_of(const Reader& reader, const std::string& label, Diagnostics& diagnostics) {
+    ScatteringProfile profile;
+    const auto& names = scattering_type_names();
+    profile.type = Type(std::find(names.begin(), names.end(), reader.kind()) - names.begin());
+    switch (profile.type) {
+        case Type::burley: profile.d_mm = burley_d(reader); break;
+        case Type::gaussians:
+            for (const Reader& gaussian : reader.objects("gaussians"))
+                profile.gaussians.push_back({rgb(gaussian, "variance_mm2"), rgb(gaussian, "weight")});
+            normalize(profile.gaussians, reader, label, diagnostics);
+            break;
+        case Type::dipole:
+            profile.absorption = rgb(reader, "absorption_per_mm");
+            profile.scattering = rgb(reader, "reduced_scattering_per_mm");
+            profile.ior = reader.number("ior");
+            break;
+        case Type::artist: read_artist(reader, profile); break;
     }
+    return profile;
+}
 
-    void read_artist() {
-        const Rgb falloff = rgb("falloff", 0, 1, Presence::optional, {1, 0.37, 0.3});
-        const Rgb strength =
-            rgb("strength", ScatteringProfile::kLeastStrength, 1, Presence::optional, {0.48, 0.41, 0.28});
-        if (const Node* width = reader_.any("width_mm"))
-            profile_.width_mm = number(*width, "width_mm", kLeastLength_mm, kMostLength_mm).value_or(1);
-        profile_.gaussians.assign(artist_gaussians().size(), {});
-        for (std::size_t c = 0; c < 3; ++c) {
-            // His 0.001 keeps a falloff of 0 above 0.
-            profile_.falloff_mm[c] = profile_.width_mm * (0.001 + falloff[c]);
-            profile_.direct[c] = 1 - strength[c];
-            for (std::size_t k = 0; k < profile_.gaussians.size(); ++k) {
-                const auto& [variance, weight] = artist_gaussians()[k];
-                profile_.gaussians[k].variance_mm2[c] =
-                    variance * profile_.falloff_mm[c] * profile_.falloff_mm[c];
-                profile_.gaussians[k].weight[c] = strength[c] * weight;
-            }
-        }
-    }
-
-    static constexpr double kLeastLength_mm = ScatteringProfile::kLeastLength_mm;
-    static constexpr double kMostLength_mm = ScatteringProfile::kMostLength_mm;
-    static constexpr double kSumTolerance = 0.01;
-    static constexpr const char* kChannels[] = {"red", "green", "blue"};
-
-    const Node& node_;
-    const std::string label_;
-    ObjectReader reader_;
-    Diagnostics& diagnostics_;
-    ScatteringProfile profile_;
-};
+/// An object, or a file's document. nullopt after errors.
+std::optional<ScatteringProfile> read_profile(const Node& node, const grammar::Block& block,
+                                              const std::string& label, Diagnostics& diagnostics) {
+    const int errors_before = diagnostics.error_count();
+    if (!grammar::check(node, block, diagnostics, block.is_document ? "" : label)) return std::nullopt;
+    ScatteringProfile profile = profile_of(Reader(node, block), label, diagnostics);
+    if (diagnostics.error_count() > errors_before) return std::nullopt;
+    return profile;
+}
 
 /// A number from 0 to 1 without what arithmetic has left behind its twelfth digit.
 double as_written(double value) {
@@ -203,7 +114,11 @@ std::string text_of(const Rgb& values) {
 }  // namespace
 
 const std::vector<std::string>& scattering_type_names() {
-    static const std::vector<std::string> names = {"burley", "gaussians", "dipole", "artist"};
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> made;
+        for (const grammar::Block& kind : scattering_profile_block().kinds) made.push_back(kind.name);
+        return made;
+    }();
     return names;
 }
 
@@ -222,7 +137,7 @@ std::vector<std::string> scattering_profile_names() {
 
 std::optional<ScatteringProfile> parse_scattering_profile(const Node& node, const std::string& label,
                                                           const fs::path& folder, Diagnostics& diagnostics) {
-    if (node.is_object()) return ProfileReader(node, label, diagnostics).read(false);
+    if (node.is_object()) return read_profile(node, scattering_object_block(), label, diagnostics);
     if (!node.is_string()) {
         diagnostics.error(
             node.place, label +
@@ -245,8 +160,13 @@ std::optional<ScatteringProfile> parse_scattering_profile(const Node& node, cons
     }
     const auto document = read_document(path, diagnostics);
     if (!document) return std::nullopt;
-    auto profile = ProfileReader(*document, "the scattering profile", diagnostics).read(true);
-    if (profile) profile->name = node.string;
+    const grammar::Block& block = scattering_profile_block();
+    auto profile = read_profile(*document, block, "the scattering profile", diagnostics);
+    if (!profile) return std::nullopt;
+    const Reader reader(*document, block);
+    profile->name = node.string;
+    profile->summary = reader.text("summary");
+    profile->sources = reader.texts("sources");
     return profile;
 }
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "framework/capture/document_forms.h"
-#include "framework/scattering/scattering_form.h"
+#include "framework/scattering/scattering_grammar.h"
 
 namespace aftershade::scene {
 

@@ -92,24 +92,21 @@ TEST(ScatteringProfileDocument, OfNoKnownTypeSaysWhichThereAre) {
 
 TEST(ScatteringProfileDocument, OfBurleySaysWhatIsWrong) {
     EXPECT_EQ(profile_faults(R"({"type": "burley"})"),
-              (Lines{"doc.json:1:1: error: p has no 'mean_free_path_mm'",
-                     "doc.json:1:1: error: p has no 'albedo'"}));
-    EXPECT_EQ(
-        profile_faults(R"({"type": "burley", "d_mm": [1, 2],
+              Lines{"doc.json:1:1: error: p has one of 'd_mm' and 'mean_free_path_mm'"});
+    EXPECT_EQ(profile_faults(R"({"type": "burley", "mean_free_path_mm": 1})"),
+              Lines{"doc.json:1:1: error: p has all or none of 'albedo' and 'mean_free_path_mm'"});
+    EXPECT_EQ(profile_faults(R"({"type": "burley", "d_mm": [1, 2],
 "albedo": 0.5, "mean_free_path_mm": 1, "mapping": "diffuse", "d": 3})"),
-        (Lines{
-            "doc.json:2:11: error: p: 'albedo' cannot stand beside 'd_mm', which says it all",
-            "doc.json:2:37: error: p: 'mean_free_path_mm' cannot stand beside 'd_mm', which says it all",
-            "doc.json:2:51: error: p: 'mapping' cannot stand beside 'd_mm', which says it all",
-            "doc.json:1:28: error: p: d_mm: expected three numbers, for red, green and blue, or one for all",
-            "doc.json:2:62: error: p has no key 'd'"}));
+              (Lines{"doc.json:1:28: error: p.d_mm: expected an array of 3 numbers, or one number for all",
+                     "doc.json:1:1: error: p has one of 'd_mm' and 'mean_free_path_mm'",
+                     "doc.json:2:62: error: p has no key 'd'"}));
     EXPECT_EQ(
         profile_faults(
             R"({"type": "burley", "albedo": [1.5, "x", -1], "mean_free_path_mm": 0, "mapping": "mfp"})"),
-        (Lines{"doc.json:1:67: error: p: mean_free_path_mm: 0 is not within 1e-06 and 1e+06",
-               "doc.json:1:31: error: p: albedo: 1.5 is not within 0 and 1",
-               "doc.json:1:36: error: p: albedo: expected a number, not a string",
-               "doc.json:1:41: error: p: albedo: -1 is not within 0 and 1",
+        (Lines{"doc.json:1:31: error: p.albedo: 1.5 is above the maximum 1",
+               "doc.json:1:36: error: p.albedo: 'x' is not a number",
+               "doc.json:1:41: error: p.albedo: -1 is below the minimum 0",
+               "doc.json:1:67: error: p.mean_free_path_mm: 0 is below the minimum 1e-06",
                "doc.json:1:81: error: 'mapping' is 'mfp' but must be 'searchlight', 'diffuse' or 'dmfp'; did "
                "you mean "
                "'dmfp'?"}));
@@ -118,19 +115,21 @@ TEST(ScatteringProfileDocument, OfBurleySaysWhatIsWrong) {
 TEST(ScatteringProfileDocument, OfGaussiansSaysWhatIsWrong) {
     EXPECT_EQ(profile_faults(R"({"type": "gaussians"})"), Lines{"doc.json:1:1: error: p has no 'gaussians'"});
     EXPECT_EQ(profile_faults(R"({"type": "gaussians", "gaussians": []})"),
-              Lines{"doc.json:1:36: error: p: 'gaussians' holds 1 to 8 Gaussians, not 0"});
+              Lines{"doc.json:1:36: error: 'gaussians' holds 1 to 8 items, not 0"});
     EXPECT_EQ(
         profile_faults(R"({"type": "gaussians", "gaussians": [
 {"variance_mm2": 1, "weight": [0.5, 0.5, 0.25]},
 {"variance_mm2": 2, "weight": [0.5, 0.375, 0.25]}]})"),
         (Lines{
-            "doc.json:1:36: error: p: the weights of green sum to 0.875, not to 1: a profile has no albedo",
-            "doc.json:1:36: error: p: the weights of blue sum to 0.5, not to 1: a profile has no albedo"}));
+            "doc.json:1:36: error: p: the weights of green sum to 0.875 but must sum to 1: a profile has no "
+            "albedo",
+            "doc.json:1:36: error: p: the weights of blue sum to 0.5 but must sum to 1: a profile has no "
+            "albedo"}));
     EXPECT_EQ(profile_faults(R"({"type": "gaussians", "gaussians": [3,
 {"variance_mm2": 0, "weight": 2, "mean": 1}, {"weight": 1}]})"),
               (Lines{"doc.json:1:37: error: p.gaussians[0] must be an object, not an integer",
-                     "doc.json:2:18: error: p: gaussians[1].variance_mm2: 0 is not within 1e-12 and 1e+12",
-                     "doc.json:2:31: error: p: gaussians[1].weight: 2 is not within 0 and 1",
+                     "doc.json:2:18: error: p.gaussians[1].variance_mm2: 0 is below the minimum 1e-12",
+                     "doc.json:2:31: error: p.gaussians[1].weight: 2 is above the maximum 1",
                      "doc.json:2:34: error: p.gaussians[1] has no key 'mean'",
                      "doc.json:2:46: error: p.gaussians[2] has no 'variance_mm2'"}));
 }
@@ -139,16 +138,16 @@ TEST(ScatteringProfileDocument, OfADipoleOrAnArtistSaysWhatIsWrong) {
     EXPECT_EQ(profile_faults(R"({"type": "dipole", "ior": 0.5, "d_mm": 1})"),
               (Lines{"doc.json:1:1: error: p has no 'absorption_per_mm'",
                      "doc.json:1:1: error: p has no 'reduced_scattering_per_mm'",
-                     "doc.json:1:27: error: p: ior: 0.5 is not within 1 and 3",
-                     "doc.json:1:32: error: p has no key 'd_mm'"}));
+                     "doc.json:1:27: error: 'ior' must be from 1 to 3, not 0.5",
+                     "doc.json:1:32: error: p has no key 'd_mm'; it is a key of type 'burley'"}));
     EXPECT_EQ(profile_faults(R"({"type": "dipole", "absorption_per_mm": 0, "reduced_scattering_per_mm": 1})"),
-              Lines{"doc.json:1:41: error: p: absorption_per_mm: 0 is not within 1e-05 and 1000"});
+              Lines{"doc.json:1:41: error: p.absorption_per_mm: 0 is below the minimum 1e-05"});
     EXPECT_EQ(
         profile_faults(
             R"({"type": "artist", "falloff": 2, "strength": [0, 1, 1], "width_mm": "3 mm", "width": 1})"),
-        (Lines{"doc.json:1:31: error: p: falloff: 2 is not within 0 and 1",
-               "doc.json:1:47: error: p: strength: 0 is not within 0.001 and 1",
-               "doc.json:1:69: error: p: width_mm: expected a number, not a string",
+        (Lines{"doc.json:1:31: error: p.falloff: 2 is above the maximum 1",
+               "doc.json:1:46: error: p.strength: 0 is below the minimum 0.001",
+               "doc.json:1:69: error: 'width_mm' must be a number, not a string",
                "doc.json:1:77: error: p has no key 'width'; did you mean 'width_mm'?"}));
 }
 
@@ -223,7 +222,7 @@ TEST_F(ScatteringProfileFiles, SayWhatIsWrongAtTheirOwnPlace) {
     EXPECT_EQ(faults(R"({"aftershade": 2, "summary": ".",
 "type": "burley", "d_mm": -1, "name": "wax"})"),
               (Lines{file + ":1:16: error: document version 2 is not known; this program reads version 1",
-                     file + ":2:27: error: the scattering profile: d_mm: -1 is not within 1e-06 and 1e+06",
+                     file + ":2:27: error: d_mm: -1 is below the minimum 1e-06",
                      file + ":2:31: error: the scattering profile has no key 'name'"}));
     EXPECT_EQ(faults("[]"),
               Lines{file + ":1:1: error: the scattering profile must be an object, not an array"});
@@ -301,7 +300,7 @@ TEST(ScatteringParam, SaysWhatIsWrongWithEachRow) {
                "doc.json:1:71: error: sss.profile.rows[1]: '7-3' is no range of ids; write \"3-7,9\", each "
                "from 0 "
                "to 4294967295 and rising",
-               "doc.json:2:53: error: sss.profile.rows[2]: d_mm: 0 is not within 1e-06 and 1e+06",
+               "doc.json:2:53: error: sss.profile.rows[2].d_mm: 0 is below the minimum 1e-06",
                "doc.json:2:57: error: sss.profile.rows[2] has no key 'profil'; did you mean 'profile'?",
                "doc.json:3:1: error: sss.profile.rows[3]: a row has one of 'object', 'objects' and 'name', "
                "not 2"}));
@@ -309,7 +308,7 @@ TEST(ScatteringParam, SaysWhatIsWrongWithEachRow) {
         value_faults(spec,
                      R"({"default": {"type": "burley", "d_mm": 0}, "rows": [{"object": 2}, 4], "row": []})",
                      "sss.profile"),
-        (Lines{"doc.json:1:40: error: sss.profile.default: d_mm: 0 is not within 1e-06 and 1e+06",
+        (Lines{"doc.json:1:40: error: sss.profile.default.d_mm: 0 is below the minimum 1e-06",
                "doc.json:1:53: error: sss.profile.rows[0] has no 'profile'",
                "doc.json:1:68: error: sss.profile.rows[1] must be an object, not an integer",
                "doc.json:1:72: error: sss.profile has no key 'row'; did you mean 'rows'?"}));

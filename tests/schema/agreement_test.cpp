@@ -25,8 +25,8 @@
 #include "framework/pipeline/look.h"
 #include "framework/pipeline/pipeline.h"
 #include "framework/pipeline/schema.h"
+#include "framework/scattering/scattering_grammar.h"
 #include "framework/scattering/scattering_profile.h"
-#include "framework/scattering/scattering_schema.h"
 #include "framework/scene/scene.h"
 #include "framework/scene/scene_schema.h"
 #include "tests/documents.h"
@@ -325,7 +325,7 @@ TEST_F(SchemaAgreement, OfAModuleChangedEverywhere) {
 TEST_F(SchemaAgreement, OfAScatteringProfileChangedEverywhere) {
     for (const char* file :
          {"burley.json", "burley_path.json", "gaussians.json", "dipole.json", "artist.json"})
-        hold(std::string("profiles/") + file, schema::scattering_profile_schema(), judge_profile,
+        hold(std::string("profiles/") + file, scattering_profile_schema(), judge_profile,
              {"weights of .* sum to"});  // several values together
 }
 
