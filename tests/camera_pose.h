@@ -6,7 +6,7 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "framework/image/camera.h"
+#include "framework/image/camera_matrix.h"
 
 namespace aftershade::test {
 
@@ -42,17 +42,6 @@ struct CameraPose {
     }
 };
 
-namespace detail {
-
-inline CameraMatrix rows_of(const glm::dmat4& matrix) {
-    CameraMatrix rows;
-    for (int row = 0; row < 4; ++row)
-        for (int column = 0; column < 4; ++column) rows[std::size_t(row * 4 + column)] = matrix[column][row];
-    return rows;
-}
-
-}  // namespace detail
-
 /// Writes the matrices that a capture of `width` x `height` px would have.
 inline void set_pose(Camera& camera, const CameraPose& pose, int width, int height) {
     const double scale = 2 * pose.focal_length_mm / pose.sensor_width_mm;
@@ -62,8 +51,8 @@ inline void set_pose(Camera& camera, const CameraPose& pose, int width, int heig
     ndc[2][2] = ndc[2][3] = -1;
     ndc[3][2] = -0.01;
     const glm::dmat4 view_from_world = glm::inverse(pose.world_from_view());
-    camera.camera_from_world = detail::rows_of(view_from_world);
-    camera.ndc_from_world = detail::rows_of(ndc * view_from_world);
+    camera.camera_from_world = camera_matrix(view_from_world);
+    camera.ndc_from_world = camera_matrix(ndc * view_from_world);
 }
 
 }  // namespace aftershade::test

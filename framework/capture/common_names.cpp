@@ -4,7 +4,6 @@
 #include <array>
 #include <cctype>
 #include <set>
-#include <string_view>
 
 #include "framework/image/role.h"
 
@@ -27,18 +26,14 @@ std::string joined_name(const std::string& layer, const std::string& component) 
     return layer.empty() ? component : layer + "." + component;
 }
 
-bool part_has(const ExrPart& part, const std::string& name) {
-    return std::any_of(part.channels.begin(), part.channels.end(),
-                       [&](const ExrChannel& channel) { return channel.name == name; });
-}
-
 /// The channels of the layer's colour; "" for an alpha that is absent.
 std::optional<std::vector<std::string>> color_of_layer(const ExrPart& part, const std::string& layer) {
     for (const Components& components : kColorComponents) {
         std::vector<std::string> names;
         for (const char* component : components) names.push_back(joined_name(layer, component));
-        if (!part_has(part, names[0]) || !part_has(part, names[1]) || !part_has(part, names[2])) continue;
-        if (!part_has(part, names[3])) names[3].clear();
+        if (!has_channel(part, names[0]) || !has_channel(part, names[1]) || !has_channel(part, names[2]))
+            continue;
+        if (!has_channel(part, names[3])) names[3].clear();
         return names;
     }
     return std::nullopt;
@@ -112,8 +107,13 @@ std::optional<FoundChannels> find_common_color(const ExrPart& part, const std::s
 
 std::optional<FoundChannels> find_common_depth(const ExrPart& part, const std::string& layer) {
     for (const char* name : {"depth.Z", "Depth.Z", "Depth.V", "depth.V", "Z"})
-        if (part_has(part, joined_name(layer, name))) return FoundChannels{{joined_name(layer, name)}};
+        if (has_channel(part, joined_name(layer, name))) return FoundChannels{{joined_name(layer, name)}};
     return std::nullopt;
+}
+
+bool has_channel(const ExrPart& part, std::string_view name) {
+    return std::any_of(part.channels.begin(), part.channels.end(),
+                       [&](const ExrChannel& channel) { return channel.name == name; });
 }
 
 }  // namespace aftershade

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "framework/capture/found_channels.h"
@@ -21,6 +22,9 @@ std::optional<FoundChannels> find_common_color(const ExrPart& part, const std::s
 
 /// Depth under one of the usual names, below `layer`.
 std::optional<FoundChannels> find_common_depth(const ExrPart& part, const std::string& layer);
+
+/// Whether it has a channel of that full name.
+bool has_channel(const ExrPart& part, std::string_view name);
 
 /// Whether a channel lies in the layer or in one below it.
 bool has_layer(const ExrPart& part, const std::string& layer);

@@ -11,6 +11,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "framework/capture/common_names.h"
 #include "framework/capture/frame_file.h"
 #include "framework/core/diagnostics.h"
 #include "framework/core/error.h"
@@ -21,11 +22,6 @@ namespace aftershade {
 namespace {
 
 constexpr int kMaxRankPairs = 50;  // two ranks to a set of four channels, which two digits count
-
-bool has_channel(const FrameFile& file, const std::string& name) {
-    const auto& channels = file.merged().channels;
-    return std::any_of(channels.begin(), channels.end(), [&](const ExrChannel& c) { return c.name == name; });
-}
 
 /// Names in the manifest, {"object": "hex", ...}; a manifest that is damaged counts as none: it is only a
 /// help.
@@ -47,7 +43,7 @@ std::optional<RankChannels> rank_channels(const FrameFile& file, const std::stri
         RankChannels channels;
         for (std::size_t i = 0; i < channels.size(); ++i) channels[i] = prefix + components[i];
         if (std::all_of(channels.begin(), channels.end(),
-                        [&](const std::string& name) { return has_channel(file, name); }))
+                        [&](const std::string& name) { return has_channel(file.merged(), name); }))
             return channels;
     }
     return std::nullopt;

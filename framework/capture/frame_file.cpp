@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 
+#include "framework/capture/common_names.h"
 #include "framework/core/diagnostics.h"
 #include "framework/core/error.h"
 #include "framework/image/window.h"
@@ -36,11 +37,6 @@ std::string name_in_view(const std::string& name, const std::vector<std::string>
     // Names without any view are the default view's if they have no layer, else every view's.
     const bool is_default = view == views.front();
     return is_default || name.find('.') != std::string::npos ? name : "";
-}
-
-bool has_channel(const ExrPart& part, std::string_view name) {
-    return std::any_of(part.channels.begin(), part.channels.end(),
-                       [&](const ExrChannel& channel) { return channel.name == name; });
 }
 
 bool holds_depth_alone(const ExrPart& part) {

@@ -38,14 +38,6 @@ glm::dmat4 matrix_of(const Rows& rows) {
     return glm::transpose(glm::dmat4(rows[0], rows[1], rows[2], rows[3]));
 }
 
-CameraMatrix camera_matrix(const glm::dmat4& matrix) {
-    CameraMatrix result{};
-    for (int row = 0; row < 4; ++row)
-        for (int column = 0; column < 4; ++column)
-            result[std::size_t(row * 4 + column)] = matrix[column][row];
-    return result;
-}
-
 /// As it acts on column vectors. EXR's act on row vectors, so GLM's columns are its rows.
 std::optional<glm::dmat4> stored_matrix(const ExrMetadata& metadata, const char* name) {
     const auto value = metadata.value(name);

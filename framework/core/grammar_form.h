@@ -1,5 +1,5 @@
-// What forms and rules of a grammar are made of; for the sources that define them. grammar.h has those that
-// there are.
+// What forms and rules of a grammar are made of; for the sources that define them. grammar.h declares
+// the forms and rules themselves.
 #pragma once
 
 #include <functional>

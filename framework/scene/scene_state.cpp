@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "framework/image/camera_matrix.h"
+
 namespace aftershade::scene {
 
 namespace {
@@ -57,13 +59,6 @@ CameraState camera_at(const SceneCamera& camera, const Shot& shot, double time) 
     return state;
 }
 
-CameraMatrix rows_of(const glm::dmat4& matrix) {
-    CameraMatrix rows{};
-    for (int row = 0; row < 4; ++row)
-        for (int column = 0; column < 4; ++column) rows[std::size_t(row * 4 + column)] = matrix[column][row];
-    return rows;
-}
-
 }  // namespace
 
 SceneState state_at(const Scene& scene, int frame, double time) {
@@ -100,8 +95,8 @@ Camera capture_camera(const Scene& scene, const SceneState& state, int width_px,
     clip_from_camera[2][2] = -1;
     clip_from_camera[2][3] = -1;
     clip_from_camera[3][2] = -kNear_m;
-    camera.camera_from_world = rows_of(state.camera.camera_from_world);
-    camera.ndc_from_world = rows_of(clip_from_camera * state.camera.camera_from_world);
+    camera.camera_from_world = camera_matrix(state.camera.camera_from_world);
+    camera.ndc_from_world = camera_matrix(clip_from_camera * state.camera.camera_from_world);
     return camera;
 }
 
