@@ -13,7 +13,7 @@
 namespace {
 
 namespace fs = std::filesystem;
-const fs::path kRoot = AFTERSHADE_SOURCE_DIR;
+const fs::path kSourceRoot = AFTERSHADE_SOURCE_DIR;
 
 struct Use {
     std::regex name;                ///< as the standard library spells it
@@ -77,7 +77,7 @@ Header read_header(const fs::path& path) {
 
 TEST(Headers, IncludeTheStandardHeadersOfWhatTheyUse) {
     for (const char* folder : {"framework", "cli"})
-        for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
+        for (const auto& entry : fs::recursive_directory_iterator(kSourceRoot / folder)) {
             if (entry.path().extension() != ".h") continue;
             const Header header = read_header(entry.path());
             for (const Use& use : uses()) {
@@ -87,7 +87,7 @@ TEST(Headers, IncludeTheStandardHeadersOfWhatTheyUse) {
                     return header.included.contains(one);
                 };
                 EXPECT_TRUE(std::ranges::any_of(use.headers, is_included))
-                    << fs::relative(entry.path(), kRoot).string() << " uses " << name.str() << " without <"
+                    << fs::relative(entry.path(), kSourceRoot).string() << " uses " << name.str() << " without <"
                     << *use.headers.begin() << ">";
             }
         }

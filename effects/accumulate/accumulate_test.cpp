@@ -13,7 +13,7 @@
 #include "tests/look_runner.h"
 #include "tests/synthetic_capture.h"
 
-namespace aftershade::test {
+namespace aftershade::test::accumulate {
 namespace {
 
 constexpr int kWidth = 16, kHeight = 9;
@@ -161,4 +161,4 @@ TEST(Accumulate, OfSixtyFourSubframesFromTheCommandIsTheRenderersTruth) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::accumulate

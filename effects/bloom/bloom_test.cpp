@@ -9,7 +9,7 @@
 #include "tests/look_runner.h"
 #include "tests/synthetic_capture.h"
 
-namespace aftershade::test {
+namespace aftershade::test::bloom {
 namespace {
 
 Image bloomed(const Capture& capture, const std::string& params) {
@@ -137,4 +137,4 @@ TEST(Bloom, SpreadsNoFault) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::bloom

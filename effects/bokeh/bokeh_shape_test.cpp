@@ -10,13 +10,12 @@
 #include <gtest/gtest.h>
 
 #include "effects/bokeh/bokeh_test.h"
+#include "tests/not_finite.h"
 #include "tests/polygon.h"
 #include "tests/synthetic_capture.h"
 
 namespace aftershade::test::bokeh {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 struct ShapeCase {
     const char* shape;

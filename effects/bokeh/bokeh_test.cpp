@@ -10,12 +10,12 @@
 #include "framework/capture/capture.h"
 #include "tests/aperture_checks.h"
 #include "tests/look_runner.h"
+#include "tests/not_finite.h"
 #include "tests/synthetic_capture.h"
 
 namespace aftershade::test::bokeh {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // ---- circle of confusion ----
 
 struct CocCase {

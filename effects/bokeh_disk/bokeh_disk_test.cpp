@@ -9,7 +9,7 @@
 
 #include "tests/aperture_checks.h"
 
-namespace aftershade::test {
+namespace aftershade::test::bokeh_disk {
 namespace {
 
 constexpr float kIntensity = kPointIntensity;
@@ -145,4 +145,4 @@ TEST(BokehDiskOnSuzanne, ComesWithinReachOfTheRenderersLens) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::bokeh_disk

@@ -9,7 +9,7 @@
 
 #include "tests/aperture_checks.h"
 
-namespace aftershade::test {
+namespace aftershade::test::bokeh_gather {
 namespace {
 
 constexpr float kIntensity = kPointIntensity;
@@ -171,4 +171,4 @@ TEST(BokehGatherOnSuzanne, ComesWithinReachOfTheRenderersLens) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::bokeh_gather

@@ -8,7 +8,7 @@
 
 #include "tests/aperture_checks.h"
 
-namespace aftershade::test {
+namespace aftershade::test::bokeh_hexagon {
 namespace {
 
 constexpr float kIntensity = kPointIntensity;
@@ -124,4 +124,4 @@ TEST(BokehHexagonOnSuzanne, ComesWithinReachOfTheRenderersLens) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::bokeh_hexagon

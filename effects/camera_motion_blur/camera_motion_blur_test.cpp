@@ -13,13 +13,13 @@
 #include "tests/camera_pose.h"
 #include "tests/crop.h"
 #include "tests/look_runner.h"
+#include "tests/not_finite.h"
 #include "tests/scene/scene_text.h"
 #include "tests/synthetic_capture.h"
 
-namespace aftershade::test {
+namespace aftershade::test::camera_motion_blur {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kWidth = 96, kHeight = 54;
 
 std::string look_of(const std::string& params) {
@@ -306,4 +306,4 @@ TEST(CameraMotionBlur, OfAPartOfThePictureIsTheWholesAwayFromItsEdges) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::camera_motion_blur

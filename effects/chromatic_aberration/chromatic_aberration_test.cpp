@@ -9,7 +9,7 @@
 #include "tests/look_runner.h"
 #include "tests/synthetic_capture.h"
 
-namespace aftershade::test {
+namespace aftershade::test::chromatic_aberration {
 namespace {
 
 Image fringed(const Capture& capture, const std::string& params) {
@@ -92,4 +92,4 @@ TEST(ChromaticAberration, IsCentredOnTheDisplayWindowWhateverTheCrop) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::chromatic_aberration

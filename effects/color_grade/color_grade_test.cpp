@@ -10,7 +10,7 @@
 #include "tests/synthetic_capture.h"
 #include "tests/temporary_folder.h"
 
-namespace aftershade::test {
+namespace aftershade::test::color_grade {
 namespace {
 
 using Vec = std::array<double, 3>;
@@ -126,4 +126,4 @@ TEST(ColorGrade, GradesTheColorNotTheColorTimesItsCoverage) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::color_grade

@@ -7,11 +7,11 @@
 #include <gtest/gtest.h>
 
 #include "tests/aperture_checks.h"
+#include "tests/not_finite.h"
 
-namespace aftershade::test {
+namespace aftershade::test::dof {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kFocusM = kApertureFocusM;
 
 const std::string kEffect = "dof";
@@ -227,4 +227,4 @@ TEST(DofOnSuzanne, ComesCloseToTheRenderersLens) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::dof

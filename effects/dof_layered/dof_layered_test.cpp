@@ -1,7 +1,7 @@
 // What dof_layered must do, against closed forms and against a renderer's own lens.
 #include "tests/aperture_family.h"
 
-namespace aftershade::test {
+namespace aftershade::test::dof_layered {
 namespace {
 
 struct Named {
@@ -31,4 +31,4 @@ TEST(DofLayeredOnSuzanne, ComesCloseToTheRenderersLens) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::dof_layered

@@ -1,7 +1,7 @@
 // What dof_scatter must do, against closed forms and against a renderer's own lens.
 #include "tests/aperture_family.h"
 
-namespace aftershade::test {
+namespace aftershade::test::dof_scatter {
 namespace {
 
 struct Named {
@@ -36,4 +36,4 @@ TEST(DofScatterOnSuzanne, ComesCloseToTheRenderersLens) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::dof_scatter

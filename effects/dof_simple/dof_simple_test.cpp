@@ -11,11 +11,11 @@
 #include <gtest/gtest.h>
 
 #include "tests/aperture_checks.h"
+#include "tests/not_finite.h"
 
-namespace aftershade::test {
+namespace aftershade::test::dof_simple {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kFocusM = 2;
 constexpr double kMaxRadiusPx = 16;
 
@@ -302,4 +302,4 @@ TEST(DofSimpleOnSuzanne, IsBetterThanNoLensAndShortOfBokeh) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::dof_simple

@@ -10,7 +10,7 @@
 #include "tests/look_runner.h"
 #include "tests/synthetic_capture.h"
 
-namespace aftershade::test {
+namespace aftershade::test::film_grain {
 namespace {
 
 using Uvec3 = std::array<std::uint32_t, 3>;
@@ -145,4 +145,4 @@ TEST(FilmGrain, EqualsItsTwinPixelByPixel) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::film_grain

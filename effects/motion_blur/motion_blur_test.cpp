@@ -10,7 +10,7 @@
 #include "tests/real_captures.h"
 #include "tests/synthetic_capture.h"
 
-namespace aftershade::test {
+namespace aftershade::test::motion_blur {
 namespace {
 
 constexpr double kExposure = 0.5;  // frames, of the default shutter_angle
@@ -298,4 +298,4 @@ TEST(MotionBlur, IsTheSameOnTheOtherSoftwareBackend) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::motion_blur

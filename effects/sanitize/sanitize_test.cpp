@@ -6,13 +6,11 @@
 #include <gtest/gtest.h>
 
 #include "tests/look_runner.h"
+#include "tests/not_finite.h"
 #include "tests/synthetic_capture.h"
 
-namespace aftershade::test {
+namespace aftershade::test::sanitize {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// A ramp, so that a median has one value: red of (x, y) is 1 + x.
 Capture ramp() {
@@ -96,4 +94,4 @@ TEST(Sanitize, WorksInTheCornerWhereNeighboursAreFew) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::sanitize

@@ -9,7 +9,7 @@
 #include "tests/look_runner.h"
 #include "tests/synthetic_capture.h"
 
-namespace aftershade::test {
+namespace aftershade::test::sharpen {
 namespace {
 
 constexpr int kWidth = 48, kHeight = 32;
@@ -123,4 +123,4 @@ TEST(Sharpen, LeavesFlatLightFlatHoweverBright) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::sharpen

@@ -7,7 +7,7 @@
 
 #include "tests/scattering_checks.h"
 
-namespace aftershade::test {
+namespace aftershade::test::sss_adaptive_hybrid {
 namespace {
 
 constexpr const char* kEffect = "sss_adaptive";
@@ -214,4 +214,4 @@ TEST(SssAdaptiveHybrid, GoesOnFromTheBlursWithItsAverage) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::sss_adaptive_hybrid

@@ -1,4 +1,4 @@
-// What the program tells of a run: numbers of each frame that agree with the textures they are of, and a
+// Telemetry of a run: numbers of each frame that agree with the textures they are of, and a
 // sequence in chunks that is the whole one.
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -6,7 +6,7 @@
 #include "framework/file/exr_file.h"
 #include "tests/cli/command.h"
 
-namespace aftershade::test {
+namespace aftershade::test::sss_adaptive_telemetry {
 namespace {
 
 namespace fs = std::filesystem;
@@ -106,4 +106,4 @@ TEST_F(SssAdaptiveRun, HasTheSameBitsInChunks) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::sss_adaptive_telemetry

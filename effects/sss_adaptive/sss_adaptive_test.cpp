@@ -9,7 +9,7 @@
 
 #include "tests/scattering_checks.h"
 
-namespace aftershade::test {
+namespace aftershade::test::sss_adaptive {
 namespace {
 
 constexpr const char* kEffect = "sss_adaptive";
@@ -349,4 +349,4 @@ TEST(SssAdaptive, ChangesTheHeadOfSuzanneAlone) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::sss_adaptive

@@ -10,7 +10,7 @@
 
 #include "tests/reference/adaptive_sampling.h"
 
-namespace aftershade::test {
+namespace aftershade::test::sss_adaptive_twin {
 namespace {
 
 using namespace reference;
@@ -122,4 +122,4 @@ TEST(ControlVariates, LeaveTheNoiseOfTheSamplesAlone) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::sss_adaptive_twin

@@ -7,7 +7,7 @@
 #include "tests/real_captures.h"
 #include "tests/scattering_checks.h"
 
-namespace aftershade::test {
+namespace aftershade::test::sss_burley {
 namespace {
 
 constexpr const char* kEffect = "sss_burley";
@@ -142,4 +142,4 @@ TEST(SssBurley, ConvergesForGaussiansToo) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::sss_burley

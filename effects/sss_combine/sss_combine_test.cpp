@@ -10,7 +10,7 @@
 #include "tests/pipeline/effect_fixture.h"
 #include "tests/scene/scene_text.h"
 
-namespace aftershade::test {
+namespace aftershade::test::sss_combine {
 namespace {
 
 /// Light, albedo and the rest all differ from pixel to pixel and channel to channel; black and white too.
@@ -188,4 +188,4 @@ INSTANTIATE_TEST_SUITE_P(Both, SssCombine, testing::Values(gpu::Backend::osmesa,
                          });
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::sss_combine

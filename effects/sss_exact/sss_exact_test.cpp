@@ -7,7 +7,7 @@
 
 #include "tests/scattering_checks.h"
 
-namespace aftershade::test {
+namespace aftershade::test::sss_exact {
 namespace {
 
 constexpr const char* kEffect = "sss_exact";
@@ -175,4 +175,4 @@ TEST(SssExact, HasTheAxesOfPathTracersOnAPlaneAsTheDistance) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::sss_exact

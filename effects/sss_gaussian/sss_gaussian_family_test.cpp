@@ -1,6 +1,6 @@
 #include "tests/scattering_family.h"
 
-namespace aftershade::test {
+namespace aftershade::test::sss_gaussian_family {
 namespace {
 
 struct Named {
@@ -12,4 +12,4 @@ struct Named {
 INSTANTIATE_TYPED_TEST_SUITE_P(SssGaussian, ScatteringBlur, Named);
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::sss_gaussian_family

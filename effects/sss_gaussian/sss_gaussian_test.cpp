@@ -15,7 +15,7 @@
 #include "tests/scattering_checks.h"
 #include "tests/synthetic_capture.h"
 
-namespace aftershade::test {
+namespace aftershade::test::sss_gaussian {
 namespace {
 
 constexpr double kPixel_mm = kFacingPlanePixel_mm;
@@ -199,4 +199,4 @@ TEST(SssGaussian, ScattersOnATextureThatTheRendererMade) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::sss_gaussian

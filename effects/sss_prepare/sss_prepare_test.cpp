@@ -6,7 +6,7 @@
 #include "tests/look_runner.h"
 #include "tests/synthetic_capture.h"
 
-namespace aftershade::test {
+namespace aftershade::test::sss_prepare {
 namespace {
 
 Capture varied() {
@@ -44,4 +44,4 @@ TEST(SssPrepare, MultipliesLightByThePartOfTheAlbedoThatScatters) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::sss_prepare

@@ -15,7 +15,7 @@
 #include "tests/scattering_checks.h"
 #include "tests/synthetic_capture.h"
 
-namespace aftershade::test {
+namespace aftershade::test::sss_separable {
 namespace {
 
 constexpr double kPixel_mm = kFacingPlanePixel_mm;
@@ -283,4 +283,4 @@ TEST(SssSeparable, TakesDistancesOnTheSurface) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::sss_separable

@@ -6,7 +6,7 @@
 
 #include "effects/taa/taa_test.h"
 
-namespace aftershade::test {
+namespace aftershade::test::taa_equations {
 namespace {
 
 using Light = std::array<double, 4>;
@@ -319,4 +319,4 @@ TEST_P(TaaRejection, HoldsHistoryToTheNeighboursNow) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::taa_equations

@@ -9,13 +9,12 @@
 #include "framework/compare/metrics.h"
 #include "framework/scene/renderer.h"
 #include "framework/scene/samples.h"
+#include "tests/not_finite.h"
 #include "tests/scene/scene_text.h"
 
-namespace aftershade::test {
+namespace aftershade::test::taa {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kWidthPx = 160, kHeightPx = 90;
 
 /// A scene's jittered frames and their truth.
@@ -302,4 +301,4 @@ TEST(TaaFaults, ColorThatIsNoNumberAnywhereGivesNumbersInEveryMode) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::taa

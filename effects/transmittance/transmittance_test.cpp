@@ -10,7 +10,7 @@
 #include "tests/look_runner.h"
 #include "tests/synthetic_capture.h"
 
-namespace aftershade::test {
+namespace aftershade::test::transmittance {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -126,4 +126,4 @@ TEST(Transmittance, LetsNothingThroughWhatIsInfinitelyThick) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::transmittance

@@ -9,13 +9,13 @@
 #include "tests/camera_pose.h"
 #include "tests/crop.h"
 #include "tests/look_runner.h"
+#include "tests/not_finite.h"
 #include "tests/scene/scene_text.h"
 #include "tests/synthetic_capture.h"
 
-namespace aftershade::test {
+namespace aftershade::test::velocity_from_camera {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kWidth = 64, kHeight = 36;
 
 class VelocityRunner {
@@ -201,4 +201,4 @@ TEST(VelocityFromCamera, LeavesMaskedObjectsTheCapturesOwnMotion) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::velocity_from_camera

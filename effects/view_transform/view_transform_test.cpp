@@ -10,7 +10,7 @@
 #include "tests/look_runner.h"
 #include "tests/synthetic_capture.h"
 
-namespace aftershade::test {
+namespace aftershade::test::view_transform {
 namespace {
 
 using Vec = std::array<double, 3>;
@@ -102,4 +102,4 @@ TEST(ViewTransform, StaysWithinTheDisplay) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::view_transform

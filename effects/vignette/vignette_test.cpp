@@ -8,7 +8,7 @@
 #include "tests/look_runner.h"
 #include "tests/synthetic_capture.h"
 
-namespace aftershade::test {
+namespace aftershade::test::vignette {
 namespace {
 
 Image vignetted(const Capture& capture, const std::string& params) {
@@ -72,4 +72,4 @@ TEST(Vignette, OverscanLeavesThePixelsOfTheDisplayWindowAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::vignette

@@ -9,7 +9,7 @@
 
 #include "effects/visualize/visualize_test.h"
 
-namespace aftershade::test {
+namespace aftershade::test::visualize_legend {
 namespace {
 
 /// Digits of the legend, row by row.
@@ -166,4 +166,4 @@ TEST(VisualizeLegend, TheLegendTellsLoudColorsOnlyWhereThePictureHasThem) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::visualize_legend

@@ -15,7 +15,7 @@
 #include "framework/compare/metrics.h"
 #include "tests/crop.h"
 
-namespace aftershade::test {
+namespace aftershade::test::visualize {
 namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
@@ -292,4 +292,4 @@ TEST(Visualize, LaysItselfOverTheDisplayThatAnEarlierStepMade) {
 }
 
 }  // namespace
-}  // namespace aftershade::test
+}  // namespace aftershade::test::visualize

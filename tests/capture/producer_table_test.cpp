@@ -29,7 +29,7 @@ struct Expected {
     std::map<std::string, std::string> role_files = {};  ///< to give beside it
 };
 
-/// Falcor writes a file for each pass, and none tells of its producer.
+/// Falcor writes a file for each pass, and none names its producer.
 std::string falcor_pass(const std::string& pass) {
     return "producers/falcor/" + pass + ".0.exr";
 }

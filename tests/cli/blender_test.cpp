@@ -132,7 +132,7 @@ TEST(SingleLayerFile, ThatHasNoCryptomatteRefusesALookThatNamesObjects) {
     EXPECT_NE(result.exit_code, 0);
     EXPECT_NE(
         result.err.find("the look names the object 'Suzanne', but the file has neither a Cryptomatte nor "
-                        "the role object_id; its header tells of 'ViewLayer.CryptoObject'"),
+                        "the role object_id; its header declares 'ViewLayer.CryptoObject'"),
         std::string::npos)
         << result.err;
     EXPECT_FALSE(fs::exists(folder / "out.exr"));

@@ -19,6 +19,8 @@
 
 namespace aftershade::test {
 
+inline const std::vector<std::string> kRgba{"R", "G", "B", "A"};
+
 using Environment = std::map<std::string, std::string>;
 
 struct CommandResult {

@@ -12,8 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> kRgba{"R", "G", "B", "A"};
-
 class RenderOptions : public testing::Test {
 protected:
     RenderOptions() {

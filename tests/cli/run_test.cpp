@@ -20,7 +20,6 @@ const char* const kFilm = R"({ "aftershade": 1, "steps": [
     { "effect": "view_transform", "params": { "exposure": 0.5 } } ] })";
 const char* const kView = R"({ "aftershade": 1, "steps": [ { "effect": "view_transform" } ] })";
 const char* const kNothing = R"({ "aftershade": 1, "steps": [] })";
-const std::vector<std::string> kRgba{"R", "G", "B", "A"};
 
 /// IEC 61966-2-1 in double precision.
 double srgb(double linear) {

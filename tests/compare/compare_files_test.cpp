@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "tests/compare/pictures.h"
+#include "tests/not_finite.h"
 #include "tests/real_captures.h"
 
 namespace aftershade {
@@ -12,10 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::constant;
+using test::kInfinity;
 using test::kNan;
-
-constexpr float kInfinityF = std::numeric_limits<float>::infinity();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 class CompareFiles : public testing::Test {
 protected:
@@ -136,7 +135,7 @@ TEST_F(CompareFiles, LineUpDataWindows) {
 }
 
 TEST_F(CompareFiles, OfCroppedDataWindowsAreTheSameWhereOutsideIsFilled) {
-    Image rgb(10, 10, 3), depth = constant(10, 10, {kInfinityF});
+    Image rgb(10, 10, 3), depth = constant(10, 10, {kInfinity});
     for (int c = 0; c < 3; ++c) rgb.at(4, 5, c) = 1;
     depth.at(4, 5, 0) = 3;
     const Image one = constant(1, 1, {1, 1, 1}), near = constant(1, 1, {3});

@@ -10,7 +10,7 @@ namespace aftershade {
 namespace {
 
 using test::constant;
-using test::kInf;
+using test::kInfinity;
 using test::kNan;
 using test::row;
 
@@ -22,11 +22,11 @@ TEST(DifferencePicture, IsReferenceMinusTestTimesTheScale) {
 }
 
 TEST(DifferencePicture, IsNoneOfEqualInfinitiesAndNanOfNan) {
-    const Image difference = difference_image(row({kInf, -kInf, kInf, kNan, 1}),
-                                              row({kInf, -kInf, 1, 1, kNan}), LayerRole::depth, {});
+    const Image difference = difference_image(row({kInfinity, -kInfinity, kInfinity, kNan, 1}),
+                                              row({kInfinity, -kInfinity, 1, 1, kNan}), LayerRole::depth, {});
     EXPECT_EQ(difference.at(0, 0, 0), 0);
     EXPECT_EQ(difference.at(1, 0, 0), 0);
-    EXPECT_EQ(difference.at(2, 0, 0), kInf);
+    EXPECT_EQ(difference.at(2, 0, 0), kInfinity);
     EXPECT_TRUE(std::isnan(difference.at(3, 0, 0)));
     EXPECT_TRUE(std::isnan(difference.at(4, 0, 0)));
 }

@@ -13,7 +13,7 @@ namespace {
 
 using test::constant;
 using test::hashed;
-using test::kInf;
+using test::kInfinity;
 using test::kNan;
 using test::picture;
 
@@ -126,7 +126,7 @@ TEST(Flip, OfPicturesNarrowerThanItsFiltersIsDefined) {
 
 TEST(Flip, OfNanIsTheLargestErrorThereAndNoNanAround) {
     const Image reference = of({0.5, 0.5, 0.5}, 40, 40);
-    for (const float bad : {kNan, kInf, -kInf}) {
+    for (const float bad : {kNan, kInfinity, -kInfinity}) {
         Image test = reference;
         test.at(20, 20, 1) = bad;
         for (const FlipResult& result : {ldr_flip(reference, test), hdr_flip(reference, test)}) {

@@ -5,11 +5,13 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/not_finite.h"
+
 namespace aftershade {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+using test::kInfinity;
+using test::kNan;
 
 Image row(std::initializer_list<float> values) {
     Image image(int(values.size()), 1, 1);

@@ -12,12 +12,10 @@
 #include "framework/file/exr_file.h"
 #include "framework/file/png_file.h"
 #include "framework/image/image.h"
+#include "tests/not_finite.h"
 #include "tests/temporary_folder.h"
 
 namespace aftershade::test {
-
-inline constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-inline constexpr float kInf = std::numeric_limits<float>::infinity();
 
 /// 0 to 1, the same on every machine: the finaliser of Murmur3 (Appleby, public domain).
 inline float hashed(int x, int y, int c, int seed) {

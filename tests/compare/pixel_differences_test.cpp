@@ -11,7 +11,7 @@ namespace {
 
 using test::constant;
 using test::ids;
-using test::kInf;
+using test::kInfinity;
 using test::kNan;
 using test::row;
 
@@ -92,7 +92,7 @@ TEST(PixelDifferences, TakeNanForEqualOnlyWhenAsked) {
     PixelDifferences d = differences(row({kNan, 1}), row({kNan, 1}), LayerRole::data, rules);
     EXPECT_EQ(d.failing.count, 1);
     EXPECT_EQ(d.incomparable, 1);
-    EXPECT_EQ(d.largest.value, kInf);
+    EXPECT_EQ(d.largest.value, kInfinity);
     rules.nan_equal = true;
     d = differences(row({kNan, 1}), row({kNan, 1}), LayerRole::data, rules);
     EXPECT_EQ(d.failing.count, 0);
@@ -104,13 +104,13 @@ TEST(PixelDifferences, NeverTakeNanForANumberWhateverTheLimit) {
     rules.fail = std::numeric_limits<double>::infinity();
     rules.nan_equal = true;
     for (const auto& [r, t] :
-         {std::pair{kNan, 1.0f}, {1.0f, kNan}, {kInf, 1.0f}, {kInf, -kInf}, {kNan, kInf}})
+         {std::pair{kNan, 1.0f}, {1.0f, kNan}, {kInfinity, 1.0f}, {kInfinity, -kInfinity}, {kNan, kInfinity}})
         EXPECT_EQ(differences(row({r}), row({t}), LayerRole::data, rules).failing.count, 1) << r << " " << t;
-    EXPECT_EQ(differences(row({kInf, -kInf}), row({kInf, -kInf})).failing.count, 0);
+    EXPECT_EQ(differences(row({kInfinity, -kInfinity}), row({kInfinity, -kInfinity})).failing.count, 0);
 }
 
 TEST(PixelDifferences, TakeMeansOverWhatIsFiniteInBoth) {
-    const PixelDifferences d = differences(row({kNan, 1, 1, kInf}), row({0, 2, 1, 5}));
+    const PixelDifferences d = differences(row({kNan, 1, 1, kInfinity}), row({0, 2, 1, 5}));
     EXPECT_EQ(d.values, 2);
     EXPECT_EQ(d.incomparable, 2);
     EXPECT_DOUBLE_EQ(d.mean_absolute, 0.5);
@@ -129,12 +129,12 @@ TEST(PixelDifferences, OfDepthAreRelativeToTheReference) {
     DifferenceRules rules;
     rules.fail = 0.015;
     const PixelDifferences d =
-        differences(row({100, 1, kInf, 0}), row({101, 1.02f, kInf, 0}), LayerRole::depth, rules);
+        differences(row({100, 1, kInfinity, 0}), row({101, 1.02f, kInfinity, 0}), LayerRole::depth, rules);
     EXPECT_EQ(d.failing.count, 1) << "one per cent at 100 m passes, two at 1 m do not";
     EXPECT_NEAR(d.largest_pixel, 0.02, 1e-6);
     EXPECT_EQ(d.largest.value, 1) << "the absolute error is still told";
-    EXPECT_EQ(differences(row({kInf}), row({100}), LayerRole::depth, rules).failing.count, 1);
-    EXPECT_EQ(differences(row({0}), row({1e-9f}), LayerRole::depth, rules).largest_pixel, kInf);
+    EXPECT_EQ(differences(row({kInfinity}), row({100}), LayerRole::depth, rules).failing.count, 1);
+    EXPECT_EQ(differences(row({0}), row({1e-9f}), LayerRole::depth, rules).largest_pixel, kInfinity);
 }
 
 TEST(PixelDifferences, OfVelocityAreEndPointErrors) {

@@ -9,13 +9,7 @@ namespace {
 using test::faults_of;
 using test::Lines;
 using test::parsed;
-
-ParamSpec spec_of(const std::string& declaration) {
-    Diagnostics diagnostics;
-    const auto spec = parse_param_spec("p", parsed(declaration), diagnostics);
-    EXPECT_EQ(test::lines_of(diagnostics), Lines{}) << declaration;
-    return spec.value_or(ParamSpec{});
-}
+using test::spec_of;
 
 Lines value_faults(const std::string& declaration, const std::string& value, const std::string& label = "p") {
     const ParamSpec spec = spec_of(declaration);

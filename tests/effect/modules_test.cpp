@@ -176,7 +176,7 @@ TEST_F(Modules, ThatAreNotThereAreNamedWithTheNearest) {
               (Lines{"demo/effect.json:8: error: 'modules' holds strings, not an integer",
                      "demo/effect.json:8: error: 'modules' holds 'tone' twice",
                      "demo/effect.json:8: error: no module 'toen' in glsl; did you mean 'tone'?"}));
-    // What would come from it is not told to be missing.
+    // What would come from it is not reported as missing.
     EXPECT_EQ(faults(nullptr, R"(["tones"])", {{test::kPresets, R"("presets": {"strong": {"key": 3}})"}}),
               Lines{"demo/effect.json:8: error: no module 'tones' in glsl; did you mean 'tone'?"});
     EXPECT_EQ(faults(nullptr, R"("tone")"),

@@ -1,7 +1,7 @@
 // The text of each kind of binding, and the blocks' bytes.
-#include <cstring>
 
 #include "tests/effect/assembly.h"
+#include "tests/effect/block_bytes.h"
 #include "tests/gpu/gpu_test.h"
 
 namespace aftershade {
@@ -13,6 +13,7 @@ using test::EffectFolder;
 using test::has_line;
 using test::Lines;
 using test::lines_of_text;
+using test::value_at;
 
 /// One compute pass, one repeated draw and one draw of instances, with everything that can be bound.
 const test::Sections kEverything = {
@@ -145,14 +146,6 @@ TEST(ShaderBindings, NumberParametersAndTablesAfterThePassesOwn) {
     shader.files = nullptr;
     EXPECT_EQ(pass_bindings(shader).param_samplers.size(), 1U) << "no file, no sampler";
     EXPECT_EQ(pass_bindings(shader).first_native_sampler, 3);
-}
-
-template <typename T>
-T value_at(const std::vector<std::byte>& block, std::size_t offset) {
-    T value{};
-    EXPECT_LE(offset + sizeof(T), block.size());
-    if (offset + sizeof(T) <= block.size()) std::memcpy(&value, block.data() + offset, sizeof(T));
-    return value;
 }
 
 // By hand from OpenGL 4.5, section 7.6.2.2: uint at 0, vec3 at 16, int in its fourth place at 28, vec2 at 32.

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstring>
 
 #include "tests/effect/assembly.h"
+#include "tests/effect/block_bytes.h"
 
 namespace aftershade {
 namespace {
@@ -15,6 +15,7 @@ using test::EffectFolder;
 using test::has_line;
 using test::Lines;
 using test::lines_of_text;
+using test::value_at;
 
 TEST(ShaderInterface, DeclaresWhatThePassSees) {
     const EffectFolder folder;
@@ -271,14 +272,6 @@ TEST(PassEnabled, WhenEveryConditionHolds) {
     assembly.params.set("taps", std::int64_t(5));
     EXPECT_TRUE(pass_enabled(pass, assembly.params, {"depth"}));
     EXPECT_TRUE(pass_enabled(assembly.manifest.passes[1], assembly.params, {}));
-}
-
-template <typename T>
-T value_at(const std::vector<std::byte>& block, std::size_t offset) {
-    T value{};
-    EXPECT_LE(offset + sizeof(T), block.size());
-    std::memcpy(&value, block.data() + offset, sizeof(T));
-    return value;
 }
 
 // Offsets by hand from OpenGL 4.5, section 7.6.2.2: scalars align to 4 bytes, vec2 to 8, vec3 and vec4 to 16,

@@ -9,7 +9,7 @@ using test::demo_manifest;
 using test::EffectFolder;
 using test::Lines;
 
-const std::filesystem::path kSource = AFTERSHADE_SOURCE_DIR;
+const std::filesystem::path kSourceTree = AFTERSHADE_SOURCE_DIR;
 
 const std::string kFirst = R"(#version 450 core
 #include <pass>
@@ -45,7 +45,7 @@ struct Sound {
     Lines faults() const {
         Diagnostics diagnostics;
         const EffectManifest manifest = folder.sound_manifest();
-        check_declared_used(manifest, kSource / "glsl", diagnostics);
+        check_declared_used(manifest, kSourceTree / "glsl", diagnostics);
         Lines lines;
         for (const std::string& line : test::lines_of(diagnostics))
             lines.push_back(line.substr(folder.path().string().size() + 1));
@@ -60,12 +60,12 @@ TEST(UsageCheck, IsContentWhereAllIsUsed) {
 
 TEST(UsageCheck, IsContentWithTheEffectsThatShip) {
     int count = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(kSource / "effects")) {
+    for (const auto& entry : std::filesystem::directory_iterator(kSourceTree / "effects")) {
         if (!std::filesystem::exists(entry.path() / "effect.json")) continue;
         Diagnostics faults;
         const auto node = read_document(entry.path() / "effect.json", faults);
         const auto manifest = node ? parse_manifest(*node, entry.path(), faults) : std::nullopt;
-        if (manifest) check_declared_used(*manifest, kSource / "glsl", faults);
+        if (manifest) check_declared_used(*manifest, kSourceTree / "glsl", faults);
         EXPECT_EQ(test::lines_of(faults), Lines{});
         ++count;
     }

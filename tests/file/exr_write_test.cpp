@@ -80,7 +80,7 @@ std::string opaque_value(const fs::path& path, const std::string& name) {
     return std::string(static_cast<const char*>(attribute->data()), std::size_t(attribute->dataSize()));
 }
 
-ExrWriteOptions options_for(const Image& image) {
+ExrWriteOptions window_of(const Image& image) {
     ExrWriteOptions options;
     options.data_window = options.display_window = {0, 0, image.width() - 1, image.height() - 1};
     return options;
@@ -138,7 +138,7 @@ TEST(ExrWrite, CarriesEveryAttributeThatDoesNotDescribeTheOldPixels) {
     const TemporaryFolder folder;
     write_source(folder / "a.exr");
     const Image image = pattern_image(5, 5, 1);
-    ExrWriteOptions options = options_for(image);
+    ExrWriteOptions options = window_of(image);
     options.compression = "piz";
     options.carry_over = ExrFile(folder / "a.exr").parts()[0].metadata;
     options.attributes = {
@@ -170,7 +170,7 @@ TEST(ExrWrite, CarriesEveryAttributeThatDoesNotDescribeTheOldPixels) {
 TEST(ExrWrite, StoresVectorsAsTheTypeOfTheirLength) {
     const TemporaryFolder folder;
     const Image image = pattern_image(2, 2, 1);
-    ExrWriteOptions options = options_for(image);
+    ExrWriteOptions options = window_of(image);
     const std::vector<float> rec709 = {0.64f, 0.33f, 0.3f, 0.6f, 0.15f, 0.06f, 0.3127f, 0.329f};
     options.attributes = {{"a", std::vector<float>{1, 2}},
                           {"b", std::vector<float>{1, 2, 3}},
@@ -189,7 +189,7 @@ TEST(ExrWrite, StoresVectorsAsTheTypeOfTheirLength) {
 TEST(ExrWrite, SaysWhyItCannotWriteAndLeavesNothingBehind) {
     const TemporaryFolder folder;
     const Image image = pattern_image(4, 4, 1);
-    const ExrWriteOptions options = options_for(image);
+    const ExrWriteOptions options = window_of(image);
     fs::create_directory(folder / "folder.exr");
     const auto message = [&](const fs::path& path, const ExrWriteOptions& how) {
         return test::error_of(ExitCode::output, [&] { write_floats(path, image, how); });
@@ -239,10 +239,10 @@ private:
 TEST(ExrWrite, KeepsTheOldFileWholeWhenTheDiskIsFullAtAnyByte) {
     const TemporaryFolder folder;
     const Image old = pattern_image(3, 3, 1);
-    write_floats(folder / "a.exr", old, options_for(old));
+    write_floats(folder / "a.exr", old, window_of(old));
     const std::string before = test::read_text(folder / "a.exr");
     const Image image = pattern_image(64, 64, 1);
-    ExrWriteOptions options = options_for(image);
+    ExrWriteOptions options = window_of(image);
     options.compression = "none";
     write_floats(folder / "full.exr", image, options);
     const std::uintmax_t size = fs::file_size(folder / "full.exr");

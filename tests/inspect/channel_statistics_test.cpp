@@ -9,12 +9,13 @@
 #include <sstream>
 
 #include "tests/capture/capture_files.h"
+#include "tests/not_finite.h"
 
 namespace aftershade {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInf = std::numeric_limits<float>::infinity();
+using test::kInfinity;
+using test::kNan;
 
 Image image_of(int channels, const std::vector<float>& values) {
     Image image(int(values.size()) / channels, 1, channels);
@@ -23,7 +24,7 @@ Image image_of(int channels, const std::vector<float>& values) {
 }
 
 TEST(ChannelStatistics, CountWhatIsNotFiniteAndLeaveItOutOfTheRange) {
-    const Image image = image_of(1, {3, kNan, -2, kInf, -kInf, kNan, kNan, 0.5f, -0.0f});
+    const Image image = image_of(1, {3, kNan, -2, kInfinity, -kInfinity, kNan, kNan, 0.5f, -0.0f});
     const ChannelStatistics statistics = channel_statistics(image)[0];
     EXPECT_EQ(statistics.min, -2);
     EXPECT_EQ(statistics.max, 3);
@@ -33,7 +34,7 @@ TEST(ChannelStatistics, CountWhatIsNotFiniteAndLeaveItOutOfTheRange) {
 }
 
 TEST(ChannelStatistics, HaveNoRangeWhereNothingIsFinite) {
-    const ChannelStatistics statistics = channel_statistics(image_of(1, {kNan, kInf}))[0];
+    const ChannelStatistics statistics = channel_statistics(image_of(1, {kNan, kInfinity}))[0];
     EXPECT_EQ(statistics.min, std::nullopt);
     EXPECT_EQ(statistics.max, std::nullopt);
     EXPECT_EQ(statistics.nan, 1);
@@ -67,7 +68,7 @@ TEST(ChannelStatistics, AreTheSameInPiecesOfALimitedSize) {
                          {{"A", std::vector<float>(1600, 1)},
                           {"B", std::vector<float>(1600, -2)},
                           {"I", std::vector<float>(1600, 70000), PixelType::uint32},
-                          {"Z", std::vector<float>(1600, kInf)}});
+                          {"Z", std::vector<float>(1600, kInfinity)}});
     ReadLimits limits;
     limits.max_image_bytes = 1600 * 4 + 4096;  // one channel and the header
     const ExrFile file(folder / "a.exr", limits);

@@ -6,13 +6,14 @@
 #include <limits>
 
 #include "framework/image/false_color.h"
+#include "tests/not_finite.h"
 #include "tests/synthetic_capture.h"
 
 namespace aftershade {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInf = std::numeric_limits<float>::infinity();
+using test::kInfinity;
+using test::kNan;
 
 /// `image` as the only role of a capture.
 Capture capture_of(const std::string& role, Image image) {
@@ -106,7 +107,7 @@ TEST(ContactSheet, MarksAPixelOnlyWhereItIsFaulty) {
 
 TEST(ContactSheet, ShowsOneFaultyPixelOfALargeImage) {
     for (const auto& [fault, value] :
-         {std::pair{PixelFault::nan, kNan}, std::pair{PixelFault::infinite, kInf},
+         {std::pair{PixelFault::nan, kNan}, std::pair{PixelFault::infinite, kInfinity},
           std::pair{PixelFault::negative, -1.0f}}) {
         Image image = filled(4000, 2000, 3, 0.5f);
         image.at(1234, 987, 2) = value;
@@ -151,7 +152,7 @@ TEST(FalseColor, ShowsColorsOfOtherPrimariesInThoseOfTheScreen) {
 
 TEST(FalseColor, RunsFromBrightNearToDarkFarAndMarksNothingHit) {
     Image depth(4, 1, 1);
-    const float metres[] = {1, 10, 100, kInf};
+    const float metres[] = {1, 10, 100, kInfinity};
     std::copy(std::begin(metres), std::end(metres), depth.floats().begin());
     const FalseColor picture("depth", depth, {});
     const auto green = [&](int x) { return picture.color(x, 0)[1]; };
@@ -207,7 +208,7 @@ TEST(FalseColor, ShowsDataWithoutASignFromDarkToBright) {
 TEST(FalseColor, CountsFaultsByTheRolesContract) {
     Image image = filled(3, 1, 1, 0.5f);
     image.at(0, 0, 0) = -1;
-    image.at(1, 0, 0) = kInf;
+    image.at(1, 0, 0) = kInfinity;
     image.at(2, 0, 0) = kNan;
     const auto counts = [&](const std::string& role) {
         const FalseColor picture(role, image, {});

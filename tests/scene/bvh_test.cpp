@@ -12,7 +12,7 @@
 namespace aftershade::scene {
 namespace {
 
-struct Ray {
+struct TestRay {
     glm::dvec3 origin;
     glm::dvec3 direction;
 };
@@ -25,7 +25,7 @@ Bounds bounds_of(const Triangle& triangle) {
     return bounds;
 }
 
-bool hits(const Ray& ray, const Bounds& box) {
+bool hits(const TestRay& ray, const Bounds& box) {
     double enter = 0;
     double leave = 1e300;
     for (int axis = 0; axis < 3; ++axis) {
@@ -43,7 +43,7 @@ bool hits(const Ray& ray, const Bounds& box) {
 }
 
 /// Moeller and Trumbore 1997.
-bool hits(const Ray& ray, const Triangle& triangle) {
+bool hits(const TestRay& ray, const Triangle& triangle) {
     const glm::dvec3 edge_1 = triangle[1] - triangle[0];
     const glm::dvec3 edge_2 = triangle[2] - triangle[0];
     const glm::dvec3 p = glm::cross(ray.direction, edge_2);
@@ -57,7 +57,7 @@ bool hits(const Ray& ray, const Triangle& triangle) {
 }
 
 /// The traversal that mesh.h describes. Counts its steps, so that a loop of skips fails instead of hanging.
-std::set<std::uint32_t> found_by_tree(const Ray& ray, const Bvh& bvh,
+std::set<std::uint32_t> found_by_tree(const TestRay& ray, const Bvh& bvh,
                                       const std::vector<Triangle>& triangles) {
     std::set<std::uint32_t> found;
     std::size_t steps = 0;
@@ -154,7 +154,7 @@ TEST(Bvh, FindsEveryTriangleThatBruteForceFinds) {
             const glm::dvec3 origin = soup.point(8);
             const Triangle& aim = triangles[std::size_t(i % count)];
             const glm::dvec3 target = (aim[0] + aim[1] + aim[2]) / 3.0 + soup.point(0.5);
-            Ray ray{origin, glm::normalize(target - origin)};
+            TestRay ray{origin, glm::normalize(target - origin)};
             if (i % 10 == 0) ray = {target + glm::dvec3(0, 9, 0), {0, -1, 0}};
             std::set<std::uint32_t> expected;
             for (std::uint32_t t = 0; t < triangles.size(); ++t)
@@ -177,7 +177,7 @@ TEST(Bvh, FindsTrianglesWhoseBoxesHaveNoThickness) {
     const Bvh bvh = build_bvh(boxes_of(triangles), 2);
     std::size_t total = 0;
     for (int i = 0; i < 300; ++i) {
-        const Ray ray{{soup.number(-5, 6), soup.number(-5, 6), 9}, {0, 0, -1}};
+        const TestRay ray{{soup.number(-5, 6), soup.number(-5, 6), 9}, {0, 0, -1}};
         std::set<std::uint32_t> expected;
         for (std::uint32_t t = 0; t < triangles.size(); ++t)
             if (hits(ray, triangles[t])) expected.insert(t);

@@ -70,7 +70,7 @@ TEST(Job, EndsBetweenFramesWithWholeFiles) {
     Diagnostics diagnostics;
     const auto sequence = open_sequence((folder / "capture").string(), diagnostics);
     ASSERT_TRUE(sequence);
-    // The document tells of what there is.
+    // The document names what the folder holds.
     EXPECT_EQ(sequence->frames, (std::vector<int>{1, 2}));
     for (const auto& entry : std::filesystem::directory_iterator(folder / "capture"))
         EXPECT_FALSE(entry.path().filename().string().starts_with('.')) << entry.path();
