@@ -1,4 +1,4 @@
-// What `inspect` tells of a capture, as text for people and as JSON.
+// What `inspect` shows of a capture, as text for people and as JSON.
 #pragma once
 
 #include <filesystem>

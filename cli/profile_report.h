@@ -1,4 +1,4 @@
-// What `describe` tells of a scattering profile.
+// What `describe` shows of a scattering profile.
 #pragma once
 
 #include <optional>

@@ -31,7 +31,7 @@ struct CaptureHeader {
     std::string profile_reason;       ///< why: "chosen by name", "attribute BlenderMultiChannel"
     std::string view;                 ///< of a multi-view file
     std::string layer;                ///< that the roles are taken from; "" where the file has none
-    std::vector<std::string> layers;  ///< that there are to choose from, by the profile
+    std::vector<std::string> layers;  ///< to choose from, by the profile
     std::vector<std::string> notes;   ///< on what was chosen for the user, in whole sentences
     Window data_window;               ///< colour's: the working grid
     Window display_window;

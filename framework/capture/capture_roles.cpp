@@ -218,7 +218,7 @@ void CaptureReader::require_names(const OpenFrame& open, const Image& ids,
     const std::vector<std::string> declared = declared_cryptomattes(cryptomatte_file(open));
     std::string remedy = "render a Cryptomatte of objects, or name the object by its number";
     if (!declared.empty()) {
-        instead += "; its header tells of " + list_of_names(declared, "and") +
+        instead += "; its header declares " + list_of_names(declared, "and") +
                    ", whose channels are not in the file";
         remedy =
             "write multilayer EXR, or name the file with the Cryptomatte as \"files\": "

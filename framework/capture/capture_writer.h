@@ -25,7 +25,7 @@ struct CaptureWriteOptions {
 std::vector<std::string> write_capture(const std::filesystem::path& path, const Capture& capture,
                                        const Profile& profile, const CaptureWriteOptions& options);
 
-/// What capture.json tells of a sequence. Its camera and lights overrule those of the frames' headers, so
+/// What capture.json says of a sequence. Its camera and lights overrule those of the frames' headers, so
 /// they hold what is the same in all of them.
 struct CaptureDocument {
     std::string frames = "gbuffer_####.exr";

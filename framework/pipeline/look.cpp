@@ -154,7 +154,7 @@ private:
         step.preset_place = reader.place("preset");
         step.folder = scope.folder;
         step.effect = reader.text("effect");
-        // Also one that is told to be no name: two steps are not of one name because of it.
+        // An ill-formed id too: two steps with it do not share a name.
         const Node* name = node.find("name");
         step.name = scope.prefix + (name && name->is_string() ? name->string : step.effect);
         step.enabled = reader.boolean("enabled") && scope.enabled;

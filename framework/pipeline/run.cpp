@@ -37,7 +37,7 @@ void add_times(std::vector<PassStatistics>& passes, const std::vector<graph::Pas
 
 using Written = std::vector<std::filesystem::path>;
 
-/// Waits for the files of the frame before, if there is one, and tells of them.
+/// Waits for the files of the frame before, if there is one, and reports them.
 void finish_write(std::future<Written>& pending, RunReport& report, const RunObserver& observer) {
     if (!pending.valid()) return;
     const auto start = Clock::now();

@@ -31,7 +31,7 @@ private:
     void add_repeated(const Object& object, const grammar::Reader& reader, const std::string& label);
     void read_light(const grammar::Reader& reader);
 
-    /// The index of the name that the key gives, or nullopt and an error that lists those that there are.
+    /// The index of the name that the key gives, or nullopt and an error that lists the known names.
     std::optional<int> find_name(const grammar::Reader& reader, const std::string& key,
                                  const std::string& what, const std::map<std::string, int>& names);
 
