@@ -146,7 +146,7 @@ TEST(ScatteringProfileDocument, OfADipoleOrAnArtistSaysWhatIsWrong) {
         profile_faults(
             R"({"type": "artist", "falloff": 2, "strength": [0, 1, 1], "width_mm": "3 mm", "width": 1})"),
         (Lines{"doc.json:1:31: error: p.falloff: 2 is above the maximum 1",
-               "doc.json:1:46: error: p.strength: 0 is below the minimum 0.001",
+               "doc.json:1:47: error: p.strength: 0 is below the minimum 0.001",
                "doc.json:1:69: error: 'width_mm' must be a number, not a string",
                "doc.json:1:77: error: p has no key 'width'; did you mean 'width_mm'?"}));
 }
