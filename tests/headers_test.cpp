@@ -87,8 +87,8 @@ TEST(Headers, IncludeTheStandardHeadersOfWhatTheyUse) {
                     return header.included.contains(one);
                 };
                 EXPECT_TRUE(std::ranges::any_of(use.headers, is_included))
-                    << fs::relative(entry.path(), kSourceRoot).string() << " uses " << name.str() << " without <"
-                    << *use.headers.begin() << ">";
+                    << fs::relative(entry.path(), kSourceRoot).string() << " uses " << name.str()
+                    << " without <" << *use.headers.begin() << ">";
             }
         }
 }

@@ -20,11 +20,6 @@
 
 namespace aftershade::test {
 
-/// One effect, with these members of "params".
-inline std::string look_of(const std::string& effect, const std::string& params = "") {
-    return R"({"aftershade": 1, "steps": [{"effect": ")" + effect + R"(", "params": {)" + params + "}}]}";
-}
-
 /// One frame of a shipped scene, and what its open shutter sees of it.
 struct ShutterScene {
     ShutterScene(const std::string& id, int frame, int width_px, int height_px, int samples = 128)
@@ -119,7 +114,7 @@ struct SuzanneInMotion {
         return {display_psnr_db(truth, picture), display_psnr_db_where(changed, truth, picture)};
     }
     Psnr through(const std::string& effect, const std::string& params = "") const {
-        LookRunner runner(look_of(effect, params), gpu::Backend::osmesa);
+        LookRunner runner(look_of_step(effect, params), gpu::Backend::osmesa);
         FrameInputs frame;
         frame.capture = &capture;
         frame.previous = &before;

@@ -16,7 +16,7 @@ namespace {
 constexpr double kExposure = 0.5;  // frames, of the default shutter_angle
 
 Image blur(const Capture& capture, const std::string& params = "") {
-    LookRunner runner(look_of("motion_blur", params), gpu::Backend::osmesa);
+    LookRunner runner(look_of_step("motion_blur", params), gpu::Backend::osmesa);
     return runner.color(capture);
 }
 
@@ -228,7 +228,7 @@ TEST(MotionBlur, ShowsWhatNeighboursShowOfTheUncovered) {
     frame.previous = &before;
     frame.next = &after;
     const auto error = [&](const char* background) {
-        LookRunner runner(look_of("motion_blur", fmt::format(R"("background": "{}")", background)),
+        LookRunner runner(look_of_step("motion_blur", fmt::format(R"("background": "{}")", background)),
                           gpu::Backend::osmesa);
         const Image blurred = runner.run(frame).images.at("color");
         // The box's left edge moves from 84 to 100 while the shutter is open, its right one from 108 to 124.
@@ -293,7 +293,7 @@ TEST(MotionBlur, AtTheEdgesOfThePictureStaysInIt) {
 
 TEST(MotionBlur, IsTheSameOnTheOtherSoftwareBackend) {
     const Capture capture = pillar_before_moving_stripes(17);
-    LookRunner other(look_of("motion_blur"), gpu::Backend::egl_software);
+    LookRunner other(look_of_step("motion_blur", ""), gpu::Backend::egl_software);
     EXPECT_EQ(largest_difference(blur(capture), other.color(capture)), 0);
 }
 

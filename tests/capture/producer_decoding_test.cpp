@@ -14,7 +14,7 @@ namespace aftershade::test {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-const Window kGrid{0, 0, 1919, 1079};
+const Window kFullHd{0, 0, 1919, 1079};
 
 const Profile& profile(const std::string& id) {
     static const std::vector<Profile> profiles = [] {
@@ -29,7 +29,7 @@ const Profile& profile(const std::string& id) {
 DecodeContext context() {
     DecodeContext result;
     result.file = "test";
-    result.grid = result.display = kGrid;
+    result.grid = result.display = kFullHd;
     return result;
 }
 

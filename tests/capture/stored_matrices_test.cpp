@@ -17,7 +17,7 @@
 namespace aftershade::test {
 namespace {
 
-constexpr int kWidth = 64, kHeight = 36;
+constexpr int kWidth_px = 64, kHeight_px = 36;
 
 /// How a producer stores its matrices.
 struct Convention {
@@ -68,10 +68,10 @@ std::map<std::string, ExrValue> attributes_of(const Camera& camera, const Conven
 /// The header that a file of these attributes has when it is read back.
 ExrPart part_with(const std::map<std::string, ExrValue>& attributes) {
     const TemporaryFolder folder;
-    const Image image(kWidth, kHeight, 1);
+    const Image image(kWidth_px, kHeight_px, 1);
     const std::vector<ExrOutputChannel> channels = {{"R", PixelType::half, &image, 0}};
     ExrWriteOptions options;
-    options.data_window = options.display_window = {0, 0, kWidth - 1, kHeight - 1};
+    options.data_window = options.display_window = {0, 0, kWidth_px - 1, kHeight_px - 1};
     options.attributes = attributes;
     write_exr(folder / "a.exr", channels, options);
     return ExrFile(folder / "a.exr").parts()[0];
@@ -88,8 +88,8 @@ void expect_matches(const StoredMatrices& matrices, const CameraPose& pose) {
     ASSERT_TRUE(matrices.camera_from_world && matrices.ndc_from_world) << matrices.fault;
     for (const double depth_m : {0.5, 3.0, 80.0})
         for (const glm::dvec2 pixel : {glm::dvec2(3, 2), glm::dvec2(40, 30), glm::dvec2(63, 8)}) {
-            const glm::dvec4 world = pose.world_at(pixel, depth_m, kWidth, kHeight);
-            const glm::dvec2 found = pixel_of(*matrices.ndc_from_world, world, kWidth, kHeight);
+            const glm::dvec4 world = pose.world_at(pixel, depth_m, kWidth_px, kHeight_px);
+            const glm::dvec2 found = pixel_of(*matrices.ndc_from_world, world, kWidth_px, kHeight_px);
             EXPECT_NEAR(found.x, pixel.x, 1e-3);
             EXPECT_NEAR(found.y, pixel.y, 1e-3);
             EXPECT_NEAR((glm_matrix(*matrices.camera_from_world) * world).z, -depth_m, 1e-4 * depth_m + 1e-5);
@@ -99,7 +99,7 @@ void expect_matches(const StoredMatrices& matrices, const CameraPose& pose) {
 TEST(StoredMatrices, OfEveryConventionShowPointsWhereTheCameraSawThem) {
     const CameraPose pose = turned_pose();
     Camera camera;
-    set_pose(camera, pose, kWidth, kHeight);
+    set_pose(camera, pose, kWidth_px, kHeight_px);
     for (const Convention& convention : conventions()) {
         SCOPED_TRACE(convention.name);
         const StoredMatrices matrices = read_matrices(part_with(attributes_of(camera, convention)), {});
@@ -114,7 +114,7 @@ TEST(StoredMatrices, OfACameraAtTheOriginAreReadToo) {
     CameraPose pose = turned_pose();
     pose.position_m = {0, 0, 0};
     Camera camera;
-    set_pose(camera, pose, kWidth, kHeight);
+    set_pose(camera, pose, kWidth_px, kHeight_px);
     for (const Convention& convention : conventions()) {
         SCOPED_TRACE(convention.name);
         expect_matches(read_matrices(part_with(attributes_of(camera, convention)), {}), pose);
@@ -124,13 +124,13 @@ TEST(StoredMatrices, OfACameraAtTheOriginAreReadToo) {
 TEST(StoredMatrices, AreWrittenByOpenExrsDefinition) {
     const CameraPose pose = turned_pose();
     Camera camera;
-    set_pose(camera, pose, kWidth, kHeight);
+    set_pose(camera, pose, kWidth_px, kHeight_px);
     std::map<std::string, ExrValue> attributes;
     add_matrices(camera, attributes);
     // ImfStandardAttributes.h: a point times worldToCamera has +z ahead; times worldToNDC it is (0, 0) at the
     // upper left and (1, 1) at the lower right corner of the display window.
     const glm::dvec2 pixel(16, 27);
-    const glm::dvec4 point = pose.world_at(pixel, 5, kWidth, kHeight);
+    const glm::dvec4 point = pose.world_at(pixel, 5, kWidth_px, kHeight_px);
     const auto times = [&](const char* name) {
         const auto& m = std::get<std::vector<float>>(attributes.at(name));
         glm::dvec4 result(0.0);
@@ -141,15 +141,15 @@ TEST(StoredMatrices, AreWrittenByOpenExrsDefinition) {
     };
     EXPECT_NEAR(times("worldToCamera").z, 5, 1e-4);
     const glm::dvec4 ndc = times("worldToNDC");
-    EXPECT_NEAR(ndc.x / ndc.w, pixel.x / kWidth, 1e-5);
-    EXPECT_NEAR(ndc.y / ndc.w, pixel.y / kHeight, 1e-5);
+    EXPECT_NEAR(ndc.x / ndc.w, pixel.x / kWidth_px, 1e-5);
+    EXPECT_NEAR(ndc.y / ndc.w, pixel.y / kHeight_px, 1e-5);
     expect_matches(read_matrices(part_with(attributes), {}), pose);
 }
 
 TEST(StoredMatrices, ThatEqualEachOtherGiveTheProjectionOfTheLens) {
     const CameraPose pose = turned_pose();
     Camera camera;
-    set_pose(camera, pose, kWidth, kHeight);
+    set_pose(camera, pose, kWidth_px, kHeight_px);
     auto attributes = attributes_of(camera, {"Karma", true});
     attributes["worldToNDC"] = attributes["worldToCamera"];
     const ExrPart part = part_with(attributes);
@@ -168,7 +168,7 @@ TEST(StoredMatrices, ThatEqualEachOtherGiveTheProjectionOfTheLens) {
 TEST(StoredMatrices, ThatFitNothingAreRefusedWithTheReason) {
     const CameraPose pose = turned_pose();
     Camera camera;
-    set_pose(camera, pose, kWidth, kHeight);
+    set_pose(camera, pose, kWidth_px, kHeight_px);
     const auto fault_of = [&](const std::string& name, auto change) {
         auto attributes = attributes_of(camera, {"OpenEXR", true, true, true});
         change(std::get<std::vector<float>>(attributes.at(name)));

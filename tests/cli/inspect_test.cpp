@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-const std::string kSuzanne = AFTERSHADE_SOURCE_DIR "/scenes/suzanne/capture.json";
+const std::string kSuzanneCapture = AFTERSHADE_SOURCE_DIR "/scenes/suzanne/capture.json";
 
 std::set<std::string> keys_of(const Json& object) {
     std::set<std::string> keys;
@@ -64,7 +64,7 @@ protected:
 };
 
 TEST_F(Inspect, TellsTheSuzanneCaptureAsJson) {
-    const Json document = json({kSuzanne});
+    const Json document = json({kSuzanneCapture});
     EXPECT_EQ(keys_of(document),
               (std::set<std::string>{"file", "parts", "profile", "layer", "layers", "notes", "roles",
                                      "depth_kind", "missing", "camera", "lights", "cryptomattes"}));
@@ -93,7 +93,7 @@ TEST_F(Inspect, TellsTheSuzanneCaptureAsJson) {
 }
 
 TEST_F(Inspect, TellsAPersonTheSame) {
-    const CommandResult result = inspect({kSuzanne, "--frames", "4"});
+    const CommandResult result = inspect({kSuzanneCapture, "--frames", "4"});
     for (const char* words :
          {"scenes/suzanne/gbuffer_0004.exr\n", "part 0: scanlineimage, zip\n",
           "data window     (0, 0)-(479, 269), 480 x 270 px\n", "ViewLayer.IndexOB.X   float  1 x 1 ",
@@ -159,8 +159,8 @@ TEST_F(Inspect, RefusesWrongWords) {
         return inspect(std::move(arguments), ExitCode::usage).err;
     };
     EXPECT_NE(told({"a.exr", "--profile", "blendr"}).find("did you mean 'blender'?"), std::string::npos);
-    EXPECT_NE(told({kSuzanne, "--frames", "9"}).find("the capture has no frame 9"), std::string::npos);
-    EXPECT_NE(told({kSuzanne, "--frames", "3-4"}).find("inspect looks at one"), std::string::npos);
+    EXPECT_NE(told({kSuzanneCapture, "--frames", "9"}).find("the capture has no frame 9"), std::string::npos);
+    EXPECT_NE(told({kSuzanneCapture, "--frames", "3-4"}).find("inspect looks at one"), std::string::npos);
     EXPECT_NE(told({"a.exr", "--contact-sheet", "a.exr"}).find("a contact sheet is a .png file"),
               std::string::npos);
 }
@@ -179,7 +179,7 @@ TEST_F(Inspect, FailsWhereALayerAViewOrARoleThatWasAskedForIsNotThere) {
         EXPECT_NE(result.err.find("f.exr: " + std::string(told)), std::string::npos) << result.err;
         EXPECT_NE(result.out.find("diffuse.R"), std::string::npos) << "the channels are listed all the same";
     }
-    EXPECT_EQ(json({kSuzanne, "--layer", "Nowhere"}, ExitCode::usage)["profile"]["id"], nullptr);
+    EXPECT_EQ(json({kSuzanneCapture, "--layer", "Nowhere"}, ExitCode::usage)["profile"]["id"], nullptr);
 }
 
 TEST_F(Inspect, PutsEveryRoleOnAContactSheet) {

@@ -84,14 +84,14 @@ std::vector<ParamType> types() {
     return all;
 }
 
-ParamSpec spec_of(const std::string& declaration) {
+ParamSpec spec_with_ratio(const std::string& declaration) {
     return test::spec_of(declaration, "p", types());
 }
 
 const std::string kRatio = R"({"type": "ratio", "terms": 2, "default": "16:9", "doc": "."})";
 
 TEST(ParamType, OfATableEntryReadsAndWritesItsValues) {
-    const ParamSpec spec = spec_of(kRatio);
+    const ParamSpec spec = spec_with_ratio(kRatio);
     EXPECT_EQ(param_type_name(spec.type), "ratio");
     EXPECT_EQ(spec.default_value, ParamValue(16.0 / 9));
     const ParamValue value = value_of(spec, "\"5:2\"");
@@ -105,7 +105,7 @@ TEST(ParamType, OfATableEntryReadsAndWritesItsValues) {
 }
 
 TEST(ParamType, OfATableEntryMayBeAColumn) {
-    const ParamSpec spec = spec_of(
+    const ParamSpec spec = spec_with_ratio(
         R"({"type": "table", "columns": {"shape": {"type": "ratio", "terms": 2, "default": "4:1", "doc": "."}},
             "doc": "."})");
     const ParamValue value = value_of(spec, R"({"rows": [{"object": 3, "shape": "3:2"}]})");
@@ -169,13 +169,14 @@ TEST(ParamType, OfABlockGivesNumbersAndTakesThemBack) {
 
 TEST(ParamType, OfANumberIsSweptOverItsLimits) {
     const ParamSpec spec =
-        spec_of(R"({"type": "vec2", "default": [0, 0], "min": -1, "max": 2.5, "doc": "."})");
+        spec_with_ratio(R"({"type": "vec2", "default": [0, 0], "min": -1, "max": 2.5, "doc": "."})");
     const auto values = sweep_values(spec);
     ASSERT_EQ(values.size(), 2u);
     EXPECT_EQ(values[0].how, "at its min, [-1, -1]");
     EXPECT_EQ(values[1].value, (ParamValue(std::vector<double>{2.5, 2.5})));
     EXPECT_TRUE(
-        sweep_values(spec_of(R"({"type": "curve", "default": [[0, 1]], "min": 0, "doc": "."})")).empty());
+        sweep_values(spec_with_ratio(R"({"type": "curve", "default": [[0, 1]], "min": 0, "doc": "."})"))
+            .empty());
 }
 
 }  // namespace

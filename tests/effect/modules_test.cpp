@@ -15,7 +15,7 @@ using test::demo_manifest;
 using test::EffectFolder;
 using test::Lines;
 
-constexpr const char* kHead = "#version 450 core\n#include <pass>\n";
+constexpr const char* kShaderHead = "#version 450 core\n#include <pass>\n";
 
 /// The sections of a module.json, one a line in this order.
 enum Part { kModuleHead = 1, kModuleParams, kModuleTextures, kModuleBuffers, kModulePasses, kModuleMore };
@@ -45,7 +45,7 @@ class Modules : public testing::Test {
 protected:
     Modules() {
         write_module("tone", tone_module());
-        write("tone/tone.frag", std::string(kHead) +
+        write("tone/tone.frag", std::string(kShaderHead) +
                                     "#include \"key.glsl\"\nvoid main() {\n    sums[0];\n"
                                     "    out_tone = keyed(texelFetch(color, ivec2(0), 0).r);\n}\n");
         write("tone/key.glsl", "float keyed(float tone) { return tone * param.key; }\n");
@@ -142,9 +142,9 @@ TEST_F(Modules, AreHeldToWhatTheyDeclare) {
         "tone",
         tone_module({{kModuleParams, R"("params": {"kye": {"type": "float", "default": 1, "doc": "."}})"}}));
     effect_.write("a.frag",
-                  std::string(kHead) + "void main() { color; depth; out_small; param.gain; MODE; }\n");
-    effect_.write("b.frag",
-                  std::string(kHead) + "void main() { color; small; out_color; param.flag; param.taps; }\n");
+                  std::string(kShaderHead) + "void main() { color; depth; out_small; param.gain; MODE; }\n");
+    effect_.write("b.frag", std::string(kShaderHead) +
+                                "void main() { color; small; out_color; param.flag; param.taps; }\n");
     const EffectManifest manifest = sound();
     Diagnostics diagnostics;
     check_declared_used(manifest, glsl_.path(), diagnostics);

@@ -9,7 +9,7 @@ namespace {
 namespace fs = std::filesystem;
 using test::Lines;
 
-const fs::path kSource = AFTERSHADE_SOURCE_DIR;
+const fs::path kSourceFolder = AFTERSHADE_SOURCE_DIR;
 
 void write_effect(const fs::path& folder, const std::string& id, const std::string& summary) {
     fs::create_directories(folder / id);
@@ -22,7 +22,7 @@ void write_effect(const fs::path& folder, const std::string& id, const std::stri
 }
 
 TEST(ShippedEffects, HaveNoFaults) {
-    EffectRegistry effects({kSource / "effects"});
+    EffectRegistry effects({kSourceFolder / "effects"});
     EXPECT_GE(effects.ids().size(), 2U);
     for (const std::string& id : effects.ids()) {
         Diagnostics diagnostics;
@@ -34,7 +34,7 @@ TEST(ShippedEffects, HaveNoFaults) {
         for (const ParamSpec& spec : manifest->params) defaults.set(spec.name, spec.default_value);
         for (const PassSpec& pass : manifest->passes)
             if (pass.kind != PassKind::clear)
-                assemble_shader({manifest, &pass, defaults, {}, kSource / "glsl"}, diagnostics);
+                assemble_shader({manifest, &pass, defaults, {}, kSourceFolder / "glsl"}, diagnostics);
         EXPECT_EQ(test::lines_of(diagnostics), Lines{}) << id;
     }
 }
@@ -92,7 +92,7 @@ TEST(Registry, ReadsOnlyTheManifestsThatAreAskedFor) {
 }
 
 TEST(Registry, KnowsNoOtherEffects) {
-    EffectRegistry effects({kSource / "effects"});
+    EffectRegistry effects({kSourceFolder / "effects"});
     Diagnostics diagnostics;
     EXPECT_EQ(effects.find("no_such_effect", diagnostics), nullptr);
     EXPECT_FALSE(diagnostics.has_errors());

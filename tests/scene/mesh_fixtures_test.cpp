@@ -9,7 +9,7 @@ namespace {
 
 using namespace test;
 
-const std::filesystem::path kRoot = AFTERSHADE_SOURCE_DIR;
+const std::filesystem::path kSourceRoot = AFTERSHADE_SOURCE_DIR;
 
 struct Fixture {
     const char* name;
@@ -23,7 +23,7 @@ const Fixture kFixtures[] = {{"head.glb", 3936, {2.0, 1.440, 1.207}}, {"bat.glb"
 TEST(MeshFixtures, AreAsTheirReadmeSaysAndSmall) {
     for (const Fixture& fixture : kFixtures) {
         SCOPED_TRACE(fixture.name);
-        const auto path = kRoot / "scenes/meshes" / fixture.name;
+        const auto path = kSourceRoot / "scenes/meshes" / fixture.name;
         EXPECT_LT(std::filesystem::file_size(path), 100'000u);
         const Mesh mesh = read_gltf(path);
         EXPECT_EQ(mesh.triangles.size(), fixture.triangles);
@@ -35,7 +35,7 @@ TEST(MeshFixtures, AreAsTheirReadmeSaysAndSmall) {
 TEST(MeshFixtures, HaveUnitNormalsOnTheSideFromWhichTheirTrianglesAreCounterClockwise) {
     for (const Fixture& fixture : kFixtures) {
         SCOPED_TRACE(fixture.name);
-        const Mesh mesh = read_gltf(kRoot / "scenes/meshes" / fixture.name);
+        const Mesh mesh = read_gltf(kSourceRoot / "scenes/meshes" / fixture.name);
         for (const Vertex& vertex : mesh.vertices) EXPECT_NEAR(glm::length(vertex.normal), 1, 1e-12);
         for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
             glm::dvec3 normal(0);
@@ -47,14 +47,14 @@ TEST(MeshFixtures, HaveUnitNormalsOnTheSideFromWhichTheirTrianglesAreCounterCloc
 
 TEST(MeshFixtures, HaveTextureCoordinatesInsideTheSquare) {
     for (const Fixture& fixture : kFixtures)
-        for (const Vertex& vertex : read_gltf(kRoot / "scenes/meshes" / fixture.name).vertices) {
+        for (const Vertex& vertex : read_gltf(kSourceRoot / "scenes/meshes" / fixture.name).vertices) {
             EXPECT_GE(glm::min(vertex.uv.x, vertex.uv.y), 0) << fixture.name;
             EXPECT_LE(glm::max(vertex.uv.x, vertex.uv.y), 1) << fixture.name;
         }
 }
 
 TEST(MeshFixtures, TheBatIsClosed) {
-    const Mesh mesh = read_gltf(kRoot / "scenes/meshes/bat.glb");
+    const Mesh mesh = read_gltf(kSourceRoot / "scenes/meshes/bat.glb");
     // The volume that the triangles enclose does not depend on the point that it is measured from.
     const auto volume = [&](const glm::dvec3& from) {
         double sum = 0;

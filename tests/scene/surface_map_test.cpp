@@ -9,8 +9,6 @@
 namespace aftershade::scene {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 double fract(double x) {
     return x - std::floor(x);
 }
@@ -30,7 +28,7 @@ glm::dvec2 box_uv(const glm::dvec3& p, const glm::dvec3& n, const glm::dvec3& h)
 
 glm::dvec2 cylinder_uv(const glm::dvec3& p, const glm::dvec3& n, const glm::dvec3& h) {
     if (std::abs(n.y) < 0.5)
-        return {fract(std::atan2(p.z, p.x) / (2 * kPi)), (2.0 / 3) * (0.5 - p.y / (2 * h.y))};
+        return {fract(std::atan2(p.z, p.x) / (2 * std::numbers::pi)), (2.0 / 3) * (0.5 - p.y / (2 * h.y))};
     if (n.y > 0) return {(0.5 + p.x / (2 * h.x)) / 2, (2 + 0.5 + p.z / (2 * h.x)) / 3};
     return {(1 + 0.5 + p.x / (2 * h.x)) / 2, (2 + 0.5 - p.z / (2 * h.x)) / 3};
 }
@@ -42,8 +40,8 @@ glm::dvec2 uv_of(const Shape& shape, const glm::dvec3& p, const glm::dvec3& n) {
         case ShapeKind::plane: return {0.5 + p.x / (2 * h.x), 0.5 - p.y / (2 * h.y)};
         case ShapeKind::disk: return {0.5 + p.x / (2 * h.x), 0.5 - p.y / (2 * h.x)};
         case ShapeKind::sphere:
-            return {fract(std::atan2(p.z, p.x) / (2 * kPi)),
-                    std::acos(glm::clamp(p.y / h.x, -1.0, 1.0)) / kPi};
+            return {fract(std::atan2(p.z, p.x) / (2 * std::numbers::pi)),
+                    std::acos(glm::clamp(p.y / h.x, -1.0, 1.0)) / std::numbers::pi};
         case ShapeKind::box: return box_uv(p, n, h);
         case ShapeKind::cylinder: return cylinder_uv(p, n, h);
         default: return {-1, -1};
@@ -114,10 +112,10 @@ std::vector<ShapeCase> shape_cases() {
         return std::abs(p.y - n.y * kHalf.y) + std::max(radius - kHalf.x, 0.0);
     };
     return {{"plane", {ShapeKind::plane, kHalf}, 1, off_z},
-            {"disk", {ShapeKind::disk, kHalf}, kPi / 4, off_z},
+            {"disk", {ShapeKind::disk, kHalf}, std::numbers::pi / 4, off_z},
             {"sphere", {ShapeKind::sphere, kHalf}, 1, off_sphere},
             {"box", {ShapeKind::box, kHalf}, 1, off_box},
-            {"cylinder", {ShapeKind::cylinder, kHalf}, 2.0 / 3 + kPi / 4 / 3, off_cylinder}};
+            {"cylinder", {ShapeKind::cylinder, kHalf}, 2.0 / 3 + std::numbers::pi / 4 / 3, off_cylinder}};
 }
 
 TEST(SurfaceMap, TheTableLeadsFromEachPointBackToItsTexelsCentre) {
@@ -204,11 +202,11 @@ TEST(SurfaceMap, AMeshsPositionAndNormalAreInterpolatedBetweenItsCorners) {
     const std::vector<Wave> waves = {{0.1, {1, 0.5}, 0.4}};
     const Mesh coarse = make_height_field({2, 2}, waves, 64);
     // f'' h^2 / 8 along the diagonal of a square of 1/32 m, where the phase turns by 1.5 cycles a metre.
-    const double sagitta_m = 1.01 * 0.1 * std::pow(2 * kPi * 1.5 / 32, 2) / 8;
+    const double sagitta_m = 1.01 * 0.1 * std::pow(2 * std::numbers::pi * 1.5 / 32, 2) / 8;
     for_covered(make_surface_map(kMeshShape, &coarse, 50), [&](const Texel& texel) {
-        const double phase = 2 * kPi * (texel.position.x + 0.5 * texel.position.y) + 0.4;
+        const double phase = 2 * std::numbers::pi * (texel.position.x + 0.5 * texel.position.y) + 0.4;
         EXPECT_NEAR(texel.position.z, 0.1 * std::cos(phase), sagitta_m);
-        const double slope = -0.1 * 2 * kPi * std::sin(phase);
+        const double slope = -0.1 * 2 * std::numbers::pi * std::sin(phase);
         EXPECT_LT(glm::length(texel.normal - glm::normalize(glm::dvec3(-slope, -0.5 * slope, 1))), 0.01);
     });
 }

@@ -54,8 +54,9 @@ TEST_P(LensTruth, ShowsThePolygonOfTheApertureInTheSizeOfThePinholeModel) {
     const double diameter_mm = aperture_mm * 100 / 4000 * std::abs(lens.depth_m - 4) / lens.depth_m;
     const double radius_px = diameter_mm / 2 * kSide_px / 36;
     const double turned_deg = lens.rotation_deg + (lens.depth_m < 4 ? 180 : 0);
-    const Image expected = test::coverage(test::regular_polygon(lens.blades, radius_px, turned_deg), kSide_px,
-                                          kSide_px, kMiddle, kMiddle);
+    const Image expected =
+        aftershade::test::coverage(aftershade::test::regular_polygon(lens.blades, radius_px, turned_deg),
+                                   kSide_px, kSide_px, kMiddle, kMiddle);
     // The light of the whole picture over the polygon's area; and its second moment, that of a regular
     // polygon, R^2 (2 + cos(2 pi / n)) / 6, and that of the disk, r^2 / 2, together.
     double energy = 0, moment = 0;
@@ -67,7 +68,7 @@ TEST_P(LensTruth, ShowsThePolygonOfTheApertureInTheSizeOfThePinholeModel) {
     const double angle_rad = 2 * std::numbers::pi / lens.blades;
     const double plateau = energy / (lens.blades / 2.0 * std::sin(angle_rad) * radius_px * radius_px);
     const double measured_px = std::sqrt(6 * (moment / energy - 2.5 * 2.5 / 2) / (2 + std::cos(angle_rad)));
-    const double iou = test::shape_iou(picture, plateau, expected);
+    const double iou = aftershade::test::shape_iou(picture, plateau, expected);
     EXPECT_GE(iou, 0.97);
     EXPECT_NEAR(2 * measured_px, 2 * radius_px, 0.5);
     RecordProperty("iou", fmt::format("{:.4f}", iou));
@@ -145,7 +146,8 @@ TEST(Truth, OfThePixelsAreaIsItsCoverage) {
     settings.kinds.antialias = true;
     settings.samples = 2048;
     const double circumradius_px = 3.50626 / std::sqrt(2) * 12.1;
-    const Image expected = test::coverage(test::regular_polygon(4, circumradius_px, 12), 121, 121, 60, 60);
+    const Image expected = aftershade::test::coverage(
+        aftershade::test::regular_polygon(4, circumradius_px, 12), 121, 121, 60, 60);
     for (const TruthMethod method : {TruthMethod::accumulation, TruthMethod::interleaved}) {
         settings.method = method;
         const Image truth = SceneRenderer(scene, 121, 121, 2).render_truth(1, settings);
