@@ -152,6 +152,10 @@ WorkerResult run_worker(const WorkerCommand& command, const WorkerListener& list
     LineReader out(std::move(spawned.out), listener.on_stdout);
     LineReader error(std::move(spawned.error), listener.on_stderr);
     LineReader status(std::move(spawned.status), [&](std::string_view line) {
+        if (const auto event = parse_event(line)) {
+            if (listener.on_frame) listener.on_frame(*event);
+            return;
+        }
         const auto parsed = parse_status(line);
         if (!parsed) return;
         result.status = *parsed;

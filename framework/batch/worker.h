@@ -37,6 +37,7 @@ struct WorkerListener {
     std::function<void(std::string_view line)> on_stdout;
     std::function<void(std::string_view line)> on_stderr;
     std::function<void(const WorkStatus& status)> on_status;
+    std::function<void(const FrameEvent& event)> on_frame;
 };
 
 enum class WorkerEnd {
@@ -69,5 +70,7 @@ std::string describe(const WorkerResult& result);
 
 /// A line of the status pipe; nullopt for anything that StatusWriter does not write.
 std::optional<WorkStatus> parse_status(std::string_view line);
+/// Likewise of a frame's end.
+std::optional<FrameEvent> parse_event(std::string_view line);
 
 }  // namespace aftershade

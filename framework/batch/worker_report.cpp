@@ -53,6 +53,19 @@ std::string describe(const WorkerResult& result) {
     return who;
 }
 
+std::optional<FrameEvent> parse_event(std::string_view line) {
+    const auto json = nlohmann::json::parse(line, nullptr, false);
+    if (!json.is_object() || json.value("event", nlohmann::json()) != "frame") return std::nullopt;
+    const auto frame = json.find("frame"), outcome = json.find("outcome"), seconds = json.find("seconds"),
+               message = json.find("message");
+    if (frame == json.end() || !frame->is_number_integer() || outcome == json.end() ||
+        !outcome->is_string() || seconds == json.end() || !seconds->is_number())
+        return std::nullopt;
+    FrameEvent event{frame->get<int>(), outcome->get<std::string>(), seconds->get<double>(), ""};
+    if (message != json.end() && message->is_string()) event.message = message->get<std::string>();
+    return event;
+}
+
 std::optional<WorkStatus> parse_status(std::string_view line) {
     const auto json = nlohmann::json::parse(line, nullptr, false);
     if (!json.is_object()) return std::nullopt;

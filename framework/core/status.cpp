@@ -16,6 +16,7 @@ namespace {
 
 // Escaping makes a byte six at most ("\u0001"), and PIPE_BUF is 4096 on Linux.
 constexpr std::size_t kMaxField = 220;
+constexpr std::size_t kMaxMessage = 640;
 
 std::string shortened(const std::string& text) {
     return text.size() <= kMaxField ? text : "..." + text.substr(text.size() - kMaxField + 3);
@@ -29,6 +30,13 @@ std::string status_line(const WorkStatus& status) {
     if (!status.plugin.empty()) json["plugin"] = shortened(status.plugin);
     if (!status.phase.empty()) json["phase"] = shortened(status.phase);
     if (status.frame) json["frame"] = *status.frame;
+    return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+std::string event_line(const FrameEvent& event) {
+    nlohmann::ordered_json json = {
+        {"event", "frame"}, {"frame", event.frame}, {"outcome", event.outcome}, {"seconds", event.seconds}};
+    if (!event.message.empty()) json["message"] = event.message.substr(0, kMaxMessage);
     return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
@@ -50,8 +58,16 @@ void StatusWriter::write(const WorkStatus& status) {
     const std::lock_guard lock(mutex_);
     if (status == current_) return;
     current_ = status;
+    send(status_line(status));
+}
+
+void StatusWriter::write(const FrameEvent& event) {
+    const std::lock_guard lock(mutex_);
+    send(event_line(event));
+}
+
+void StatusWriter::send(const std::string& line) {
     if (descriptor_ < 0) return;
-    const std::string line = status_line(status);
     ssize_t written = -1;
     do written = ::write(descriptor_, line.data(), line.size());
     while (written < 0 && errno == EINTR);

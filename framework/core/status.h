@@ -21,6 +21,20 @@ struct WorkStatus {
     bool operator==(const WorkStatus&) const = default;
 };
 
+/// How one frame of a run ended, for the process that started this one.
+struct FrameEvent {
+    int frame = 0;
+    std::string outcome;  ///< "done", "failed", "skipped"
+    double seconds = 0;
+    std::string message;  ///< why it failed; long ones lose their ends
+
+    bool operator==(const FrameEvent&) const = default;
+};
+
+/// One line of JSON with its line end: {"event":"frame","frame":12,"outcome":"done","seconds":0.5}. Never
+/// longer than PIPE_BUF.
+std::string event_line(const FrameEvent& event);
+
 /// One line of JSON with its line end: {"step":"grade","plugin":"/x/libfoo.so","phase":"prepare","frame":12}.
 /// Never longer than PIPE_BUF, so that a write is whole: long names lose their beginnings.
 std::string status_line(const WorkStatus& status);
@@ -35,9 +49,12 @@ public:
 
     bool active() const { return descriptor_ >= 0; }
     void write(const WorkStatus& status);
+    void write(const FrameEvent& event);
     WorkStatus current() const;
 
 private:
+    void send(const std::string& line);
+
     int descriptor_ = -1;
     mutable std::mutex mutex_;
     WorkStatus current_;

@@ -37,15 +37,40 @@ void add_times(std::vector<PassStatistics>& passes, const std::vector<graph::Pas
 
 using Written = std::vector<std::filesystem::path>;
 
+/// Notes how each frame ended.
+class Outcomes {
+public:
+    Outcomes(RunReport& report, const RunObserver& observer) : report_(report), observer_(observer) {}
+
+    void add(int frame, FrameOutcome::Kind kind, const std::string& message = "") {
+        const double seconds = milliseconds_since(last_) / 1000;
+        last_ = Clock::now();
+        report_.outcomes.push_back({frame, kind, message, seconds});
+        if (observer_.frame_finished) observer_.frame_finished(report_.outcomes.back());
+    }
+
+private:
+    RunReport& report_;
+    const RunObserver& observer_;
+    Clock::time_point last_ = Clock::now();
+};
+
+/// The files of a frame, written while the next one is rendered.
+struct PendingWrite {
+    int frame = 0;
+    std::future<Written> files{};
+};
+
 /// Waits for the files of the frame before, if there is one, and reports them.
-void finish_write(std::future<Written>& pending, RunReport& report, const RunObserver& observer) {
-    if (!pending.valid()) return;
+void finish_write(PendingWrite& pending, RunReport& report, Outcomes& outcomes, const RunObserver& observer) {
+    if (!pending.files.valid()) return;
     const auto start = Clock::now();
-    const Written written = pending.get();
+    const Written written = pending.files.get();
     report.write_ms += milliseconds_since(start);
     ++report.frames_done;
     if (observer.file_written)
         for (const auto& path : written) observer.file_written(path);
+    outcomes.add(pending.frame, FrameOutcome::Kind::done);
 }
 
 std::vector<std::string> roles_to_read(const Pipeline& pipeline, const OutputOptions& outputs) {
@@ -179,18 +204,21 @@ RunReport run_frames(const RunSetup& setup, const RunObserver& observer, const s
     if (!run.history_in.empty()) renderer.load_history(run.history_in);
     FrameLoader loader(sequence, reader, pipeline, run, roles_to_read(pipeline, outputs));
     FrameRun frame_run(renderer, loader, sequence, run);
-    std::future<Written> pending_write;
+    Outcomes outcomes(report, observer);
+    PendingWrite pending_write;
     bool any_rendered = false;
     const bool is_native = pipeline.has_native();
     for (std::size_t i = 0; i < run.frames.size(); ++i) {
         report.interrupted = stop;
         if (report.interrupted) break;
+        const bool warms_up = i < std::size_t(run.warmup_frames);
         if (skips(loader, run, i, observer)) {
             ++report.frames_skipped;
+            if (!warms_up) outcomes.add(run.frames[i], FrameOutcome::Kind::skipped);
             continue;
         }
         // A plug-in may end this process: what is done must be on disk before its code runs.
-        if (is_native) finish_write(pending_write, report, observer);
+        if (is_native) finish_write(pending_write, report, outcomes, observer);
         FrameRun::Rendered frame;
         try {
             frame = frame_run.render(i, result_roles, report, observer);
@@ -198,18 +226,21 @@ RunReport run_frames(const RunSetup& setup, const RunObserver& observer, const s
             if (error.exit_code() != ExitCode::capture) throw;
             report.failures.emplace_back(error.what());
             if (observer.frame_failed) observer.frame_failed(error.what());
+            finish_write(pending_write, report, outcomes, observer);
+            if (!warms_up) outcomes.add(run.frames[i], FrameOutcome::Kind::failed, error.what());
             continue;
         }
         tell(frame.capture->header, *frame.result, !any_rendered, run, observer);
         any_rendered = true;
+        if (warms_up) continue;
         add_times(report.passes, frame.result->times);
         if (frame.result->telemetry) report.telemetry.push_back(*frame.result->telemetry);
-        finish_write(pending_write, report, observer);
-        pending_write = std::async(std::launch::async, [frame, &setup] {
-            return write_outputs(setup.outputs, *frame.result, *frame.capture, setup.reader);
-        });
+        finish_write(pending_write, report, outcomes, observer);
+        pending_write = {run.frames[i], std::async(std::launch::async, [frame, &setup] {
+                             return write_outputs(setup.outputs, *frame.result, *frame.capture, setup.reader);
+                         })};
     }
-    finish_write(pending_write, report, observer);
+    finish_write(pending_write, report, outcomes, observer);
     if (!run.history_out.empty() && any_rendered) renderer.save_history(run.history_out);
     report.graph_dot = renderer.graph_dot();
     std::tie(report.bytes, report.bytes_unaliased) = renderer.graph_bytes();

@@ -25,6 +25,15 @@ struct PassStatistics {
     int frames = 0;
 };
 
+/// How one frame of a run ended.
+struct FrameOutcome {
+    enum class Kind { done, failed, skipped };
+    int frame = 0;
+    Kind kind = Kind::done;
+    std::string message;  ///< why it failed
+    double seconds = 0;   ///< from the end of the frame before
+};
+
 struct RunReport {
     int frames_done = 0;
     std::vector<std::string> failures;   ///< one message per frame that could not be read
@@ -34,6 +43,7 @@ struct RunReport {
     double write_ms = 0;                 ///< waiting for files to be written
     double wall_ms = 0;
     bool interrupted = false;
+    std::vector<FrameOutcome> outcomes;     ///< in the order in which frames ended
     std::vector<FrameTelemetry> telemetry;  ///< of every frame, where it was asked for
     std::string graph_dot;                  ///< of the last frame, in Graphviz's language
     std::uint64_t bytes = 0;                ///< of its textures and buffers
@@ -51,6 +61,8 @@ struct RunObserver {
     /// Frames but the first that begin history anew, where some step has history.
     std::function<void(int frame, const std::string& reason)> history_reset;
     std::function<void(int frame, const std::string& line)> native_message;
+    /// After the frame's files are in place; not of frames that only warm history up.
+    std::function<void(const FrameOutcome&)> frame_finished;
 };
 
 /// What a run works with. [refers to what the caller keeps]

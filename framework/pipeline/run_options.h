@@ -19,6 +19,7 @@ enum class MissingFrame {
 
 struct RunOptions {
     std::vector<int> frames;
+    int warmup_frames = 0;  ///< of these, the first ones are rendered for their history and not written
     MissingFrame missing = MissingFrame::error;
     bool audit = false;
     bool telemetry = false;

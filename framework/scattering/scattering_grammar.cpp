@@ -38,8 +38,9 @@ Form length_mm() {
 
 Block burley() {
     return {.name = "burley",
-            .doc = "Normalized diffusion (Christensen and Burley 2015): R(r) = (exp(-r/d) + exp(-r/3d)) / (8 "
-                   "pi d r), of 'd_mm', or of 'albedo' and 'mean_free_path_mm', d = path / s(albedo).",
+            .doc =
+                "Normalized diffusion (Christensen and Burley 2015): R(r) = (exp(-r/d) + exp(-r/3d)) / (8 "
+                "pi d r), of 'd_mm', or of 'albedo' and 'mean_free_path_mm', d = path / s(albedo).",
             .keys = {optional("d_mm", length_mm(), "d in mm."),
                      optional("albedo", rgb(0, 1), "Albedo of the surface."),
                      optional("mean_free_path_mm", length_mm(), "Path in mm, from which 'mapping' makes d."),
@@ -53,21 +54,22 @@ Block burley() {
 }
 
 Block gaussian() {
-    return {
-        .name = "",
-        .keys = {required("variance_mm2",
-                          rgb(kLeastLength_mm * kLeastLength_mm, kMostLength_mm * kMostLength_mm), "In mm^2."),
-                 required("weight", rgb(0, 1), "Share of the light. A channel's weights sum to 1.")},
-        .type = "{ `variance_mm2`, `weight` }"};
+    return {.name = "",
+            .keys = {required("variance_mm2",
+                              rgb(kLeastLength_mm * kLeastLength_mm, kMostLength_mm * kMostLength_mm),
+                              "In mm^2."),
+                     required("weight", rgb(0, 1), "Share of the light. A channel's weights sum to 1.")},
+            .type = "{ `variance_mm2`, `weight` }"};
 }
 
 Block gaussians() {
     constexpr int kMost = int(ScatteringProfile::kMaxGaussians);
-    return {.name = "gaussians",
-            .doc = "A sum of Gaussians over the plane (d'Eon and Luebke 2007).",
-            .keys = {required("gaussians", list(object(gaussian()), {.min = 1, .max = kMost}),
-                              "Each has 'variance_mm2' and 'weight', for each channel or for all. A channel's "
-                              "weights sum to 1.")}};
+    return {
+        .name = "gaussians",
+        .doc = "A sum of Gaussians over the plane (d'Eon and Luebke 2007).",
+        .keys = {required("gaussians", list(object(gaussian()), {.min = 1, .max = kMost}),
+                          "Each has 'variance_mm2' and 'weight', for each channel or for all. A channel's "
+                          "weights sum to 1.")}};
 }
 
 Block dipole() {

@@ -50,6 +50,13 @@ std::string message_of(const JobsReport& report, int frame) {
 
 const std::atomic<bool> kGoOn = false;
 
+TEST(FrameEvent, ReadsBackAsItself) {
+    const FrameEvent event{12, "failed", 0.5, "a \"quoted\" \n line"};
+    EXPECT_EQ(parse_event(event_line(event)), event);
+    EXPECT_EQ(parse_event(status_line({"grade", "", "", 12})), std::nullopt);
+    EXPECT_LE(event_line({1, "failed", 0, std::string(100'000, '\1')}).size(), 4096u);
+}
+
 TEST(RunJobs, GiveEveryFrameToOneWorker) {
     int lines = 0;
     JobListener listener;

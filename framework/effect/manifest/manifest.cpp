@@ -34,6 +34,8 @@ void ManifestParser::identity(const Reader& document) {
     manifest_.summary = document.text("summary");
     manifest_.sources = document.texts("sources");
     manifest_.accumulates_subframes = document.has("accumulates");
+    if (const auto warmup = document.object("warmup"))
+        manifest_.warmup = {int(warmup->integer("frames")), warmup->number("error")};
 }
 
 void ManifestParser::uses(const Reader& document) {

@@ -275,6 +275,13 @@ struct TelemetrySpec {
     Place place;
 };
 
+/// "warmup": how soon an effect forgets that its history began.
+struct WarmupSpec {
+    int frames = 0;    ///< rendered before the first frame that counts
+    double error = 0;  ///< what then remains: 99th percentile of the difference, over the picture's mean
+};
+inline constexpr int kMaxWarmupFrames = 4096;
+
 struct EffectManifest {
     std::string id;
     std::string version;
@@ -292,6 +299,7 @@ struct EffectManifest {
     std::vector<PassSpec> passes;  ///< with those of tile lists
     std::optional<NativeSpec> native;
     bool accumulates_subframes = false;  ///< "accumulates": "subframes": runs for each, emits at the last
+    std::optional<WarmupSpec> warmup;
     std::vector<PresetSpec> presets;
     std::vector<TelemetrySpec> telemetry;
     std::filesystem::path folder;

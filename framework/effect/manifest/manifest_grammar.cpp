@@ -20,6 +20,7 @@ using grammar::choice;
 using grammar::Form;
 using grammar::integer;
 using grammar::Key;
+using grammar::number;
 using grammar::optional;
 using grammar::required;
 using grammar::text;
@@ -196,6 +197,20 @@ std::vector<Key> shared_keys() {
                      "Lists of tiles that draws are confined to.")};
 }
 
+Block warmup_block() {
+    return {
+        .name = "warmup",
+        .thing = "'warmup'",
+        .doc =
+            "A chunk of a sequence that begins without history renders some frames that it does not write. "
+            "`aftershade check LOOK --warmup CAPTURE` measures both numbers.",
+        .keys = {required("frames", integer(0, kMaxWarmupFrames),
+                          "Frames rendered before the first one that counts."),
+                 required("error", number({.min = 0}),
+                          "Difference from an uncut run that remains then: the 99th percentile over the "
+                          "picture, as a share of its mean.")}};
+}
+
 Block make_effect_block() {
     // The parser reports a module that does not exist.
     const Form module = reference_form(schema::kSnakeCase, "name");
@@ -208,6 +223,8 @@ Block make_effect_block() {
                          optional("sources", grammar::list(text()), "Papers and pages that it follows."),
                          optional("accumulates", choice({"subframes"}),
                                   "The effect runs once for each subframe and emits at the last."),
+                         optional("warmup", grammar::object(warmup_block()),
+                                  "How soon the effect forgets that history began."),
                          optional("modules", grammar::list(module, {.unique = true}),
                                   "Their declarations stand before the effect's own: [below](#modules)."),
                          required("inputs", grammar::named(grammar::object(input_block()), "input"),

@@ -1,0 +1,73 @@
+#include "cli/batch_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "framework/capture/frame_range.h"
+#include "framework/core/text.h"
+
+namespace aftershade::cli {
+
+namespace {
+
+int count_of(const std::vector<FrameEvent>& frames, const std::string& outcome) {
+    return int(std::count_if(frames.begin(), frames.end(),
+                             [&](const FrameEvent& event) { return event.outcome == outcome; }));
+}
+
+}  // namespace
+
+FrameEvent frame_event(const FrameOutcome& outcome) {
+    const char* name = outcome.kind == FrameOutcome::Kind::done     ? "done"
+                       : outcome.kind == FrameOutcome::Kind::failed ? "failed"
+                                                                    : "skipped";
+    return {outcome.frame, name, outcome.seconds, outcome.message};
+}
+
+std::vector<FrameEvent> frame_events(const std::vector<int>& frames, int warmup_frames,
+                                     const std::vector<FrameOutcome>& outcomes) {
+    std::map<int, FrameEvent> by_frame;
+    for (std::size_t i = std::size_t(warmup_frames); i < frames.size(); ++i)
+        by_frame[frames[i]] = {frames[i], "not run", 0, ""};
+    for (const FrameOutcome& outcome : outcomes) by_frame[outcome.frame] = frame_event(outcome);
+    std::vector<FrameEvent> events;
+    for (const auto& [frame, event] : by_frame) events.push_back(event);
+    return events;
+}
+
+std::string report_json(const BatchSummary& summary) {
+    nlohmann::ordered_json frames = nlohmann::ordered_json::array();
+    for (const FrameEvent& event : summary.frames) {
+        nlohmann::ordered_json entry = {{"frame", event.frame}, {"outcome", event.outcome}};
+        if (event.outcome == "done") entry["seconds"] = event.seconds;
+        if (!event.message.empty()) entry["message"] = event.message;
+        frames.push_back(std::move(entry));
+    }
+    const nlohmann::ordered_json report = {{"aftershade_report", 1},
+                                           {"look", summary.look},
+                                           {"capture", summary.capture},
+                                           {"exit_code", int(summary.exit_code)},
+                                           {"seconds", summary.seconds},
+                                           {"done", count_of(summary.frames, "done")},
+                                           {"failed", count_of(summary.frames, "failed")},
+                                           {"skipped", count_of(summary.frames, "skipped")},
+                                           {"not_run", count_of(summary.frames, "not run")},
+                                           {"frames", std::move(frames)}};
+    return report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+std::string failures_text(const std::vector<FrameEvent>& frames) {
+    const int failed = count_of(frames, "failed");
+    if (failed == 0) return "";
+    std::string text =
+        fmt::format("{} of {} {} failed:\n", failed, frames.size(), frames.size() == 1 ? "frame" : "frames");
+    for (const FrameEvent& event : frames)
+        if (event.outcome == "failed")
+            text += fmt::format("  frame {}: {}\n", event.frame, printable(event.message));
+    return text;
+}
+
+}  // namespace aftershade::cli

@@ -1,0 +1,31 @@
+// How the frames of a run ended, for people and for programs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/core/error.h"
+#include "framework/core/status.h"
+#include "framework/pipeline/run.h"
+
+namespace aftershade::cli {
+
+struct BatchSummary {
+    std::string look, capture;
+    std::vector<FrameEvent> frames;
+    double seconds = 0;
+    ExitCode exit_code = ExitCode::done;
+};
+
+/// The outcomes of a run in this process; frames without one are "not run".
+std::vector<FrameEvent> frame_events(const std::vector<int>& frames, int warmup_frames,
+                                     const std::vector<FrameOutcome>& outcomes);
+FrameEvent frame_event(const FrameOutcome& outcome);
+
+/// {"look": ..., "frames": [{"frame": 12, "outcome": "failed", "seconds": 0.4, "message": "..."}], ...}
+std::string report_json(const BatchSummary& summary);
+
+/// "2 of 48 frames failed:" and a line for each; "" where none failed.
+std::string failures_text(const std::vector<FrameEvent>& frames);
+
+}  // namespace aftershade::cli

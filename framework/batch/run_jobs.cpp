@@ -1,0 +1,200 @@
+#include "framework/batch/run_jobs.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "framework/batch/watchdog.h"
+
+namespace aftershade {
+
+namespace {
+
+constexpr int kMostIdleWorkers = 3;
+constexpr const char* kErrorPrefix = "aftershade: error: ";
+
+/// What all workers share; calls of the listener follow one another.
+class JobBoard {
+public:
+    JobBoard(const JobOptions& options, const JobListener& listener) : options_(options), listener_(listener) {
+        for (const JobPiece& piece : options.pieces)
+            for (std::size_t i = std::size_t(piece.warmup_frames); i < piece.frames.size(); ++i)
+                frames_[piece.frames[i]] = {piece.frames[i], "not run", 0, ""};
+    }
+
+    void out(std::string_view line) {
+        const std::lock_guard lock(mutex_);
+        if (listener_.on_stdout) listener_.on_stdout(line);
+    }
+    void error(std::string_view line) {
+        const std::lock_guard lock(mutex_);
+        if (listener_.on_stderr) listener_.on_stderr(line);
+    }
+    void frame(const FrameEvent& event) {
+        const std::lock_guard lock(mutex_);
+        const auto found = frames_.find(event.frame);
+        if (found == frames_.end()) return;
+        found->second = event;
+        if (event.outcome == "failed" && options_.stop_on_error) stop_ = true;
+        if (listener_.on_frame) listener_.on_frame(event);
+    }
+    void ended(ExitCode code) {
+        const std::lock_guard lock(mutex_);
+        if (code == ExitCode::output || code == ExitCode::usage) stop_ = true;
+        worst_ = code;
+    }
+    /// Set by an error that ends the whole run.
+    const std::atomic<bool>& stop() const { return stop_; }
+
+    JobsReport report(bool interrupted) const {
+        JobsReport report;
+        report.interrupted = interrupted;
+        std::size_t done = 0, skipped = 0;
+        for (const auto& [number, event] : frames_) {
+            report.frames.push_back(event);
+            done += event.outcome == "done";
+            skipped += event.outcome == "skipped";
+        }
+        if (interrupted) report.exit_code = ExitCode::interrupted;
+        else if (worst_ == ExitCode::output || worst_ == ExitCode::usage) report.exit_code = worst_;
+        else if (done + skipped < frames_.size())
+            report.exit_code = done > 0 ? ExitCode::partial
+                               : worst_ == ExitCode::done || worst_ == ExitCode::partial ? ExitCode::capture
+                                                                                         : worst_;
+        return report;
+    }
+
+private:
+    const JobOptions& options_;
+    const JobListener& listener_;
+    std::mutex mutex_;
+    std::map<int, FrameEvent> frames_;
+    std::atomic<bool> stop_ = false;
+    ExitCode worst_ = ExitCode::done;
+};
+
+/// One piece, by as many workers as it takes.
+class PieceRun {
+public:
+    PieceRun(const JobOptions& options, JobPiece piece, JobBoard& board, const std::atomic<bool>& interrupt)
+        : options_(options), piece_(std::move(piece)), board_(board), interrupt_(interrupt) {}
+
+    void run() {
+        for (int idle_workers = 0; idle_workers < kMostIdleWorkers; ++idle_workers) {
+            if (piece_.frames.empty() || interrupt_) return;
+            ended_ = 0;
+            if (!run_one()) return;
+            if (ended_ > 0) idle_workers = -1;
+        }
+    }
+
+private:
+    /// Whether another worker should go on with what is left of the piece.
+    bool run_one() {
+        WorkerCommand command;
+        command.arguments = options_.command;
+        for (std::string& word : options_.frame_arguments(piece_))
+            command.arguments.push_back(std::move(word));
+        command.limits.memory_bytes = options_.memory_bytes;
+        if (!std::getenv("LP_NUM_THREADS"))
+            command.environment["LP_NUM_THREADS"] = std::to_string(options_.threads);
+        Watchdog watchdog(options_.frame_timeout, interrupt_);
+        last_error_.clear();
+        next_ = std::size_t(piece_.warmup_frames);
+        const WorkerResult result = run_worker(command, listener(watchdog), &watchdog.flag());
+        if (watchdog.barked()) return cost_a_frame(result.status, timed_out(result));
+        if (result.end == WorkerEnd::interrupted) return false;
+        board_.ended(result.end == WorkerEnd::exited ? ExitCode(result.exit_code) : ExitCode::effect);
+        const bool has_seen_all = next_ == piece_.frames.size();
+        if (result.end == WorkerEnd::exited && (has_seen_all || spares_no_frame(result.exit_code)))
+            return false;
+        return cost_a_frame(result.status, last_error_.empty() ? describe(result) : last_error_);
+    }
+
+    /// An error that every other frame would meet, too.
+    static bool spares_no_frame(int exit_code) {
+        const auto code = ExitCode(exit_code);
+        return code == ExitCode::usage || code == ExitCode::gl || code == ExitCode::output;
+    }
+
+    WorkerListener listener(Watchdog& watchdog) {
+        WorkerListener listener;
+        listener.on_stdout = [&](std::string_view line) { board_.out(line); };
+        listener.on_stderr = [&](std::string_view line) {
+            if (line.starts_with(kErrorPrefix)) last_error_ = line.substr(std::string_view(kErrorPrefix).size());
+            board_.error(line);
+        };
+        listener.on_frame = [&](const FrameEvent& event) {
+            watchdog.heard();
+            next_ = std::max(next_, index_of(event.frame).value_or(0) + 1);
+            ++ended_;
+            board_.frame(event);
+        };
+        // A frame's beginning; what native code says of its own steps is no progress.
+        listener.on_status = [&](const WorkStatus& status) {
+            if (status.frame && status.plugin.empty()) watchdog.heard();
+        };
+        return listener;
+    }
+
+    std::optional<std::size_t> index_of(int frame) const {
+        const auto found = std::find(piece_.frames.begin(), piece_.frames.end(), frame);
+        if (found == piece_.frames.end()) return std::nullopt;
+        return std::size_t(found - piece_.frames.begin());
+    }
+
+    std::string timed_out(const WorkerResult& result) const {
+        WorkerResult hung = result;
+        hung.end = WorkerEnd::timed_out;
+        hung.limits.wall_time =
+            std::chrono::duration_cast<std::chrono::milliseconds>(options_.frame_timeout);
+        return describe(hung);
+    }
+
+    /// Fails the frame that the worker was at and leaves the others to another worker. Frames before it whose
+    /// files were not yet in place are among them.
+    bool cost_a_frame(const WorkStatus& status, const std::string& why) {
+        const std::size_t warmup = std::min(std::size_t(options_.warmup_frames), next_);
+        const std::size_t at = status.frame ? index_of(*status.frame).value_or(next_) : next_;
+        const std::size_t failed = std::min(std::max(at, next_), piece_.frames.size() - 1);
+        board_.frame({piece_.frames[failed], "failed", 0, why});
+        piece_.frames.erase(piece_.frames.begin() + std::ptrdiff_t(failed));
+        piece_.frames.erase(piece_.frames.begin(), piece_.frames.begin() + std::ptrdiff_t(next_ - warmup));
+        piece_.warmup_frames = int(warmup);
+        if (piece_.frames.size() <= warmup) piece_.frames.clear();
+        return true;
+    }
+
+    const JobOptions& options_;
+    JobPiece piece_;
+    JobBoard& board_;
+    const std::atomic<bool>& interrupt_;
+    std::string last_error_;
+    std::size_t next_ = 0;   // index of the first frame that no worker is done with
+    std::size_t ended_ = 0;  // frames that the worker is done with
+};
+
+}  // namespace
+
+JobsReport run_jobs(const JobOptions& options, const JobListener& listener, const std::atomic<bool>& stop) {
+    JobBoard board(options, listener);
+    std::atomic<bool> end = false;
+    std::atomic<int> running = int(options.pieces.size());
+    {
+        std::vector<std::jthread> workers;
+        for (const JobPiece& piece : options.pieces)
+            workers.emplace_back([&, piece] {
+                PieceRun(options, piece, board, end).run();
+                --running;
+            });
+        while (running > 0) {
+            end = stop || board.stop();
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+    }
+    return board.report(stop);
+}
+
+}  // namespace aftershade
