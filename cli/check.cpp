@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "cli/capture_options.h"
+#include "cli/check_warmup.h"
 #include "cli/effect_options.h"
 #include "cli/gl_options.h"
 #include "cli/verbs.h"
@@ -30,6 +31,7 @@ struct CheckOptions {
     std::string backend;
     bool no_gl = false;
     bool strict = false;
+    std::string warmup;
 };
 
 void check_one_effect(const EffectManifest& manifest, const CheckOptions& options, Diagnostics& diagnostics) {
@@ -80,6 +82,9 @@ ExitCode check(const CheckOptions& options) {
                                          did_you_mean(options.subject, ids));
     }
     stop_at_errors(words);
+    if (!options.warmup.empty())
+        return check_warmup({options.subject, options.warmup, options.effect_paths, options.plugin_paths,
+                             chosen_backend(options.backend)});
     if (const auto look = read_look(subject, diagnostics)) bind_pipeline(*look, effects, {}, diagnostics);
     return verdict(diagnostics, options);
 }
@@ -91,6 +96,8 @@ Verb add_check(CLI::App& app) {
     app.add_option("subject", options->subject, "Folder of an effect, id of an effect, or a look")
         ->required();
     app.add_flag("--no-gl", options->no_gl, "Only what the texts tell: compile no shader, render nothing");
+    app.add_option("--warmup", options->warmup,
+                   "Of a look: measure on this capture how many frames a chunk must render before its first");
     app.add_flag("--strict", options->strict, "Warnings are a failure too");
     add_effect_path_option(app, options->effect_paths);
     app.add_option("--plugin-path", options->plugin_paths, "Folder of native plug-ins; repeatable")

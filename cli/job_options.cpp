@@ -68,14 +68,17 @@ std::optional<FarmTask> task_of(const Environment& environment) {
 }  // namespace
 
 void add_job_options(CLI::App& app, JobArguments& options) {
-    app.add_option("--jobs", options.jobs,
-                   "Worker processes that render at the same time: a number, or auto for this machine's cores");
-    app.add_option("--chunk", options.chunk,
-                   "Render one part of the frames: 3/8 for the third of eight, auto/8 or auto with the number "
-                   "from Slurm, Kubernetes, AWS Batch, PBS or Grid Engine");
-    app.add_option("--warmup", options.warmup,
-                   "Frames that a look with history renders before a chunk without writing them: a number, or "
-                   "auto for what the effects declare")
+    app.add_option(
+        "--jobs", options.jobs,
+        "Worker processes that render at the same time: a number, or auto for this machine's cores");
+    app.add_option(
+        "--chunk", options.chunk,
+        "Render one part of the frames: 3/8 for the third of eight, auto/8 or auto with the number "
+        "from Slurm, Kubernetes, AWS Batch, PBS or Grid Engine");
+    app.add_option(
+           "--warmup", options.warmup,
+           "Frames that a look with history renders before a chunk without writing them: a number, or "
+           "auto for what the effects declare")
         ->capture_default_str();
     app.add_option("--frame-timeout", options.frame_timeout_s,
                    "Seconds after which a worker that finishes no frame is killed; the frame has failed")
@@ -116,10 +119,10 @@ std::optional<Chunk> parse_chunk(const std::string& text, const Environment& env
         index = *number - 1;
     }
     if (!index || !count || *count < 1 || *index < 0 || *index >= *count) {
-        const std::string found = first == "auto" && index && count
-                                      ? "task " + std::to_string(*index + 1) + " of " + std::to_string(*count) +
-                                            " does not exist; "
-                                      : "";
+        const std::string found =
+            first == "auto" && index && count
+                ? "task " + std::to_string(*index + 1) + " of " + std::to_string(*count) + " does not exist; "
+                : "";
         diagnostics.error(place, found + "expected I/N with I from 1 to N, such as 3/8");
         return std::nullopt;
     }

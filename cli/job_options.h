@@ -21,7 +21,7 @@ struct JobArguments {
     std::string jobs;  ///< "4", "auto"; "": no worker processes
     std::string chunk;
     std::string warmup = "auto";
-    double frame_timeout_s = 0;  ///< 0: none
+    double frame_timeout_s = 0;      ///< 0: none
     std::uint64_t memory_bytes = 0;  ///< 0: no limit
     bool stop_on_error = false;
     std::string report;
@@ -44,8 +44,8 @@ struct Chunk {
     int index = 0;  ///< from 0
     int count = 1;
 };
-/// "3/8" (the first is 1/8); "auto" and "auto/8" take the index, and "auto" the count too, from the variables of
-/// Slurm, Kubernetes, AWS Batch, PBS or Grid Engine. nullopt after a fault.
+/// "3/8" (the first is 1/8); "auto" and "auto/8" take the index, and "auto" the count too, from the variables
+/// of Slurm, Kubernetes, AWS Batch, PBS or Grid Engine. nullopt after a fault.
 std::optional<Chunk> parse_chunk(const std::string& text,
                                  const std::function<const char*(const char*)>& environment,
                                  Diagnostics& diagnostics);

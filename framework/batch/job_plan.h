@@ -26,9 +26,9 @@ struct JobFrames {
 /// frames than pieces.
 JobPiece chunk_of(const JobFrames& run, int index, int count);
 
-/// At most `count` pieces that workers render at the same time. Without history the frames are dealt in turn, so
-/// that the workers end together. With history they are chunks, and only as many as shorten the run: a warm-up
-/// may cost more than a worker gains.
+/// At most `count` pieces that workers render at the same time. Without history the frames are dealt in turn,
+/// so that the workers end together. With history they are chunks, and only as many as shorten the run: a
+/// warm-up may cost more than a worker gains.
 std::vector<JobPiece> plan_jobs(const JobFrames& run, int count);
 
 }  // namespace aftershade

@@ -18,7 +18,8 @@ constexpr const char* kErrorPrefix = "aftershade: error: ";
 /// What all workers share; calls of the listener follow one another.
 class JobBoard {
 public:
-    JobBoard(const JobOptions& options, const JobListener& listener) : options_(options), listener_(listener) {
+    JobBoard(const JobOptions& options, const JobListener& listener)
+        : options_(options), listener_(listener) {
         for (const JobPiece& piece : options.pieces)
             for (std::size_t i = std::size_t(piece.warmup_frames); i < piece.frames.size(); ++i)
                 frames_[piece.frames[i]] = {piece.frames[i], "not run", 0, ""};
@@ -60,7 +61,7 @@ public:
         if (interrupted) report.exit_code = ExitCode::interrupted;
         else if (worst_ == ExitCode::output || worst_ == ExitCode::usage) report.exit_code = worst_;
         else if (done + skipped < frames_.size())
-            report.exit_code = done > 0 ? ExitCode::partial
+            report.exit_code = done > 0                                                  ? ExitCode::partial
                                : worst_ == ExitCode::done || worst_ == ExitCode::partial ? ExitCode::capture
                                                                                          : worst_;
         return report;
@@ -123,7 +124,8 @@ private:
         WorkerListener listener;
         listener.on_stdout = [&](std::string_view line) { board_.out(line); };
         listener.on_stderr = [&](std::string_view line) {
-            if (line.starts_with(kErrorPrefix)) last_error_ = line.substr(std::string_view(kErrorPrefix).size());
+            if (line.starts_with(kErrorPrefix))
+                last_error_ = line.substr(std::string_view(kErrorPrefix).size());
             board_.error(line);
         };
         listener.on_frame = [&](const FrameEvent& event) {
@@ -148,8 +150,7 @@ private:
     std::string timed_out(const WorkerResult& result) const {
         WorkerResult hung = result;
         hung.end = WorkerEnd::timed_out;
-        hung.limits.wall_time =
-            std::chrono::duration_cast<std::chrono::milliseconds>(options_.frame_timeout);
+        hung.limits.wall_time = std::chrono::duration_cast<std::chrono::milliseconds>(options_.frame_timeout);
         return describe(hung);
     }
 

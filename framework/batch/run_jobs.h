@@ -42,10 +42,10 @@ struct JobsReport {
     ExitCode exit_code = ExitCode::done;
 };
 
-/// Runs the pieces. A worker that crashes, runs out of memory or says nothing for `frame_timeout` costs the frame
-/// that it was at; another one goes on behind that frame, where the look has history after the piece's warm-up.
-/// Three workers in turn that finish no frame give their piece up, and so does an error that every other frame
-/// would meet (usage, GL, output).
+/// Runs the pieces. A worker that crashes, runs out of memory or says nothing for `frame_timeout` costs the
+/// frame that it was at; another one goes on behind that frame, where the look has history after the piece's
+/// warm-up. Three workers in turn that finish no frame give their piece up, and so does an error that every
+/// other frame would meet (usage, GL, output).
 JobsReport run_jobs(const JobOptions& options, const JobListener& listener, const std::atomic<bool>& stop);
 
 }  // namespace aftershade

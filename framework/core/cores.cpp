@@ -41,7 +41,8 @@ double share_of_v1(const fs::path& folder) {
     return quota >> quota_us && period >> period_us ? share(quota_us, period_us) : kNoLimit;
 }
 
-/// The least of a group's share and of all groups above it. In a container the group's own folder is the root.
+/// The least of a group's share and of all groups above it. In a container the group's own folder is the
+/// root.
 double least_share(const fs::path& root, fs::path group, double (*share_of)(const fs::path&)) {
     double least = share_of(root);
     for (; group.has_relative_path(); group = group.parent_path())

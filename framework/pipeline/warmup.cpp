@@ -13,15 +13,16 @@ namespace {
 /// The last frame's colour, after `warmup` of the frames before it.
 Image last_frame(const RunSetup& setup, const std::filesystem::path& folder, std::size_t warmup) {
     RunOptions options = setup.options;
-    options.frames.assign(setup.options.frames.end() - std::ptrdiff_t(warmup) - 1, setup.options.frames.end());
+    options.frames.assign(setup.options.frames.end() - std::ptrdiff_t(warmup) - 1,
+                          setup.options.frames.end());
     options.warmup_frames = int(warmup);
     OutputOptions outputs;
     outputs.patterns = {(folder / "frame.exr").string()};
     outputs.color_type = PixelType::float32;
     const std::atomic<bool> stop = false;
-    const RunReport report = run_frames({setup.context, setup.pipeline, setup.sequence, setup.reader, options,
-                                         outputs, setup.data_folder},
-                                        {}, stop);
+    const RunReport report = run_frames(
+        {setup.context, setup.pipeline, setup.sequence, setup.reader, options, outputs, setup.data_folder},
+        {}, stop);
     if (!report.failures.empty()) throw Error(ExitCode::capture, report.failures.front());
     return ExrFile(folder / "frame.exr").read_floats(0, std::vector<std::string>{"R", "G", "B"});
 }

@@ -1,5 +1,5 @@
-// Frames that a chunk of a sequence renders before its first one, so that history is nearly what it would be in an
-// uncut run.
+// Frames that a chunk of a sequence renders before its first one, so that history is nearly what it would be
+// in an uncut run.
 #pragma once
 
 #include <filesystem>
@@ -19,12 +19,13 @@ struct LookWarmup {
 LookWarmup warmup_of(const Pipeline& pipeline);
 
 struct WarmupError {
-    int frames = 0;    ///< rendered before the frame that is compared
-    double error = 0;  ///< 99th percentile of the difference of RGB from the uncut run, over the picture's mean
+    int frames = 0;  ///< rendered before the frame that is compared
+    double error =
+        0;  ///< 99th percentile of the difference of RGB from the uncut run, over the picture's mean
 };
 
-/// Renders the last frame of `setup.options.frames` after all frames before it, then after 0, 1, 2, 4, 8, ... of
-/// them. Files go to `folder`. Throws Error.
+/// Renders the last frame of `setup.options.frames` after all frames before it, then after 0, 1, 2, 4, 8, ...
+/// of them. Files go to `folder`. Throws Error.
 std::vector<WarmupError> measure_warmup(const RunSetup& setup, const std::filesystem::path& folder);
 
 }  // namespace aftershade

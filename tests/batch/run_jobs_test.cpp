@@ -20,7 +20,9 @@ using Outcomes = std::map<int, std::string>;
 JobOptions jobs_of_script(const std::string& for_frame, std::vector<JobPiece> pieces) {
     const std::string script =
         "say() { echo \"$1\" >&$AFTERSHADE_STATUS_FD; }\n"
-        "done_() { say \"{\\\"event\\\":\\\"frame\\\",\\\"frame\\\":$f,\\\"outcome\\\":\\\"done\\\",\\\"seconds\\\":0}\"; }\n"
+        "done_() { say "
+        "\"{\\\"event\\\":\\\"frame\\\",\\\"frame\\\":$f,\\\"outcome\\\":\\\"done\\\",\\\"seconds\\\":0}\"; "
+        "}\n"
         "warmup=$1; shift\n"
         "for f in \"$@\"; do say \"{\\\"frame\\\":$f}\"\n"
         "if [ $warmup -gt 0 ]; then warmup=$((warmup-1)); echo warm $f; continue; fi\n" +
@@ -65,8 +67,7 @@ TEST(RunJobs, GiveEveryFrameToOneWorker) {
         run_jobs(jobs_of_script("echo file $f; done_", {{{1, 3, 5}}, {{2, 4}}}), listener, kGoOn);
     EXPECT_EQ(report.exit_code, ExitCode::done);
     EXPECT_EQ(lines, 5);
-    EXPECT_EQ(outcomes(report),
-              (Outcomes{{1, "done"}, {2, "done"}, {3, "done"}, {4, "done"}, {5, "done"}}));
+    EXPECT_EQ(outcomes(report), (Outcomes{{1, "done"}, {2, "done"}, {3, "done"}, {4, "done"}, {5, "done"}}));
 }
 
 TEST(RunJobs, ACrashCostsTheFrameThatTheWorkerWasAt) {
@@ -81,7 +82,8 @@ TEST(RunJobs, ACrashCostsTheFrameThatTheWorkerWasAt) {
 TEST(RunJobs, AFrameWhoseFilesWereNotYetInPlaceIsRenderedAgain) {
     // Frame 2 is reported done only when frame 3 has been rendered; the crash in 3 takes it along.
     const JobsReport report = run_jobs(
-        jobs_of_script("[ $f = 3 ] && kill -SEGV $$; [ $f = 2 ] && [ \"$3\" = 2 ] && continue; done_", {{{1, 2, 3, 4}}}),
+        jobs_of_script("[ $f = 3 ] && kill -SEGV $$; [ $f = 2 ] && [ \"$3\" = 2 ] && continue; done_",
+                       {{{1, 2, 3, 4}}}),
         {}, kGoOn);
     EXPECT_EQ(outcomes(report), (Outcomes{{1, "done"}, {2, "done"}, {3, "failed"}, {4, "done"}}));
 }
@@ -104,7 +106,8 @@ TEST(RunJobs, AnErrorOfOneFrameIsItsMessage) {
 }
 
 TEST(RunJobs, APluginThatEndsTheProcessCostsAFrame) {
-    const JobsReport report = run_jobs(jobs_of_script("[ $f = 2 ] && exit 0; done_", {{{1, 2, 3}}}), {}, kGoOn);
+    const JobsReport report =
+        run_jobs(jobs_of_script("[ $f = 2 ] && exit 0; done_", {{{1, 2, 3}}}), {}, kGoOn);
     EXPECT_EQ(outcomes(report), (Outcomes{{1, "done"}, {2, "failed"}, {3, "done"}}));
     EXPECT_EQ(message_of(report, 2), "the worker ended with code 0 in frame 2");
 }
@@ -122,7 +125,8 @@ TEST(RunJobs, HistoryIsWarmedUpBehindAFailedFrame) {
 
 TEST(RunJobs, AnErrorThatNoFrameEscapesEndsTheRun) {
     const auto fails_with = [](int code) {
-        return run_jobs(jobs_of_script("exit " + std::to_string(code), {{{1, 2, 3}}, {{4, 5, 6}}}), {}, kGoOn);
+        return run_jobs(jobs_of_script("exit " + std::to_string(code), {{{1, 2, 3}}, {{4, 5, 6}}}), {},
+                        kGoOn);
     };
     for (const ExitCode code : {ExitCode::usage, ExitCode::gl, ExitCode::output}) {
         const JobsReport report = fails_with(int(code));
@@ -132,8 +136,7 @@ TEST(RunJobs, AnErrorThatNoFrameEscapesEndsTheRun) {
 }
 
 TEST(RunJobs, ThreeWorkersThatFinishNoFrameGiveUp) {
-    const JobsReport report =
-        run_jobs(jobs_of_script("kill -SEGV $$", {{{1, 2, 3, 4, 5, 6}}}), {}, kGoOn);
+    const JobsReport report = run_jobs(jobs_of_script("kill -SEGV $$", {{{1, 2, 3, 4, 5, 6}}}), {}, kGoOn);
     EXPECT_EQ(report.exit_code, ExitCode::effect);
     EXPECT_EQ(outcomes(report).at(3), "failed");
     EXPECT_EQ(outcomes(report).at(4), "not run");
@@ -141,7 +144,8 @@ TEST(RunJobs, ThreeWorkersThatFinishNoFrameGiveUp) {
 
 TEST(RunJobs, StopAtTheFirstErrorWhereAsked) {
     JobOptions options = jobs_of_script(
-        "if [ $f = 2 ]; then say '{\"event\":\"frame\",\"frame\":2,\"outcome\":\"failed\",\"seconds\":0,\"message\":\"no file\"}'; "
+        "if [ $f = 2 ]; then say "
+        "'{\"event\":\"frame\",\"frame\":2,\"outcome\":\"failed\",\"seconds\":0,\"message\":\"no file\"}'; "
         "sleep 5; else done_; fi",
         {{{1, 2, 3}}});
     options.stop_on_error = true;

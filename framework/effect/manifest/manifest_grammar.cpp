@@ -224,7 +224,7 @@ Block make_effect_block() {
                          optional("accumulates", choice({"subframes"}),
                                   "The effect runs once for each subframe and emits at the last."),
                          optional("warmup", grammar::object(warmup_block()),
-                                  "How soon the effect forgets that history began."),
+                                  "How soon the effect forgets that its history began: [below](#warmup)."),
                          optional("modules", grammar::list(module, {.unique = true}),
                                   "Their declarations stand before the effect's own: [below](#modules)."),
                          required("inputs", grammar::named(grammar::object(input_block()), "input"),

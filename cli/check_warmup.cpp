@@ -1,0 +1,95 @@
+#include "cli/check_warmup.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <iostream>
+
+#include "cli/capture_options.h"
+#include "cli/effect_options.h"
+#include "framework/core/data_path.h"
+#include "framework/effect/native/native_library.h"
+#include "framework/pipeline/look.h"
+#include "framework/pipeline/warmup.h"
+
+namespace aftershade::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder that goes away with its files.
+class ScratchFolder {
+public:
+    ScratchFolder() {
+        std::string path = (fs::temp_directory_path() / "aftershade-XXXXXX").string();
+        if (!mkdtemp(path.data())) throw Error(ExitCode::output, path + ": cannot be made");
+        path_ = path;
+    }
+    ~ScratchFolder() {
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+    }
+    ScratchFolder(const ScratchFolder&) = delete;
+    ScratchFolder& operator=(const ScratchFolder&) = delete;
+    const fs::path& path() const { return path_; }
+
+private:
+    fs::path path_;
+};
+
+/// The least warm-up measured that leaves no more than the error; -1 where none does.
+int warmup_for(const std::vector<WarmupError>& measured, double error) {
+    for (const WarmupError& one : measured)
+        if (one.error <= error) return one.frames;
+    return -1;
+}
+
+ExitCode verdict(const LookWarmup& declared, const std::vector<WarmupError>& measured) {
+    if (!declared.undeclared.empty()) {
+        fmt::print("{}: no declared warm-up\n", list_of_names(declared.undeclared, "and"));
+        return ExitCode::partial;
+    }
+    const int needed = warmup_for(measured, declared.error);
+    const bool holds = needed >= 0 && needed <= declared.frames;
+    fmt::print("declared: {} frames for an error of {:g}; measured: {}\n", declared.frames, declared.error,
+               needed >= 0 ? fmt::format("{} frames suffice", needed)
+                           : "the capture has too few frames to reach it");
+    return holds || needed < 0 ? ExitCode::done : ExitCode::partial;
+}
+
+}  // namespace
+
+ExitCode check_warmup(const WarmupCheck& check) {
+    Diagnostics diagnostics;
+    EffectRegistry effects = find_effects(check.effect_paths, diagnostics);
+    const auto look = read_look(check.look, diagnostics);
+    const Pipeline pipeline = look ? bind_pipeline(*look, effects, {}, diagnostics) : Pipeline{};
+    CaptureOptions options;
+    options.capture = check.capture;
+    std::vector<Profile> profiles = load_profiles({}, diagnostics);
+    const auto sequence = find_sequence(options, profiles, diagnostics);
+    if (sequence && sequence->frames.size() < 2)
+        diagnostics.error({"--warmup " + check.capture}, "a warm-up is measured on at least 2 frames");
+    stop_at_errors(diagnostics);
+    if (!pipeline.has_history()) {
+        fmt::print("{}: no step has history; chunks need no warm-up\n", check.look);
+        return ExitCode::done;
+    }
+    const CaptureReader reader(*sequence, std::move(profiles), options.limits);
+    gpu::Context context(check.backend);
+    NativeRegistry natives(native_search_path({check.plugin_paths.begin(), check.plugin_paths.end()}),
+                           shipped_native_libraries());
+    RunOptions run;
+    run.frames = sequence->frames;
+    run.natives = {&natives, nullptr};
+    const ScratchFolder scratch;
+    const auto measured =
+        measure_warmup({context, pipeline, *sequence, reader, run, {}, data_path()}, scratch.path());
+    fmt::print("{:>8}  {:>9}   frame {} after so many frames, against all {} before it\n", "warm-up", "error",
+               run.frames.back(), run.frames.size() - 1);
+    for (const WarmupError& one : measured) fmt::print("{:>8}  {:>9.3g}\n", one.frames, one.error);
+    return verdict(warmup_of(pipeline), measured);
+}
+
+}  // namespace aftershade::cli

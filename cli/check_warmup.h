@@ -1,0 +1,24 @@
+// `aftershade check LOOK --warmup CAPTURE`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/core/error.h"
+#include "framework/gpu/context.h"
+
+namespace aftershade::cli {
+
+struct WarmupCheck {
+    std::string look;
+    std::string capture;
+    std::vector<std::string> effect_paths;
+    std::vector<std::string> plugin_paths;
+    gpu::Backend backend;
+};
+
+/// Prints what a chunk's first frame differs by after more and more warm-up, and what the look declares. Exit 1
+/// where the declared warm-up leaves more than its error.
+ExitCode check_warmup(const WarmupCheck& check);
+
+}  // namespace aftershade::cli
