@@ -17,8 +17,8 @@ struct WarmupCheck {
     gpu::Backend backend;
 };
 
-/// Prints what a chunk's first frame differs by after more and more warm-up, and what the look declares. Exit 1
-/// where the declared warm-up leaves more than its error.
+/// Prints what a chunk's first frame differs by after more and more warm-up, and what the look declares. Exit
+/// 1 where the declared warm-up leaves more than its error.
 ExitCode check_warmup(const WarmupCheck& check);
 
 }  // namespace aftershade::cli
