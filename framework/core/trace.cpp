@@ -1,15 +1,32 @@
 #include "framework/core/trace.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cstddef>
 #include <map>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "framework/core/text.h"
 
 namespace aftershade {
+
+namespace {
+
+std::string microseconds(double value) {
+    std::array<char, 64> text{};
+    const auto end =
+        std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, 1);
+    return {text.data(), end.ptr};
+}
+
+/// What every event of a thread begins with.
+std::string event_begin(char phase, const std::string& name, int thread) {
+    return std::string("{\"ph\": \"") + phase + "\", \"name\": " + json_string(name) +
+           ", \"pid\": 1, \"tid\": " + std::to_string(thread);
+}
+
+}  // namespace
 
 void Trace::add(std::string row, std::string name, Clock::time_point start, Clock::time_point end) {
     const auto since_begin = [&](Clock::time_point time) {
@@ -41,17 +58,13 @@ std::string Trace::json() const {
             std::ranges::find_if(lanes, [&](const Lane& one) { return one.end_us <= event.start_us; });
         if (lane == lanes.end()) {
             lane = lanes.insert(lanes.end(), Lane{++threads, 0});
-            names += fmt::format(
-                ",\n{{\"ph\": \"M\", \"name\": \"thread_name\", \"pid\": 1, \"tid\": {}, \"args\": "
-                "{{\"name\": {}}}}}",
-                lane->thread, json_string(event.row));
+            names += ",\n" + event_begin('M', "thread_name", lane->thread) +
+                     ", \"args\": {\"name\": " + json_string(event.row) + "}}";
         }
         lane->end_us = event.end_us;
-        text += fmt::format(
-            "{{\"ph\": \"X\", \"name\": {}, \"cat\": {}, \"pid\": 1, \"tid\": {}, \"ts\": {:.1f}, \"dur\": "
-            "{:.1f}}},\n",
-            json_string(event.name), json_string(event.row), lane->thread, event.start_us,
-            event.end_us - event.start_us);
+        text += event_begin('X', event.name, lane->thread) + ", \"cat\": " + json_string(event.row) +
+                ", \"ts\": " + microseconds(event.start_us) +
+                ", \"dur\": " + microseconds(event.end_us - event.start_us) + "},\n";
     }
     return text +
            "{\"ph\": \"M\", \"name\": \"process_name\", \"pid\": 1, \"args\": {\"name\": \"aftershade\"}}" +
