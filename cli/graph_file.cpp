@@ -2,18 +2,32 @@
 
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <string_view>
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 
 extern char** environ;
 
 namespace aftershade::cli {
 
 namespace {
+
+constexpr const char* kNeedsDot =
+    "an .svg needs Graphviz's 'dot' (Debian package graphviz); write a .dot instead";
+
+bool is_on_path(const std::string& program) {
+    const char* const path = std::getenv("PATH");
+    for (const std::string_view folder : split(path ? path : "/bin:/usr/bin", ':'))
+        if (access((std::filesystem::path(folder) / program).c_str(), X_OK) == 0) return true;
+    return false;
+}
 
 void run_dot(const std::string& dot_file, const std::string& svg_file) {
     std::string name = "dot", type = "-Tsvg", output = "-o" + svg_file, input = dot_file;
@@ -22,32 +36,30 @@ void run_dot(const std::string& dot_file, const std::string& svg_file) {
     int status = 0;
     if (posix_spawnp(&child, "dot", nullptr, nullptr, arguments, environ) != 0 ||
         waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
-        throw Error(ExitCode::output,
-                    "--graph: an .svg needs Graphviz's 'dot' (Debian package graphviz); write "
-                    "a .dot instead");
+        throw Error(ExitCode::output, std::string("--graph: ") + kNeedsDot);
+}
+
+void write_text(const std::filesystem::path& path, const std::string& text) {
+    std::ofstream out(path, std::ios::binary);
+    out << text;
+    out.close();
+    if (!out) throw Error(ExitCode::output, path.string() + ": cannot be written");
 }
 
 }  // namespace
 
+void require_graph_writer(const std::string& path) {
+    if (path.ends_with(".svg") && !is_on_path("dot"))
+        throw Error(ExitCode::output, "--graph " + path + ": " + kNeedsDot);
+}
+
 void write_graph(const std::string& path, const std::string& dot) {
-    AtomicFile file(path);
-    const bool is_svg = path.ends_with(".svg");
-    const std::string dot_file = file.temporary_path().string() + (is_svg ? ".dot" : "");
-    std::ofstream out(dot_file, std::ios::binary);
-    out << dot;
-    out.close();
-    if (!out) throw Error(ExitCode::output, path + ": cannot be written");
-    if (is_svg) {
-        struct Removal {
-            std::string file;
-            ~Removal() {
-                std::error_code failure;
-                std::filesystem::remove(file, failure);
-            }
-        } const removal{dot_file};
-        run_dot(dot_file, file.temporary_path().string());
-    }
-    file.commit();
+    if (!path.ends_with(".svg")) return write_text_file(path, dot);
+    AtomicFile picture(path);
+    const AtomicFile source(path + ".dot");  // never committed, so it goes
+    write_text(source.temporary_path(), dot);
+    run_dot(source.temporary_path().string(), picture.temporary_path().string());
+    picture.commit();
 }
 
 }  // namespace aftershade::cli

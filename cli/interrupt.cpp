@@ -12,6 +12,9 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 
 void on_signal(int) {
     interrupted = true;
+    // Whichever comes second ends the process at once.
+    std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGTERM, SIG_DFL);
 }
 
 }  // namespace
@@ -20,7 +23,7 @@ const std::atomic<bool>& watch_for_interrupt() {
     struct sigaction action;
     std::memset(&action, 0, sizeof action);
     action.sa_handler = on_signal;
-    action.sa_flags = int(SA_RESETHAND | SA_RESTART);  // no file operation ends early because of the signal
+    action.sa_flags = SA_RESTART;  // no file operation ends early because of the signal
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
     return interrupted;

@@ -1,12 +1,19 @@
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <iostream>
 #include <map>
-#include <new>
+#include <string>
+#include <string_view>
 
 #include "cli/compare_options.h"
 #include "cli/verbs.h"
+#include "framework/core/memory_limit.h"
 
 using aftershade::ExitCode;
 
@@ -19,6 +26,34 @@ int fail(ExitCode code, const char* message) {
     return int(code);
 }
 
+/// At once: what libraries do at the end of a process may wait for ever after this.
+[[noreturn]] void end_for_memory(const std::exception& error) {
+    const int code = fail(ExitCode::memory, aftershade::out_of_memory_text(error).c_str());
+    std::cout.flush();
+    std::fflush(stdout);
+    _exit(code);
+}
+
+/// An empty value is seldom a wish: it is the variable of a script that was never set, and would stand for
+/// everything. Throws CLI::ValidationError.
+void refuse_empty_values(const CLI::App& verb) {
+    for (const CLI::Option* option : verb.get_options())
+        for (const std::string& value : option->results())
+            if (value.empty())
+                throw CLI::ValidationError(option->get_name(),
+                                           "the value is empty; leave the option out, or set the variable "
+                                           "that it comes from");
+}
+
+bool stdout_is_whole() {
+    std::cout.flush();
+    return std::fflush(stdout) == 0 && std::cout && std::ferror(stdout) == 0;
+}
+
+std::string stdout_fault() {
+    return std::string("standard output cannot be written: ") + std::strerror(errno);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -29,8 +64,9 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     app.footer(
         "Exit codes: 0 done, 1 some frames failed, 2 wrong words or documents, 3 no readable frame or role,\n"
-        "4 no usable GL, 5 an effect failed, 6 an output could not be written, 130 interrupted; compare "
-        "and golden have their own.");
+        "4 no usable GL, 5 an effect failed, 6 an output could not be written, 7 out of memory, 130 "
+        "interrupted;\n"
+        "compare and golden have their own.");
     std::map<CLI::App*, aftershade::cli::Verb> verbs;
     const auto add = [&](const char* name, const char* help, auto add_options) {
         CLI::App* verb = app.add_subcommand(name, help);
@@ -40,22 +76,29 @@ int main(int argc, char** argv) {
     AFTERSHADE_VERBS(AFTERSHADE_ADD_VERB)
 #undef AFTERSHADE_ADD_VERB
 
+    const auto keeps_idiffs_codes = [&] {
+        return app.got_subcommand("compare") || app.got_subcommand("golden");
+    };
     try {
         app.parse(argc, argv);
+        refuse_empty_values(*app.get_subcommands().front());
     } catch (const CLI::Success& asked_for_help) {
         return app.exit(asked_for_help);
     } catch (const CLI::ParseError& error) {
         app.exit(error);
-        const bool as_idiff = app.got_subcommand("compare") || app.got_subcommand("golden");
-        return int(as_idiff ? aftershade::cli::kCompareUsage : ExitCode::usage);
+        return int(keeps_idiffs_codes() ? aftershade::cli::kCompareUsage : ExitCode::usage);
     }
+    aftershade::prepare_for_memory_limit();
     try {
-        return int(verbs.at(app.get_subcommands().front())());
+        const ExitCode code = verbs.at(app.get_subcommands().front())();
+        if (stdout_is_whole()) return int(code);
+        constexpr ExitCode kIdiffsFileError{4};
+        return fail(keeps_idiffs_codes() ? kIdiffsFileError : ExitCode::output, stdout_fault().c_str());
     } catch (const aftershade::Error& error) {
+        if (aftershade::is_out_of_memory(error)) end_for_memory(error);
         return fail(error.exit_code(), error.what());
-    } catch (const std::bad_alloc&) {
-        return fail(ExitCode::effect, "out of memory");
     } catch (const std::exception& error) {
+        if (aftershade::is_out_of_memory(error)) end_for_memory(error);
         return fail(ExitCode::effect, error.what());
     }
 }

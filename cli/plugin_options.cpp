@@ -9,8 +9,8 @@
 #include <string_view>
 #include <thread>
 
+#include "cli/command_line.h"
 #include "framework/batch/worker.h"
-#include "framework/core/atomic_file.h"
 #include "framework/core/status.h"
 #include "framework/effect/native/native_library.h"
 
@@ -19,18 +19,6 @@ namespace aftershade::cli {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// The words of this process's command line.
-std::vector<std::string> own_arguments() {
-    const std::string text = read_text_file("/proc/self/cmdline", ExitCode::effect);
-    std::vector<std::string> words;
-    for (std::size_t at = 0; at < text.size();) {
-        const std::size_t end = std::min(text.find('\0', at), text.size());
-        words.push_back(text.substr(at, end - at));
-        at = end + 1;
-    }
-    return words;
-}
 
 /// Raises a flag when nothing was heard for a while, or when the user asked to stop.
 class Watchdog {

@@ -43,6 +43,10 @@ MissingFrame missing_frame(const std::string& word) {
     return word == "skip" ? MissingFrame::skip : word == "hold" ? MissingFrame::hold : MissingFrame::error;
 }
 
+NanPolicy nan_policy(const std::string& word) {
+    return word == "fail" ? NanPolicy::fail : word == "mend" ? NanPolicy::mend : NanPolicy::warn;
+}
+
 void add_frame_options(CLI::App& app, RunArguments& options) {
     app.add_option("--var", options.variables, "name=value, above the look's own \"vars\"; repeatable")
         ->allow_extra_args(false);
@@ -100,6 +104,12 @@ void add_run_options(CLI::App& app, RunArguments& options) {
                    "A frame whose file is not there: error, skip, or hold the last one")
         ->check(CLI::IsMember({"error", "skip", "hold"}))
         ->capture_default_str();
+    app.add_option(
+           "--on-nan", options.on_nan,
+           "NaN or infinite pixels of a capture or an output: warn, fail the frame, or mend them from "
+           "the pixels around")
+        ->check(CLI::IsMember({"warn", "fail", "mend"}))
+        ->capture_default_str();
     app.add_flag("--explain", options.explain,
                  "Print every parameter's value and where it is from, and run nothing");
     app.add_flag("--audit", options.audit,
@@ -112,7 +122,10 @@ void add_run_options(CLI::App& app, RunArguments& options) {
     app.add_option("--look-folder", options.look_folder,
                    "Folder that files named in the look lie in (default: the look's own)");
     add_effect_path_option(app, options.effect_paths);
-    app.add_option("--progress", options.progress, "auto, none or plain")->capture_default_str();
+    app.add_option("--progress", options.progress, "auto, none, plain or json (an object a line, on stderr)")
+        ->capture_default_str();
+    app.add_option("--trace", options.trace,
+                   "Write what was done when (.json), for chrome://tracing or ui.perfetto.dev");
     app.add_flag("--watch", options.watch,
                  "Stay, and render again whenever the look, a manifest or a shader changes");
     add_plugin_options(app, options.plugins);
@@ -179,7 +192,10 @@ RunOptions run_options(const RunArguments& options, Diagnostics& diagnostics) {
                           "keeps the source's channels, which --scale and --region change");
     if (!options.telemetry_plot.empty() && !options.telemetry_plot.ends_with(".svg"))
         diagnostics.error({"--telemetry-plot " + options.telemetry_plot}, "must end in .svg");
+    if (!options.trace.empty() && !options.trace.ends_with(".json"))
+        diagnostics.error({"--trace " + options.trace}, "must end in .json");
     run.missing = missing_frame(options.missing);
+    run.on_nan = nan_policy(options.on_nan);
     run.audit = options.audit;
     run.telemetry = !options.telemetry.empty() || !options.telemetry_plot.empty();
     return run;

@@ -28,6 +28,7 @@ struct RunArguments {
     std::string backend;
     std::string progress = "auto";
     std::string missing = "error";
+    std::string on_nan = "warn";
     std::string crop = "data";
     std::string compression = "zip";
     bool keep_channels = false;
@@ -36,6 +37,7 @@ struct RunArguments {
     bool watch = false;
     std::string telemetry;
     std::string telemetry_plot;
+    std::string trace;
     std::vector<std::string> variables;
     std::string scale = "1";
     std::string region;

@@ -3,17 +3,69 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <vector>
 
+#include "framework/capture/frame_range.h"
+#include "framework/core/error.h"
 #include "framework/core/text.h"
 
 namespace aftershade::cli {
 
+namespace {
+
+using json = nlohmann::ordered_json;
+
+constexpr double kMsPerSecond = 1000;
+
+void print_json(const json& line) {
+    fmt::print(stderr, "{}\n", line.dump(-1, ' ', false, json::error_handler_t::replace));
+}
+
+/// Where the time of a run went: what a stage worked, and how long the frames waited for it.
+struct Stage {
+    const char* name;
+    double busy_ms = 0;
+    double waited_ms = 0;
+};
+
+std::vector<Stage> stages_of(const RunReport& report) {
+    Stage decode{"decode", report.decode_ms, report.read_ms}, upload{"upload"}, passes{"passes"},
+        readback{"readback"}, encode{"encode", report.encode_ms, report.write_ms};
+    for (const PassStatistics& pass : report.passes)
+        (pass.pass == upload.name     ? upload
+         : pass.pass == readback.name ? readback
+                                      : passes)
+            .busy_ms += pass.total_ms;
+    return {decode, upload, passes, readback, encode};
+}
+
+std::vector<int> failed_frames(const RunReport& report) {
+    std::vector<int> frames;
+    for (const FrameFailure& failure : report.failures) frames.push_back(failure.frame);
+    return frames;
+}
+
+/// "48 s", "12 min", "3.5 h".
+std::string duration_text(double seconds) {
+    constexpr double kMinute = 60, kHour = 3600;
+    if (seconds < 2 * kMinute) return fmt::format("{:.0f} s", seconds);
+    if (seconds < 2 * kHour) return fmt::format("{:.0f} min", seconds / kMinute);
+    return fmt::format("{:.1f} h", seconds / kHour);
+}
+
+}  // namespace
+
 ProgressStyle parse_progress(const std::string& name) {
     if (name == "none") return ProgressStyle::none;
     if (name == "plain") return ProgressStyle::plain;
+    if (name == "json") return ProgressStyle::json;
     if (name == "auto") return isatty(STDERR_FILENO) ? ProgressStyle::terminal : ProgressStyle::plain;
-    throw Error(ExitCode::usage, "--progress: '" + name + "' is not one of 'auto', 'none' or 'plain'");
+    throw Error(ExitCode::usage,
+                "--progress: '" + name + "' is not one of 'auto', 'none', 'plain' or 'json'");
 }
 
 void RunReporter::clear_line() {
@@ -21,84 +73,137 @@ void RunReporter::clear_line() {
     has_line_ = false;
 }
 
+void RunReporter::say(const char* event, const std::string& text) {
+    if (style_ == ProgressStyle::json) return print_json({{"event", event}, {"message", text}});
+    clear_line();
+    fmt::print(stderr, "{}\n", text);
+}
+
+void RunReporter::tell_conventions(const Capture& capture) {
+    const CaptureHeader& header = capture.header;
+    const std::string path = header.path.string();
+    const std::string profile = "profile " + header.profile + " (" + header.profile_reason + ")";
+    if (profile != profile_) say("note", path + ": " + profile);
+    profile_ = profile;
+    for (const std::string& note : header.notes)
+        if (notes_.insert(note).second) say("note", path + ": note: " + printable(note));
+    if (capture.pixels_without_motion > 0)
+        say("note",
+            fmt::format("frame {}: {} pixels have no motion data; {}", header.frame,
+                        capture.pixels_without_motion,
+                        capture.motion_from_camera ? "filled from camera and depth" : "filled with 0"));
+}
+
+void RunReporter::show_progress(int frame) {
+    const double elapsed_s = std::chrono::duration<double>(Clock::now() - begin_).count();
+    const int done = started_ - 1;
+    const double left_s = done > 0 ? elapsed_s / done * (frame_count_ - done) : 0;
+    if (style_ == ProgressStyle::json) {
+        json line = {{"event", "frame"},
+                     {"frame", frame},
+                     {"number", started_},
+                     {"of", frame_count_},
+                     {"elapsed_s", elapsed_s}};
+        if (done > 0) line["left_s"] = left_s;
+        return print_json(line);
+    }
+    std::string text = fmt::format("frame {} ({}/{})", frame, started_, frame_count_);
+    if (done > 0) text += fmt::format(", {:.3g} frames/s, {} left", done / elapsed_s, duration_text(left_s));
+    if (style_ == ProgressStyle::plain) return say("frame", text);
+    clear_line();
+    fmt::print(stderr, "{}", text);
+    std::fflush(stderr);
+    has_line_ = true;
+}
+
+void RunReporter::begin_frame(const Capture& capture) {
+    if (started_++ == 0) begin_ = Clock::now();
+    if (style_ == ProgressStyle::none) return;
+    tell_conventions(capture);
+    show_progress(capture.header.frame);
+}
+
 RunObserver RunReporter::observer() {
     RunObserver observer;
-    observer.frame_started = [this](const Capture& capture) {
-        const CaptureHeader& header = capture.header;
-        ++started_;
-        if (style_ == ProgressStyle::none) return;
-        const std::string profile = "profile " + header.profile + " (" + header.profile_reason + ")";
-        if (profile != profile_) {
-            clear_line();
-            fmt::print(stderr, "{}: {}\n", header.path.string(), profile);
-            profile_ = profile;
-        }
-        for (const std::string& note : header.notes) {
-            if (!notes_.insert(note).second) continue;
-            clear_line();
-            fmt::print(stderr, "{}: note: {}\n", header.path.string(), printable(note));
-        }
-        if (capture.pixels_without_motion > 0) {
-            clear_line();
-            fmt::print(stderr, "frame {}: {} pixels have no motion data; {}\n", header.frame,
-                       capture.pixels_without_motion,
-                       capture.motion_from_camera ? "filled from camera and depth" : "filled with 0");
-        }
-        if (style_ == ProgressStyle::plain) {
-            fmt::print(stderr, "frame {} ({}/{})\n", header.frame, started_, frame_count_);
-            return;
-        }
-        clear_line();
-        fmt::print(stderr, "frame {} ({}/{})", header.frame, started_, frame_count_);
-        std::fflush(stderr);
-        has_line_ = true;
-    };
+    observer.frame_started = [this](const Capture& capture) { begin_frame(capture); };
     observer.file_written = [this](const std::filesystem::path& path) {
         clear_line();
         fmt::print("{}\n", path.string());
-        std::fflush(stdout);
+        if (std::fflush(stdout) != 0)
+            throw Error(ExitCode::output,
+                        std::string("standard output cannot be written: ") + std::strerror(errno));
     };
     observer.frame_failed = [this](const std::string& message) {
-        clear_line();
-        fmt::print(stderr, "aftershade: error: {}\n", message);
+        say("failed", "aftershade: error: " + message);
+    };
+    observer.non_finite = [this](const std::string& message) {
+        say("warning", "aftershade: warning: " + printable(message));
     };
     observer.frame_missing = [this](int frame, const std::string& what) {
-        clear_line();
-        fmt::print(stderr, "frame {} is missing: {}\n", frame, what);
+        say("missing", fmt::format("frame {} is missing: {}", frame, what));
     };
     observer.history_reset = [this](int frame, const std::string& reason) {
-        clear_line();
-        fmt::print(stderr, "frame {}: history begins anew: {}\n", frame, reason);
+        say("history", fmt::format("frame {}: history begins anew: {}", frame, reason));
     };
     observer.native_message = [this](int frame, const std::string& line) {
-        if (style_ == ProgressStyle::none) return;
-        clear_line();
-        fmt::print(stderr, "frame {}: {}\n", frame, line);
+        if (style_ != ProgressStyle::none) say("native", fmt::format("frame {}: {}", frame, line));
     };
     observer.frame_audited = [this](const CaptureHeader& header, const std::vector<AuditFinding>& findings) {
-        clear_line();
-        if (findings.empty()) fmt::print(stderr, "audit: frame {}: every value is finite\n", header.frame);
+        if (findings.empty())
+            say("audit", fmt::format("audit: frame {}: every value is finite", header.frame));
         for (const AuditFinding& finding : findings)
-            fmt::print(stderr, "audit: frame {}: {}\n", header.frame, describe_finding(finding));
+            say("audit", fmt::format("audit: frame {}: {}", header.frame, describe_finding(finding)));
     };
     return observer;
 }
 
-void RunReporter::print_summary(const RunReport& report, const std::string& clock) {
-    clear_line();
-    if (style_ == ProgressStyle::none || report.frames_done == 0) return;
+void RunReporter::print_tables(const RunReport& report, const std::string& clock) const {
     fmt::print(stderr, "{:<28} {:>9} {:>9} {:>9}   ms a frame, {} clock\n", "pass", "mean", "min", "max",
                clock);
     for (const PassStatistics& pass : report.passes)
         fmt::print(stderr, "{:<28} {:>9.2f} {:>9.2f} {:>9.2f}\n", pass.pass, pass.total_ms / pass.frames,
                    pass.min_ms, pass.max_ms);
+    fmt::print(stderr, "{:<28} {:>9} {:>9}   s in all; decode and encode work beside the frames\n", "stage",
+               "busy", "waited");
+    for (const Stage& stage : stages_of(report))
+        fmt::print(stderr, "{:<28} {:>9.2f} {:>9.2f}\n", stage.name, stage.busy_ms / kMsPerSecond,
+                   stage.waited_ms / kMsPerSecond);
     fmt::print(stderr,
                "{} of {} frames in {:.2f} s; waited {:.2f} s for files to be read, {:.2f} s to be written\n",
-               report.frames_done, frame_count_, report.wall_ms / 1000, report.read_ms / 1000,
-               report.write_ms / 1000);
+               report.frames_done, frame_count_, report.wall_ms / kMsPerSecond, report.read_ms / kMsPerSecond,
+               report.write_ms / kMsPerSecond);
     constexpr double kMiB = 1024 * 1024;
     fmt::print(stderr, "textures and buffers: {:.1f} MiB ({:.1f} MiB without sharing memory)\n",
                double(report.bytes) / kMiB, double(report.bytes_unaliased) / kMiB);
+}
+
+void RunReporter::print_json_summary(const RunReport& report) const {
+    json stages = json::object();
+    for (const Stage& stage : stages_of(report))
+        stages[stage.name] = {{"busy_s", stage.busy_ms / kMsPerSecond},
+                              {"waited_s", stage.waited_ms / kMsPerSecond}};
+    print_json({{"event", "end"},
+                {"frames_done", report.frames_done},
+                {"of", frame_count_},
+                {"failed", failed_frames(report)},
+                {"skipped", report.frames_skipped},
+                {"non_finite", report.frames_non_finite},
+                {"interrupted", report.interrupted},
+                {"wall_s", report.wall_ms / kMsPerSecond},
+                {"stages", stages}});
+}
+
+void RunReporter::print_summary(const RunReport& report, const std::string& clock) {
+    clear_line();
+    if (style_ == ProgressStyle::none) return;
+    if (style_ == ProgressStyle::json) return print_json_summary(report);
+    if (report.frames_done > 0) print_tables(report, clock);
+    if (!report.frames_non_finite.empty())
+        fmt::print(stderr, "NaN or infinite pixels in {} of {} frames: {}\n", report.frames_non_finite.size(),
+                   frame_count_, format_frame_range(report.frames_non_finite));
+    if (!report.failures.empty())
+        fmt::print(stderr, "{} of {} frames failed: {}\n", report.failures.size(), frame_count_,
+                   format_frame_range(failed_frames(report)));
 }
 
 }  // namespace aftershade::cli

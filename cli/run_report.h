@@ -1,7 +1,8 @@
-// What `run` tells a person: progress while it works, and the time of each pass at the end. All on stderr;
-// stdout holds the paths of the files written, one a line.
+// What `run` tells a person or a program while it works and at the end. All on stderr; stdout holds the paths
+// of the files written, one a line.
 #pragma once
 
+#include <chrono>
 #include <set>
 #include <string>
 
@@ -9,7 +10,12 @@
 
 namespace aftershade::cli {
 
-enum class ProgressStyle { none, plain, terminal };
+enum class ProgressStyle {
+    none,      ///< warnings and errors alone
+    plain,     ///< a line for each frame, for logs
+    terminal,  ///< one line that changes
+    json       ///< an object a line (docs/looks.md)
+};
 
 /// "auto" is a terminal's line where stderr is one, else plain. Throws Error(ExitCode::usage).
 ProgressStyle parse_progress(const std::string& name);
@@ -22,11 +28,22 @@ public:
     void print_summary(const RunReport& report, const std::string& clock);
 
 private:
+    using Clock = std::chrono::steady_clock;
+
     void clear_line();
+    /// A line of its own, or {"event": event, "message": text}.
+    void say(const char* event, const std::string& text);
+    void begin_frame(const Capture& capture);
+    void tell_conventions(const Capture& capture);
+    void show_progress(int frame);
+    void print_tables(const RunReport& report, const std::string& clock) const;
+    void print_json_summary(const RunReport& report) const;
+
     ProgressStyle style_;
     int frame_count_ = 0;
     int started_ = 0;
     bool has_line_ = false;
+    Clock::time_point begin_{};
     std::string profile_;
     std::set<std::string> notes_;  ///< that have been told
 };

@@ -21,6 +21,7 @@ public:
 
     /// Whether anything is other than at the last call.
     bool changed();
+    const std::vector<std::filesystem::path>& paths() const { return paths_; }
 
 private:
     struct State {

@@ -61,7 +61,7 @@ private:
     void stage_copy(const fs::path& from, const fs::path& target) {
         AtomicFile& file = files_.emplace_back(target);
         std::error_code failure;
-        fs::copy_file(from, file.temporary_path(), failure);
+        fs::copy_file(from, file.temporary_path(), fs::copy_options::overwrite_existing, failure);
         if (failure) throw Error(ExitCode::output, target.string() + ": " + failure.message());
     }
 

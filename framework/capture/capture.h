@@ -18,6 +18,7 @@
 #include "framework/image/camera.h"
 #include "framework/image/color_space.h"
 #include "framework/image/image.h"
+#include "framework/image/non_finite.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
@@ -54,6 +55,8 @@ struct Capture {
     std::size_t pixels_without_motion =
         0;  ///< of velocity: filled, from the camera where that is known, else with 0
     bool motion_from_camera = false;
+    /// By role, as they were read; filled by whoever looks for them (framework/pipeline/nan_policy.h).
+    std::map<std::string, NonFinitePixels> non_finite;
 };
 
 /// One channel as the file stores it.

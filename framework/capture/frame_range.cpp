@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cstdint>
 #include <cstdlib>
+#include <string>
 #include <unordered_set>
 #include <utility>
 
@@ -101,6 +102,24 @@ std::optional<std::vector<int>> parse_frame_range(std::string_view text) {
         if (frames.size() > kMaxFrames) return std::nullopt;
     }
     return frames;
+}
+
+std::string format_frame_range(std::span<const int> frames) {
+    std::string text;
+    for (std::size_t first = 0; first < frames.size();) {
+        std::size_t last = first;
+        const std::int64_t step =
+            first + 1 < frames.size() ? std::int64_t(frames[first + 1]) - frames[first] : 0;
+        while (last + 1 < frames.size() && std::int64_t(frames[last + 1]) - frames[last] == step) ++last;
+        // Two frames with a step are as short apart, and a step between them would mean nothing.
+        if (last == first + 1 && std::abs(step) != 1) last = first;
+        if (!text.empty()) text += ",";
+        text += std::to_string(frames[first]);
+        if (last > first) text += "-" + std::to_string(frames[last]);
+        if (last > first && std::abs(step) != 1) text += "x" + std::to_string(std::abs(step));
+        first = last + 1;
+    }
+    return text;
 }
 
 std::string frame_range_pattern() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,9 @@ namespace aftershade {
 /// Frames come in the order written; a frame that is named again is dropped. nullopt for anything else, for a
 /// step of 0 and for more than a million frames.
 std::optional<std::vector<int>> parse_frame_range(std::string_view text);
+
+/// The shortest such text for frames in this order: "1-100", "1-99x2,120".
+std::string format_frame_range(std::span<const int> frames);
 
 /// The same as a regular expression of ECMA-262, for schemas; it cannot count the frames.
 std::string frame_range_pattern();

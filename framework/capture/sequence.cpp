@@ -1,6 +1,7 @@
 #include "framework/capture/sequence.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "framework/capture/capture_grammar.h"
 #include "framework/core/document.h"
@@ -148,6 +149,25 @@ std::vector<int> find_frames(const FramePattern& pattern) {
             frames.push_back(*frame);
     std::sort(frames.begin(), frames.end());
     return frames;
+}
+
+FrameGaps find_gaps(std::span<const int> frames) {
+    constexpr std::int64_t kMost = 100'000;
+    FrameGaps gaps;
+    std::int64_t step = 0;
+    for (std::size_t i = 1; i < frames.size(); ++i)
+        step = std::gcd(step, std::int64_t(frames[i]) - frames[i - 1]);
+    // Two frames alone say nothing of a step.
+    if (frames.size() > 2) gaps.step = int(step);
+    if (frames.size() < 2) return gaps;
+    const std::int64_t span = std::int64_t(frames.back()) - frames.front();
+    gaps.count = span / gaps.step + 1 - std::int64_t(frames.size());
+    if (gaps.count == 0 || gaps.count > kMost) return gaps;
+    for (std::int64_t frame = frames.front(); frame <= frames.back(); frame += gaps.step) {
+        gaps.whole.push_back(int(frame));
+        if (!std::ranges::binary_search(frames, int(frame))) gaps.missing.push_back(int(frame));
+    }
+    return gaps;
 }
 
 std::optional<Sequence> open_sequence(const std::string& argument, Diagnostics& diagnostics) {

@@ -1,9 +1,11 @@
 // Which frames there are, where they lie and how they are read.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -53,6 +55,16 @@ std::optional<Sequence> open_sequence(const std::string& argument, Diagnostics& 
 
 /// Adds "--role depth=z.####.exr".
 void add_role_file(Sequence& sequence, const std::string& text, Diagnostics& diagnostics);
+
+/// What a list of frames leaves out between its first and its last.
+struct FrameGaps {
+    int step = 1;              ///< of three frames or more: the largest that reaches each of them
+    std::int64_t count = 0;    ///< of frames that are missing at this step
+    std::vector<int> missing;  ///< empty where there are more than a hundred thousand
+    std::vector<int> whole;    ///< the list with them; empty where `missing` is
+};
+/// `frames` are sorted.
+FrameGaps find_gaps(std::span<const int> frames);
 
 /// Frames that exist for a pattern, sorted.
 std::vector<int> find_frames(const FramePattern& pattern);

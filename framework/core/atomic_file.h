@@ -6,13 +6,16 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 #include "framework/core/error.h"
 
 namespace aftershade {
 
-/// Names a temporary file beside `final_path` (".<name>.<pid>-<n>.tmp"); commit() flushes it to disk and
-/// renames it, the destructor removes it if it was not committed.
+/// Makes an empty temporary file beside `final_path`, named ".<name>.aftershade-<host>-<pid>-<n>.tmp", and
+/// holds a lock (flock) on it; commit() flushes it to disk and renames it, the destructor removes it if it
+/// was not committed. Where the file cannot be made the constructor says nothing: whoever opens it has the
+/// reason.
 class AtomicFile {
 public:
     explicit AtomicFile(std::filesystem::path final_path);
@@ -27,8 +30,19 @@ public:
 private:
     std::filesystem::path final_path_;
     std::filesystem::path temporary_path_;
+    int lock_ = -1;
     bool committed_ = false;
 };
+
+/// Removes what AtomicFile left in `folder` when its process was killed, and returns the paths. A file counts
+/// as left behind if its name says this host and a process that no longer runs, and nobody holds its lock;
+/// those of other hosts stay, since their processes cannot be seen from here.
+std::vector<std::filesystem::path> remove_stale_temporaries(const std::filesystem::path& folder);
+
+/// Makes the folder of a file that shall be written, and removes what a killed run left in it: better before
+/// the work than after it. Throws Error(ExitCode::output) naming the file and the reason where the folder
+/// cannot be made or nothing can be written into it. "" is no file.
+void prepare_output_folder(const std::filesystem::path& file);
 
 /// Replaces the file by this text. Throws Error(ExitCode::output) naming the path.
 void write_text_file(const std::filesystem::path& path, std::string_view text);

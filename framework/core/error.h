@@ -15,6 +15,7 @@ enum class ExitCode : int {
     gl = 4,            ///< no usable GL
     effect = 5,        ///< a shader, a plug-in or a pass failed
     output = 6,        ///< an output could not be written
+    memory = 7,        ///< memory ran out
     interrupted = 130  ///< SIGINT or SIGTERM
 };
 

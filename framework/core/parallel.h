@@ -5,6 +5,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -15,8 +16,8 @@ inline int thread_count(int asked) {
     return asked > 0 ? asked : std::max(1, int(std::thread::hardware_concurrency()));
 }
 
-/// Calls work(row) for each row, on `threads` threads, in no order; rows must not depend on each other.
-/// Rethrows the first exception.
+/// Calls work(row) for each row, on `threads` threads, in no order; rows must not depend on each other. Where
+/// the system starts fewer threads, those do the work. Rethrows the first exception.
 template <class Work>
 void for_each_row(int rows, int threads, const Work& work) {
     std::atomic<int> next = 0;
@@ -31,7 +32,10 @@ void for_each_row(int rows, int threads, const Work& work) {
         }
     };
     std::vector<std::jthread> others;
-    for (int i = 1; i < threads; ++i) others.emplace_back(run);
+    try {
+        for (int i = 1; i < threads; ++i) others.emplace_back(run);
+    } catch (const std::system_error&) {  // no memory for a stack, or too many threads
+    }
     run();
     others.clear();
     if (failure) std::rethrow_exception(failure);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "framework/core/error.h"
+#include "framework/core/memory_limit.h"
 #include "framework/core/text.h"
 #include "framework/file/exr_file.h"
 
@@ -103,7 +104,11 @@ std::string part_label(const std::vector<ExrPart>& parts, int part);
 /// The reason out of a message of the library, which repeats the file's name and ends with a full stop.
 std::string library_reason(const std::exception& error);
 
-/// Runs `work`; whatever it throws leaves as Error(code), "<path>: <what>: <reason>".
+/// Whether the library says by this that an allocation failed.
+bool is_memory_text(std::string_view text);
+
+/// Runs `work`; whatever it throws leaves as Error(code), "<path>: <what>: <reason>", or as
+/// Error(ExitCode::memory).
 template <class Work>
 decltype(auto) translate_errors(const std::filesystem::path& path, ExitCode code, const char* what,
                                 Work&& work) {
@@ -111,9 +116,11 @@ decltype(auto) translate_errors(const std::filesystem::path& path, ExitCode code
         return std::forward<Work>(work)();
     } catch (const Error&) {
         throw;
-    } catch (const std::bad_alloc&) {
-        fail(path, std::string(what) + ": not enough memory", code);
     } catch (const std::exception& error) {
+        // Running out of memory says nothing about the file; a length_error does. The library's threads pass
+        // on text alone.
+        if (dynamic_cast<const std::bad_alloc*>(&error) || is_memory_text(error.what()))
+            fail(path, out_of_memory_text(std::bad_alloc()), ExitCode::memory);
         fail(path, std::string(what) + ": " + library_reason(error), code);
     } catch (...) {
         fail(path, std::string(what) + ": unknown reason", code);

@@ -222,6 +222,11 @@ std::string part_label(const std::vector<ExrPart>& parts, int part) {
     return fmt::format("part {} '{}'", part, parts[std::size_t(part)].name);
 }
 
+bool is_memory_text(std::string_view text) {
+    return text.find("bad_alloc") != std::string_view::npos ||
+           text.find("Failed to allocate memory") != std::string_view::npos;
+}
+
 std::string library_reason(const std::exception& error) {
     std::string reason = error.what();
     const std::size_t name_end = reason.rfind("\". ");

@@ -2,6 +2,7 @@
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
+#include "framework/core/memory_limit.h"
 #include "framework/file/output_stream.h"
 
 #include <fmt/format.h>
@@ -13,6 +14,7 @@
 #include <cstdint>
 #include <exception>
 #include <memory>
+#include <new>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -108,7 +110,8 @@ void write_png(const fs::path& path, const Image& display) {
     const int written = stbi_write_png_to_func(write_to_sink, &sink, display.width(), display.height(),
                                                channels, bytes.data(), display.width() * channels);
     if (sink.failure) std::rethrow_exception(sink.failure);
-    if (written == 0) stream.fail("cannot be encoded: not enough memory");
+    if (written == 0)
+        throw Error(ExitCode::memory, path.string() + ": " + out_of_memory_text(std::bad_alloc()));
     stream.commit();
 }
 

@@ -1,12 +1,15 @@
 #include "framework/gpu/context.h"
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <span>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "framework/core/error.h"
+#include "framework/core/memory_limit.h"
 #include "framework/gpu/context_impl.h"
 #include "framework/gpu/self_test.h"
 
@@ -16,6 +19,9 @@ namespace {
 constexpr std::array kBackends = {Backend::egl, Backend::egl_software, Backend::osmesa};
 constexpr std::size_t kMaxErrors = 16;
 constexpr std::size_t kMaxDebugText = 255;
+/// What OpenGL must have of the address space. With less, Mesa 22.3 crashes, or waits for threads that it
+/// could not start. Runs over one small frame were measured to take 260 to 280 MiB, most of it for LLVM.
+constexpr std::uint64_t kContextBytes = 320ull * 1024 * 1024;
 
 /// What is current in this thread; EGL and OSMesa share Mesa's slot and would not see each other's change.
 thread_local Context::Impl* current = nullptr;
@@ -96,6 +102,8 @@ std::vector<BackendReport> probe_backends() {
 }
 
 Context::Context(Backend backend) {
+    // Mesa does not check every allocation: better refused here than a crash in there.
+    require_address_space(kContextBytes, "OpenGL");
     std::vector<std::pair<Backend, std::string>> reasons;
     for (Backend candidate : kBackends) {
         if (backend != Backend::automatic && backend != candidate) continue;
@@ -105,6 +113,7 @@ Context::Context(Backend backend) {
             return;
         } catch (const Error& error) {
             impl_.reset();
+            if (error.exit_code() == ExitCode::memory) throw;
             reasons.emplace_back(candidate, error.what());
         }
     }
@@ -119,6 +128,10 @@ const ContextInfo& Context::info() const {
 
 void Context::make_current() {
     impl_->make_current();
+}
+
+void Context::abandon() noexcept {
+    impl_->abandoned = true;
 }
 
 void Context::finish() {
@@ -137,8 +150,12 @@ void Context::check(std::string_view what) {
         if (!described) reported.push_back(error_name(code));
     }
     if (reported.empty()) return;
-    throw Error(ExitCode::effect,
-                fmt::format("{}: {} [{}]", what, fmt::join(reported, "; "), impl_->info.renderer));
+    const bool is_memory = std::ranges::any_of(
+        reported, [](const std::string& text) { return text.find("GL_OUT_OF_MEMORY") != std::string::npos; });
+    if (is_memory) abandon();
+    throw Error(is_memory ? ExitCode::memory : ExitCode::effect,
+                fmt::format("{}{}: {} [{}]", is_memory ? "out of memory: " : "", what,
+                            fmt::join(reported, "; "), impl_->info.renderer));
 }
 
 const GladGLContext& Context::gl() const {
@@ -162,6 +179,11 @@ Context::Impl::Impl(Backend backend) {
 }
 
 Context::Impl::~Impl() {
+    if (abandoned) {  // what these own goes with the process
+        static_cast<void>(cache.release());
+        static_cast<void>(platform.release());
+        return;
+    }
     if (!try_make_current()) return;
     gl.DebugMessageCallback(nullptr, nullptr);
     cache.reset();
@@ -177,6 +199,7 @@ void Context::Impl::make_current() {
 }
 
 bool Context::Impl::try_make_current() noexcept {
+    if (abandoned) return false;
     try {
         make_current();
         return true;

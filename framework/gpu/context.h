@@ -43,7 +43,8 @@ std::vector<BackendReport> probe_backends();
 /// selects]
 class Context {
 public:
-    /// Throws Error(ExitCode::gl) that lists each backend tried and why it was refused.
+    /// Throws Error(ExitCode::gl) that lists each backend tried and why it was refused, and
+    /// Error(ExitCode::memory) where a limit leaves too little address space.
     explicit Context(Backend backend);
     ~Context();
     Context(const Context&) = delete;
@@ -51,10 +52,14 @@ public:
 
     const ContextInfo& info() const;
     void make_current();
+    /// After memory ran out: this context and its objects are never deleted. Mesa 22.3 may wait for ever in
+    /// its clean-up for threads that ended then; the process that caught the failure should end (_exit).
+    void abandon() noexcept;
     /// Waits until the driver has done everything asked so far (glFinish).
     void finish();
     /// Throws Error(ExitCode::effect) if GL has reported an error (KHR_debug, or glGetError) since the last
-    /// call. `what` names the pass or the operation, for the message.
+    /// call, and Error(ExitCode::memory) where that is GL_OUT_OF_MEMORY; the context is abandoned then.
+    /// `what` names the pass or the operation, for the message.
     void check(std::string_view what);
 
     /// The function table; for framework/gpu only, which alone includes <glad/gl.h>.

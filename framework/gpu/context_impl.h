@@ -31,7 +31,7 @@ struct Context::Impl {
     Impl& operator=(const Impl&) = delete;
 
     void make_current();
-    /// For destructors: false where make_current() throws.
+    /// For destructors: false where make_current() throws, and after Context::abandon().
     bool try_make_current() noexcept;
     void release() noexcept;
     /// Call before GL touches a texture's or a buffer's memory from the CPU (read, write, clear): llvmpipe
@@ -48,6 +48,7 @@ struct Context::Impl {
     std::vector<std::string> errors;  ///< what KHR_debug reported since the last check()
     GLuint vertex_array = 0;          ///< empty; core profile draws nothing without one
     std::unique_ptr<ObjectCache> cache;
+    bool abandoned = false;
 
 private:
     void load_functions();

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/memory_limit.h"
 #include "framework/gpu/timer.h"
 
 namespace aftershade::graph {
@@ -47,6 +48,9 @@ Executor::Executor(gpu::Context& context, FrameGraph graph)
 }
 
 void Executor::allocate() {
+    // Mesa does not check every allocation of its own.
+    constexpr std::uint64_t kForMesa = 64ull * 1024 * 1024;
+    require_address_space(compiled_.bytes + kForMesa, "the memory of a frame's passes");
     const auto labels = slot_labels(graph_.textures(), compiled_.slot_of_texture, compiled_.slots.size());
     // Pointers to slots are kept: they must not move.
     slots_.reserve(labels.size());

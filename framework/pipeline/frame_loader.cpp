@@ -1,9 +1,12 @@
 #include "framework/pipeline/frame_loader.h"
 
 #include <algorithm>
+#include <chrono>
+#include <string>
 #include <utility>
 
 #include "framework/capture/capture_window.h"
+#include "framework/pipeline/nan_policy.h"
 
 namespace aftershade {
 
@@ -21,6 +24,21 @@ Window region_with_margin(const RunOptions& run, const Window& display) {
     return {display.min_x + region.min_x - margin, display.min_y + region.min_y - margin,
             display.min_x + region.max_x + margin, display.min_y + region.max_y + margin};
 }
+
+/// Adds how long it lived.
+class BusyTime {
+public:
+    explicit BusyTime(std::atomic<double>& sum_ms) : sum_ms_(sum_ms), start_(Trace::Clock::now()) {}
+    ~BusyTime() {
+        sum_ms_ += std::chrono::duration<double, std::milli>(Trace::Clock::now() - start_).count();
+    }
+    BusyTime(const BusyTime&) = delete;
+    BusyTime& operator=(const BusyTime&) = delete;
+
+private:
+    std::atomic<double>& sum_ms_;
+    Trace::Clock::time_point start_;
+};
 
 }  // namespace
 
@@ -72,8 +90,11 @@ std::vector<int> FrameLoader::files_of(std::size_t index) const {
 }
 
 Capture FrameLoader::read(int file) const {
+    const BusyTime busy(busy_ms_);
+    const TraceScope traced(run_.trace, "decode", "file " + std::to_string(file));
     Capture capture = reader_.read(file, roles_);
     require_capture_roles(pipeline_, capture.header);
+    apply_nan_policy(run_.on_nan, capture);  // before scaling, which spreads NaN
     if (run_.region) crop_capture(capture, region_with_margin(run_, capture.header.display_window));
     scale_capture(capture, run_.scale_divisor);
     const int subframe = (file % sequence_.subframes + sequence_.subframes) % sequence_.subframes;

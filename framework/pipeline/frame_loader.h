@@ -1,6 +1,7 @@
 // Reads frames, their sub-frames and their neighbours ahead of the one that is being worked on.
 #pragma once
 
+#include <atomic>
 #include <future>
 #include <map>
 #include <memory>
@@ -34,6 +35,8 @@ public:
     /// Of the same shot, where some input wants it and its file is there; nullptr otherwise.
     CapturePointer neighbour(std::size_t index, int offset);
     bool begins_shot(std::size_t index) const;
+    /// What reading and decoding took so far, on all threads together.
+    double busy_ms() const { return busy_ms_; }
 
 private:
     int file_of(int frame, int subframe) const;
@@ -53,6 +56,7 @@ private:
     int subframes_ = 1;
     std::map<int, std::shared_future<CapturePointer>> reads_;  // by file
     CapturePointer last_;
+    mutable std::atomic<double> busy_ms_ = 0;
 };
 
 }  // namespace aftershade

@@ -1,5 +1,6 @@
 #include "framework/pipeline/history_file.h"
 
+#include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -198,6 +199,7 @@ std::string window_text(const Window& window) {
 
 void write_history(const fs::path& path, const SavedHistory& history) {
     AtomicFile file(path);
+    errno = 0;
     std::ofstream out(file.temporary_path(), std::ios::binary);
     const std::string head = describe(history).dump();
     out << kMagic << "\n" << head << "\n";
@@ -208,7 +210,9 @@ void write_history(const fs::path& path, const SavedHistory& history) {
     }
     out.write(reinterpret_cast<const char*>(&sum), sizeof sum);
     out.close();
-    if (!out) throw Error(ExitCode::output, path.string() + ": cannot be written");
+    if (!out)
+        throw Error(ExitCode::output,
+                    path.string() + ": cannot be written: " + std::strerror(errno ? errno : EIO));
     file.commit();
 }
 

@@ -147,17 +147,13 @@ std::vector<OutputName> all_names(const OutputOptions& options) {
 
 }  // namespace
 
-void require_output_folder(const fs::path& file) {
-    const fs::path folder = file.parent_path();
-    std::error_code failure;
-    if (folder.empty() || fs::exists(folder, failure)) return;
-    throw Error(ExitCode::output,
-                file.string() + ": there is no folder '" + folder.string() + "' (create it first)");
-}
-
-void require_output_folders(const OutputOptions& options, const Sequence& sequence) {
+void prepare_output_folders(const OutputOptions& options, const Sequence& sequence) {
+    std::set<fs::path> folders;
     for (const auto& [place, text, is_telemetry] : all_names(options))
-        for (const int frame : sequence.frames) require_output_folder(FramePattern(text).path(frame));
+        for (const int frame : sequence.frames) {
+            const fs::path file = FramePattern(text).path(frame);
+            if (folders.insert(file.parent_path()).second) prepare_output_folder(file);
+        }
 }
 
 void check_outputs(const OutputOptions& options, const Sequence& sequence, Diagnostics& diagnostics) {

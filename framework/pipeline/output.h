@@ -13,11 +13,8 @@
 
 namespace aftershade {
 
-/// Throws Error(ExitCode::output) where the folder of a file that shall be written is not there: better told
-/// before the work than after it. "" is no file.
-void require_output_folder(const std::filesystem::path& file);
-/// The same for every file of every frame.
-void require_output_folders(const OutputOptions& options, const Sequence& sequence);
+/// Makes the folders of every file of every frame (framework/core/atomic_file.h: prepare_output_folder).
+void prepare_output_folders(const OutputOptions& options, const Sequence& sequence);
 
 /// Faults that show before any work: an unknown extension, several frames for one file, an output that is an
 /// input.

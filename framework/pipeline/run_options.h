@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "framework/core/trace.h"
 #include "framework/image/image.h"
 #include "framework/pipeline/native_steps.h"
 
@@ -17,10 +18,19 @@ enum class MissingFrame {
     hold    ///< run the last frame that was there again, under this frame's number
 };
 
+/// What to do where a capture or an output has pixels that are NaN or infinite. They are always counted.
+enum class NanPolicy {
+    warn,  ///< say so
+    fail,  ///< the frame has failed, and nothing of it is written
+    mend   ///< replace them (framework/image/non_finite.h), in captures before the effects see them, and say
+           ///< so
+};
+
 struct RunOptions {
     std::vector<int> frames;
     int warmup_frames = 0;  ///< of these, the first ones are rendered for their history and not written
     MissingFrame missing = MissingFrame::error;
+    NanPolicy on_nan = NanPolicy::warn;
     bool audit = false;
     bool telemetry = false;
     int scale_divisor = 1;              ///< frames are rendered at 1/this of their size
@@ -29,6 +39,7 @@ struct RunOptions {
     std::filesystem::path history_in;   ///< "" for none
     std::filesystem::path history_out;  ///< "" for none
     NativeSources natives{};
+    Trace* trace = nullptr;  ///< gets what the run does and when; nullptr for none
 };
 
 }  // namespace aftershade

@@ -23,7 +23,7 @@ Image last_frame(const RunSetup& setup, const std::filesystem::path& folder, std
     const RunReport report = run_frames(
         {setup.context, setup.pipeline, setup.sequence, setup.reader, options, outputs, setup.data_folder},
         {}, stop);
-    if (!report.failures.empty()) throw Error(ExitCode::capture, report.failures.front());
+    if (!report.failures.empty()) throw Error(ExitCode::capture, report.failures.front().message);
     return ExrFile(folder / "frame.exr").read_floats(0, std::vector<std::string>{"R", "G", "B"});
 }
 

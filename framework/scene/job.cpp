@@ -10,6 +10,7 @@
 
 #include "framework/capture/capture_writer.h"
 #include "framework/capture/light.h"
+#include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
 #include "framework/core/units.h"
 #include "framework/scene/samples.h"
@@ -106,6 +107,7 @@ public:
         std::error_code failure;
         fs::create_directories(job_.folder, failure);
         if (failure) throw Error(ExitCode::output, job_.folder.string() + ": " + failure.message());
+        remove_stale_temporaries(job_.folder);
         for (const int frame : job_.frames) {
             if (stop) break;
             if (job_.captures) render_captures(frame);

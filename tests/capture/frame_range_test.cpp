@@ -108,6 +108,26 @@ TEST(FramePattern, DoesNotMatchNamesThatItWouldNotWrite) {
         EXPECT_EQ(pattern.match(name), std::nullopt) << name;
 }
 
+TEST(FrameRange, IsWrittenAsShortAsItCanBeReadAgain) {
+    const std::vector<std::pair<Frames, std::string>> lists = {
+        {{}, ""},
+        {{7}, "7"},
+        {{1, 2}, "1-2"},
+        {{1, 2, 3, 4, 5}, "1-5"},
+        {{1, 3, 5, 120}, "1-5x2,120"},
+        {{1, 3}, "1,3"},
+        {{9, 1, 5}, "9,1,5"},
+        {{10, 6, 2}, "10-2x4"},
+        {{-5, -4, -3}, "-5--3"},
+        {{1, 2, 3, 5, 6, 7}, "1-3,5-7"},
+        {{-999999999, 999999999}, "-999999999,999999999"},
+    };
+    for (const auto& [frames, text] : lists) {
+        EXPECT_EQ(format_frame_range(frames), text);
+        EXPECT_TRUE(frames.empty() || parse_frame_range(text) == frames) << text;
+    }
+}
+
 TEST(FramePattern, WithoutAPlaceholderIsTheOneFile) {
     const FramePattern pattern("shots/####/still.exr");
     EXPECT_FALSE(pattern.has_frame());

@@ -163,5 +163,32 @@ TEST(CaptureDocument, RefusesARangeOfOneFile) {
     EXPECT_EQ(opened((folder / "capture.json").string()).frames, Frames{12});
 }
 
+TEST(FrameGaps, AreTheFramesMissingAtTheStepOfThoseThatAreThere) {
+    struct Case {
+        Frames frames;
+        int step;
+        Frames missing;
+    };
+    const std::vector<Case> cases = {
+        {{}, 1, {}},         {{7}, 1, {}},        {{1, 2, 3}, 1, {}},
+        {{1, 2, 4}, 1, {3}}, {{1, 3}, 1, {2}},  // two frames alone say nothing of a step
+        {{1, 3, 5}, 2, {}},  {{1, 3, 7}, 2, {5}}, {{-4, -2, 2}, 2, {0}},
+    };
+    for (const auto& [frames, step, missing] : cases) {
+        const FrameGaps gaps = find_gaps(frames);
+        EXPECT_EQ(gaps.step, step);
+        EXPECT_EQ(gaps.missing, missing);
+        EXPECT_EQ(gaps.count, std::int64_t(missing.size()));
+        EXPECT_EQ(gaps.whole.size(), missing.empty() ? 0 : frames.size() + missing.size());
+    }
+}
+
+TEST(FrameGaps, ThatAreTooManyAreOnlyCounted) {
+    const FrameGaps gaps = find_gaps(Frames{1, 2, 20'240'101});
+    EXPECT_EQ(gaps.count, 20'240'098);
+    EXPECT_TRUE(gaps.missing.empty());
+    EXPECT_TRUE(gaps.whole.empty());
+}
+
 }  // namespace
 }  // namespace aftershade

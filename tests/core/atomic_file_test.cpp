@@ -1,8 +1,13 @@
 #include "framework/core/atomic_file.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -82,6 +87,96 @@ TEST(RegularFile, IsKnownByItsFirstBytes) {
     for (const char* other : {"b", "abcd"}) EXPECT_FALSE(file_begins_with(folder / "file", other)) << other;
     EXPECT_FALSE(file_begins_with(folder.path(), "a"));
     EXPECT_FALSE(file_begins_with(folder / "absent", "a"));
+}
+
+/// A process that ran, and is gone.
+pid_t dead_process() {
+    const pid_t child = fork();
+    if (child == 0) _exit(0);
+    waitpid(child, nullptr, 0);
+    return child;
+}
+
+/// The name of a temporary file of this host with another process in it.
+fs::path temporary_of(const fs::path& file, pid_t process) {
+    const std::string own = AtomicFile(file).temporary_path().string();
+    const std::string mark = "-" + std::to_string(getpid()) + "-";
+    std::string other = own;
+    return other.replace(own.rfind(mark), mark.size(), "-" + std::to_string(process) + "-");
+}
+
+TEST(StaleTemporaries, GoWhenTheirProcessIsGone) {
+    const TemporaryFolder folder;
+    const fs::path stale = temporary_of(folder / "out.exr", dead_process());
+    write_text(stale, "half");
+    write_text(folder / "out.exr", "whole");
+    EXPECT_EQ(remove_stale_temporaries(folder.path()), std::vector<fs::path>{stale});
+    EXPECT_FALSE(fs::exists(stale));
+    EXPECT_EQ(read_text(folder / "out.exr"), "whole");
+}
+
+TEST(StaleTemporaries, StayWhileTheirProcessRunsOrTheirLockIsHeld) {
+    const TemporaryFolder folder;
+    const AtomicFile own(folder / "own.exr");
+    ASSERT_TRUE(fs::exists(own.temporary_path()));
+    const fs::path of_init = temporary_of(folder / "a.exr", 1);
+    write_text(of_init, "half");
+    // The process of another PID namespace looks dead from here; its lock says otherwise.
+    const fs::path locked = temporary_of(folder / "b.exr", dead_process());
+    write_text(locked, "half");
+    const int lock = open(locked.c_str(), O_RDONLY | O_CLOEXEC);
+    ASSERT_EQ(flock(lock, LOCK_EX | LOCK_NB), 0);
+    EXPECT_TRUE(remove_stale_temporaries(folder.path()).empty());
+    close(lock);
+    EXPECT_EQ(remove_stale_temporaries(folder.path()), std::vector<fs::path>{locked});
+}
+
+TEST(StaleTemporaries, AreNoFilesOfOthers) {
+    const TemporaryFolder folder;
+    const std::string dead = std::to_string(dead_process());
+    const std::string own = temporary_of(folder / "out.exr", dead_process()).filename().string();
+    const std::string host = own.substr(own.rfind(".aftershade-"));
+    std::vector<std::string> names = {
+        ".out.exr." + dead + "-0.tmp",                          // no mark
+        ".out.exr.aftershade-another-host-" + dead + "-0.tmp",  // cannot be seen from here
+        own.substr(1),                                          // not hidden
+        own + "~",
+        own.substr(0, own.size() - 6) + "-x.tmp",
+        "out.exr.tmp",
+        ".out.exr" + host.substr(0, host.find('-') + 1) + "-" + dead + ".tmp",
+    };
+    for (const std::string& name : names) write_text(folder / name, "theirs");
+    fs::create_directory(folder / own);  // a folder of that name
+    EXPECT_TRUE(remove_stale_temporaries(folder.path()).empty());
+    for (const std::string& name : names) EXPECT_TRUE(fs::exists(folder / name)) << name;
+}
+
+TEST(AtomicFiles, HaveTemporaryNamesThatAFileSystemTakes) {
+    const TemporaryFolder folder;
+    AtomicFile file(folder / std::string(250, 'n'));
+    EXPECT_LE(file.temporary_path().filename().string().size(), 255u);
+    ASSERT_TRUE(fs::exists(file.temporary_path()));
+    file.commit();
+    EXPECT_TRUE(fs::exists(folder / std::string(250, 'n')));
+    EXPECT_EQ(folder.file_count(), 1u);
+}
+
+TEST(OutputFolder, IsMadeWithTheFoldersAboveIt) {
+    const TemporaryFolder folder;
+    prepare_output_folder(folder / "a/b/out.exr");
+    EXPECT_TRUE(fs::is_directory(folder / "a/b"));
+    EXPECT_NO_THROW(prepare_output_folder("")) << "no file";
+    write_text(folder / "file", "");
+    for (const char* path : {"file/out.exr", "file/below/out.exr"}) {
+        try {
+            prepare_output_folder(folder / path);
+            FAIL() << path;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.exit_code(), ExitCode::output);
+            EXPECT_TRUE(std::string(error.what()).starts_with((folder / path).string() + ": "))
+                << error.what();
+        }
+    }
 }
 
 }  // namespace

@@ -1,0 +1,31 @@
+// Running out of memory: how it shows, and how to meet a limit of the address space (ulimit -v) early.
+#pragma once
+
+#include <cstdint>
+#include <exception>
+#include <optional>
+#include <string>
+
+namespace aftershade {
+
+/// Whether this is what running out of memory looks like: bad_alloc, length_error, a thread that the system
+/// refused, or Error(ExitCode::memory).
+bool is_out_of_memory(const std::exception& error);
+
+/// "out of memory (...): what to do".
+std::string out_of_memory_text(const std::exception& error);
+
+/// Bytes of address space that this process may still take; nullopt without a limit (RLIMIT_AS).
+std::optional<std::uint64_t> address_space_left();
+
+/// Throws Error(ExitCode::memory) where a limit leaves less than `bytes`; `what` needs them, such as
+/// "OpenGL".
+void require_address_space(std::uint64_t bytes, const std::string& what);
+
+/// At the start of main. Where the address space is limited, malloc keeps to one arena: each other one
+/// reserves 64 MiB for a thread, which are never used here. A crash in a library that does not check what
+/// malloc gave it, and an exception that ends a thread, then end the process with ExitCode::memory and a
+/// message, if memory is what was missing.
+void prepare_for_memory_limit();
+
+}  // namespace aftershade

@@ -1,0 +1,111 @@
+#include "framework/image/non_finite.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace aftershade {
+
+namespace {
+
+/// Whether any value is NaN or infinite: those have every bit of the exponent set (IEEE 754 binary32), so
+/// that adding 1 to the exponent carries into the place of the sign. Two values at a time, without a branch.
+bool any_non_finite(std::span<const float> values) {
+    constexpr std::uint64_t kExponents = 0x7f800000'7f800000, kOnes = 0x00800000'00800000,
+                            kSigns = 0x80000000'80000000;
+    std::uint64_t found = 0;
+    std::size_t i = 0;
+    for (; i + 1 < values.size(); i += 2) {
+        std::uint64_t two = 0;
+        std::memcpy(&two, &values[i], sizeof two);
+        found |= (two & kExponents) + kOnes;
+    }
+    return (found & kSigns) != 0 || (i < values.size() && !std::isfinite(values[i]));
+}
+
+class FaultFinder {
+public:
+    explicit FaultFinder(bool infinity_allowed) : infinity_allowed_(infinity_allowed) {}
+
+    bool is_fault(float value) const {
+        return !std::isfinite(value) && !(infinity_allowed_ && std::isinf(value) && value > 0);
+    }
+
+    std::span<const float> row(const Image& image, int y) const {
+        const std::size_t width = std::size_t(image.width()) * std::size_t(image.channels());
+        return image.floats().subspan(std::size_t(y) * width, width);
+    }
+
+    void count_row(const Image& image, int y, NonFinitePixels& found) const {
+        for (int x = 0; x < image.width(); ++x) {
+            bool nan = false, infinite = false;
+            for (int c = 0; c < image.channels(); ++c) {
+                const float value = image.at(x, y, c);
+                nan |= std::isnan(value);
+                infinite |= !std::isnan(value) && is_fault(value);
+            }
+            if (!nan && !infinite) continue;
+            if (!found) found.x = x, found.y = y;
+            ++(nan ? found.nan : found.infinite);
+        }
+    }
+
+private:
+    bool infinity_allowed_;
+};
+
+/// nullopt where no value around is finite.
+std::optional<float> mean_around(const Image& image, int x, int y, int channel, int radius_px) {
+    double sum = 0;
+    int count = 0;
+    for (int v = std::max(y - radius_px, 0); v <= std::min(y + radius_px, image.height() - 1); ++v)
+        for (int u = std::max(x - radius_px, 0); u <= std::min(x + radius_px, image.width() - 1); ++u)
+            if (const float value = image.at(u, v, channel); std::isfinite(value)) sum += value, ++count;
+    return count > 0 ? std::optional(float(sum / count)) : std::nullopt;
+}
+
+struct Replacement {
+    int x = 0, y = 0, channel = 0;
+    float value = 0;
+};
+
+}  // namespace
+
+NonFinitePixels find_non_finite(const Image& image, bool infinity_allowed) {
+    NonFinitePixels found;
+    if (image.type() != ComponentType::float32 || image.empty()) return found;
+    const FaultFinder finder(infinity_allowed);
+    for (int y = 0; y < image.height(); ++y)
+        if (any_non_finite(finder.row(image, y))) finder.count_row(image, y, found);
+    return found;
+}
+
+NonFinitePixels mend_non_finite(Image& image, bool infinity_allowed) {
+    NonFinitePixels found = find_non_finite(image, infinity_allowed);
+    if (!found) return found;
+    const FaultFinder finder(infinity_allowed);
+    std::vector<Replacement> replacements;
+    for (int y = found.y; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x) {
+            bool zeroed = false;
+            for (int c = 0; c < image.channels(); ++c) {
+                if (!finder.is_fault(image.at(x, y, c))) continue;
+                std::optional<float> value;
+                for (int radius_px = 1; !value && radius_px <= kMendRadius_px; ++radius_px)
+                    value = mean_around(image, x, y, c, radius_px);
+                zeroed |= !value;
+                replacements.push_back({x, y, c, value.value_or(0.0f)});
+            }
+            found.zeroed += zeroed;
+        }
+    for (const Replacement& r : replacements) image.at(r.x, r.y, r.channel) = r.value;
+    found.mended = found.count();
+    return found;
+}
+
+}  // namespace aftershade

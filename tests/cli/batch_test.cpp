@@ -1,0 +1,124 @@
+// Sequences with holes, history begun in the middle, empty words, watching.
+#include <chrono>
+#include <regex>
+#include <thread>
+
+#include "tests/cli/batch_work.h"
+
+namespace aftershade::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Batch : public BatchWork {
+protected:
+    static bool says(const CommandResult& result, const std::string& text) {
+        return std::regex_search(result.err, std::regex(text));
+    }
+};
+
+TEST_F(Batch, AMissingFrameOfAPatternIsAnErrorThatNamesIt) {
+    write_frames(1, 6);
+    for (const int frame : {3, 4}) fs::remove(frame_path(frame));
+    const CommandResult result =
+        run({"nothing.json", "in_####.exr", "-o", "out_####.exr"}, int(ExitCode::partial));
+    EXPECT_EQ(result.out, "out_0001.exr\nout_0002.exr\nout_0005.exr\nout_0006.exr\n");
+    EXPECT_TRUE(says(result, "in_####\\.exr: warning: frames 3-4 of 1-6 are missing \\(--missing skip .*"))
+        << result.err;
+    for (const char* name : {"in_0003", "in_0004"})
+        EXPECT_TRUE(says(result, "aftershade: error: " + std::string(name) + "\\.exr: ")) << result.err;
+}
+
+TEST_F(Batch, AMissingFrameOfAPatternIsSkippedOrHeldWhereThatIsAskedFor) {
+    write_frames(1, 3);
+    fs::remove(frame_path(2));
+    const CommandResult skipped =
+        run({"nothing.json", "in_####.exr", "-o", "out_####.exr", "--missing", "skip"}, 0);
+    EXPECT_EQ(skipped.out, "out_0001.exr\nout_0003.exr\n");
+    EXPECT_TRUE(says(skipped, "frame 2 is missing: skipped")) << skipped.err;
+    const CommandResult held =
+        run({"nothing.json", "in_####.exr", "-o", "out_####.exr", "--missing", "hold"}, 0);
+    EXPECT_EQ(held.out, "out_0001.exr\nout_0002.exr\nout_0003.exr\n");
+    EXPECT_TRUE(says(held, "frame 2 is missing: held")) << held.err;
+}
+
+TEST_F(Batch, ASequenceOnTwosIsWholeAndSaysThatItIsOnTwos) {
+    write_frames(1, 5);
+    for (const int frame : {2, 4}) fs::remove(frame_path(frame));
+    const CommandResult result = run({"nothing.json", "in_####.exr", "-o", "out_####.exr"}, 0);
+    EXPECT_EQ(result.out, "out_0001.exr\nout_0003.exr\nout_0005.exr\n");
+    EXPECT_TRUE(says(result, "warning: only every 2nd frame of 1-5 is there.*--frames 1-5")) << result.err;
+}
+
+TEST_F(Batch, AStrayNumberIsNoMillionOfMissingFrames) {
+    write_frames(1, 2);
+    fs::copy_file(frame_path(1), folder_ / "in_20240101.exr");
+    const CommandResult result =
+        run({"nothing.json", "in_####.exr", "-o", "out_####.exr"}, int(ExitCode::usage));
+    EXPECT_TRUE(says(result, "20240098 frames of 1-20240101 are missing; .*--frames")) << result.err;
+}
+
+TEST_F(Batch, HistoryBegunInTheMiddleOfAShotIsToldWithItsRemedy) {
+    write_frames(1, 4);
+    const std::string warning =
+        "aftershade: warning: frame 3: the history of 'trail' begins anew here, although frame 2 is there; "
+        ".* "
+        "\\(run the frames up to 2 with --history-out FILE, and these with --history-in FILE\\)";
+    const auto chunk = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"trail.json", "in_####.exr", "-o", "out_####.exr"});
+        return run(more, 0);
+    };
+    EXPECT_TRUE(says(chunk({"--frames", "3-4"}), warning));
+    EXPECT_FALSE(says(chunk({"--frames", "1-2", "--history-out", "h"}), "warning"));
+    EXPECT_FALSE(says(chunk({"--frames", "3-4", "--history-in", "h"}), "warning"));
+    EXPECT_FALSE(
+        says(run({"nothing.json", "in_####.exr", "-o", "out_####.exr", "--frames", "3-4"}, 0), "history"))
+        << "no step has history";
+    write_text(folder_ / "capture.json",
+               R"({ "aftershade": 1, "frames": "in_####.exr", "range": "1-4", "cuts": [3] })");
+    EXPECT_FALSE(
+        says(run({"trail.json", "capture.json", "-o", "out_####.exr", "--frames", "3-4"}, 0), "warning"))
+        << "a cut begins history in any case";
+}
+
+TEST_F(Batch, AnEmptyValueIsRefusedBeforeItMeansEverything) {
+    write_frames(1, 2);
+    for (const char* option :
+         {"--frames", "--profile", "--view", "--layer", "--region", "--history-in", "--history-out",
+          "--telemetry", "--set", "--var", "--output-roles", "--effect-path", "--backend", "-o"}) {
+        for (const bool joined : {false, true}) {
+            if (joined && option[1] != '-') continue;
+            std::vector<std::string> arguments{"nothing.json", "in_####.exr", "-o", "out_####.exr"};
+            if (joined) arguments.push_back(std::string(option) + "=");
+            else arguments.insert(arguments.end(), {option, ""});
+            arguments.insert(arguments.begin(), "run");
+            const CommandResult result = run_aftershade(arguments, folder_.path());
+            EXPECT_EQ(result.exit_code, int(ExitCode::usage)) << option << joined;
+            EXPECT_EQ(result.out, "") << option << joined;
+            EXPECT_TRUE(says(result, "the value is empty|required TEXT missing")) << option << joined << result.err;
+        }
+    }
+    EXPECT_TRUE(
+        says(run({"nothing.json", "in_####.exr", "-o", "out_####.exr", "--frames", ""}, int(ExitCode::usage)),
+             "--frames: the value is empty; leave the option out, or set the variable"));
+    EXPECT_TRUE(says(run({"", "in_####.exr", "-o", "out_####.exr"}, int(ExitCode::usage)),
+                     "look: the value is empty"));
+}
+
+TEST_F(Batch, ASaveDuringTheFirstRenderOfAWatchIsRendered) {
+    constexpr int kFrames = 6;
+    write_frames(1, kFrames, 480, 270);
+    Command watch(aftershade_words(words({"spread.json", "in_####.exr", "-o", "out_####.exr", "--watch"})),
+                  folder_.path());
+    ASSERT_TRUE(watch.wait_for_lines(1));
+    write_text(folder_ / "spread.json", R"({ "aftershade": 1, "steps": [ { "effect": "trail" } ] })");
+    EXPECT_TRUE(watch.wait_for_lines(2 * kFrames)) << "the save was lost";
+    watch.send(SIGINT);
+    EXPECT_EQ(watch.wait().exit_code, int(ExitCode::interrupted));
+    const std::string watched = read_text(folder_ / "out_0006.exr");
+    run({"spread.json", "in_####.exr", "-o", "out_####.exr"}, 0);
+    EXPECT_EQ(watched, read_text(folder_ / "out_0006.exr"));
+}
+
+}  // namespace
+}  // namespace aftershade::test
