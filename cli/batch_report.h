@@ -18,8 +18,7 @@ struct BatchSummary {
 };
 
 /// The outcomes of a run in this process; frames without one are "not run".
-std::vector<FrameEvent> frame_events(const std::vector<int>& frames, int warmup_frames,
-                                     const std::vector<FrameOutcome>& outcomes);
+std::vector<FrameEvent> frame_events(const RunOptions& run, const std::vector<FrameOutcome>& outcomes);
 FrameEvent frame_event(const FrameOutcome& outcome);
 
 /// {"look": ..., "frames": [{"frame": 12, "outcome": "failed", "seconds": 0.4, "message": "..."}], ...}

@@ -130,11 +130,12 @@ std::optional<Chunk> parse_chunk(const std::string& text, const Environment& env
 }
 
 JobFrames job_frames(const JobArguments& arguments, const Pipeline& pipeline, const Sequence& sequence,
-                     Diagnostics& diagnostics) {
+                     bool has_saved_history, Diagnostics& diagnostics) {
     JobFrames run;
     run.frames = sequence.frames;
     run.cuts = sequence.cuts;
     run.has_history = pipeline.has_history();
+    if (has_saved_history || (arguments.chunk.empty() && arguments.jobs.empty())) return run;
     const LookWarmup declared = warmup_of(pipeline);
     run.warmup_frames = declared.frames;
     if (arguments.warmup != "auto") {

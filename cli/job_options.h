@@ -50,9 +50,9 @@ std::optional<Chunk> parse_chunk(const std::string& text,
                                  const std::function<const char*(const char*)>& environment,
                                  Diagnostics& diagnostics);
 
-/// The run as far as its division matters. Notes what an unknown warm-up means for it.
+/// The run as far as its division matters. `has_saved_history`: it goes on from a file and needs no warm-up.
 JobFrames job_frames(const JobArguments& arguments, const Pipeline& pipeline, const Sequence& sequence,
-                     Diagnostics& diagnostics);
+                     bool has_saved_history, Diagnostics& diagnostics);
 
 /// "auto" or a number; at most as many as there are frames.
 int worker_count(const JobArguments& arguments, const JobFrames& run, Diagnostics& diagnostics);

@@ -129,6 +129,7 @@ void add_run_options(CLI::App& app, RunArguments& options) {
     app.add_flag("--watch", options.watch,
                  "Stay, and render again whenever the look, a manifest or a shader changes");
     add_plugin_options(app, options.plugins);
+    add_job_options(app, options.jobs);
     add_frame_options(app, options);
     add_backend_option(app, options.backend);
 }

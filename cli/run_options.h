@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/capture_options.h"
+#include "cli/job_options.h"
 #include "cli/plugin_options.h"
 #include "framework/core/diagnostics.h"
 #include "framework/pipeline/look.h"
@@ -48,6 +49,7 @@ struct RunArguments {
     PipelineOptions pipeline;
     CaptureOptions capture;
     PluginOptions plugins;
+    JobArguments jobs;
 
     /// Whether outputs have other pixels than the source.
     bool changes_window() const;

@@ -13,13 +13,13 @@ bool is_cut(const JobFrames& run, std::size_t index) {
 
 /// Where the `index`-th of `count` chunks begins, as an index of the run's frames.
 std::size_t beginning(const JobFrames& run, int index, int count) {
-    const std::size_t size = run.frames.size();
-    const std::size_t even = size * std::size_t(index) / std::size_t(count);
+    const std::size_t size = run.count(), lead = std::size_t(run.lead_frames);
+    const std::size_t even = lead + size * std::size_t(index) / std::size_t(count);
     if (!run.has_history || index == 0 || index == count) return even;
     const std::size_t reach = size / std::size_t(count) / 4;
     for (std::size_t away = 0; away <= reach; ++away) {
-        if (even + away < size && is_cut(run, even + away)) return even + away;
-        if (away <= even && is_cut(run, even - away)) return even - away;
+        if (even + away < run.frames.size() && is_cut(run, even + away)) return even + away;
+        if (lead + away <= even && is_cut(run, even - away)) return even - away;
     }
     return even;
 }

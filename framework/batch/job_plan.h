@@ -1,6 +1,7 @@
 // Which frames of a run go to which worker, or to which machine of a farm.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace aftershade {
@@ -16,9 +17,12 @@ struct JobPiece {
 /// A run as far as its division matters.
 struct JobFrames {
     std::vector<int> frames;  ///< in the order of the run
+    int lead_frames = 0;      ///< of these, the first ones only warm history up, as a chunk's do
     std::vector<int> cuts;    ///< frames that begin a shot, and with it history
     bool has_history = false;
     int warmup_frames = 0;  ///< before a piece that begins within a shot
+
+    std::size_t count() const { return frames.size() - std::size_t(lead_frames); }  ///< of written frames
 };
 
 /// The `index`-th of `count` pieces of successive frames, nearly equal in number. With history a piece begins

@@ -73,6 +73,20 @@ TEST(JobPlan, UsesNoWorkersThatWarmupWouldCostMoreThanTheyGain) {
     EXPECT_EQ(written(pieces), frames(300).frames);
 }
 
+TEST(JobPlan, AChunkIsDividedWithItsOwnWarmup) {
+    const JobPiece chunk = chunk_of(with_history(96, 4), 1, 2);
+    JobFrames run = with_history(0, 4);
+    run.frames = chunk.frames;
+    run.lead_frames = chunk.warmup_frames;
+    const auto pieces = plan_jobs(run, 2);
+    ASSERT_EQ(pieces.size(), 2u);
+    EXPECT_EQ(pieces[0].frames.front(), 45);
+    EXPECT_EQ(pieces[0].warmup_frames, 4);
+    EXPECT_EQ(pieces[1].frames[std::size_t(pieces[1].warmup_frames)], 73);
+    EXPECT_EQ(written(pieces).front(), 49);
+    EXPECT_EQ(written(pieces).size(), 48u);
+}
+
 TEST(JobPlan, ChunksOfAllCountsHoldEveryFrameOnce) {
     for (int size = 1; size <= 40; size += 3)
         for (int count = 1; count <= 12; ++count) {

@@ -95,7 +95,8 @@ TEST_F(Batch, AnEmptyValueIsRefusedBeforeItMeansEverything) {
             const CommandResult result = run_aftershade(arguments, folder_.path());
             EXPECT_EQ(result.exit_code, int(ExitCode::usage)) << option << joined;
             EXPECT_EQ(result.out, "") << option << joined;
-            EXPECT_TRUE(says(result, "the value is empty|required TEXT missing")) << option << joined << result.err;
+            EXPECT_TRUE(says(result, "the value is empty|required TEXT missing"))
+                << option << joined << result.err;
         }
     }
     EXPECT_TRUE(

@@ -1,0 +1,167 @@
+#include "cli/run_workers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "cli/batch_report.h"
+#include "cli/command_line.h"
+#include "framework/batch/run_jobs.h"
+#include "framework/capture/frame_range.h"
+#include "framework/core/atomic_file.h"
+#include "framework/core/cores.h"
+#include "framework/core/text.h"
+
+namespace aftershade::cli {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::vector<int> frames_of(const std::vector<FrameEvent>& events, const std::string& outcome) {
+    std::vector<int> frames;
+    for (const FrameEvent& event : events)
+        if (event.outcome == outcome) frames.push_back(event.frame);
+    return frames;
+}
+
+/// Prints what workers say, each line once, and how far the run is.
+class WorkersReporter {
+public:
+    WorkersReporter(ProgressStyle style, std::size_t frame_count) : style_(style), frame_count_(frame_count) {}
+
+    JobListener listener() {
+        JobListener listener;
+        listener.on_stdout = [this](std::string_view line) {
+            clear_line();
+            fmt::print("{}\n", line);
+            std::fflush(stdout);
+        };
+        listener.on_stderr = [this](std::string_view line) {
+            // Every worker says the same of what all frames have in common.
+            if (!said_.emplace(line).second) return;
+            clear_line();
+            fmt::print(stderr, "{}\n", line);
+        };
+        listener.on_frame = [this](const FrameEvent& event) { frame(event); };
+        return listener;
+    }
+
+    void finish(const JobsReport& report, std::size_t workers, double seconds) {
+        clear_line();
+        fmt::print(stderr, "{}", failures_text(report.frames));
+        if (style_ == ProgressStyle::none || style_ == ProgressStyle::json) return;
+        const std::size_t done = frames_of(report.frames, "done").size();
+        fmt::print(stderr, "{} of {} frames in {:.2f} s by {} {}; {:.2f} frames/s\n", done, frame_count_,
+                   seconds, workers, workers == 1 ? "worker" : "workers",
+                   seconds > 0 ? double(done) / seconds : 0.0);
+    }
+
+private:
+    void clear_line() {
+        if (has_line_) fmt::print(stderr, "\r\033[K");
+        has_line_ = false;
+    }
+
+    void frame(const FrameEvent& event) {
+        ++ended_;
+        if (style_ == ProgressStyle::none) return;
+        const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+        const double left = seconds / double(ended_) * double(frame_count_ - ended_);
+        if (style_ == ProgressStyle::json) {
+            const nlohmann::ordered_json line = {{"event", "frame"},         {"frame", event.frame},
+                                                 {"outcome", event.outcome}, {"done", ended_},
+                                                 {"frames", frame_count_},   {"seconds_left", left}};
+            fmt::print(stderr, "{}\n", line.dump());
+            return;
+        }
+        clear_line();
+        fmt::print(stderr, "frame {} {} ({}/{}), {:.2f} frames/s, {:.0f} s left", event.frame, event.outcome,
+                   ended_, frame_count_, double(ended_) / seconds, left);
+        has_line_ = style_ == ProgressStyle::terminal;
+        if (!has_line_) fmt::print(stderr, "\n");
+        std::fflush(stderr);
+    }
+
+    ProgressStyle style_;
+    std::size_t frame_count_;
+    std::size_t ended_ = 0;
+    bool has_line_ = false;
+    std::set<std::string, std::less<>> said_;
+    Clock::time_point start_ = Clock::now();
+};
+
+/// This process's command without what is its own.
+std::vector<std::string> worker_command() {
+    std::vector<std::string> command =
+        with_options(own_arguments(), {{"--jobs", ""},
+                                       {"--frame-timeout", ""},
+                                       {"--max-memory", ""},
+                                       {"--report", ""},
+                                       {"--progress", "none"}});
+    std::erase(command, "--stop-on-error");
+    command[0] = "/proc/self/exe";
+    return command;
+}
+
+/// Paths of workers' temporary files, logs and --worker-frames have no limit but the system's for one word, 128 KiB.
+std::vector<std::string> words_for(const JobPiece& piece, int threads) {
+    return {"--worker-frames", format_frame_range(piece.frames), "--worker-warmup",
+            std::to_string(piece.warmup_frames), "--worker-threads", std::to_string(threads)};
+}
+
+std::string continuation(const JobsReport& report) {
+    const std::vector<int> left = frames_of(report.frames, "not run");
+    if (left.empty()) return "";
+    return "interrupted; to go on:\n  " +
+           shell_line(with_options(own_arguments(), {{"--frames", format_frame_range(left)}})) + "\n";
+}
+
+}  // namespace
+
+void check_worker_options(const RunArguments& arguments, Diagnostics& diagnostics) {
+    if (!arguments.jobs.wants_workers()) return;
+    const auto refuse = [&](bool is_given, const char* option, const char* remedy) {
+        if (is_given)
+            diagnostics.error({option}, "needs all frames in one process, which --jobs, --frame-timeout and "
+                                        "--max-memory do not give it; " +
+                                            std::string(remedy));
+    };
+    refuse(!arguments.graph.empty(), "--graph", "draw the graph of one frame in a run of its own");
+    refuse(!arguments.telemetry_plot.empty(), "--telemetry-plot", "write --telemetry FILE_####.json");
+    refuse(!arguments.trace.empty(), "--trace", "trace a run of a few frames");
+    refuse(!arguments.history_in.empty(), "--history-in", "leave --jobs out, or let chunks warm up");
+    refuse(!arguments.history_out.empty(), "--history-out", "leave --jobs out, or let chunks warm up");
+    refuse(arguments.watch, "--watch", "leave one of them out");
+}
+
+ExitCode run_by_workers(const RunArguments& arguments, const JobFrames& frames, int workers,
+                        ProgressStyle progress, const std::atomic<bool>& stop) {
+    const auto start = Clock::now();
+    JobOptions options;
+    options.pieces = plan_jobs(frames, workers);
+    options.command = worker_command();
+    options.warmup_frames = frames.has_history ? frames.warmup_frames : 0;
+    options.threads = std::max(1, allotted_cores() / std::max(1, int(options.pieces.size())));
+    options.frame_arguments = [threads = options.threads](const JobPiece& piece) {
+        return words_for(piece, threads);
+    };
+    if (arguments.jobs.frame_timeout_s > 0)
+        options.frame_timeout = std::chrono::duration<double>(arguments.jobs.frame_timeout_s);
+    if (arguments.jobs.memory_bytes > 0) options.memory_bytes = arguments.jobs.memory_bytes;
+    options.stop_on_error = arguments.jobs.stop_on_error;
+    WorkersReporter reporter(progress, frames.frames.size());
+    const JobsReport report = run_jobs(options, reporter.listener(), stop);
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    reporter.finish(report, options.pieces.size(), seconds);
+    if (report.interrupted) fmt::print(stderr, "{}", continuation(report));
+    if (!arguments.jobs.report.empty())
+        write_text_file(arguments.jobs.report, report_json({arguments.look, arguments.capture.capture,
+                                                            report.frames, seconds, report.exit_code}));
+    return report.exit_code;
+}
+
+}  // namespace aftershade::cli

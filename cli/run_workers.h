@@ -1,0 +1,20 @@
+// `run` with worker processes.
+#pragma once
+
+#include <atomic>
+
+#include "cli/run_options.h"
+#include "cli/run_report.h"
+#include "framework/batch/job_plan.h"
+#include "framework/core/error.h"
+
+namespace aftershade::cli {
+
+/// What workers cannot do together, because it needs all frames in one process.
+void check_worker_options(const RunArguments& arguments, Diagnostics& diagnostics);
+
+/// Renders the frames by `workers` processes, reports progress and how each frame ended.
+ExitCode run_by_workers(const RunArguments& arguments, const JobFrames& frames, int workers,
+                        ProgressStyle progress, const std::atomic<bool>& stop);
+
+}  // namespace aftershade::cli
