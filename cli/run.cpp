@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "cli/batch_report.h"
+#include "cli/bound_look.h"
 #include "cli/command_line.h"
-#include "cli/effect_options.h"
 #include "cli/frame_gaps.h"
 #include "cli/gl_options.h"
 #include "cli/graph_file.h"
@@ -30,39 +30,11 @@
 #include "framework/core/data_path.h"
 #include "framework/core/trace.h"
 #include "framework/gpu/timer.h"
-#include "framework/pipeline/look.h"
 #include "framework/pipeline/output.h"
 
 namespace aftershade::cli {
 
 namespace {
-
-/// The look and its effects as they are on disk now; a pipeline refers to the effects.
-struct BoundLook {
-    explicit BoundLook(EffectRegistry found) : effects(std::move(found)) {}
-    EffectRegistry effects;
-    std::optional<Look> look;
-    Pipeline pipeline;
-};
-
-std::optional<Look> look_of(const RunArguments& options, Diagnostics& diagnostics) {
-    const LookVariables variables = look_variables(options, diagnostics);
-    if (options.look_folder.empty()) return read_look(options.look, diagnostics, variables);
-    std::optional<Node> node = read_document(options.look, diagnostics);
-    if (!node) return std::nullopt;
-    const std::filesystem::path name = std::filesystem::path(options.look).filename();
-    node->place.file = (std::filesystem::path(options.look_folder) / name).string();
-    return parse_look(*node, diagnostics, variables);
-}
-
-std::unique_ptr<BoundLook> bind_look(const RunArguments& options, Diagnostics& diagnostics) {
-    auto bound = std::make_unique<BoundLook>(find_effects(options.effect_paths, diagnostics));
-    bound->look = look_of(options, diagnostics);
-    PipelineOptions pipeline = options.pipeline;
-    for (std::string& tap : pipeline.taps) tap = tap.substr(0, tap.find('='));  // the files are the output's
-    if (bound->look) bound->pipeline = bind_pipeline(*bound->look, bound->effects, pipeline, diagnostics);
-    return bound;
-}
 
 /// What stays as it is while a look is being worked on.
 struct RunSession {
