@@ -49,7 +49,8 @@ ExitCode merge(const MergeArguments& options) {
     if (files.empty()) throw Error(ExitCode::capture, options.reports.front() + ": holds no report (.json)");
     const MergedReport merged = merge_reports(files);
     write_text_file(options.output, merged_report_json(merged));
-    for (const MissingReport& missing : merged.missing) std::cerr << missing.file << ": " << missing.why << "\n";
+    for (const MissingReport& missing : merged.missing)
+        std::cerr << missing.file << ": " << missing.why << "\n";
     std::cerr << failures_text(merged.batch.frames) << merge_summary(merged);
     return merged.batch.exit_code;
 }

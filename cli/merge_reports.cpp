@@ -30,7 +30,8 @@ void add_frames(const Json& report, std::map<int, FrameEvent>& frames) {
 }
 
 /// What keeps the file from being a report; "" where nothing does, and its content has been added.
-std::string add_report(const std::filesystem::path& file, BatchSummary& batch, std::map<int, FrameEvent>& frames) {
+std::string add_report(const std::filesystem::path& file, BatchSummary& batch,
+                       std::map<int, FrameEvent>& frames) {
     std::string fault;
     const std::string text = read_regular_file(file, kMostReportBytes, fault);
     if (!fault.empty()) return fault;

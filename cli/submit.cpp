@@ -29,8 +29,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kLeastFrames = 10;       // a task starts and compiles shaders for seconds
-constexpr int kWarmupFactor = 4;       // a quarter more frames rendered, at most
+constexpr int kLeastFrames = 10;         // a task starts and compiles shaders for seconds
+constexpr int kWarmupFactor = 4;         // a quarter more frames rendered, at most
 constexpr int kMostDefaultTasks = 1000;  // Slurm's default MaxArraySize allows no more
 
 /// A DNS label of RFC 1123 with room for "-report": a-z, 0-9 and -.
@@ -38,7 +38,8 @@ std::string job_name(const std::string& wanted) {
     constexpr std::size_t kMost = 56;
     std::string name;
     for (const char c : wanted) {
-        const bool plain = std::isalnum(static_cast<unsigned char>(c)) && static_cast<unsigned char>(c) < 0x80;
+        const bool plain =
+            std::isalnum(static_cast<unsigned char>(c)) && static_cast<unsigned char>(c) < 0x80;
         if (plain) name += char(std::tolower(c));
         else if (!name.empty() && name.back() != '-') name += '-';
     }
@@ -63,9 +64,10 @@ std::optional<RunArguments> parse_run(const std::vector<std::string>& words, Dia
     return run;
 }
 
-/// Everything that `run` would refuse before it renders; then `run` has the division's own options. nullopt after
-/// a fault.
-std::optional<JobFrames> check_run(const SubmitArguments& options, RunArguments& run, Diagnostics& diagnostics) {
+/// Everything that `run` would refuse before it renders; then `run` has the division's own options. nullopt
+/// after a fault.
+std::optional<JobFrames> check_run(const SubmitArguments& options, RunArguments& run,
+                                   Diagnostics& diagnostics) {
     const auto bound = bind_look(run, diagnostics);
     const std::vector<Profile> profiles = load_profiles(run.capture.profile_paths, diagnostics);
     auto sequence = find_sequence(run.capture, profiles, diagnostics);
@@ -94,8 +96,7 @@ int task_count(const SubmitArguments& options, const JobFrames& run) {
     const int frames = int(run.frames.size());
     if (options.tasks > 0) return std::min(options.tasks, frames);
     if (options.frames_per_task > 0) return (frames + options.frames_per_task - 1) / options.frames_per_task;
-    const int per_task =
-        std::max(kLeastFrames, run.has_history ? kWarmupFactor * run.warmup_frames : 0);
+    const int per_task = std::max(kLeastFrames, run.has_history ? kWarmupFactor * run.warmup_frames : 0);
     return std::clamp(frames / per_task, 1, kMostDefaultTasks);
 }
 
@@ -151,14 +152,15 @@ void write_job(const FarmJob& job, const FarmFiles& files) {
 
 std::string division_text(const SubmitArguments& options, const JobFrames& run, const FarmJob& job) {
     const int frames = int(run.frames.size()), tasks = job.tasks();
-    std::string text = fmt::format("{} {} in {} {} of about {}", frames, frames == 1 ? "frame" : "frames", tasks,
-                                   tasks == 1 ? "task" : "tasks", (frames + tasks - 1) / tasks);
+    std::string text = fmt::format("{} {} in {} {} of about {}", frames, frames == 1 ? "frame" : "frames",
+                                   tasks, tasks == 1 ? "task" : "tasks", (frames + tasks - 1) / tasks);
     if (options.tasks == 0 && options.frames_per_task == 0)
-        text += fmt::format(
-            " (at least {}, and {} times the warm-up; choose with --tasks or --frames-per-task)", kLeastFrames,
-            kWarmupFactor);
+        text +=
+            fmt::format(" (at least {}, and {} times the warm-up; choose with --tasks or --frames-per-task)",
+                        kLeastFrames, kWarmupFactor);
     if (job.history == FarmHistory::warmup)
-        text += fmt::format("; each renders up to {} frames before its own to warm history up", run.warmup_frames);
+        text += fmt::format("; each renders up to {} frames before its own to warm history up",
+                            run.warmup_frames);
     if (job.history == FarmHistory::exact)
         text += fmt::format("; exact history: {} {} of tasks, each task after the one before it",
                             job.rows.size(), job.rows.size() == 1 ? "row" : "rows");

@@ -25,9 +25,10 @@ void add_division_options(CLI::App& app, SubmitArguments& options) {
                    "Frames of one task (default: 10, or 4 times the warm-up where that is more)")
         ->check(CLI::Range(1, kMostTasks))
         ->excludes(tasks);
-    app.add_option("--history", options.history,
-                   "What a task knows of frames before its own: exact (tasks run in turn and hand history on), "
-                   "warmup (it renders a few of them first), none; auto is warmup where the look has history")
+    app.add_option(
+           "--history", options.history,
+           "What a task knows of frames before its own: exact (tasks run in turn and hand history on), "
+           "warmup (it renders a few of them first), none; auto is warmup where the look has history")
         ->check(CLI::IsMember({"auto", "exact", "warmup", "none"}))
         ->capture_default_str();
 }
@@ -82,7 +83,7 @@ std::vector<std::string> run_words(const SubmitArguments& options) {
 }
 
 void check_submit_options(const SubmitArguments& options, Diagnostics& diagnostics) {
-    constexpr std::array kOfTasks{"--chunk", "--report", "--history-in", "--history-out",
+    constexpr std::array kOfTasks{"--chunk", "--report",  "--history-in", "--history-out",
                                   "--watch", "--explain", "--dry-run"};
     for (const std::string& word : options.run_options)
         for (const std::string option : kOfTasks)
@@ -109,9 +110,10 @@ void check_submit_options(const SubmitArguments& options, Diagnostics& diagnosti
     }
     std::error_code failure;
     if (fs::exists(options.folder) && !fs::is_empty(options.folder, failure))
-        diagnostics.error({"--folder " + options.folder},
-                          "is not empty; choose another folder, or remove it: reports of an earlier job would "
-                          "count for this one");
+        diagnostics.error(
+            {"--folder " + options.folder},
+            "is not empty; choose another folder, or remove it: reports of an earlier job would "
+            "count for this one");
 }
 
 }  // namespace aftershade::cli

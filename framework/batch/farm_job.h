@@ -1,5 +1,5 @@
-// A run divided into tasks, as the files that a farm reads: Slurm, Open Job Description, Kubernetes, OpenCue, or
-// GNU parallel on one machine. Nothing here talks to a service.
+// A run divided into tasks, as the files that a farm reads: Slurm, Open Job Description, Kubernetes, OpenCue,
+// or GNU parallel on one machine. Nothing here talks to a service.
 #pragma once
 
 #include <cstdint>
@@ -23,11 +23,11 @@ enum class FarmHistory {
 struct FarmJob {
     std::string name;  ///< a DNS label (RFC 1123), which every farm accepts
     std::string program;
-    /// What follows the program's path: "run", the look, the capture, outputs and options, but for the part of
-    /// the frames, the history and the report.
+    /// What follows the program's path: "run", the look, the capture, outputs and options, but for the part
+    /// of the frames, the history and the report.
     std::vector<std::string> arguments;
-    std::filesystem::path working_folder;             ///< of the tasks; absolute
-    std::filesystem::path folder;                     ///< of the job's files; absolute
+    std::filesystem::path working_folder;              ///< of the tasks; absolute
+    std::filesystem::path folder;                      ///< of the job's files; absolute
     std::map<std::string, std::string> environment{};  ///< of the tasks
     FarmHistory history = FarmHistory::none;
     /// Tasks in the order of the frames, from 1, by row. Those of a row wait for one another, rows do not.
@@ -45,8 +45,8 @@ struct FarmJob {
     int tasks() const;
 };
 
-/// With exact history a row is the tasks of one shot, or those up to a gap in the frame numbers; else each task
-/// is a row. There are at most as many tasks as frames.
+/// With exact history a row is the tasks of one shot, or those up to a gap in the frame numbers; else each
+/// task is a row. There are at most as many tasks as frames.
 std::vector<std::vector<int>> farm_rows(const JobFrames& run, int tasks, FarmHistory history);
 
 struct FarmFile {

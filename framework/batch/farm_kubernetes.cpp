@@ -16,19 +16,21 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kContainer = "aftershade";
 
 Json kubernetes_pod(const FarmJob& job, const std::string& command, bool renders) {
-    Json container = {{"name", kContainer},
-                      {"image", job.image},
-                      {"command", Json::array({"sh", "-c", command})},
-                      {"volumeMounts", Json::array({{{"name", "files"}, {"mountPath", job.mount.string()}}})}};
+    Json container = {
+        {"name", kContainer},
+        {"image", job.image},
+        {"command", Json::array({"sh", "-c", command})},
+        {"volumeMounts", Json::array({{{"name", "files"}, {"mountPath", job.mount.string()}}})}};
     if (renders) {
         Json resources = {{"cpu", std::to_string(job.cpus)}};
         if (job.memory_bytes > 0) resources["memory"] = std::to_string(farm_mebibytes(job)) + "Mi";
         container["resources"] = {{"requests", resources}, {"limits", resources}};
     }
-    Json spec = {{"restartPolicy", "Never"},
-                 {"containers", Json::array({container})},
-                 {"volumes", Json::array({{{"name", "files"},
-                                           {"persistentVolumeClaim", {{"claimName", job.volume_claim}}}}})}};
+    Json spec = {
+        {"restartPolicy", "Never"},
+        {"containers", Json::array({container})},
+        {"volumes",
+         Json::array({{{"name", "files"}, {"persistentVolumeClaim", {{"claimName", job.volume_claim}}}}})}};
     if (renders && job.minutes > 0) spec["activeDeadlineSeconds"] = job.minutes * 60;
     return {{"spec", spec}};
 }
@@ -70,13 +72,16 @@ Json kubernetes_tasks(const FarmJob& job) {
 std::string kubernetes_submit_script(const FarmJob& job) {
     return fmt::format(
         "#!/bin/sh\n"
-        "# Creates the job, waits for its end, and creates the one that merges the reports: Kubernetes has no\n"
-        "# dependencies between jobs. Interrupt it once the job is there, if you like, and create report.json\n"
+        "# Creates the job, waits for its end, and creates the one that merges the reports: Kubernetes has "
+        "no\n"
+        "# dependencies between jobs. Interrupt it once the job is there, if you like, and create "
+        "report.json\n"
         "# later. Arguments go to kubectl: --namespace=film\n"
         "set -eu\n"
         "cd {}\n"
         "kubectl create \"$@\" -f job.json\n"
-        "state() {{ kubectl get \"$@\" -o 'jsonpath={{.status.conditions[?(@.status==\"True\")].type}}' job/{}; }}\n"
+        "state() {{ kubectl get \"$@\" -o 'jsonpath={{.status.conditions[?(@.status==\"True\")].type}}' "
+        "job/{}; }}\n"
         "until case $(state \"$@\") in *Complete* | *Failed) true ;; *) false ;; esac; do sleep 10; done\n"
         "kubectl create \"$@\" -f report-job.json\n",
         shell_line({job.folder.string()}), job.name);
@@ -87,11 +92,13 @@ std::string kubernetes_submit_script(const FarmJob& job) {
 void add_kubernetes_files(const FarmJob& job, FarmFiles& out) {
     constexpr int kMostIndexes = 100000;  // with backoffLimitPerIndex; the API refuses more
     if (job.tasks() > kMostIndexes)
-        throw Error(ExitCode::usage, fmt::format("--tasks: an Indexed Job of Kubernetes has at most {} tasks, not {}",
-                                                 kMostIndexes, job.tasks()));
+        throw Error(ExitCode::usage,
+                    fmt::format("--tasks: an Indexed Job of Kubernetes has at most {} tasks, not {}",
+                                kMostIndexes, job.tasks()));
     out.files.push_back({"job.json", kubernetes_job(job.name, kubernetes_tasks(job)).dump(2) + "\n"});
-    const Json report = {{"backoffLimit", 0},
-                         {"template", kubernetes_pod(job, "exec " + shell_line(farm_script(job, "merge.sh")), false)}};
+    const Json report = {
+        {"backoffLimit", 0},
+        {"template", kubernetes_pod(job, "exec " + shell_line(farm_script(job, "merge.sh")), false)}};
     out.files.push_back({"report-job.json", kubernetes_job(job.name + "-report", report).dump(2) + "\n"});
     out.files.push_back({"submit.sh", kubernetes_submit_script(job)});
     out.submit = farm_script(job, "submit.sh");

@@ -54,28 +54,29 @@ void add_opencue_files(const FarmJob& job, FarmFiles& out) {
         for (std::size_t at = format.find('%'); at != std::string::npos; at = format.find('%', at + 2))
             format.insert(at, "%");
     out.files.push_back(
-        {"job.py", fmt::format("#!/usr/bin/env python3\n"
-                               "# Launches the job with PyOutline (pip install opencue-pyoutline), on the Cuebot of\n"
-                               "# $CUEBOT_HOSTS.\n"
-                               "import outline\n"
-                               "import outline.cuerun\n"
-                               "from outline.layer import OutlinePostCommand\n"
-                               "from outline.modules.shell import Shell\n"
-                               "\n\n"
-                               "def make():\n"
-                               "    job = outline.Outline({}, current=True)\n"
-                               "{}"
-                               "    # Starts when every other layer has ended, also after failures.\n"
-                               "    OutlinePostCommand(\"report\", command={}, range=\"1-1\")\n"
-                               "    return job\n"
-                               "\n\n"
-                               "def launcher(**options):\n"
-                               "    return outline.cuerun.OutlineLauncher(make(), maxretries={}, **options)\n"
-                               "\n\n"
-                               "if __name__ == \"__main__\":\n"
-                               "    launcher().launch(use_pycuerun=False)\n",
-                               json_string(job.name), opencue_layers(job, format),
-                               json_string(shell_line(farm_script(job, "merge.sh"))), job.retries)});
+        {"job.py",
+         fmt::format("#!/usr/bin/env python3\n"
+                     "# Launches the job with PyOutline (pip install opencue-pyoutline), on the Cuebot of\n"
+                     "# $CUEBOT_HOSTS.\n"
+                     "import outline\n"
+                     "import outline.cuerun\n"
+                     "from outline.layer import OutlinePostCommand\n"
+                     "from outline.modules.shell import Shell\n"
+                     "\n\n"
+                     "def make():\n"
+                     "    job = outline.Outline({}, current=True)\n"
+                     "{}"
+                     "    # Starts when every other layer has ended, also after failures.\n"
+                     "    OutlinePostCommand(\"report\", command={}, range=\"1-1\")\n"
+                     "    return job\n"
+                     "\n\n"
+                     "def launcher(**options):\n"
+                     "    return outline.cuerun.OutlineLauncher(make(), maxretries={}, **options)\n"
+                     "\n\n"
+                     "if __name__ == \"__main__\":\n"
+                     "    launcher().launch(use_pycuerun=False)\n",
+                     json_string(job.name), opencue_layers(job, format),
+                     json_string(shell_line(farm_script(job, "merge.sh"))), job.retries)});
     out.submit = {"python3", (job.folder / "job.py").string()};
 }
 

@@ -29,8 +29,7 @@ Json openjd_tasks(const FarmJob& job, const std::string& name, int first, int la
     Json amounts = Json::array({{{"name", "amount.worker.vcpu"}, {"min", job.cpus}}});
     if (job.memory_bytes > 0)
         amounts.push_back({{"name", "amount.worker.memory"}, {"min", farm_mebibytes(job)}});
-    const Json task = {
-        {"name", "Task"}, {"type", "INT"}, {"range", fmt::format("{}-{}", first, last)}};
+    const Json task = {{"name", "Task"}, {"type", "INT"}, {"range", fmt::format("{}-{}", first, last)}};
     return {{"name", name},
             {"parameterSpace", {{"taskParameterDefinitions", Json::array({task})}}},
             {"hostRequirements", {{"amounts", amounts}}},
@@ -60,8 +59,9 @@ Json openjd_steps(const FarmJob& job) {
             ends.push_back("part-" + task_name(row.back()));
         }
     }
-    steps.push_back(
-        {{"name", "report"}, {"dependencies", depends_on(ends)}, {"script", openjd_script(job, "merge.sh", "")}});
+    steps.push_back({{"name", "report"},
+                     {"dependencies", depends_on(ends)},
+                     {"script", openjd_script(job, "merge.sh", "")}});
     return steps;
 }
 
@@ -75,10 +75,11 @@ void add_openjd_files(const FarmJob& job, FarmFiles& out) {
                                          "choose a folder without it");
     const Json steps = openjd_steps(job);
     if (steps.size() > kMostSteps)
-        throw Error(ExitCode::usage,
-                    fmt::format("--history exact: a template of Open Job Description holds {} steps, and {} tasks "
-                                "in a row need {}; write --tasks {}",
-                                kMostSteps, job.tasks(), steps.size(), kMostSteps - 1));
+        throw Error(
+            ExitCode::usage,
+            fmt::format("--history exact: a template of Open Job Description holds {} steps, and {} tasks "
+                        "in a row need {}; write --tasks {}",
+                        kMostSteps, job.tasks(), steps.size(), kMostSteps - 1));
     const Json job_template = {
         {"specificationVersion", "jobtemplate-2023-09"}, {"name", job.name}, {"steps", steps}};
     out.files.push_back({"job.json", job_template.dump(2) + "\n"});

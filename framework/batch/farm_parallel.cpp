@@ -21,14 +21,16 @@ std::string parallel_commands(const FarmJob& job) {
 std::string parallel_run_script(const FarmJob& job) {
     std::vector<std::string> options{"--joblog", "joblog", "--resume-failed", "--retries",
                                      std::to_string(job.retries + 1)};  // of GNU parallel: tries in all
-    const std::size_t row = job.history == FarmHistory::exact ? std::size_t(job.tasks()) / job.rows.size() : 1;
+    const std::size_t row =
+        job.history == FarmHistory::exact ? std::size_t(job.tasks()) / job.rows.size() : 1;
     if (job.minutes > 0)
         options.insert(options.end(), {"--timeout", std::to_string(std::size_t(job.minutes) * 60 * row)});
     if (job.memory_bytes > 0)
         options.insert(options.end(), {"--memfree", std::to_string(farm_mebibytes(job)) + "M"});
     return fmt::format(
         "#!/bin/sh\n"
-        "# Runs the tasks on this machine and merges their reports. Started again, it makes those that have not\n"
+        "# Runs the tasks on this machine and merges their reports. Started again, it makes those that have "
+        "not\n"
         "# succeeded. Arguments go to parallel (https://www.gnu.org/software/parallel/man.html).\n"
         "set -u\n"
         "cd {} || exit 6\n"

@@ -7,9 +7,11 @@ namespace aftershade {
 
 namespace {
 
-/// https://slurm.schedmd.com/sbatch.html: options in the script; those of submit.sh's command line come first.
+/// https://slurm.schedmd.com/sbatch.html: options in the script; those of submit.sh's command line come
+/// first.
 std::string sbatch_lines(const std::string& name, int cpus, std::uint64_t mebibytes, int minutes) {
-    std::string lines = fmt::format("#!/bin/sh\n#SBATCH --job-name={}\n#SBATCH --cpus-per-task={}\n", name, cpus);
+    std::string lines =
+        fmt::format("#!/bin/sh\n#SBATCH --job-name={}\n#SBATCH --cpus-per-task={}\n", name, cpus);
     if (mebibytes > 0) lines += fmt::format("#SBATCH --mem={}M\n", mebibytes);
     if (minutes > 0) lines += fmt::format("#SBATCH --time={}\n", minutes);
     return lines;
@@ -22,11 +24,14 @@ std::string slurm_task_script(const FarmJob& job) {
                "#SBATCH --output=logs/%4a.log\n"
                "#SBATCH --open-mode=append\n"
                "#SBATCH --requeue\n"
-               "# Slurm itself starts a task again after its node failed, and this script after the task did.\n"
-               "# Part and count are written out, so that sbatch --array=3,7 job.sbatch makes these two again.\n"
+               "# Slurm itself starts a task again after its node failed, and this script after the task "
+               "did.\n"
+               "# Part and count are written out, so that sbatch --array=3,7 job.sbatch makes these two "
+               "again.\n"
                "code=0\n"
                "{} \"$SLURM_ARRAY_TASK_ID\" || code=$?\n"
-               "# 1 (some frames), 2 (wrong words or documents) and 130 (interrupted) would end the same again.\n"
+               "# 1 (some frames), 2 (wrong words or documents) and 130 (interrupted) would end the same "
+               "again.\n"
                "case $code in 0 | 1 | 2 | 130) exit $code ;; esac\n"
                "[ \"${{SLURM_RESTART_COUNT:-0}}\" -ge {} ] || scontrol requeue \"$SLURM_JOB_ID\"\n"
                "exit $code\n",
@@ -40,12 +45,14 @@ std::string slurm_submissions(const FarmJob& job) {
                "jobs=${jobs%%;*}\n";
     std::string text =
         "jobs=\n"
-        "# submit TASK: behind job $before, where there is one. Slurm keeps the order through requeues. A task\n"
+        "# submit TASK: behind job $before, where there is one. Slurm keeps the order through requeues. A "
+        "task\n"
         "# whose predecessor left no history fails at once.\n"
         "submit() {\n"
         "    task=$1\n"
         "    shift\n"
-        "    job=$(sbatch --parsable --array=\"$task\" ${before:+--dependency=afterany:$before} \"$@\" job.sbatch)\n"
+        "    job=$(sbatch --parsable --array=\"$task\" ${before:+--dependency=afterany:$before} \"$@\" "
+        "job.sbatch)\n"
         "    before=${job%%;*}\n"
         "    jobs=$jobs:$before\n"
         "}\n";
@@ -60,7 +67,8 @@ std::string slurm_submissions(const FarmJob& job) {
 std::string slurm_submit_script(const FarmJob& job) {
     return fmt::format(
         "#!/bin/sh\n"
-        "# Submits the tasks, and a job that merges their reports. Arguments go to sbatch: --partition=night\n"
+        "# Submits the tasks, and a job that merges their reports. Arguments go to sbatch: "
+        "--partition=night\n"
         "set -eu\n"
         "cd {}\n"
         "{}"
@@ -80,10 +88,11 @@ void add_slurm_files(const FarmJob& job, FarmFiles& out) {
     out.files.push_back({"submit.sh", slurm_submit_script(job)});
     out.submit = farm_script(job, "submit.sh");
     if (job.tasks() >= kDefaultMaxArraySize)
-        out.remarks.push_back(fmt::format(
-            "Slurm accepts task numbers below its MaxArraySize, which is {} unless the site has raised it; this "
-            "job has {} tasks",
-            kDefaultMaxArraySize, job.tasks()));
+        out.remarks.push_back(
+            fmt::format("Slurm accepts task numbers below its MaxArraySize, which is {} unless the site has "
+                        "raised it; this "
+                        "job has {} tasks",
+                        kDefaultMaxArraySize, job.tasks()));
 }
 
 }  // namespace aftershade

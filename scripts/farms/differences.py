@@ -24,4 +24,4 @@ for name in names:
     errors.append(numpy.percentile(difference, 99) / numpy.abs(truth).mean())
 same = sum(error == 0 for error in errors)
 print(f"largest error {max(errors):.2g}, declared {limit:g}; {same} of {len(names)} pictures without any at that percentile")
-sys.exit(max(errors) > limit)
+sys.exit(int(max(errors) > limit))

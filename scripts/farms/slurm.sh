@@ -41,8 +41,8 @@ END
     munged --force --socket="$slurm/munge.socket" --key-file="$slurm/munge.key" --pid-file="$slurm/munge.pid" \
         --log-file="$slurm/log/munge" --seed-file="$slurm/munge.seed"
     slurmctld
-    slurmd -N n1
-    slurmd -N n2
+    start_node n1
+    start_node n2
     local waited
     for waited in $(seq 60); do
         [ "$(sinfo -h -N -o %T 2>/dev/null | grep -c idle)" -ne 2 ] || return 0
@@ -52,10 +52,18 @@ END
     return 1
 }
 
+# start_node NAME: a node daemon in a namespace of processes that ends with it, so that its jobs die with it as with a machine.
+# Its process number goes to NAME.outside.
+start_node() {
+    unshare --pid --fork --mount-proc --kill-child slurmd -D -N "$1" >"$slurm/log/$1.out" 2>&1 &
+    echo $! >"$slurm/$1.outside"
+    disown
+}
+
 stop_slurm() {
-    local name
-    for name in n1 n2 controller munge; do
-        [ ! -e "$slurm/$name.pid" ] || kill "$(cat "$slurm/$name.pid")" 2>/dev/null || true
+    local file
+    for file in "$slurm"/n1.outside "$slurm"/n2.outside "$slurm"/controller.pid "$slurm"/munge.pid; do
+        [ ! -e "$file" ] || kill "$(cat "$file")" 2>/dev/null || true
     done
 }
 
@@ -76,20 +84,6 @@ run_on_slurm() {
     wait_for_slurm
 }
 
-# The processes of a node's jobs, and the daemons that started them: all that dies with a machine.
-processes_of_node() {
-    local process
-    for process in /proc/[0-9]*; do
-        if tr '\0' '\n' <"$process/environ" 2>/dev/null | grep -qx "SLURMD_NODENAME=$1"; then
-            echo "${process#/proc/}"
-            # slurmstepd, which is the parent of the job's first process.
-            sed -n 's/^PPid:\t//p' "$process/status" 2>/dev/null | while read -r parent; do
-                [[ $(cat "/proc/$parent/comm" 2>/dev/null) != slurmstepd* ]] || echo "$parent"
-            done
-        fi
-    done | sort -u
-}
-
 # kill_node_in_the_middle_of JOB: leaves how often each task was started again in JOB.restarts.
 kill_node_in_the_middle_of() {
     local job=$1 node waited
@@ -100,9 +94,8 @@ kill_node_in_the_middle_of() {
         sleep 1
     done
     sleep 5
-    kill -9 "$(cat "$slurm/$node.pid")"
-    processes_of_node "$node" | xargs -r kill -9
-    rm "$slurm/$node.pid"
+    kill -9 "$(cat "$slurm/$node.outside")"
+    rm "$slurm/$node.outside"
     for waited in $(seq 600); do
         squeue -h -r -o %A | xargs -r -n 1 scontrol show job -o 2>/dev/null | grep -o 'Restarts=[0-9]*' | tr R r >>"$job.restarts" || true
         [ -n "$(squeue -h)" ] || return 0

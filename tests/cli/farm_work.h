@@ -16,10 +16,11 @@ protected:
     /// Exit 0: the folder `job` has the files.
     CommandResult submit(const std::string& farm, std::vector<std::string> more = {}, int exit_code = 0,
                          const std::vector<std::string>& run_options = {}) const {
-        std::vector<std::string> arguments{"submit", "--to", farm, "trail.json", "in_####.exr", "-o",
-                                           "out/f_####.exr", "--folder", "job"};
+        std::vector<std::string> arguments{
+            "submit", "--to", farm, "trail.json", "in_####.exr", "-o", "out/f_####.exr", "--folder", "job"};
         arguments.insert(arguments.end(), more.begin(), more.end());
-        for (const char* word : {"--", "--effect-path", "effects", "--backend", "osmesa", "--pixel-type", "float"})
+        for (const char* word :
+             {"--", "--effect-path", "effects", "--backend", "osmesa", "--pixel-type", "float"})
             arguments.push_back(word);
         arguments.insert(arguments.end(), run_options.begin(), run_options.end());
         CommandResult result = run_aftershade(arguments, folder_.path());
@@ -37,9 +38,10 @@ protected:
 
     /// Bytes of out/f_####.exr by name, but for the time of writing, which they do not hold.
     std::map<std::string, std::string> outputs() const { return contents(folder_ / "out"); }
-    /// Those of one run over all frames; the files are removed.
+    /// Those of one run over all frames; the files are removed. The path of the look is one of their
+    /// attributes.
     std::map<std::string, std::string> uncut() const {
-        run({"trail.json", "in_####.exr", "-o", "out/f_####.exr"}, 0);
+        run({absolute("trail.json"), "in_####.exr", "-o", "out/f_####.exr"}, 0);
         auto files = outputs();
         std::filesystem::remove_all(folder_ / "out");
         return files;

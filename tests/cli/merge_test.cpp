@@ -12,13 +12,14 @@ class Merge : public testing::Test {
 protected:
     void report(const std::string& name, const std::string& frames, double seconds = 2) {
         fs::create_directories(folder_ / "reports");
-        write_text(folder_ / ("reports/" + name),
-                   R"({ "aftershade_report": 1, "look": "/a.json", "capture": "/b", "exit_code": 0, "seconds": )" +
-                       std::to_string(seconds) + R"(, "frames": [)" + frames + "] }");
+        write_text(
+            folder_ / ("reports/" + name),
+            R"({ "aftershade_report": 1, "look": "/a.json", "capture": "/b", "exit_code": 0, "seconds": )" +
+                std::to_string(seconds) + R"(, "frames": [)" + frames + "] }");
     }
     static std::string frame(int number, const std::string& outcome, const std::string& message = "") {
-        return R"({ "frame": )" + std::to_string(number) + R"(, "outcome": ")" + outcome + R"(", "message": ")" +
-               message + R"(" })";
+        return R"({ "frame": )" + std::to_string(number) + R"(, "outcome": ")" + outcome +
+               R"(", "message": ")" + message + R"(" })";
     }
     CommandResult merge(std::vector<std::string> arguments, int exit_code) {
         arguments.insert(arguments.begin(), "merge");
@@ -59,7 +60,8 @@ TEST_F(Merge, NamesTheTasksThatHaveNoReportOrABrokenOne) {
     report("0001.json", frame(1, "done"));
     write_text(folder_ / "reports/0002.json", "{ \"aftershade_report\": 1, \"fra");
     const CommandResult result = merge({"reports", "--tasks", "3"}, 1);
-    EXPECT_NE(result.err.find("reports/0002.json: is no report of run --report\n"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("reports/0002.json: is no report of run --report\n"), std::string::npos)
+        << result.err;
     EXPECT_NE(result.err.find("reports/0003.json: no such file"), std::string::npos) << result.err;
     EXPECT_NE(result.err.find("1 of 3 tasks reported"), std::string::npos) << result.err;
     EXPECT_EQ(all()["missing_reports"].size(), 2u);

@@ -1,4 +1,5 @@
-// The jobs that `submit` writes, read and run by what reads and runs them; scripts/check-farms has a real Slurm.
+// The jobs that `submit` writes, read and run by what reads and runs them; scripts/check-farms has a real
+// Slurm.
 #include <filesystem>
 
 #include "tests/cli/farm_work.h"
@@ -38,7 +39,8 @@ TEST_F(Submit, WritesNothingWhereTheRunOrTheJobHasFaultsAndListsThemAll) {
     for (const char* fault : {"--frames 1-x", "trail.size"})
         EXPECT_NE(run_faults.err.find(fault), std::string::npos) << run_faults.err;
     const CommandResult job_faults = submit("kubernetes", {"--mount", "/elsewhere"}, 2, {"--chunk", "1/2"});
-    for (const char* fault : {"needs --image", "needs --volume-claim", "does not lie below /elsewhere", "-- --chunk"})
+    for (const char* fault :
+         {"needs --image", "needs --volume-claim", "does not lie below /elsewhere", "-- --chunk"})
         EXPECT_NE(job_faults.err.find(fault), std::string::npos) << job_faults.err;
     const CommandResult no_warmup = submit("slurm", {"--history", "warmup"}, 2);
     EXPECT_NE(no_warmup.err.find("declares no warm-up"), std::string::npos) << no_warmup.err;
@@ -53,7 +55,8 @@ TEST_F(Submit, RefusesAFolderThatHoldsAnotherJob) {
 
 TEST_F(Submit, DividesIntoTasksOfTenFramesAndOfFourTimesTheWarmupUnlessToldOtherwise) {
     write_frames(13, 40);
-    const auto tasks = [&](const std::vector<std::string>& more, const std::vector<std::string>& run_options) {
+    const auto tasks = [&](const std::vector<std::string>& more,
+                           const std::vector<std::string>& run_options) {
         fs::remove_all(folder_ / "job");
         return submit("slurm", more, 0, run_options).err;
     };
@@ -67,7 +70,7 @@ TEST_F(Submit, TasksKeepTheirFramesAndPathsWhateverTheyMeetLater) {
     submit("parallel", {"--history", "exact", "--tasks", "2"});
     write_frames(13, 14);
     const auto expected = [&] {
-        run({"trail.json", "in_####.exr", "-o", "out/f_####.exr", "--frames", "1-12"}, 0);
+        run({absolute("trail.json"), "in_####.exr", "-o", "out/f_####.exr", "--frames", "1-12"}, 0);
         auto files = outputs();
         fs::remove_all(folder_ / "out");
         return files;
@@ -79,10 +82,11 @@ TEST_F(Submit, TasksKeepTheirFramesAndPathsWhateverTheyMeetLater) {
 TEST_F(Submit, PathsWithBlanksQuotesAndDollarsReachTheTasksUnharmed) {
     const std::string name = "a 'b' $c";
     fs::copy_file(folder_ / "trail.json", folder_ / (name + ".json"));
-    const CommandResult result = run_aftershade(
-        {"submit", "--to", "parallel", name + ".json", "in_####.exr", "-o", name + "/f_####.exr", "--folder",
-         "job " + name, "--history", "exact", "--tasks", "1", "--", "--effect-path", "effects", "--backend", "osmesa"},
-        folder_.path());
+    const CommandResult result =
+        run_aftershade({"submit", "--to", "parallel", name + ".json", "in_####.exr", "-o",
+                        name + "/f_####.exr", "--folder", "job " + name, "--history", "exact", "--tasks", "1",
+                        "--", "--effect-path", "effects", "--backend", "osmesa"},
+                       folder_.path());
     ASSERT_EQ(result.exit_code, 0) << result.err;
     EXPECT_NE(read_text(folder_ / ("job " + name + "/task.sh")).find("aftershade"), std::string::npos);
     EXPECT_EQ(Command({"/bin/sh", absolute("job " + name + "/task.sh"), "1"}, "/").wait().exit_code, 0);
@@ -113,17 +117,19 @@ TEST_F(Submit, RowsOfExactHistoryBeginAtCutsAndAtGapsInTheFrames) {
 
 TEST_F(Submit, SlurmsTasksFormAnArrayAndTheReportWaitsForIt) {
     const auto whole = uncut();
-    const CommandResult result = submit("slurm", {"--tasks", "4", "--cpus", "2", "--memory", "4GB", "--time", "90"},
-                                        0, {"--warmup", "12"});
+    const CommandResult result = submit(
+        "slurm", {"--tasks", "4", "--cpus", "2", "--memory", "4GB", "--time", "90"}, 0, {"--warmup", "12"});
     EXPECT_EQ(result.out, "sh " + absolute("job/submit.sh") + "\n");
     expect_readable_scripts();
     const CommandResult ran = shell("sh job/submit.sh --partition=night", slurm_here());
     EXPECT_EQ(ran.exit_code, 0) << ran.err;
     EXPECT_EQ(ran.out, "tasks: 1; report: job 2\n");
-    EXPECT_EQ(read_text(folder_ / "notes"), "--parsable --partition=night job.sbatch\n"
-                                            "--parsable --dependency=afterany:1 --partition=night merge.sbatch\n");
+    EXPECT_EQ(read_text(folder_ / "notes"),
+              "--parsable --partition=night job.sbatch\n"
+              "--parsable --dependency=afterany:1 --partition=night merge.sbatch\n");
     for (const char* line : {"--array=1-4", "--cpus-per-task=2", "--mem=4096M", "--time=90", "--requeue"})
-        EXPECT_NE(job_file("job.sbatch").find("\n#SBATCH " + std::string(line) + "\n"), std::string::npos) << line;
+        EXPECT_NE(job_file("job.sbatch").find("\n#SBATCH " + std::string(line) + "\n"), std::string::npos)
+            << line;
     // A warm-up from the first frame on is exact.
     EXPECT_EQ(outputs(), whole);
     EXPECT_EQ(job_json("report.json")["done"], 12);
@@ -135,10 +141,11 @@ TEST_F(Submit, SlurmsTasksWithExactHistoryWaitForOneAnotherAndAreBitIdentical) {
     expect_readable_scripts();
     const CommandResult ran = shell("sh job/submit.sh", slurm_here());
     EXPECT_EQ(ran.exit_code, 0) << ran.err;
-    EXPECT_EQ(read_text(folder_ / "notes"), "--parsable --array=1 job.sbatch\n"
-                                            "--parsable --array=2 --dependency=afterany:1 job.sbatch\n"
-                                            "--parsable --array=3 --dependency=afterany:2 job.sbatch\n"
-                                            "--parsable --dependency=afterany:1:2:3 merge.sbatch\n");
+    EXPECT_EQ(read_text(folder_ / "notes"),
+              "--parsable --array=1 job.sbatch\n"
+              "--parsable --array=2 --dependency=afterany:1 job.sbatch\n"
+              "--parsable --array=3 --dependency=afterany:2 job.sbatch\n"
+              "--parsable --dependency=afterany:1:2:3 merge.sbatch\n");
     EXPECT_EQ(outputs(), whole);
 }
 
@@ -194,8 +201,11 @@ TEST_F(Submit, OpenJdHoldsTheTasksInOneStepOrInAStepForEachWithExactHistory) {
 }
 
 TEST_F(Submit, KubernetesGetsAnIndexedJobThatFitsItsSchema) {
-    const std::vector<std::string> options{"--image", "film/aftershade:1", "--volume-claim", "shots", "--memory",
-                                           "4GB", "--time", "60", "--tasks", "3"};
+    const std::vector<std::string> options{"--image",        "film/aftershade:1",
+                                           "--volume-claim", "shots",
+                                           "--memory",       "4GB",
+                                           "--time",         "60",
+                                           "--tasks",        "3"};
     submit("kubernetes", options, 0, {"--warmup", "2"});
     expect_readable_scripts();
     const nlohmann::json spec = job_json("job.json")["spec"];
@@ -208,7 +218,8 @@ TEST_F(Submit, KubernetesGetsAnIndexedJobThatFitsItsSchema) {
     EXPECT_EQ(container["volumeMounts"][0]["mountPath"], folder_.path().string());
     EXPECT_EQ(container["resources"]["limits"]["memory"], "4096Mi");
     EXPECT_NE(job_file("task.sh").find("\nexec aftershade run "), std::string::npos);
-    if (!has("kubernetes-validate")) GTEST_SKIP() << "no kubernetes-validate (pip install kubernetes-validate)";
+    if (!has("kubernetes-validate"))
+        GTEST_SKIP() << "no kubernetes-validate (pip install kubernetes-validate)";
     const CommandResult valid = shell("kubernetes-validate --strict job/job.json job/report-job.json");
     EXPECT_EQ(valid.exit_code, 0) << valid.out << valid.err;
 }
@@ -245,10 +256,11 @@ TEST_F(Submit, OpenCuesScriptGivesALayerOfTasksOrAChainOfLayers) {
         "cd job && HOME=. $(dirname $(command -v pycuerun))/python -c "
         "'import job; print(job.launcher().serialize(use_pycuerun=False))'");
     ASSERT_EQ(made.exit_code, 0) << made.err;
-    for (const std::string text :
+    for (const std::string& text :
          {"<cmd>sh " + absolute("job/task.sh") + " 2</cmd>", std::string("<maxretries>2</maxretries>"),
-          std::string("<cores>2.0</cores><memory>4096m</memory>"), std::string("<deplayer>part_0003</deplayer>"),
-          std::string("<onlayer>part_0002</onlayer>"), std::string("<layer name=\"report\" type=\"Post\">")})
+          std::string("<cores>2.0</cores><memory>4096m</memory>"),
+          std::string("<deplayer>part_0003</deplayer>"), std::string("<onlayer>part_0002</onlayer>"),
+          std::string("<layer name=\"report\" type=\"Post\">")})
         EXPECT_NE(made.out.find(text), std::string::npos) << text << "\n" << made.out;
 }
 
