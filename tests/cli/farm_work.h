@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstdlib>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "tests/cli/batch_work.h"
 
@@ -36,15 +39,24 @@ protected:
     nlohmann::json job_json(const std::string& name) const { return nlohmann::json::parse(job_file(name)); }
     std::string absolute(const std::string& name) const { return (folder_ / name).string(); }
 
-    /// Bytes of out/f_####.exr by name, but for the time of writing, which they do not hold.
-    std::map<std::string, std::string> outputs() const { return contents(folder_ / "out"); }
-    /// Those of one run over all frames; the files are removed. The path of the look is one of their
-    /// attributes.
-    std::map<std::string, std::string> uncut() const {
-        run({absolute("trail.json"), "in_####.exr", "-o", "out/f_####.exr"}, 0);
-        auto files = outputs();
+    using Pictures = std::map<std::string, std::vector<float>>;
+
+    /// The pixels of out/f_####.exr by name.
+    Pictures outputs() const {
+        Pictures pictures;
+        for (const auto& entry : std::filesystem::directory_iterator(folder_ / "out"))
+            if (const std::string name = entry.path().filename().string(); name.ends_with(".exr")) {
+                const Image image = color("out/" + name);
+                pictures[name].assign(image.floats().begin(), image.floats().end());
+            }
+        return pictures;
+    }
+    /// Those of one run over these frames; the files are removed.
+    Pictures uncut(const std::string& frames = "1-12") const {
+        run({"trail.json", "in_####.exr", "-o", "out/f_####.exr", "--frames", frames}, 0);
+        Pictures pictures = outputs();
         std::filesystem::remove_all(folder_ / "out");
-        return files;
+        return pictures;
     }
     /// Every shell script of the job, as bash and sh read it.
     void expect_readable_scripts() const {
