@@ -99,9 +99,8 @@ TEST_F(Submit, ARowThatIsTriedAgainGoesOnBehindItsLastCompleteTask) {
 }
 
 TEST_F(Submit, RowsOfExactHistoryBeginAtCutsAndAtGapsInTheFrames) {
-    write_text(
-        folder_ / "cut.json",
-        R"({ "aftershade": 1, "files": { "pattern": "in_####.exr", "frames": "1-3,5-12" }, "cuts": [9] })");
+    write_text(folder_ / "cut.json",
+               R"({ "aftershade": 1, "frames": "in_####.exr", "range": "1-3,5-12", "cuts": [9] })");
     const CommandResult result = run_aftershade(
         {"submit", "--to", "parallel", "trail.json", "cut.json", "-o", "out/f_####.exr", "--folder", "job",
          "--history", "exact", "--tasks", "11", "--", "--effect-path", "effects"},
