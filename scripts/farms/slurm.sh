@@ -62,7 +62,12 @@ start_node() {
 
 stop_slurm() {
     local file
-    for file in "$slurm"/n1.outside "$slurm"/n2.outside "$slurm"/controller.pid "$slurm"/munge.pid; do
+    # unshare passes over SIGTERM while its child lives.
+    for file in "$slurm"/n1.outside "$slurm"/n2.outside; do
+        [ ! -e "$file" ] || kill -9 "$(cat "$file")" 2>/dev/null || true
+        rm -f "$file"
+    done
+    for file in "$slurm"/controller.pid "$slurm"/munge.pid; do
         [ ! -e "$file" ] || kill "$(cat "$file")" 2>/dev/null || true
     done
 }
