@@ -84,8 +84,9 @@ ExitCode render(const RunSession& session, const Pipeline& pipeline, const std::
 }
 
 /// Renders again whenever a file of the look changes, until it is interrupted. Faults are told, and waited
-/// out.
-ExitCode watch(const RunSession& session, std::unique_ptr<BoundLook> bound, const std::atomic<bool>& stop) {
+/// out. `sequence` is the session's: it takes the names of objects from each look.
+ExitCode watch(const RunSession& session, Sequence& sequence, std::unique_ptr<BoundLook> bound,
+               const std::atomic<bool>& stop) {
     using namespace std::chrono_literals;
     const std::filesystem::path data = data_path();
     FileWatch files(paths_to_watch(*bound->look, bound->pipeline, data));
@@ -101,6 +102,7 @@ ExitCode watch(const RunSession& session, std::unique_ptr<BoundLook> bound, cons
             if (diagnostics.has_errors()) continue;
             bound = std::move(now);
             files = FileWatch(paths_to_watch(*bound->look, bound->pipeline, data));
+            sequence.object_names = bound->pipeline.object_names();
             render(session, bound->pipeline, stop);
         } catch (const Error& error) {
             std::cerr << error.what() << "\n";
@@ -164,7 +166,7 @@ ExitCode run(const RunArguments& options) {
     settings.natives = {&natives, &status};
     const RunSession session{options, *sequence, reader, context, settings, outputs, progress};
     const ExitCode code = render(session, bound->pipeline, stop);
-    return options.watch ? watch(session, std::move(bound), stop) : code;
+    return options.watch ? watch(session, *sequence, std::move(bound), stop) : code;
 }
 
 }  // namespace
