@@ -123,9 +123,17 @@ void repair_along(const Values& values, int x, int y, Step step, std::optional<R
     }
 }
 
+/// A pixel is a mixture for sure with this share of either surface at least.
+constexpr double kClearlyMixed = 0.05;
+
+/// Whether an edge may begin between two neighbours: a quick look, for most pixels are inside a surface.
+bool may_be_edge(float here, float next) {
+    return std::abs(next - here) >
+           kClearlyMixed * kSureEdge.least_jump * std::min(std::abs(here), std::abs(next));
+}
+
 /// The edge that begins after a pixel, if one does.
 void count_edge(const Values& values, int x, int y, Step step, DepthEdges& edges) {
-    constexpr double kClearlyMixed = 0.05;
     const auto a = side_of(values, x + step.x, y + step.y, {-step.x, -step.y}, 1);
     for (int mixed = 0; a && mixed <= 2; ++mixed) {
         const int first_x = x + step.x, first_y = y + step.y;
@@ -173,7 +181,9 @@ DepthEdges find_depth_edges(const Image& depth) {
     for (int y = 0; y < depth.height(); ++y)
         for (int x = 0; x < depth.width(); ++x)
             for (const Step step : {Step{1, 0}, Step{0, 1}})
-                if (values.has(x + step.x, y + step.y)) count_edge(values, x, y, step, edges);
+                if (values.has(x + step.x, y + step.y) &&
+                    may_be_edge(depth.at(x, y, 0), depth.at(x + step.x, y + step.y, 0)))
+                    count_edge(values, x, y, step, edges);
     return edges;
 }
 
