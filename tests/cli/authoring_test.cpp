@@ -161,7 +161,7 @@ TEST_F(Authoring, WatchTakesTheNamesOfObjectsFromEachLook) {
                     {"cryptomatte/3ae39a5/manifest", std::string(R"({"Cube":"0"})")}});
     write_text(folder_ / "look.json",
                R"({"aftershade": 1, "steps": [{"effect": "dof_simple", "params": {"focus_distance": 2,
-                   "focal_length": 50, "sensor_width": 36, "f_number": 1.4}}]})");
+                   "focal_length": 50, "sensor_width": 36, "f_number": 0.1}}]})");
     Command watch({AFTERSHADE_EXECUTABLE, "run", "look.json", "in_0001.exr", "-o", "out.exr", "--backend",
                    "osmesa", "--watch"},
                   folder_.path());
