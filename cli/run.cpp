@@ -68,7 +68,7 @@ std::unique_ptr<BoundLook> bind_look(const RunArguments& options, Diagnostics& d
 struct RunSession {
     const RunArguments& arguments;
     StatusWriter& status;
-    const Sequence& sequence;
+    Sequence& sequence;
     const CaptureReader& reader;
     gpu::Context& context;
     RunOptions run;
@@ -170,7 +170,7 @@ std::optional<WatchedLook> bind_watched(const RunArguments& options, Diagnostics
 }
 
 /// Renders again whenever a file of the look changes, until it is interrupted. Faults are printed, and waited
-/// out.
+/// out. The sequence takes the names of objects from each look.
 ExitCode watch(const RunSession& session, WatchedLook look, const std::atomic<bool>& stop) {
     using namespace std::chrono_literals;
     std::cerr << "watching; interrupt to end\n";
@@ -184,6 +184,7 @@ ExitCode watch(const RunSession& session, WatchedLook look, const std::atomic<bo
             diagnostics.print(std::cerr);
             if (!now) continue;
             look = std::move(*now);
+            session.sequence.object_names = look.bound->pipeline.object_names();
             render(session, look.bound->pipeline, stop);
         } catch (const Error& error) {
             std::cerr << error.what() << "\n";

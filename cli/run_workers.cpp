@@ -31,7 +31,8 @@ std::vector<int> frames_of(const std::vector<FrameEvent>& events, const std::str
 /// Prints what workers say, each line once, and how far the run is.
 class WorkersReporter {
 public:
-    WorkersReporter(ProgressStyle style, std::size_t frame_count) : style_(style), frame_count_(frame_count) {}
+    WorkersReporter(ProgressStyle style, std::size_t frame_count)
+        : style_(style), frame_count_(frame_count) {}
 
     JobListener listener() {
         JobListener listener;
@@ -96,21 +97,22 @@ private:
 
 /// This process's command without what is its own.
 std::vector<std::string> worker_command() {
-    std::vector<std::string> command =
-        with_options(own_arguments(), {{"--jobs", ""},
-                                       {"--frame-timeout", ""},
-                                       {"--max-memory", ""},
-                                       {"--report", ""},
-                                       {"--progress", "none"}});
+    std::vector<std::string> command = with_options(own_arguments(), {{"--jobs", ""},
+                                                                      {"--frame-timeout", ""},
+                                                                      {"--max-memory", ""},
+                                                                      {"--report", ""},
+                                                                      {"--progress", "none"}});
     std::erase(command, "--stop-on-error");
     command[0] = "/proc/self/exe";
     return command;
 }
 
-/// Paths of workers' temporary files, logs and --worker-frames have no limit but the system's for one word, 128 KiB.
+/// Paths of workers' temporary files, logs and --worker-frames have no limit but the system's for one word,
+/// 128 KiB.
 std::vector<std::string> words_for(const JobPiece& piece, int threads) {
-    return {"--worker-frames", format_frame_range(piece.frames), "--worker-warmup",
-            std::to_string(piece.warmup_frames), "--worker-threads", std::to_string(threads)};
+    return {"--worker-frames",  format_frame_range(piece.frames),
+            "--worker-warmup",  std::to_string(piece.warmup_frames),
+            "--worker-threads", std::to_string(threads)};
 }
 
 std::string continuation(const JobsReport& report) {
@@ -126,9 +128,10 @@ void check_worker_options(const RunArguments& arguments, Diagnostics& diagnostic
     if (!arguments.jobs.wants_workers()) return;
     const auto refuse = [&](bool is_given, const char* option, const char* remedy) {
         if (is_given)
-            diagnostics.error({option}, "needs all frames in one process, which --jobs, --frame-timeout and "
-                                        "--max-memory do not give it; " +
-                                            std::string(remedy));
+            diagnostics.error({option},
+                              "needs all frames in one process, which --jobs, --frame-timeout and "
+                              "--max-memory do not give it; " +
+                                  std::string(remedy));
     };
     refuse(!arguments.graph.empty(), "--graph", "draw the graph of one frame in a run of its own");
     refuse(!arguments.telemetry_plot.empty(), "--telemetry-plot", "write --telemetry FILE_####.json");
