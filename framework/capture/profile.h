@@ -73,6 +73,7 @@ struct ProfileFact {
 
 struct Profile {
     std::string id;
+    std::filesystem::path file;  ///< that it was read from
     std::string summary;
     std::vector<std::string> detect_attributes;  ///< any of these in the header ...
     std::vector<std::string> detect_channels;    ///< ... or all of these channels tell that the profile fits
