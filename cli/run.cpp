@@ -64,12 +64,14 @@ struct RunSession {
     RunOptions run;
     OutputOptions outputs;
     ProgressStyle progress;
+    std::vector<std::filesystem::path> profiles;  ///< documents of those that frames may be read by
 };
 
-ExitCode render(const RunSession& session, const Pipeline& pipeline, const std::atomic<bool>& stop) {
-    RunReporter reporter(session.progress, int(session.run.frames.size()));
-    const RunReport report = run_frames({session.context, pipeline, session.sequence, session.reader,
-                                         session.run, session.outputs, data_path()},
+ExitCode render(const RunSession& session, const RunOptions& run, const Pipeline& pipeline,
+                const std::atomic<bool>& stop, const RunHooks& hooks = {}) {
+    RunReporter reporter(session.progress, int(run.frames.size()));
+    const RunReport report = run_frames({session.context, pipeline, session.sequence, session.reader, run,
+                                         session.outputs, data_path(), hooks},
                                         reporter.observer(), stop);
     if (!session.arguments.graph.empty()) write_graph(session.arguments.graph, report.graph_dot);
     if (!session.arguments.telemetry_plot.empty())
@@ -81,6 +83,35 @@ ExitCode render(const RunSession& session, const Pipeline& pipeline, const std::
         std::cerr << gpu::backend_name(gl.backend) << ": " << gl.renderer << ", " << gl.version << "\n";
     reporter.print_summary(report, gpu::Timer::clock_name(session.context));
     return report.exit_code();
+}
+
+/// Leaves out what is current.
+ExitCode render_stale(const RunSession& session, const BoundLook& bound, const std::atomic<bool>& stop) {
+    const RunArguments& arguments = session.arguments;
+    const gpu::ContextInfo& gl = session.context.info();
+    const FingerprintSource source{*bound.look,          bound.pipeline,
+                                   session.sequence,     session.run,
+                                   session.outputs,      capture_document(arguments.capture.capture),
+                                   session.profiles,     gl.renderer + ", " + gl.version,
+                                   data_path() / "glsl", session.run.natives.registry};
+    ResumeNeeds needs;
+    if (arguments.audit) needs.everything = "--audit";
+    if (!arguments.telemetry_plot.empty()) needs.everything = "--telemetry-plot";
+    needs.last_frame = !arguments.graph.empty();
+    needs.says = session.progress != ProgressStyle::none;
+    return run_resumable(arguments.resume, needs, source, session.reader,
+                         [&](const RunOptions& run, const RunHooks& hooks) {
+                             return render(session, run, bound.pipeline, stop, hooks);
+                         });
+}
+
+/// Those that a frame may be read by: the one that was chosen, else all.
+std::vector<std::filesystem::path> documents_of(const std::vector<Profile>& profiles,
+                                                const Sequence& sequence) {
+    std::vector<std::filesystem::path> documents;
+    for (const Profile& profile : profiles)
+        if (sequence.profile == "auto" || sequence.profile == profile.id) documents.push_back(profile.file);
+    return documents;
 }
 
 /// Renders again whenever a file of the look changes, until it is interrupted. Faults are told, and waited
@@ -101,7 +132,7 @@ ExitCode watch(const RunSession& session, std::unique_ptr<BoundLook> bound, cons
             if (diagnostics.has_errors()) continue;
             bound = std::move(now);
             files = FileWatch(paths_to_watch(*bound->look, bound->pipeline, data));
-            render(session, bound->pipeline, stop);
+            render(session, session.run, bound->pipeline, stop);
         } catch (const Error& error) {
             std::cerr << error.what() << "\n";
             continue;
@@ -143,6 +174,7 @@ ExitCode run(const RunArguments& options) {
     stop_at_errors(diagnostics);
     diagnostics.print(std::cerr);
 
+    const auto profile_documents = documents_of(profiles, *sequence);
     const CaptureReader reader(*sequence, std::move(profiles), options.capture.limits);
     if (options.explain) return explain(*sequence, reader, bound->pipeline);
     // A lone frame that cannot be read is told of before a context is made.
@@ -162,8 +194,11 @@ ExitCode run(const RunArguments& options) {
     outputs.renderer = context.info().renderer;
     settings.frames = sequence->frames;
     settings.natives = {&natives, &status};
-    const RunSession session{options, *sequence, reader, context, settings, outputs, progress};
-    const ExitCode code = render(session, bound->pipeline, stop);
+    const RunSession session{options,  *sequence, reader,   context,
+                             settings, outputs,   progress, profile_documents};
+    const bool resumes = !options.watch && options.resume.keeps_journal(settings.frames.size());
+    if (resumes || options.resume.dry_run) return render_stale(session, *bound, stop);
+    const ExitCode code = render(session, session.run, bound->pipeline, stop);
     return options.watch ? watch(session, std::move(bound), stop) : code;
 }
 

@@ -117,6 +117,7 @@ void add_run_options(CLI::App& app, RunArguments& options) {
                  "Stay, and render again whenever the look, a manifest or a shader changes");
     add_plugin_options(app, options.plugins);
     add_frame_options(app, options);
+    add_resume_options(app, options.resume);
     add_backend_option(app, options.backend);
 }
 

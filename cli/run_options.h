@@ -6,6 +6,7 @@
 
 #include "cli/capture_options.h"
 #include "cli/plugin_options.h"
+#include "cli/resume.h"
 #include "framework/core/diagnostics.h"
 #include "framework/pipeline/look.h"
 #include "framework/pipeline/output_options.h"
@@ -46,6 +47,7 @@ struct RunArguments {
     PipelineOptions pipeline;
     CaptureOptions capture;
     PluginOptions plugins;
+    ResumeArguments resume;
 
     /// Whether outputs have other pixels than the source.
     bool changes_window() const;

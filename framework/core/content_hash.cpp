@@ -43,7 +43,7 @@ FileContent file_content(const std::filesystem::path& path) {
     const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (file < 0) throw fail();
     const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(),
-                                                                               XXH3_freeState);
+                                                                                XXH3_freeState);
     XXH3_128bits_reset(state.get());
     // As large as what a core's second-level cache holds: the hash reads what the system has just copied.
     std::vector<char> buffer(std::size_t(256) * 1024);

@@ -59,8 +59,9 @@ std::vector<std::string> roles_to_read(const Pipeline& pipeline, const OutputOpt
 
 ExitCode RunReport::exit_code() const {
     if (interrupted) return ExitCode::interrupted;
-    if (failures.empty()) return frames_done > 0 ? ExitCode::done : ExitCode::capture;
-    return frames_done > 0 ? ExitCode::partial : ExitCode::capture;
+    const bool any = frames_done + frames_unwritten > 0;
+    if (!any) return ExitCode::capture;
+    return failures.empty() ? ExitCode::done : ExitCode::partial;
 }
 
 namespace {
@@ -166,12 +167,24 @@ void tell(const CaptureHeader& header, const FrameResult& result, bool is_first,
         observer.history_reset(header.frame, result.history_reset);
 }
 
+std::future<Written> write_later(const RunSetup& setup, const FrameRun::Rendered& frame, int number,
+                                 Clock::time_point start) {
+    OutputOptions outputs = setup.outputs;
+    if (setup.hooks.fingerprint) outputs.fingerprint = setup.hooks.fingerprint(number);
+    return std::async(std::launch::async, [frame, number, start, outputs = std::move(outputs), &setup] {
+        Written written = write_outputs(outputs, *frame.result, *frame.capture, setup.reader);
+        if (setup.hooks.frame_written)
+            setup.hooks.frame_written(number, written, milliseconds_since(start) / 1000);
+        return written;
+    });
+}
+
 }  // namespace
 
 RunReport run_frames(const RunSetup& setup, const RunObserver& observer, const std::atomic<bool>& stop) {
     RunReport report;
     const auto start = Clock::now();
-    const auto& [context, pipeline, sequence, reader, run, outputs, data_folder] = setup;
+    const auto& [context, pipeline, sequence, reader, run, outputs, data_folder, hooks] = setup;
     const std::vector<std::string> result_roles = wanted_roles(outputs);
     PipelineRenderer renderer(context, pipeline, data_folder, run.natives);
     renderer.set_audit(run.audit);
@@ -192,12 +205,16 @@ RunReport run_frames(const RunSetup& setup, const RunObserver& observer, const s
         // A plug-in may end this process: what is done must be on disk before its code runs.
         if (is_native) finish_write(pending_write, report, observer);
         FrameRun::Rendered frame;
+        const auto frame_start = Clock::now();
+        const int number = run.frames[i];
+        if (hooks.before_frame) hooks.before_frame(number, renderer);
         try {
             frame = frame_run.render(i, result_roles, report, observer);
         } catch (const Error& error) {
             if (error.exit_code() != ExitCode::capture) throw;
             report.failures.emplace_back(error.what());
             if (observer.frame_failed) observer.frame_failed(error.what());
+            if (hooks.frame_failed) hooks.frame_failed(number, renderer);
             continue;
         }
         tell(frame.capture->header, *frame.result, !any_rendered, run, observer);
@@ -205,12 +222,13 @@ RunReport run_frames(const RunSetup& setup, const RunObserver& observer, const s
         add_times(report.passes, frame.result->times);
         if (frame.result->telemetry) report.telemetry.push_back(*frame.result->telemetry);
         finish_write(pending_write, report, observer);
-        pending_write = std::async(std::launch::async, [frame, &setup] {
-            return write_outputs(setup.outputs, *frame.result, *frame.capture, setup.reader);
-        });
+        if (hooks.is_written && !hooks.is_written(number)) ++report.frames_unwritten;
+        else pending_write = write_later(setup, frame, number, frame_start);
+        if (hooks.after_frame) hooks.after_frame(number, renderer);
     }
     finish_write(pending_write, report, observer);
-    if (!run.history_out.empty() && any_rendered) renderer.save_history(run.history_out);
+    if (!run.history_out.empty() && any_rendered)
+        renderer.save_history(run.history_out, hooks.last_fingerprint ? hooks.last_fingerprint() : "");
     report.graph_dot = renderer.graph_dot();
     std::tie(report.bytes, report.bytes_unaliased) = renderer.graph_bytes();
     report.wall_ms = milliseconds_since(start);
