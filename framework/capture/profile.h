@@ -80,6 +80,7 @@ struct ProfileFact {
 
 struct Profile {
     std::string id;
+    std::filesystem::path file;  ///< that it was read from
     std::string summary;
     /// Any of these in the header, by name or as "name=text" ...
     std::vector<std::string> detect_attributes;

@@ -135,8 +135,10 @@ std::vector<Profile> read_profiles(const std::vector<fs::path>& folders, Diagnos
         std::sort(files.begin(), files.end());
         for (const fs::path& file : files)
             if (const auto node = read_document(file, diagnostics))
-                if (auto profile = parse_profile(*node, diagnostics))
+                if (auto profile = parse_profile(*node, diagnostics)) {
+                    profile->file = file;
                     by_id.emplace(profile->id, std::move(*profile));
+                }
     }
     std::vector<Profile> profiles;
     for (auto& [id, profile] : by_id) profiles.push_back(std::move(profile));

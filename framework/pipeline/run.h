@@ -51,6 +51,7 @@ struct RunReport {
     std::optional<int> history_begin;    ///< the last frame that began history anew, where a step has any
     bool history_saved = false;          ///< RunOptions::history_out was written
     int frames_skipped = 0;              ///< missing, and MissingFrame::skip
+    int frames_unwritten = 0;            ///< rendered for what they leave to later frames
     std::vector<PassStatistics> passes;  ///< in the order of the passes
     double read_ms = 0;                  ///< waiting for frames to be read and decoded
     double write_ms = 0;                 ///< waiting for files to be written
@@ -81,6 +82,24 @@ struct RunObserver {
     std::function<void(const FrameOutcome&)> frame_finished;
 };
 
+/// What a run that can go on later does beside each frame. Any may be empty. On the caller's thread unless
+/// said otherwise; what they throw ends the run.
+struct RunHooks {
+    std::function<void(int frame, PipelineRenderer& renderer)> before_frame;
+    /// Whether the frame is written; one that is not is rendered for what it leaves to later frames.
+    std::function<bool(int frame)> is_written;
+    /// After before_frame, of a frame that is written: its OutputOptions::fingerprint.
+    std::function<std::string(int frame)> fingerprint;
+    std::function<void(int frame, PipelineRenderer& renderer)> after_frame;
+    std::function<void(int frame, PipelineRenderer& renderer)> frame_failed;  ///< it could not be read
+    /// Once the files are in place; `seconds` since the frame was begun. [on another thread; one call at a
+    /// time]
+    std::function<void(int frame, const std::vector<std::filesystem::path>& files, double seconds)>
+        frame_written;
+    /// What the history that RunOptions::history_out names shall say it is of.
+    std::function<std::string()> last_fingerprint;
+};
+
 /// What a run works with. [refers to what the caller keeps]
 struct RunSetup {
     gpu::Context& context;
@@ -90,6 +109,7 @@ struct RunSetup {
     const RunOptions& options;
     const OutputOptions& outputs;
     std::filesystem::path data_folder;
+    RunHooks hooks{};
 };
 
 /// Reads the next frame and writes the last one while the GPU works. A frame that cannot be read, or that

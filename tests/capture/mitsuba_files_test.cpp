@@ -10,7 +10,7 @@ namespace {
 
 const std::vector<float> kXyzChromaticities = {1, 0, 0, 1, 0, 0, 1.0f / 3, 1.0f / 3};
 
-std::vector<Profile> shipped_profiles() {
+std::vector<Profile> profiles_of_the_project() {
     Diagnostics diagnostics;
     return read_profiles(AFTERSHADE_SOURCE_DIR "/profiles", diagnostics);
 }
@@ -19,7 +19,8 @@ std::vector<Profile> shipped_profiles() {
 class WrittenRow {
 public:
     WrittenRow(const std::vector<StoredChannel>& channels, std::map<std::string, ExrValue> attributes)
-        : sequence_(sequence_of(folder_ / "f.exr", "auto")), reader_(sequence_, shipped_profiles(), {}) {
+        : sequence_(sequence_of(folder_ / "f.exr", "auto")),
+          reader_(sequence_, profiles_of_the_project(), {}) {
         write_channels(folder_ / "f.exr", int(channels.front().values.size()), channels,
                        std::move(attributes));
     }

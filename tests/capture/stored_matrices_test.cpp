@@ -223,10 +223,11 @@ TEST_P(CameraTransform, ShowsPointsWhereTheCameraSawThem) {
     const StoredMatrices read = read_matrices(part_with(attributes), lens);
     ASSERT_TRUE(read.camera_from_world && read.ndc_from_world) << read.fault;
     for (const glm::dvec2 pixel : {glm::dvec2(3, 4), glm::dvec2(40, 30)}) {
-        const glm::dvec4 world = in_files_world(pose.world_at(pixel, 5, kWidth, kHeight), row.is_of_maya);
+        const glm::dvec4 world =
+            in_files_world(pose.world_at(pixel, 5, kWidth_px, kHeight_px), row.is_of_maya);
         const glm::dvec4 clip = glm_matrix(*read.ndc_from_world) * world;
-        EXPECT_NEAR((clip.x / clip.w + 1) / 2 * kWidth, pixel.x, 1e-3);
-        EXPECT_NEAR((1 - clip.y / clip.w) / 2 * kHeight, pixel.y, 1e-3);
+        EXPECT_NEAR((clip.x / clip.w + 1) / 2 * kWidth_px, pixel.x, 1e-3);
+        EXPECT_NEAR((1 - clip.y / clip.w) / 2 * kHeight_px, pixel.y, 1e-3);
         EXPECT_NEAR((glm_matrix(*read.camera_from_world) * world).z, -5, 1e-4);
     }
     EXPECT_NE(
