@@ -96,9 +96,9 @@ ExitCode render(const RunSession& session, const RunOptions& run, const Pipeline
     if (!session.arguments.trace.empty()) settings.trace = &trace;
     RunReporter reporter(session.progress, int(run.frames.size()) - run.warmup_frames);
     ReportFile report_file(session);
-    const RunReport report = run_frames(
-        {session.context, pipeline, session.sequence, session.reader, settings, session.outputs, data_path(), hooks},
-        report_file.watched(reporter.observer()), stop);
+    const RunReport report = run_frames({session.context, pipeline, session.sequence, session.reader,
+                                         settings, session.outputs, data_path(), hooks},
+                                        report_file.watched(reporter.observer()), stop);
     report_file.ended(report.exit_code());
     const gpu::ContextInfo& gl = session.context.info();
     if (session.progress == ProgressStyle::plain || session.progress == ProgressStyle::terminal)

@@ -1,4 +1,5 @@
-// A look over a capture in this process: once, over what is stale, or again whenever a file of the look changes.
+// A look over a capture in this process: once, over what is stale, or again whenever a file of the look
+// changes.
 #pragma once
 
 #include <atomic>

@@ -29,8 +29,8 @@ void note_non_finite(int frame, RunReport& report) {
         report.frames_non_finite.push_back(frame);
 }
 
-FrameRun::Rendered FrameRun::render(std::size_t index, const std::vector<std::string>& roles, RunReport& report,
-                const RunObserver& observer) {
+FrameRun::Rendered FrameRun::render(std::size_t index, const std::vector<std::string>& roles,
+                                    RunReport& report, const RunObserver& observer) {
     FrameInputs inputs;
     inputs.subframe_count = loader_.subframe_count();
     inputs.scale = 1.0 / run_.scale_divisor;
@@ -92,8 +92,7 @@ FrameRun::Rendered FrameRun::finished(std::shared_ptr<const Capture> capture, Fr
         capture = std::move(part);
     }
     auto outputs = apply_nan_policy(run_.on_nan, result);
-    return {std::move(capture), std::make_shared<const FrameResult>(std::move(result)),
-            std::move(outputs)};
+    return {std::move(capture), std::make_shared<const FrameResult>(std::move(result)), std::move(outputs)};
 }
 
 }  // namespace aftershade
