@@ -28,9 +28,11 @@ protected:
                      "color, p, 0");
         write_text(folder_ / "effects/trail/show.frag",
                    kHead + "void main() { out_color = texelFetch(kept, ivec2(gl_FragCoord.xy), 0); }\n");
-        write_effect("tint", R"("params": { "gain": { "type": "float", "default": 2, "min": 0, "max": 9, "doc": "." } },
+        write_effect(
+            "tint",
+            R"("params": { "gain": { "type": "float", "default": 2, "min": 0, "max": 9, "doc": "." } },
             "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color"], "writes": ["color"] } ])",
-                     "out_color = now * param.gain;", "color, p, 0");
+            "out_color = now * param.gain;", "color, p, 0");
         write_text(folder_ / "trail.json", R"({ "aftershade": 1, "steps": [ { "effect": "trail" } ] })");
         write_text(folder_ / "tint.json", R"({ "aftershade": 1, "steps": [ { "effect": "tint" } ] })");
     }
@@ -48,7 +50,8 @@ protected:
         write_text(folder_ / "effects" / id / "effect.json",
                    R"({ "aftershade": 1, "version": "1.0.0", "summary": "A test.", "id": ")" + id +
                        R"(", "inputs": { "color": { "role": "color" } },
-                           "outputs": { "color": { "role": "color" } }, )" + sections + "}");
+                           "outputs": { "color": { "role": "color" } }, )" +
+                       sections + "}");
         write_text(folder_ / "effects" / id / "main.frag",
                    kHead + "void main() { ivec2 p = ivec2(gl_FragCoord.xy); vec4 now = texelFetch(" + now +
                        ");\n" + statement + " }\n");
@@ -62,9 +65,8 @@ protected:
     }
     static std::vector<std::string> words(const std::string& look, const std::vector<std::string>& more,
                                           const std::string& outputs = "out_####.exr") {
-        std::vector<std::string> words{"run",       look + ".json", "in_####.exr", "--effect-path",
-                                       "effects",   "--backend",    "osmesa",      "-o",
-                                       outputs};
+        std::vector<std::string> words{"run",       look + ".json", "in_####.exr", "--effect-path", "effects",
+                                       "--backend", "osmesa",       "-o",          outputs};
         words.insert(words.end(), more.begin(), more.end());
         return words;
     }
@@ -145,7 +147,8 @@ TEST_F(Resume, SaysWhyFramesAreNotCurrent) {
               "frame 1: --overwrite renders every frame");
     EXPECT_EQ(lines_of_text(dry_run("tint", {"--tap", "tint.color"})).front(),
               "frame 1: output out.tint.color.0001.exr is missing");
-    write_effect("tint", R"("params": { "gain": { "type": "float", "default": 2, "min": 0, "max": 9, "doc": "." } },
+    write_effect("tint",
+                 R"("params": { "gain": { "type": "float", "default": 2, "min": 0, "max": 9, "doc": "." } },
             "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color"], "writes": ["color"] } ])",
                  "out_color = now.bgra * param.gain;", "color, p, 0");
     EXPECT_EQ(lines_of_text(dry_run("tint")).front(), "frame 1: effect tint changed");
@@ -286,9 +289,10 @@ TEST_F(Resume, AFrameThatCouldNotBeReadIsTriedAgain) {
 TEST_F(Resume, GoesOnAfterAKillWithTheSameBits) {
     constexpr int kMany = 60;
     for (int frame = kFrames + 1; frame <= kMany; ++frame)
-        write_capture(make_capture(SyntheticScene{.width = 64, .height = 36, .background = {0.01f * float(frame)}},
-                                   frame),
-                      FramePattern((folder_ / "in_####.exr").string()).path(frame));
+        write_capture(
+            make_capture(SyntheticScene{.width = 64, .height = 36, .background = {0.01f * float(frame)}},
+                         frame),
+            FramePattern((folder_ / "in_####.exr").string()).path(frame));
     Command command(aftershade_words(words("trail", {"--checkpoint", "5"})), folder_.path(),
                     {{"AFTERSHADE_BACKEND", "osmesa"}});
     ASSERT_TRUE(command.wait_for_lines(12));
@@ -322,8 +326,8 @@ TEST_F(Resume, ASecondRunOverTheSameFramesIsToldWhoHasThem) {
     const CommandResult second = run_aftershade(all, folder_.path());
     EXPECT_EQ(second.exit_code, int(ExitCode::output)) << second.err;
     EXPECT_EQ(second.out, "");
-    for (const char* part : {"out_####.exr: another run is writing frames 290-320 of this output",
-                             "process ", " on host ", " since ", "frames 1-300", "wait for it or end it"})
+    for (const char* part : {"out_####.exr: another run is writing frames 290-320 of this output", "process ",
+                             " on host ", " since ", "frames 1-300", "wait for it or end it"})
         EXPECT_NE(second.err.find(part), std::string::npos) << part << "\n" << second.err;
     // Other frames of the same output, as a farm's chunks have, and other outputs are free.
     run("tint", {"--frames", "5-6"}, "other_####.exr");

@@ -34,8 +34,9 @@ protected:
         effects_.add("tint", kTint, kTintShader);
         write_text(effects_.path() / "tint/gain.glsl",
                    "vec4 gained(vec4 light, float gain) { return light * gain; }\n");
-        effects_.add("trail", kTrail,
-                     "void main() { out_kept = out_color = texelFetch(color, ivec2(gl_FragCoord.xy), 0); }\n");
+        effects_.add(
+            "trail", kTrail,
+            "void main() { out_kept = out_color = texelFetch(color, ivec2(gl_FragCoord.xy), 0); }\n");
         effects_.add_color("unused", "source");
         look(R"({ "effect": "tint" })");
         for (int frame = 1; frame <= 3; ++frame) write_input(frame, 0.5f);
@@ -74,8 +75,15 @@ protected:
         std::ostringstream text;
         faults.print(text);
         EXPECT_FALSE(faults.has_errors()) << text.str();
-        Now result{setup_parts({*read, pipeline, sequence, run, outputs_, folder_ / "capture.json",
-                                {folder_ / "profile.json"}, renderer_, source() / "glsl"}),
+        Now result{setup_parts({*read,
+                                pipeline,
+                                sequence,
+                                run,
+                                outputs_,
+                                folder_ / "capture.json",
+                                {folder_ / "profile.json"},
+                                renderer_,
+                                source() / "glsl"}),
                    {}};
         FrameFingerprints fingerprints(hash_of_parts(result.setup), sequence, reader, pipeline, run);
         for (std::size_t i = 0; i < run.frames.size(); ++i) result.frames.push_back(fingerprints.of(i));
@@ -136,8 +144,7 @@ TEST_F(Fingerprints, ChangeWithTheLookAndItsValues) {
     });
     write_text(folder_ / "look.json", R"({ "aftershade": 1, "vars": { "g": 1 }, "steps": [
         { "effect": "tint", "params": { "gain": { "var": "g" } } } ] })");
-    expect_changes_all("values of tint",
-                       [&] { variables_["g"] = parse_command_value("2", {"--var g=2"}); });
+    expect_changes_all("values of tint", [&] { variables_["g"] = parse_command_value("2", {"--var g=2"}); });
 }
 
 TEST_F(Fingerprints, ChangeWithEffectsShadersIncludesAndFilesThatValuesName) {
@@ -159,7 +166,8 @@ TEST_F(Fingerprints, ChangeWithEffectsShadersIncludesAndFilesThatValuesName) {
 
 TEST_F(Fingerprints, ChangeWithTheRendererTheCaptureItsProfileAndTheOptionsOfOutputs) {
     expect_changes_all("renderer", [&] { renderer_ = "llvmpipe, 4.5 Mesa 25"; });
-    expect_changes_all("capture", [&] { capture(R"("range": "1-3", "camera": { "focal_length": "35 mm" })"); });
+    expect_changes_all("capture",
+                       [&] { capture(R"("range": "1-3", "camera": { "focal_length": "35 mm" })"); });
     expect_changes_all("capture", [&] { color_space_ = "acescg"; });
     expect_changes_all("profile", [&] {
         std::string text = read_text(folder_ / "profile.json");
@@ -182,8 +190,10 @@ TEST_F(Fingerprints, ChangeWithTheFramesOwnFilesAlone) {
     for (int frame = 1; frame <= 3; ++frame)
         fs::copy(folder_ / "in_0001.exr", folder_ / ("z_000" + std::to_string(frame) + ".exr"));
     EXPECT_EQ(changed_by([&] { role_files_["depth"] = "z_####.exr"; }), (std::vector{1, 2, 3}));
-    EXPECT_EQ(changed_by([&] { fs::copy(folder_ / "in_0002.exr", folder_ / "z_0003.exr",
-                                        fs::copy_options::overwrite_existing); }),
+    EXPECT_EQ(changed_by([&] {
+                  fs::copy(folder_ / "in_0002.exr", folder_ / "z_0003.exr",
+                           fs::copy_options::overwrite_existing);
+              }),
               (std::vector{3}));
     EXPECT_EQ(changed_by([&] { fs::remove(folder_ / "in_0001.exr"); }), (std::vector{1}));
 }
@@ -196,8 +206,9 @@ TEST_F(Fingerprints, ChangeWithNothingElse) {
     EXPECT_EQ(changed_by([&] { run_.region_margin_px = 3; }), kNone) << "there is no region";
     EXPECT_EQ(changed_by([&] { write_input(4, 0.1f); }), kNone);
     EXPECT_EQ(changed_by([&] { capture("\"range\":   \"1-4\""); }), kNone) << "a frame more";
-    EXPECT_EQ(changed_by([&] { fs::last_write_time(folder_ / "in_0001.exr", fs::file_time_type::clock::now()); }),
-              kNone);
+    EXPECT_EQ(
+        changed_by([&] { fs::last_write_time(folder_ / "in_0001.exr", fs::file_time_type::clock::now()); }),
+        kNone);
     frames_ = {3, 2, 1};
     const std::string first = now().frames[2].hash;
     frames_ = {1};

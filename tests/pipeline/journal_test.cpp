@@ -21,7 +21,7 @@ protected:
         return Journal(run_state((folder_ / pattern).string()));
     }
     fs::path output(int frame) const { return folder_ / ("out_000" + std::to_string(frame) + ".exr"); }
-    void add(const Journal& journal, int frame, const std::string& hash) const {
+    void add(Journal& journal, int frame, const std::string& hash) const {
         write_text(output(frame), "pixels of " + std::to_string(frame));
         journal.add(frame, hash_of_parts(parts_), {hash, {{"input a", "1"}}, "begin"}, {output(frame)}, 0.5);
     }
@@ -90,8 +90,8 @@ TEST_F(JournalTest, PassesOverLinesThatAreNoneOfIts) {
     first.begin(parts_);
     add(first, 1, "one");
     const std::string whole = lines();
-    for (const char* line : {"", "null", "[1]", "{}", "{\"output\": 7}", "{\"output\": \"out_#.exr\", \"frame\": 1}",
-                             "{\"setup\": 1, \"parts\": []}"}) {
+    for (const char* line : {"", "null", "[1]", "{}", "{\"output\": 7}",
+                             "{\"output\": \"out_#.exr\", \"frame\": 1}", "{\"setup\": 1, \"parts\": []}"}) {
         write_lines(whole + line + "\n");
         ASSERT_NE(journal().find(1), nullptr) << line;
         EXPECT_EQ(journal().find(1)->fingerprint.hash, "one") << line;
