@@ -113,7 +113,7 @@ void Journal::begin(const FingerprintParts& setup) {
     make_state_folder(state_);
     const std::string hash = hash_of_parts(setup);
     if (setups_.contains(hash)) return;
-    append(line_of({{"setup", hash}, {"parts", setup}}));
+    setup_line_ = line_of({{"setup", hash}, {"parts", setup}});
     setups_[hash] = setup;
 }
 
@@ -123,14 +123,15 @@ std::string Journal::relative(const fs::path& file) const {
 }
 
 void Journal::add(int frame, const std::string& setup, const FrameFingerprint& fingerprint,
-                  const std::vector<fs::path>& files, double seconds) const {
+                  const std::vector<fs::path>& files, double seconds) {
     JournalFrame entry{frame, setup, fingerprint, {}, seconds};
     for (const fs::path& file : files) {
         const auto state = state_of(file);
         const FileContent content = file_content(file);
         entry.files.push_back({relative(file), content.bytes, state ? state->modified_ns : 0, content.hash});
     }
-    append(line_of(json_of(entry, state_.output)));
+    append(setup_line_ + line_of(json_of(entry, state_.output)));
+    setup_line_.clear();
 }
 
 /// Not flushed to the disk: after a power cut the lines that are lost cost their frames' time and nothing

@@ -30,7 +30,7 @@ struct JournalFrame {
 };
 
 /// The journal of one output. Lines that are cut off or damaged are passed over: their frames count as not
-/// rendered. [thread-safe; several processes may append to one journal]
+/// rendered. [several processes may append to one journal]
 class Journal {
 public:
     /// Reads what is there, which may be nothing. Throws Error(ExitCode::output) where a journal is there and
@@ -42,12 +42,13 @@ public:
     /// The parts of a setup; nullptr where no line has them.
     const FingerprintParts* setup(const std::string& hash) const;
 
-    /// Appends the parts that frames to come share, unless they are in the journal. Makes the folder. Throws
-    /// Error(ExitCode::output) as add() does.
+    /// What frames to come share: it is appended with the first of them, unless the journal has it. Makes the
+    /// folder. Throws Error(ExitCode::output).
     void begin(const FingerprintParts& setup);
-    /// Appends one frame whose files are in place; reads them for their hashes.
+    /// Appends one frame whose files are in place; reads them for their hashes. Throws
+    /// Error(ExitCode::output). [one call at a time]
     void add(int frame, const std::string& setup, const FrameFingerprint& fingerprint,
-             const std::vector<std::filesystem::path>& files, double seconds) const;
+             const std::vector<std::filesystem::path>& files, double seconds);
 
     /// Why the files of a frame are not what its line says, as "out_0004.exr is missing"; "" if they are.
     /// `expected` are those that a run would write. A file of the same size and time counts as the same, one
@@ -63,6 +64,7 @@ private:
     RunState state_;
     std::map<int, JournalFrame> frames_;
     std::map<std::string, FingerprintParts> setups_;
+    std::string setup_line_;  // not yet in the journal
 };
 
 }  // namespace aftershade

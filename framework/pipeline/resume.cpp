@@ -134,7 +134,6 @@ RunOptions ResumableRun::planned_run() const {
 
 void ResumableRun::begin() {
     journal_.begin(setup_);
-    if (pipeline_.has_history() && options_.checkpoint_frames > 0) checkpoints_.make_folder();
 }
 
 void ResumableRun::save_checkpoint(std::size_t index, PipelineRenderer& renderer) {
@@ -142,6 +141,7 @@ void ResumableRun::save_checkpoint(std::size_t index, PipelineRenderer& renderer
     if (!pipeline_.has_history() || options_.checkpoint_frames <= 0 || warms_up(index)) return;
     if (++since_checkpoint_ < options_.checkpoint_frames) return;
     since_checkpoint_ = 0;
+    checkpoints_.make_folder();
     renderer.save_history(checkpoints_.file(plan_[index].frame), fingerprints_.of(index).hash);
     checkpoints_.drop_old();
 }

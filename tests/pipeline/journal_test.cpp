@@ -21,7 +21,7 @@ protected:
         return Journal(run_state((folder_ / pattern).string()));
     }
     fs::path output(int frame) const { return folder_ / ("out_000" + std::to_string(frame) + ".exr"); }
-    void add(const Journal& journal, int frame, const std::string& hash) const {
+    void add(Journal& journal, int frame, const std::string& hash) const {
         write_text(output(frame), "pixels of " + std::to_string(frame));
         journal.add(frame, hash_of_parts(parts_), {hash, {{"input a", "1"}}, "begin"}, {output(frame)}, 0.5);
     }
