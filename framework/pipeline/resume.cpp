@@ -142,7 +142,15 @@ void ResumableRun::save_checkpoint(std::size_t index, PipelineRenderer& renderer
     if (++since_checkpoint_ < options_.checkpoint_frames) return;
     since_checkpoint_ = 0;
     checkpoints_.make_folder();
-    renderer.save_history(checkpoints_.file(plan_[index].frame), fingerprints_.of(index).hash);
+    const fs::path file = checkpoints_.file(plan_[index].frame);
+    try {
+        renderer.save_history(file, fingerprints_.of(index).hash);
+    } catch (const Error&) {
+        // Another worker of this output, which has ended, takes the empty folder away.
+        if (std::error_code unreadable; fs::exists(file.parent_path(), unreadable)) throw;
+        checkpoints_.make_folder();
+        renderer.save_history(file, fingerprints_.of(index).hash);
+    }
     checkpoints_.drop_old();
 }
 
