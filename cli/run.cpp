@@ -85,73 +85,89 @@ FrameShare share_of_frames(const RunArguments& options, const Pipeline& pipeline
     return share;
 }
 
-/// Renders in this process.
-ExitCode run_here(const RunArguments& options, const RunSession& session, std::unique_ptr<BoundLook> bound,
-                  std::optional<WatchedLook> watched, const std::atomic<bool>& stop) {
-    const std::string lost =
-        session.run.warmup_frames > 0 || options.jobs.is_worker()
-            ? ""
-            : lost_history_text(bound->pipeline, session.sequence, session.reader, session.run);
-    if (!lost.empty()) std::cerr << "aftershade: warning: " << lost << "\n";
-    const bool resumes = !options.watch && options.resume.keeps_journal(session.run.frames.size());
-    if (resumes || options.resume.dry_run) return render_stale(session, *bound, stop);
-    const ExitCode code = render(session, session.run, bound->pipeline, stop);
-    if (!options.watch) return code;
-    watched->bound = std::move(bound);
-    return watch(session, std::move(*watched), stop);
-}
-
-ExitCode run(const RunArguments& options) {
-    const std::atomic<bool>& stop = watch_for_interrupt();
-
-    // Everything that the user wrote is checked, and every fault listed, before any work starts.
-    Diagnostics diagnostics;
-    const gpu::Backend backend = chosen_backend(options.backend);
-    const ProgressStyle progress = parse_progress(options.progress);
+/// What the user wrote, without a fault.
+struct CheckedRun {
     std::optional<WatchedLook> watched;
-    if (Diagnostics faults; options.watch && (watched = bind_watched(options, faults))) diagnostics = faults;
-    auto bound = watched ? std::move(watched->bound) : bind_look(options, diagnostics);
-    std::vector<Profile> profiles = load_profiles(options.capture.profile_paths, diagnostics);
-    std::optional<Sequence> sequence = find_sequence(options.capture, profiles, diagnostics);
-    if (sequence) sequence->object_names = bound->pipeline.object_names();
-    OutputOptions outputs = output_options(options);
-    RunOptions settings = run_options(options, diagnostics);
-    if (sequence) add_missing_frames(options.capture, settings.missing, *sequence, diagnostics);
-    check_outputs(outputs, sequence.value_or(Sequence{}), diagnostics);
+    std::unique_ptr<BoundLook> bound;
+    std::vector<Profile> profiles;
+    Sequence sequence;
+    OutputOptions outputs;
+    RunOptions settings;
+    FrameShare share;
+};
+
+/// Lists every fault before any work starts.
+CheckedRun checked_run(const RunArguments& options) {
+    CheckedRun run;
+    Diagnostics diagnostics;
+    if (Diagnostics faults; options.watch && (run.watched = bind_watched(options, faults)))
+        diagnostics = faults;
+    run.bound = run.watched ? std::move(run.watched->bound) : bind_look(options, diagnostics);
+    run.profiles = load_profiles(options.capture.profile_paths, diagnostics);
+    std::optional<Sequence> sequence = find_sequence(options.capture, run.profiles, diagnostics);
+    run.outputs = output_options(options);
+    run.settings = run_options(options, diagnostics);
+    if (sequence) {
+        sequence->object_names = run.bound->pipeline.object_names();
+        add_missing_frames(options.capture, run.settings.missing, *sequence, diagnostics);
+        run.share = share_of_frames(options, run.bound->pipeline, *sequence, diagnostics);
+    }
+    check_outputs(run.outputs, sequence.value_or(Sequence{}), diagnostics);
     check_worker_options(options, diagnostics);
-    const FrameShare share =
-        sequence ? share_of_frames(options, bound->pipeline, *sequence, diagnostics) : FrameShare{};
     stop_at_errors(diagnostics);
     diagnostics.print(std::cerr);
+    run.sequence = std::move(*sequence);
+    run.settings.frames = run.share.run.frames;
+    run.settings.warmup_frames = run.share.run.lead_frames;
+    return run;
+}
 
-    const auto profile_documents = documents_of(profiles, *sequence);
-    const CaptureReader reader(*sequence, std::move(profiles), options.capture.limits);
-    if (options.explain) return explain(*sequence, reader, bound->pipeline);
-    // A lone frame that cannot be read is reported before a context is made.
-    require_first_frame(*sequence, reader, bound->pipeline);
-    if (share.run.count() == 0) {
-        std::cerr << "--chunk " << options.jobs.chunk
-                  << ": no frames; the sequence has fewer frames than chunks\n";
-        return ExitCode::done;
-    }
-
-    prepare_outputs(options, outputs, *sequence);
-    if (options.jobs.wants_workers())
-        return run_by_workers(options, share.run, share.workers, progress, stop);
-    if (const auto code = run_in_worker(options.plugins, bound->pipeline, stop)) return *code;
-
+/// Renders in this process.
+ExitCode run_here(const RunArguments& options, CheckedRun& run, const CaptureReader& reader,
+                  const std::vector<std::filesystem::path>& profile_documents,
+                  const std::atomic<bool>& stop) {
     set_exr_threads(options.jobs.worker_threads > 0 ? options.jobs.worker_threads : allotted_cores());
     StatusWriter status;
     NativeRegistry natives(native_search_path({options.plugins.paths.begin(), options.plugins.paths.end()}),
                            shipped_native_libraries(), &status);
-    gpu::Context context(backend);
-    outputs.renderer = context.info().renderer;
-    settings.frames = share.run.frames;
-    settings.warmup_frames = share.run.lead_frames;
-    settings.natives = {&natives, &status};
-    const RunSession session{options,  status,  *sequence, reader,           context,
-                             settings, outputs, progress,  profile_documents};
-    return run_here(options, session, std::move(bound), std::move(watched), stop);
+    gpu::Context context(chosen_backend(options.backend));
+    run.outputs.renderer = context.info().renderer;
+    run.settings.natives = {&natives, &status};
+    const Pipeline& pipeline = run.bound->pipeline;
+    if (run.settings.warmup_frames == 0 && !options.jobs.is_worker())
+        if (const auto lost = lost_history_text(pipeline, run.sequence, reader, run.settings); !lost.empty())
+            std::cerr << "aftershade: warning: " << lost << "\n";
+    const RunSession session{options,          status,       run.sequence, reader,
+                             context,          run.settings, run.outputs,  parse_progress(options.progress),
+                             profile_documents};
+    const bool resumes = !options.watch && options.resume.keeps_journal(run.settings.frames.size());
+    if (resumes || options.resume.dry_run) return render_stale(session, *run.bound, stop);
+    const ExitCode code = render(session, session.run, pipeline, stop);
+    if (!options.watch) return code;
+    run.watched->bound = std::move(run.bound);
+    return watch(session, std::move(*run.watched), stop);
+}
+
+ExitCode run(const RunArguments& options) {
+    const std::atomic<bool>& stop = watch_for_interrupt();
+    chosen_backend(options.backend);
+    const ProgressStyle progress = parse_progress(options.progress);
+    CheckedRun run = checked_run(options);
+    const auto profile_documents = documents_of(run.profiles, run.sequence);
+    const CaptureReader reader(run.sequence, run.profiles, options.capture.limits);
+    if (options.explain) return explain(run.sequence, reader, run.bound->pipeline);
+    // A lone frame that cannot be read is reported before a context is made.
+    require_first_frame(run.sequence, reader, run.bound->pipeline);
+    if (!options.jobs.chunk.empty() && run.share.run.count() == 0) {
+        std::cerr << "--chunk " << options.jobs.chunk
+                  << ": no frames; the sequence has fewer frames than chunks\n";
+        return ExitCode::done;
+    }
+    prepare_outputs(options, run.outputs, run.sequence);
+    if (options.jobs.wants_workers())
+        return run_by_workers(options, run.share.run, run.share.workers, progress, stop);
+    if (const auto code = run_in_worker(options.plugins, run.bound->pipeline, stop)) return *code;
+    return run_here(options, run, reader, profile_documents, stop);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // One frame of a run, from its first sub-frame to its results.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
@@ -8,7 +9,7 @@
 #include "framework/pipeline/frame_loader.h"
 #include "framework/pipeline/nan_policy.h"
 #include "framework/pipeline/renderer.h"
-#include "framework/pipeline/run.h"
+#include "framework/pipeline/run_report.h"
 
 namespace aftershade {
 

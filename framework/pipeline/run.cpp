@@ -100,17 +100,6 @@ std::vector<std::string> roles_to_read(const Pipeline& pipeline, const OutputOpt
     return roles;
 }
 
-}  // namespace
-
-ExitCode RunReport::exit_code() const {
-    if (interrupted) return ExitCode::interrupted;
-    const bool any = frames_done + frames_unwritten > 0;
-    if (failures.empty()) return any ? ExitCode::done : ExitCode::capture;
-    return any ? ExitCode::partial : failures.front().code;
-}
-
-namespace {
-
 /// Whether the frame is left out; it is reported first.
 bool skips(const FrameLoader& loader, const RunOptions& run, std::size_t index, const RunObserver& observer) {
     if (run.missing == MissingFrame::error || !loader.is_missing(index)) return false;

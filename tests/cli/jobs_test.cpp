@@ -88,7 +88,8 @@ TEST_F(Jobs, WithHistoryNeedADeclaredOrAGivenWarmup) {
     run({"trail.json", "in_####.exr", "-o", "one/f_####.exr"}, 0);
     run({"trail.json", "in_####.exr", "-o", "many/f_####.exr", "--jobs", "2", "--warmup", "2"}, 0);
     expect_same_frames(1, 4);
-    // Each frame of warm-up halves what the trail lacks: 1/8 of the difference of two frames is left in frame 5.
+    // Each frame of warm-up halves what the trail lacks: 1/8 of the difference of two frames is left in
+    // frame 5.
     const Image uncut = color("one/f_0005.exr"), cut = color("many/f_0005.exr");
     float largest = 0;
     for (std::size_t i = 0; i < uncut.floats().size(); ++i)
@@ -126,8 +127,10 @@ TEST_F(Jobs, AFarmsVariablesNumberTheChunk) {
                 .out);
         return lines.empty() ? std::string() : lines.front() + " " + std::to_string(lines.size());
     };
-    EXPECT_EQ(written("auto", {{"SLURM_ARRAY_TASK_ID", "7"}, {"SLURM_ARRAY_TASK_MIN", "5"},
-                               {"SLURM_ARRAY_TASK_COUNT", "4"}, {"SLURM_ARRAY_TASK_STEP", "1"}}),
+    EXPECT_EQ(written("auto", {{"SLURM_ARRAY_TASK_ID", "7"},
+                               {"SLURM_ARRAY_TASK_MIN", "5"},
+                               {"SLURM_ARRAY_TASK_COUNT", "4"},
+                               {"SLURM_ARRAY_TASK_STEP", "1"}}),
               "many/f_0005.exr 2");
     EXPECT_EQ(written("auto/4", {{"JOB_COMPLETION_INDEX", "3"}}), "many/f_0007.exr 2");
     EXPECT_EQ(written("auto", {{"AWS_BATCH_JOB_ARRAY_INDEX", "0"}, {"AWS_BATCH_JOB_ARRAY_SIZE", "2"}}),
@@ -138,10 +141,9 @@ TEST_F(Jobs, AFarmsVariablesNumberTheChunk) {
 }
 
 TEST_F(Jobs, RefuseWhatNeedsOneProcess) {
-    const CommandResult result =
-        run({"spread.json", "in_####.exr", "-o", "many/f_####.exr", "--jobs", "2", "--graph", "g.dot",
-             "--history-out", "h", "--trace", "t.json"},
-            2);
+    const CommandResult result = run({"spread.json", "in_####.exr", "-o", "many/f_####.exr", "--jobs", "2",
+                                      "--graph", "g.dot", "--history-out", "h", "--trace", "t.json"},
+                                     2);
     for (const char* option : {"--graph", "--history-out", "--trace"})
         EXPECT_NE(result.err.find(std::string(option) + ": "), std::string::npos) << result.err;
     run({"spread.json", "in_####.exr", "-o", "many/f_####.exr", "--jobs", "0"}, 2);
@@ -161,7 +163,8 @@ TEST_F(Jobs, AnInterruptPrintsTheCommandThatGoesOn) {
     Command command({AFTERSHADE_EXECUTABLE, "run", "spread.json", "in_####.exr", "-o", "many/f_####.exr",
                      "--effect-path", "effects", "--backend", "osmesa", "--jobs", "2"},
                     folder_.path());
-    while (!fs::exists(folder_ / "many/f_0003.exr")) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    while (!fs::exists(folder_ / "many/f_0003.exr"))
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
     command.send(SIGINT);
     const CommandResult result = command.wait();
     EXPECT_EQ(result.exit_code, 130) << result.err;

@@ -95,8 +95,7 @@ TEST_F(Plugins, ThatCrashEndTheRunWithTheirNameAndLeaveEarlierFramesWhole) {
 
 TEST_F(Plugins, ThatCrashOrHangCostWorkersOneFrame) {
     write_effect("crashes_late");
-    const CommandResult crash =
-        run({"--effect-path", "effects", "--plugin-path", kCases, "--jobs", "1"}, 1);
+    const CommandResult crash = run({"--effect-path", "effects", "--plugin-path", kCases, "--jobs", "1"}, 1);
     EXPECT_NE(crash.err.find("1 of 4 frames failed:\n  frame 3: plug-in " + kCases +
                              "/crashes_late.so crashed (signal 11, SIGSEGV)"),
               std::string::npos)
@@ -104,8 +103,8 @@ TEST_F(Plugins, ThatCrashOrHangCostWorkersOneFrame) {
     EXPECT_FALSE(fs::exists(folder_ / "out_0003.exr"));
     EXPECT_FLOAT_EQ(red("out_0004.exr").at(3, 3, 0), 0.5f);
     write_effect("hangs");
-    const CommandResult hang =
-        run({"--effect-path", "effects", "--plugin-path", kCases, "--frames", "1", "--frame-timeout", "3"}, 5);
+    const CommandResult hang = run(
+        {"--effect-path", "effects", "--plugin-path", kCases, "--frames", "1", "--frame-timeout", "3"}, 5);
     EXPECT_NE(hang.err.find("did not finish within 3 s and was killed"), std::string::npos) << hang.err;
 }
 
