@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/effect_options.h"
+#include "cli/bound_look.h"
 #include "cli/frame_gaps.h"
 #include "cli/gl_options.h"
 #include "cli/graph_file.h"
@@ -20,7 +20,6 @@
 #include "framework/core/atomic_file.h"
 #include "framework/core/cores.h"
 #include "framework/core/data_path.h"
-#include "framework/pipeline/look.h"
 #include "framework/pipeline/output.h"
 
 namespace aftershade::cli {

@@ -122,7 +122,9 @@ void add_run_options(CLI::App& app, RunArguments& options) {
     app.add_option("--look-folder", options.look_folder,
                    "Folder that files named in the look lie in (default: the look's own)");
     add_effect_path_option(app, options.effect_paths);
-    app.add_option("--progress", options.progress, "auto, none, plain or json (an object a line, on stderr)")
+    app.add_option("--progress", options.progress,
+                   "auto, none, plain, json (an object a line, on stderr) or openjd (Open Job Description, "
+                   "on stdout)")
         ->capture_default_str();
     app.add_option("--trace", options.trace,
                    "Write what was done when (.json), for chrome://tracing or ui.perfetto.dev");

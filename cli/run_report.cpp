@@ -63,9 +63,17 @@ ProgressStyle parse_progress(const std::string& name) {
     if (name == "none") return ProgressStyle::none;
     if (name == "plain") return ProgressStyle::plain;
     if (name == "json") return ProgressStyle::json;
+    if (name == "openjd") return ProgressStyle::openjd;
     if (name == "auto") return isatty(STDERR_FILENO) ? ProgressStyle::terminal : ProgressStyle::plain;
     throw Error(ExitCode::usage,
-                "--progress: '" + name + "' is not one of 'auto', 'none', 'plain' or 'json'");
+                "--progress: '" + name + "' is not one of 'auto', 'none', 'plain', 'json' or 'openjd'");
+}
+
+void print_openjd_progress(std::size_t done, std::size_t count, const std::string& status) {
+    constexpr double kPercent = 100;
+    fmt::print("openjd_progress: {:.1f}\nopenjd_status: {}\n",
+               count > 0 ? kPercent * double(done) / double(count) : kPercent, status);
+    std::fflush(stdout);
 }
 
 void RunReporter::clear_line() {
@@ -109,7 +117,9 @@ void RunReporter::show_progress(int frame) {
     }
     std::string text = fmt::format("frame {} ({}/{})", frame, started_, frame_count_);
     if (done > 0) text += fmt::format(", {:.3g} frames/s, {} left", done / elapsed_s, duration_text(left_s));
-    if (style_ == ProgressStyle::plain) return say("frame", text);
+    if (style_ == ProgressStyle::openjd)
+        print_openjd_progress(std::size_t(done), std::size_t(frame_count_), text);
+    if (style_ != ProgressStyle::terminal) return say("frame", text);
     clear_line();
     fmt::print(stderr, "{}", text);
     std::fflush(stderr);
@@ -197,6 +207,9 @@ void RunReporter::print_summary(const RunReport& report, const std::string& cloc
     clear_line();
     if (style_ == ProgressStyle::none) return;
     if (style_ == ProgressStyle::json) return print_json_summary(report);
+    if (style_ == ProgressStyle::openjd)
+        print_openjd_progress(std::size_t(frame_count_), std::size_t(frame_count_),
+                              fmt::format("{} of {} frames done", report.frames_done, frame_count_));
     if (report.frames_done > 0) print_tables(report, clock);
     if (!report.frames_non_finite.empty())
         fmt::print(stderr, "NaN or infinite pixels in {} of {} frames: {}\n", report.frames_non_finite.size(),

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <set>
 #include <string>
 
@@ -14,11 +15,16 @@ enum class ProgressStyle {
     none,      ///< warnings and errors alone
     plain,     ///< a line for each frame, for logs
     terminal,  ///< one line that changes
-    json       ///< an object a line (docs/looks.md)
+    json,      ///< an object a line (docs/looks.md)
+    openjd     ///< plain, with what a farm of Open Job Description reads on stdout
 };
 
 /// "auto" is a terminal's line where stderr is one, else plain. Throws Error(ExitCode::usage).
 ProgressStyle parse_progress(const std::string& name);
+
+/// "openjd_progress: 25.0" and "openjd_status: ..." on stdout:
+/// https://github.com/OpenJobDescription/openjd-specifications/wiki/How-Jobs-Are-Run#stdoutstderr-messages
+void print_openjd_progress(std::size_t done, std::size_t count, const std::string& status);
 
 class RunReporter {
 public:

@@ -6,28 +6,17 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <utility>
 #include <vector>
 
+#include "cli/bound_look.h"
 #include "cli/run_options.h"
 #include "cli/run_report.h"
 #include "cli/watch.h"
 #include "framework/core/status.h"
-#include "framework/effect/registry.h"
 #include "framework/gpu/context.h"
-#include "framework/pipeline/look.h"
 #include "framework/pipeline/run.h"
 
 namespace aftershade::cli {
-
-/// The look and its effects as they are on disk now; a pipeline refers to the effects.
-struct BoundLook {
-    explicit BoundLook(EffectRegistry found) : effects(std::move(found)) {}
-    EffectRegistry effects;
-    std::optional<Look> look;
-    Pipeline pipeline;
-};
-std::unique_ptr<BoundLook> bind_look(const RunArguments& options, Diagnostics& diagnostics);
 
 /// A look with the state of its files from before they were read, so that no later save is missed.
 struct WatchedLook {

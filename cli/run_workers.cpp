@@ -81,6 +81,9 @@ private:
             fmt::print(stderr, "{}\n", line.dump());
             return;
         }
+        if (style_ == ProgressStyle::openjd)
+            print_openjd_progress(ended_, frame_count_,
+                                  fmt::format("frame {} {}", event.frame, event.outcome));
         clear_line();
         fmt::print(stderr, "frame {} {} ({}/{}), {:.2f} frames/s, {:.0f} s left", event.frame, event.outcome,
                    ended_, frame_count_, double(ended_) / seconds, left);

@@ -16,6 +16,8 @@ using Verb = std::function<ExitCode()>;
 /// One line a verb, in the order of `aftershade --help`; add_<name> is in cli/<name>.cpp.
 #define AFTERSHADE_VERBS(VERB)                                                                               \
     VERB(run, "Run a look over a capture and write the result")                                              \
+    VERB(submit, "Write the files of a farm's job that runs a look over a capture; says how to submit them") \
+    VERB(merge, "Merge the reports of a farm's tasks into one, and list the frames that failed")             \
     VERB(inspect, "Show what a capture holds: parts, channels with their figures, roles, camera")            \
     VERB(compare, "Compare two pictures, layer by layer: how different, how visible, a verdict for scripts") \
     VERB(golden, "Render a suite of cases and compare them with approved images; approve new ones")          \

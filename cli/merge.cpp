@@ -1,0 +1,72 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <set>
+
+#include "cli/batch_report.h"
+#include "cli/merge_reports.h"
+#include "cli/verbs.h"
+#include "framework/batch/farm_job.h"
+#include "framework/core/atomic_file.h"
+
+namespace aftershade::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct MergeArguments {
+    std::vector<std::string> reports;
+    std::string output;
+    int tasks = 0;  ///< 0: as many as there are reports
+};
+
+/// The files meant: each as it is named; of a folder, those of its tasks.
+std::vector<fs::path> report_files(const MergeArguments& options) {
+    std::vector<fs::path> files;
+    for (const std::string& name : options.reports) {
+        if (!fs::is_directory(name)) {
+            files.emplace_back(name);
+        } else if (options.tasks > 0) {
+            for (int task = 1; task <= options.tasks; ++task)
+                files.push_back(fs::path(name) / (task_name(task) + ".json"));
+        } else {
+            std::set<fs::path> sorted;
+            for (const auto& entry : fs::directory_iterator(name))
+                if (entry.path().extension() == ".json") sorted.insert(entry.path());
+            files.insert(files.end(), sorted.begin(), sorted.end());
+        }
+    }
+    return files;
+}
+
+ExitCode merge(const MergeArguments& options) {
+    const std::vector<fs::path> files = report_files(options);
+    if (files.empty()) throw Error(ExitCode::capture, options.reports.front() + ": holds no report (.json)");
+    const MergedReport merged = merge_reports(files);
+    write_text_file(options.output, merged_report_json(merged));
+    for (const MissingReport& missing : merged.missing)
+        std::cerr << missing.file << ": " << missing.why << "\n";
+    std::cerr << failures_text(merged.batch.frames) << merge_summary(merged);
+    return merged.batch.exit_code;
+}
+
+}  // namespace
+
+Verb add_merge(CLI::App& app) {
+    auto options = std::make_shared<MergeArguments>();
+    app.add_option("reports", options->reports,
+                   "Reports of run --report, or a folder of them; of a frame in several the last counts")
+        ->required();
+    app.add_option("-o,--output", options->output, "The merged report (.json)")->required();
+    app.add_option("--tasks", options->tasks,
+                   "How many reports the folder should have: 0001.json, 0002.json, ...")
+        ->check(CLI::PositiveNumber);
+    return [options] { return merge(*options); };
+}
+
+}  // namespace aftershade::cli

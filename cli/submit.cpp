@@ -1,0 +1,200 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <set>
+
+#include "cli/bound_look.h"
+#include "cli/frame_gaps.h"
+#include "cli/job_options.h"
+#include "cli/run_options.h"
+#include "cli/run_workers.h"
+#include "cli/submit_options.h"
+#include "cli/verbs.h"
+#include "framework/batch/farm_job.h"
+#include "framework/capture/frame_range.h"
+#include "framework/core/atomic_file.h"
+#include "framework/core/text.h"
+#include "framework/pipeline/output.h"
+
+namespace aftershade::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kLeastFrames = 10;         // a task starts and compiles shaders for seconds
+constexpr int kWarmupFactor = 4;         // a quarter more frames rendered, at most
+constexpr int kMostDefaultTasks = 1000;  // Slurm's default MaxArraySize allows no more
+
+/// A DNS label of RFC 1123 with room for "-report": a-z, 0-9 and -.
+std::string job_name(const std::string& wanted) {
+    constexpr std::size_t kMost = 56;
+    std::string name;
+    for (const char c : wanted) {
+        const bool plain =
+            std::isalnum(static_cast<unsigned char>(c)) && static_cast<unsigned char>(c) < 0x80;
+        if (plain) name += char(std::tolower(c));
+        else if (!name.empty() && name.back() != '-') name += '-';
+    }
+    name.resize(std::min(name.size(), kMost));
+    while (!name.empty() && name.back() == '-') name.pop_back();
+    return name.empty() ? "aftershade" : name;
+}
+
+/// The run as its own command line gives it; nullopt after a fault.
+std::optional<RunArguments> parse_run(const std::vector<std::string>& words, Diagnostics& diagnostics) {
+    RunArguments run;
+    CLI::App app{"", "aftershade run"};
+    add_run_options(app, run);
+    std::vector<std::string> reversed(words.rbegin(), words.rend());
+    reversed.pop_back();  // "run"
+    try {
+        app.parse(reversed);
+    } catch (const CLI::ParseError& error) {
+        diagnostics.error({"options of run"}, error.what());
+        return std::nullopt;
+    }
+    return run;
+}
+
+/// Everything that `run` would refuse before it renders; then `run` has the division's own options. nullopt
+/// after a fault.
+std::optional<JobFrames> check_run(const SubmitArguments& options, RunArguments& run,
+                                   Diagnostics& diagnostics) {
+    const auto bound = bind_look(run, diagnostics);
+    const std::vector<Profile> profiles = load_profiles(run.capture.profile_paths, diagnostics);
+    auto sequence = find_sequence(run.capture, profiles, diagnostics);
+    const RunOptions settings = run_options(run, diagnostics);
+    if (sequence) add_missing_frames(run.capture, settings.missing, *sequence, diagnostics);
+    check_outputs(output_options(run), sequence.value_or(Sequence{}), diagnostics);
+    if (options.history == "exact" || options.history == "none") {
+        if (run.jobs.warmup != "auto")
+            diagnostics.error({"-- --warmup " + run.jobs.warmup},
+                              "goes with --history warmup, not with --history " + options.history);
+        run.jobs.warmup = "0";
+    }
+    if (options.history == "exact" && bound->pipeline.has_history()) run.history_out = "history";
+    check_worker_options(run, diagnostics);
+    if (!sequence) return std::nullopt;
+    run.jobs.chunk = "1/1";
+    return job_frames(run.jobs, bound->pipeline, *sequence, false, diagnostics);
+}
+
+FarmHistory history_of(const SubmitArguments& options, const JobFrames& run) {
+    if (!run.has_history || options.history == "none") return FarmHistory::none;
+    return options.history == "exact" ? FarmHistory::exact : FarmHistory::warmup;
+}
+
+int task_count(const SubmitArguments& options, const JobFrames& run) {
+    const int frames = int(run.frames.size());
+    if (options.tasks > 0) return std::min(options.tasks, frames);
+    if (options.frames_per_task > 0) return (frames + options.frames_per_task - 1) / options.frames_per_task;
+    const int per_task = std::max(kLeastFrames, run.has_history ? kWarmupFactor * run.warmup_frames : 0);
+    return std::clamp(frames / per_task, 1, kMostDefaultTasks);
+}
+
+/// What the program reads from its environment here, and shall there.
+std::map<std::string, std::string> environment_of(const SubmitArguments& options) {
+    std::set<std::string> names{"AFTERSHADE_BACKEND", "AFTERSHADE_CACHE", "AFTERSHADE_DATA",
+                                "AFTERSHADE_PLUGIN_PATH"};
+    // Folders of this machine are not those of an image.
+    if (options.farm == "kubernetes") names = {"AFTERSHADE_BACKEND"};
+    std::map<std::string, std::string> environment;
+    for (const std::string& name : names)
+        if (const char* value = std::getenv(name.c_str())) environment[name] = value;
+    return environment;
+}
+
+FarmJob farm_job(const SubmitArguments& options, const RunArguments& parsed, const JobFrames& run) {
+    FarmJob job;
+    job.name = job_name(options.name.empty() ? "aftershade-" + fs::path(options.look).stem().string()
+                                             : options.name);
+    job.program = !options.program.empty()       ? options.program
+                  : options.farm == "kubernetes" ? "aftershade"
+                                                 : fs::read_symlink("/proc/self/exe").string();
+    job.arguments = run_words(options);
+    // Tasks that start later divide the same frames, whatever lies in the folder by then.
+    if (parsed.capture.frames.empty()) job.arguments.push_back("--frames=" + format_frame_range(run.frames));
+    if (options.farm == "openjd" && parsed.progress == "auto")
+        job.arguments.insert(job.arguments.end(), {"--progress", "openjd"});
+    job.working_folder = fs::current_path();
+    job.folder = fs::absolute(options.folder).lexically_normal();
+    job.environment = environment_of(options);
+    job.history = history_of(options, run);
+    job.rows = farm_rows(run, task_count(options, run), job.history);
+    job.cpus = options.cpus;
+    job.memory_bytes = options.memory_bytes;
+    job.minutes = options.minutes;
+    job.retries = options.retries;
+    job.image = options.image;
+    job.volume_claim = options.volume_claim;
+    job.mount = fs::absolute(options.mount.empty() ? "." : options.mount).lexically_normal();
+    return job;
+}
+
+void write_job(const FarmJob& job, const FarmFiles& files) {
+    std::error_code failure;
+    for (const char* folder : {"reports", "history", "logs"}) {
+        fs::create_directories(job.folder / folder, failure);
+        if (failure)
+            throw Error(ExitCode::output,
+                        (job.folder / folder).string() + ": cannot be made: " + failure.message());
+    }
+    for (const FarmFile& file : files.files) write_text_file(job.folder / file.name, file.text);
+}
+
+std::string division_text(const SubmitArguments& options, const JobFrames& run, const FarmJob& job) {
+    const int frames = int(run.frames.size()), tasks = job.tasks();
+    std::string text = fmt::format("{} {} in {} {} of about {}", frames, frames == 1 ? "frame" : "frames",
+                                   tasks, tasks == 1 ? "task" : "tasks", (frames + tasks - 1) / tasks);
+    if (options.tasks == 0 && options.frames_per_task == 0)
+        text +=
+            fmt::format(" (at least {}, and {} times the warm-up; choose with --tasks or --frames-per-task)",
+                        kLeastFrames, kWarmupFactor);
+    if (job.history == FarmHistory::warmup)
+        text += fmt::format("; each renders up to {} frames before its own to warm history up",
+                            run.warmup_frames);
+    if (job.history == FarmHistory::exact)
+        text += fmt::format("; exact history: {} {} of tasks, each task after the one before it",
+                            job.rows.size(), job.rows.size() == 1 ? "row" : "rows");
+    return text + "\n";
+}
+
+ExitCode submit(const SubmitArguments& options) {
+    Diagnostics diagnostics;
+    check_submit_options(options, diagnostics);
+    auto run = parse_run(run_words(options), diagnostics);
+    stop_at_errors(diagnostics);
+    const auto frames = check_run(options, *run, diagnostics);
+    stop_at_errors(diagnostics);
+    if (frames->has_history && options.history == "none")
+        diagnostics.warning({"--history none"},
+                            "the look has history, which every task begins anew: pictures change at the "
+                            "borders of tasks");
+    diagnostics.print(std::cerr);
+
+    const FarmJob job = farm_job(options, *run, *frames);
+    const FarmFiles files = farm_files(options.farm, job);
+    write_job(job, files);
+    std::cerr << division_text(options, *frames, job);
+    for (const std::string& remark : files.remarks) std::cerr << "note: " << remark << "\n";
+    std::cout << shell_line(files.submit) << "\n";
+    return ExitCode::done;
+}
+
+}  // namespace
+
+Verb add_submit(CLI::App& app) {
+    auto options = std::make_shared<SubmitArguments>();
+    add_submit_options(app, *options);
+    return [options] { return submit(*options); };
+}
+
+}  // namespace aftershade::cli

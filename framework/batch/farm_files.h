@@ -1,0 +1,22 @@
+// What the writers of job files share.
+#pragma once
+
+#include <string>
+
+#include "framework/batch/farm_job.h"
+
+namespace aftershade {
+
+/// sh, with the path of a script in the job's folder.
+std::vector<std::string> farm_script(const FarmJob& job, const std::string& name);
+/// In MiB, rounded up: the unit that all farms take.
+std::uint64_t farm_mebibytes(const FarmJob& job);
+
+// Each adds its files, the command and remarks.
+void add_slurm_files(const FarmJob& job, FarmFiles& out);
+void add_openjd_files(const FarmJob& job, FarmFiles& out);
+void add_kubernetes_files(const FarmJob& job, FarmFiles& out);
+void add_opencue_files(const FarmJob& job, FarmFiles& out);
+void add_parallel_files(const FarmJob& job, FarmFiles& out);
+
+}  // namespace aftershade

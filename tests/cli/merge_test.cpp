@@ -1,0 +1,80 @@
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/batch_work.h"
+
+namespace aftershade::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Merge : public testing::Test {
+protected:
+    void report(const std::string& name, const std::string& frames, double seconds = 2) {
+        fs::create_directories(folder_ / "reports");
+        write_text(
+            folder_ / ("reports/" + name),
+            R"({ "aftershade_report": 1, "look": "/a.json", "capture": "/b", "exit_code": 0, "seconds": )" +
+                std::to_string(seconds) + R"(, "frames": [)" + frames + "] }");
+    }
+    static std::string frame(int number, const std::string& outcome, const std::string& message = "") {
+        return R"({ "frame": )" + std::to_string(number) + R"(, "outcome": ")" + outcome +
+               R"(", "message": ")" + message + R"(" })";
+    }
+    CommandResult merge(std::vector<std::string> arguments, int exit_code) {
+        arguments.insert(arguments.begin(), "merge");
+        arguments.insert(arguments.end(), {"-o", "all.json"});
+        CommandResult result = run_aftershade(arguments, folder_.path());
+        EXPECT_EQ(result.exit_code, exit_code) << result.err;
+        return result;
+    }
+    nlohmann::json all() { return nlohmann::json::parse(read_text(folder_ / "all.json")); }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(Merge, PutsTheFramesOfAllTasksInOrderAndAddsTheirSecondsUp) {
+    report("0001.json", frame(3, "done") + "," + frame(4, "done"));
+    report("0002.json", frame(1, "done") + "," + frame(2, "skipped"), 3);
+    const CommandResult result = merge({"reports", "--tasks", "2"}, 0);
+    EXPECT_EQ(result.err, "3 of 4 frames done, 1 skipped; 2 of 2 tasks reported\n");
+    const nlohmann::json merged = all();
+    for (int i = 0; i < 4; ++i) EXPECT_EQ(merged["frames"][std::size_t(i)]["frame"], i + 1);
+    EXPECT_EQ(merged["seconds"], 5);
+    EXPECT_EQ(merged["done"], 3);
+    EXPECT_EQ(merged["look"], "/a.json");
+    EXPECT_EQ(merged["exit_code"], 0);
+}
+
+TEST_F(Merge, ListsTheFramesThatFailedAndExitsOne) {
+    report("0001.json", frame(1, "done") + "," + frame(2, "failed", "in_0002.exr: damaged"));
+    report("0002.json", frame(3, "not run"));
+    const CommandResult result = merge({"reports"}, 1);
+    EXPECT_NE(result.err.find("1 of 3 frames failed:\n  frame 2: in_0002.exr: damaged\n"), std::string::npos)
+        << result.err;
+    EXPECT_NE(result.err.find("1 of 3 frames done, 1 failed, 1 not run; "), std::string::npos) << result.err;
+    EXPECT_EQ(all()["exit_code"], 1);
+}
+
+TEST_F(Merge, NamesTheTasksThatHaveNoReportOrABrokenOne) {
+    report("0001.json", frame(1, "done"));
+    write_text(folder_ / "reports/0002.json", "{ \"aftershade_report\": 1, \"fra");
+    const CommandResult result = merge({"reports", "--tasks", "3"}, 1);
+    EXPECT_NE(result.err.find("reports/0002.json: is no report of run --report\n"), std::string::npos)
+        << result.err;
+    EXPECT_NE(result.err.find("reports/0003.json: no such file"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("1 of 3 tasks reported"), std::string::npos) << result.err;
+    EXPECT_EQ(all()["missing_reports"].size(), 2u);
+}
+
+TEST_F(Merge, TakesAFrameAsTheLastReportHasIt) {
+    report("first.json", frame(1, "failed", "no memory") + "," + frame(2, "done"));
+    report("second.json", frame(1, "done"));
+    merge({"reports/first.json", "reports/second.json"}, 0);
+    merge({"reports/second.json", "reports/first.json"}, 1);
+    // A merged report is a report.
+    merge({"all.json", "reports/second.json"}, 0);
+}
+
+}  // namespace
+}  // namespace aftershade::test
