@@ -105,7 +105,10 @@ private:
         Watchdog watchdog(options_.frame_timeout, interrupt_);
         last_error_.clear();
         const WorkerResult result = run_worker(command, listener(watchdog), &watchdog.flag());
-        if (watchdog.barked()) return cost_a_frame(result.status, timed_out(result));
+        if (watchdog.barked()) {
+            board_.ended(ExitCode::effect);
+            return cost_a_frame(result.status, timed_out(result));
+        }
         if (result.end == WorkerEnd::interrupted) return false;
         board_.ended(result.end == WorkerEnd::exited ? ExitCode(result.exit_code) : ExitCode::effect);
         const bool has_seen_all = first_unfinished() == piece_.frames.size();
