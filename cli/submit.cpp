@@ -125,7 +125,7 @@ FarmJob farm_job(const SubmitArguments& options, const RunArguments& parsed, con
     if (options.farm == "openjd" && parsed.progress == "auto")
         job.arguments.insert(job.arguments.end(), {"--progress", "openjd"});
     job.working_folder = fs::current_path();
-    job.folder = fs::absolute(options.folder).lexically_normal();
+    job.folder = absolute_path(options.folder);
     job.environment = environment_of(options);
     job.history = history_of(options, run);
     job.rows = farm_rows(run, task_count(options, run), job.history);
@@ -135,7 +135,7 @@ FarmJob farm_job(const SubmitArguments& options, const RunArguments& parsed, con
     job.retries = options.retries;
     job.image = options.image;
     job.volume_claim = options.volume_claim;
-    job.mount = fs::absolute(options.mount.empty() ? "." : options.mount).lexically_normal();
+    job.mount = absolute_path(options.mount);
     return job;
 }
 

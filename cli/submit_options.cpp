@@ -14,10 +14,6 @@ namespace fs = std::filesystem;
 
 constexpr int kMostTasks = 1'000'000;  // as many frames as a sequence may have
 
-std::string absolute(const fs::path& path) {
-    return fs::absolute(path).lexically_normal().string();
-}
-
 void add_division_options(CLI::App& app, SubmitArguments& options) {
     auto* tasks = app.add_option("--tasks", options.tasks, "How many tasks the frames are divided among")
                       ->check(CLI::Range(1, kMostTasks));
@@ -75,9 +71,16 @@ void add_submit_options(CLI::App& app, SubmitArguments& options) {
     add_resource_options(app, options);
 }
 
+std::string absolute_path(const std::string& path) {
+    std::string normal = fs::absolute(path.empty() ? "." : path).lexically_normal().string();
+    while (normal.size() > 1 && normal.back() == '/') normal.pop_back();
+    return normal;
+}
+
 std::vector<std::string> run_words(const SubmitArguments& options) {
-    std::vector<std::string> words{"run", absolute(options.look), absolute(options.capture)};
-    for (const std::string& output : options.outputs) words.insert(words.end(), {"-o", absolute(output)});
+    std::vector<std::string> words{"run", absolute_path(options.look), absolute_path(options.capture)};
+    for (const std::string& output : options.outputs)
+        words.insert(words.end(), {"-o", absolute_path(output)});
     words.insert(words.end(), options.run_options.begin(), options.run_options.end());
     return words;
 }
@@ -95,11 +98,11 @@ void check_submit_options(const SubmitArguments& options, Diagnostics& diagnosti
         if (options.volume_claim.empty())
             diagnostics.error({"--to kubernetes"},
                               "needs --volume-claim, the claim of a volume with the look and the capture");
-        const std::string mount = absolute(options.mount.empty() ? "." : options.mount);
+        const std::string mount = absolute_path(options.mount);
         std::vector<std::string> paths{options.look, options.capture, options.folder};
         paths.insert(paths.end(), options.outputs.begin(), options.outputs.end());
         for (const std::string& path : paths)
-            if (const fs::path below = fs::path(absolute(path)).lexically_relative(mount);
+            if (const fs::path below = fs::path(absolute_path(path)).lexically_relative(mount);
                 below.empty() || *below.begin() == "..")
                 diagnostics.error({path}, "does not lie below " + mount +
                                               ", the only folder that tasks see; move it there, or choose "

@@ -37,6 +37,9 @@ void add_submit_options(CLI::App& app, SubmitArguments& arguments);
 /// Looks, captures and outputs are absolute.
 std::vector<std::string> run_words(const SubmitArguments& arguments);
 
+/// Absolute and normal, without a slash at its end. "" is this folder.
+std::string absolute_path(const std::string& path);
+
 /// Options that tasks have of their own, and those of one farm without that farm.
 void check_submit_options(const SubmitArguments& arguments, Diagnostics& diagnostics);
 

@@ -99,8 +99,9 @@ TEST_F(Submit, ARowThatIsTriedAgainGoesOnBehindItsLastCompleteTask) {
 }
 
 TEST_F(Submit, RowsOfExactHistoryBeginAtCutsAndAtGapsInTheFrames) {
-    write_text(folder_ / "cut.json",
-               R"({ "aftershade_capture": 1, "files": "in_####.exr", "frames": "1-3,5-12", "cuts": [9] })");
+    write_text(
+        folder_ / "cut.json",
+        R"({ "aftershade": 1, "files": { "pattern": "in_####.exr", "frames": "1-3,5-12" }, "cuts": [9] })");
     const CommandResult result = run_aftershade(
         {"submit", "--to", "parallel", "trail.json", "cut.json", "-o", "out/f_####.exr", "--folder", "job",
          "--history", "exact", "--tasks", "11", "--", "--effect-path", "effects"},
@@ -264,11 +265,12 @@ TEST_F(Submit, GnuParallelRunsTheTasksAndThenOnlyThoseThatFailed) {
     const auto whole = uncut();
     submit("parallel", {"--tasks", "3", "--retries", "0"}, 0, {"--warmup", "12"});
     expect_readable_scripts();
-    const std::string held = read_text(frame_path(6));
-    fs::remove(frame_path(6));
+    // In the last task: history runs from a frame into the tasks behind it.
+    const std::string held = read_text(frame_path(12));
+    fs::remove(frame_path(12));
     EXPECT_EQ(shell("sh job/run.sh").exit_code, 1);
     EXPECT_EQ(job_json("report.json")["failed"], 1);
-    write_text(frame_path(6), held);
+    write_text(frame_path(12), held);
     const auto first = fs::last_write_time(folder_ / "out/f_0001.exr");
     EXPECT_EQ(shell("sh job/run.sh").exit_code, 0);
     EXPECT_EQ(fs::last_write_time(folder_ / "out/f_0001.exr"), first);
