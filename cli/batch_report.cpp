@@ -51,6 +51,7 @@ std::string report_json(const BatchSummary& summary) {
                                            {"exit_code", int(summary.exit_code)},
                                            {"seconds", summary.seconds},
                                            {"done", count_of(summary.frames, "done")},
+                                           {"current", count_of(summary.frames, "current")},
                                            {"failed", count_of(summary.frames, "failed")},
                                            {"skipped", count_of(summary.frames, "skipped")},
                                            {"not_run", count_of(summary.frames, "not run")},

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <map>
@@ -11,6 +12,7 @@
 #include "cli/check_velocity.h"
 #include "cli/inspect_report.h"
 #include "cli/verbs.h"
+#include "framework/capture/sample_means.h"
 #include "framework/core/data_path.h"
 #include "framework/file/png_file.h"
 #include "framework/image/role.h"
@@ -64,7 +66,18 @@ Inspection inspect_frame(const Sequence& sequence, int frame, const CaptureReade
     return inspection;
 }
 
-/// The depth as the profile decodes it, held to the positions of its pixels.
+/// A depth in mid air at its edges, of which no profile and no capture.json says that it is averaged.
+void note_averaged_depth(const Image& depth, Inspection& inspection) {
+    const DepthEdges edges = find_depth_edges(depth);
+    if (!edges.are_of_means()) return;
+    inspection.capture->notes.push_back(fmt::format(
+        "the depth is averaged over samples: at {} of {} edges pixels have a depth between the two "
+        "surfaces; say \"sampling\": \"mean\" with the depth's channels in capture.json, which "
+        "repairs them",
+        edges.mixed, edges.mixed + edges.sharp));
+}
+
+/// The depth as the profile decodes it, held to its own edges and to the positions of its pixels.
 void find_depth_kind_of(const CaptureReader& reader, Inspection& inspection) {
     if (!inspection.capture) return;
     std::string depth, position;
@@ -72,9 +85,13 @@ void find_depth_kind_of(const CaptureReader& reader, Inspection& inspection) {
         if (kind_of_role(role) == RoleKind::distance) depth = role;
         if (kind_of_role(role) == RoleKind::place) position = role;
     }
-    if (depth.empty() || position.empty()) return;
+    if (depth.empty()) return;
+    std::vector<std::string> roles = {depth};
+    if (!position.empty()) roles.push_back(position);
     try {
-        const Capture capture = reader.read(inspection.capture->frame, std::vector{depth, position});
+        const Capture capture = reader.read(inspection.capture->frame, roles);
+        note_averaged_depth(capture.images.at(depth), inspection);
+        if (position.empty()) return;
         const DepthKind kind = find_depth_kind(capture.images.at(depth), capture.images.at(position));
         inspection.depth_kind = kind.text();
         if (kind.verdict() == DepthKind::Verdict::radial)

@@ -135,7 +135,7 @@ JobFrames job_frames(const JobArguments& arguments, const Pipeline& pipeline, co
     run.frames = sequence.frames;
     run.cuts = sequence.cuts;
     run.has_history = pipeline.has_history();
-    if (has_saved_history || (arguments.chunk.empty() && arguments.jobs.empty())) return run;
+    if (has_saved_history) return run;
     const LookWarmup declared = warmup_of(pipeline);
     run.warmup_frames = declared.frames;
     if (arguments.warmup != "auto") {
@@ -143,8 +143,8 @@ JobFrames job_frames(const JobArguments& arguments, const Pipeline& pipeline, co
         if (!number || *number < 0 || *number > kMaxWarmupFrames)
             diagnostics.error({"--warmup " + arguments.warmup},
                               "expected auto or a number from 0 to " + std::to_string(kMaxWarmupFrames));
-        else run.warmup_frames = *number;
-    } else if (run.has_history && !declared.undeclared.empty()) {
+        run.warmup_frames = number.value_or(0);
+    } else if (!declared.undeclared.empty() && arguments.divides_frames()) {
         diagnostics.error({"--warmup auto"}, "step " + list_of_names(declared.undeclared, "and") +
                                                  " has history and its effect declares no warm-up; write a "
                                                  "number, or render in one piece");

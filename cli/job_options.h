@@ -31,6 +31,8 @@ struct JobArguments {
     int worker_threads = 0;
 
     bool is_worker() const { return !worker_frames.empty(); }
+    /// Whether frames go to several processes or machines.
+    bool divides_frames() const { return !chunk.empty() || (!jobs.empty() && jobs != "1"); }
     /// Whether frames are rendered by other processes.
     bool wants_workers() const {
         return !is_worker() && (!jobs.empty() || frame_timeout_s > 0 || memory_bytes > 0);

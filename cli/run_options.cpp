@@ -133,6 +133,7 @@ void add_run_options(CLI::App& app, RunArguments& options) {
     add_plugin_options(app, options.plugins);
     add_job_options(app, options.jobs);
     add_frame_options(app, options);
+    add_resume_options(app, options.resume);
     add_backend_option(app, options.backend);
 }
 

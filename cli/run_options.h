@@ -7,6 +7,7 @@
 #include "cli/capture_options.h"
 #include "cli/job_options.h"
 #include "cli/plugin_options.h"
+#include "cli/resume.h"
 #include "framework/core/diagnostics.h"
 #include "framework/pipeline/look.h"
 #include "framework/pipeline/output_options.h"
@@ -50,6 +51,7 @@ struct RunArguments {
     CaptureOptions capture;
     PluginOptions plugins;
     JobArguments jobs;
+    ResumeArguments resume;
 
     /// Whether outputs have other pixels than the source.
     bool changes_window() const;

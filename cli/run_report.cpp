@@ -153,7 +153,7 @@ RunObserver RunReporter::observer() {
         say("missing", fmt::format("frame {} is missing: {}", frame, what));
     };
     observer.history_reset = [this](int frame, const std::string& reason) {
-        say("history", fmt::format("frame {}: history begins anew: {}", frame, reason));
+        say("history", fmt::format("frame {}: history reset: {}", frame, reason));
     };
     observer.native_message = [this](int frame, const std::string& line) {
         if (style_ != ProgressStyle::none) say("native", fmt::format("frame {}: {}", frame, line));

@@ -56,6 +56,8 @@ public:
         fmt::print(stderr, "{}", failures_text(report.frames));
         if (style_ == ProgressStyle::none || style_ == ProgressStyle::json) return;
         const std::size_t done = frames_of(report.frames, "done").size();
+        const std::size_t current = frames_of(report.frames, "current").size();
+        if (current > 0) fmt::print(stderr, "{} frames were current\n", current);
         fmt::print(stderr, "{} of {} frames in {:.2f} s by {} {}; {:.2f} frames/s\n", done, frame_count_,
                    seconds, workers, workers == 1 ? "worker" : "workers",
                    seconds > 0 ? double(done) / seconds : 0.0);
@@ -99,13 +101,15 @@ private:
 };
 
 /// This process's command without what is its own.
-std::vector<std::string> worker_command() {
+std::vector<std::string> worker_command(const RunArguments& arguments, std::size_t frames) {
     std::vector<std::string> command = with_options(own_arguments(), {{"--jobs", ""},
                                                                       {"--frame-timeout", ""},
                                                                       {"--max-memory", ""},
                                                                       {"--report", ""},
                                                                       {"--progress", "none"}});
     std::erase(command, "--stop-on-error");
+    // A worker of one frame keeps the journal that the run keeps.
+    if (arguments.resume.keeps_journal(frames) && !arguments.resume.resume) command.emplace_back("--resume");
     command[0] = "/proc/self/exe";
     return command;
 }
@@ -142,6 +146,7 @@ void check_worker_options(const RunArguments& arguments, Diagnostics& diagnostic
     refuse(!arguments.history_in.empty(), "--history-in", "leave --jobs out, or let chunks warm up");
     refuse(!arguments.history_out.empty(), "--history-out", "leave --jobs out, or let chunks warm up");
     refuse(arguments.watch, "--watch", "leave one of them out");
+    refuse(arguments.resume.dry_run, "--dry-run", "ask without workers");
 }
 
 ExitCode run_by_workers(const RunArguments& arguments, const JobFrames& frames, int workers,
@@ -149,7 +154,7 @@ ExitCode run_by_workers(const RunArguments& arguments, const JobFrames& frames, 
     const auto start = Clock::now();
     JobOptions options;
     options.pieces = plan_jobs(frames, workers);
-    options.command = worker_command();
+    options.command = worker_command(arguments, frames.count());
     options.warmup_frames = frames.has_history ? frames.warmup_frames : 0;
     options.threads = std::max(1, allotted_cores() / std::max(1, int(options.pieces.size())));
     options.frame_arguments = [threads = options.threads](const JobPiece& piece) {
@@ -159,7 +164,7 @@ ExitCode run_by_workers(const RunArguments& arguments, const JobFrames& frames, 
         options.frame_timeout = std::chrono::duration<double>(arguments.jobs.frame_timeout_s);
     if (arguments.jobs.memory_bytes > 0) options.memory_bytes = arguments.jobs.memory_bytes;
     options.stop_on_error = arguments.jobs.stop_on_error;
-    WorkersReporter reporter(progress, frames.frames.size());
+    WorkersReporter reporter(progress, frames.count());
     const JobsReport report = run_jobs(options, reporter.listener(), stop);
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     reporter.finish(report, options.pieces.size(), seconds);

@@ -69,6 +69,7 @@ std::vector<std::string> words_of(const GoldenCase& test, const GoldenRenderOpti
     for (const std::string& path : options.plugin_paths) add("--plugin-path", path);
     add("--backend", options.backend);
     add("--progress", "none");
+    words.push_back("--no-journal");
     return words;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <map>
 #include <mutex>
+#include <set>
 #include <thread>
 
 #include "framework/batch/watchdog.h"
@@ -55,7 +56,7 @@ public:
         std::size_t done = 0, skipped = 0;
         for (const auto& [number, event] : frames_) {
             report.frames.push_back(event);
-            done += event.outcome == "done";
+            done += event.outcome == "done" || event.outcome == "current";
             skipped += event.outcome == "skipped";
         }
         if (interrupted) report.exit_code = ExitCode::interrupted;
@@ -103,12 +104,14 @@ private:
             command.environment["LP_NUM_THREADS"] = std::to_string(options_.threads);
         Watchdog watchdog(options_.frame_timeout, interrupt_);
         last_error_.clear();
-        next_ = std::size_t(piece_.warmup_frames);
         const WorkerResult result = run_worker(command, listener(watchdog), &watchdog.flag());
-        if (watchdog.barked()) return cost_a_frame(result.status, timed_out(result));
+        if (watchdog.barked()) {
+            board_.ended(ExitCode::effect);
+            return cost_a_frame(result.status, timed_out(result));
+        }
         if (result.end == WorkerEnd::interrupted) return false;
         board_.ended(result.end == WorkerEnd::exited ? ExitCode(result.exit_code) : ExitCode::effect);
-        const bool has_seen_all = next_ == piece_.frames.size();
+        const bool has_seen_all = first_unfinished() == piece_.frames.size();
         if (result.end == WorkerEnd::exited && (has_seen_all || spares_no_frame(result.exit_code)))
             return false;
         return cost_a_frame(result.status, last_error_.empty() ? describe(result) : last_error_);
@@ -130,7 +133,7 @@ private:
         };
         listener.on_frame = [&](const FrameEvent& event) {
             watchdog.heard();
-            next_ = std::max(next_, index_of(event.frame).value_or(0) + 1);
+            finished_.insert(event.frame);
             ++ended_;
             board_.frame(event);
         };
@@ -154,17 +157,25 @@ private:
         return describe(hung);
     }
 
+    std::size_t first_unfinished() const {
+        std::size_t index = std::size_t(piece_.warmup_frames);
+        while (index < piece_.frames.size() && finished_.contains(piece_.frames[index])) ++index;
+        return index;
+    }
+
     /// Fails the frame that the worker was at and leaves the others to another worker. Frames before it whose
     /// files were not yet in place are among them.
     bool cost_a_frame(const WorkStatus& status, const std::string& why) {
-        const std::size_t warmup = std::min(std::size_t(options_.warmup_frames), next_);
-        const std::size_t at = status.frame ? index_of(*status.frame).value_or(next_) : next_;
-        const std::size_t failed = std::min(std::max(at, next_), piece_.frames.size() - 1);
+        const std::size_t next = first_unfinished();
+        if (next == piece_.frames.size()) return false;
+        const std::size_t at = status.frame ? index_of(*status.frame).value_or(next) : next;
+        const std::size_t failed = at < next || finished_.contains(piece_.frames[at]) ? next : at;
         board_.frame({piece_.frames[failed], "failed", 0, why});
         piece_.frames.erase(piece_.frames.begin() + std::ptrdiff_t(failed));
-        piece_.frames.erase(piece_.frames.begin(), piece_.frames.begin() + std::ptrdiff_t(next_ - warmup));
+        const std::size_t warmup = std::min(std::size_t(options_.warmup_frames), next);
+        piece_.frames.erase(piece_.frames.begin(), piece_.frames.begin() + std::ptrdiff_t(next - warmup));
         piece_.warmup_frames = int(warmup);
-        if (piece_.frames.size() <= warmup) piece_.frames.clear();
+        if (first_unfinished() == piece_.frames.size()) piece_.frames.clear();
         return true;
     }
 
@@ -173,8 +184,8 @@ private:
     JobBoard& board_;
     const std::atomic<bool>& interrupt_;
     std::string last_error_;
-    std::size_t next_ = 0;   // index of the first frame that no worker is done with
-    std::size_t ended_ = 0;  // frames that the worker is done with
+    std::set<int> finished_;  // frames that workers are done with
+    std::size_t ended_ = 0;   // frames that the worker is done with
 };
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "framework/capture/camera_motion.h"
 #include "framework/capture/cryptomatte.h"
 #include "framework/capture/decode.h"
+#include "framework/capture/sample_means.h"
 #include "framework/core/error.h"
 #include "framework/image/role.h"
 
@@ -181,6 +182,8 @@ CaptureReader::OpenFrame CaptureReader::open(int frame) const {
     const std::string& space =
         sequence_.color_space == "auto" ? open.profile->color_space : sequence_.color_space;
     open.stored_primaries = space == "auto" ? stored_primaries(part.metadata) : *color_space_primaries(space);
+    open.color_is_tristimulus = is_xyz(open.stored_primaries) && color != open.roles.end() &&
+                                !color->second.channels.empty() && color->second.channels[0][0] == "X";
     // XYZ has no primaries that light could have: effects see it as Rec. 709.
     header.primaries = is_xyz(open.stored_primaries) ? kRec709 : open.stored_primaries;
     return open;
@@ -226,6 +229,14 @@ void CaptureReader::read_motion(const OpenFrame& open, const std::string& role, 
     capture.motion_from_camera = true;
 }
 
+Image CaptureReader::read_ids(const RoleSource& source, const Window& grid) const {
+    const FrameFile& file = *source.file;
+    if (file.type_of(source.channels[0][0]) == PixelType::uint32)
+        return file.read_uints(source.channels[0], grid);
+    return decode_ids(file.read_floats(source.channels[0], grid, 0),
+                      file.path().string() + ": " + source.channels[0][0]);
+}
+
 Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, const Image* color,
                                Capture& capture) const {
     const CaptureHeader& header = open.header;
@@ -233,23 +244,21 @@ Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, c
     const RoleSource& source = open.roles.at(name);
     const FrameFile& file = *source.file;
     if (source.from_cryptomatte) return read_cryptomatte_role(open, role.kind);
-    if (role.type == ComponentType::uint32) {
-        if (file.type_of(source.channels[0][0]) == PixelType::uint32)
-            return file.read_uints(source.channels[0], header.data_window);
-        return decode_ids(file.read_floats(source.channels[0], header.data_window, 0),
-                          file.path().string() + ": " + source.channels[0][0]);
-    }
+    if (role.type == ComponentType::uint32) return read_ids(source, header.data_window);
     // A stored value beyond the data window is none: it gets the role's value after decoding, except where
     // decoding itself turns it into that.
     const float outside = role.kind == RoleKind::distance ? source.decoding.no_hit : role.outside;
     Image image = source.luminance.empty() ? read_layers(file, source.channels, header.data_window, outside)
                                            : file.read_luminance_chroma(source.luminance, header.data_window);
+    if (source.decoding.is_mean) repair_means(image);
     if (role.kind == RoleKind::distance)
         decode_depth(
             image, source.decoding,
             {file.path().string(), header.data_window, header.display_window, header.camera, nullptr});
     if (role.kind == RoleKind::motion) read_motion(open, name, image, color, capture);
-    if (role.kind == RoleKind::light && open.stored_primaries != header.primaries)
+    // Beside tristimulus values, what is called R, G and B has primaries that no attribute names.
+    const bool has_primaries = !open.color_is_tristimulus || name == kColorRole;
+    if (role.kind == RoleKind::light && has_primaries && open.stored_primaries != header.primaries)
         convert_colors(image, conversion_matrix(open.stored_primaries, header.primaries));
     return image;
 }

@@ -122,6 +122,7 @@ private:
     void add_role(OpenFrame& open, const std::string& role, const RoleDecoding& decoding) const;
     /// Unpacks what read_role will ask for of these roles.
     void prefetch(const OpenFrame& open, std::span<const std::string> roles) const;
+    Image read_ids(const RoleSource& source, const Window& grid) const;
     Image read_role(const OpenFrame& open, const std::string& role, const Image* color,
                     Capture& capture) const;
     void read_motion(const OpenFrame& open, const std::string& role, Image& velocity, const Image* color,

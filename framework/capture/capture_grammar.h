@@ -29,6 +29,9 @@ grammar::Form decodings();
 /// JSON Schema of a capture.json.
 std::string capture_schema();
 
+/// Whether the role may be stored as the mean of a pixel's samples: what is not filtered and not an id.
+bool can_be_mean(const ChannelRole& role);
+
 /// The key of one component: "x" of "velocity.X", "z" of "Z".
 std::string component_key(const std::string& native_channel);
 

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "framework/capture/capture.h"
@@ -26,6 +27,9 @@ struct CaptureReader::OpenFrame {
     bool is_foreign_layer = false;  // the user chose a layer that the profile does not know as such
     std::map<std::string, RoleSource> roles;
     Chromaticities stored_primaries{};
+    bool color_is_tristimulus = false;  // its channels are X, Y and Z
+    /// object_id as the file stores it, where a Cryptomatte has taken its place.
+    std::optional<RoleSource> ids_by_number;
     CaptureHeader header;
 };
 

@@ -1,5 +1,6 @@
 // Which layer and which Cryptomatte of a file the roles are taken from.
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "framework/capture/bare_channels.h"
@@ -47,6 +48,15 @@ const CryptomatteLayer& named_cryptomatte(const std::vector<CryptomatteLayer>& m
     return choose_cryptomatte(mattes, name, file);
 }
 
+/// Where a pixel is not one of the named objects it has its number: a look may use both. A name stands for a
+/// hash, which is no smaller than 2^23, and numbers are small.
+void keep_numbers(Image& hashes, const Image& numbers, std::span<const std::string> named) {
+    std::set<std::uint32_t> wanted;
+    for (const std::string& name : named) wanted.insert(cryptomatte_hash(name));
+    for (std::size_t i = 0; i < hashes.uints().size(); ++i)
+        if (!wanted.contains(hashes.uints()[i])) hashes.uints()[i] = numbers.uints()[i];
+}
+
 bool is_among(const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -90,8 +100,11 @@ std::optional<FoundChannels> CaptureReader::find_role_channels(const OpenFrame& 
     const bool is_named_by_user = sequence_.channels.contains(role);
     const bool may_be_bare = role == kColorRole || is_named_by_user || (is_own_file && has_one_layer(part));
     const RoleDecoding names = may_be_bare ? decoding : without_bare_names(decoding);
-    if (!names.layers.empty())
-        if (auto found = find_channels(is_foreign ? below_layer(names) : names, layer, part)) return found;
+    if (!names.layers.empty()) {
+        auto found = find_channels(is_foreign ? below_layer(names) : names, layer, part);
+        const bool is_of_color = found && !is_named_by_user && is_tristimulus(part, found->front().front());
+        if (found && (!is_of_color || role == kColorRole)) return found;
+    }
     // What capture.json says is what the user wants, and nothing else.
     if (is_named_by_user && !decoding.layers.empty()) return std::nullopt;
     if (role == kColorRole) return find_common_color(part, layer);
@@ -153,7 +166,9 @@ void CaptureReader::find_cryptomatte_roles(OpenFrame& open) const {
     if (!sequence_.cryptomatte && find_cryptomattes(*source.file).empty()) return;
     if (sequence_.cryptomatte && !sequence_.cryptomatte->mask.empty()) open.roles[kMaskRole] = source;
     if (!is_named && !is_own_file && open.roles.contains(kObjectIdRole)) return;
-    if (is_named)
+    const auto by_number = open.roles.find(kObjectIdRole);
+    if (by_number != open.roles.end() && !is_own_file) open.ids_by_number = by_number->second;
+    else if (is_named)
         open.header.notes.push_back(
             "the look names objects, so object_id is read from a Cryptomatte; ids by number find nothing "
             "there");
@@ -169,7 +184,15 @@ Image CaptureReader::read_cryptomatte_role(const OpenFrame& open, RoleKind kind)
     const auto matte = find_cryptomatte(open, objects);
     if (!matte) throw Error(ExitCode::capture, file.path().string() + ": has no Cryptomatte");
     const Window& grid = open.header.data_window;
-    return is_mask ? cryptomatte_mask(file, *matte, objects, grid) : cryptomatte_ids(file, *matte, grid);
+    if (is_mask) return cryptomatte_mask(file, *matte, objects, grid);
+    Image ids = cryptomatte_ids(file, *matte, grid);
+    if (!open.ids_by_number) return ids;
+    try {
+        keep_numbers(ids, read_ids(*open.ids_by_number, grid), objects);
+    } catch (const Error&) {
+        // Numbers that were averaged name nothing; a look of names alone does without them.
+    }
+    return ids;
 }
 
 Image CaptureReader::read_coverage(const OpenFrame& open, const std::string& role) const {
@@ -187,7 +210,8 @@ Image CaptureReader::read_coverage(const OpenFrame& open, const std::string& rol
     if ((matte && ids.empty()) || (matte && !open.roles.contains(kObjectIdRole))) return mask;
     Image object_id;
     Capture unused;
-    if (open.roles.contains(kObjectIdRole)) object_id = read_role(open, kObjectIdRole, nullptr, unused);
+    if (open.ids_by_number) object_id = read_ids(*open.ids_by_number, grid);
+    else if (open.roles.contains(kObjectIdRole)) object_id = read_role(open, kObjectIdRole, nullptr, unused);
     if (!matte && !names.empty()) require_names(open, object_id, names);
     if (object_id.empty()) return mask;
     const std::vector<IdRange> ranges = id_ranges(matte ? ids : objects);

@@ -39,9 +39,17 @@ FoundChannels channel_names(const RoleDecoding& decoding, int channels) {
 /// What makes detect_profile() choose the profile, where an attribute does.
 void add_mark(const Profile& profile, std::map<std::string, ExrValue>& attributes) {
     if (profile.detect_attributes.empty()) return;
-    std::string name = profile.detect_attributes.front();
+    const std::string& mark = profile.detect_attributes.front();
+    const std::size_t equals = mark.find('=');
+    std::string name = mark.substr(0, equals), text = "written by Aftershade";
     std::replace(name.begin(), name.end(), '*', '_');
-    attributes.emplace(name, std::string("written by Aftershade"));
+    if (equals != std::string::npos) {
+        const std::string wanted = mark.substr(equals + 1);
+        const std::size_t star = wanted.find('*');
+        text = star == std::string::npos ? wanted
+                                         : wanted.substr(0, star) + ", " + text + wanted.substr(star + 1);
+    }
+    attributes.emplace(name, text);
 }
 
 void require_exact_ids(const std::filesystem::path& path, const Image& image, bool ids_as_uint) {

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <set>
 
+#include "framework/image/color_space.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
@@ -12,9 +13,10 @@ namespace aftershade {
 namespace {
 
 using Components = std::array<const char*, 4>;
+constexpr Components kTristimulus = {"X", "Y", "Z", "A"};
 constexpr std::array kColorComponents = {Components{"R", "G", "B", "A"}, Components{"r", "g", "b", "a"},
                                          Components{"red", "green", "blue", "alpha"},
-                                         Components{"Red", "Green", "Blue", "Alpha"}};
+                                         Components{"Red", "Green", "Blue", "Alpha"}, kTristimulus};
 
 std::string in_lower_case(std::string text) {
     std::transform(text.begin(), text.end(), text.begin(),
@@ -26,9 +28,16 @@ std::string joined_name(const std::string& layer, const std::string& component) 
     return layer.empty() ? component : layer + "." + component;
 }
 
+/// CIE tristimulus values, as Mitsuba writes them. Positions and normals are X, Y and Z of a layer, in files
+/// whose chromaticities are those of lights.
+bool has_tristimulus(const ExrPart& part, const std::string& layer) {
+    return layer.empty() && is_xyz(stored_primaries(part.metadata));
+}
+
 /// The channels of the layer's colour; "" for an alpha that is absent.
 std::optional<std::vector<std::string>> color_of_layer(const ExrPart& part, const std::string& layer) {
     for (const Components& components : kColorComponents) {
+        if (components[0] == kTristimulus[0] && !has_tristimulus(part, layer)) continue;
         std::vector<std::string> names;
         for (const char* component : components) names.push_back(joined_name(layer, component));
         if (!has_channel(part, names[0]) || !has_channel(part, names[1]) || !has_channel(part, names[2]))
@@ -77,6 +86,12 @@ bool has_layer(const ExrPart& part, const std::string& layer) {
                        [&](const ExrChannel& channel) { return channel.name.starts_with(layer + "."); });
 }
 
+bool is_tristimulus(const ExrPart& part, const std::string& channel) {
+    const bool is_one = channel == "X" || channel == "Y" || channel == "Z";
+    return is_one && has_tristimulus(part, "") && has_channel(part, "X") && has_channel(part, "Y") &&
+           has_channel(part, "Z") && !has_channel(part, "R");
+}
+
 std::vector<std::string> color_layers(const ExrPart& part) {
     const std::set<std::string> mattes = cryptomatte_names(part);
     const auto is_rank = [&](const std::string& layer) {
@@ -106,8 +121,9 @@ std::optional<FoundChannels> find_common_color(const ExrPart& part, const std::s
 }
 
 std::optional<FoundChannels> find_common_depth(const ExrPart& part, const std::string& layer) {
-    for (const char* name : {"depth.Z", "Depth.Z", "Depth.V", "depth.V", "Z"})
-        if (has_channel(part, joined_name(layer, name))) return FoundChannels{{joined_name(layer, name)}};
+    for (const char* name : {"depth.Z", "Depth.Z", "Depth.V", "depth.V", "depth", "Depth", "Z"})
+        if (has_channel(part, joined_name(layer, name)) && !is_tristimulus(part, joined_name(layer, name)))
+            return FoundChannels{{joined_name(layer, name)}};
     return std::nullopt;
 }
 

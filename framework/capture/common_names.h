@@ -12,7 +12,8 @@
 namespace aftershade {
 
 /// Layers that hold a colour: every prefix before R, G and B, in upper or lower case or in full (`red`), in
-/// the file's order; "" for none. Without Cryptomattes and layers whose name says that they are no picture.
+/// the file's order; "" for none, which may also be before X, Y and Z where the chromaticities are CIE XYZ's.
+/// Without Cryptomattes and layers whose name says that they are no picture.
 std::vector<std::string> color_layers(const ExrPart& part);
 
 /// The colour of a file whose profile does not name it: of `layer`, or of a layer below it. With "" the
@@ -25,6 +26,9 @@ std::optional<FoundChannels> find_common_depth(const ExrPart& part, const std::s
 
 /// Whether it has a channel of that full name.
 bool has_channel(const ExrPart& part, std::string_view name);
+
+/// Whether a channel is one of the three of a colour in CIE XYZ, and so no depth and no luminance.
+bool is_tristimulus(const ExrPart& part, const std::string& channel);
 
 /// Whether a channel lies in the layer or in one below it.
 bool has_layer(const ExrPart& part, const std::string& layer);

@@ -114,11 +114,15 @@ void decode_depth(Image& depth, const RoleDecoding& decoding, const DecodeContex
         else z *= decoding.scale;
     }
     if (decoding.radial) scale_by_cosine(depth, context, RayScale::to_axis);
+    if (decoding.offset_m != 0)
+        for (float& z : depth.floats()) z = float(z + decoding.offset_m);
 }
 
 void encode_depth(Image& depth, const RoleDecoding& decoding, const DecodeContext& context) {
     const bool ranged = is_ranged(decoding);
     const DepthRange range = ranged ? depth_range(decoding, context) : DepthRange{};
+    if (decoding.offset_m != 0)
+        for (float& z : depth.floats()) z = float(z - decoding.offset_m);
     if (decoding.radial) scale_by_cosine(depth, context, RayScale::to_ray);
     const bool zero = decoding.zero_is_no_hit || decoding.encoding == DepthEncoding::inverse;
     const float no_hit = zero ? 0 : decoding.no_hit_stored.value_or(decoding.no_hit);
@@ -162,6 +166,9 @@ void encode_velocity(Image& velocity, const RoleDecoding& decoding, const Decode
 }
 
 Image decode_ids(const Image& stored, const std::string& file) {
+    constexpr const char* kRemedyOfMeanIds =
+        "; ids that are averaged over samples name no object (render them with one sample a pixel and "
+        "without a filter, or render a Cryptomatte)";
     constexpr float kLargest = 4294967040.0f;  // the last float below 2^32
     Image ids(stored.width(), stored.height(), 1, ComponentType::uint32);
     const std::span<const float> values = stored.floats();
@@ -169,9 +176,11 @@ Image decode_ids(const Image& stored, const std::string& file) {
         const float id = values[i];
         if (!(id >= 0 && id <= kLargest) || id != std::floor(id)) {
             const std::size_t width = std::size_t(stored.width());
+            const bool is_between = std::isfinite(id) && id > 0 && id <= kLargest;
             throw Error(ExitCode::capture, file + ": object id " + std::to_string(id) + " at pixel (" +
                                                std::to_string(i % width) + ", " + std::to_string(i / width) +
-                                               ") is not a whole number from 0 to 4294967040");
+                                               ") is not a whole number from 0 to 4294967040" +
+                                               (is_between ? kRemedyOfMeanIds : ""));
         }
         ids.uints()[i] = std::uint32_t(id);
     }

@@ -21,9 +21,10 @@ using grammar::text;
 namespace {
 
 constexpr const char* kChannelsDoc =
-    "Channel names in the role's order. `{layer}.` is the layer's name, `a|b` are alternatives, a final `?` "
-    "marks "
-    "an optional channel. Without an alpha channel, a colour's alpha is 1.";
+    "Channel names in the role's order. `{layer}.` is the layer's name, `a|b` are alternatives, `*` is any "
+    "text, a final `?` marks an optional channel. Without an alpha channel, a colour's alpha is 1.";
+constexpr const char* kSamplingDoc =
+    "mean: the average of a pixel's samples, [repaired at edges](captures.md#averages-of-samples).";
 constexpr const char* kSumDoc = "Lists of channels to add.";
 constexpr const char* kComponentDoc = "Channel of one component.";
 
@@ -46,6 +47,7 @@ std::vector<Key> distance_keys() {
             R"("planar")"),
         length("near", "For z_buffer and normalized; default: the camera's."),
         length("far", "For z_buffer and normalized; default: the camera's."),
+        length("offset", "Added to the planar depth: where a depth begins that counts from the near plane."),
         optional("scale", number(), "Metres per stored unit.", "1"),
         optional("no_hit", number(), "Stored values at or above this mean no hit."),
         optional("no_hit_stored", number(), "Value that the producer writes for no hit; default: no_hit."),
@@ -82,8 +84,12 @@ std::vector<Key> motion_keys(const ChannelRole& role) {
 std::vector<Key> keys_of_kind(const ChannelRole& role) {
     if (role.has_optional_alpha())
         return {optional("luminance", text(), "Y channel of luminance-chroma files.")};
-    if (role.kind == RoleKind::distance) return distance_keys();
-    return role.kind == RoleKind::motion ? motion_keys(role) : std::vector<Key>{};
+    std::vector<Key> keys;
+    if (role.kind == RoleKind::distance) keys = distance_keys();
+    if (role.kind == RoleKind::motion) keys = motion_keys(role);
+    if (can_be_mean(role))
+        keys.push_back(optional("sampling", choice({"point", "mean"}), kSamplingDoc, R"("point")"));
+    return keys;
 }
 
 void append(std::vector<Key>& keys, std::vector<Key> more) {
@@ -134,6 +140,11 @@ Block make_table() {
 }
 
 }  // namespace
+
+bool can_be_mean(const ChannelRole& role) {
+    return role.kind == RoleKind::distance || role.kind == RoleKind::motion ||
+           role.kind == RoleKind::direction || role.kind == RoleKind::place;
+}
 
 std::string component_key(const std::string& native_channel) {
     return {char(std::tolower(static_cast<unsigned char>(native_channel.back())))};

@@ -71,9 +71,9 @@ FrameFile::FrameFile(const std::filesystem::path& path, const ReadLimits& limits
     choose_view(view);
     const std::vector<ExrPart>& parts = file_.parts();
     if (std::all_of(parts.begin(), parts.end(), is_deep))
-        throw Error(
-            ExitCode::capture,
-            path.string() + ": holds nothing but deep data, which is not supported (flatten it first)");
+        throw Error(ExitCode::capture, path.string() +
+                                           ": holds nothing but deep data, which is not supported; " +
+                                           exr_flatten_remedy(path));
     const int color_part = find_color_part();
     for (int i = 0; i < int(parts.size()); ++i) add_part(i, color_part);
     for (const auto& [other, name] : merged_.other_names) stored_.emplace(other, stored_.at(name));

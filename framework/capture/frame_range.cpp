@@ -159,7 +159,11 @@ std::string FramePattern::path(int frame) const {
     const std::size_t width = std::size_t(width_) - (frame < 0 && width_ > 1 ? 1 : 0);
     if (digits.size() < width) digits.insert(0, width - digits.size(), '0');
     if (frame < 0) digits.insert(0, "-");
-    return text_.substr(0, start_) + digits + text_.substr(start_ + length_);
+    return with(digits);
+}
+
+std::string FramePattern::with(std::string_view number) const {
+    return has_frame() ? text_.substr(0, start_).append(number) + text_.substr(start_ + length_) : text_;
 }
 
 std::optional<int> FramePattern::match(std::string_view name) const {

@@ -31,6 +31,8 @@ public:
     bool has_frame() const { return length_ > 0; }
     const std::string& text() const { return text_; }
     std::string path(int frame) const;
+    /// The name with this text in the number's place.
+    std::string with(std::string_view number) const;
     /// The frame number in `name` if the pattern fits it.
     std::optional<int> match(std::string_view name) const;
     /// The same with so many #.

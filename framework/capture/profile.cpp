@@ -30,7 +30,7 @@ bool same_in_any_case(const std::string& a, const std::string& b) {
 /// The channel that goes by the name; "" where none does.
 std::string channel_called(const ExrPart& part, const std::string& name, bool in_any_case) {
     const auto is_it = [&](const std::string& one) {
-        return in_any_case ? same_in_any_case(one, name) : one == name;
+        return in_any_case ? same_in_any_case(one, name) : one == name || matches_pattern(one, name);
     };
     for (const ExrChannel& channel : part.channels)
         if (is_it(channel.name)) return channel.name;
@@ -126,19 +126,34 @@ bool matches_pattern(const std::string& name, const std::string& pattern) {
     return false;
 }
 
+namespace {
+
+/// The attribute that "name" or "name=text" fits; "" where none does.
+std::string attribute_called(const ExrMetadata& metadata, const std::string& pattern) {
+    const std::size_t equals = pattern.find('=');
+    const std::string name_pattern = pattern.substr(0, equals);
+    for (const std::string& name : metadata.names()) {
+        if (!matches_pattern(name, name_pattern)) continue;
+        if (equals == std::string::npos) return name;
+        const auto text = metadata.text(name);
+        if (text && matches_pattern(*text, pattern.substr(equals + 1))) return name;
+    }
+    return "";
+}
+
+}  // namespace
+
 ProfileChoice detect_profile(const std::vector<Profile>& profiles, const ExrPart& part,
                              const std::string& path) {
     const Profile* const native = profile_called(profiles, "native");
     if (native && has_native_names(part)) return {native, "attribute aftershade/channels"};
-    const std::vector<std::string> attributes = part.metadata.names();
     std::vector<ProfileChoice> by_attribute, by_channels;
     std::size_t most_channels = 1;
     for (const Profile& profile : profiles) {
         for (const std::string& pattern : profile.detect_attributes) {
-            const auto fits = [&](const std::string& name) { return matches_pattern(name, pattern); };
-            const auto found = std::find_if(attributes.begin(), attributes.end(), fits);
-            if (found == attributes.end()) continue;
-            by_attribute.push_back({&profile, "attribute " + *found});
+            const std::string name = attribute_called(part.metadata, pattern);
+            if (name.empty()) continue;
+            by_attribute.push_back({&profile, "attribute " + name});
             break;
         }
         RoleDecoding wanted;

@@ -30,10 +30,16 @@ enum class DepthEncoding { linear, inverse, z_buffer, normalized };
 struct RoleDecoding {
     /// Layers to add up (irradiance = direct + indirect); each names its channels, in the role's order. A
     /// name may begin with "{layer}.", which stands for nothing where a file has no layers, and may list
-    /// alternatives: "{layer}.Depth.Z|{layer}.Depth.V". A name that ends in "?" may be absent.
+    /// alternatives: "{layer}.Depth.Z|{layer}.Depth.V"; "*" stands for any text. A name that ends in "?" may
+    /// be absent.
     std::vector<std::vector<std::string>> layers;
     std::string
         luminance;  ///< color: the Y channel that stands for it in luminance-chroma files; "" for none
+
+    /// Each value is the mean of a pixel's samples, so at edges it lies between two surfaces: the nearer
+    /// one's stands for it (repair_means). Of images that are not filtered: depth, motion, normals,
+    /// positions.
+    bool is_mean = false;
 
     // depth
     float scale = 1;  ///< metres for one stored unit, after decoding
@@ -45,6 +51,7 @@ struct RoleDecoding {
     bool reversed = false;                ///< z_buffer and normalized: 1 is near, 0 is far
     bool radial = false;                  ///< distance to the camera's point, not along its axis
     std::optional<double> near_m, far_m;  ///< z_buffer and normalized; else the camera's near and far
+    double offset_m = 0;                  ///< added to the planar depth: where the stored one begins
 
     // velocity and velocity_next, in the order in which they are undone
     float bias = 0;              ///< stored value of no motion
@@ -73,9 +80,11 @@ struct ProfileFact {
 
 struct Profile {
     std::string id;
+    std::filesystem::path file;  ///< that it was read from
     std::string summary;
-    std::vector<std::string> detect_attributes;  ///< any of these in the header ...
-    std::vector<std::string> detect_channels;    ///< ... or all of these channels tell that the profile fits
+    /// Any of these in the header, by name or as "name=text" ...
+    std::vector<std::string> detect_attributes;
+    std::vector<std::string> detect_channels;  ///< ... or all of these channels tell that the profile fits
     bool rewrites = false;  ///< also writes other producers' files again, whose attributes then say more
     std::string color_space =
         "auto";              ///< of the stored colours; auto: the header's chromaticities, else Rec. 709

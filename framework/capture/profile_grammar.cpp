@@ -21,8 +21,9 @@ Block detect_block() {
         .name = "detect",
         .doc = "How the producer's files are detected; without any key the profile is chosen by name only.",
         .keys = {
-            optional("attributes", grammar::list(text()),
-                     "Header attributes, any of which is enough; `*` matches any text."),
+            optional(
+                "attributes", grammar::list(text()),
+                "Header attributes, any of which is enough: `name` or `name=text`; `*` matches any text."),
             optional("channels", grammar::list(text()),
                      "Channels, all of which are required; `a|b` are alternatives."),
             optional(

@@ -52,6 +52,7 @@ void read_depth(const grammar::Reader& reader, RoleDecoding& decoding) {
     decoding.radial = reader.text("kind") == "radial";
     decoding.near_m = length_m(reader, "near");
     decoding.far_m = length_m(reader, "far");
+    decoding.offset_m = length_m(reader, "offset").value_or(0);
 }
 
 void read_velocity(const grammar::Reader& reader, RoleDecoding& decoding) {
@@ -74,6 +75,7 @@ RoleDecoding read_decoding(const std::string& role_name, const Node& node) {
     RoleDecoding decoding;
     read_layers(reader, role, decoding);
     if (role.has_optional_alpha()) decoding.luminance = reader.text("luminance");
+    if (can_be_mean(role)) decoding.is_mean = reader.text("sampling") == "mean";
     if (role.kind == RoleKind::distance) read_depth(reader, decoding);
     if (role.kind == RoleKind::motion) read_velocity(reader, decoding);
     return decoding;
@@ -133,8 +135,10 @@ std::vector<Profile> read_profiles(const std::vector<fs::path>& folders, Diagnos
         std::sort(files.begin(), files.end());
         for (const fs::path& file : files)
             if (const auto node = read_document(file, diagnostics))
-                if (auto profile = parse_profile(*node, diagnostics))
+                if (auto profile = parse_profile(*node, diagnostics)) {
+                    profile->file = file;
                     by_id.emplace(profile->id, std::move(*profile));
+                }
     }
     std::vector<Profile> profiles;
     for (auto& [id, profile] : by_id) profiles.push_back(std::move(profile));

@@ -170,19 +170,23 @@ FrameGaps find_gaps(std::span<const int> frames) {
     return gaps;
 }
 
-std::optional<Sequence> open_sequence(const std::string& argument, Diagnostics& diagnostics) {
-    fs::path path = argument;
-    Sequence sequence;
+std::optional<fs::path> capture_document(const std::string& argument) {
+    const fs::path path = argument;
     // A folder with a capture.json is that capture.
-    if (std::error_code failure; fs::exists(path / "capture.json", failure)) path /= "capture.json";
-    if (path.extension() == ".json") {
-        if (std::error_code failure; !fs::exists(path, failure))
+    if (std::error_code failure; fs::exists(path / "capture.json", failure)) return path / "capture.json";
+    return path.extension() == ".json" ? std::optional(path) : std::nullopt;
+}
+
+std::optional<Sequence> open_sequence(const std::string& argument, Diagnostics& diagnostics) {
+    Sequence sequence;
+    if (const auto path = capture_document(argument)) {
+        if (std::error_code failure; !fs::exists(*path, failure))
             throw Error(ExitCode::capture, argument + ": no such file");
-        auto read = read_capture_document(path, diagnostics);
+        auto read = read_capture_document(*path, diagnostics);
         if (!read) return std::nullopt;
         sequence = std::move(*read);
-    } else if (std::error_code failure; fs::is_directory(path, failure)) {
-        sequence.files = pattern_of_folder(path);
+    } else if (std::error_code failure; fs::is_directory(argument, failure)) {
+        sequence.files = pattern_of_folder(argument);
     } else {
         sequence.files = file_or_pattern(argument);
     }

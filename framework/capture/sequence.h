@@ -49,6 +49,9 @@ struct Sequence {
     std::filesystem::path path_of(int file) const { return files.path(file); }
 };
 
+/// The capture.json that CAPTURE of the command line names, by itself or by its folder.
+std::optional<std::filesystem::path> capture_document(const std::string& argument);
+
 /// `argument` is CAPTURE of the command line. Faults of capture.json go to `diagnostics`; a file, pattern or
 /// folder that holds nothing is Error(ExitCode::capture).
 std::optional<Sequence> open_sequence(const std::string& argument, Diagnostics& diagnostics);

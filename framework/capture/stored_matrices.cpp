@@ -233,6 +233,60 @@ std::optional<Fit> fit_of(const char* name, const glm::dmat4& stored, View view,
                    (projection.is_down() ? " with y down" : " with y up")};
 }
 
+/// The camera's axes in the world: right, up and back, each as long as a unit of the camera.
+struct Axes {
+    glm::dvec3 right, up, back;
+    const char* order = "";
+};
+
+/// Whether the camera is level by the world's axis `vertical`, and tilted by 45 degrees at most.
+bool stands_upright(const Axes& axes, int vertical) {
+    const double length = glm::length(axes.right);
+    return std::abs(axes.right[vertical]) < 0.02 * length && axes.up[vertical] > 0.7 * length;
+}
+
+/// V-Ray's rows are right, back and down from Maya, where y is up, and right, up and back from 3ds Max, where
+/// z is up; found on headers of V-Ray 3.60 and 4.30 for Maya and of files that vrimg2exr made. nullopt where
+/// neither the header nor the picture's level says which.
+std::optional<Axes> axes_of_transform(const glm::dmat4& stored, const ExrMetadata& metadata) {
+    const glm::dmat3 rows(stored);
+    const Axes maya{rows[0], -rows[2], rows[1], "right, back and down"};
+    const Axes max{rows[0], rows[1], rows[2], "right, up and back"};
+    const std::string version = metadata.text("vrayInfo/vrayversion").value_or("");
+    if (version.find("Maya") != std::string::npos) return maya;
+    const bool fits_maya = stands_upright(maya, 1), fits_max = stands_upright(max, 2);
+    if (fits_maya == fits_max) return std::nullopt;
+    return fits_maya ? maya : max;
+}
+
+/// V-Ray stores where the camera is in the world, and no projection.
+StoredMatrices of_camera_transform(const ExrPart& part, const Camera& lens) {
+    StoredMatrices result;
+    const auto stored = stored_matrix(part.metadata, "cameraTransform");
+    if (!stored) return result;
+    if (!is_affine(*stored) || !is_rigid(*stored) || glm::determinant(glm::dmat3(*stored)) <= 0) {
+        result.fault =
+            "cameraTransform is not a camera's: its axes are not right-handed, at right angles and of "
+            "one length";
+        return result;
+    }
+    const auto axes = axes_of_transform(*stored, part.metadata);
+    if (part.metadata.number("cameraProjection").value_or(0) != 0 || !axes) {
+        result.fault = axes ? "cameraTransform is of a camera that does not project in perspective"
+                            : "cameraTransform does not tell which of its rows is up";
+        return result;
+    }
+    const glm::dmat4 camera_from_world = glm::inverse(glm::dmat4(
+        glm::dvec4(axes->right, 0), glm::dvec4(axes->up, 0), glm::dvec4(axes->back, 0), (*stored)[3]));
+    result.camera_from_world = camera_matrix(camera_from_world);
+    result.found = std::string("cameraTransform, rows are ") + axes->order;
+    if (const auto ndc = ndc_of_lens(camera_from_world, part, lens)) {
+        result.ndc_from_world = camera_matrix(*ndc);
+        result.found += "; projection of the lens";
+    }
+    return result;
+}
+
 /// Of an orthographic or unknown projection: of a right-handed world, OpenEXR's view is mirrored.
 double ahead_by_handedness(const View& view) {
     return glm::determinant(glm::dmat3(view.camera_from_world)) < 0 ? 1 : -1;
@@ -244,7 +298,7 @@ StoredMatrices read_matrices(const ExrPart& part, const Camera& lens) {
     if (part.metadata.number(kVersionAttribute) == kOpenExrVersion) return of_version_2(part);
     StoredMatrices result;
     const auto stored = stored_matrix(part.metadata, "worldToCamera");
-    if (!stored) return result;
+    if (!stored) return of_camera_transform(part, lens);
     const std::vector<View> views = views_of(*stored);
     if (views.empty()) {
         result.fault = "worldToCamera is not a camera's: its axes are not at right angles and of one length";

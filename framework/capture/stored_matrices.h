@@ -20,8 +20,9 @@ struct StoredMatrices {
     std::string fault;  ///< why a matrix of the header was not taken; "" where each was
 };
 
-/// Reads worldToCamera, and worldToNDC or worldToScreen (Arnold 7.1 and later). Where neither of those can be
-/// used, the projection is that of the lens, if `lens` has focal_length and sensor_width. [any thread]
+/// Reads worldToCamera, and worldToNDC or worldToScreen (Arnold 7.1 and later); without worldToCamera V-Ray's
+/// cameraTransform. Where no projection can be used, it is that of the lens, if `lens` has focal_length and
+/// sensor_width. [any thread]
 StoredMatrices read_matrices(const ExrPart& part, const Camera& lens);
 
 /// Both matrices by OpenEXR's definition, and aftershade/matrices, which says so: files of Aftershade without

@@ -24,7 +24,7 @@ struct WorkStatus {
 /// How one frame of a run ended, for the process that started this one.
 struct FrameEvent {
     int frame = 0;
-    std::string outcome;  ///< "done", "failed", "skipped"
+    std::string outcome;  ///< "done", "failed", "skipped"; "current": an earlier run has made it
     double seconds = 0;
     std::string message;  ///< why it failed; long ones lose their ends
 

@@ -63,7 +63,7 @@ struct ExrPart {
     std::string name;
     std::string view;
     std::string type;         ///< "scanlineimage", "tiledimage", "deepscanline", "deeptile"
-    std::string compression;  ///< "none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"
+    std::string compression;  ///< one of exr_compression_names()
     Window data_window;
     Window display_window;
     float pixel_aspect = 1;
@@ -145,11 +145,15 @@ struct ExrWriteOptions {
 void write_exr(const std::filesystem::path& path, std::span<const ExrOutputChannel> channels,
                const ExrWriteOptions& options);
 
-/// What ExrWriteOptions::compression may be.
+/// What ExrWriteOptions::compression may be: what the OpenEXR of this build has, from "none" and "rle" to
+/// "dwab"; from 3.4 on also "htj2k256" and "htj2k32", from 3.5 on "lj2k" and "zstd".
 const std::vector<std::string>& exr_compression_names();
 
-/// Whether a compression may change values: b44, b44a, dwaa, dwab, and pxr24, which shortens floats.
+/// Whether a compression may change values: b44, b44a, dwaa, dwab, lj2k, and pxr24, which shortens floats.
 bool is_lossy_compression(std::string_view name);
+
+/// What to do with a file of deep data: "flatten it: oiiotool IN --flatten -o OUT.exr".
+std::string exr_flatten_remedy(const std::filesystem::path& path);
 
 /// Threads that OpenEXR uses for compression, process-wide; 0 does the work on the caller's thread.
 void set_exr_threads(int count);

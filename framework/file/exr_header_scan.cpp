@@ -55,16 +55,6 @@ constexpr FixedSize kFixedSizes[] = {{"box2f", 16},
                                      {"v3f", 12},
                                      {"v3i", 12}};
 
-/// ImfCompression.h of later versions.
-struct NewerCompression {
-    int method;
-    std::string_view name;
-};
-constexpr NewerCompression kNewerCompressions[] = {{10, "HTJ2K (OpenEXR 3.4)"},
-                                                   {11, "HTJ2K (OpenEXR 3.4)"},
-                                                   {12, "lossy JPEG 2000 (OpenEXR 3.5)"},
-                                                   {13, "ZSTD (OpenEXR 3.5)"}};
-
 /// Walks the headers without keeping anything.
 class HeaderScan {
 public:
@@ -140,10 +130,11 @@ private:
         char method = 0;
         file_.read(&method, 1);
         if (method >= 0 && method < Imf::NUM_COMPRESSION_METHODS) return;
-        const auto* known = std::ranges::find(kNewerCompressions, int(method), &NewerCompression::method);
-        const std::string which = known != std::end(kNewerCompressions)
-                                      ? std::string(known->name)
-                                      : fmt::format("method {}", int(static_cast<unsigned char>(method)));
+        const auto number = std::size_t(static_cast<unsigned char>(method));
+        const std::string which =
+            number < kCompressions.size()
+                ? fmt::format("{} (OpenEXR {})", kCompressions[number].name, kCompressions[number].since)
+                : fmt::format("method {}", number);
         fail(path_,
              fmt::format(
                  "is compressed with {}, which this build's OpenEXR {} does not read; convert it with a "

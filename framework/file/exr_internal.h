@@ -33,10 +33,29 @@ struct ExrMetadata::Impl {
 
 namespace exr {
 
-/// By Imf::Compression.
-inline constexpr std::array<std::string_view, 10> kCompressionNames = {
-    "none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"};
-static_assert(kCompressionNames.size() == Imf::NUM_COMPRESSION_METHODS);
+/// By Imf::Compression, with the first OpenEXR that has it.
+struct CompressionMethod {
+    std::string_view name;
+    std::string_view since;
+    int lines_per_block = 1;  ///< of scan lines
+    bool is_lossy = false;
+};
+inline constexpr std::array<CompressionMethod, 14> kCompressions = {{{"none", "1.0", 1},
+                                                                     {"rle", "1.0", 1},
+                                                                     {"zips", "1.0", 1},
+                                                                     {"zip", "1.0", 16},
+                                                                     {"piz", "1.0", 32},
+                                                                     {"pxr24", "1.2", 16, true},
+                                                                     {"b44", "1.4", 32, true},
+                                                                     {"b44a", "1.4", 32, true},
+                                                                     {"dwaa", "2.2", 32, true},
+                                                                     {"dwab", "2.2", 256, true},
+                                                                     {"htj2k256", "3.4", 256},
+                                                                     {"htj2k32", "3.4", 32},
+                                                                     {"lj2k", "3.5", 256, true},
+                                                                     {"zstd", "3.5", 1}}};
+/// Those that the library of this build reads and writes come first.
+static_assert(kCompressions.size() >= Imf::NUM_COMPRESSION_METHODS);
 
 inline constexpr int kMaxNameLength = 255;  ///< Imf::Name cuts longer ones without a word
 

@@ -39,16 +39,8 @@ void check_window(const fs::path& path, const char* what, const Imath::Box2i& bo
 }
 
 int lines_per_block(Imf::Compression compression) {
-    switch (compression) {
-        case Imf::ZIP_COMPRESSION:
-        case Imf::PXR24_COMPRESSION: return 16;
-        case Imf::PIZ_COMPRESSION:
-        case Imf::B44_COMPRESSION:
-        case Imf::B44A_COMPRESSION:
-        case Imf::DWAA_COMPRESSION: return 32;
-        case Imf::DWAB_COMPRESSION: return 256;
-        default: return 1;
-    }
+    const auto method = std::size_t(compression);
+    return method < kCompressions.size() ? kCompressions[method].lines_per_block : 1;
 }
 
 std::uint64_t bytes_per_pixel(const Imf::Header& header) {
@@ -74,6 +66,33 @@ std::uint64_t block_bytes(const Imf::Header& header) {
     return std::uint64_t(side(box.min.x, box.max.x)) * std::uint64_t(lines) * bytes_per_pixel(header);
 }
 
+/// The library calls it a damaged header where the samples of a subsampled channel do not begin with the data
+/// window, or do not fill it; and where tiles are subsampled at all.
+void check_samplings(const fs::path& path, const Imf::Header& header) {
+    const Imath::Box2i& box = header.dataWindow();
+    const auto fits = [](int first, int last, int sampling) {
+        return first % sampling == 0 && side(first, last) % sampling == 0;
+    };
+    for (auto i = header.channels().begin(); i != header.channels().end(); ++i) {
+        const Imf::Channel& channel = i.channel();
+        const int x = channel.xSampling, y = channel.ySampling;
+        if (x < 1 || y < 1 || (x == 1 && y == 1)) continue;  // what is below 1 is damage
+        const bool fills_window = fits(box.min.x, box.max.x, x) && fits(box.min.y, box.max.y, y);
+        if (fills_window && !is_tiled_part(header)) continue;
+        const std::string why =
+            is_tiled_part(header)
+                ? "and its file is tiled"
+                : fmt::format(
+                      "which does not divide the data window ({}, {})-({}, {}), {} x {} px from ({}, {})",
+                      box.min.x, box.min.y, box.max.x, box.max.y, side(box.min.x, box.max.x),
+                      side(box.min.y, box.max.y), box.min.x, box.min.y);
+        fail(path,
+             fmt::format("channel '{}' has a sampling of {} x {}, {}; OpenEXR does not read that (write "
+                         "the file with a sampling of 1 x 1)",
+                         i.name(), x, y, why));
+    }
+}
+
 void check_part(const fs::path& path, const Imf::Header& header, const ReadLimits& limits) {
     check_window(path, "data window", header.dataWindow(), limits);
     check_window(path, "display window", header.displayWindow(), limits);
@@ -84,6 +103,7 @@ void check_part(const fs::path& path, const Imf::Header& header, const ReadLimit
                                    tiles.ySize, limits.max_side_px));
         }
     }
+    check_samplings(path, header);
     header.sanityCheck(is_tiled_part(header));
     if (block_bytes(header) > limits.max_image_bytes) {
         fail(

@@ -106,12 +106,22 @@ bool is_exr_file(const std::filesystem::path& path) {
 }
 
 const std::vector<std::string>& exr_compression_names() {
-    static const std::vector<std::string> names(exr::kCompressionNames.begin(), exr::kCompressionNames.end());
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> known;
+        for (int i = 0; i < Imf::NUM_COMPRESSION_METHODS; ++i)
+            known.emplace_back(exr::kCompressions[std::size_t(i)].name);
+        return known;
+    }();
     return names;
 }
 
+std::string exr_flatten_remedy(const std::filesystem::path& path) {
+    return "flatten it: oiiotool " + shell_line({path.string()}) + " --flatten -o OUT.exr";
+}
+
 bool is_lossy_compression(std::string_view name) {
-    return name.starts_with("b44") || name.starts_with("dwa") || name == "pxr24";
+    const auto* found = std::ranges::find(exr::kCompressions, name, &exr::CompressionMethod::name);
+    return found != exr::kCompressions.end() && found->is_lossy;
 }
 
 ExrMetadata::ExrMetadata() = default;
@@ -202,7 +212,7 @@ ExrPart describe_part(const Imf::Header& header) {
     if (header.hasView()) part.view = header.view();
     if (header.hasType()) part.type = header.type();
     const auto compression = std::size_t(header.compression());
-    part.compression = compression < kCompressionNames.size() ? kCompressionNames[compression] : "unknown";
+    part.compression = compression < kCompressions.size() ? kCompressions[compression].name : "unknown";
     part.data_window = to_window(header.dataWindow());
     part.display_window = to_window(header.displayWindow());
     part.pixel_aspect = header.pixelAspectRatio();

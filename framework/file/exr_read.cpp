@@ -172,9 +172,9 @@ void ExrFile::Impl::check_type(int part) const {
     const ExrPart& info = parts[std::size_t(part)];
     if (info.type == Imf::SCANLINEIMAGE || info.type == Imf::TILEDIMAGE) return;
     const bool deep = info.type == Imf::DEEPSCANLINE || info.type == Imf::DEEPTILE;
-    exr::fail(path,
-              fmt::format("{} is of type '{}', {}", exr::part_label(parts, part), info.type,
-                          deep ? "deep data is not supported (flatten it first)" : "which is not supported"));
+    exr::fail(path, fmt::format("{} is of type '{}', {}", exr::part_label(parts, part), info.type,
+                                deep ? "deep data is not supported; " + exr_flatten_remedy(path)
+                                     : "which is not supported"));
 }
 
 void ExrFile::Impl::check_channels(int part, std::span<const std::string> names, ComponentType type) const {

@@ -17,6 +17,7 @@
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
 #include <OpenEXR/ImfVecAttribute.h>
+#include <OpenEXR/OpenEXRConfig.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -88,11 +89,15 @@ std::unique_ptr<Imf::Attribute> to_attribute(const std::string& name, const ExrV
 }
 
 Imf::Compression find_compression(const fs::path& path, const std::string& name) {
-    const auto found = std::ranges::find(exr::kCompressionNames, std::string_view(name));
-    if (found != exr::kCompressionNames.end())
-        return Imf::Compression(found - exr::kCompressionNames.begin());
-    refuse(path, fmt::format("compression '{}' does not exist; there are {}", name,
-                             fmt::join(exr::kCompressionNames, ", ")));
+    const std::vector<std::string>& known = exr_compression_names();
+    const auto found = std::ranges::find(known, name);
+    if (found != known.end()) return Imf::Compression(found - known.begin());
+    const auto* newer =
+        std::ranges::find(exr::kCompressions, std::string_view(name), &exr::CompressionMethod::name);
+    if (newer != exr::kCompressions.end())
+        refuse(path, fmt::format("compression '{}' needs OpenEXR {}, this build has {}; there are {}", name,
+                                 newer->since, OPENEXR_VERSION_STRING, fmt::join(known, ", ")));
+    refuse(path, fmt::format("compression '{}' does not exist; there are {}", name, fmt::join(known, ", ")));
 }
 
 Imf::Header make_header(const fs::path& path, std::span<const ExrOutputChannel> channels,

@@ -44,49 +44,27 @@ private:
 
 FrameLoader::FrameLoader(const Sequence& sequence, const CaptureReader& reader, const Pipeline& pipeline,
                          const RunOptions& run, std::vector<std::string> roles)
-    : sequence_(sequence), reader_(reader), pipeline_(pipeline), run_(run), roles_(std::move(roles)) {
-    if (pipeline.last_accumulating_step() >= 0) subframes_ = sequence.subframes;
+    : sequence_(sequence),
+      reader_(reader),
+      pipeline_(pipeline),
+      run_(run),
+      files_(sequence, reader, pipeline),
+      roles_(std::move(roles)) {
     for (const int offset : {-1, 1}) add_missing(roles_, pipeline.neighbour_roles(offset));
     if (!run.frames.empty() && !is_missing(0))
-        for (const int file : files_of(0)) request(file);
+        for (const int file : files_.numbers(run.frames[0])) request(file);
 }
 
 FrameLoader::~FrameLoader() {
     for (const auto& [file, read] : reads_) read.wait();
 }
 
-int FrameLoader::file_of(int frame, int subframe) const {
-    // Where nothing accumulates, the middle of the exposure stands for the frame.
-    const bool alone = subframes_ < sequence_.subframes;
-    return sequence_.file_number(frame, alone ? sequence_.subframes / 2 : subframe);
-}
-
 bool FrameLoader::is_missing(std::size_t index) const {
-    for (int subframe = 0; subframe < subframes_; ++subframe)
-        if (!reader_.has_frame(file_of(run_.frames[index], subframe))) return true;
-    return false;
-}
-
-bool FrameLoader::is_cut(int frame) const {
-    return std::find(sequence_.cuts.begin(), sequence_.cuts.end(), frame) != sequence_.cuts.end();
+    return files_.is_missing(run_.frames[index]);
 }
 
 bool FrameLoader::begins_shot(std::size_t index) const {
-    return is_cut(run_.frames[index]);
-}
-
-bool FrameLoader::has_neighbour(int frame, int offset) const {
-    if (pipeline_.neighbour_roles(offset).empty() || is_cut(offset < 0 ? frame : frame + 1)) return false;
-    return reader_.has_frame(file_of(frame + offset, subframes_ / 2));
-}
-
-std::vector<int> FrameLoader::files_of(std::size_t index) const {
-    std::vector<int> files;
-    const int frame = run_.frames[index];
-    for (int subframe = 0; subframe < subframes_; ++subframe) files.push_back(file_of(frame, subframe));
-    for (const int offset : {-1, 1})
-        if (has_neighbour(frame, offset)) files.push_back(file_of(frame + offset, subframes_ / 2));
-    return files;
+    return files_.begins_shot(run_.frames[index]);
 }
 
 Capture FrameLoader::read(int file) const {
@@ -121,25 +99,26 @@ FrameLoader::CapturePointer FrameLoader::held(std::size_t index) const {
 }
 
 FrameLoader::CapturePointer FrameLoader::take(std::size_t index, int subframe) {
-    const int file = file_of(run_.frames[index], subframe);
+    const int frame = run_.frames[index];
+    const int file = files_.number(frame, subframe);
     const bool holds = is_missing(index) && run_.missing == MissingFrame::hold && last_;
-    const bool last_of_frame = subframe + 1 == subframes_;
+    const bool last_of_frame = subframe + 1 == subframe_count();
     if (!holds) {
         request(file);
         reads_.at(file).wait();
     }
     // What comes next is read while this one is worked on; what no longer matters is let go.
-    std::vector<int> wanted = files_of(index);
-    if (!last_of_frame) request(file_of(run_.frames[index], subframe + 1));
+    std::vector<int> wanted = files_.numbers(frame);
+    if (!last_of_frame) request(files_.number(frame, subframe + 1));
     else if (index + 1 < run_.frames.size() && !is_missing(index + 1)) {
-        const std::vector<int> next = files_of(index + 1);
+        const std::vector<int> next = files_.numbers(run_.frames[index + 1]);
         request(next.front());
         wanted.insert(wanted.end(), next.begin(), next.end());
     }
     const CapturePointer current = holds ? held(index) : get(file);
     std::erase_if(reads_, [&](const auto& read) {
         return std::find(wanted.begin(), wanted.end(), read.first) == wanted.end() ||
-               (subframes_ > 1 && read.first <= file && read.first >= file_of(run_.frames[index], 0));
+               (subframe_count() > 1 && read.first <= file && read.first >= files_.number(frame, 0));
     });
     if (!holds && last_of_frame) last_ = current;
     return current;
@@ -147,7 +126,7 @@ FrameLoader::CapturePointer FrameLoader::take(std::size_t index, int subframe) {
 
 FrameLoader::CapturePointer FrameLoader::neighbour(std::size_t index, int offset) {
     const int frame = run_.frames[index];
-    return has_neighbour(frame, offset) ? get(file_of(frame + offset, subframes_ / 2)) : nullptr;
+    return files_.has_neighbour(frame, offset) ? get(files_.neighbour_number(frame, offset)) : nullptr;
 }
 
 }  // namespace aftershade

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "framework/capture/capture.h"
+#include "framework/pipeline/frame_files.h"
 #include "framework/pipeline/pipeline.h"
 #include "framework/pipeline/run_options.h"
 
@@ -28,7 +29,7 @@ public:
     bool is_missing(std::size_t index) const;
     bool can_hold() const { return last_ != nullptr; }
     /// 1, or as many as the sequence has where some effect accumulates them.
-    int subframe_count() const { return subframes_; }
+    int subframe_count() const { return files_.subframe_count(); }
 
     /// One sub-frame with its neighbours; its number is the frame's. Throws what reading threw.
     CapturePointer take(std::size_t index, int subframe);
@@ -39,10 +40,6 @@ public:
     double busy_ms() const { return busy_ms_; }
 
 private:
-    int file_of(int frame, int subframe) const;
-    bool is_cut(int frame) const;
-    bool has_neighbour(int frame, int offset) const;
-    std::vector<int> files_of(std::size_t index) const;
     void request(int file);
     CapturePointer get(int file);
     Capture read(int file) const;
@@ -52,8 +49,8 @@ private:
     const CaptureReader& reader_;
     const Pipeline& pipeline_;
     const RunOptions& run_;
+    FrameFiles files_;
     std::vector<std::string> roles_;
-    int subframes_ = 1;
     std::map<int, std::shared_future<CapturePointer>> reads_;  // by file
     CapturePointer last_;
     mutable std::atomic<double> busy_ms_ = 0;

@@ -98,6 +98,7 @@ json describe(const SavedHistory& history) {
         resources.push_back(entry);
     }
     return {{"look", history.look},
+            {"fingerprint", history.fingerprint},
             {"frame", history.frame},
             {"window", {w.min_x, w.min_y, w.max_x, w.max_y}},
             {"camera", camera_json(history.camera)},
@@ -106,6 +107,7 @@ json describe(const SavedHistory& history) {
 
 void apply(const json& document, SavedHistory& history) {
     history.look = document.at("look").get<std::string>();
+    history.fingerprint = document.value("fingerprint", "");
     history.frame = document.at("frame").get<int>();
     const auto window = document.at("window").get<std::array<int, 4>>();
     history.window = {window[0], window[1], window[2], window[3]};

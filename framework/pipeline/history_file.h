@@ -27,6 +27,7 @@ struct SavedResource {
 struct SavedHistory {
     std::filesystem::path path;  ///< that it was read from
     std::string look;            ///< history_identity() of its pipeline
+    std::string fingerprint;     ///< of the last frame (framework/pipeline/fingerprint.h); "" where unknown
     int frame = 0;               ///< the last one rendered
     Window window;               ///< its data window
     Camera camera;

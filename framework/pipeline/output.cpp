@@ -97,6 +97,12 @@ fs::path tap_path(const std::string& text, const std::string& tap, int frame) {
            (stem + (stem.empty() ? "" : ".") + tap + "." + FramePattern("####").path(frame) + ".exr");
 }
 
+fs::path path_of_tap(const OutputOptions& options, const std::string& tap, int frame) {
+    const auto asked = options.tap_patterns.find(tap);
+    return asked == options.tap_patterns.end() ? tap_path(options.patterns.front(), tap, frame)
+                                               : fs::path(FramePattern(asked->second).path(frame));
+}
+
 void write_false_color(const fs::path& path, const Image& image, const CaptureHeader& header) {
     const FalseColor colors(std::string(kDataRole), image, header.primaries);
     Image picture(image.width(), image.height(), 3);
@@ -211,6 +217,16 @@ std::vector<std::string> wanted_roles(const OutputOptions& options) {
     return roles;
 }
 
+std::vector<fs::path> output_files(const OutputOptions& options, const std::vector<Tap>& taps, int frame) {
+    std::vector<fs::path> files;
+    for (const std::string& text : options.patterns) files.emplace_back(FramePattern(text).path(frame));
+    std::set<std::string> names;
+    for (const Tap& tap : taps) names.insert(tap.text());
+    for (const std::string& name : names) files.push_back(path_of_tap(options, name, frame));
+    if (!options.telemetry.empty()) files.emplace_back(FramePattern(options.telemetry).path(frame));
+    return files;
+}
+
 std::vector<fs::path> write_outputs(const OutputOptions& options, const FrameResult& result,
                                     const Capture& capture, const CaptureReader& reader) {
     std::vector<fs::path> written;
@@ -222,10 +238,7 @@ std::vector<fs::path> write_outputs(const OutputOptions& options, const FrameRes
         written.push_back(path);
     }
     for (const auto& [tap, image] : result.taps) {
-        const auto asked = options.tap_patterns.find(tap);
-        const fs::path path = asked == options.tap_patterns.end()
-                                  ? tap_path(options.patterns.front(), tap, frame)
-                                  : fs::path(FramePattern(asked->second).path(frame));
+        const fs::path path = path_of_tap(options, tap, frame);
         if (extension(path) == ".png") write_false_color(path, image, capture.header);
         else write_tap(path, image, options, capture.header);
         written.push_back(path);

@@ -23,6 +23,10 @@ void check_outputs(const OutputOptions& options, const Sequence& sequence, Diagn
 /// Roles that the options need from the pipeline: those of EXR, and display where a PNG is asked for.
 std::vector<std::string> wanted_roles(const OutputOptions& options);
 
+/// The files that write_outputs makes of a frame, in its order.
+std::vector<std::filesystem::path> output_files(const OutputOptions& options, const std::vector<Tap>& taps,
+                                                int frame);
+
 /// Writes one frame, each file by rename. A role that no step made is taken from the capture. PNG takes
 /// `display`, else color encoded as sRGB, over the display window. Returns the paths. Throws
 /// Error(ExitCode::output).

@@ -18,7 +18,9 @@ struct OutputOptions {
     std::string compression = "zip";  ///< EXR
     std::string look{};               ///< written as attribute aftershade/look
     std::string renderer{};           ///< GL_RENDERER, written as attribute aftershade/renderer
-    std::string telemetry{};          ///< "stats_####.json": numbers of each frame; "" for none
+    std::string
+        fingerprint{};        ///< of what the frame is made of: attribute aftershade/fingerprint; "" for none
+    std::string telemetry{};  ///< "stats_####.json": numbers of each frame; "" for none
     std::map<std::string, std::string> tap_patterns{};  ///< by "step.texture"; else beside the first pattern
 };
 

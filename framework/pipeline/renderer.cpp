@@ -204,8 +204,9 @@ void PipelineRenderer::read_results(const std::vector<std::string>& roles, bool 
     if (timed) result.times.push_back({"readback", timer.stop_ms()});
 }
 
-void PipelineRenderer::save_history(const std::filesystem::path& path) {
+void PipelineRenderer::save_history(const std::filesystem::path& path, const std::string& fingerprint) {
     SavedHistory saved;
+    saved.fingerprint = fingerprint;
     saved.look = history_identity(pipeline_);
     if (last_) {
         saved.frame = last_->frame;
@@ -222,6 +223,10 @@ void PipelineRenderer::load_history(const std::filesystem::path& path) {
     if (saved_->look == identity) return;
     throw Error(ExitCode::usage, path.string() + ": this history is of another look or effect version\n" +
                                      difference_of_identities(saved_->look, identity));
+}
+
+void PipelineRenderer::drop_loaded_history() {
+    saved_.reset();
 }
 
 void PipelineRenderer::begin_from_saved(const FrameInputs& frame) {

@@ -59,10 +59,12 @@ public:
 
     /// What the next frame would read of this one (framework/pipeline/history_file.h). Throws
     /// Error(ExitCode::output).
-    void save_history(const std::filesystem::path& path);
+    void save_history(const std::filesystem::path& path, const std::string& fingerprint = "");
     /// Takes up where a run over the frames before this one ended. Throws Error(ExitCode::usage) where the
     /// file is damaged or of another look, effect version, size or last frame: at once, or by render().
     void load_history(const std::filesystem::path& path);
+    /// Of a history that was loaded for a frame that could not be read.
+    void drop_loaded_history();
 
     /// The graph of the last frame in Graphviz's language; "" before the first.
     std::string graph_dot() const;

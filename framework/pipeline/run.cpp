@@ -10,10 +10,9 @@
 #include <tuple>
 #include <utility>
 
-#include "framework/capture/capture_window.h"
 #include "framework/core/memory_limit.h"
-#include "framework/image/window.h"
 #include "framework/pipeline/frame_loader.h"
+#include "framework/pipeline/frame_run.h"
 #include "framework/pipeline/nan_policy.h"
 #include "framework/pipeline/output.h"
 
@@ -38,11 +37,6 @@ void add_times(std::vector<PassStatistics>& passes, const std::vector<graph::Pas
         found->max_ms = std::max(found->max_ms, time.milliseconds);
         ++found->frames;
     }
-}
-
-void note_non_finite(int frame, RunReport& report) {
-    if (report.frames_non_finite.empty() || report.frames_non_finite.back() != frame)
-        report.frames_non_finite.push_back(frame);
 }
 
 /// Reports how each frame ends, with the time since the one before.
@@ -83,11 +77,12 @@ struct Written {
     double milliseconds = 0;
 };
 
-Written write_frame(const RunSetup& setup, const FrameResult& result, const Capture& capture) {
+Written write_frame(const RunSetup& setup, const OutputOptions& outputs, const FrameResult& result,
+                    const Capture& capture) {
     const auto start = Clock::now();
     const TraceScope traced(setup.options.trace, "encode", "frame " + std::to_string(capture.header.frame));
     Written written;
-    written.paths = write_outputs(setup.outputs, result, capture, setup.reader);
+    written.paths = write_outputs(outputs, result, capture, setup.reader);
     written.milliseconds = milliseconds_since(start);
     return written;
 }
@@ -98,16 +93,6 @@ struct PendingWrite {
     std::future<Written> files{};
 };
 
-/// Waits for the files of the frame before, if there is one, and reports them.
-void finish_write(PendingWrite& pending, RunReport& report, Outcomes& outcomes) {
-    if (!pending.files.valid()) return;
-    const auto start = Clock::now();
-    const Written written = pending.files.get();
-    report.write_ms += milliseconds_since(start);
-    report.encode_ms += written.milliseconds;
-    outcomes.done(pending.frame, written.paths);
-}
-
 std::vector<std::string> roles_to_read(const Pipeline& pipeline, const OutputOptions& outputs) {
     std::vector<std::string> roles = pipeline.capture_roles();
     for (const std::string& role : outputs.roles)
@@ -115,113 +100,7 @@ std::vector<std::string> roles_to_read(const Pipeline& pipeline, const OutputOpt
     return roles;
 }
 
-}  // namespace
-
-ExitCode RunReport::exit_code() const {
-    if (interrupted) return ExitCode::interrupted;
-    if (failures.empty()) return frames_done > 0 ? ExitCode::done : ExitCode::capture;
-    return frames_done > 0 ? ExitCode::partial : failures.front().code;
-}
-
-namespace {
-
-/// One frame from its first sub-frame to its results.
-class FrameRun {
-public:
-    FrameRun(PipelineRenderer& renderer, FrameLoader& loader, const Sequence& sequence, const RunOptions& run)
-        : renderer_(renderer), loader_(loader), sequence_(sequence), run_(run) {}
-
-    struct Rendered {
-        std::shared_ptr<const Capture> capture;
-        std::shared_ptr<const FrameResult> result;
-        std::vector<NonFiniteOutput> non_finite;
-    };
-
-    /// Reading's faults come as Error(ExitCode::capture), and so do pixels that NanPolicy::fail refuses.
-    Rendered render(std::size_t index, const std::vector<std::string>& roles, RunReport& report,
-                    const RunObserver& observer) {
-        FrameInputs inputs;
-        inputs.subframe_count = loader_.subframe_count();
-        inputs.scale = 1.0 / run_.scale_divisor;
-        inputs.fps = sequence_.fps;
-        inputs.begins_shot = loader_.begins_shot(index);
-        const auto previous = timed_read(report, [&] { return loader_.neighbour(index, -1); });
-        const auto next = timed_read(report, [&] { return loader_.neighbour(index, 1); });
-        inputs.previous = previous.get();
-        inputs.next = next.get();
-        std::shared_ptr<const Capture> current, centre;
-        FrameResult result;
-        std::vector<graph::PassTime> times;
-        std::string history_reset;
-        std::vector<std::string> messages;
-        for (int subframe = 0; subframe < inputs.subframe_count; ++subframe) {
-            current = timed_read(report, [&] { return loader_.take(index, subframe); });
-            if (subframe == inputs.subframe_count / 2) centre = current;
-            if (subframe == 0 && observer.frame_started) observer.frame_started(*current);
-            meet_non_finite(*current, report, observer);
-            inputs.capture = current.get();
-            inputs.centre = centre.get();
-            inputs.subframe = subframe;
-            result = renderer_.render(inputs, roles, true);
-            times.insert(times.end(), result.times.begin(), result.times.end());
-            if (subframe == 0) history_reset = result.history_reset;
-            messages.insert(messages.end(), result.messages.begin(), result.messages.end());
-        }
-        result.times = std::move(times);
-        result.messages = std::move(messages);
-        result.history_reset = std::move(history_reset);
-        return finished(std::move(centre), std::move(result));
-    }
-
-private:
-    template <typename Read>
-    static std::shared_ptr<const Capture> timed_read(RunReport& report, const Read& read) {
-        const auto start = Clock::now();
-        auto capture = read();
-        report.read_ms += milliseconds_since(start);
-        return capture;
-    }
-
-    /// Before the effects see it, and before any history does.
-    void meet_non_finite(const Capture& capture, RunReport& report, const RunObserver& observer) const {
-        if (capture.non_finite.empty()) return;
-        note_non_finite(capture.header.frame, report);
-        const auto sentences = describe_non_finite(run_.on_nan, capture);
-        if (run_.on_nan == NanPolicy::fail) throw Error(ExitCode::capture, sentences.front());
-        if (observer.non_finite) std::ranges::for_each(sentences, observer.non_finite);
-    }
-
-    /// The frame without the margin of its region.
-    Rendered finished(std::shared_ptr<const Capture> capture, FrameResult result) const {
-        if (run_.region) {
-            auto part = std::make_shared<Capture>(*capture);
-            const Window& display = capture->header.display_window;
-            const Window& r = *run_.region;
-            const Window full{display.min_x + r.min_x, display.min_y + r.min_y, display.min_x + r.max_x,
-                              display.min_y + r.max_y};
-            const Window region = scaled_window(full, display, run_.scale_divisor);
-            crop_capture(*part, region);
-            for (auto* images : {&result.images, &result.taps})
-                for (auto& [name, image] : *images)
-                    if (image.width() == capture->header.data_window.width() &&
-                        image.height() == capture->header.data_window.height())
-                        image = place_in_window(std::move(image), capture->header.data_window,
-                                                part->header.data_window, 0);
-            result.region = region;
-            capture = std::move(part);
-        }
-        auto outputs = apply_nan_policy(run_.on_nan, result);
-        return {std::move(capture), std::make_shared<const FrameResult>(std::move(result)),
-                std::move(outputs)};
-    }
-
-    PipelineRenderer& renderer_;
-    FrameLoader& loader_;
-    const Sequence& sequence_;
-    const RunOptions& run_;
-};
-
-/// Whether the frame is left out, after it was told of.
+/// Whether the frame is left out; it is reported first.
 bool skips(const FrameLoader& loader, const RunOptions& run, std::size_t index, const RunObserver& observer) {
     if (run.missing == MissingFrame::error || !loader.is_missing(index)) return false;
     const bool skip = run.missing == MissingFrame::skip;
@@ -230,8 +109,8 @@ bool skips(const FrameLoader& loader, const RunOptions& run, std::size_t index, 
     return skip;
 }
 
-void tell(const CaptureHeader& header, const FrameResult& result, bool is_first, const RunOptions& run,
-          const RunObserver& observer) {
+void report_result(const CaptureHeader& header, const FrameResult& result, bool is_first,
+                   const RunOptions& run, const RunObserver& observer) {
     if (run.audit && observer.frame_audited) observer.frame_audited(header, result.audit);
     for (const std::string& line : result.messages)
         if (observer.native_message) observer.native_message(header.frame, line);
@@ -268,78 +147,129 @@ bool accept_outputs(const FrameRun::Rendered& frame, NanPolicy policy, RunReport
     return true;
 }
 
-}  // namespace
+/// The frames of a run, one after the other.
+class FrameLoop {
+public:
+    FrameLoop(const RunSetup& setup, PipelineRenderer& renderer, const RunObserver& observer)
+        : setup_(setup),
+          renderer_(renderer),
+          observer_(observer),
+          loader_(setup.sequence, setup.reader, setup.pipeline, setup.options,
+                  roles_to_read(setup.pipeline, setup.outputs)),
+          frame_run_(renderer, loader_, setup.sequence, setup.options),
+          outcomes_(report_, observer) {}
 
-namespace {
-
-RunReport render_frames(const RunSetup& setup, PipelineRenderer& renderer, const RunObserver& observer,
-                        const std::atomic<bool>& stop) {
-    RunReport report;
-    const auto start = Clock::now();
-    const auto& [context, pipeline, sequence, reader, run, outputs, data_folder] = setup;
-    const std::vector<std::string> result_roles = wanted_roles(outputs);
-    renderer.set_audit(run.audit);
-    renderer.set_telemetry(run.telemetry);
-    if (!run.history_in.empty()) renderer.load_history(run.history_in);
-    FrameLoader loader(sequence, reader, pipeline, run, roles_to_read(pipeline, outputs));
-    FrameRun frame_run(renderer, loader, sequence, run);
-    Outcomes outcomes(report, observer);
-    PendingWrite pending_write;
-    bool any_rendered = false;
-    const bool is_native = pipeline.has_native();
-    for (std::size_t i = 0; i < run.frames.size(); ++i) {
-        report.interrupted = stop;
-        if (report.interrupted) {
-            report.frames_left.assign(run.frames.begin() + std::ptrdiff_t(i), run.frames.end());
-            break;
+    RunReport run(const std::atomic<bool>& stop) {
+        const auto start = Clock::now();
+        const RunOptions& run = setup_.options;
+        for (std::size_t i = 0; i < run.frames.size(); ++i) {
+            report_.interrupted = stop;
+            if (report_.interrupted) {
+                report_.frames_left.assign(run.frames.begin() + std::ptrdiff_t(i), run.frames.end());
+                break;
+            }
+            frame(i);
         }
-        const bool warms_up = i < std::size_t(run.warmup_frames);
-        if (skips(loader, run, i, observer)) {
-            if (!warms_up) outcomes.skipped(run.frames[i]);
-            continue;
+        finish_write();
+        report_.history_saved = !run.history_out.empty() && any_rendered_;
+        if (report_.history_saved)
+            renderer_.save_history(run.history_out,
+                                   setup_.hooks.last_fingerprint ? setup_.hooks.last_fingerprint() : "");
+        report_.decode_ms = loader_.busy_ms();
+        report_.graph_dot = renderer_.graph_dot();
+        std::tie(report_.bytes, report_.bytes_unaliased) = renderer_.graph_bytes();
+        report_.wall_ms = milliseconds_since(start);
+        return std::move(report_);
+    }
+
+private:
+    bool warms_up(std::size_t index) const { return index < std::size_t(setup_.options.warmup_frames); }
+
+    void frame(std::size_t index) {
+        const int number = setup_.options.frames[index];
+        if (skips(loader_, setup_.options, index, observer_)) {
+            if (!warms_up(index)) outcomes_.skipped(number);
+            return;
         }
         // A plug-in may end this process: what is done must be on disk before its code runs.
-        if (is_native) finish_write(pending_write, report, outcomes);
-        FrameRun::Rendered frame;
+        if (setup_.pipeline.has_native()) finish_write();
         const auto begin = Clock::now();
+        const RunHooks& hooks = setup_.hooks;
+        if (hooks.before_frame) hooks.before_frame(number, renderer_);
+        FrameRun::Rendered frame;
         try {
-            frame = frame_run.render(i, result_roles, report, observer);
+            frame = frame_run_.render(index, wanted_roles(setup_.outputs), report_, observer_);
         } catch (const Error& error) {
             if (error.exit_code() != ExitCode::capture) throw;
-            finish_write(pending_write, report, outcomes);
-            if (!warms_up) outcomes.failed(run.frames[i], error);
-            else if (observer.frame_failed) observer.frame_failed(error.what());
-            continue;
+            finish_write();
+            if (!warms_up(index)) outcomes_.failed(number, error);
+            else if (observer_.frame_failed) observer_.frame_failed(error.what());
+            if (hooks.frame_failed) hooks.frame_failed(number, renderer_);
+            return;
         }
-        if (run.trace) trace_frame(*run.trace, frame.capture->header.frame, begin, frame.result->times);
-        tell(frame.capture->header, *frame.result, !any_rendered, run, observer);
-        any_rendered = true;
-        if (!frame.result->history_reset.empty()) report.history_begin = frame.capture->header.frame;
-        if (warms_up) continue;
-        add_times(report.passes, frame.result->times);
-        if (frame.result->telemetry) report.telemetry.push_back(*frame.result->telemetry);
-        finish_write(pending_write, report, outcomes);
-        if (!accept_outputs(frame, run.on_nan, report, observer, outcomes)) continue;
-        pending_write = {run.frames[i], std::async(std::launch::async, [frame, &setup] {
-                             return write_frame(setup, *frame.result, *frame.capture);
-                         })};
+        report_frame(frame, begin);
+        finish_write();
+        if (warms_up(index) || (hooks.is_written && !hooks.is_written(number)))
+            report_.frames_unwritten += warms_up(index) ? 0 : 1;
+        else if (accept_outputs(frame, setup_.options.on_nan, report_, observer_, outcomes_))
+            write_later(frame, number, begin);
+        if (hooks.after_frame) hooks.after_frame(number, renderer_);
     }
-    finish_write(pending_write, report, outcomes);
-    report.history_saved = !run.history_out.empty() && any_rendered;
-    if (report.history_saved) renderer.save_history(run.history_out);
-    report.decode_ms = loader.busy_ms();
-    report.graph_dot = renderer.graph_dot();
-    std::tie(report.bytes, report.bytes_unaliased) = renderer.graph_bytes();
-    report.wall_ms = milliseconds_since(start);
-    return report;
-}
+
+    void report_frame(const FrameRun::Rendered& frame, Clock::time_point begin) {
+        const RunOptions& run = setup_.options;
+        const int number = frame.capture->header.frame;
+        if (run.trace) trace_frame(*run.trace, number, begin, frame.result->times);
+        report_result(frame.capture->header, *frame.result, !any_rendered_, run, observer_);
+        any_rendered_ = true;
+        if (!frame.result->history_reset.empty()) report_.history_begin = number;
+        add_times(report_.passes, frame.result->times);
+        if (frame.result->telemetry) report_.telemetry.push_back(*frame.result->telemetry);
+    }
+
+    /// The files of the frame are written while the next one is rendered.
+    void write_later(const FrameRun::Rendered& frame, int number, Clock::time_point begin) {
+        OutputOptions outputs = setup_.outputs;
+        if (setup_.hooks.fingerprint) outputs.fingerprint = setup_.hooks.fingerprint(number);
+        const auto write = [frame, number, begin, outputs = std::move(outputs), &setup = setup_] {
+            Written written = write_frame(setup, outputs, *frame.result, *frame.capture);
+            if (setup.hooks.frame_written)
+                setup.hooks.frame_written(number, written.paths, milliseconds_since(begin) / 1000);
+            return written;
+        };
+        pending_ = {number, std::async(std::launch::async, write)};
+    }
+
+    /// Waits for the files of the frame before, if there is one, and reports them.
+    void finish_write() {
+        if (!pending_.files.valid()) return;
+        const auto start = Clock::now();
+        const Written written = pending_.files.get();
+        report_.write_ms += milliseconds_since(start);
+        report_.encode_ms += written.milliseconds;
+        outcomes_.done(pending_.frame, written.paths);
+    }
+
+    const RunSetup& setup_;
+    PipelineRenderer& renderer_;
+    const RunObserver& observer_;
+    RunReport report_;
+    FrameLoader loader_;
+    FrameRun frame_run_;
+    Outcomes outcomes_;
+    PendingWrite pending_;
+    bool any_rendered_ = false;
+};
 
 }  // namespace
 
 RunReport run_frames(const RunSetup& setup, const RunObserver& observer, const std::atomic<bool>& stop) {
     PipelineRenderer renderer(setup.context, setup.pipeline, setup.data_folder, setup.options.natives);
+    renderer.set_audit(setup.options.audit);
+    renderer.set_telemetry(setup.options.telemetry);
     try {
-        return render_frames(setup, renderer, observer, stop);
+        if (!setup.options.history_in.empty()) renderer.load_history(setup.options.history_in);
+        return FrameLoop(setup, renderer, observer).run(stop);
     } catch (const std::exception& error) {
         if (is_out_of_memory(error)) setup.context.abandon();  // before the renderer goes
         throw;

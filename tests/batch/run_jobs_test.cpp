@@ -88,6 +88,19 @@ TEST(RunJobs, AFrameWhoseFilesWereNotYetInPlaceIsRenderedAgain) {
     EXPECT_EQ(outcomes(report), (Outcomes{{1, "done"}, {2, "done"}, {3, "failed"}, {4, "done"}}));
 }
 
+TEST(RunJobs, FramesThatAreCurrentCountAsDone) {
+    const JobsReport report =
+        run_jobs(jobs_of_script("[ $f = 1 ] && for c in 3 4; do say "
+                                "\"{\\\"event\\\":\\\"frame\\\",\\\"frame\\\":$c,\\\"outcome\\\":"
+                                "\\\"current\\\",\\\"seconds\\\":0}\"; done\n"
+                                "case $f in 1|5) done_;; 2) kill -SEGV $$;; esac",
+                                {{{1, 2, 3, 4, 5}}}),
+                 {}, kGoOn);
+    EXPECT_EQ(outcomes(report),
+              (Outcomes{{1, "done"}, {2, "failed"}, {3, "current"}, {4, "current"}, {5, "done"}}));
+    EXPECT_EQ(report.exit_code, ExitCode::partial);
+}
+
 TEST(RunJobs, AHangCostsAFrame) {
     JobOptions options = jobs_of_script("[ $f = 2 ] && sleep 60; done_", {{{1, 2, 3}}});
     options.frame_timeout = std::chrono::milliseconds(500);

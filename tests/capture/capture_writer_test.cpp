@@ -17,9 +17,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<Profile> shipped_profiles() {
+/// The waves below are no surfaces, so a repair of averages would change them: sample_means_test.cpp has
+/// that.
+std::vector<Profile> profiles_without_repair() {
     Diagnostics diagnostics;
-    return read_profiles(fs::path(AFTERSHADE_SOURCE_DIR) / "profiles", diagnostics);
+    auto profiles = read_profiles(fs::path(AFTERSHADE_SOURCE_DIR) / "profiles", diagnostics);
+    for (Profile& profile : profiles)
+        for (auto& [role, decoding] : profile.roles) decoding.is_mean = false;
+    return profiles;
 }
 
 constexpr int kWidth = 23, kHeight = 17;
@@ -73,7 +78,7 @@ protected:
             if (one.id == GetParam()) return one;
         throw std::runtime_error("no such profile");
     }
-    std::vector<Profile> profiles_ = shipped_profiles();
+    std::vector<Profile> profiles_ = profiles_without_repair();
     test::TemporaryFolder folder_;
 };
 
@@ -139,7 +144,7 @@ TEST_P(EveryProfile, IsDetectedFromWhatWasWritten) {
 
 std::vector<std::string> profile_ids() {
     std::vector<std::string> ids;
-    for (const Profile& profile : shipped_profiles()) ids.push_back(profile.id);
+    for (const Profile& profile : profiles_without_repair()) ids.push_back(profile.id);
     return ids;
 }
 INSTANTIATE_TEST_SUITE_P(Shipped, EveryProfile, testing::ValuesIn(profile_ids()),
@@ -147,7 +152,7 @@ INSTANTIATE_TEST_SUITE_P(Shipped, EveryProfile, testing::ValuesIn(profile_ids())
 
 TEST(CaptureWriter, UsesTheNamesAndUnitsOfTheProducer) {
     test::TemporaryFolder folder;
-    for (const Profile& profile : shipped_profiles())
+    for (const Profile& profile : profiles_without_repair())
         write_capture(folder / (profile.id + ".exr"), make_capture(), profile, {});
     const auto value = [&](const char* file, const char* channel, int x, int y) {
         const std::vector<std::string> one = {channel};
@@ -171,7 +176,7 @@ TEST(CaptureWriter, RefusesIdsThatTheProducersFloatsCannotHold) {
     test::TemporaryFolder folder;
     Capture capture = make_capture();
     capture.images.at("object_id").uint_at(5, 5, 0) = 16777217;
-    for (const Profile& profile : shipped_profiles()) {
+    for (const Profile& profile : profiles_without_repair()) {
         if (profile.id == "native") {
             EXPECT_NO_THROW(write_capture(folder / "native.exr", capture, profile, {}));
         }
@@ -219,7 +224,7 @@ TEST(CaptureReader, TellsWhereTheLightsOfAFileAreDamaged) {
     Capture capture = make_capture();
     capture.header.lights.clear();
     options.attributes["aftershade/lights"] = std::string(R"([ { "type": "point" } ])");
-    const auto profiles = shipped_profiles();
+    const auto profiles = profiles_without_repair();
     const fs::path path = folder / "frame_0001.exr";
     for (const Profile& profile : profiles)
         if (profile.id == "native") write_capture(path, capture, profile, options);

@@ -154,6 +154,61 @@ TEST(Coverage, IsRefusedWhereObjectsHaveNumbersAndNoNames) {
     EXPECT_EQ(reader.read(1, by_number).images.at(by_number[0]).at(0, 0, 0), 1);
 }
 
+/// Two pixels: Cube over number 7, and number 9 alone.
+std::filesystem::path write_matte_and_numbers(const TemporaryFolder& folder, float second_number) {
+    const auto path = folder / "both.exr";
+    Image image(2, 1, 5);
+    image.at(0, 0, 0) = std::bit_cast<float>(cryptomatte_hash("Cube"));
+    image.at(0, 0, 1) = 0.75f;
+    image.at(0, 0, 4) = 7;
+    image.at(1, 0, 4) = second_number;
+    std::vector<ExrOutputChannel> channels;
+    for (const char* name : {"V.Combined.R", "V.Combined.G", "V.Combined.B"})
+        channels.push_back({name, PixelType::half, &image, 3});
+    for (int c = 0; c < 4; ++c)
+        channels.push_back(
+            {std::string("V.CryptoObject00.") + "RGBA"[c], PixelType::float32, &image, c < 2 ? c : 3});
+    channels.push_back({"V.IndexOB.X", PixelType::float32, &image, 4});
+    ExrWriteOptions options;
+    options.data_window = options.display_window = {0, 0, 1, 0};
+    options.attributes["cryptomatte/3ae39a5/name"] = "V.CryptoObject";
+    options.attributes["cryptomatte/3ae39a5/manifest"] = R"({"Cube":"0"})";
+    write_exr(path, channels, options);
+    return path;
+}
+
+TEST(ObjectIds, OfALookMayBeNumbersAndNames) {
+    const TemporaryFolder folder;
+    Sequence sequence;
+    const CaptureReader reader = reader_of(sequence, write_matte_and_numbers(folder, 9));
+    sequence.object_names = {"Cube"};
+    const auto role_of = [](std::vector<TableKey> keys) { return coverage_role(keys); };
+    const std::vector<std::string> roles = {role_of({{0, 0, "Cube"}}), role_of({{7, 7, ""}}),
+                                            role_of({{9, 9, ""}, {0, 0, "Cube"}}), "object_id"};
+    const Capture capture = reader.read(1, roles);
+    const auto coverage = [&](int role, int x) {
+        return capture.images.at(roles[std::size_t(role)]).at(x, 0, 0);
+    };
+    EXPECT_EQ(coverage(0, 0), 0.75f);
+    EXPECT_EQ(coverage(0, 1), 0);
+    EXPECT_EQ(coverage(1, 0), 1);
+    EXPECT_EQ(coverage(1, 1), 0);
+    EXPECT_EQ(coverage(2, 0), 0.75f);
+    EXPECT_EQ(coverage(2, 1), 1);
+    EXPECT_EQ(capture.images.at("object_id").uint_at(0, 0, 0), cryptomatte_hash("Cube"));
+    EXPECT_EQ(capture.images.at("object_id").uint_at(1, 0, 0), 9u);
+    EXPECT_EQ(capture.header.notes, std::vector<std::string>{});
+}
+
+TEST(ObjectIds, ByNameDoWithoutNumbersThatWereAveraged) {
+    const TemporaryFolder folder;
+    Sequence sequence;
+    const CaptureReader reader = reader_of(sequence, write_matte_and_numbers(folder, 8.5f));
+    sequence.object_names = {"Cube"};
+    const Capture capture = reader.read(1, std::vector<std::string>{"object_id"});
+    EXPECT_EQ(capture.images.at("object_id").uint_at(0, 0, 0), cryptomatte_hash("Cube"));
+}
+
 TEST(Cryptomatte, TellsWhatItsObjectsCover) {
     const TemporaryFolder folder;
     const auto path = write_matte(folder, {{"Cube", 0.5f}, {"Suzanne", 0.25f}}, PixelType::float32);

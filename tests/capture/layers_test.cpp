@@ -189,8 +189,10 @@ TEST_F(LayeredFile, WithSeveralColoursAndNoUsualNameHasNoneUntilOneIsNamed) {
 }
 
 TEST_F(LayeredFile, HasDepthByItsUsualNameUnderAnyProducer) {
-    write({"R", "G", "B", "depth.Z"}, {{"arnold/version", std::string("7")}});
-    EXPECT_EQ(channels_of("depth"), Names{"depth.Z"});
+    for (const char* name : {"depth.Z", "Depth.V", "depth", "Z"}) {
+        write({"R", "G", "B", name}, {{"cycles.ViewLayer.samples", std::string("7")}});
+        EXPECT_EQ(channels_of("depth"), Names{name});
+    }
 }
 
 TEST_F(LayeredFile, ThatWeWroteUnderNativeNamesIsNativeWhoeverMadeItsSource) {

@@ -188,6 +188,82 @@ TEST(StoredMatrices, ThatFitNothingAreRefusedWithTheReason) {
 }
 
 /// Arnold's P is in world space: each pixel's point must be in that pixel.
+struct TransformCase {
+    std::string name;
+    std::string version;      ///< vrayInfo/vrayversion; "" for no such attribute
+    bool is_of_maya = false;  ///< rows are right, back and down, else right, up and back
+};
+
+/// The pose's world has y up; 3ds Max's has z up.
+glm::dmat4 world_from_camera(const CameraPose& pose, bool is_of_maya) {
+    glm::dmat4 placed = pose.world_from_view();
+    if (is_of_maya) return glm::dmat4(placed[0], placed[2], -placed[1], placed[3]);
+    for (int column = 0; column < 4; ++column)
+        placed[column] = {placed[column].x, -placed[column].z, placed[column].y, placed[column].w};
+    return placed;
+}
+
+/// Where a point of the pose's world is in the world of the file.
+glm::dvec4 in_files_world(const glm::dvec4& point, bool is_of_maya) {
+    return is_of_maya ? point : glm::dvec4(point.x, -point.z, point.y, point.w);
+}
+
+class CameraTransform : public testing::TestWithParam<TransformCase> {};
+
+TEST_P(CameraTransform, ShowsPointsWhereTheCameraSawThem) {
+    const TransformCase& row = GetParam();
+    CameraPose pose = turned_pose();
+    pose.angles_deg[2] = 0;
+    std::map<std::string, ExrValue> attributes = {
+        {"cameraTransform", stored(world_from_camera(pose, row.is_of_maya), false)}};
+    if (!row.version.empty()) attributes["vrayInfo/vrayversion"] = row.version;
+    Camera lens;
+    lens.set("focal_length", pose.focal_length_mm);
+    lens.set("sensor_width", pose.sensor_width_mm);
+    const StoredMatrices read = read_matrices(part_with(attributes), lens);
+    ASSERT_TRUE(read.camera_from_world && read.ndc_from_world) << read.fault;
+    for (const glm::dvec2 pixel : {glm::dvec2(3, 4), glm::dvec2(40, 30)}) {
+        const glm::dvec4 world =
+            in_files_world(pose.world_at(pixel, 5, kWidth_px, kHeight_px), row.is_of_maya);
+        const glm::dvec4 clip = glm_matrix(*read.ndc_from_world) * world;
+        EXPECT_NEAR((clip.x / clip.w + 1) / 2 * kWidth_px, pixel.x, 1e-3);
+        EXPECT_NEAR((1 - clip.y / clip.w) / 2 * kHeight_px, pixel.y, 1e-3);
+        EXPECT_NEAR((glm_matrix(*read.camera_from_world) * world).z, -5, 1e-4);
+    }
+    EXPECT_NE(
+        read.found.find(row.is_of_maya ? "rows are right, back and down" : "rows are right, up and back"),
+        std::string::npos)
+        << read.found;
+}
+
+INSTANTIATE_TEST_SUITE_P(VRay, CameraTransform,
+                         testing::Values(TransformCase{"Maya", "Version of V-Ray for Maya 3.60.05", true},
+                                         TransformCase{"MayaWithoutItsName", "", true},
+                                         TransformCase{"Max", "", false}),
+                         [](const auto& row) { return row.param.name; });
+
+TEST(StoredMatrices, OfVRayThatDoNotTellWhichRowIsUpAreNotTaken) {
+    // Level and along an axis, so that the rows are upright either way.
+    const ExrPart part = part_with(
+        {{"cameraTransform", std::vector<float>{1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 5, 20, 1}}});
+    const StoredMatrices read = read_matrices(part, {});
+    EXPECT_FALSE(read.camera_from_world);
+    EXPECT_EQ(read.fault, "cameraTransform does not tell which of its rows is up");
+}
+
+TEST(StoredMatrices, OfVRaysRealFileLookAlongTheRoom) {
+    AFTERSHADE_REQUIRE_CAPTURE(path, "producers/vray/vray36_maya_crypto_normals.exr");
+    Camera lens;
+    lens.set("focal_length", 35);
+    lens.set("sensor_width", 36);
+    const StoredMatrices read = read_matrices(ExrFile(*path).parts().front(), lens);
+    ASSERT_TRUE(read.camera_from_world && read.ndc_from_world) << read.fault;
+    const glm::dvec4 ahead = glm_matrix(*read.camera_from_world) * glm::dvec4(0, 5, 0, 1);
+    EXPECT_NEAR(glm::length(ahead - glm::dvec4(0, 0, -20, 1)), 0, 1e-4);
+    const glm::dvec4 above = glm_matrix(*read.ndc_from_world) * glm::dvec4(0, 6, 0, 1);
+    EXPECT_GT(above.y / above.w, 0);
+}
+
 TEST(StoredMatrices, OfArnoldShowItsPositionsInTheirPixels) {
     AFTERSHADE_REQUIRE_CAPTURE(path, "producers/arnold/arnold75_N_P_aovs.exr");
     const ExrFile file(*path);

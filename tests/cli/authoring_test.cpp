@@ -1,10 +1,13 @@
 // list, describe, new, check and docs.
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <thread>
 
+#include "framework/capture/cryptomatte.h"
+#include "tests/capture/capture_files.h"
 #include "tests/cli/command.h"
 #include "tests/synthetic_capture.h"
 
@@ -100,7 +103,7 @@ TEST_F(Authoring, WatchMakesThePictureAnewAtEverySaveAndWaitsFaultsOut) {
     EXPECT_EQ(result.exit_code, 130);
     EXPECT_NE(result.err.find("drakness"), std::string::npos) << "the fault was told\n" << result.err;
     std::smatch taken;
-    ASSERT_TRUE(std::regex_search(result.err, taken, std::regex("made anew in ([0-9]+) ms"))) << result.err;
+    ASSERT_TRUE(std::regex_search(result.err, taken, std::regex("re-rendered in ([0-9]+) ms"))) << result.err;
     RecordProperty("milliseconds", taken[1].str());
 }
 
@@ -137,6 +140,40 @@ TEST_F(Authoring, WatchMakesThePictureAnewWhenAModuleChanges) {
     EXPECT_NE(read_text(folder_ / "out.png"), second);
     watch.send(SIGINT);
     EXPECT_EQ(watch.wait().exit_code, 130);
+}
+
+/// The first look names no object, so the frame's Cryptomatte is not read for it.
+TEST_F(Authoring, WatchTakesTheNamesOfObjectsFromEachLook) {
+    constexpr int kWidth = 24, kPixels = 24 * 12;
+    const auto plane = [&](float value) { return std::vector<float>(kPixels, value); };
+    std::vector<float> stripes = plane(0.1f);
+    for (int i = 0; i < kPixels; i += 3) stripes[std::size_t(i)] = 4;
+    write_channels(folder_ / "in_0001.exr", kWidth,
+                   {{"R", stripes},
+                    {"G", stripes},
+                    {"B", stripes},
+                    {"Z", plane(9)},
+                    {"CryptoObject00.R", plane(std::bit_cast<float>(cryptomatte_hash("Cube")))},
+                    {"CryptoObject00.G", plane(1)},
+                    {"CryptoObject00.B", plane(0)},
+                    {"CryptoObject00.A", plane(0)}},
+                   {{"cryptomatte/3ae39a5/name", std::string("CryptoObject")},
+                    {"cryptomatte/3ae39a5/manifest", std::string(R"({"Cube":"0"})")}});
+    write_text(folder_ / "look.json",
+               R"({"aftershade": 1, "steps": [{"effect": "dof_simple", "params": {"focus_distance": 2,
+                   "focal_length": 50, "sensor_width": 36, "f_number": 0.1}}]})");
+    Command watch({AFTERSHADE_EXECUTABLE, "run", "look.json", "in_0001.exr", "-o", "out.exr", "--backend",
+                   "osmesa", "--watch"},
+                  folder_.path());
+    ASSERT_TRUE(watch.wait_for_lines(1));
+    const std::string blurred = read_text(folder_ / "out.exr");
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    replace("look.json", "\"focus_distance\": 2", R"("focus_distance": {"from": "depth", "object": "Cube"})");
+    EXPECT_TRUE(watch.wait_for_lines(2)) << "a look of names after one without";
+    EXPECT_NE(read_text(folder_ / "out.exr"), blurred);
+    watch.send(SIGINT);
+    const CommandResult result = watch.wait();
+    EXPECT_EQ(result.exit_code, 130) << result.err;
 }
 
 TEST_F(Authoring, NewRefusesBadIdsAndReplacesNothing) {

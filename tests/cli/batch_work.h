@@ -12,11 +12,10 @@
 #include "framework/core/error.h"
 #include "framework/file/exr_file.h"
 #include "tests/cli/command.h"
+#include "tests/not_finite.h"
 #include "tests/synthetic_capture.h"
 
 namespace aftershade::test {
-
-inline constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 class BatchWork : public testing::Test {
 protected:

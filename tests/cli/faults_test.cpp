@@ -285,6 +285,8 @@ TEST_P(Interrupted, LeavesWholeFilesOnly) {
     const auto printed = lines_of_text(result.out);
     EXPECT_GE(printed.size(), 2u);
     EXPECT_LT(printed.size(), std::size_t(kFrames));
+    EXPECT_EQ(contents(work / ".aftershade").size(), 1u) << "the journal, and no lock";
+    fs::remove_all(work / ".aftershade");
     EXPECT_EQ(contents(work.path()).size(), before.size() + printed.size());
     const std::vector<std::string> color{"R", "G", "B", "A"};
     for (const std::string& path : printed)

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -214,6 +215,35 @@ TEST_F(Inspect, ShowsTheOtherRolesWhereOneCannotBeDecoded) {
     write_exr(folder_ / "a.exr", channels, options);
     inspect({"a.exr", "--contact-sheet", "a.png"});
     EXPECT_GT(read_png(folder_ / "a.png").width(), 448);
+}
+
+/// Stripes of two depths under a slant, as one sample in a pixel's middle or as the mean of a row of samples.
+TEST_F(Inspect, NotesADepthThatIsAveragedOverSamples) {
+    const auto write = [&](int samples) {
+        Image depth(96, 64, 1);
+        for (int y = 0; y < depth.height(); ++y)
+            for (int x = 0; x < depth.width(); ++x)
+                for (int i = 0; i < samples; ++i) {
+                    const double at = x + 0.3 * y + (i + 0.5) / samples;
+                    depth.at(x, y, 0) += float((std::fmod(at, 16) < 8 ? 4.0 : 7.0) / samples);
+                }
+        const Image color(96, 64, 1);
+        const std::vector<ExrOutputChannel> channels = {{"R", PixelType::half, &color, 0},
+                                                        {"G", PixelType::half, &color, 0},
+                                                        {"B", PixelType::half, &color, 0},
+                                                        {"Z", PixelType::float32, &depth, 0}};
+        ExrWriteOptions options;
+        options.data_window = options.display_window = {0, 0, 95, 63};
+        write_exr(folder_ / "a.exr", channels, options);
+    };
+    const std::string averaged = "the depth is averaged over samples: at ";
+    write(16);
+    EXPECT_NE(json({"a.exr"})["notes"].dump().find(averaged), std::string::npos);
+    write_text(folder_ / "capture.json", R"({"aftershade": 1, "frames": "a.exr",
+        "channels": {"depth": {"channels": ["Z"], "sampling": "mean"}}})");
+    EXPECT_EQ(json({"capture.json"})["notes"].dump().find(averaged), std::string::npos);
+    write(1);
+    EXPECT_EQ(json({"a.exr"})["notes"].dump().find(averaged), std::string::npos);
 }
 
 TEST_F(Inspect, ListsSubsampledChannelsWithTheReason) {

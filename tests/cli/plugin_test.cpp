@@ -93,6 +93,21 @@ TEST_F(Plugins, ThatCrashEndTheRunWithTheirNameAndLeaveEarlierFramesWhole) {
         EXPECT_EQ(entry.path().filename().string().find("tmp"), std::string::npos) << entry.path();
 }
 
+TEST_F(Plugins, ThatCrashOrHangCostWorkersOneFrame) {
+    write_effect("crashes_late");
+    const CommandResult crash = run({"--effect-path", "effects", "--plugin-path", kCases, "--jobs", "1"}, 1);
+    EXPECT_NE(crash.err.find("1 of 4 frames failed:\n  frame 3: plug-in " + kCases +
+                             "/crashes_late.so crashed (signal 11, SIGSEGV)"),
+              std::string::npos)
+        << crash.err;
+    EXPECT_FALSE(fs::exists(folder_ / "out_0003.exr"));
+    EXPECT_FLOAT_EQ(red("out_0004.exr").at(3, 3, 0), 0.5f);
+    write_effect("hangs");
+    const CommandResult hang = run(
+        {"--effect-path", "effects", "--plugin-path", kCases, "--frames", "1", "--frame-timeout", "3"}, 5);
+    EXPECT_NE(hang.err.find("did not finish within 3 s and was killed"), std::string::npos) << hang.err;
+}
+
 TEST_F(Plugins, ThatHangAreStopped) {
     write_effect("hangs");
     const CommandResult result =

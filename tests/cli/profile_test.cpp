@@ -126,7 +126,7 @@ TEST_F(Profiles, ThatAreNotThereOrWrongAreRefused) {
     EXPECT_NE(command({"describe", "wax.json"}, 2).err.find("no file 'wax.json'"), std::string::npos);
     write_text(folder_ / "wax.json", R"({"aftershade": 1, "summary": "Wax.", "type": "burley"})");
     EXPECT_NE(command({"describe", "wax.json"}, 2)
-                  .err.find("wax.json:1:1: error: the scattering profile has no 'mean_free"),
+                  .err.find("wax.json:1:1: error: the scattering profile has one of 'd_mm' and"),
               std::string::npos);
     command({"describe", "skin", "--plot", "nowhere/out.svg"}, 6);
     command({"describe", "skin", "--plot", "out.svg", "--json"}, 2);

@@ -129,8 +129,8 @@ TEST_F(RenderOptions, HistoryBeginsAnewAtACutAndAfterAMissingFrameAndSaysSo) {
     fs::remove(folder_ / "in_0005.exr");
     const CommandResult result =
         run({"trail.json", "capture.json", "--missing", "skip", "-o", "out_####.exr"});
-    EXPECT_NE(result.err.find("frame 3: history begins anew: a cut"), std::string::npos);
-    EXPECT_NE(result.err.find("frame 6: history begins anew: it follows frame 4, not 5"), std::string::npos);
+    EXPECT_NE(result.err.find("frame 3: history reset: a cut"), std::string::npos);
+    EXPECT_NE(result.err.find("frame 6: history reset: it follows frame 4, not 5"), std::string::npos);
     for (const char* frame : {"1", "3", "6"}) {
         // Half precision in the texture: the source is exact in it but for 0.1 and 0.2.
         const Image out = color("out_000" + std::string(frame) + ".exr"),

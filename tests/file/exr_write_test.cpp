@@ -201,10 +201,11 @@ TEST(ExrWrite, SaysWhyItCannotWriteAndLeavesNothingBehind) {
                   "' (create it first)");
     ExrWriteOptions wrong = options;
     wrong.compression = "zap";
-    EXPECT_EQ(message(folder / "a.exr", wrong),
-              (folder / "a.exr").string() +
-                  ": compression 'zap' does not exist; there are none, rle, zips, zip, "
-                  "piz, pxr24, b44, b44a, dwaa, dwab");
+    // A newer library than 3.1 has more.
+    EXPECT_TRUE(message(folder / "a.exr", wrong)
+                    .starts_with((folder / "a.exr").string() +
+                                 ": compression 'zap' does not exist; there are none, rle, zips, zip, "
+                                 "piz, pxr24, b44, b44a, dwaa, dwab"));
     wrong = options;
     wrong.display_window = {};
     EXPECT_NE(message(folder / "a.exr", wrong).find("a.exr: cannot be written: Invalid display window"),

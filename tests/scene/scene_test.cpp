@@ -81,7 +81,7 @@ const Fault kFaults[] = {
      R"("materials": { "a": { "scattering_profile": { "type": "burly", "d_mm": [1, 1, 1] } } })",
      "did you mean 'burley'?"},
     {"profile", R"("materials": { "a": { "scattering_profile": { "type": "burley", "d_mm": [1, 0, 1] } } })",
-     "d_mm: 0 is not within 1e-06 and 1e+06"},
+     "d_mm: 0 is below the minimum 1e-06"},
     {"mesh of nothing", R"("meshes": { "a": {} })", "either a 'file' or a 'height_field'"},
     {"mesh file", R"("meshes": { "a": { "file": "nowhere.glb" } })", "nowhere.glb"},
     {"light type", R"("lights": [ { "type": "spot" } ])",

@@ -1,0 +1,108 @@
+#include "cli/resume.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <list>
+
+#include "cli/command_line.h"
+#include "framework/core/text.h"
+#include "framework/pipeline/run_lock.h"
+
+namespace aftershade::cli {
+
+namespace {
+
+std::string frames_text(int count) {
+    return std::to_string(count) + (count == 1 ? " frame" : " frames");
+}
+
+std::string summary_of(const ResumableRun& run) {
+    const int writes = run.count(FrameAction::write), renders = run.count(FrameAction::render);
+    std::string text = fmt::format("{}: {} current, {} to render", frames_text(run.frame_count()),
+                                   run.frame_count() - writes, writes);
+    if (renders > 0)
+        text += fmt::format("; {} of the current ones rendered again, but not written, for {}", renders,
+                            "the frames after them");
+    return text;
+}
+
+void print_plan(const ResumableRun& run) {
+    for (const PlannedFrame& planned : run.plan())
+        if (planned.action == FrameAction::write) fmt::print("frame {}: {}\n", planned.frame, planned.reason);
+    fmt::print("{}\n", summary_of(run));
+    std::fflush(stdout);
+}
+
+ResumeOptions options_of(const ResumeArguments& arguments, const ResumeNeeds& needs, std::size_t frames) {
+    ResumeOptions options;
+    if (arguments.overwrite) options.overwrite = "--overwrite renders every frame";
+    else if (!needs.everything.empty()) options.overwrite = needs.everything + " needs every frame";
+    else if (!arguments.keeps_journal(frames))
+        options.overwrite = arguments.no_journal ? "--no-journal renders every frame"
+                                                 : "a run of one frame renders it, unless --resume is given";
+    options.checkpoint_frames = arguments.checkpoint_frames;
+    options.needs_last = needs.last_frame;
+    return options;
+}
+
+}  // namespace
+
+void add_resume_options(CLI::App& app, ResumeArguments& arguments) {
+    const std::string group =
+        "Runs of several frames leave out frames that are current, by the journal "
+        "in .aftershade beside the first output";
+    auto* const resume =
+        app.add_flag("--resume", arguments.resume, "Do so for a run of one frame, too")->group(group);
+    app.add_flag("--overwrite", arguments.overwrite, "Render every frame, whatever the journal says")
+        ->group(group);
+    app.add_flag("--dry-run", arguments.dry_run,
+                 "Say which frames would be rendered and why, and run nothing")
+        ->group(group);
+    app.add_flag("--no-journal", arguments.no_journal,
+                 "Render every frame, and keep no journal, lock or checkpoint")
+        ->excludes(resume)
+        ->group(group);
+    app.add_option("--checkpoint", arguments.checkpoint_frames,
+                   "Save the history of a look that has one after so many frames, for a run that goes on "
+                   "after a kill; 0: never")
+        ->check(CLI::Range(0, 1000000))
+        ->capture_default_str()
+        ->group(group);
+}
+
+ExitCode run_resumable(const ResumeArguments& arguments, const ResumeNeeds& needs,
+                       const FingerprintSource& source, const CaptureReader& reader,
+                       const std::function<ExitCode(const RunOptions&, const RunHooks&)>& render) {
+    const std::vector<int> frames(source.run.frames.begin() + source.run.warmup_frames,
+                                  source.run.frames.end());
+    std::list<RunLock> locks;
+    if (!arguments.dry_run)
+        for (const std::string& pattern : source.outputs.patterns) {
+            locks.emplace_back(pattern, frames, shell_line(own_arguments()));
+            if (!locks.back().is_held() && needs.says)
+                fmt::print(stderr,
+                           "{}: the file system has no locks: take care that no other run writes "
+                           "these frames\n",
+                           pattern);
+        }
+    ResumableRun run(source, reader, options_of(arguments, needs, frames.size()));
+    if (arguments.dry_run) {
+        print_plan(run);
+        return ExitCode::done;
+    }
+    if (needs.planned) needs.planned(run);
+    const int left = run.count(FrameAction::leave);
+    if (left + run.count(FrameAction::render) > 0 && needs.says) fmt::print(stderr, "{}\n", summary_of(run));
+    ExitCode code = ExitCode::done;
+    if (left < int(frames.size())) {
+        run.begin();
+        code = render(run.planned_run(), run.hooks());
+    }
+    if (code == ExitCode::done) run.finish();
+    // No frame of this run could be read, but those of earlier runs are there.
+    return code == ExitCode::capture && left > 0 ? ExitCode::partial : code;
+}
+
+}  // namespace aftershade::cli

@@ -1,0 +1,169 @@
+#include "cli/run_session.h"
+
+#include <chrono>
+#include <iostream>
+#include <string>
+#include <thread>
+
+#include "cli/batch_report.h"
+#include "cli/command_line.h"
+#include "cli/graph_file.h"
+#include "cli/run_continuation.h"
+#include "cli/telemetry_plot.h"
+#include "framework/core/atomic_file.h"
+#include "framework/core/data_path.h"
+#include "framework/core/trace.h"
+#include "framework/gpu/timer.h"
+
+namespace aftershade::cli {
+
+namespace {
+
+/// What is written once, after the frames.
+void write_extras(const RunArguments& arguments, const RunReport& report) {
+    if (!arguments.graph.empty()) write_graph(arguments.graph, report.graph_dot);
+    if (!arguments.telemetry_plot.empty())
+        write_text_file(
+            arguments.telemetry_plot,
+            telemetry_plot(report.telemetry, std::filesystem::path(arguments.look).filename().string()));
+}
+
+/// What --report has of a run in this process, also of one that an error ends.
+class ReportFile {
+public:
+    explicit ReportFile(const RunSession& session) : session_(session) {}
+    ~ReportFile() {
+        if (session_.arguments.jobs.report.empty()) return;
+        try {
+            const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start_;
+            write_text_file(session_.arguments.jobs.report,
+                            report_json({session_.arguments.look, session_.arguments.capture.capture,
+                                         frame_events(session_.run, outcomes_), taken.count(), code_}));
+        } catch (const Error& error) {
+            std::cerr << error.what() << "\n";
+        }
+    }
+    ReportFile(const ReportFile&) = delete;
+    ReportFile& operator=(const ReportFile&) = delete;
+
+    /// Also says to the process that started this one, if any, where it is.
+    RunObserver watched(RunObserver observer) {
+        observer.frame_started = [this, started = observer.frame_started](const Capture& capture) {
+            session_.status.write(WorkStatus{"", "", "", capture.header.frame});
+            if (started) started(capture);
+        };
+        observer.frame_finished = [this](const FrameOutcome& outcome) {
+            outcomes_.push_back(outcome);
+            session_.status.write(frame_event(outcome));
+        };
+        return observer;
+    }
+    void ended(ExitCode code) { code_ = code; }
+
+private:
+    const RunSession& session_;
+    std::vector<FrameOutcome> outcomes_;
+    ExitCode code_ = ExitCode::effect;  // of an error
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+ExitCode render(const RunSession& session, const RunOptions& run, const Pipeline& pipeline,
+                const std::atomic<bool>& stop, const RunHooks& hooks) {
+    Trace trace;
+    RunOptions settings = run;
+    if (!session.arguments.trace.empty()) settings.trace = &trace;
+    RunReporter reporter(session.progress, int(run.frames.size()) - run.warmup_frames);
+    ReportFile report_file(session);
+    const RunReport report = run_frames({session.context, pipeline, session.sequence, session.reader,
+                                         settings, session.outputs, data_path(), hooks},
+                                        report_file.watched(reporter.observer()), stop);
+    report_file.ended(report.exit_code());
+    const gpu::ContextInfo& gl = session.context.info();
+    if (session.progress == ProgressStyle::plain || session.progress == ProgressStyle::terminal)
+        std::cerr << gpu::backend_name(gl.backend) << ": " << gl.renderer << ", " << gl.version << "\n";
+    reporter.print_summary(report, gpu::Timer::clock_name(session.context));
+    if (report.interrupted && !session.arguments.watch)
+        std::cerr << continuation_text(own_arguments(), settings, report);
+    if (settings.trace) write_text_file(session.arguments.trace, trace.json());
+    write_extras(session.arguments, report);
+    return report.exit_code();
+}
+
+/// Which files there are to watch is known only after a look is bound, so it is bound twice. nullopt where
+/// that fails; `diagnostics` says why.
+std::optional<WatchedLook> bind_watched(const RunArguments& options, Diagnostics& diagnostics) {
+    auto bound = bind_look(options, diagnostics);
+    if (diagnostics.has_errors()) return std::nullopt;
+    for (;;) {
+        FileWatch files(paths_to_watch(*bound->look, bound->pipeline, data_path()));
+        Diagnostics again;
+        bound = bind_look(options, again);
+        if (again.has_errors()) {
+            diagnostics = std::move(again);
+            return std::nullopt;
+        }
+        if (files.paths() == paths_to_watch(*bound->look, bound->pipeline, data_path()))
+            return WatchedLook{std::move(bound), std::move(files)};
+    }
+}
+
+namespace {
+
+/// Says to the process that started this one which frames need no work.
+void announce_current(const ResumableRun& resumable, const RunSession& session) {
+    const auto& plan = resumable.plan();
+    for (std::size_t i = std::size_t(session.run.warmup_frames); i < plan.size(); ++i)
+        if (plan[i].action != FrameAction::write)
+            session.status.write(FrameEvent{plan[i].frame, "current", 0, ""});
+}
+
+}  // namespace
+
+ExitCode render_stale(const RunSession& session, const BoundLook& bound, const std::atomic<bool>& stop) {
+    const RunArguments& arguments = session.arguments;
+    const gpu::ContextInfo& gl = session.context.info();
+    const FingerprintSource source{*bound.look,          bound.pipeline,
+                                   session.sequence,     session.run,
+                                   session.outputs,      capture_document(arguments.capture.capture),
+                                   session.profiles,     gl.renderer + ", " + gl.version,
+                                   data_path() / "glsl", session.run.natives.registry};
+    ResumeNeeds needs;
+    if (arguments.audit) needs.everything = "--audit";
+    if (!arguments.telemetry_plot.empty()) needs.everything = "--telemetry-plot";
+    needs.last_frame = !arguments.graph.empty();
+    needs.says = session.progress != ProgressStyle::none;
+    needs.planned = [&](const ResumableRun& resumable) { announce_current(resumable, session); };
+    return run_resumable(arguments.resume, needs, source, session.reader,
+                         [&](const RunOptions& run, const RunHooks& hooks) {
+                             return render(session, run, bound.pipeline, stop, hooks);
+                         });
+}
+
+ExitCode watch(const RunSession& session, WatchedLook look, const std::atomic<bool>& stop) {
+    using namespace std::chrono_literals;
+    std::cerr << "watching; interrupt to end\n";
+    while (!stop) {
+        std::this_thread::sleep_for(20ms);
+        if (!look.files.changed()) continue;
+        const auto start = std::chrono::steady_clock::now();
+        try {
+            Diagnostics diagnostics;
+            auto now = bind_watched(session.arguments, diagnostics);
+            diagnostics.print(std::cerr);
+            if (!now) continue;
+            look = std::move(*now);
+            session.sequence.object_names = look.bound->pipeline.object_names();
+            render(session, session.run, look.bound->pipeline, stop);
+        } catch (const Error& error) {
+            std::cerr << error.what() << "\n";
+            continue;
+        }
+        const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - start;
+        std::cerr << "re-rendered in " << int(taken.count()) << " ms\n";
+    }
+    return ExitCode::interrupted;
+}
+
+}  // namespace aftershade::cli

@@ -1,0 +1,51 @@
+// A look over a capture in this process: once, over what is stale, or again whenever a file of the look
+// changes.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "cli/bound_look.h"
+#include "cli/run_options.h"
+#include "cli/run_report.h"
+#include "cli/watch.h"
+#include "framework/core/status.h"
+#include "framework/gpu/context.h"
+#include "framework/pipeline/run.h"
+
+namespace aftershade::cli {
+
+/// A look with the state of its files from before they were read, so that no later save is missed.
+struct WatchedLook {
+    std::unique_ptr<BoundLook> bound;
+    FileWatch files;
+};
+/// nullopt where binding fails; `diagnostics` says why.
+std::optional<WatchedLook> bind_watched(const RunArguments& options, Diagnostics& diagnostics);
+
+/// What stays as it is while a look is being worked on.
+struct RunSession {
+    const RunArguments& arguments;
+    StatusWriter& status;
+    Sequence& sequence;
+    const CaptureReader& reader;
+    gpu::Context& context;
+    RunOptions run;
+    OutputOptions outputs;
+    ProgressStyle progress;
+    std::vector<std::filesystem::path> profiles;  ///< documents of those that frames may be read by
+};
+
+/// Every frame of the session's run.
+ExitCode render(const RunSession& session, const RunOptions& run, const Pipeline& pipeline,
+                const std::atomic<bool>& stop, const RunHooks& hooks = {});
+/// Leaves out what is current.
+ExitCode render_stale(const RunSession& session, const BoundLook& bound, const std::atomic<bool>& stop);
+/// Renders again whenever a file of the look changes, until it is interrupted. Faults are printed, and waited
+/// out. The sequence takes the names of objects from each look.
+ExitCode watch(const RunSession& session, WatchedLook look, const std::atomic<bool>& stop);
+
+}  // namespace aftershade::cli

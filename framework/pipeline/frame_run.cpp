@@ -1,0 +1,98 @@
+#include "framework/pipeline/frame_run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "framework/capture/capture_window.h"
+#include "framework/core/error.h"
+#include "framework/image/window.h"
+
+namespace aftershade {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+template <typename Read>
+std::shared_ptr<const Capture> timed_read(RunReport& report, const Read& read) {
+    const auto start = Clock::now();
+    auto capture = read();
+    report.read_ms += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    return capture;
+}
+
+}  // namespace
+
+void note_non_finite(int frame, RunReport& report) {
+    if (report.frames_non_finite.empty() || report.frames_non_finite.back() != frame)
+        report.frames_non_finite.push_back(frame);
+}
+
+FrameRun::Rendered FrameRun::render(std::size_t index, const std::vector<std::string>& roles,
+                                    RunReport& report, const RunObserver& observer) {
+    FrameInputs inputs;
+    inputs.subframe_count = loader_.subframe_count();
+    inputs.scale = 1.0 / run_.scale_divisor;
+    inputs.fps = sequence_.fps;
+    inputs.begins_shot = loader_.begins_shot(index);
+    const auto previous = timed_read(report, [&] { return loader_.neighbour(index, -1); });
+    const auto next = timed_read(report, [&] { return loader_.neighbour(index, 1); });
+    inputs.previous = previous.get();
+    inputs.next = next.get();
+    std::shared_ptr<const Capture> current, centre;
+    FrameResult result;
+    std::vector<graph::PassTime> times;
+    std::string history_reset;
+    std::vector<std::string> messages;
+    for (int subframe = 0; subframe < inputs.subframe_count; ++subframe) {
+        current = timed_read(report, [&] { return loader_.take(index, subframe); });
+        if (subframe == inputs.subframe_count / 2) centre = current;
+        if (subframe == 0 && observer.frame_started) observer.frame_started(*current);
+        meet_non_finite(*current, report, observer);
+        inputs.capture = current.get();
+        inputs.centre = centre.get();
+        inputs.subframe = subframe;
+        result = renderer_.render(inputs, roles, true);
+        times.insert(times.end(), result.times.begin(), result.times.end());
+        if (subframe == 0) history_reset = result.history_reset;
+        messages.insert(messages.end(), result.messages.begin(), result.messages.end());
+    }
+    result.times = std::move(times);
+    result.messages = std::move(messages);
+    result.history_reset = std::move(history_reset);
+    return finished(std::move(centre), std::move(result));
+}
+/// Before the effects see it, and before any history does.
+void FrameRun::meet_non_finite(const Capture& capture, RunReport& report, const RunObserver& observer) const {
+    if (capture.non_finite.empty()) return;
+    note_non_finite(capture.header.frame, report);
+    const auto sentences = describe_non_finite(run_.on_nan, capture);
+    if (run_.on_nan == NanPolicy::fail) throw Error(ExitCode::capture, sentences.front());
+    if (observer.non_finite) std::ranges::for_each(sentences, observer.non_finite);
+}
+
+/// The frame without the margin of its region.
+FrameRun::Rendered FrameRun::finished(std::shared_ptr<const Capture> capture, FrameResult result) const {
+    if (run_.region) {
+        auto part = std::make_shared<Capture>(*capture);
+        const Window& display = capture->header.display_window;
+        const Window& r = *run_.region;
+        const Window full{display.min_x + r.min_x, display.min_y + r.min_y, display.min_x + r.max_x,
+                          display.min_y + r.max_y};
+        const Window region = scaled_window(full, display, run_.scale_divisor);
+        crop_capture(*part, region);
+        for (auto* images : {&result.images, &result.taps})
+            for (auto& [name, image] : *images)
+                if (image.width() == capture->header.data_window.width() &&
+                    image.height() == capture->header.data_window.height())
+                    image = place_in_window(std::move(image), capture->header.data_window,
+                                            part->header.data_window, 0);
+        result.region = region;
+        capture = std::move(part);
+    }
+    auto outputs = apply_nan_policy(run_.on_nan, result);
+    return {std::move(capture), std::make_shared<const FrameResult>(std::move(result)), std::move(outputs)};
+}
+
+}  // namespace aftershade

@@ -1,0 +1,198 @@
+#include "framework/pipeline/run_lock.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <utility>
+
+#include "framework/core/error.h"
+#include "framework/pipeline/run_state.h"
+
+namespace aftershade {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+/// A frame's lock is one byte far behind the text, of which no file has so many. Byte 0 guards the text.
+constexpr off_t kFirstFrame = off_t(1) << 40;
+
+/// Locks of the open file, not of the process (Linux 3.15): threads and libraries that open it too do not
+/// lose them.
+bool lock_bytes(int file, int command, short type, off_t first, off_t count) {
+    struct flock range {};
+    range.l_type = type;
+    range.l_whence = SEEK_SET;
+    range.l_start = first;
+    range.l_len = count;
+    int result = 0;
+    do result = fcntl(file, command, &range);
+    while (result != 0 && errno == EINTR);
+    return result == 0;
+}
+
+struct Range {
+    int first = 0;
+    int last = 0;
+};
+
+/// Frames that follow one another as one range each. Very many of them, which would be slow to lock, as one
+/// with what lies between.
+std::vector<Range> ranges_of(std::vector<int> frames) {
+    std::sort(frames.begin(), frames.end());
+    std::vector<Range> ranges;
+    for (const int frame : frames) {
+        if (!ranges.empty() && frame <= ranges.back().last + 1) ranges.back().last = frame;
+        else ranges.push_back({frame, frame});
+    }
+    constexpr std::size_t kMost = 4096;
+    if (ranges.size() > kMost) ranges = {{frames.front(), frames.back()}};
+    return ranges;
+}
+
+std::string text_of(const std::vector<Range>& ranges) {
+    std::string text;
+    for (const Range& range : ranges)
+        text += (text.empty() ? "" : ",") + std::to_string(range.first) +
+                (range.last > range.first ? "-" + std::to_string(range.last) : "");
+    return text;
+}
+
+std::string now_text() {
+    const std::time_t now = std::time(nullptr);
+    std::tm local{};
+    localtime_r(&now, &local);
+    std::array<char, 64> text{};
+    std::strftime(text.data(), text.size(), "%F %T %z", &local);
+    return text.data();
+}
+
+std::string host_name() {
+    std::array<char, 256> name{};
+    return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+std::string read_all(int file) {
+    std::string text;
+    std::array<char, 4096> buffer;
+    ssize_t count = 0;
+    while ((count = pread(file, buffer.data(), buffer.size(), off_t(text.size()))) > 0)
+        text.append(buffer.data(), std::size_t(count));
+    return text;
+}
+
+void replace_all(int file, const std::string& text) {
+    if (ftruncate(file, 0) == 0 && pwrite(file, text.data(), text.size(), 0) < 0) return;
+}
+
+bool overlaps(const json& holder, const std::vector<Range>& ranges) {
+    for (const json& theirs : holder.at("ranges"))
+        for (const Range& ours : ranges)
+            if (theirs.at(0).get<int>() <= ours.last && ours.first <= theirs.at(1).get<int>()) return true;
+    return false;
+}
+
+/// Lines of holders, without those of which `leaves_out` is true, and without damaged ones.
+template <typename Predicate>
+std::string kept_lines(const std::string& text, const Predicate& leaves_out) {
+    std::istringstream lines(text);
+    std::string kept;
+    for (std::string line; std::getline(lines, line);) try {
+            if (!leaves_out(line, json::parse(line))) kept += line + "\n";
+        } catch (const json::exception&) {
+        }
+    return kept;
+}
+
+}  // namespace
+
+bool lock_whole_file(int file) {
+    return lock_bytes(file, F_OFD_SETLKW, F_WRLCK, 0, 0);
+}
+
+RunLock::RunLock(const std::string& pattern, std::vector<int> frames, const std::string& command)
+    : pattern_(pattern) {
+    const RunState state = run_state(pattern);
+    path_ = state.lock();
+    // Without a number in its name, one file stands for every frame.
+    if (state.output.find('#') == std::string::npos) frames = {0};
+    make_state_folder(state);
+    open_file();
+    if (held_ && take(frames)) add_holder(frames, command);
+}
+
+/// The file that has the name, with byte 0 locked: the last holder may remove it between open and lock.
+void RunLock::open_file() {
+    for (;;) {
+        file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+        if (file_ < 0)
+            throw Error(ExitCode::output, path_.string() + ": cannot be opened: " + std::strerror(errno) +
+                                              " (--no-journal runs without locks)");
+        held_ = lock_bytes(file_, F_OFD_SETLKW, F_WRLCK, 0, 1);
+        struct stat ours {
+        }, named{};
+        fstat(file_, &ours);
+        if (!held_ || (stat(path_.c_str(), &named) == 0 && ours.st_ino == named.st_ino)) return;
+        close(file_);
+    }
+}
+
+bool RunLock::take(const std::vector<int>& frames) {
+    for (const Range& range : ranges_of(frames)) {
+        const off_t count = off_t(range.last) - range.first + 1;
+        if (lock_bytes(file_, F_OFD_SETLK, F_WRLCK, kFirstFrame + range.first, count)) continue;
+        held_ = errno == EAGAIN || errno == EACCES;
+        if (!held_) return false;  // no locks here
+        std::string who = "another run";
+        kept_lines(read_all(file_), [&](const std::string&, const json& holder) {
+            if (!overlaps(holder, {range})) return true;
+            who = "process " + std::to_string(holder.value("pid", 0)) + " on host " +
+                  holder.value("host", "") + " since " + holder.value("since", "") + ", frames " +
+                  holder.value("frames", "") + ": " + holder.value("command", "");
+            return false;
+        });
+        close(file_);
+        throw Error(ExitCode::output, pattern_ + ": another run is writing frames " + text_of({range}) +
+                                          " of this output (" + who +
+                                          "); wait for it or end it, or write to another output");
+    }
+    return true;
+}
+
+void RunLock::add_holder(const std::vector<int>& frames, const std::string& command) {
+    const std::vector<Range> ranges = ranges_of(frames);
+    json list = json::array();
+    for (const Range& range : ranges) list.push_back({range.first, range.last});
+    const json holder = {{"pid", getpid()},           {"host", host_name()}, {"since", now_text()},
+                         {"frames", text_of(ranges)}, {"ranges", list},      {"command", command}};
+    holder_ = holder.dump(-1, ' ', false, json::error_handler_t::replace);
+    // Lines of frames that are this run's now are of runs that were killed.
+    replace_all(file_,
+                kept_lines(read_all(file_),
+                           [&](const std::string&, const json& other) { return overlaps(other, ranges); }) +
+                    holder_ + "\n");
+    lock_bytes(file_, F_OFD_SETLK, F_UNLCK, 0, 1);
+}
+
+RunLock::~RunLock() {
+    if (held_ && lock_bytes(file_, F_OFD_SETLKW, F_WRLCK, 0, 1)) {
+        const std::string others = kept_lines(
+            read_all(file_), [&](const std::string& line, const json&) { return line == holder_; });
+        replace_all(file_, others);
+        if (others.empty()) unlink(path_.c_str());
+    }
+    close(file_);
+    std::error_code in_use;
+    fs::remove(path_.parent_path(), in_use);  // only where nothing else is in it
+}
+
+}  // namespace aftershade

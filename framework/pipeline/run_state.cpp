@@ -1,0 +1,28 @@
+#include "framework/pipeline/run_state.h"
+
+#include "framework/capture/frame_range.h"
+#include "framework/core/content_hash.h"
+#include "framework/core/error.h"
+
+namespace aftershade {
+
+namespace fs = std::filesystem;
+
+RunState run_state(const std::string& pattern) {
+    const fs::path path = FramePattern(pattern).with("#");
+    const std::string name = path.filename().string();
+    constexpr std::size_t kDigits = 16;  // one of 2^64: a folder's outputs do not meet
+    return {path.has_parent_path() ? path.parent_path() : fs::path("."), name,
+            content_hash(name).substr(0, kDigits)};
+}
+
+void make_state_folder(const RunState& state) {
+    std::error_code failure;
+    fs::create_directories(state.state_folder(), failure);
+    if (failure)
+        throw Error(ExitCode::output,
+                    state.state_folder().string() + ": cannot be made: " + failure.message() +
+                        " (runs of several frames keep their journal there; --no-journal does without)");
+}
+
+}  // namespace aftershade

@@ -1,0 +1,25 @@
+// Where a run keeps what it needs to go on later: the folder ".aftershade" beside its outputs.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace aftershade {
+
+struct RunState {
+    std::filesystem::path folder;  ///< of the outputs
+    std::string output;            ///< "shot_#.exr": the output's name, whatever the frame
+    std::string key;               ///< a hash of `output`, for names of files
+    std::filesystem::path state_folder() const { return folder / ".aftershade"; }
+    std::filesystem::path journal() const { return state_folder() / "journal.jsonl"; }
+    std::filesystem::path lock() const { return state_folder() / ("lock-" + key); }
+    std::filesystem::path checkpoints() const { return state_folder() / "history" / key; }
+};
+
+/// Of an output's pattern. Patterns that differ in the number's width alone are one.
+RunState run_state(const std::string& pattern);
+
+/// Makes the state folder. Throws Error(ExitCode::output) with the remedy.
+void make_state_folder(const RunState& state);
+
+}  // namespace aftershade
