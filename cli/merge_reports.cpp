@@ -83,7 +83,7 @@ std::string merged_report_json(const MergedReport& report) {
 std::string merge_summary(const MergedReport& report) {
     std::string text =
         fmt::format("{} of {} frames done", count_outcome(report, "done"), report.batch.frames.size());
-    for (const char* outcome : {"failed", "skipped", "not run"})
+    for (const char* outcome : {"current", "failed", "skipped", "not run"})
         if (const int count = count_outcome(report, outcome)) text += fmt::format(", {} {}", count, outcome);
     return text + fmt::format("; {} of {} tasks reported\n", report.tasks - int(report.missing.size()),
                               report.tasks);
