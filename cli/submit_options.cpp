@@ -62,8 +62,9 @@ void add_submit_options(CLI::App& app, SubmitArguments& options) {
     app.add_option("-o,--output", options.outputs, "Output pattern (.exr, .png); repeatable")
         ->required()
         ->allow_extra_args(false);
-    app.add_option("options", options.run_options,
-                   "Behind --: options of `aftershade run`, such as -- --frames 1-480 --set bokeh.taps=64");
+    app.add_option(
+        "options", options.run_options,
+        "Behind --: options of `aftershade run`, such as -- --frames 1-480 --set STEP.PARAM=VALUE");
     app.add_option("--folder", options.folder, "Folder for the job's files; must be new or empty")
         ->capture_default_str();
     app.add_option("--name", options.name, "The job's name (default: aftershade-, and the look's)");

@@ -1,7 +1,9 @@
 // What the writers of job files share.
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "framework/batch/farm_job.h"
 
