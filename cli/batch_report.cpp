@@ -27,10 +27,12 @@ FrameEvent frame_event(const FrameOutcome& outcome) {
     return {outcome.frame, name, outcome.seconds, outcome.message};
 }
 
-std::vector<FrameEvent> frame_events(const RunOptions& run, const std::vector<FrameOutcome>& outcomes) {
+std::vector<FrameEvent> frame_events(const RunOptions& run, const std::vector<FrameOutcome>& outcomes,
+                                     const std::vector<int>& current) {
     std::map<int, FrameEvent> by_frame;
     for (std::size_t i = std::size_t(run.warmup_frames); i < run.frames.size(); ++i)
         by_frame[run.frames[i]] = {run.frames[i], "not run", 0, ""};
+    for (const int frame : current) by_frame[frame] = {frame, "current", 0, ""};
     for (const FrameOutcome& outcome : outcomes) by_frame[outcome.frame] = frame_event(outcome);
     std::vector<FrameEvent> events;
     for (const auto& [frame, event] : by_frame) events.push_back(event);

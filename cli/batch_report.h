@@ -17,8 +17,9 @@ struct BatchSummary {
     ExitCode exit_code = ExitCode::done;
 };
 
-/// The outcomes of a run in this process; frames without one are "not run".
-std::vector<FrameEvent> frame_events(const RunOptions& run, const std::vector<FrameOutcome>& outcomes);
+/// The outcomes of a run in this process; frames without one are "not run" unless they are current.
+std::vector<FrameEvent> frame_events(const RunOptions& run, const std::vector<FrameOutcome>& outcomes,
+                                     const std::vector<int>& current);
 FrameEvent frame_event(const FrameOutcome& outcome);
 
 /// {"look": ..., "frames": [{"frame": 12, "outcome": "failed", "seconds": 0.4, "message": "..."}], ...}

@@ -206,6 +206,7 @@ void RunReporter::print_json_summary(const RunReport& report) const {
 void RunReporter::print_summary(const RunReport& report, const std::string& clock) {
     clear_line();
     if (style_ == ProgressStyle::none) return;
+    frame_count_ -= warmup_frames_ + report.frames_unwritten;  // what was to be written
     if (style_ == ProgressStyle::json) return print_json_summary(report);
     if (style_ == ProgressStyle::openjd)
         print_openjd_progress(std::size_t(frame_count_), std::size_t(frame_count_),

@@ -28,7 +28,9 @@ void print_openjd_progress(std::size_t done, std::size_t count, const std::strin
 
 class RunReporter {
 public:
-    RunReporter(ProgressStyle style, int frame_count) : style_(style), frame_count_(frame_count) {}
+    /// Of `frame_count` frames the first ones only warm history up.
+    RunReporter(ProgressStyle style, int frame_count, int warmup_frames = 0)
+        : style_(style), frame_count_(frame_count), warmup_frames_(warmup_frames) {}
 
     RunObserver observer();
     void print_summary(const RunReport& report, const std::string& clock);
@@ -47,6 +49,7 @@ private:
 
     ProgressStyle style_;
     int frame_count_ = 0;
+    int warmup_frames_ = 0;
     int started_ = 0;
     bool has_line_ = false;
     Clock::time_point begin_{};

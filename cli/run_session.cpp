@@ -31,14 +31,16 @@ void write_extras(const RunArguments& arguments, const RunReport& report) {
 /// What --report has of a run in this process, also of one that an error ends.
 class ReportFile {
 public:
-    explicit ReportFile(const RunSession& session) : session_(session) {}
+    ReportFile(const RunSession& session, const std::vector<int>& current)
+        : session_(session), current_(current) {}
     ~ReportFile() {
         if (session_.arguments.jobs.report.empty()) return;
         try {
             const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start_;
-            write_text_file(session_.arguments.jobs.report,
-                            report_json({session_.arguments.look, session_.arguments.capture.capture,
-                                         frame_events(session_.run, outcomes_), taken.count(), code_}));
+            write_text_file(
+                session_.arguments.jobs.report,
+                report_json({session_.arguments.look, session_.arguments.capture.capture,
+                             frame_events(session_.run, outcomes_, current_), taken.count(), code_}));
         } catch (const Error& error) {
             std::cerr << error.what() << "\n";
         }
@@ -62,6 +64,7 @@ public:
 
 private:
     const RunSession& session_;
+    const std::vector<int>& current_;
     std::vector<FrameOutcome> outcomes_;
     ExitCode code_ = ExitCode::effect;  // of an error
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
@@ -70,12 +73,12 @@ private:
 }  // namespace
 
 ExitCode render(const RunSession& session, const RunOptions& run, const Pipeline& pipeline,
-                const std::atomic<bool>& stop, const RunHooks& hooks) {
+                const std::atomic<bool>& stop, const RunHooks& hooks, const std::vector<int>& current) {
     Trace trace;
     RunOptions settings = run;
     if (!session.arguments.trace.empty()) settings.trace = &trace;
-    RunReporter reporter(session.progress, int(run.frames.size()) - run.warmup_frames);
-    ReportFile report_file(session);
+    RunReporter reporter(session.progress, int(run.frames.size()), run.warmup_frames);
+    ReportFile report_file(session, current);
     const RunReport report = run_frames({session.context, pipeline, session.sequence, session.reader,
                                          settings, session.outputs, data_path(), hooks},
                                         report_file.watched(reporter.observer()), stop);
@@ -111,12 +114,13 @@ std::optional<WatchedLook> bind_watched(const RunArguments& options, Diagnostics
 
 namespace {
 
-/// Says to the process that started this one which frames need no work.
-void announce_current(const ResumableRun& resumable, const RunSession& session) {
+/// Frames that need no work, or are rendered only for those behind them.
+std::vector<int> current_frames(const ResumableRun& resumable, const RunSession& session) {
     const auto& plan = resumable.plan();
+    std::vector<int> frames;
     for (std::size_t i = std::size_t(session.run.warmup_frames); i < plan.size(); ++i)
-        if (plan[i].action != FrameAction::write)
-            session.status.write(FrameEvent{plan[i].frame, "current", 0, ""});
+        if (plan[i].action != FrameAction::write) frames.push_back(plan[i].frame);
+    return frames;
 }
 
 }  // namespace
@@ -134,11 +138,19 @@ ExitCode render_stale(const RunSession& session, const BoundLook& bound, const s
     if (!arguments.telemetry_plot.empty()) needs.everything = "--telemetry-plot";
     needs.last_frame = !arguments.graph.empty();
     needs.says = session.progress != ProgressStyle::none;
-    needs.planned = [&](const ResumableRun& resumable) { announce_current(resumable, session); };
-    return run_resumable(arguments.resume, needs, source, session.reader,
-                         [&](const RunOptions& run, const RunHooks& hooks) {
-                             return render(session, run, bound.pipeline, stop, hooks);
-                         });
+    std::vector<int> current;
+    needs.planned = [&](const ResumableRun& resumable) {
+        current = current_frames(resumable, session);
+        for (const int frame : current) session.status.write(FrameEvent{frame, "current", 0, ""});
+    };
+    bool is_rendered = arguments.resume.dry_run;
+    const ExitCode code = run_resumable(arguments.resume, needs, source, session.reader,
+                                        [&](const RunOptions& run, const RunHooks& hooks) {
+                                            is_rendered = true;
+                                            return render(session, run, bound.pipeline, stop, hooks, current);
+                                        });
+    if (!is_rendered) ReportFile(session, current).ended(code);
+    return code;
 }
 
 ExitCode watch(const RunSession& session, WatchedLook look, const std::atomic<bool>& stop) {

@@ -39,9 +39,10 @@ struct RunSession {
     std::vector<std::filesystem::path> profiles;  ///< documents of those that frames may be read by
 };
 
-/// Every frame of the session's run.
+/// Every frame of `run`, which is the session's or what is left of it; `current` are those that need no work.
 ExitCode render(const RunSession& session, const RunOptions& run, const Pipeline& pipeline,
-                const std::atomic<bool>& stop, const RunHooks& hooks = {});
+                const std::atomic<bool>& stop, const RunHooks& hooks = {},
+                const std::vector<int>& current = {});
 /// Leaves out what is current.
 ExitCode render_stale(const RunSession& session, const BoundLook& bound, const std::atomic<bool>& stop);
 /// Renders again whenever a file of the look changes, until it is interrupted. Faults are printed, and waited

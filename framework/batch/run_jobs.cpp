@@ -44,8 +44,9 @@ public:
     }
     void ended(ExitCode code) {
         const std::lock_guard lock(mutex_);
-        if (code == ExitCode::output || code == ExitCode::usage) stop_ = true;
+        if (code == ExitCode::done || ends_the_run(worst_)) return;
         worst_ = code;
+        if (ends_the_run(code)) stop_ = true;
     }
     /// Set by an error that ends the whole run.
     const std::atomic<bool>& stop() const { return stop_; }
@@ -60,7 +61,7 @@ public:
             skipped += event.outcome == "skipped";
         }
         if (interrupted) report.exit_code = ExitCode::interrupted;
-        else if (worst_ == ExitCode::output || worst_ == ExitCode::usage) report.exit_code = worst_;
+        else if (ends_the_run(worst_)) report.exit_code = worst_;
         else if (done + skipped < frames_.size())
             report.exit_code = done > 0                                                  ? ExitCode::partial
                                : worst_ == ExitCode::done || worst_ == ExitCode::partial ? ExitCode::capture
@@ -69,6 +70,8 @@ public:
     }
 
 private:
+    static bool ends_the_run(ExitCode code) { return code == ExitCode::output || code == ExitCode::usage; }
+
     const JobOptions& options_;
     const JobListener& listener_;
     std::mutex mutex_;

@@ -70,7 +70,21 @@ TEST_F(Jobs, ARunInOneProcessWritesTheSameReport) {
     EXPECT_EQ(report()["frames"][3]["outcome"], "failed");
 }
 
+TEST_F(Jobs, AReportCountsFramesOfEarlierRunsAsCurrent) {
+    const std::vector<std::string> words{"spread.json",     "in_####.exr", "-o",
+                                         "many/f_####.exr", "--report",    "report.json"};
+    run(words, 0);
+    run(words, 0);
+    EXPECT_EQ(report()["current"], 8);
+    fs::remove(folder_ / "many/f_0005.exr");
+    run(words, 0);
+    EXPECT_EQ(report()["current"], 7);
+    EXPECT_EQ(report()["done"], 1);
+    EXPECT_EQ(report()["not_run"], 0);
+}
+
 TEST_F(Jobs, StopAtTheFirstErrorWhereAsked) {
+    write_frames(1, 40, 480, 270);
     truncate(2);
     run({"spread.json", "in_####.exr", "-o", "many/f_####.exr", "--jobs", "1", "--stop-on-error", "--report",
          "report.json"},
