@@ -47,8 +47,15 @@ pid_t maker_of_temporary(std::string_view name, std::string_view host) {
     return count.ec == std::errc{} && count.ptr == end && process > 0 ? process : 0;
 }
 
+/// One that has ended but that nobody has waited for yet is not: proc(5), the state behind the name in
+/// brackets.
 bool is_running(pid_t process) {
-    return kill(process, 0) == 0 || errno != ESRCH;
+    if (kill(process, 0) != 0 && errno == ESRCH) return false;
+    std::ifstream file("/proc/" + std::to_string(process) + "/stat");
+    std::string line;
+    if (!std::getline(file, line)) return true;
+    const std::size_t name_end = line.rfind(") ");
+    return name_end == std::string::npos || (line[name_end + 2] != 'Z' && line[name_end + 2] != 'X');
 }
 
 /// A process of another PID namespace looks dead from here, but its lock holds.

@@ -173,7 +173,7 @@ TEST_F(Jobs, AnOutputThatCannotBeWrittenEndsTheRun) {
 }
 
 TEST_F(Jobs, AnInterruptPrintsTheCommandThatGoesOn) {
-    write_frames(1, 200, 320, 180);
+    write_frames(1, 80, 320, 180);
     Command command({AFTERSHADE_EXECUTABLE, "run", "spread.json", "in_####.exr", "-o", "many/f_####.exr",
                      "--effect-path", "effects", "--backend", "osmesa", "--jobs", "2"},
                     folder_.path());

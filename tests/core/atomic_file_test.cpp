@@ -115,6 +115,17 @@ TEST(StaleTemporaries, GoWhenTheirProcessIsGone) {
     EXPECT_EQ(read_text(folder / "out.exr"), "whole");
 }
 
+TEST(StaleTemporaries, GoThoughNobodyHasWaitedForTheirProcess) {
+    const TemporaryFolder folder;
+    const pid_t child = fork();
+    if (child == 0) _exit(0);
+    siginfo_t info{};
+    ASSERT_EQ(waitid(P_PID, id_t(child), &info, WEXITED | WNOWAIT), 0);
+    write_text(temporary_of(folder / "out.exr", child), "half");
+    EXPECT_EQ(remove_stale_temporaries(folder.path()).size(), 1u);
+    waitpid(child, nullptr, 0);
+}
+
 TEST(StaleTemporaries, StayWhileTheirProcessRunsOrTheirLockIsHeld) {
     const TemporaryFolder folder;
     const AtomicFile own(folder / "own.exr");
