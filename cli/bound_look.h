@@ -21,7 +21,7 @@ struct BoundLook {
     Pipeline pipeline;
 };
 
-/// Reads the documents anew. After a fault the look or the pipeline is empty.
+/// Reads the documents as they are now. After a fault the look or the pipeline is empty.
 std::unique_ptr<BoundLook> bind_look(const RunArguments& options, Diagnostics& diagnostics);
 
 }  // namespace aftershade::cli

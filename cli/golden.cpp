@@ -106,7 +106,7 @@ void print_approval(const GoldenApproval& approval) {
     for (const fs::path& path : approval.outdated)
         std::cerr << fmt::format(
             "{}: warning: approved too, by another renderer for another look or other effects; "
-            "approve it anew there, or remove it\n",
+            "approve it again there, or remove it\n",
             path.string());
     std::cerr << fmt::format("{} images written, {} sidecars renewed, {} unchanged\n",
                              approval.written.size(), approval.renewed.size(), approval.unchanged);
@@ -194,7 +194,7 @@ Verb add_golden(CLI::App& app) {
         "--renew-sidecars", options->renew_sidecars,
         "Where the bits are equal: write what gives them now (renderer, hash of look and effects)");
     auto* report_verb = app.add_subcommand(
-        "report", "Make the page anew out of a folder that run --report wrote; prints its path");
+        "report", "Make the page again from a folder that run --report wrote; prints its path");
     report_verb->add_option("report", options->report, "Folder with report.json and images/")->required();
     report_verb->add_option("-o,--output", options->page, "The page (index.html in that folder)");
     add_page_limit(*report_verb, *options);

@@ -28,7 +28,7 @@ std::string continuation_text(const std::vector<std::string>& command, const Run
     }
     options.front().value = format_frame_range(frames);
     return "interrupted after " + std::to_string(report.frames_done) + " of " +
-           std::to_string(run.frames.size()) + " frames; to go on" + why + ":\n  " +
+           std::to_string(run.frames.size()) + " frames; to resume" + why + ":\n  " +
            shell_line(with_options(command, options)) + "\n";
 }
 
@@ -44,7 +44,7 @@ std::string lost_history_text(const Pipeline& pipeline, const Sequence& sequence
         if (step.manifest->has_history()) steps.push_back(step.name);
     const std::string number = std::to_string(first);
     return "frame " + number + ": the history of " + list_of_names(steps, "and") +
-           " begins anew here, although frame " + std::to_string(first - 1) +
+           " restarts here, although frame " + std::to_string(first - 1) +
            " is there; this frame and those after it differ from those of an uncut run (run the frames up "
            "to " +
            std::to_string(first - 1) + " with --history-out FILE, and these with --history-in FILE)";

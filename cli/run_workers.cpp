@@ -125,7 +125,7 @@ std::vector<std::string> words_for(const JobPiece& piece, int threads) {
 std::string continuation(const JobsReport& report) {
     const std::vector<int> left = frames_of(report.frames, "not run");
     if (left.empty()) return "";
-    return "interrupted; to go on:\n  " +
+    return "interrupted; to resume:\n  " +
            shell_line(with_options(own_arguments(), {{"--frames", format_frame_range(left)}})) + "\n";
 }
 

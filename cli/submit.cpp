@@ -176,7 +176,7 @@ ExitCode submit(const SubmitArguments& options) {
     stop_at_errors(diagnostics);
     if (frames->has_history && options.history == "none")
         diagnostics.warning({"--history none"},
-                            "the look has history, which every task begins anew: pictures change at the "
+                            "the look has history, which every task restarts: pictures change at the "
                             "borders of tasks");
     diagnostics.print(std::cerr);
 

@@ -237,9 +237,9 @@ SavedHistory read_history(const fs::path& path) {
         apply(document, history);
         const std::uint64_t sum = fnv1a(head);
         if (!read_resources(in, file_bytes, document, sum, history))
-            throw refuse("this history is damaged; make it anew with --history-out");
+            throw refuse("this history is damaged; write it again with --history-out");
     } catch (const json::exception&) {
-        throw refuse("this history is damaged; make it anew with --history-out");
+        throw refuse("this history is damaged; write it again with --history-out");
     }
     return history;
 }

@@ -61,7 +61,7 @@ TEST_F(Batch, AStrayNumberIsNoMillionOfMissingFrames) {
 TEST_F(Batch, HistoryBegunInTheMiddleOfAShotIsToldWithItsRemedy) {
     write_frames(1, 4);
     const std::string warning =
-        "aftershade: warning: frame 3: the history of 'trail' begins anew here, although frame 2 is there; "
+        "aftershade: warning: frame 3: the history of 'trail' restarts here, although frame 2 is there; "
         ".* "
         "\\(run the frames up to 2 with --history-out FILE, and these with --history-in FILE\\)";
     const auto chunk = [&](std::vector<std::string> more) {

@@ -49,7 +49,7 @@ protected:
                 EXPECT_EQ(lines[i + 1].find("  "), 0u) << "a line of its own";
                 return Command({"/bin/sh", "-c", lines[i + 1]}, folder_.path()).wait();
             }
-        ADD_FAILURE() << "no command to go on\n" << result.err;
+        ADD_FAILURE() << "no command to resume\n" << result.err;
         return {};
     }
 };

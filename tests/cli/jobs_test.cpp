@@ -182,7 +182,7 @@ TEST_F(Jobs, AnInterruptPrintsTheCommandThatGoesOn) {
     command.send(SIGINT);
     const CommandResult result = command.wait();
     EXPECT_EQ(result.exit_code, 130) << result.err;
-    EXPECT_NE(result.err.find("interrupted; to go on:\n  "), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("interrupted; to resume:\n  "), std::string::npos) << result.err;
     EXPECT_NE(result.err.find("--frames"), std::string::npos) << result.err;
     EXPECT_EQ(temporaries(), std::vector<std::string>{});
 }
