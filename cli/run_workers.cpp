@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -14,6 +15,7 @@
 #include "framework/core/atomic_file.h"
 #include "framework/core/cores.h"
 #include "framework/core/text.h"
+#include "framework/pipeline/run_lock.h"
 
 namespace aftershade::cli {
 
@@ -122,6 +124,21 @@ std::vector<std::string> words_for(const JobPiece& piece, int threads) {
             "--worker-threads", std::to_string(threads)};
 }
 
+/// Killed workers leave temporary files, and their lines in the locks of the outputs. A lock of the same
+/// frames takes these away. Where another run holds one, that run will.
+void clear_after_workers(const RunArguments& arguments, const std::vector<int>& frames) {
+    std::set<std::filesystem::path> folders;
+    for (const std::string& pattern : arguments.outputs) {
+        for (const int frame : frames)
+            folders.insert(std::filesystem::path(FramePattern(pattern).path(frame)).parent_path());
+        if (arguments.resume.keeps_journal(frames.size())) try {
+                RunLock(pattern, frames, shell_line(own_arguments()));
+            } catch (const Error&) {
+            }
+    }
+    for (const std::filesystem::path& folder : folders) remove_stale_temporaries(folder);
+}
+
 std::string continuation(const JobsReport& report) {
     const std::vector<int> left = frames_of(report.frames, "not run");
     if (left.empty()) return "";
@@ -166,6 +183,7 @@ ExitCode run_by_workers(const RunArguments& arguments, const JobFrames& frames, 
     options.stop_on_error = arguments.jobs.stop_on_error;
     WorkersReporter reporter(progress, frames.count());
     const JobsReport report = run_jobs(options, reporter.listener(), stop);
+    clear_after_workers(arguments, {frames.frames.begin() + frames.lead_frames, frames.frames.end()});
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     reporter.finish(report, options.pieces.size(), seconds);
     if (report.interrupted) fmt::print(stderr, "{}", continuation(report));
