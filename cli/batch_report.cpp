@@ -11,14 +11,10 @@
 
 namespace aftershade::cli {
 
-namespace {
-
-int count_of(const std::vector<FrameEvent>& frames, const std::string& outcome) {
+int count_outcome(const std::vector<FrameEvent>& frames, const std::string& outcome) {
     return int(std::count_if(frames.begin(), frames.end(),
                              [&](const FrameEvent& event) { return event.outcome == outcome; }));
 }
-
-}  // namespace
 
 FrameEvent frame_event(const FrameOutcome& outcome) {
     const char* name = outcome.kind == FrameOutcome::Kind::done     ? "done"
@@ -52,17 +48,17 @@ std::string report_json(const BatchSummary& summary) {
                                            {"capture", summary.capture},
                                            {"exit_code", int(summary.exit_code)},
                                            {"seconds", summary.seconds},
-                                           {"done", count_of(summary.frames, "done")},
-                                           {"current", count_of(summary.frames, "current")},
-                                           {"failed", count_of(summary.frames, "failed")},
-                                           {"skipped", count_of(summary.frames, "skipped")},
-                                           {"not_run", count_of(summary.frames, "not run")},
+                                           {"done", count_outcome(summary.frames, "done")},
+                                           {"current", count_outcome(summary.frames, "current")},
+                                           {"failed", count_outcome(summary.frames, "failed")},
+                                           {"skipped", count_outcome(summary.frames, "skipped")},
+                                           {"not_run", count_outcome(summary.frames, "not run")},
                                            {"frames", std::move(frames)}};
     return report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 std::string failures_text(const std::vector<FrameEvent>& frames) {
-    const int failed = count_of(frames, "failed");
+    const int failed = count_outcome(frames, "failed");
     if (failed == 0) return "";
     std::string text =
         fmt::format("{} of {} {} failed:\n", failed, frames.size(), frames.size() == 1 ? "frame" : "frames");

@@ -22,6 +22,8 @@ std::vector<FrameEvent> frame_events(const RunOptions& run, const std::vector<Fr
                                      const std::vector<int>& current);
 FrameEvent frame_event(const FrameOutcome& outcome);
 
+int count_outcome(const std::vector<FrameEvent>& frames, const std::string& outcome);
+
 /// {"look": ..., "frames": [{"frame": 12, "outcome": "failed", "seconds": 0.4, "message": "..."}], ...}
 std::string report_json(const BatchSummary& summary);
 

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <iostream>
 
 #include "cli/capture_options.h"
 #include "cli/effect_options.h"
 #include "framework/core/data_path.h"
+#include "framework/core/scratch_folder.h"
 #include "framework/effect/native/native_library.h"
 #include "framework/pipeline/look.h"
 #include "framework/pipeline/warmup.h"
@@ -15,28 +15,6 @@
 namespace aftershade::cli {
 
 namespace {
-
-namespace fs = std::filesystem;
-
-/// A folder that goes away with its files.
-class ScratchFolder {
-public:
-    ScratchFolder() {
-        std::string path = (fs::temp_directory_path() / "aftershade-XXXXXX").string();
-        if (!mkdtemp(path.data())) throw Error(ExitCode::output, path + ": cannot be made");
-        path_ = path;
-    }
-    ~ScratchFolder() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    ScratchFolder(const ScratchFolder&) = delete;
-    ScratchFolder& operator=(const ScratchFolder&) = delete;
-    const fs::path& path() const { return path_; }
-
-private:
-    fs::path path_;
-};
 
 /// The least warm-up measured that leaves no more than the error; -1 where none does.
 int warmup_for(const std::vector<WarmupError>& measured, double error) {

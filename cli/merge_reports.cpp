@@ -50,11 +50,6 @@ std::string add_report(const std::filesystem::path& file, BatchSummary& batch,
     return "";
 }
 
-int count_outcome(const MergedReport& report, const std::string& outcome) {
-    return int(std::count_if(report.batch.frames.begin(), report.batch.frames.end(),
-                             [&](const FrameEvent& event) { return event.outcome == outcome; }));
-}
-
 }  // namespace
 
 MergedReport merge_reports(const std::vector<std::filesystem::path>& files) {
@@ -65,8 +60,8 @@ MergedReport merge_reports(const std::vector<std::filesystem::path>& files) {
         if (const std::string why = add_report(file, merged.batch, frames); !why.empty())
             merged.missing.push_back({file.string(), why});
     for (auto& [frame, event] : frames) merged.batch.frames.push_back(std::move(event));
-    const bool whole = merged.missing.empty() && count_outcome(merged, "failed") == 0 &&
-                       count_outcome(merged, "not run") == 0;
+    const bool whole = merged.missing.empty() && count_outcome(merged.batch.frames, "failed") == 0 &&
+                       count_outcome(merged.batch.frames, "not run") == 0;
     merged.batch.exit_code = whole ? ExitCode::done : ExitCode::partial;
     return merged;
 }
@@ -81,10 +76,11 @@ std::string merged_report_json(const MergedReport& report) {
 }
 
 std::string merge_summary(const MergedReport& report) {
-    std::string text =
-        fmt::format("{} of {} frames done", count_outcome(report, "done"), report.batch.frames.size());
+    std::string text = fmt::format("{} of {} frames done", count_outcome(report.batch.frames, "done"),
+                                   report.batch.frames.size());
     for (const char* outcome : {"current", "failed", "skipped", "not run"})
-        if (const int count = count_outcome(report, outcome)) text += fmt::format(", {} {}", count, outcome);
+        if (const int count = count_outcome(report.batch.frames, outcome))
+            text += fmt::format(", {} {}", count, outcome);
     return text + fmt::format("; {} of {} tasks reported\n", report.tasks - int(report.missing.size()),
                               report.tasks);
 }

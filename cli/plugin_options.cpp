@@ -5,11 +5,10 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <mutex>
 #include <string_view>
-#include <thread>
 
 #include "cli/command_line.h"
+#include "framework/batch/watchdog.h"
 #include "framework/batch/worker.h"
 #include "framework/core/status.h"
 #include "framework/effect/native/native_library.h"
@@ -18,43 +17,6 @@ namespace aftershade::cli {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-/// Raises a flag when nothing was heard for a while, or when the user asked to stop.
-class Watchdog {
-public:
-    Watchdog(std::chrono::duration<double> patience, const std::atomic<bool>& stop)
-        : patience_(patience), stop_(stop), heard_(Clock::now()), thread_([this] { watch(); }) {}
-    ~Watchdog() {
-        done_ = true;
-        thread_.join();
-    }
-    Watchdog(const Watchdog&) = delete;
-    Watchdog& operator=(const Watchdog&) = delete;
-
-    void heard() { heard_ = Clock::now(); }
-    bool barked() const { return barked_; }
-    const std::atomic<bool>& flag() const { return flag_; }
-
-private:
-    void watch() {
-        while (!done_) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(20));
-            if (stop_) flag_ = true;
-            if (!flag_ && Clock::now() - heard_.load() > patience_) {
-                barked_ = true;
-                flag_ = true;
-            }
-        }
-    }
-
-    const std::chrono::duration<double> patience_;
-    const std::atomic<bool>& stop_;
-    std::atomic<Clock::time_point> heard_;
-    std::atomic<bool> done_ = false, barked_ = false, flag_ = false;
-    std::thread thread_;  // last: it uses the others
-};
-
 void pass_on(std::FILE* stream, std::string_view line) {
     std::fprintf(stream, "%.*s\n", int(line.size()), line.data());
     std::fflush(stream);
@@ -62,11 +24,8 @@ void pass_on(std::FILE* stream, std::string_view line) {
 
 ExitCode told(const WorkerResult& result, const Watchdog& watchdog, double timeout_s) {
     if (watchdog.barked()) {
-        WorkerResult hung = result;
-        hung.end = WorkerEnd::timed_out;
-        hung.limits.wall_time = std::chrono::milliseconds(std::int64_t(timeout_s * 1000));
         std::fprintf(stderr, "aftershade: error: %s; give it longer with --plugin-timeout\n",
-                     describe(hung).c_str());
+                     describe_timeout(result, std::chrono::duration<double>(timeout_s)).c_str());
         return ExitCode::effect;
     }
     switch (result.end) {

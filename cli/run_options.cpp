@@ -201,6 +201,7 @@ RunOptions run_options(const RunArguments& options, Diagnostics& diagnostics) {
     run.missing = missing_frame(options.missing);
     run.on_nan = nan_policy(options.on_nan);
     run.audit = options.audit;
+    run.stop_on_error = options.jobs.stop_on_error;
     run.telemetry = !options.telemetry.empty() || !options.telemetry_plot.empty();
     return run;
 }

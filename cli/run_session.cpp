@@ -61,6 +61,16 @@ public:
         return observer;
     }
     void ended(ExitCode code) { code_ = code; }
+    RunReport run(const RunSetup& setup, const RunObserver& observer, const std::atomic<bool>& stop) {
+        try {
+            RunReport report = run_frames(setup, watched(observer), stop);
+            ended(report.exit_code());
+            return report;
+        } catch (const Error& error) {
+            ended(error.exit_code());
+            throw;
+        }
+    }
 
 private:
     const RunSession& session_;
@@ -79,10 +89,9 @@ ExitCode render(const RunSession& session, const RunOptions& run, const Pipeline
     if (!session.arguments.trace.empty()) settings.trace = &trace;
     RunReporter reporter(session.progress, int(run.frames.size()), run.warmup_frames);
     ReportFile report_file(session, current);
-    const RunReport report = run_frames({session.context, pipeline, session.sequence, session.reader,
-                                         settings, session.outputs, data_path(), hooks},
-                                        report_file.watched(reporter.observer()), stop);
-    report_file.ended(report.exit_code());
+    const RunReport report = report_file.run({session.context, pipeline, session.sequence, session.reader,
+                                              settings, session.outputs, data_path(), hooks},
+                                             reporter.observer(), stop);
     const gpu::ContextInfo& gl = session.context.info();
     if (session.progress == ProgressStyle::plain || session.progress == ProgressStyle::terminal)
         std::cerr << gpu::backend_name(gl.backend) << ": " << gl.renderer << ", " << gl.version << "\n";

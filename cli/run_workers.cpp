@@ -59,7 +59,8 @@ public:
         if (style_ == ProgressStyle::none || style_ == ProgressStyle::json) return;
         const std::size_t done = frames_of(report.frames, "done").size();
         const std::size_t current = frames_of(report.frames, "current").size();
-        if (current > 0) fmt::print(stderr, "{} frames were current\n", current);
+        if (current > 0)
+            fmt::print(stderr, "{} {} current\n", current, current == 1 ? "frame was" : "frames were");
         fmt::print(stderr, "{} of {} frames in {:.2f} s by {} {}; {:.2f} frames/s\n", done, frame_count_,
                    seconds, workers, workers == 1 ? "worker" : "workers",
                    seconds > 0 ? double(done) / seconds : 0.0);
@@ -116,8 +117,7 @@ std::vector<std::string> worker_command(const RunArguments& arguments, std::size
     return command;
 }
 
-/// Paths of workers' temporary files, logs and --worker-frames have no limit but the system's for one word,
-/// 128 KiB.
+/// Frames as ranges: a word of a command line has at most 128 KiB (execve(2), MAX_ARG_STRLEN).
 std::vector<std::string> words_for(const JobPiece& piece, int threads) {
     return {"--worker-frames",  format_frame_range(piece.frames),
             "--worker-warmup",  std::to_string(piece.warmup_frames),

@@ -108,7 +108,7 @@ std::vector<std::vector<int>> farm_rows(const JobFrames& run, int tasks, FarmHis
     int last_frame = 0;
     for (int task = 1; task <= tasks; ++task) {
         const std::vector<int> frames = chunk_of(parts, task - 1, tasks).frames;
-        // History begins anew at a cut and after a gap in the frame numbers.
+        // History restarts at a cut and after a gap in the frame numbers.
         const bool goes_on = history == FarmHistory::exact && task > 1 && frames.front() == last_frame + 1 &&
                              std::find(run.cuts.begin(), run.cuts.end(), frames.front()) == run.cuts.end();
         if (!goes_on) rows.emplace_back();

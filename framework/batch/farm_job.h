@@ -15,7 +15,7 @@ namespace aftershade {
 
 /// What a task that begins within a shot knows of the frames before it.
 enum class FarmHistory {
-    none,    ///< nothing: the look has no history, or begins it anew
+    none,    ///< nothing: the look has no history, or restarts it
     warmup,  ///< what a few frames rendered before the part leave
     exact    ///< all of it, from the task before, which must have ended
 };

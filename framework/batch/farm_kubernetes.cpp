@@ -53,8 +53,8 @@ std::string kubernetes_command(const FarmJob& job) {
 }
 
 Json kubernetes_tasks(const FarmJob& job) {
-    // A pod that Kubernetes itself took away counts as no failure; frames that cannot be read and wrong words
-    // (docs/exit-codes.md) would fail again.
+    // A pod that Kubernetes itself took away does not count as a failure; frames that cannot be read and
+    // wrong usage (docs/exit-codes.md) would fail again.
     const Json policy = Json::array(
         {{{"action", "Ignore"},
           {"onPodConditions", Json::array({{{"type", "DisruptionTarget"}, {"status", "True"}}})}},

@@ -30,7 +30,7 @@ std::string slurm_task_script(const FarmJob& job) {
                "again.\n"
                "code=0\n"
                "{} \"$SLURM_ARRAY_TASK_ID\" || code=$?\n"
-               "# 1 (some frames), 2 (wrong words or documents) and 130 (interrupted) would end the same "
+               "# 1 (some frames), 2 (wrong usage or documents) and 130 (interrupted) would end the same "
                "again.\n"
                "case $code in 0 | 1 | 2 | 130) exit $code ;; esac\n"
                "[ \"${{SLURM_RESTART_COUNT:-0}}\" -ge {} ] || scontrol requeue \"$SLURM_JOB_ID\"\n"

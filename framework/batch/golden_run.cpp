@@ -13,6 +13,7 @@
 #include "framework/batch/look_hash.h"
 #include "framework/core/data_path.h"
 #include "framework/core/error.h"
+#include "framework/core/scratch_folder.h"
 
 namespace aftershade {
 
@@ -23,26 +24,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr const char* kInterrupted = "interrupted";
-
-/// A folder that goes away with everything in it.
-class WorkFolder {
-public:
-    WorkFolder() {
-        std::string pattern = (fs::temp_directory_path() / "aftershade-golden-XXXXXX").string();
-        if (!mkdtemp(pattern.data())) throw Error(ExitCode::output, "cannot make a work folder " + pattern);
-        path_ = pattern;
-    }
-    ~WorkFolder() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    WorkFolder(const WorkFolder&) = delete;
-    WorkFolder& operator=(const WorkFolder&) = delete;
-    const fs::path& path() const { return path_; }
-
-private:
-    fs::path path_;
-};
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -80,7 +61,7 @@ bool GoldenSuiteResult::all_skipped() const {
 
 void for_each_in_folders(std::size_t count, int jobs,
                          const std::function<void(std::size_t, const fs::path&)>& work) {
-    const WorkFolder folder;
+    const ScratchFolder folder;
     std::atomic<std::size_t> next = 0;
     std::atomic<bool> failed = false;
     std::exception_ptr failure;

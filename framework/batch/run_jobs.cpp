@@ -16,6 +16,11 @@ namespace {
 constexpr int kMostIdleWorkers = 3;
 constexpr const char* kErrorPrefix = "aftershade: error: ";
 
+/// An error that every other frame would meet, too.
+bool ends_the_run(ExitCode code) {
+    return code == ExitCode::usage || code == ExitCode::gl || code == ExitCode::output;
+}
+
 /// What all workers share; calls of the listener follow one another.
 class JobBoard {
 public:
@@ -70,8 +75,6 @@ public:
     }
 
 private:
-    static bool ends_the_run(ExitCode code) { return code == ExitCode::output || code == ExitCode::usage; }
-
     const JobOptions& options_;
     const JobListener& listener_;
     std::mutex mutex_;
@@ -110,20 +113,14 @@ private:
         const WorkerResult result = run_worker(command, listener(watchdog), &watchdog.flag());
         if (watchdog.barked()) {
             board_.ended(ExitCode::effect);
-            return cost_a_frame(result.status, timed_out(result));
+            return cost_a_frame(result.status, describe_timeout(result, options_.frame_timeout));
         }
         if (result.end == WorkerEnd::interrupted) return false;
         board_.ended(result.end == WorkerEnd::exited ? ExitCode(result.exit_code) : ExitCode::effect);
         const bool has_seen_all = first_unfinished() == piece_.frames.size();
-        if (result.end == WorkerEnd::exited && (has_seen_all || spares_no_frame(result.exit_code)))
+        if (result.end == WorkerEnd::exited && (has_seen_all || ends_the_run(ExitCode(result.exit_code))))
             return false;
         return cost_a_frame(result.status, last_error_.empty() ? describe(result) : last_error_);
-    }
-
-    /// An error that every other frame would meet, too.
-    static bool spares_no_frame(int exit_code) {
-        const auto code = ExitCode(exit_code);
-        return code == ExitCode::usage || code == ExitCode::gl || code == ExitCode::output;
     }
 
     WorkerListener listener(Watchdog& watchdog) {
@@ -151,13 +148,6 @@ private:
         const auto found = std::find(piece_.frames.begin(), piece_.frames.end(), frame);
         if (found == piece_.frames.end()) return std::nullopt;
         return std::size_t(found - piece_.frames.begin());
-    }
-
-    std::string timed_out(const WorkerResult& result) const {
-        WorkerResult hung = result;
-        hung.end = WorkerEnd::timed_out;
-        hung.limits.wall_time = std::chrono::duration_cast<std::chrono::milliseconds>(options_.frame_timeout);
-        return describe(hung);
     }
 
     std::size_t first_unfinished() const {

@@ -67,6 +67,8 @@ WorkerResult run_worker(const WorkerCommand& command, const WorkerListener& list
 
 /// "plug-in /x/libfoo.so crashed (signal 11, SIGSEGV) in prepare of step 'grade', frame 12".
 std::string describe(const WorkerResult& result);
+/// The same of one that was ended because it was silent for so long.
+std::string describe_timeout(WorkerResult result, std::chrono::duration<double> timeout);
 
 /// A line of the status pipe; nullopt for anything that StatusWriter does not write.
 std::optional<WorkStatus> parse_status(std::string_view line);

@@ -53,6 +53,12 @@ std::string describe(const WorkerResult& result) {
     return who;
 }
 
+std::string describe_timeout(WorkerResult result, std::chrono::duration<double> timeout) {
+    result.end = WorkerEnd::timed_out;
+    result.limits.wall_time = std::chrono::duration_cast<std::chrono::milliseconds>(timeout);
+    return describe(result);
+}
+
 std::optional<FrameEvent> parse_event(std::string_view line) {
     const auto json = nlohmann::json::parse(line, nullptr, false);
     if (!json.is_object() || json.value("event", nlohmann::json()) != "frame") return std::nullopt;

@@ -67,7 +67,7 @@ public:
 
     /// Of the index-th frame of the run. Throws Error(ExitCode::usage) for a damaged history.
     FrameFingerprint of(std::size_t index);
-    /// The frame has no pixels, so history begins anew behind it.
+    /// The frame has no pixels, so history restarts behind it.
     void mark_failed(std::size_t index);
     /// Whether the frame's history does not come from the frame before it in the run.
     bool begins_history(std::size_t index) const;

@@ -164,7 +164,7 @@ public:
         const RunOptions& run = setup_.options;
         for (std::size_t i = 0; i < run.frames.size(); ++i) {
             report_.interrupted = stop;
-            if (report_.interrupted) {
+            if (report_.interrupted || (run.stop_on_error && !report_.failures.empty())) {
                 report_.frames_left.assign(run.frames.begin() + std::ptrdiff_t(i), run.frames.end());
                 break;
             }

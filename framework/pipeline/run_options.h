@@ -31,6 +31,7 @@ struct RunOptions {
     int warmup_frames = 0;  ///< of these, the first ones are rendered for their history and not written
     MissingFrame missing = MissingFrame::error;
     NanPolicy on_nan = NanPolicy::warn;
+    bool stop_on_error = false;  ///< the first frame that fails ends the run
     bool audit = false;
     bool telemetry = false;
     int scale_divisor = 1;              ///< frames are rendered at 1/this of their size

@@ -44,7 +44,7 @@ struct RunReport {
     int frames_done = 0;
     std::vector<FrameFailure> failures;
     std::vector<int> frames_non_finite;  ///< frames with NaN or infinite pixels, mended ones too
-    std::vector<int> frames_left;        ///< not begun, where the run was interrupted
+    std::vector<int> frames_left;        ///< not begun, after an interrupt or RunOptions::stop_on_error
     std::optional<int> history_begin;    ///< the last frame that began history anew, where a step has any
     bool history_saved = false;          ///< RunOptions::history_out was written
     int frames_skipped = 0;              ///< missing, and MissingFrame::skip

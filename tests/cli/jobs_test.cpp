@@ -91,6 +91,16 @@ TEST_F(Jobs, StopAtTheFirstErrorWhereAsked) {
         1);
     EXPECT_GT(report()["not_run"].get<int>(), 0);
     EXPECT_EQ(report()["frames"][1]["outcome"], "failed");
+    run({"spread.json", "in_####.exr", "-o", "one/f_####.exr", "--stop-on-error", "--report", "report.json"},
+        1);
+    EXPECT_EQ(report()["not_run"], 38) << "in one process no frame behind the second is begun";
+}
+
+TEST_F(Jobs, AReportOfAnErrorHasItsExitCode) {
+    fs::create_directories(folder_ / "taken/f_0003.exr");
+    run({"spread.json", "in_####.exr", "-o", "taken/f_####.exr", "--report", "report.json"}, 6);
+    EXPECT_EQ(report()["exit_code"], 6);
+    EXPECT_GT(report()["not_run"].get<int>(), 0);
 }
 
 TEST_F(Jobs, WithHistoryNeedADeclaredOrAGivenWarmup) {
