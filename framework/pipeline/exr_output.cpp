@@ -102,7 +102,7 @@ ExrWriteOptions exr_write_options(const OutputOptions& options, const CaptureHea
     write.carry_over = header.metadata;
     write.attributes["aftershade/look"] = options.look;
     write.attributes["aftershade/renderer"] = options.renderer;
-    if (!options.fingerprint.empty()) write.attributes["aftershade/fingerprint"] = options.fingerprint;
+    if (!options.fingerprint.empty()) write.attributes[kFingerprintName] = options.fingerprint;
     write.attributes["aftershade/profile"] = header.profile;
     write.attributes["aftershade/channels"] = std::string(options.keep_channels ? "kept" : "native");
     write.attributes["aftershade/frame"] = header.frame;
