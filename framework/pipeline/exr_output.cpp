@@ -23,7 +23,8 @@ struct ExrContent {
 void add_role(ExrContent& content, const ChannelRole& role, const Image& image, PixelType color_type) {
     content.outside[&image] = role.outside;
     const PixelType type = role.pixel_type == PixelType::half ? color_type : role.pixel_type;
-    for (int c = 0; c < role.channels; ++c)
+    // An AOV may have fewer channels than its role.
+    for (int c = 0; c < std::min(role.channels, image.channels()); ++c)
         content.channels.push_back({role.native_channels[std::size_t(c)], type, &image, c});
 }
 
