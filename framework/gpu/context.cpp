@@ -235,7 +235,7 @@ bool Context::Impl::try_make_current() noexcept {
 
 ForeignContextGuard::ForeignContextGuard() : found_(current_egl_context()) {
     if (current && current->platform->is_current()) {
-        found_ = {};
+        found_ = {nullptr, nullptr, nullptr, nullptr, found_.api};
         return;
     }
     current = nullptr;
@@ -244,8 +244,7 @@ ForeignContextGuard::ForeignContextGuard() : found_(current_egl_context()) {
 }
 
 ForeignContextGuard::~ForeignContextGuard() {
-    if (!found_.context) return;
-    if (current) current->release();
+    if (found_.context && current) current->release();
     restore_egl_context(found_);
 }
 

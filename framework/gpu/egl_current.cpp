@@ -25,8 +25,10 @@ EglCurrent current_egl_context() noexcept {
     const auto context = egl_function<PFNEGLGETCURRENTCONTEXTPROC>("eglGetCurrentContext");
     const auto display = egl_function<PFNEGLGETCURRENTDISPLAYPROC>("eglGetCurrentDisplay");
     const auto surface = egl_function<PFNEGLGETCURRENTSURFACEPROC>("eglGetCurrentSurface");
-    if (!context || !display || !surface || context() == EGL_NO_CONTEXT) return {};
-    return {display(), surface(EGL_DRAW), surface(EGL_READ), context()};
+    const auto api = egl_function<PFNEGLQUERYAPIPROC>("eglQueryAPI");
+    if (!context || !display || !surface || !api) return {};
+    if (context() == EGL_NO_CONTEXT) return {nullptr, nullptr, nullptr, nullptr, api()};
+    return {display(), surface(EGL_DRAW), surface(EGL_READ), context(), api()};
 }
 
 void release_egl_context(const EglCurrent& current) noexcept {
@@ -34,7 +36,9 @@ void release_egl_context(const EglCurrent& current) noexcept {
 }
 
 void restore_egl_context(const EglCurrent& found) noexcept {
-    make_egl_current(found.display, found.draw, found.read, found.context);
+    if (found.context) make_egl_current(found.display, found.draw, found.read, found.context);
+    const auto bind_api = egl_function<PFNEGLBINDAPIPROC>("eglBindAPI");
+    if (bind_api && found.api != 0) bind_api(found.api);
 }
 
 }  // namespace aftershade::gpu

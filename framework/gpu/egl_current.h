@@ -3,17 +3,19 @@
 
 namespace aftershade::gpu {
 
-/// Null throughout where nothing is current.
+/// Pointers are null where nothing is current.
 struct EglCurrent {
     void* display = nullptr;
     void* draw = nullptr;
     void* read = nullptr;
     void* context = nullptr;
+    unsigned int api = 0;  ///< that the thread's calls of EGL mean: eglBindAPI; 0 without EGL
 };
 
 /// Does not load EGL where the process has not.
 EglCurrent current_egl_context() noexcept;
 void release_egl_context(const EglCurrent& current) noexcept;
+/// The context, where there was one, and the API.
 void restore_egl_context(const EglCurrent& found) noexcept;
 
 }  // namespace aftershade::gpu

@@ -67,7 +67,8 @@ void check_external_texture(Context& context, const ExternalTexture& texture, in
     if (is_uint != is_integer || level(GL_TEXTURE_RED_TYPE) == GL_INT)
         fail(is_integer ? "does not hold unsigned integers" : "holds integers; the role has floats");
     int held = 0;
-    for (const GLenum size : {GL_TEXTURE_RED_SIZE, GL_TEXTURE_GREEN_SIZE, GL_TEXTURE_BLUE_SIZE, GL_TEXTURE_ALPHA_SIZE})
+    for (const GLenum size :
+         {GL_TEXTURE_RED_SIZE, GL_TEXTURE_GREEN_SIZE, GL_TEXTURE_BLUE_SIZE, GL_TEXTURE_ALPHA_SIZE})
         if (level(size) > 0) ++held;
     const int needed = channels == 3 ? 4 : channels;
     if (held < needed) fail(fmt::format("has {} channels; the role needs {}", held, needed));
@@ -90,7 +91,8 @@ void wait_for_fence(Context& context, void* fence) {
     context.make_current();
     const GladGLContext& gl = context.gl();
     const auto sync = static_cast<GLsync>(fence);
-    if (!gl.IsSync(sync)) throw Error(ExitCode::usage, "wait: this is no fence (GLsync) of the shared context");
+    if (!gl.IsSync(sync))
+        throw Error(ExitCode::usage, "wait: this is no fence (GLsync) of the shared context");
     gl.WaitSync(sync, 0, GL_TIMEOUT_IGNORED);
     context.check("waiting for a fence");
 }

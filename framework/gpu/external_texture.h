@@ -17,9 +17,9 @@ struct ExternalTexture {
     bool bottom_up = false;  ///< texel row 0 is the image's bottom row
 };
 
-/// Throws Error(ExitCode::usage), beginning with `label`, where there is no such texture of this size, or where
-/// its format cannot hold `channels` floats (or unsigned integers), of which three need four.
-/// [the context's thread, as all below]
+/// Throws Error(ExitCode::usage), beginning with `label`, where there is no such texture of this size, or
+/// where its format cannot hold `channels` floats (or unsigned integers), of which three need four. [the
+/// context's thread, as all below]
 void check_external_texture(Context& context, const ExternalTexture& texture, int channels, bool is_integer,
                             const std::string& label);
 

@@ -6,8 +6,8 @@
 namespace aftershade::gpu {
 
 /// Stands around calls of a library that makes contexts current. What EGL had current in this thread, beside
-/// our own contexts, is current again when this goes; where nothing was, our context stays. Also notices where
-/// the program has put another context in the place of ours. [one thread; nests]
+/// our own contexts, is current again when this goes; where nothing was, our context stays. Also notices
+/// where the program has put another context in the place of ours. [one thread; nests]
 class ForeignContextGuard {
 public:
     ForeignContextGuard();

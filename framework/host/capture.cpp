@@ -76,8 +76,8 @@ ChannelRole known_role(const std::string& name) {
     const auto role = is_coverage_role(name) ? std::nullopt : find_role(name);
     if (!role)
         fail_at(ErrorKind::usage, name,
-                "not a role" + did_you_mean(name, role_names()) + " (roles: " +
-                    list_of_names(role_names(), "and") + ", and aov:<name>)");
+                "not a role" + did_you_mean(name, role_names()) +
+                    " (roles: " + list_of_names(role_names(), "and") + ", and aov:<name>)");
     if (role->kind == RoleKind::display)
         fail_at(ErrorKind::usage, name, "only effects make this role; no capture has it");
     return *role;
@@ -142,9 +142,9 @@ void Capture::set_image(const std::string& role, const ArrayView& pixels) {
                                                         : "the role holds float32; the array has uint32");
         if (known.kind == RoleKind::other ? image.channels() > known.channels
                                           : image.channels() != known.channels)
-            fail_at(ErrorKind::usage, role,
-                    fmt::format("the array has {} channels; the role has {}", image.channels(),
-                                known.channels));
+            fail_at(
+                ErrorKind::usage, role,
+                fmt::format("the array has {} channels; the role has {}", image.channels(), known.channels));
         Data& data = own();
         data.textures.erase(role);
         data.capture.images[role] = std::move(image);
@@ -230,7 +230,8 @@ double Capture::scale() const noexcept {
 
 void Capture::set_scale(double scale) {
     if (!(scale > 0 && scale <= kMaxScale))
-        fail_at(ErrorKind::usage, "scale", fmt::format("{:g} is not above 0 and at most {:g}", scale, kMaxScale));
+        fail_at(ErrorKind::usage, "scale",
+                fmt::format("{:g} is not above 0 and at most {:g}", scale, kMaxScale));
     own().scale = scale;
 }
 
@@ -241,7 +242,8 @@ std::string Capture::color_space() const {
 void Capture::set_color_space(const std::string& name) {
     const auto primaries = color_space_primaries(name);
     if (!primaries)
-        fail_at(ErrorKind::usage, "color space", "'" + name + "' is not " + list_of_names(color_space_names()));
+        fail_at(ErrorKind::usage, "color space",
+                "'" + name + "' is not " + list_of_names(color_space_names()));
     own().capture.header.primaries = *primaries;
 }
 

@@ -30,8 +30,8 @@ class OptionCheck {
 public:
     void number(const std::string& option, const std::optional<double>& value, double min, double max) {
         if (!value || (*value >= min && *value <= max)) return;
-        const std::string range = std::isinf(max) ? fmt::format("at least {:g}", min)
-                                                  : fmt::format("from {:g} to {:g}", min, max);
+        const std::string range =
+            std::isinf(max) ? fmt::format("at least {:g}", min) : fmt::format("from {:g} to {:g}", min, max);
         fault(option, fmt::format("{:g} is not {}", *value, range));
     }
     void tolerance(const std::string& option, const Tolerance& value) {

@@ -28,7 +28,8 @@ EffectInfo info_of(const EffectManifest& manifest) {
     info.summary = manifest.summary;
     info.folder = manifest.folder.string();
     for (const InputSpec& input : manifest.inputs)
-        info.inputs.push_back({input.name, input.role, input.doc, input.optional, input.history, input.frame});
+        info.inputs.push_back(
+            {input.name, input.role, input.doc, input.optional, input.history, input.frame});
     for (const OutputSpec& output : manifest.outputs)
         info.outputs.push_back({output.name, output.role, output.doc});
     for (const ParamSpec& spec : manifest.params) info.params.push_back(host::info_of(spec));

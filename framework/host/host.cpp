@@ -18,7 +18,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-
 void check_folder(const fs::path& folder, const char* option, Diagnostics& faults) {
     std::error_code failure;
     if (!fs::is_directory(folder, failure)) faults.error({option}, "no folder '" + folder.string() + "'");
@@ -27,7 +26,8 @@ void check_folder(const fs::path& folder, const char* option, Diagnostics& fault
 void check_host_options(const HostOptions& options) {
     Diagnostics faults;
     if (options.data.empty())
-        faults.error({"HostOptions::data"}, "is empty; give the folder that holds effects, glsl and profiles");
+        faults.error({"HostOptions::data"},
+                     "is empty; give the folder that holds effects, glsl and profiles");
     else
         for (const char* part : {"effects", "glsl", "profiles"})
             check_folder(options.data / part, "HostOptions::data", faults);
@@ -74,8 +74,7 @@ Host::Data::Data(HostOptions given) : options(std::move(given)), owner(std::this
 const std::vector<Profile>& Host::Data::profiles() {
     if (!profiles_) {
         Diagnostics faults;
-        auto profiles =
-            read_profiles(with_shipped(options.profile_paths, options.data / "profiles"), faults);
+        auto profiles = read_profiles(with_shipped(options.profile_paths, options.data / "profiles"), faults);
         stop_at_errors(ErrorKind::document, faults);
         profiles_ = std::move(profiles);
     }

@@ -47,9 +47,9 @@ struct Host::Data {
     std::unique_ptr<NativeRegistry> natives;
     std::atomic<bool> is_closed = false;
 
-    mutable std::mutex mutex;             // of what follows
-    mutable std::thread::id owner;        // none: whoever calls next
-    std::set<Rendering*> renderings;      // with something on the GPU
+    mutable std::mutex mutex;                 // of what follows
+    mutable std::thread::id owner;            // none: whoever calls next
+    std::set<Rendering*> renderings;          // with something on the GPU
     std::vector<std::shared_ptr<void>> left;  // by looks and sessions that died on another thread
 
 private:

@@ -13,7 +13,6 @@ namespace aftershade::host {
 
 namespace {
 
-
 template <typename Element>
 void copy_rows(const ArrayView& view, std::ptrdiff_t stride, std::span<Element> to) {
     const auto* from = static_cast<const std::byte*>(view.data);
@@ -78,7 +77,8 @@ aftershade::Image copy_of(const ArrayView& view, const std::string& what) {
     if (view.type != ElementType::float32 && view.type != ElementType::uint32)
         refuse("the element type is neither float32 nor uint32");
     if (view.width < 1 || view.height < 1 || view.width > kMaxSide_px || view.height > kMaxSide_px)
-        refuse(fmt::format("{} x {} px; each side must be from 1 to {}", view.width, view.height, kMaxSide_px));
+        refuse(
+            fmt::format("{} x {} px; each side must be from 1 to {}", view.width, view.height, kMaxSide_px));
     if (view.channels < 1 || view.channels > 4)
         refuse(fmt::format("{} channels; there must be from 1 to 4", view.channels));
     const std::ptrdiff_t row = std::ptrdiff_t(view.width) * view.channels * 4;
@@ -86,8 +86,7 @@ aftershade::Image copy_of(const ArrayView& view, const std::string& what) {
     if (stride % 4 != 0) refuse(fmt::format("a row stride of {} bytes is not a multiple of 4", stride));
     if (std::abs(stride) < row)
         refuse(fmt::format("a row stride of {} bytes is below the {} bytes that a row takes", stride, row));
-    if (view.size_bytes != 0 && stride < 0)
-        refuse("size_bytes must be 0 where the row stride is negative");
+    if (view.size_bytes != 0 && stride < 0) refuse("size_bytes must be 0 where the row stride is negative");
     const std::uint64_t needed =
         std::uint64_t(std::abs(stride)) * std::uint64_t(view.height - 1) + std::uint64_t(row);
     if (view.size_bytes != 0 && view.size_bytes < needed)

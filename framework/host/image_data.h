@@ -1,9 +1,11 @@
 // What the API's images and captures hold.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "aftershade/capture.h"
@@ -26,7 +28,7 @@ struct Image::Data {
 };
 
 struct Capture::Data {
-    aftershade::Capture capture;               // of a texture's role the image is empty
+    aftershade::Capture capture;                // of a texture's role the image is empty
     std::map<std::string, GlTexture> textures;  // by role
     double scale = 1;
 
@@ -66,8 +68,8 @@ public:
     }
 };
 
-/// The pixels of an array in the library's layout. Throws Error(usage), naming `what`, where the view makes no
-/// sense.
+/// The pixels of an array in the library's layout. Throws Error(usage), naming `what`, where the view makes
+/// no sense.
 aftershade::Image copy_of(const ArrayView& view, const std::string& what);
 
 /// A sequence as `aftershade run` finds it. `roles` that it reads by name of objects: see

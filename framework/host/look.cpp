@@ -105,7 +105,8 @@ Look Host::load_look(const fs::path& path, const LookOptions& options) {
     auto host = Access::share(*this);
     return called(*host, [&] {
         if (!options.folder.empty())
-            fail_at(ErrorKind::usage, "LookOptions::folder", "a look that is a file names files from its own");
+            fail_at(ErrorKind::usage, "LookOptions::folder",
+                    "a look that is a file names files from its own");
         Diagnostics faults;
         const auto document = read_document(path, faults);
         auto data = std::make_shared<Look::Data>();

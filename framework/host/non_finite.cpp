@@ -25,10 +25,11 @@ NonFiniteInfo info_of_pixels(const std::string& image, bool of_capture, const No
 }  // namespace
 
 void refuse_non_finite(const NonFiniteInfo& found) {
-    fail_at(ErrorKind::capture, found.image,
-            fmt::format("the {} has {} NaN and {} infinite pixels, the first at ({}, {}) (NonFinite::mend "
-                        "replaces such pixels)",
-                        found.of_capture ? "capture" : "result", found.nan, found.infinite, found.x, found.y));
+    fail_at(
+        ErrorKind::capture, found.image,
+        fmt::format("the {} has {} NaN and {} infinite pixels, the first at ({}, {}) (NonFinite::mend "
+                    "replaces such pixels)",
+                    found.of_capture ? "capture" : "result", found.nan, found.infinite, found.x, found.y));
 }
 
 std::shared_ptr<const Capture::Data> meet_non_finite(std::shared_ptr<const Capture::Data> capture,

@@ -108,7 +108,8 @@ PipelineRenderer& Rendering::renderer() {
 
 void Rendering::prepare(const RenderOptions& options) {
     if (!(options.fps > 0 && std::isfinite(options.fps)))
-        fail_at(ErrorKind::usage, "RenderOptions::fps", fmt::format("{:g} is not above 0 and finite", options.fps));
+        fail_at(ErrorKind::usage, "RenderOptions::fps",
+                fmt::format("{:g} is not above 0 and finite", options.fps));
     if (int(options.non_finite) < int(NonFinite::ignore) || int(options.non_finite) > int(NonFinite::mend))
         fail_at(ErrorKind::usage, "RenderOptions::non_finite",
                 fmt::format("{} is none of its values", int(options.non_finite)));
@@ -167,9 +168,10 @@ aftershade::Image read_texture(gpu::Context& context, const GlTexture& texture, 
     check_external(context, texture, role);
     const ChannelRole known = *find_role(role);
     const bool is_uint = known.type == ComponentType::uint32;
-    gpu::Texture copy(context, {texture.width, texture.height,
-                                is_uint ? gpu::TextureFormat::r32ui : gpu::TextureFormat::rgba32f},
-                      role);
+    gpu::Texture copy(
+        context,
+        {texture.width, texture.height, is_uint ? gpu::TextureFormat::r32ui : gpu::TextureFormat::rgba32f},
+        role);
     gpu::copy_texture(context, external(texture), copy);
     aftershade::Image image(texture.width, texture.height, known.channels, known.type);
     if (is_uint) {

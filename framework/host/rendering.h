@@ -17,7 +17,7 @@ namespace aftershade::host {
 struct Result::Data {
     std::shared_ptr<const FrameResult> frame;
     std::shared_ptr<const aftershade::Capture> capture;  // of a texture's role the image is empty
-    std::vector<std::string> roles;  // of `frame`, or of the capture
+    std::vector<std::string> roles;                      // of `frame`, or of the capture
     std::vector<NonFiniteInfo> non_finite;
     std::string renderer;  // GL's
     std::uint64_t gpu_bytes = 0;

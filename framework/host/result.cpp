@@ -52,14 +52,16 @@ std::vector<std::string> Result::taps() const {
 Image Result::tap(const std::string& name) const {
     const auto found = data_->frame->taps.find(name);
     if (found == data_->frame->taps.end())
-        fail_at(ErrorKind::usage, name, "no such tap" + did_you_mean(name, taps()) + " (see LookOptions::taps)");
+        fail_at(ErrorKind::usage, name,
+                "no such tap" + did_you_mean(name, taps()) + " (see LookOptions::taps)");
     return Access::image(std::shared_ptr<const aftershade::Image>(data_->frame, &found->second));
 }
 
 std::vector<PassTime> Result::times() const {
     std::vector<PassTime> times;
     if (data_->is_timed)
-        for (const graph::PassTime& time : data_->frame->times) times.push_back({time.pass, time.milliseconds});
+        for (const graph::PassTime& time : data_->frame->times)
+            times.push_back({time.pass, time.milliseconds});
     return times;
 }
 
@@ -68,8 +70,8 @@ std::vector<StatisticInfo> Result::statistics() const {
     if (!data_->frame->telemetry) return all;
     for (const auto& [step, statistics] : data_->frame->telemetry->steps)
         for (const auto& [name, s] : statistics)
-            all.push_back({step, name, s.count, s.non_finite, s.sum, s.mean, s.deviation, s.min, s.max, s.from,
-                           s.to, s.histogram});
+            all.push_back({step, name, s.count, s.non_finite, s.sum, s.mean, s.deviation, s.min, s.max,
+                           s.from, s.to, s.histogram});
     return all;
 }
 

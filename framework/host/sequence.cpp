@@ -41,8 +41,7 @@ void check_capture_options(Host::Data& host, const CaptureOptions& options) {
 
 }  // namespace
 
-std::shared_ptr<const Sequence::Data> open_sequence_data(Host::Data& host,
-                                                         const std::filesystem::path& path,
+std::shared_ptr<const Sequence::Data> open_sequence_data(Host::Data& host, const std::filesystem::path& path,
                                                          const CaptureOptions& options,
                                                          std::vector<std::string> object_names) {
     check_capture_options(host, options);

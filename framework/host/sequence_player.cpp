@@ -21,9 +21,9 @@ NanPolicy policy_of(NonFinite policy) {
 
 void check_played_options(const RenderOptions& options) {
     const RenderOptions usual;
-    const char* option = options.previous      ? "previous"
-                         : options.next        ? "next"
-                         : options.begins_shot ? "begins_shot"
+    const char* option = options.previous           ? "previous"
+                         : options.next             ? "next"
+                         : options.begins_shot      ? "begins_shot"
                          : options.fps != usual.fps ? "fps"
                                                     : nullptr;
     if (option)

@@ -16,7 +16,7 @@ public:
     /// `rendering` must outlive it.
     SequencePlayer(Rendering& rendering, std::shared_ptr<const Sequence::Data> sequence, NonFinite policy);
 
-    /// Whether it can go on with these; else another one is needed.
+    /// Whether these are what it was made for.
     bool plays(const std::shared_ptr<const Sequence::Data>& sequence, NonFinite policy, int revision) const {
         return sequence == from_ && policy == policy_ && revision == revision_;
     }

@@ -32,8 +32,9 @@ Result result_of(Result::Data data) {
 
 Session Look::session() {
     if (!data_) fail(ErrorKind::usage, "this Look was moved from");
-    return called(*data_->host,
-                  [&] { return Access::make<Session>(std::make_unique<Session::Data>(data_->host, data_->core)); });
+    return called(*data_->host, [&] {
+        return Access::make<Session>(std::make_unique<Session::Data>(data_->host, data_->core));
+    });
 }
 
 Session::Session(std::unique_ptr<Data> data) : data_(std::move(data)) {}
@@ -71,8 +72,7 @@ Result Session::render(const Sequence& sequence, int frame, const RenderOptions&
     return called(*data.host, [&] {
         const auto from = Access::share(sequence);
         if (!data.player || !data.player->plays(from, options.non_finite, data.rendering.look().revision))
-            data.player =
-                std::make_unique<SequencePlayer>(data.rendering, from, options.non_finite);
+            data.player = std::make_unique<SequencePlayer>(data.rendering, from, options.non_finite);
         return result_of(data.player->render(frame, options));
     });
 }

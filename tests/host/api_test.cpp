@@ -41,7 +41,8 @@ TEST(HostApi, RendersWhatTheProgramWrites) {
 TEST(HostApi, ArraysGiveTheBitsOfFiles) {
     Host host(osmesa());
     Look look = host.parse_look(kBlurLook);
-    const Capture read = look.read(std::string(AFTERSHADE_SOURCE_DIR) + "/scenes/suzanne", {.scale_divisor = 4});
+    const Capture read =
+        look.read(std::string(AFTERSHADE_SOURCE_DIR) + "/scenes/suzanne", {.scale_divisor = 4});
     Capture arrays(read.data_window().width, read.data_window().height);
     arrays.set_windows(read.data_window(), read.display_window());
     arrays.set_camera(read.camera());

@@ -26,8 +26,8 @@ inline void write_file(const std::filesystem::path& path, const std::string& tex
 inline bool same_bits(const host::Image& a, const host::Image& b) {
     return a.width() == b.width() && a.height() == b.height() && a.channels() == b.channels() &&
            a.type() == b.type() && !a.empty() &&
-           std::memcmp(a.data(), b.data(), std::size_t(a.width()) * std::size_t(a.height()) *
-                                               std::size_t(a.channels()) * 4) == 0;
+           std::memcmp(a.data(), b.data(),
+                       std::size_t(a.width()) * std::size_t(a.height()) * std::size_t(a.channels()) * 4) == 0;
 }
 
 /// A frame of color and depth from a formula: the left half near, the right half far, with bright dots.

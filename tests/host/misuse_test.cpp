@@ -44,11 +44,13 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<Misuse> misuses_of_documents() {
     return {
-        {"a look that is no JSON", [](Bench& b) { b.host.parse_look("{\"aftershade\": 1,\n  \"steps\": [}"); },
-         Kind::document, "", "look text", 2},
+        {"a look that is no JSON",
+         [](Bench& b) { b.host.parse_look("{\"aftershade\": 1,\n  \"steps\": [}"); }, Kind::document, "",
+         "look text", 2},
         {"an unknown effect",
          [](Bench& b) {
-             b.host.parse_look("{\"aftershade\": 1, \"steps\": [\n{\"effect\": \"bokhe\"}]}", {.name = "mine"});
+             b.host.parse_look("{\"aftershade\": 1, \"steps\": [\n{\"effect\": \"bokhe\"}]}",
+                               {.name = "mine"});
          },
          Kind::document, "did you mean 'bokeh'", "mine", 2},
         {"an unknown parameter in a look",
@@ -57,8 +59,8 @@ std::vector<Misuse> misuses_of_documents() {
                  R"({"aftershade": 1, "steps": [{"effect": "bokeh", "params": {"f_numer": 2}}]})");
          },
          Kind::document, "bokeh has no parameter 'f_numer'", "look text", 1},
-        {"a look's file that is not there",
-         [](Bench& b) { b.host.load_look(b.folder / "nothing.json"); }, Kind::document, "", "nothing.json"},
+        {"a look's file that is not there", [](Bench& b) { b.host.load_look(b.folder / "nothing.json"); },
+         Kind::document, "", "nothing.json"},
         {"a folder for a look that is a file",
          [](Bench& b) {
              write_file(b.folder / "look.json", kBlurLook);
@@ -69,8 +71,10 @@ std::vector<Misuse> misuses_of_documents() {
          [](Bench& b) { b.host.parse_look(kBlurLook, {.taps = {"bokeh.nothing"}}); }, Kind::document,
          "bokeh has no texture 'nothing'", "bokeh.nothing"},
         {"a variable that the look has not",
-         [](Bench& b) { b.host.parse_look(kBlurLook, {.variables = {{"focus", 2.0}}}); }, Kind::document,
-         "no variable 'focus'", "focus"},
+         [](Bench& b) {
+             b.host.parse_look(kBlurLook, {.variables = {{"focus", 2.0}}});
+         },
+         Kind::document, "no variable 'focus'", "focus"},
     };
 }
 
@@ -99,15 +103,16 @@ std::vector<Misuse> misuses_of_values() {
 
 std::vector<Misuse> misuses_of_arrays() {
     return {
-        {"a null array", [](Bench& b) { b.capture.set_image("color", {nullptr, {}, 48, 32, 4}); },
+        {"a null array",
+         [](Bench& b) {
+             b.capture.set_image("color", {nullptr, {}, 48, 32, 4});
+         },
          Kind::usage, "null", "color"},
         {"an array of another size",
          [](Bench& b) { b.capture.set_image("color", view_of(b.pixels, 32, 48, 4)); }, Kind::usage,
          "32 x 48 px", "color"},
         {"an array that is too short",
-         [](Bench& b) {
-             b.capture.set_image("color", view_of(std::span(b.pixels).first(100), 48, 32, 4));
-         },
+         [](Bench& b) { b.capture.set_image("color", view_of(std::span(b.pixels).first(100), 48, 32, 4)); },
          Kind::usage, "has 400 bytes", "color"},
         {"too few channels", [](Bench& b) { b.capture.set_image("color", b.view(3)); }, Kind::usage,
          "has 3 channels; the role has 4", "color"},
@@ -150,8 +155,10 @@ std::vector<Misuse> misuses_of_arrays() {
         {"a camera that cannot be", [](Bench& b) { b.capture.set_camera({.f_number = -2.0}); }, Kind::usage,
          "not a finite number from 0.01", "camera.f_number"},
         {"a window that the images do not fill",
-         [](Bench& b) { b.capture.set_windows({0, 0, 50, 32}, {0, 0, 50, 32}); }, Kind::usage,
-         "the images have 48 x 32", "data window"},
+         [](Bench& b) {
+             b.capture.set_windows({0, 0, 50, 32}, {0, 0, 50, 32});
+         },
+         Kind::usage, "the images have 48 x 32", "data window"},
     };
 }
 
@@ -174,8 +181,10 @@ std::vector<Misuse> misuses_of_renders() {
          },
          Kind::usage, "not that of the frame", "RenderOptions::previous"},
         {"a texture without a shared context",
-         [](Bench& b) { b.look.render(b.capture, {.targets = {{"color", {1, 48, 32}}}}); }, Kind::usage,
-         "need HostOptions::share", "RenderOptions"},
+         [](Bench& b) {
+             b.look.render(b.capture, {.targets = {{"color", {1, 48, 32}}}});
+         },
+         Kind::usage, "need HostOptions::share", "RenderOptions"},
         {"a stop that was requested",
          [](Bench& b) {
              std::stop_source stop;
@@ -190,12 +199,10 @@ std::vector<Misuse> misuses_of_renders() {
              b.look.render(b.capture, {.non_finite = NonFinite::fail});
          },
          Kind::capture, "1 NaN", "color"},
-        {"a sub-frame beyond the last",
-         [](Bench& b) { b.look.session().render_subframe(b.capture, 4, 4); }, Kind::usage, "sub-frame 4 of 4",
-         "index"},
-        {"an image that was not given back",
-         [](Bench& b) { (void)b.look.render(b.capture).image("albedo"); }, Kind::usage, "RenderOptions::roles",
-         "albedo"},
+        {"a sub-frame beyond the last", [](Bench& b) { b.look.session().render_subframe(b.capture, 4, 4); },
+         Kind::usage, "sub-frame 4 of 4", "index"},
+        {"an image that was not given back", [](Bench& b) { (void)b.look.render(b.capture).image("albedo"); },
+         Kind::usage, "RenderOptions::roles", "albedo"},
         {"a format that nothing writes",
          [](Bench& b) { b.look.render(b.capture).write(b.folder / "out.tiff"); }, Kind::usage,
          "'.tiff' is not known", "out.tiff"},
@@ -244,9 +251,8 @@ std::vector<Misuse> misuses_of_hosts() {
              Capture::read(b.host, b.folder / "text.exr");
          },
          Kind::capture, "text.exr", ""},
-        {"an unknown profile",
-         [](Bench& b) { Capture::read(b.host, "x.exr", {.profile = "blendr"}); }, Kind::usage,
-         "did you mean 'blender'", "CaptureOptions::profile"},
+        {"an unknown profile", [](Bench& b) { Capture::read(b.host, "x.exr", {.profile = "blendr"}); },
+         Kind::usage, "did you mean 'blender'", "CaptureOptions::profile"},
         {"a frame that the sequence has not",
          [](Bench& b) {
              b.look.render(b.capture).write(b.folder / "f_0001.exr");
@@ -311,7 +317,8 @@ TEST(HostMisuse, OfHostsNamesTheOption) {
 TEST(HostMisuse, EveryFaultComesAtOnce) {
     Host host(osmesa());
     try {
-        host.parse_look(R"({"aftershade": 1, "steps": [{"effect": "bokhe"}, {"effect": "bloom", "bad": 1}]})");
+        host.parse_look(
+            R"({"aftershade": 1, "steps": [{"effect": "bokhe"}, {"effect": "bloom", "bad": 1}]})");
         FAIL();
     } catch (const Error& error) {
         EXPECT_EQ(error.diagnostics().size(), 2u) << error.what();

@@ -21,6 +21,7 @@ public:
         load("eglGetPlatformDisplay", get_display_);
         load("eglInitialize", initialize_);
         load("eglBindAPI", bind_api_);
+        load("eglQueryAPI", query_api_);
         load("eglCreateContext", create_context_);
         load("eglDestroyContext", destroy_context_);
         load("eglMakeCurrent", make_current_);
@@ -46,6 +47,8 @@ public:
     void make_current() {
         require(make_current_(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context), "eglMakeCurrent");
     }
+    void bind_es_api() { bind_api_(EGL_OPENGL_ES_API); }
+    bool is_es_api_bound() const { return query_api_() == EGL_OPENGL_ES_API; }
     bool is_current() const { return get_current_() == context; }
 
     GLuint texture(GLenum format, int width, int height) const {
@@ -80,6 +83,7 @@ private:
     PFNEGLGETPLATFORMDISPLAYPROC get_display_;
     PFNEGLINITIALIZEPROC initialize_;
     PFNEGLBINDAPIPROC bind_api_;
+    PFNEGLQUERYAPIPROC query_api_;
     PFNEGLCREATECONTEXTPROC create_context_;
     PFNEGLDESTROYCONTEXTPROC destroy_context_;
     PFNEGLMAKECURRENTPROC make_current_;

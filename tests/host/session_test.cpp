@@ -82,7 +82,7 @@ TEST(HostSession, PlaysASequenceAsTheProgramRunsIt) {
     }
 }
 
-TEST(HostLook, TellsItsParametersAndTakesNewValues) {
+TEST(HostLook, GivesItsParametersAndTakesNewValues) {
     Host host(osmesa());
     Look look = host.parse_look(kBlurLook);
     EXPECT_EQ(look.steps(), (std::vector<std::string>{"bokeh", "vignette"}));
@@ -125,7 +125,8 @@ TEST(HostEffects, AreWhatTheProgramLists) {
         EXPECT_FALSE(effect.outputs.empty()) << effect.id;
         for (const ParamInfo& param : effect.params) EXPECT_FALSE(param.doc.empty()) << effect.id;
     }
-    EXPECT_EQ(host.effect("bokeh").params.size(), std::ranges::find(effects, "bokeh", &EffectInfo::id)->params.size());
+    EXPECT_EQ(host.effect("bokeh").params.size(),
+              std::ranges::find(effects, "bokeh", &EffectInfo::id)->params.size());
 }
 
 TEST(HostCompare, GivesFiguresAndMapsOfArrays) {

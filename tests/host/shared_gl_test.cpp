@@ -27,8 +27,7 @@ HostOptions sharing(const OwnEgl& egl) {
 std::vector<float> flipped(std::span<const float> rows, std::size_t row) {
     std::vector<float> result(rows.size());
     const std::size_t count = rows.size() / row;
-    for (std::size_t y = 0; y < count; ++y)
-        std::copy_n(&rows[y * row], row, &result[(count - 1 - y) * row]);
+    for (std::size_t y = 0; y < count; ++y) std::copy_n(&rows[y * row], row, &result[(count - 1 - y) * row]);
     return result;
 }
 
@@ -59,14 +58,14 @@ TEST(HostSharedGl, TexturesGiveTheBitsOfArrays) {
     const GLuint target = egl.texture(GL_RGBA32F, kWidth, kHeight);
     const GLsync written = egl.gl.FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
     egl.gl.Flush();
-    const Result result = look.render(textures, {.targets = {{"color", {target, kWidth, kHeight}}},
-                                                 .wait = written,
-                                                 .wants_fence = true});
+    const Result result = look.render(
+        textures, {.targets = {{"color", {target, kWidth, kHeight}}}, .wait = written, .wants_fence = true});
     egl.gl.DeleteSync(written);
     ASSERT_TRUE(egl.is_current());
     ASSERT_NE(result.fence(), nullptr);
     const auto done = static_cast<GLsync>(result.fence());
-    EXPECT_NE(egl.gl.ClientWaitSync(done, GL_SYNC_FLUSH_COMMANDS_BIT, 5'000'000'000u), GLenum(GL_TIMEOUT_EXPIRED));
+    EXPECT_NE(egl.gl.ClientWaitSync(done, GL_SYNC_FLUSH_COMMANDS_BIT, 5'000'000'000u),
+              GLenum(GL_TIMEOUT_EXPIRED));
     egl.gl.DeleteSync(done);
     const auto rows = flipped(egl.read(target, GL_RGBA, kWidth * kHeight * 4), kWidth * 4);
     EXPECT_TRUE(std::ranges::equal(rows, expected.floats()));
@@ -98,6 +97,15 @@ TEST(HostSharedGl, LeavesTheCallersContextCurrentWhateverTheBackend) {
         EXPECT_EQ(egl.read(mine, GL_RGBA, 64)[63], float(i));
     }
     EXPECT_EQ(egl.gl.GetError(), GLenum(GL_NO_ERROR));
+}
+
+TEST(HostSharedGl, LeavesTheCallersChoiceOfAnApi) {
+    OwnEgl egl;
+    egl.bind_es_api();
+    Host host(sharing(egl));
+    host.parse_look(kBlurLook).render(small_capture());
+    EXPECT_TRUE(egl.is_es_api_bound());
+    EXPECT_TRUE(egl.is_current());
 }
 
 TEST(HostSharedGl, RefusesTexturesThatDoNotFit) {

@@ -22,8 +22,8 @@ constexpr int kFrames = 50;
 
 std::string look_of_thread(int thread) {
     const char* const steps[] = {R"({"effect": "bokeh", "params": {"f_number": 0.3, "focus_distance": 2}})",
-                                 R"({"effect": "vignette"}, {"effect": "sharpen"})",
-                                 R"({"effect": "bloom"})", R"({"effect": "film_grain"})"};
+                                 R"({"effect": "vignette"}, {"effect": "sharpen"})", R"({"effect": "bloom"})",
+                                 R"({"effect": "film_grain"})"};
     return std::string(R"({"aftershade": 1, "steps": [)") + steps[thread] + "]}";
 }
 
@@ -50,7 +50,8 @@ void expect_bits_of_one_alone(const HostOptions& options) {
     for (std::size_t i = 0; i < 4; ++i) {
         ASSERT_EQ(together[i].size(), std::size_t(kFrames));
         for (std::size_t frame = 0; frame < together[i].size(); ++frame)
-            ASSERT_TRUE(same_bits(together[i][frame], alone[i][frame])) << "thread " << i << ", frame " << frame;
+            ASSERT_TRUE(same_bits(together[i][frame], alone[i][frame]))
+                << "thread " << i << ", frame " << frame;
     }
 }
 
@@ -77,7 +78,7 @@ TEST(HostThreads, TwoHostsTakeTurnsInOneThread) {
     }
 }
 
-TEST(HostThreads, ADetachedHostGoesOnInTheThreadThatCallsNext) {
+TEST(HostThreads, ADetachedHostWorksInTheThreadThatCallsNext) {
     Host host(osmesa());
     Look look = host.parse_look(look_of_thread(0));
     const Image here = look.render(small_capture()).image("color");

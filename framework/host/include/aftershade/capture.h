@@ -36,8 +36,8 @@ struct Camera {
     std::optional<double> blades{};             ///< from 0; 0 is a disk
     std::optional<double> rotation_deg{};       ///< of the aperture
     std::optional<double> shutter_angle_deg{};  ///< from 0; 360 is the whole frame
-    std::optional<double> near_m{}, far_m{};      ///< from 0; planes of a stored depth
-    std::string lens_model{};                  ///< "thin" or "pinhole"; "": not known
+    std::optional<double> near_m{}, far_m{};    ///< from 0; planes of a stored depth
+    std::string lens_model{};                   ///< "thin" or "pinhole"; "": not known
     /// View space: right-handed, looks along -z, y up, m. Finite.
     std::optional<Matrix4> camera_from_world{};
     /// Projective; x right and y up from -1 to 1 over the display window. Finite.
@@ -77,8 +77,8 @@ public:
     /// sides that are not from 1 to 65536 px.
     Capture(int width, int height);
     /// Reads one frame: an EXR file, or the first frame of a capture.json, pattern or folder. Throws
-    /// Error(usage) for unknown profiles, roles and colour spaces, Error(document) for faults in capture.json and profiles,
-    /// Error(capture) for what cannot be read or exceeds the host's limits. [the host's thread]
+    /// Error(usage) for unknown profiles, roles and colour spaces, Error(document) for faults in capture.json
+    /// and profiles, Error(capture) for what cannot be read or exceeds the host's limits. [the host's thread]
     static Capture read(const Host& host, const std::filesystem::path& path,
                         const CaptureOptions& options = {});
     Capture(const Capture&) noexcept;

@@ -33,8 +33,8 @@ struct ParamInfo {
     std::optional<std::array<double, 2>> ui_range;
     std::vector<std::string> values;  ///< of an enum
     std::string from;  ///< the default where the capture has it: "camera.focus_distance"; "": none
-    std::optional<Value> identity;    ///< that leaves the image as it is; empty: none is declared
-    std::vector<ParamInfo> columns;   ///< of a table
+    std::optional<Value> identity;   ///< that leaves the image as it is; empty: none is declared
+    std::vector<ParamInfo> columns;  ///< of a table
 };
 
 struct InputInfo {

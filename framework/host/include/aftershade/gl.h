@@ -2,8 +2,8 @@
 //
 // Contexts. HostOptions::share names the display and context that the Host's own context shares objects with.
 // Both must be of desktop OpenGL, and the caller's must outlive the Host. Every call of a Host leaves current
-// in its thread the EGL context and surfaces that it found. A context of another window system (GLX, WGL) is
-// not restored: make it current again, or call from another thread.
+// in its thread the EGL context, surfaces and API that it found. A context of another window system (GLX,
+// WGL) is not restored: make it current again, or call from another thread.
 //
 // Fences. GL orders the commands of two contexts only where fences say so:
 // - Input. After the commands that write the textures, the caller calls glFenceSync and glFlush and gives the

@@ -87,8 +87,9 @@ struct NameAndSummary {
 /// Everything starts here. Move only. [the thread that made it; see above]
 class AFTERSHADE_API Host {
 public:
-    /// Makes no GL context yet: the first frame does, or gl(). Throws Error(usage) naming every option that is
-    /// wrong: a folder that is not there, a limit out of range. Profiles are read when they are first needed.
+    /// Makes no GL context yet: the first frame does, or gl(). Throws Error(usage) naming every option that
+    /// is wrong: a folder that is not there, a limit out of range. Profiles are read when they are first
+    /// needed.
     explicit Host(HostOptions options);
     Host(Host&&) noexcept;
     Host& operator=(Host&&) noexcept;

@@ -74,9 +74,9 @@ struct StatisticInfo {
 };
 
 struct NonFiniteInfo {
-    std::string image;             ///< a role, or a tap: "bokeh.coc"
-    bool of_capture = false;       ///< else of the result
-    int x = 0, y = 0;              ///< the first such pixel
+    std::string image;                   ///< a role, or a tap: "bokeh.coc"
+    bool of_capture = false;             ///< else of the result
+    int x = 0, y = 0;                    ///< the first such pixel
     std::int64_t nan = 0, infinite = 0;  ///< pixels
     bool mended = false;
 };
@@ -86,7 +86,7 @@ struct WriteOptions {
     std::vector<std::string> roles{"color"};  ///< in EXR files
     bool half = true;                         ///< color and what is like it as half; false: as float
     bool crop_to_display = false;             ///< EXR: only the display window's pixels
-    std::string compression = "zip";          ///< EXR: none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa, dwab
+    std::string compression = "zip";  ///< EXR: none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa, dwab
 };
 
 /// What a look made of one frame. Copies share their pixels. [value type; thread-safe to read]
@@ -114,9 +114,10 @@ public:
     /// The GLsync of RenderOptions::wants_fence, which the caller deletes; nullptr without.
     void* fence() const noexcept;
 
-    /// Writes a .exr or .png ("####" stands for the frame's number), as `aftershade run` does: roles that no step made are the capture's, a .png
-    /// takes display, else color as sRGB. The file appears whole or not at all. Throws Error(usage) for an
-    /// unknown extension, role or compression, Error(output) where it cannot be written.
+    /// Writes a .exr or .png ("####" stands for the frame's number), as `aftershade run` does: roles that no
+    /// step made are the capture's, a .png takes display, else color as sRGB. The file appears whole or not
+    /// at all. Throws Error(usage) for an unknown extension, role or compression, Error(output) where it
+    /// cannot be written.
     void write(const std::filesystem::path& path, const WriteOptions& options = {}) const;
 
     struct AFTERSHADE_LOCAL Data;  ///< what the library keeps; no part of the API
@@ -136,7 +137,7 @@ public:
     Session& operator=(Session&&) noexcept;
     ~Session();
 
-    /// Renders the next frame. After an error the session goes on with the frame after. Throws as
+    /// Renders the next frame. After an error the session continues with the next frame. Throws as
     /// Look::render.
     Result render(const Capture& capture, const RenderOptions& options = {});
     /// Of a frame that consists of `count` captures (sub-frames, for effects that accumulate them) the
@@ -144,8 +145,8 @@ public:
     Result render_subframe(const Capture& capture, int index, int count, const RenderOptions& options = {});
     /// Reads what the look needs of a frame, with its sub-frames, neighbours, cuts and frame rate, and
     /// renders it, as `aftershade run` does; the frame behind it is read at the same time. Options that the
-    /// sequence decides (previous, next, begins_shot, fps) must have their defaults. Throws Error(usage) where
-    /// the sequence has no such frame.
+    /// sequence decides (previous, next, begins_shot, fps) must have their defaults. Throws Error(usage)
+    /// where the sequence has no such frame.
     Result render(const Sequence& sequence, int frame, const RenderOptions& options = {});
     /// Forgets every frame.
     void reset();
@@ -213,8 +214,8 @@ public:
     Value get(const std::string& name) const;
 
     /// Renders a frame by itself: history begins with it. Throws Error(usage) for options out of range,
-    /// Error(capture) where the capture lacks an image that a step requires or has values that a step does not
-    /// take, Error(gl) with the first frame, Error(effect), Error(memory), Error(interrupted).
+    /// Error(capture) where the capture lacks an image that a step requires or has values that a step does
+    /// not take, Error(gl) with the first frame, Error(effect), Error(memory), Error(interrupted).
     Result render(const Capture& capture, const RenderOptions& options = {});
     /// Reads what the look needs of a file, pattern, folder or capture.json, and its first frame; what
     /// Capture::read reads, but for objects that the look names. Throws as Capture::read.

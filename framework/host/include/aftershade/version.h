@@ -9,6 +9,6 @@
 #define AFTERSHADE_VERSION_PATCH 0
 
 /// For #if: AFTERSHADE_VERSION_AT_LEAST(0, 2, 0)
-#define AFTERSHADE_VERSION_AT_LEAST(major, minor, patch)                                              \
+#define AFTERSHADE_VERSION_AT_LEAST(major, minor, patch)                                                \
     (AFTERSHADE_VERSION_MAJOR * 1000000 + AFTERSHADE_VERSION_MINOR * 1000 + AFTERSHADE_VERSION_PATCH >= \
      (major)*1000000 + (minor)*1000 + (patch))
