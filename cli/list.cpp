@@ -40,6 +40,7 @@ ExitCode list(const ListOptions& options) {
     Diagnostics diagnostics;
     EffectRegistry effects = find_effects(options.effect_paths, diagnostics);
     stop_at_errors(diagnostics);
+    diagnostics.print(std::cerr);
     nlohmann::ordered_json document = nlohmann::ordered_json::array();
     for (const std::string& id : effects.ids()) {
         const EffectManifest* manifest = effects.find(id, diagnostics);

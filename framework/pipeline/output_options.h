@@ -21,7 +21,8 @@ struct OutputOptions {
     std::string
         fingerprint{};        ///< of what the frame is made of: attribute aftershade/fingerprint; "" for none
     std::string telemetry{};  ///< "stats_####.json": numbers of each frame; "" for none
-    std::map<std::string, std::string> tap_patterns{};  ///< by "step.texture"; else beside the first pattern
+    std::vector<std::string> taps{};                    ///< "step.texture": files beside the first pattern
+    std::map<std::string, std::string> tap_patterns{};  ///< by "step.texture": names of their own
 };
 
 }  // namespace aftershade
