@@ -61,8 +61,12 @@ ExitCode check(const CheckOptions& options) {
     std::error_code failure;
     const bool is_folder = fs::is_regular_file(subject / "effect.json", failure);
     EffectRegistry effects = find_effects(paths, words);
-    if (is_folder) {
+    const auto stop_at_words = [&] {
         stop_at_errors(words);
+        words.print(std::cerr);
+    };
+    if (is_folder) {
+        stop_at_words();
         const fs::path folder = fs::weakly_canonical(subject, failure);
         const auto node = read_document(folder / "effect.json", diagnostics);
         if (const auto manifest = node ? parse_manifest(*node, folder, diagnostics) : std::nullopt)
@@ -70,7 +74,7 @@ ExitCode check(const CheckOptions& options) {
         return verdict(diagnostics, options);
     }
     if (effects.contains(options.subject)) {
-        stop_at_errors(words);
+        stop_at_words();
         if (const EffectManifest* manifest = effects.find(options.subject, diagnostics))
             check_one_effect(*manifest, options, diagnostics);
         return verdict(diagnostics, options);
@@ -81,7 +85,7 @@ ExitCode check(const CheckOptions& options) {
                                          "' is no folder of an effect, no effect and no look" +
                                          did_you_mean(options.subject, ids));
     }
-    stop_at_errors(words);
+    stop_at_words();
     if (!options.warmup.empty())
         return check_warmup({options.subject, options.warmup, options.effect_paths, options.plugin_paths,
                              chosen_backend(options.backend)});

@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <sstream>
 
+#include "framework/core/input_files.h"
+
 namespace aftershade::cli {
 
 namespace {
@@ -104,19 +106,16 @@ void check_outputs(const CompareOptions& options, Diagnostics& diagnostics) {
                                                                 {"--side-by-side", options.side_by_side},
                                                                 {"--csv", options.csv}};
     std::erase_if(outputs, [](const auto& output) { return output.second.empty(); });
-    for (std::size_t i = 0; i < outputs.size(); ++i) {
-        const auto& [word, path] = outputs[i];
+    InputFiles inputs;
+    for (const std::string& input : {options.reference, options.test})
+        inputs.add(std::filesystem::path(input));
+    for (const auto& [word, path] : outputs) {
         const bool png = path.ends_with(".png"), exr = path.ends_with(".exr");
         if (word == "--side-by-side" && !png)
             diagnostics.error({word + " " + path}, "the picture is a .png file");
         if ((word == "-o" || word == "--heat-map") && !png && !exr)
             diagnostics.error({word + " " + path}, "expected a .exr or .png file");
-        std::error_code error;
-        for (const std::string& input : {options.reference, options.test})
-            if (std::filesystem::equivalent(path, input, error))
-                diagnostics.error({word + " " + path}, "an output may not be an input");
-        for (std::size_t j = 0; j < i; ++j)
-            if (outputs[j].second == path) diagnostics.error({word + " " + path}, "two outputs in one file");
+        inputs.check_output({word + " " + path}, path, diagnostics);
     }
     if (options.scale == 0 || !std::isfinite(options.scale))
         diagnostics.error({"--scale"}, fmt::format("{:g} is no factor", options.scale));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iostream>
 #include <memory>
 
 #include "cli/capture_options.h"
@@ -61,6 +62,7 @@ ExitCode describe(const DescribeOptions& options) {
     }
     const EffectManifest* manifest = effects.find(options.what, diagnostics);
     stop_at_errors(diagnostics);
+    diagnostics.print(std::cerr);
     if (!options.plot.empty()) {
         write_plot(profile_of(*manifest, diagnostics), options.plot);
         return ExitCode::done;

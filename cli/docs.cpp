@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iostream>
 #include <map>
 #include <memory>
 #include <set>
@@ -85,6 +86,7 @@ ExitCode docs(const DocsOptions& options) {
     EffectRegistry effects = find_effects(options.effect_paths, diagnostics);
     const auto made = pages(options, effects, diagnostics);
     stop_at_errors(diagnostics);
+    diagnostics.print(std::cerr);
     std::error_code failure;
     if (!options.check) fs::create_directories(options.folder, failure);
     bool same = true;

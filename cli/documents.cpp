@@ -1,5 +1,6 @@
 #include "cli/documents.h"
 
+#include <iostream>
 #include <utility>
 
 #include "cli/capture_options.h"
@@ -29,6 +30,7 @@ std::string schema_of_looks(const std::vector<std::string>& effect_paths) {
     for (const std::string& id : effects.ids())
         if (const EffectManifest* manifest = effects.find(id, diagnostics)) manifests.push_back(manifest);
     stop_at_errors(diagnostics);
+    diagnostics.print(std::cerr);
     return look_schema(manifests);
 }
 

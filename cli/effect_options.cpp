@@ -4,10 +4,19 @@
 #include <filesystem>
 
 #include "framework/core/data_path.h"
+#include "framework/core/path_bounds.h"
 
 namespace aftershade::cli {
 
+void add_allow_path_option(CLI::App& app) {
+    app.add_option_function<std::vector<std::string>>(
+           "--allow-path", [](const std::vector<std::string>& folders) { allow_folders(folders); },
+           "Folder that links of effects, buffers of meshes and goldens of suites may lead to; repeatable")
+        ->allow_extra_args(false);
+}
+
 void add_effect_path_option(CLI::App& app, std::vector<std::string>& paths) {
+    add_allow_path_option(app);
     app.add_option("--effect-path", paths, "Folder of effects, searched before the shipped ones; repeatable")
         ->allow_extra_args(false);
 }
@@ -22,7 +31,10 @@ EffectRegistry find_effects(const std::vector<std::string>& paths, Diagnostics& 
     std::vector<std::filesystem::path> folders(paths.begin(), paths.end());
     check_effect_paths(paths, diagnostics);
     folders.push_back(data_path() / "effects");
-    return EffectRegistry(std::move(folders));
+    EffectRegistry effects(std::move(folders));
+    for (const auto& [folder, reason] : effects.unreadable())
+        diagnostics.warning({folder.string()}, "cannot be read, and its effects are left out: " + reason);
+    return effects;
 }
 
 }  // namespace aftershade::cli

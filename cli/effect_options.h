@@ -1,4 +1,4 @@
-// --effect-path, shared by every verb that looks for effects.
+// --effect-path and --allow-path, shared by every verb that looks for effects.
 #pragma once
 
 #include <string>
@@ -13,10 +13,13 @@ class App;
 
 namespace aftershade::cli {
 
+/// With --allow-path.
 void add_effect_path_option(CLI::App& app, std::vector<std::string>& paths);
 
 /// A path that is no folder is a fault.
 void check_effect_paths(const std::vector<std::string>& paths, Diagnostics& diagnostics);
+/// --allow-path, for verbs whose documents name files (framework/core/path_bounds.h).
+void add_allow_path_option(CLI::App& app);
 
 /// The shipped effects, below those of `paths`; a path that is no folder is a fault.
 EffectRegistry find_effects(const std::vector<std::string>& paths, Diagnostics& diagnostics);

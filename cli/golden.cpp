@@ -13,6 +13,7 @@
 #include "framework/batch/golden_approve.h"
 #include "framework/batch/report_page.h"
 #include "framework/core/atomic_file.h"
+#include "framework/core/input_files.h"
 #include "framework/core/text.h"
 
 namespace aftershade::cli {
@@ -60,7 +61,8 @@ void print_notes(const GoldenSuiteResult& result) {
     std::vector<fs::path> bare;
     for (const GoldenCaseResult& test : result.cases)
         for (const GoldenImage& image : test.images)
-            if (image.approved && !image.approved->sidecar) bare.push_back(image.approved->file);
+            if (image.approved && !image.approved->sidecar && !image.approved->sidecar_fault)
+                bare.push_back(image.approved->file);
     if (bare.empty()) return;
     std::cerr << fmt::format("note: {}{}: no sidecar tells what made {}, so that only the tolerance counts\n",
                              bare.front().string(),
@@ -68,10 +70,30 @@ void print_notes(const GoldenSuiteResult& result) {
                              bare.size() > 1 ? "them" : "it");
 }
 
+/// Throws Error(kCompareUsage).
+void refuse_outputs(const Diagnostics& diagnostics) {
+    std::string text;
+    for (const Diagnostic& fault : diagnostics.all())
+        text += (text.empty() ? "" : "\n") + to_string(fault.place) + ": error: " + fault.message;
+    if (!text.empty()) throw Error(kCompareUsage, text);
+}
+
+void check_outputs(const GoldenOptions& options, const GoldenSuite& suite) {
+    if (options.junit.empty() && options.report.empty()) return;
+    InputFiles inputs = suite_inputs(suite, true);
+    Diagnostics diagnostics;
+    inputs.check_output({"--junit " + options.junit}, options.junit, diagnostics);
+    if (!options.report.empty())
+        for (const char* name : {"index.html", "report.json"})
+            inputs.check_output({"--report " + options.report}, fs::path(options.report) / name, diagnostics);
+    refuse_outputs(diagnostics);
+}
+
 ExitCode run(const GoldenOptions& options) {
     const std::atomic<bool>& stop = watch_for_interrupt();
     GoldenSetup setup = prepare_golden(options);
     setup.context.suite = &setup.suite;
+    check_outputs(options, setup.suite);
     if (!options.report.empty()) {
         std::error_code failure;
         fs::create_directories(fs::path(options.report) / "images", failure);
@@ -141,6 +163,14 @@ ExitCode approve(const GoldenOptions& options) {
 }
 
 ExitCode report(const GoldenOptions& options) {
+    InputFiles inputs;
+    inputs.add(fs::path(options.report) / "report.json");
+    std::error_code absent;
+    for (const auto& entry : fs::directory_iterator(fs::path(options.report) / "images", absent))
+        inputs.add(entry.path());
+    Diagnostics diagnostics;
+    inputs.check_output({"-o " + options.page}, options.page, diagnostics);
+    refuse_outputs(diagnostics);
     std::cout << write_page(options.report, options.page, options.page_limit_mb).string() << "\n";
     return ExitCode::done;
 }

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "cli/compare_options.h"
+#include "cli/effect_options.h"
 #include "cli/gl_options.h"
 #include "framework/batch/worker.h"
 #include "framework/core/text.h"
@@ -84,6 +85,7 @@ void add_shared_golden_options(CLI::App& app, GoldenOptions& options) {
     app.add_option("--effect-path", options.effect_paths,
                    "Folder of effects, searched before the suite's and the shipped ones; repeatable")
         ->allow_extra_args(false);
+    add_allow_path_option(app);
     app.add_option("--plugin-path", options.plugin_paths, "Folder of native plug-ins; repeatable")
         ->allow_extra_args(false);
     app.add_option("--backend", options.backend,

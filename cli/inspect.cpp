@@ -14,6 +14,7 @@
 #include "cli/verbs.h"
 #include "framework/capture/sample_means.h"
 #include "framework/core/data_path.h"
+#include "framework/core/input_files.h"
 #include "framework/file/png_file.h"
 #include "framework/image/role.h"
 #include "framework/inspect/contact_sheet.h"
@@ -150,6 +151,9 @@ ExitCode inspect(const InspectOptions& options) {
     std::vector<Profile> profiles = load_profiles(options.capture.profile_paths, diagnostics);
     const std::optional<Sequence> sequence = find_sequence(options.capture, profiles, diagnostics);
     check_options(options, sequence, diagnostics);
+    InputFiles inputs;
+    if (sequence) inputs.add(files_of_sequence(*sequence));
+    inputs.check_output({"--contact-sheet " + options.contact_sheet}, options.contact_sheet, diagnostics);
     stop_at_errors(diagnostics);
     diagnostics.print(std::cerr);
 

@@ -43,6 +43,7 @@ ExitCode list(const ListOptions& options) {
     Diagnostics diagnostics;
     check_effect_paths(options.effect_paths, diagnostics);
     stop_at_errors(diagnostics);
+    diagnostics.print(std::cerr);
     const host::Host host(
         {.data = data_path(), .effect_paths = {options.effect_paths.begin(), options.effect_paths.end()}});
     std::vector<host::Diagnostic> faults;

@@ -11,6 +11,7 @@
 #include <new>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 #include "aftershade/error.h"
 #include "cli/compare_options.h"
@@ -53,8 +54,8 @@ bool stdout_is_whole() {
     return std::fflush(stdout) == 0 && std::cout && std::ferror(stdout) == 0;
 }
 
-std::string stdout_fault() {
-    return std::string("standard output cannot be written: ") + std::strerror(errno);
+std::string stdout_fault(int number) {
+    return std::string("standard output cannot be written: ") + std::strerror(number);
 }
 
 }  // namespace
@@ -86,17 +87,20 @@ int main(int argc, char** argv) {
         app.parse(argc, argv);
         refuse_empty_values(*app.get_subcommands().front());
     } catch (const CLI::Success& asked_for_help) {
-        return app.exit(asked_for_help);
+        const int code = app.exit(asked_for_help);
+        return stdout_is_whole() ? code : fail(ExitCode::output, stdout_fault(errno).c_str());
     } catch (const CLI::ParseError& error) {
         app.exit(error);
         return int(keeps_idiffs_codes() ? aftershade::cli::kCompareUsage : ExitCode::usage);
     }
     aftershade::prepare_for_memory_limit();
+    const auto fail_for_stdout = [&](int number) {
+        constexpr ExitCode kIdiffsFileError{4};
+        return fail(keeps_idiffs_codes() ? kIdiffsFileError : ExitCode::output, stdout_fault(number).c_str());
+    };
     try {
         const ExitCode code = verbs.at(app.get_subcommands().front())();
-        if (stdout_is_whole()) return int(code);
-        constexpr ExitCode kIdiffsFileError{4};
-        return fail(keeps_idiffs_codes() ? kIdiffsFileError : ExitCode::output, stdout_fault().c_str());
+        return stdout_is_whole() ? int(code) : fail_for_stdout(errno);
     } catch (const aftershade::Error& error) {
         if (aftershade::is_out_of_memory(error)) end_for_memory(error);
         return fail(error.exit_code(), error.what());
@@ -105,6 +109,9 @@ int main(int argc, char** argv) {
         return fail(aftershade::cli::exit_code_of(error.kind()), error.what());
     } catch (const std::exception& error) {
         if (aftershade::is_out_of_memory(error)) end_for_memory(error);
+        // So fmt::print reports a stream that takes nothing.
+        const auto* system = dynamic_cast<const std::system_error*>(&error);
+        if (system && std::ferror(stdout)) return fail_for_stdout(system->code().value());
         return fail(ExitCode::effect, error.what());
     }
 }

@@ -72,11 +72,11 @@ ExitCode make(const NewOptions& options) {
         diagnostics.error({"ID"}, "an effect that comes with Aftershade is called '" + options.id + "'");
     else if (fs::exists(folder, failure)) diagnostics.error({"ID"}, folder.string() + " is there already");
     stop_at_errors(diagnostics);
-    fs::create_directories(folder, failure);
-    if (failure) throw Error(ExitCode::output, folder.string() + ": cannot be made: " + failure.message());
-    const int manifest = write(folder / "effect.json", fmt::format(kManifest, options.id));
-    const int shader = write(folder / (options.id + ".frag"), kShader);
-    const int look = write(folder / "look.json", fmt::format(kLook, options.id));
+    AtomicFolder made(folder);
+    const int manifest = write(made.temporary_path() / "effect.json", fmt::format(kManifest, options.id));
+    const int shader = write(made.temporary_path() / (options.id + ".frag"), kShader);
+    const int look = write(made.temporary_path() / "look.json", fmt::format(kLook, options.id));
+    made.commit();
     fmt::print("{}: {} lines\n{}: {} lines\n{}: {} lines\n", (folder / "effect.json").string(), manifest,
                (folder / (options.id + ".frag")).string(), shader, (folder / "look.json").string(), look);
     fmt::print("Run it:   aftershade run {} CAPTURE --effect-path {} -o out.png\n",

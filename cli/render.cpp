@@ -6,9 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/capture_options.h"
+#include "cli/effect_options.h"
 #include "cli/interrupt.h"
 #include "cli/verbs.h"
 #include "framework/capture/frame_range.h"
+#include "framework/core/input_files.h"
 #include "framework/scene/job.h"
 
 namespace aftershade::cli {
@@ -78,6 +80,7 @@ void add_options(CLI::App& app, RenderArguments& options) {
         ->check(CLI::IsMember({"none", "rle", "zips", "zip", "piz"}))
         ->capture_default_str();
     app.add_option("--seed", options.job.seed, "Another set of samples");
+    add_allow_path_option(app);
     app.add_flag("--json", options.json, "A report on stdout");
     app.add_flag("--quiet", options.quiet, "No line for each frame");
 }
@@ -185,6 +188,9 @@ ExitCode render(RenderArguments options) {
     if (std::filesystem::is_directory(path)) path /= "scene.json";
     const auto scene = scene::read_scene(path, diagnostics);
     if (scene) complete_job(options, *scene, options.job, diagnostics);
+    if (InputFiles inputs; options.job.captures)
+        inputs.check_output(place_of("-o", options.folder),
+                            std::filesystem::path(options.folder) / "capture.json", diagnostics);
     diagnostics.print(std::cerr);
     if (diagnostics.has_errors()) return ExitCode::usage;
     const scene::JobReport report = scene::run_job(*scene, *profile, options.job, stop, [&](int frame) {

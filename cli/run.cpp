@@ -12,6 +12,7 @@
 #include "cli/graph_file.h"
 #include "cli/interrupt.h"
 #include "cli/run_continuation.h"
+#include "cli/run_inputs.h"
 #include "cli/run_options.h"
 #include "cli/run_session.h"
 #include "cli/run_workers.h"
@@ -113,7 +114,9 @@ CheckedRun checked_run(const RunArguments& options) {
         add_missing_frames(options.capture, run.settings.missing, *sequence, diagnostics);
         run.share = share_of_frames(options, run.bound->pipeline, *sequence, diagnostics);
     }
-    check_outputs(run.outputs, sequence.value_or(Sequence{}), diagnostics);
+    const Sequence checked = sequence.value_or(Sequence{});
+    InputFiles inputs = run_inputs(*run.bound, checked, diagnostics);
+    check_run_outputs(options, run.outputs, checked, inputs, diagnostics);
     check_worker_options(options, diagnostics);
     check_stream_options(options, run.bound->pipeline, diagnostics);
     stop_at_errors(diagnostics);

@@ -178,9 +178,11 @@ OutputOptions output_options(const RunArguments& options) {
     outputs.compression = options.compression;
     outputs.look = options.look;
     outputs.telemetry = options.telemetry;
-    for (const std::string& tap : options.pipeline.taps)
-        if (const std::size_t equals = tap.find('='); equals != std::string::npos)
-            outputs.tap_patterns[tap.substr(0, equals)] = tap.substr(equals + 1);
+    for (const std::string& tap : options.pipeline.taps) {
+        const std::size_t equals = tap.find('=');
+        outputs.taps.push_back(tap.substr(0, equals));
+        if (equals != std::string::npos) outputs.tap_patterns[outputs.taps.back()] = tap.substr(equals + 1);
+    }
     return outputs;
 }
 

@@ -13,6 +13,7 @@
 #include "cli/bound_look.h"
 #include "cli/frame_gaps.h"
 #include "cli/job_options.h"
+#include "cli/run_inputs.h"
 #include "cli/run_options.h"
 #include "cli/run_workers.h"
 #include "cli/submit_options.h"
@@ -21,7 +22,6 @@
 #include "framework/capture/frame_range.h"
 #include "framework/core/atomic_file.h"
 #include "framework/core/text.h"
-#include "framework/pipeline/output.h"
 
 namespace aftershade::cli {
 
@@ -73,7 +73,9 @@ std::optional<JobFrames> check_run(const SubmitArguments& options, RunArguments&
     auto sequence = find_sequence(run.capture, profiles, diagnostics);
     const RunOptions settings = run_options(run, diagnostics);
     if (sequence) add_missing_frames(run.capture, settings.missing, *sequence, diagnostics);
-    check_outputs(output_options(run), sequence.value_or(Sequence{}), diagnostics);
+    const Sequence checked = sequence.value_or(Sequence{});
+    InputFiles inputs = run_inputs(*bound, checked, diagnostics);
+    check_run_outputs(run, output_options(run), checked, inputs, diagnostics);
     if (options.history == "exact" || options.history == "none") {
         if (run.jobs.warmup != "auto")
             diagnostics.error({"-- --warmup " + run.jobs.warmup},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdint>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -22,6 +23,8 @@ std::string first_match(const std::string& text, const char* pattern) {
     return std::regex_search(text, match, std::regex(pattern)) ? match[1].str() : "";
 }
 
+constexpr std::uintmax_t kMaxSidecarBytes = 1024 * 1024;
+
 /// "AMD EPYC 7763 (64-core)" as a part of a file's name: "amd-epyc-7763-64-core".
 std::string slug(const std::string& text) {
     std::string result;
@@ -33,10 +36,19 @@ std::string slug(const std::string& text) {
     return result;
 }
 
-std::optional<GoldenSidecar> read_sidecar(const fs::path& image) {
-    std::error_code absent;
-    const Json json = Json::parse(read_text_file(sidecar_path(image), absent), nullptr, false);
-    if (absent || !json.is_object()) return std::nullopt;
+std::optional<GoldenSidecar> read_sidecar(const fs::path& image, std::optional<SidecarFault>& fault) {
+    const fs::path file = sidecar_path(image);
+    constexpr const char* kRemedy = " (golden approve --renew-sidecars writes it again)";
+    std::error_code failure;
+    if (!fs::exists(file, failure) && !fs::is_symlink(file, failure)) return std::nullopt;
+    std::string unreadable;
+    const Json json = Json::parse(read_regular_file(file, kMaxSidecarBytes, unreadable), nullptr, false);
+    if (!unreadable.empty() || !json.is_object()) {
+        fault = {Verdict::file_error,
+                 file.string() + ": " +
+                     (unreadable.empty() ? "is no sidecar, not even a JSON object" : unreadable) + kRemedy};
+        return std::nullopt;
+    }
     const auto text = [&](const char* key) {
         const auto found = json.find(key);
         return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
@@ -52,8 +64,10 @@ std::optional<GoldenSidecar> read_sidecar(const fs::path& image) {
     sidecar.command = text("command");
     sidecar.look_hash = text("look_hash");
     sidecar.image_hash = text("image_hash");
-    if (!sidecar.image_hash.empty() && sidecar.image_hash != file_hash(image)) return std::nullopt;
-    return sidecar;
+    if (sidecar.image_hash.empty() || sidecar.image_hash == file_hash(image)) return sidecar;
+    fault = {Verdict::warning,
+             file.string() + ": is of another image than " + image.filename().string() + kRemedy};
+    return std::nullopt;
 }
 
 }  // namespace
@@ -106,8 +120,10 @@ std::vector<ApprovedImage> approved_images(const fs::path& folder, const std::st
         const bool first = file == name + ".exr";
         if (!first && !(file.starts_with(name + "@") && file.ends_with(".exr"))) continue;
         const std::size_t at = name.size() + 1;
-        images.push_back(
-            {entry.path(), first ? "" : file.substr(at, file.size() - at - 4), read_sidecar(entry.path())});
+        ApprovedImage& image = images.emplace_back();
+        image.file = entry.path();
+        image.key = first ? "" : file.substr(at, file.size() - at - 4);
+        image.sidecar = read_sidecar(entry.path(), image.sidecar_fault);
     }
     const std::string own_key = own.key();
     const auto rank = [&](const ApprovedImage& image) {

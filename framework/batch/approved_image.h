@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/compare/compare_files.h"
 #include "framework/gpu/context.h"
 
 namespace aftershade {
@@ -41,11 +42,17 @@ struct GoldenSidecar {
     std::string image_hash;  ///< of the image file's bytes: a sidecar of another image says nothing
 };
 
+/// Why a sidecar that is there is not believed, and what that is worth.
+struct SidecarFault {
+    Verdict verdict = Verdict::warning;
+    std::string text;  ///< names the file and the remedy
+};
+
 struct ApprovedImage {
     std::filesystem::path file;
-    std::string key;  ///< after the '@'; "" of the first
-    /// nullopt: absent, unreadable, or of another image.
-    std::optional<GoldenSidecar> sidecar;
+    std::string key;                       ///< after the '@'; "" of the first
+    std::optional<GoldenSidecar> sidecar;  ///< nullopt: absent, or at fault
+    std::optional<SidecarFault> sidecar_fault{};
 };
 
 /// Approved images by one name ("lamps.color.0001"): that of `own` first (by sidecar, then by key), then the

@@ -6,6 +6,7 @@
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
+#include "framework/core/input_files.h"
 
 namespace aftershade {
 
@@ -70,8 +71,8 @@ private:
 
 class Approver {
 public:
-    Approver(const GoldenApproveOptions& options, GoldenApproval& approval)
-        : options_(options), approval_(approval) {}
+    Approver(const GoldenSuite& suite, const GoldenApproveOptions& options, GoldenApproval& approval)
+        : options_(options), approval_(approval), inputs_(suite_inputs(suite, false)) {}
 
     void take(const GoldenCaseResult& result, const std::vector<RenderedImage>& images) {
         const std::scoped_lock lock(mutex_);
@@ -95,6 +96,9 @@ private:
             return;
         }
         const fs::path target = target_of(test, image, approved);
+        if (const auto input = inputs_.replaced_by(target))
+            throw Error(ExitCode::usage, target.string() + ": would replace the input " + input->string() +
+                                             " (choose another folder for 'goldens')");
         staging_.add(target, image.file, sidecar);
         approval_.written.push_back(target);
         for (const ApprovedImage& other : approved)
@@ -129,6 +133,7 @@ private:
 
     const GoldenApproveOptions& options_;
     GoldenApproval& approval_;
+    InputFiles inputs_;
     Staging staging_;
     std::mutex mutex_;
 };
@@ -158,10 +163,14 @@ std::string foreign_goldens(const GoldenSuite& suite, const GoldenRunOptions& op
 GoldenApproval approve_goldens(const GoldenSuite& suite, const GoldenApproveOptions& options,
                                const GoldenListener& listener, const std::atomic<bool>& interrupt) {
     GoldenApproval approval;
-    Approver approver(options, approval);
+    Approver approver(suite, options, approval);
     std::vector<const GoldenCase*> cases;
     for (const GoldenCase& test : suite.cases)
         if (fits_filter(test, options.run.filters)) cases.push_back(&test);
+    // What cannot be written is known before the cases are drawn.
+    std::error_code absent;
+    for (const GoldenCase* test : cases)
+        if (fs::is_directory(test->goldens, absent)) prepare_output_folder(test->goldens / test->stem);
     const std::vector<std::string> hashes = look_hashes(cases, options.run.render.effect_paths);
     approval.cases.resize(cases.size());
     std::mutex telling;

@@ -99,6 +99,7 @@ void read_golden_case(const grammar::Reader& reader, const fs::path& folder, Gol
         result.rules = read_tolerance(*tolerance, diagnostics);
     result.tags = reader.texts("tags");
     result.skip = reader.text("skip");
+    result.optional = reader.boolean("optional");
 }
 
 std::optional<GoldenCase> parse_effect_case(const Node& node, const fs::path& file, const fs::path& root,

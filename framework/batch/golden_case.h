@@ -34,7 +34,8 @@ struct GoldenCase {
     std::vector<std::string> outputs{"color"};  ///< roles
     CompareRules rules;                         ///< the tolerance
     std::vector<std::string> tags;
-    std::string skip;  ///< why it is not run; "" where it is
+    std::string skip;       ///< why it is not run; "" where it is
+    bool optional = false;  ///< skipped, not failed, where its capture is absent
 
     /// "lamps.color", of a tap "lamps.bloom.bright": what FramePattern adds ".0001.exr" to.
     std::vector<std::string> image_stems() const;

@@ -67,7 +67,9 @@ std::vector<Key> common_keys() {
         optional("tolerance", grammar::object(golden_tolerance_block()), "How far the images may differ."),
         optional("tags", texts(), "Words for `--filter`; none may be another case's name."),
         optional("skip", text({.fault = "'skip' says why", .min_length = 1}),
-                 "Reason for not running the case.")};
+                 "Reason for not running the case."),
+        optional("optional", grammar::boolean(),
+                 "Whether the case is skipped where its capture is absent; else it fails.", "false")};
 }
 
 Block case_block() {

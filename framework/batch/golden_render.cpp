@@ -174,6 +174,13 @@ RenderedCase render_case(const GoldenCase& test, const GoldenRenderOptions& opti
                          const std::atomic<bool>& interrupt) {
     RenderedCase rendered;
     const std::vector<int> frames = frames_of(test, rendered.absent);
+    if (!rendered.absent.empty() && !test.optional) {
+        rendered.verdict = Verdict::file_error;
+        rendered.messages.push_back(rendered.absent +
+                                    " (a case that may lack its capture says \"optional\": true)");
+        rendered.absent.clear();
+        return rendered;
+    }
     if (!rendered.absent.empty()) return rendered;
     for (const char* folder : {"render", "taps", "images"}) fs::create_directories(work / folder);
     run_look(test, options, work, interrupt, rendered);

@@ -28,6 +28,10 @@ void compare_with(const ApprovedImage& approved, const GoldenCase& test, const R
     result.bits_equal = has_equal_bits(*result.comparison);
     result.verdict = result.comparison->verdict;
     result.reasons = reasons_of(*result.comparison);
+    if (approved.sidecar_fault) {
+        result.verdict = std::max(result.verdict, approved.sidecar_fault->verdict);
+        result.reasons.push_back(approved.sidecar_fault->text);
+    }
     result.exact_tier = approved.sidecar && !look_hash.empty() && approved.sidecar->look_hash == look_hash &&
                         approved.sidecar->environment.equals(environment);
     if (!result.exact_tier || result.bits_equal) return;

@@ -11,9 +11,12 @@
 #include "framework/batch/approved_image.h"
 #include "framework/batch/golden_grammar.h"
 #include "framework/capture/frame_range.h"
+#include "framework/capture/sequence.h"
 #include "framework/core/data_path.h"
+#include "framework/core/error.h"
 #include "framework/core/grammar_reader.h"
 #include "framework/core/grammar_schema.h"
+#include "framework/core/path_bounds.h"
 
 namespace aftershade {
 
@@ -30,6 +33,8 @@ public:
         const grammar::Reader reader(node, golden_suite_block());
         folder_ = suite_.file.parent_path();
         goldens_ = folder_ / reader.text("goldens");
+        if (const std::string why = out_of_bounds(goldens_, folder_); !why.empty())
+            diagnostics_.error(reader.place("goldens"), "the folder '" + goldens_.string() + "' " + why);
         for (const std::string& path : reader.texts("effect_paths")) add_effect_path(node, path);
         for (const grammar::Reader& test : reader.objects("cases")) add_case(test);
         if (reader.boolean("cases_of_effects")) add_cases_of_effects();
@@ -167,6 +172,29 @@ std::vector<fs::path> orphaned_goldens(const GoldenSuite& suite, const std::vect
     }
     std::sort(orphans.begin(), orphans.end());
     return orphans;
+}
+
+InputFiles suite_inputs(const GoldenSuite& suite, bool with_goldens) {
+    InputFiles inputs;
+    std::set<fs::path> goldens;
+    for (const GoldenCase& test : suite.cases) {
+        inputs.add(test.look);
+        goldens.insert(test.goldens);
+        const std::string capture = test.capture.string();
+        if (const auto document = capture_document(capture)) inputs.add(*document);
+        Diagnostics faults;
+        try {
+            if (const auto sequence = open_sequence(capture, faults))
+                inputs.add(files_of_sequence(*sequence));
+        } catch (const Error&) {
+            // An absent or faulty capture is its case's verdict.
+        }
+    }
+    std::error_code failure;
+    if (with_goldens)
+        for (const fs::path& folder : goldens)
+            for (const auto& entry : fs::directory_iterator(folder, failure)) inputs.add(entry.path());
+    return inputs;
 }
 
 std::string golden_schema() {

@@ -8,6 +8,7 @@
 
 #include "framework/batch/golden_case.h"
 #include "framework/core/diagnostics.h"
+#include "framework/core/input_files.h"
 
 namespace aftershade {
 
@@ -31,6 +32,9 @@ bool fits_filter(const GoldenCase& test, const std::vector<std::string>& filters
 /// only those whose names begin with a case that fits. Sorted.
 std::vector<std::filesystem::path> orphaned_goldens(const GoldenSuite& suite,
                                                     const std::vector<std::string>& filters);
+
+/// What a run of the suite reads: its documents, looks, captures and approved images.
+InputFiles suite_inputs(const GoldenSuite& suite, bool with_goldens);
 
 /// JSON Schema of golden.json.
 std::string golden_schema();

@@ -3,14 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "framework/batch/page_pixels.h"
 #include "framework/compare/layer_file.h"
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
+#include "framework/core/path_bounds.h"
 #include "framework/image/false_color.h"
 
 namespace aftershade {
@@ -24,6 +28,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+
+constexpr std::uintmax_t kMaxPictureBytes = std::uintmax_t(512) * 1024 * 1024;
 
 std::string hex_color(const DisplayColor& color) {
     const auto byte = [&](std::size_t c) { return int(std::clamp(color[c], 0.0f, 1.0f) * 255 + 0.5f); };
@@ -136,11 +142,14 @@ public:
     }
 
 private:
-    /// A report may come from a stranger's job: it must not bring other files of this machine into a page.
+    /// A report may come from a stranger's job: it must not bring other files of this machine into a page,
+    /// neither by a path nor by a link.
     fs::path file_of(const Json& name) const {
         const fs::path file = fs::path(name.get<std::string>()).lexically_normal();
-        if (file.is_absolute() || (!file.empty() && *file.begin() == ".."))
-            throw Error(ExitCode::capture, file.string() + ": leads out of the report");
+        std::string fault;
+        if (file.is_absolute() || (!file.empty() && *file.begin() == "..")) fault = "leads out of the report";
+        else is_file_below(report_, file, fault);
+        if (!fault.empty()) throw Error(ExitCode::capture, file.string() + ": " + fault);
         return report_ / file;
     }
     std::vector<StoredLayer> layers_in(const Json& name) const {
@@ -155,7 +164,12 @@ private:
 
     Json png(const Json& name) {
         if (!name.is_string()) return nullptr;
-        const std::string bytes = read_text_file(file_of(name), ExitCode::capture);
+        constexpr std::string_view kPngMagic = "\x89PNG\r\n\x1a\n";
+        const fs::path file = file_of(name).lexically_relative(report_);
+        std::string fault;
+        const std::string bytes = read_file_below(report_, file, kMaxPictureBytes, fault);
+        if (fault.empty() && !bytes.starts_with(kPngMagic)) fault = "is no PNG";
+        if (!fault.empty()) throw Error(ExitCode::capture, file.string() + ": " + fault);
         return store_.add(base64(std::as_bytes(std::span(bytes))));
     }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 
 #include "framework/capture/capture_grammar.h"
 #include "framework/core/document.h"
@@ -192,6 +193,27 @@ std::optional<Sequence> open_sequence(const std::string& argument, Diagnostics& 
     }
     find_missing_range(sequence, argument);
     return sequence;
+}
+
+std::vector<fs::path> files_of_sequence(const Sequence& sequence) {
+    std::set<int> numbers;
+    for (const int frame : sequence.frames)
+        for (int file = sequence.file_number(frame - 1); file < sequence.file_number(frame + 2); ++file)
+            numbers.insert(file);
+    std::vector<FramePattern> patterns;
+    if (!sequence.files.text().empty()) patterns.push_back(sequence.files);
+    for (const auto& [role, pattern] : sequence.role_files) patterns.push_back(pattern);
+    std::vector<fs::path> files;
+    for (const FramePattern& pattern : patterns) {
+        if (!pattern.has_frame()) {
+            files.emplace_back(pattern.text());
+            continue;
+        }
+        std::set<int> all = numbers;
+        for (const int number : find_frames(pattern)) all.insert(number);
+        for (const int number : all) files.emplace_back(pattern.path(number));
+    }
+    return files;
 }
 
 void add_role_file(Sequence& sequence, const std::string& text, Diagnostics& diagnostics) {

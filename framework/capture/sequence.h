@@ -56,6 +56,10 @@ std::optional<std::filesystem::path> capture_document(const std::string& argumen
 /// folder that holds nothing is Error(ExitCode::capture).
 std::optional<Sequence> open_sequence(const std::string& argument, Diagnostics& diagnostics);
 
+/// Every file that reading the sequence may open, whether it is there or not: those of its frames with their
+/// sub-frames, roles and neighbours, and whatever else fits its patterns on disk.
+std::vector<std::filesystem::path> files_of_sequence(const Sequence& sequence);
+
 /// Adds "--role depth=z.####.exr".
 void add_role_file(Sequence& sequence, const std::string& text, Diagnostics& diagnostics);
 

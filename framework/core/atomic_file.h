@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -14,10 +15,13 @@ namespace aftershade {
 
 /// Makes an empty temporary file beside `final_path`, named ".<name>.aftershade-<host>-<pid>-<n>.tmp", and
 /// holds a lock (flock) on it; commit() flushes it to disk and renames it, the destructor removes it if it
-/// was not committed. Where the file cannot be made the constructor says nothing: whoever opens it has the
-/// reason.
+/// was not committed. A symbolic link is followed: the file that it leads to is replaced, the link stays. The
+/// permissions of a file that is replaced are kept; a new file has those of the umask. The first one that a
+/// process makes in a folder removes what killed processes left there (remove_stale_temporaries).
 class AtomicFile {
 public:
+    /// Throws Error(ExitCode::output) where the path is a pipe, a socket or a device, which no rename may
+    /// replace. Where the file cannot be made it says nothing: whoever opens it has the reason.
     explicit AtomicFile(std::filesystem::path final_path);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
@@ -25,6 +29,29 @@ public:
 
     const std::filesystem::path& temporary_path() const { return temporary_path_; }
     /// Throws Error(ExitCode::output) naming the final path and the system's reason.
+    void commit();
+
+private:
+    std::filesystem::path final_path_;
+    std::filesystem::path target_;  ///< at the end of the links
+    std::filesystem::path temporary_path_;
+    std::optional<std::filesystem::perms> kept_;  ///< of the file that is replaced
+    int lock_ = -1;
+    bool committed_ = false;
+};
+
+/// The same for a folder: an empty temporary one beside `final_path`, which commit() renames and the
+/// destructor removes with all that it holds. Clears those that killed processes left there.
+class AtomicFolder {
+public:
+    /// Throws Error(ExitCode::output) where it cannot be made, naming the final path and the system's reason.
+    explicit AtomicFolder(std::filesystem::path final_path);
+    ~AtomicFolder();
+    AtomicFolder(const AtomicFolder&) = delete;
+    AtomicFolder& operator=(const AtomicFolder&) = delete;
+
+    const std::filesystem::path& temporary_path() const { return temporary_path_; }
+    /// Throws Error(ExitCode::output), also where something has the final path by now.
     void commit();
 
 private:
@@ -44,7 +71,8 @@ std::vector<std::filesystem::path> remove_stale_temporaries(const std::filesyste
 /// cannot be made or nothing can be written into it. "" is no file.
 void prepare_output_folder(const std::filesystem::path& file);
 
-/// Replaces the file by this text. Throws Error(ExitCode::output) naming the path.
+/// Replaces the file by this text; a pipe, a socket, a device and what /dev/stdout leads to get it directly.
+/// Throws Error(ExitCode::output) naming the path, also for a pipe that nobody reads.
 void write_text_file(const std::filesystem::path& path, std::string_view text);
 
 /// The file's bytes as they are, also where the system does not know their number (/proc). "" where it cannot

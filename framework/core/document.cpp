@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "framework/core/atomic_file.h"
+#include "framework/core/input_files.h"
 
 namespace aftershade {
 
@@ -257,6 +258,7 @@ std::optional<Node> parse_document(std::string_view text, const std::string& fil
 std::optional<Node> read_document(const std::filesystem::path& path, Diagnostics& diagnostics) {
     std::string fault;
     const std::string text = read_regular_file(path, kMaxDocumentBytes, fault);
+    note_document(path);
     if (fault.empty()) return parse_document(text, path.string(), diagnostics);
     diagnostics.error({path.string()}, fault);
     return std::nullopt;

@@ -1,5 +1,6 @@
 #include "framework/effect/registry.h"
 
+#include <system_error>
 #include <utility>
 
 #include "framework/core/document.h"
@@ -12,9 +13,16 @@ EffectRegistry::EffectRegistry(std::vector<fs::path> folders, fs::path glsl_fold
     : glsl_folder_(std::move(glsl_folder)) {
     for (const fs::path& folder : folders) {
         std::error_code failure;
-        for (const auto& entry : fs::directory_iterator(folder, failure))
-            if (fs::is_regular_file(entry.path() / "effect.json"))
-                folders_.emplace(entry.path().filename().string(), entry.path());
+        fs::directory_iterator at(folder, failure);
+        for (const fs::directory_iterator end; !failure && at != end; at.increment(failure)) {
+            std::error_code unreadable;
+            const fs::path& effect = at->path();
+            const fs::file_type type = fs::status(effect / "effect.json", unreadable).type();
+            if (type == fs::file_type::regular) folders_.emplace(effect.filename().string(), effect);
+            else if (type == fs::file_type::none) unreadable_.emplace(effect, unreadable.message());
+        }
+        if (failure && failure != std::errc::no_such_file_or_directory)
+            unreadable_.emplace(folder, failure.message());
     }
 }
 

@@ -23,12 +23,15 @@ public:
     /// Ids of all effects, sorted. The first folder wins where two have an effect of one id.
     std::vector<std::string> ids() const;
     bool contains(const std::string& id) const { return folders_.contains(id); }
+    /// Folders that could not be read, with the reason; what they hold is left out.
+    const std::map<std::filesystem::path, std::string>& unreadable() const { return unreadable_; }
     /// nullptr after faults in the manifest, which go to `diagnostics` the first time.
     const EffectManifest* find(const std::string& id, Diagnostics& diagnostics);
 
 private:
     std::filesystem::path glsl_folder_;
-    std::map<std::string, std::filesystem::path> folders_;  // by id
+    std::map<std::string, std::filesystem::path> folders_;     // by id
+    std::map<std::filesystem::path, std::string> unreadable_;  // reasons
     std::map<std::string, std::optional<EffectManifest>> manifests_;
 };
 

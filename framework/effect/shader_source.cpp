@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "framework/core/atomic_file.h"
+#include "framework/core/path_bounds.h"
 
 namespace aftershade {
 
@@ -65,6 +66,11 @@ private:
 
     void add_file(const fs::path& file, const Place& from) {
         if (!included_.insert(file).second) return;
+        // The name is plain, but a link may lead anywhere.
+        if (const std::string why = out_of_bounds(file, file.parent_path()); !why.empty()) {
+            diagnostics_.error(from, file.string() + " " + why);
+            return;
+        }
         std::error_code failure;
         std::istringstream in(read_text_file(file, failure));
         if (failure) {

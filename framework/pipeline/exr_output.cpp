@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "framework/capture/camera_metadata.h"
+#include "framework/core/diagnostics.h"
 #include "framework/core/error.h"
 #include "framework/image/role.h"
 #include "framework/image/window.h"
@@ -85,6 +86,21 @@ void refuse_lossy_ids(const std::filesystem::path& path, const ExrContent& conte
                                           "' holds ids (choose zip, zips, piz, rle or none)");
 }
 
+std::string overflow_text(const std::filesystem::path& path, const OutputOptions& options, int frame,
+                          const std::vector<HalfOverflow>& overflows) {
+    if (overflows.empty()) return "";
+    std::size_t values = 0;
+    std::vector<std::string> channels;
+    for (const HalfOverflow& overflow : overflows) {
+        values += overflow.values;
+        channels.push_back(overflow.channel);
+    }
+    return "frame " + std::to_string(frame) + ": " + path.string() + ": " + std::to_string(values) +
+           (values == 1 ? " value" : " values") + " of " + list_of_names(channels, "and") +
+           " above 65504, the largest half, became infinite (write floats: --pixel-type float" +
+           (options.keep_channels ? " without --keep-channels" : "") + "; or lower the exposure)";
+}
+
 }  // namespace
 
 const Image* find_image(const std::string& role, const FrameResult& result, const Capture& capture) {
@@ -115,8 +131,8 @@ ExrWriteOptions exr_write_options(const OutputOptions& options, const CaptureHea
     return write;
 }
 
-void write_exr_output(const std::filesystem::path& path, const OutputOptions& options,
-                      const FrameResult& result, const Capture& capture, const CaptureReader& reader) {
+std::string write_exr_output(const std::filesystem::path& path, const OutputOptions& options,
+                             const FrameResult& result, const Capture& capture, const CaptureReader& reader) {
     ExrContent content;
     const auto& source_channels = capture.header.role_channels;
     if (options.keep_channels) add_stored_channels(content, result, capture, reader);
@@ -137,7 +153,7 @@ void write_exr_output(const std::filesystem::path& path, const OutputOptions& op
         crop(content, write.data_window, write.display_window);
         write.data_window = write.display_window;
     }
-    write_exr(path, content.channels, write);
+    return overflow_text(path, options, capture.header.frame, write_exr(path, content.channels, write));
 }
 
 }  // namespace aftershade

@@ -33,8 +33,9 @@ Window written_window(const Window& display, const RunOptions& run) {
 }
 
 void note_non_finite(int frame, RunReport& report) {
-    if (report.frames_non_finite.empty() || report.frames_non_finite.back() != frame)
-        report.frames_non_finite.push_back(frame);
+    // A frame's files are reported after the next frame's capture.
+    std::vector<int>& frames = report.frames_non_finite;
+    if (std::ranges::find(frames, frame) == frames.end()) frames.push_back(frame);
 }
 
 FrameRun::Rendered FrameRun::render(std::size_t index, const std::vector<std::string>& roles,

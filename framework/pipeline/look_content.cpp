@@ -1,7 +1,9 @@
 #include "framework/pipeline/look_content.h"
 
+#include <exception>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
@@ -55,17 +57,37 @@ std::set<fs::path> files_of(const EffectManifest& manifest, const fs::path& glsl
     return files;
 }
 
+std::vector<fs::path> files_of_values(const PipelineStep& step) {
+    std::vector<fs::path> files;
+    for (const ParamSpec& spec : step.manifest->params)
+        for (const ParamValue& value : step.known_values(spec))
+            if (is_file_type(spec.type) && !std::get<std::string>(value).empty())
+                files.emplace_back(std::get<std::string>(value));
+    if (step.mask && !step.mask->file.empty()) files.push_back(step.mask->file);
+    return files;
+}
+
 }  // namespace
+
+std::vector<fs::path> files_of_pipeline(const Pipeline& pipeline, const fs::path& glsl_folder) {
+    std::set<fs::path> files;
+    for (const PipelineStep& step : pipeline.steps) {
+        for (fs::path& file : files_of_values(step)) files.insert(std::move(file));
+        try {
+            files.merge(files_of(*step.manifest, glsl_folder));
+        } catch (const std::exception&) {
+            // A shader that cannot be read is a fault of its effect, reported where it is compiled.
+        }
+    }
+    return {files.begin(), files.end()};
+}
 
 std::string content_of_values(const PipelineStep& step) {
     std::string text;
     for (const ParamSpec& spec : step.manifest->params)
-        for (const ParamValue& value : step.known_values(spec)) {
-            if (spec.type->content) text += spec.type->content(value);
-            if (is_file_type(spec.type) && !std::get<std::string>(value).empty())
-                add_file(std::get<std::string>(value), text);
-        }
-    if (step.mask && !step.mask->file.empty()) add_file(step.mask->file, text);
+        if (spec.type->content)
+            for (const ParamValue& value : step.known_values(spec)) text += spec.type->content(value);
+    for (const fs::path& file : files_of_values(step)) add_file(file, text);
     return text;
 }
 

@@ -3,11 +3,17 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "framework/effect/manifest/manifest.h"
 #include "framework/pipeline/pipeline.h"
 
 namespace aftershade {
+
+/// Every file that the pipeline's effects and values name: manifests, modules, shaders with what they
+/// include, native sources, pictures, tables and masks.
+std::vector<std::filesystem::path> files_of_pipeline(const Pipeline& pipeline,
+                                                     const std::filesystem::path& glsl_folder);
 
 /// What the files hold that the step's parameters and its mask name, and scattering profiles by what they
 /// say. Throws Error(ExitCode::usage) for a file that cannot be read.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
@@ -18,13 +19,6 @@ namespace aftershade {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// With links followed, so that two ways to one file are one.
-fs::path resolved(const fs::path& path) {
-    std::error_code failure;
-    const fs::path result = fs::weakly_canonical(fs::absolute(path, failure), failure);
-    return failure ? path : result;
-}
 
 std::string extension(const fs::path& path) {
     std::string text = path.extension().string();
@@ -169,16 +163,8 @@ void prepare_output_folders(const OutputOptions& options, const Sequence& sequen
         }
 }
 
-void check_outputs(const OutputOptions& options, const Sequence& sequence, Diagnostics& diagnostics) {
-    std::map<fs::path, fs::path> inputs;
-    for (const int frame : sequence.frames)
-        for (int subframe = 0; subframe < sequence.subframes; ++subframe) {
-            const int file = sequence.file_number(frame, subframe);
-            inputs.emplace(resolved(sequence.path_of(file)), sequence.path_of(file));
-            for (const auto& [role, pattern] : sequence.role_files)
-                inputs.emplace(resolved(pattern.path(file)), pattern.path(file));
-        }
-    std::set<fs::path> named;
+void check_outputs(const OutputOptions& options, const Sequence& sequence, InputFiles& inputs,
+                   Diagnostics& diagnostics) {
     if (options.patterns.empty() && !options.stream_format)
         diagnostics.error({"-o"}, "no output; name at least one file, such as -o out_####.exr");
     for (const auto& [place, text, is_telemetry] : all_names(options)) {
@@ -191,15 +177,14 @@ void check_outputs(const OutputOptions& options, const Sequence& sequence, Diagn
         if (sequence.frames.size() > 1 && !pattern.has_frame())
             diagnostics.error(place, std::to_string(sequence.frames.size()) +
                                          " frames cannot share one file; write the number as #### or %04d");
-        if (!sequence.frames.empty() && !named.insert(resolved(pattern.path(sequence.frames.front()))).second)
-            diagnostics.error(place, "another output has this name");
-        for (const int frame : sequence.frames) {
-            const auto input = inputs.find(resolved(pattern.path(frame)));
-            if (input == inputs.end()) continue;
-            diagnostics.error(place, "would replace the input " + input->second.string());
-            break;
-        }
+        for (const int frame : sequence.frames)
+            if (!inputs.check_output(place, pattern.path(frame), diagnostics) || !pattern.has_frame()) break;
     }
+    for (const std::string& tap : std::set<std::string>(options.taps.begin(), options.taps.end()))
+        for (const int frame : sequence.frames)
+            if (!options.patterns.empty() && !options.tap_patterns.contains(tap) &&
+                !inputs.check_output({"--tap " + tap}, path_of_tap(options, tap, frame), diagnostics))
+                break;
     const auto& known = exr_compression_names();
     if (std::find(known.begin(), known.end(), options.compression) == known.end())
         diagnostics.error({"--compression " + options.compression}, "must be one of " + list_of_names(known));
@@ -235,26 +220,27 @@ std::vector<fs::path> output_files(const OutputOptions& options, const std::vect
     return files;
 }
 
-std::vector<fs::path> write_outputs(const OutputOptions& options, const FrameResult& result,
-                                    const Capture& capture, const CaptureReader& reader) {
-    std::vector<fs::path> written;
+WrittenFiles write_outputs(const OutputOptions& options, const FrameResult& result, const Capture& capture,
+                           const CaptureReader& reader) {
+    WrittenFiles written;
     const int frame = capture.header.frame;
     for (const std::string& text : options.patterns) {
         const fs::path path = FramePattern(text).path(frame);
-        if (extension(path) == ".exr") write_exr_output(path, options, result, capture, reader);
-        else write_png(path, display_picture(result, capture), png_text(options));
-        written.push_back(path);
+        if (extension(path) != ".exr") write_png(path, display_picture(result, capture), png_text(options));
+        else if (auto lost = write_exr_output(path, options, result, capture, reader); !lost.empty())
+            written.warnings.push_back(std::move(lost));
+        written.paths.push_back(path);
     }
     if (options.stream) options.stream->write(frame, display_picture(result, capture));
     for (const auto& [tap, image] : result.taps) {
         const fs::path path = path_of_tap(options, tap, frame);
         if (extension(path) == ".png") write_false_color(path, image, options, capture.header);
         else write_tap(path, image, options, capture.header);
-        written.push_back(path);
+        written.paths.push_back(path);
     }
     if (result.telemetry && !options.telemetry.empty()) {
-        written.push_back(FramePattern(options.telemetry).path(frame));
-        write_text_file(written.back(), telemetry_json(*result.telemetry));
+        written.paths.emplace_back(FramePattern(options.telemetry).path(frame));
+        write_text_file(written.paths.back(), telemetry_json(*result.telemetry));
     }
     return written;
 }

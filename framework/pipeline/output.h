@@ -8,6 +8,7 @@
 #include "framework/capture/capture.h"
 #include "framework/capture/frame_range.h"
 #include "framework/core/diagnostics.h"
+#include "framework/core/input_files.h"
 #include "framework/pipeline/output_options.h"
 #include "framework/pipeline/renderer.h"
 
@@ -17,8 +18,9 @@ namespace aftershade {
 void prepare_output_folders(const OutputOptions& options, const Sequence& sequence);
 
 /// Faults that show before any work: an unknown extension, several frames for one file, an output that is an
-/// input.
-void check_outputs(const OutputOptions& options, const Sequence& sequence, Diagnostics& diagnostics);
+/// input or another output. `inputs` has what the run reads, and notes the outputs.
+void check_outputs(const OutputOptions& options, const Sequence& sequence, InputFiles& inputs,
+                   Diagnostics& diagnostics);
 
 /// Roles that the options need from the pipeline: those of EXR, and display where a PNG is asked for.
 std::vector<std::string> wanted_roles(const OutputOptions& options);
@@ -27,10 +29,15 @@ std::vector<std::string> wanted_roles(const OutputOptions& options);
 std::vector<std::filesystem::path> output_files(const OutputOptions& options, const std::vector<Tap>& taps,
                                                 int frame);
 
+struct WrittenFiles {
+    std::vector<std::filesystem::path> paths;
+    std::vector<std::string> warnings;  ///< values that a format could not hold, with the remedy
+};
+
 /// Writes one frame, each file by rename. A role that no step made is taken from the capture. PNG takes
 /// `display`, else color encoded as sRGB, over the display window; so does the stream, if there is one.
-/// Returns the paths. Throws Error(ExitCode::output).
-std::vector<std::filesystem::path> write_outputs(const OutputOptions& options, const FrameResult& result,
-                                                 const Capture& capture, const CaptureReader& reader);
+/// Throws Error(ExitCode::output).
+WrittenFiles write_outputs(const OutputOptions& options, const FrameResult& result, const Capture& capture,
+                           const CaptureReader& reader);
 
 }  // namespace aftershade

@@ -27,7 +27,8 @@ struct OutputOptions {
     std::string telemetry{};          ///< "stats_####.json": numbers of each frame; "" for none
     std::optional<StreamFormat> stream_format{};        ///< of frames that go into a pipe, too
     FrameStream* stream = nullptr;                      ///< that pipe, once it is open
-    std::map<std::string, std::string> tap_patterns{};  ///< by "step.texture"; else beside the first pattern
+    std::vector<std::string> taps{};                    ///< "step.texture": files beside the first pattern
+    std::map<std::string, std::string> tap_patterns{};  ///< by "step.texture": names of their own
 };
 
 }  // namespace aftershade

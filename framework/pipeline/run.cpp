@@ -73,7 +73,7 @@ private:
 };
 
 struct Written {
-    std::vector<std::filesystem::path> paths;
+    WrittenFiles files;
     double milliseconds = 0;
 };
 
@@ -82,7 +82,7 @@ Written write_frame(const RunSetup& setup, const OutputOptions& outputs, const F
     const auto start = Clock::now();
     const TraceScope traced(setup.options.trace, "encode", "frame " + std::to_string(capture.header.frame));
     Written written;
-    written.paths = write_outputs(outputs, result, capture, setup.reader);
+    written.files = write_outputs(outputs, result, capture, setup.reader);
     written.milliseconds = milliseconds_since(start);
     return written;
 }
@@ -175,6 +175,7 @@ public:
         if (report_.history_saved)
             renderer_.save_history(run.history_out,
                                    setup_.hooks.last_fingerprint ? setup_.hooks.last_fingerprint() : "");
+        std::ranges::sort(report_.frames_non_finite);
         report_.decode_ms = loader_.busy_ms();
         report_.graph_dot = renderer_.graph_dot();
         std::tie(report_.bytes, report_.bytes_unaliased) = renderer_.graph_bytes();
@@ -234,7 +235,7 @@ private:
         const auto write = [frame, number, begin, outputs = std::move(outputs), &setup = setup_] {
             Written written = write_frame(setup, outputs, *frame.result, *frame.capture);
             if (setup.hooks.frame_written)
-                setup.hooks.frame_written(number, written.paths, milliseconds_since(begin) / 1000);
+                setup.hooks.frame_written(number, written.files.paths, milliseconds_since(begin) / 1000);
             return written;
         };
         pending_ = {number, std::async(std::launch::async, write)};
@@ -247,7 +248,9 @@ private:
         const Written written = pending_.files.get();
         report_.write_ms += milliseconds_since(start);
         report_.encode_ms += written.milliseconds;
-        outcomes_.done(pending_.frame, written.paths);
+        if (!written.files.warnings.empty()) note_non_finite(pending_.frame, report_);
+        if (observer_.non_finite) std::ranges::for_each(written.files.warnings, observer_.non_finite);
+        outcomes_.done(pending_.frame, written.files.paths);
     }
 
     const RunSetup& setup_;

@@ -69,7 +69,8 @@ struct RunObserver {
     std::function<void(const std::filesystem::path&)> file_written;
     std::function<void(const std::string&)> frame_failed;
     std::function<void(const CaptureHeader&, const std::vector<AuditFinding>&)> frame_audited;
-    /// A sentence on NaN or infinite pixels of a capture or of an output.
+    /// A sentence on NaN or infinite pixels of a capture or of an output, or on values that became infinite
+    /// in a file.
     std::function<void(const std::string& message)> non_finite;
     std::function<void(int frame, const std::string& what)> frame_missing;  ///< skipped or held
     /// Frames but the first that begin history anew, where some step has history.

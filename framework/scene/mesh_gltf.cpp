@@ -1,5 +1,6 @@
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
+#include "framework/core/path_bounds.h"
 #include "framework/scene/gltf_bytes.h"
 #include "framework/scene/mesh.h"
 
@@ -41,9 +42,12 @@ std::string same_path(const std::string& path, void*) {
     return path;
 }
 
-bool read_whole_file(std::vector<unsigned char>* bytes, std::string* error, const std::string& path, void*) {
-    std::string fault;
-    const std::string text = read_regular_file(path, kMaxGltfBytes, fault);
+/// `folder` is the mesh's own: what it names may not bring other files into a scene.
+bool read_whole_file(std::vector<unsigned char>* bytes, std::string* error, const std::string& path,
+                     void* folder) {
+    std::string fault = out_of_bounds(path, *static_cast<const std::string*>(folder));
+    const std::string text = fault.empty() ? read_regular_file(path, kMaxGltfBytes, fault) : "";
+    if (!fault.empty()) fault = path + " " + fault;
     bytes->assign(text.begin(), text.end());
     if (!fault.empty() && error) *error += fault;
     return fault.empty();
@@ -86,8 +90,8 @@ tinygltf::Model load_model(const fs::path& path) {
 
     tinygltf::TinyGLTF loader;
     loader.SetImageLoader(leave_image, nullptr);
-    loader.SetFsCallbacks({file_exists, same_path, read_whole_file, refuse_to_write, nullptr});
-    const std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";
+    std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";
+    loader.SetFsCallbacks({file_exists, same_path, read_whole_file, refuse_to_write, &folder});
     const unsigned size = unsigned(bytes.size());
     tinygltf::Model model;
     std::string error;

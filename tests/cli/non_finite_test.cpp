@@ -116,5 +116,25 @@ TEST_F(NonFiniteFrame, IsToldInAPictureToo) {
     expect_told(result, "warning: frame 2: the role 'color' of in_0002\\.exr has 2 NaN pixels");
 }
 
+TEST_F(NonFiniteFrame, ThatAHalfMakesOfLargeValuesIsToldWithCountAndRemedy) {
+    Capture bright = clean_;
+    bright.images.at("color").at(3, 4, 0) = 1e30f;
+    bright.images.at("color").at(5, 4, 0) = -70000;
+    bright.images.at("color").at(6, 4, 1) = 65504;
+    write_capture(bright, frame_path(2));
+    const CommandResult result =
+        run_aftershade({"run", "nothing.json", "in_0002.exr", "-o", "out.exr"}, folder_.path());
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    expect_told(
+        result,
+        "aftershade: warning: frame 2: out\\.exr: 2 values of 'R' above 65504, the largest half, became "
+        "infinite \\(write floats: --pixel-type float; or lower the exposure\\)");
+    expect_told(result, "NaN or infinite pixels in 1 of 1 frames: 2\n");
+    EXPECT_TRUE(std::isinf(color("out.exr").at(3, 4, 0)));
+    const CommandResult floats = run({"nothing.json", "in_0002.exr", "-o", "float.exr"}, 0);
+    EXPECT_EQ(floats.err.find("65504"), std::string::npos) << floats.err;
+    EXPECT_EQ(color("float.exr").at(3, 4, 0), 1e30f);
+}
+
 }  // namespace
 }  // namespace aftershade::test

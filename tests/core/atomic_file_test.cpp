@@ -190,5 +190,126 @@ TEST(OutputFolder, IsMadeWithTheFoldersAboveIt) {
     }
 }
 
+fs::perms mode_of(const fs::path& file) {
+    return fs::status(file).permissions() & fs::perms::all;
+}
+
+constexpr fs::perms kOwnerOnly = fs::perms::owner_read | fs::perms::owner_write;
+
+TEST(AtomicFiles, KeepThePermissionsOfWhatTheyReplaceAndElseTakeTheUmasks) {
+    const TemporaryFolder folder;
+    for (const fs::perms mode : {kOwnerOnly, fs::perms(0640), fs::perms(0777), fs::perms(0444)}) {
+        fs::remove(folder / "f");
+        write_text(folder / "f", "old");
+        fs::permissions(folder / "f", mode);
+        const AtomicFile open_one(folder / "f");
+        EXPECT_EQ(mode_of(open_one.temporary_path()) & fs::perms(0077), mode & fs::perms(0055))
+            << "nobody else may read it while it is written; umask 022";
+        write_text_file(folder / "f", "new");
+        EXPECT_EQ(mode_of(folder / "f"), mode);
+        EXPECT_EQ(read_text(folder / "f"), "new");
+    }
+    const mode_t before = umask(0027);
+    write_text_file(folder / "made", "");
+    umask(before);
+    EXPECT_EQ(mode_of(folder / "made"), fs::perms(0640));
+}
+
+TEST(AtomicFiles, ReplaceWhatALinkLeadsToAndKeepTheLink) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "store");
+    write_text(folder / "store/real", "old");
+    fs::permissions(folder / "store/real", kOwnerOnly);
+    fs::create_symlink("store/real", folder / "second");
+    fs::create_symlink("second", folder / "first");
+    fs::create_symlink("store/later", folder / "dangling");
+    const AtomicFile open_one(folder / "first");
+    EXPECT_EQ(open_one.temporary_path().parent_path().lexically_normal(), folder / "store");
+    write_text_file(folder / "first", "new");
+    EXPECT_TRUE(fs::is_symlink(folder / "first"));
+    EXPECT_TRUE(fs::is_symlink(folder / "second"));
+    EXPECT_EQ(read_text(folder / "store/real"), "new");
+    EXPECT_EQ(mode_of(folder / "store/real"), kOwnerOnly);
+    write_text_file(folder / "dangling", "made");
+    EXPECT_EQ(read_text(folder / "store/later"), "made");
+}
+
+/// What writing text there fails with; "" where it does not.
+std::string write_fault(const fs::path& path) {
+    try {
+        write_text_file(path, "text");
+    } catch (const Error& error) {
+        EXPECT_EQ(error.exit_code(), ExitCode::output);
+        return error.what();
+    }
+    return "";
+}
+
+TEST(AtomicFiles, FailWhereLinksGoRound) {
+    const TemporaryFolder folder;
+    fs::create_symlink("b", folder / "a");
+    fs::create_symlink("a", folder / "b");
+    EXPECT_NE(write_fault(folder / "a").find("Too many levels of symbolic links"), std::string::npos);
+    EXPECT_EQ(folder.file_count(), 2u);
+    EXPECT_TRUE(fs::is_symlink(folder / "a"));
+}
+
+TEST(AtomicFiles, LeaveTextToPipesAndDevicesAndRefuseToReplaceThem) {
+    const TemporaryFolder folder;
+    ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+    EXPECT_NE(write_fault(folder / "pipe").find("it is a pipe that nobody reads"), std::string::npos);
+    const int reader = open((folder / "pipe").c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    EXPECT_EQ(write_fault(folder / "pipe"), "");
+    char bytes[8] = {};
+    EXPECT_EQ(read(reader, bytes, sizeof bytes), 4);
+    close(reader);
+    EXPECT_EQ(std::string(bytes), "text");
+    EXPECT_TRUE(fs::is_fifo(folder / "pipe"));
+    EXPECT_EQ(write_fault("/dev/null"), "");
+    EXPECT_NE(write_fault("/dev/full").find("/dev/full: cannot be written: No space left on device"),
+              std::string::npos);
+    for (const fs::path& path : {folder / "pipe", fs::path("/dev/null"), fs::path("/dev/stdout")})
+        EXPECT_THROW(AtomicFile{path}, Error) << path;
+}
+
+TEST(AtomicFiles, ClearWhatKilledProcessesLeftBeforeTheFirstInAFolder) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "sub");
+    const fs::path stale =
+        folder / "sub" / temporary_of(folder / "out.exr", dead_process()).filename().string();
+    write_text(stale, "half");
+    write_text_file(folder / "sub/f", "text");
+    EXPECT_FALSE(fs::exists(stale));
+}
+
+TEST(AtomicFolders, AppearWholeOrNotAtAll) {
+    const TemporaryFolder folder;
+    {
+        const AtomicFolder never(folder / "made");
+        write_text(never.temporary_path() / "f", "text");
+        EXPECT_FALSE(fs::exists(folder / "made"));
+    }
+    EXPECT_EQ(folder.file_count(), 0u);
+    AtomicFolder made(folder / "made");
+    write_text(made.temporary_path() / "f", "text");
+    made.commit();
+    EXPECT_EQ(read_text(folder / "made/f"), "text");
+    AtomicFolder second(folder / "made");
+    EXPECT_THROW(second.commit(), Error) << "something has the name by now";
+    EXPECT_EQ(read_text(folder / "made/f"), "text");
+}
+
+TEST(AtomicFolders, ClearWhatKilledProcessesLeft) {
+    const TemporaryFolder folder;
+    const std::string own = AtomicFolder(folder / "made").temporary_path().filename().string();
+    const std::string mark = "-" + std::to_string(getpid()) + "-";
+    std::string stale = own;
+    stale.replace(own.rfind(mark), mark.size(), "-" + std::to_string(dead_process()) + "-");
+    fs::create_directory(folder / stale);
+    write_text(folder / stale / "f", "half");
+    const AtomicFolder next(folder / "other");
+    EXPECT_FALSE(fs::exists(folder / stale));
+}
+
 }  // namespace
 }  // namespace aftershade::test

@@ -25,7 +25,9 @@ Sequence sequence_of(const std::string& pattern, std::vector<int> frames) {
 
 std::string faults(const OutputOptions& options, const Sequence& sequence) {
     Diagnostics diagnostics;
-    check_outputs(options, sequence, diagnostics);
+    InputFiles inputs;
+    inputs.add(files_of_sequence(sequence));
+    check_outputs(options, sequence, inputs, diagnostics);
     std::ostringstream text;
     diagnostics.print(text);
     return text.str();
@@ -98,7 +100,7 @@ protected:
         for (const auto& [tap, pattern] : tap_patterns_)
             options.tap_patterns[tap] = (folder_ / pattern).string();
         std::vector<std::string> names;
-        for (const fs::path& path : write_outputs(options, result_, capture_, reader_)) {
+        for (const fs::path& path : write_outputs(options, result_, capture_, reader_).paths) {
             EXPECT_TRUE(fs::is_regular_file(path)) << path;
             names.push_back(fs::relative(path, folder_.path()).string());
         }

@@ -2,11 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <map>
 #include <regex>
 #include <set>
+#include <string>
 #include <utility>
+#include <variant>
 
+#include "framework/core/param_type.h"
+#include "framework/core/path_bounds.h"
 #include "framework/effect/glsl_names.h"
 
 namespace aftershade {
@@ -176,6 +181,25 @@ private:
     std::set<std::pair<std::string, std::string>> told_;
 };
 
+/// Pictures and tables that a manifest names lie in its folder.
+void check_files(const EffectManifest& manifest, Diagnostics& diagnostics) {
+    const auto check = [&](const ParamSpec& spec, const ParamValue& value, const std::string& place) {
+        const auto& file = std::get<std::string>(value);
+        if (file.empty()) return;
+        const std::filesystem::path path = manifest.folder / file;
+        if (const std::string why = out_of_bounds(path, manifest.folder); !why.empty())
+            diagnostics.error({(manifest.folder / "effect.json").string()},
+                              place + spec.name + ": " + path.string() + " " + why);
+    };
+    for (const ParamSpec& spec : manifest.params) {
+        if (!is_file_type(spec.type)) continue;
+        check(spec, spec.default_value, "params.");
+        for (const PresetSpec& preset : manifest.presets)
+            if (const auto value = preset.values.find(spec.name); value != preset.values.end())
+                check(spec, value->second, "presets." + preset.name + ".");
+    }
+}
+
 }  // namespace
 
 void check_names(const EffectManifest& manifest, Diagnostics& diagnostics) {
@@ -184,6 +208,7 @@ void check_names(const EffectManifest& manifest, Diagnostics& diagnostics) {
 
 void check_manifest(const EffectManifest& manifest, Diagnostics& diagnostics) {
     check_names(manifest, diagnostics);
+    check_files(manifest, diagnostics);
     check_passes(manifest, diagnostics);
     check_tiles(manifest, diagnostics);
 }

@@ -1,0 +1,40 @@
+#include "cli/run_inputs.h"
+
+#include <filesystem>
+#include <string>
+
+#include "framework/core/data_path.h"
+#include "framework/pipeline/look_content.h"
+#include "framework/pipeline/output.h"
+#include "framework/pipeline/run_state.h"
+
+namespace aftershade::cli {
+
+namespace fs = std::filesystem;
+
+InputFiles run_inputs(const BoundLook& bound, const Sequence& sequence, const Diagnostics& faults) {
+    InputFiles inputs;
+    if (!faults.has_errors()) inputs.add(files_of_pipeline(bound.pipeline, data_path() / "glsl"));
+    inputs.add(files_of_sequence(sequence));
+    return inputs;
+}
+
+void check_run_outputs(const RunArguments& options, const OutputOptions& outputs, const Sequence& sequence,
+                       InputFiles& inputs, Diagnostics& diagnostics) {
+    const auto check = [&](const std::string& word, const std::string& file) {
+        inputs.check_output({word + " " + file}, file, diagnostics);
+    };
+    check("--history-out", options.history_out);
+    inputs.add(fs::path(options.history_in));
+    check_outputs(outputs, sequence, inputs, diagnostics);
+    check("--graph", options.graph);
+    check("--telemetry-plot", options.telemetry_plot);
+    check("--trace", options.trace);
+    check("--report", options.jobs.report);
+    for (const std::string& pattern : outputs.patterns)
+        if (const auto input = inputs.replaced_by(run_state(pattern).journal()))
+            diagnostics.error({"-o " + pattern}, "the journal beside it would replace the input " +
+                                                     input->string() + " (--no-journal does without)");
+}
+
+}  // namespace aftershade::cli

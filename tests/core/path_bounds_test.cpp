@@ -1,0 +1,64 @@
+#include "framework/core/path_bounds.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cstdlib>
+
+#include "tests/temporary_folder.h"
+
+namespace aftershade::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(PathBounds, HoldWithLinksFollowed) {
+    const TemporaryFolder folder;
+    fs::create_directories(folder / "own/below");
+    fs::create_directory(folder / "ownership");
+    write_text(folder / "secret", "");
+    fs::create_symlink("../secret", folder / "own/link");
+    fs::create_symlink("below", folder / "own/inside");
+    const fs::path own = folder / "own";
+    for (const char* name : {"own/f", "own/below/f", "own/inside/f", "own/below/../f", "own"})
+        EXPECT_EQ(out_of_bounds(folder / name, own), "") << name;
+    for (const char* name : {"own/link", "own/../secret", "ownership/f"})
+        EXPECT_TRUE(out_of_bounds(folder / name, own).starts_with("leads out of the folder '" + own.string()))
+            << name;
+    EXPECT_FALSE(out_of_bounds("/etc/passwd", own).empty());
+    EXPECT_EQ(out_of_bounds(fs::current_path() / "f", ""), "") << "the working folder";
+}
+
+TEST(PathBounds, AreWidenedByFoldersThatTheUserAllows) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "own");
+    EXPECT_NE(out_of_bounds(folder / "shared/f", folder / "own"), "");
+    allow_folders({(folder / "elsewhere").string(), (folder / "shared").string()});
+    EXPECT_EQ(out_of_bounds(folder / "shared/f", folder / "own"), "");
+    EXPECT_NE(out_of_bounds(folder / "other/f", folder / "own"), "");
+    unsetenv("AFTERSHADE_ALLOW_PATH");
+}
+
+TEST(FilesBelow, AreReadWithoutFollowingAnyLink) {
+    const TemporaryFolder folder;
+    fs::create_directories(folder / "report/images");
+    write_text(folder / "secret", "secret");
+    write_text(folder / "report/images/f", "text");
+    fs::create_symlink("../../secret", folder / "report/images/link");
+    fs::create_directory_symlink("..", folder / "report/up");
+    mkfifo((folder / "report/pipe").c_str(), 0600);
+    std::string fault;
+    EXPECT_EQ(read_file_below(folder / "report", "images/f", 4, fault), "text");
+    EXPECT_EQ(fault, "");
+    EXPECT_EQ(read_file_below(folder / "report", "images/f", 3, fault), "");
+    EXPECT_EQ(fault, "the file has more bytes than the limit of 3");
+    for (const char* name :
+         {"images/link", "up/secret", "../secret", "pipe", "images", "absent", "/etc/hosts"}) {
+        EXPECT_EQ(read_file_below(folder / "report", name, 100, fault), "") << name;
+        EXPECT_NE(fault, "") << name;
+        EXPECT_FALSE(is_file_below(folder / "report", name, fault)) << name;
+    }
+}
+
+}  // namespace
+}  // namespace aftershade::test
