@@ -12,18 +12,27 @@
 #include <string_view>
 
 #include "cli/compare_options.h"
+#include "cli/plugin_options.h"
 #include "cli/verbs.h"
 #include "framework/core/memory_limit.h"
+#include "framework/core/status.h"
+#include "framework/effect/native/native_process.h"
 
 using aftershade::ExitCode;
 
 namespace {
 
+/// The last word to the process that started this one, if it is a worker.
+int end(int code) {
+    aftershade::StatusWriter().end(code);
+    return code;
+}
+
 int fail(ExitCode code, const char* message) {
     // Messages of documents bring their own "file:line:column: error: ".
     const bool has_place = std::string_view(message).find(": error: ") != std::string_view::npos;
     std::fprintf(stderr, "%s%s\n", has_place ? "" : "aftershade: error: ", message);
-    return int(code);
+    return end(int(code));
 }
 
 /// At once: what libraries do at the end of a process may wait for ever after this.
@@ -57,6 +66,8 @@ std::string stdout_fault() {
 }  // namespace
 
 int main(int argc, char** argv) {
+    if (argc == 2 && std::string_view(argv[1]) == aftershade::cli::kNativeHostWord)
+        return aftershade::serve_native_code(aftershade::kNativeDescriptor);
     // A file above the shell's limit is then an output that cannot be written, not the end of the process.
     std::signal(SIGXFSZ, SIG_IGN);
     CLI::App app{"Runs chains of shader effects over G-buffer captures, without a display.", "aftershade"};
@@ -86,12 +97,12 @@ int main(int argc, char** argv) {
         return app.exit(asked_for_help);
     } catch (const CLI::ParseError& error) {
         app.exit(error);
-        return int(keeps_idiffs_codes() ? aftershade::cli::kCompareUsage : ExitCode::usage);
+        return end(int(keeps_idiffs_codes() ? aftershade::cli::kCompareUsage : ExitCode::usage));
     }
     aftershade::prepare_for_memory_limit();
     try {
         const ExitCode code = verbs.at(app.get_subcommands().front())();
-        if (stdout_is_whole()) return int(code);
+        if (stdout_is_whole()) return end(int(code));
         constexpr ExitCode kIdiffsFileError{4};
         return fail(keeps_idiffs_codes() ? kIdiffsFileError : ExitCode::output, stdout_fault().c_str());
     } catch (const aftershade::Error& error) {
