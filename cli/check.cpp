@@ -9,9 +9,11 @@
 #include "cli/check_warmup.h"
 #include "cli/effect_options.h"
 #include "cli/gl_options.h"
+#include "cli/plugin_options.h"
 #include "cli/verbs.h"
 #include "framework/core/data_path.h"
 #include "framework/core/error.h"
+#include "framework/core/status.h"
 #include "framework/effect/lint.h"
 #include "framework/effect/usage_check.h"
 #include "framework/pipeline/effect_check.h"
@@ -27,22 +29,12 @@ namespace fs = std::filesystem;
 struct CheckOptions {
     std::string subject;
     std::vector<std::string> effect_paths;
-    std::vector<std::string> plugin_paths;
+    PluginOptions plugins;
     std::string backend;
     bool no_gl = false;
     bool strict = false;
     std::string warmup;
 };
-
-void check_one_effect(const EffectManifest& manifest, const CheckOptions& options, Diagnostics& diagnostics) {
-    const fs::path data = data_path();
-    check_declared_used(manifest, data / "glsl", diagnostics);
-    lint_effect(manifest, data / "glsl", diagnostics);
-    if (options.no_gl) return;
-    gpu::Context context(chosen_backend(options.backend));
-    NativeRegistry natives(native_search_path({options.plugin_paths.begin(), options.plugin_paths.end()}));
-    check_effect(context, manifest, data, {&natives, nullptr}, diagnostics);
-}
 
 /// Exit 1 is the verdict; exit 2 is for words that name nothing.
 ExitCode verdict(const Diagnostics& diagnostics, const CheckOptions& options) {
@@ -51,6 +43,27 @@ ExitCode verdict(const Diagnostics& diagnostics, const CheckOptions& options) {
     fmt::print("{}: {} errors, {} warnings\n", options.subject, diagnostics.error_count(), warnings);
     const bool sound = !diagnostics.has_errors() && (warnings == 0 || !options.strict);
     return sound ? ExitCode::done : ExitCode::partial;
+}
+
+void check_one_effect(const EffectManifest& manifest, const CheckOptions& options, Diagnostics& diagnostics) {
+    const fs::path data = data_path();
+    check_declared_used(manifest, data / "glsl", diagnostics);
+    lint_effect(manifest, data / "glsl", diagnostics);
+    if (options.no_gl) return;
+    gpu::Context context(chosen_backend(options.backend));
+    StatusWriter status;
+    NativeRegistry natives = native_registry(options.plugins, &status);
+    check_effect(context, manifest, data, {&natives, &status}, diagnostics);
+}
+
+/// In a worker where it draws what a stranger wrote. `manifest` nullptr: its document has faults.
+ExitCode check_effect_apart(const EffectManifest* manifest, const CheckOptions& options,
+                            Diagnostics& diagnostics) {
+    if (!manifest) return verdict(diagnostics, options);
+    if (!options.no_gl)
+        if (const auto code = run_in_worker(options.plugins, !is_shipped(*manifest))) return *code;
+    check_one_effect(*manifest, options, diagnostics);
+    return verdict(diagnostics, options);
 }
 
 ExitCode check(const CheckOptions& options) {
@@ -69,15 +82,12 @@ ExitCode check(const CheckOptions& options) {
         stop_at_words();
         const fs::path folder = fs::weakly_canonical(subject, failure);
         const auto node = read_document(folder / "effect.json", diagnostics);
-        if (const auto manifest = node ? parse_manifest(*node, folder, diagnostics) : std::nullopt)
-            check_one_effect(*manifest, options, diagnostics);
-        return verdict(diagnostics, options);
+        const auto manifest = node ? parse_manifest(*node, folder, diagnostics) : std::nullopt;
+        return check_effect_apart(manifest ? &*manifest : nullptr, options, diagnostics);
     }
     if (effects.contains(options.subject)) {
         stop_at_words();
-        if (const EffectManifest* manifest = effects.find(options.subject, diagnostics))
-            check_one_effect(*manifest, options, diagnostics);
-        return verdict(diagnostics, options);
+        return check_effect_apart(effects.find(options.subject, diagnostics), options, diagnostics);
     }
     if (!fs::is_regular_file(subject, failure)) {
         const auto ids = effects.ids();
@@ -87,7 +97,7 @@ ExitCode check(const CheckOptions& options) {
     }
     stop_at_words();
     if (!options.warmup.empty())
-        return check_warmup({options.subject, options.warmup, options.effect_paths, options.plugin_paths,
+        return check_warmup({options.subject, options.warmup, options.effect_paths, options.plugins,
                              chosen_backend(options.backend)});
     if (const auto look = read_look(subject, diagnostics)) bind_pipeline(*look, effects, {}, diagnostics);
     return verdict(diagnostics, options);
@@ -104,8 +114,7 @@ Verb add_check(CLI::App& app) {
                    "Of a look: measure on this capture how many frames a chunk must render before its first");
     app.add_flag("--strict", options->strict, "Warnings are a failure too");
     add_effect_path_option(app, options->effect_paths);
-    app.add_option("--plugin-path", options->plugin_paths, "Folder of native plug-ins; repeatable")
-        ->allow_extra_args(false);
+    add_plugin_options(app, options->plugins);
     add_backend_option(app, options->backend);
     return [options] { return check(*options); };
 }

@@ -8,7 +8,7 @@
 #include "cli/effect_options.h"
 #include "framework/core/data_path.h"
 #include "framework/core/scratch_folder.h"
-#include "framework/effect/native/native_library.h"
+#include "framework/core/status.h"
 #include "framework/pipeline/look.h"
 #include "framework/pipeline/warmup.h"
 
@@ -54,13 +54,14 @@ ExitCode check_warmup(const WarmupCheck& check) {
         fmt::print("{}: no step has history; chunks need no warm-up\n", check.look);
         return ExitCode::done;
     }
+    if (const auto code = run_in_worker(check.plugins, pipeline.has_foreign())) return *code;
     const CaptureReader reader(*sequence, std::move(profiles), options.limits);
     gpu::Context context(check.backend);
-    NativeRegistry natives(native_search_path({check.plugin_paths.begin(), check.plugin_paths.end()}),
-                           shipped_native_libraries());
+    StatusWriter status;
+    NativeRegistry natives = native_registry(check.plugins, &status);
     RunOptions run;
     run.frames = sequence->frames;
-    run.natives = {&natives, nullptr};
+    run.natives = {&natives, &status};
     const ScratchFolder scratch;
     const auto measured =
         measure_warmup({context, pipeline, *sequence, reader, run, {}, data_path()}, scratch.path());

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/plugin_options.h"
 #include "framework/core/error.h"
 #include "framework/gpu/context.h"
 
@@ -13,7 +14,7 @@ struct WarmupCheck {
     std::string look;
     std::string capture;
     std::vector<std::string> effect_paths;
-    std::vector<std::string> plugin_paths;
+    PluginOptions plugins;
     gpu::Backend backend;
 };
 

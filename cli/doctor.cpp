@@ -8,6 +8,7 @@
 
 #include "cli/verbs.h"
 #include "framework/batch/approved_image.h"
+#include "framework/core/confinement.h"
 #include "framework/gpu/context.h"
 
 namespace aftershade::cli {
@@ -23,12 +24,23 @@ void print_table(const std::vector<gpu::BackendReport>& reports) {
         else fmt::print("{:<13} {:<7} {}\n", name, "no", report.reason);
     }
     fmt::print("cpu           {} ({} threads)\n", cpu_model(), std::thread::hardware_concurrency());
+    const Confinement offered = offered_confinement();
+    fmt::print(
+        "plug-ins      confined by {} and {}\n",
+        offered.landlock_abi > 0 ? fmt::format("Landlock (ABI {})", offered.landlock_abi) : "no Landlock",
+        offered.seccomp ? "seccomp" : "no seccomp");
+    for (const std::string& gap : confinement_gaps(offered))
+        fmt::print("              this kernel lets them {}\n", gap);
 }
 
 void print_json(const std::vector<gpu::BackendReport>& reports) {
     nlohmann::ordered_json document;
     document["aftershade"] = 1;
     document["cpu"] = {{"model", cpu_model()}, {"threads", std::thread::hardware_concurrency()}};
+    const Confinement offered = offered_confinement();
+    document["plugins"] = {{"landlock_abi", offered.landlock_abi},
+                           {"seccomp", offered.seccomp},
+                           {"not_prevented", confinement_gaps(offered)}};
     document["backends"] = nlohmann::ordered_json::array();
     for (const gpu::BackendReport& report : reports) {
         nlohmann::ordered_json row{{"backend", gpu::backend_name(report.backend)}, {"usable", report.usable}};

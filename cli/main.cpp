@@ -16,18 +16,27 @@
 #include "aftershade/error.h"
 #include "cli/compare_options.h"
 #include "cli/exit_code.h"
+#include "cli/plugin_options.h"
 #include "cli/verbs.h"
 #include "framework/core/memory_limit.h"
+#include "framework/core/status.h"
+#include "framework/effect/native/native_process.h"
 
 using aftershade::ExitCode;
 
 namespace {
 
+/// The last word to the process that started this one, if it is a worker.
+int end(int code) {
+    aftershade::StatusWriter().end(code);
+    return code;
+}
+
 int fail(ExitCode code, const char* message) {
     // Messages of documents bring their own "file:line:column: error: ".
     const bool has_place = std::string_view(message).find(": error: ") != std::string_view::npos;
     std::fprintf(stderr, "%s%s\n", has_place ? "" : "aftershade: error: ", message);
-    return int(code);
+    return end(int(code));
 }
 
 /// At once: what libraries do at the end of a process may wait for ever after this.
@@ -61,6 +70,8 @@ std::string stdout_fault(int number) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    if (argc == 2 && std::string_view(argv[1]) == aftershade::cli::kNativeHostWord)
+        return aftershade::serve_native_code(aftershade::kNativeDescriptor);
     // A file above the shell's limit is then an output that cannot be written, not the end of the process.
     std::signal(SIGXFSZ, SIG_IGN);
     CLI::App app{"Runs chains of shader effects over G-buffer captures, without a display.", "aftershade"};
@@ -91,7 +102,7 @@ int main(int argc, char** argv) {
         return stdout_is_whole() ? code : fail(ExitCode::output, stdout_fault(errno).c_str());
     } catch (const CLI::ParseError& error) {
         app.exit(error);
-        return int(keeps_idiffs_codes() ? aftershade::cli::kCompareUsage : ExitCode::usage);
+        return end(int(keeps_idiffs_codes() ? aftershade::cli::kCompareUsage : ExitCode::usage));
     }
     aftershade::prepare_for_memory_limit();
     const auto fail_for_stdout = [&](int number) {
@@ -100,7 +111,7 @@ int main(int argc, char** argv) {
     };
     try {
         const ExitCode code = verbs.at(app.get_subcommands().front())();
-        return stdout_is_whole() ? int(code) : fail_for_stdout(errno);
+        return stdout_is_whole() ? end(int(code)) : fail_for_stdout(errno);
     } catch (const aftershade::Error& error) {
         if (aftershade::is_out_of_memory(error)) end_for_memory(error);
         return fail(error.exit_code(), error.what());

@@ -5,76 +5,103 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <string_view>
+#include <memory>
+#include <utility>
 
 #include "cli/command_line.h"
-#include "framework/batch/watchdog.h"
+#include "cli/interrupt.h"
 #include "framework/batch/worker.h"
-#include "framework/core/status.h"
-#include "framework/effect/native/native_library.h"
+#include "framework/core/memory_limit.h"
+#include "framework/effect/native/native_process.h"
 
 namespace aftershade::cli {
 
 namespace {
 
-void pass_on(std::FILE* stream, std::string_view line) {
-    std::fprintf(stream, "%.*s\n", int(line.size()), line.data());
-    std::fflush(stream);
+std::vector<std::filesystem::path> search_path(const PluginOptions& options) {
+    return native_search_path({options.paths.begin(), options.paths.end()});
 }
 
-ExitCode told(const WorkerResult& result, const Watchdog& watchdog, double timeout_s) {
-    if (watchdog.barked()) {
-        std::fprintf(stderr, "aftershade: error: %s; give it longer with --plugin-timeout\n",
-                     describe_timeout(result, std::chrono::duration<double>(timeout_s)).c_str());
-        return ExitCode::effect;
-    }
+ExitCode fail(ExitCode code, const std::string& text) {
+    std::fprintf(stderr, "aftershade: error: %s\n", text.c_str());
+    return code;
+}
+
+ExitCode code_of(const WorkerResult& result, const Watchdog& watchdog) {
+    if (watchdog.barked())
+        return fail(ExitCode::effect, describe_timeout(result, watchdog.timeout()) +
+                                          "; make the pass cheaper, or give it longer with --pass-timeout");
     switch (result.end) {
-        case WorkerEnd::exited: break;
         case WorkerEnd::interrupted: return ExitCode::interrupted;
+        case WorkerEnd::out_of_memory: return fail(ExitCode::memory, describe(result));
         case WorkerEnd::signalled:
-        case WorkerEnd::timed_out:
-            std::fprintf(stderr, "aftershade: error: %s\n", describe(result).c_str());
-            return ExitCode::effect;
+        case WorkerEnd::timed_out: return fail(ExitCode::effect, describe(result));
+        case WorkerEnd::exited: break;
     }
-    // A plug-in that calls exit() ends the worker in the middle of its code.
-    if (!result.status.plugin.empty() && result.exit_code != int(ExitCode::interrupted) &&
-        result.exit_code != int(ExitCode::effect)) {
-        std::fprintf(stderr, "aftershade: error: %s\n", describe(result).c_str());
-        return ExitCode::effect;
-    }
-    return ExitCode(result.exit_code);
+    if (result.ended_in_order() || result.exit_code == int(ExitCode::memory))
+        return ExitCode(result.exit_code);
+    return fail(ExitCode::effect, describe(result) + " before its work was done");
 }
 
 }  // namespace
+
+PassLimit PluginOptions::pass_limit() const {
+    return {std::chrono::duration<double>(pass_timeout_s), limits_every_pass};
+}
 
 void add_plugin_options(CLI::App& app, PluginOptions& options) {
     app.add_option("--plugin-path", options.paths,
                    "Folder of native plug-ins (*.so), before those of AFTERSHADE_PLUGIN_PATH; repeatable")
         ->allow_extra_args(false);
-    app.add_option("--plugin-timeout", options.timeout_s,
-                   "Seconds without a sign of work after which a plug-in is taken to hang")
+    app.add_option("--plugin-timeout", options.timeout_s, "Seconds that one call of a plug-in may take")
         ->check(CLI::Range(0.1, 1e6))
         ->capture_default_str();
+    app.add_option("--plugin-memory", options.memory_bytes,
+                   "Address space of the process that plug-ins run in, such as 8GB (default: 4GB)")
+        ->transform(CLI::AsSizeValue(false));
+    app.add_option_function<double>(
+           "--pass-timeout",
+           [&options](double seconds) {
+               options.pass_timeout_s = seconds;
+               options.limits_every_pass = true;
+           },
+           "Seconds that a pass may take to compile or to draw (default: 60 for effects that are not "
+           "shipped, none for the shipped ones)")
+        ->check(CLI::Range(0.1, 1e6));
 }
 
-bool needs_worker(const PluginOptions& options, const Pipeline& pipeline) {
-    const std::vector<std::filesystem::path> given(options.paths.begin(), options.paths.end());
-    return pipeline.has_native() && !native_search_path(given).empty() && !std::getenv(kStatusFdVariable);
-}
-
-std::optional<ExitCode> run_in_worker(const PluginOptions& options, const Pipeline& pipeline,
-                                      const std::atomic<bool>& stop) {
-    if (!needs_worker(options, pipeline)) return std::nullopt;
+std::optional<ExitCode> run_in_worker(const PluginOptions& options, bool is_foreign) {
+    if (std::getenv(kStatusFdVariable)) return std::nullopt;
+    if (!is_foreign && !options.limits_every_pass && search_path(options).empty()) return std::nullopt;
     WorkerCommand command;
     command.arguments = own_arguments();
     command.arguments[0] = "/proc/self/exe";
-    Watchdog watchdog(std::chrono::duration<double>(options.timeout_s), stop);
+    command.shares_streams = true;
+    if (is_foreign) command.limits.resident_bytes = foreign_memory_bytes();
+    // What an interrupted worker waits for has limits of its own.
+    const double longest_s = std::max(options.timeout_s, options.pass_timeout_s) + 2;
+    command.grace = std::chrono::milliseconds(std::int64_t(longest_s * 1000));
+    Watchdog watchdog(Watchdog::Duration::max(), options.pass_limit(), watch_for_interrupt());
     WorkerListener listener;
-    listener.on_stdout = [&](std::string_view line) { watchdog.heard(), pass_on(stdout, line); };
-    listener.on_stderr = [&](std::string_view line) { watchdog.heard(), pass_on(stderr, line); };
-    listener.on_status = [&](const WorkStatus&) { watchdog.heard(); };
-    const WorkerResult result = run_worker(command, listener, &watchdog.flag());
-    return told(result, watchdog, options.timeout_s);
+    listener.on_status = [&](const WorkStatus& status) { watchdog.is_at(status); };
+    return code_of(run_worker(command, listener, &watchdog.flag()), watchdog);
+}
+
+std::uint64_t foreign_memory_bytes() {
+    return machine_memory_bytes() / 4 * 3;
+}
+
+NativeRegistry native_registry(const PluginOptions& options, StatusWriter* status) {
+    std::vector<std::filesystem::path> folders = search_path(options);
+    std::shared_ptr<NativeProcess> process;
+    if (!folders.empty()) {
+        NativeProcessOptions settings;
+        settings.command = {"/proc/self/exe", kNativeHostWord};
+        settings.timeout = std::chrono::duration<double>(options.timeout_s);
+        settings.memory_bytes = options.memory_bytes;
+        process = std::make_shared<NativeProcess>(std::move(settings));
+    }
+    return NativeRegistry(std::move(folders), shipped_native_libraries(), status, std::move(process));
 }
 
 }  // namespace aftershade::cli

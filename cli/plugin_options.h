@@ -1,13 +1,17 @@
-// --plugin-path and --plugin-timeout, and the process of its own in which plug-ins run.
+// What strangers wrote: --plugin-path, the limits of plug-ins and passes, and the process that a command with
+// strangers' effects works in.
 #pragma once
 
-#include <atomic>
+#include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "framework/batch/watchdog.h"
 #include "framework/core/error.h"
-#include "framework/pipeline/pipeline.h"
+#include "framework/core/status.h"
+#include "framework/effect/native/native_library.h"
 
 namespace CLI {
 class App;
@@ -18,18 +22,30 @@ namespace aftershade::cli {
 struct PluginOptions {
     std::vector<std::string> paths;
     double timeout_s = 60;
+    std::uint64_t memory_bytes = 4ull << 30;
+    double pass_timeout_s = 60;
+    bool limits_every_pass = false;  ///< --pass-timeout was given
+
+    PassLimit pass_limit() const;
 };
 
 void add_plugin_options(CLI::App& app, PluginOptions& options);
 
-/// Whether run_in_worker() starts a worker.
-bool needs_worker(const PluginOptions& options, const Pipeline& pipeline);
+/// Runs this command once more as a worker, which writes to the same streams, where `is_foreign` says that it
+/// uses what strangers wrote, or --plugin-path or --pass-timeout is given: a shader may crash or stop the GL
+/// driver. Returns the exit code: the worker's, or 5 (7 for memory) with a message that names the pass.
+/// nullopt: work in this process, which is the worker or needs none. Interrupts are watched for while it
+/// runs.
+std::optional<ExitCode> run_in_worker(const PluginOptions& options, bool is_foreign);
 
-/// Runs this command once more as a worker and passes on what it prints, where some step has native code and
-/// there are folders of plug-ins: code from elsewhere may crash or hang, and files that are done must not
-/// suffer. Returns the exit code: the worker's, or 5 with a message that names plug-in and step. nullopt: go
-/// on in this process, which is the worker or needs none.
-std::optional<ExitCode> run_in_worker(const PluginOptions& options, const Pipeline& pipeline,
-                                      const std::atomic<bool>& stop);
+/// Memory that a worker with strangers' effects may use: three quarters of the machine's.
+std::uint64_t foreign_memory_bytes();
+
+/// The linked libraries and those of the folders; the latter run in a process of their own, confined.
+/// `status` must outlive the registry.
+NativeRegistry native_registry(const PluginOptions& options, StatusWriter* status);
+
+/// The command of that process; main() serves it.
+inline constexpr const char* kNativeHostWord = "--native-host";
 
 }  // namespace aftershade::cli

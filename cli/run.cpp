@@ -141,8 +141,7 @@ ExitCode run_here(const RunArguments& options, CheckedRun& run, const CaptureRea
     }
     set_exr_threads(options.jobs.worker_threads > 0 ? options.jobs.worker_threads : allotted_cores());
     StatusWriter status;
-    NativeRegistry natives(native_search_path({options.plugins.paths.begin(), options.plugins.paths.end()}),
-                           shipped_native_libraries(), &status);
+    NativeRegistry natives = native_registry(options.plugins, &status);
     gpu::Context context(chosen_backend(options.backend));
     run.outputs.renderer = context.info().renderer;
     run.settings.natives = {&natives, &status};
@@ -183,8 +182,9 @@ ExitCode run(const RunArguments& options) {
     }
     prepare_outputs(options, run.outputs, run.sequence);
     if (options.jobs.wants_workers())
-        return run_by_workers(options, run.share.run, run.share.workers, progress, stop);
-    if (const auto code = run_in_worker(options.plugins, run.bound->pipeline, stop)) return *code;
+        return run_by_workers(options, run.share.run, run.share.workers, run.bound->pipeline.has_foreign(),
+                              progress, stop);
+    if (const auto code = run_in_worker(options.plugins, run.bound->pipeline.has_foreign())) return *code;
     return run_here(options, run, reader, profile_documents, stop);
 }
 

@@ -167,7 +167,7 @@ void check_worker_options(const RunArguments& arguments, Diagnostics& diagnostic
     refuse(arguments.resume.dry_run, "--dry-run", "ask without workers");
 }
 
-ExitCode run_by_workers(const RunArguments& arguments, const JobFrames& frames, int workers,
+ExitCode run_by_workers(const RunArguments& arguments, const JobFrames& frames, int workers, bool is_foreign,
                         ProgressStyle progress, const std::atomic<bool>& stop) {
     const auto start = Clock::now();
     JobOptions options;
@@ -181,6 +181,8 @@ ExitCode run_by_workers(const RunArguments& arguments, const JobFrames& frames, 
     if (arguments.jobs.frame_timeout_s > 0)
         options.frame_timeout = std::chrono::duration<double>(arguments.jobs.frame_timeout_s);
     if (arguments.jobs.memory_bytes > 0) options.memory_bytes = arguments.jobs.memory_bytes;
+    options.pass_limit = arguments.plugins.pass_limit();
+    if (is_foreign) options.resident_bytes = foreign_memory_bytes() / options.pieces.size();
     options.stop_on_error = arguments.jobs.stop_on_error;
     WorkersReporter reporter(progress, frames.count());
     const JobsReport report = run_jobs(options, reporter.listener(), stop);

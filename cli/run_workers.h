@@ -13,8 +13,9 @@ namespace aftershade::cli {
 /// What workers cannot do together, because it needs all frames in one process.
 void check_worker_options(const RunArguments& arguments, Diagnostics& diagnostics);
 
-/// Renders the frames by `workers` processes, reports progress and how each frame ended.
-ExitCode run_by_workers(const RunArguments& arguments, const JobFrames& frames, int workers,
+/// Renders the frames by `workers` processes, reports progress and how each frame ended. `is_foreign`: the
+/// look has effects that are not shipped.
+ExitCode run_by_workers(const RunArguments& arguments, const JobFrames& frames, int workers, bool is_foreign,
                         ProgressStyle progress, const std::atomic<bool>& stop);
 
 }  // namespace aftershade::cli

@@ -40,9 +40,6 @@ void check_stream_options(const RunArguments& arguments, const Pipeline& pipelin
            "does not go with -o -: a stream begins with its first frame");
     refuse(arguments.resume.dry_run, "--dry-run",
            "does not go with -o -, which renders every frame; leave one of them out");
-    refuse(needs_worker(arguments.plugins, pipeline), "-o -",
-           "steps of plug-ins run in a process of their own, which passes lines on and no frames; write "
-           "out_####.png, which ffmpeg reads, too");
     refuse(arguments.progress == "openjd", "--progress openjd",
            "writes to standard output, which -o - fills with frames; choose plain or json");
 }

@@ -78,7 +78,7 @@ void judge_end(const WorkerResult& result, std::list<std::string>& lines, Render
     rendered.interrupted =
         result.end == WorkerEnd::interrupted ||
         (result.end == WorkerEnd::exited && result.exit_code == int(ExitCode::interrupted));
-    if (result.succeeded()) {
+    if (result.succeeded() && result.ended_in_order()) {
         std::erase_if(lines, [](const std::string& line) { return line.find("warning") == line.npos; });
         return;
     }
@@ -86,7 +86,7 @@ void judge_end(const WorkerResult& result, std::list<std::string>& lines, Render
     const bool files = result.end == WorkerEnd::exited &&
                        (code == ExitCode::capture || code == ExitCode::gl || code == ExitCode::output);
     rendered.verdict = files ? Verdict::file_error : Verdict::failure;
-    if (result.end != WorkerEnd::exited) lines.push_back("rendering: " + describe(result));
+    if (!result.ended_in_order()) lines.push_back("rendering: " + describe(result));
     else if (lines.empty()) lines.push_back("rendering ended with code " + std::to_string(result.exit_code));
 }
 

@@ -7,8 +7,6 @@
 #include <set>
 #include <thread>
 
-#include "framework/batch/watchdog.h"
-
 namespace aftershade {
 
 namespace {
@@ -108,15 +106,18 @@ private:
         command.limits.memory_bytes = options_.memory_bytes;
         if (!std::getenv("LP_NUM_THREADS"))
             command.environment["LP_NUM_THREADS"] = std::to_string(options_.threads);
-        Watchdog watchdog(options_.frame_timeout, interrupt_);
+        command.limits.resident_bytes = options_.resident_bytes;
+        Watchdog watchdog(options_.frame_timeout, options_.pass_limit, interrupt_);
         last_error_.clear();
         const WorkerResult result = run_worker(command, listener(watchdog), &watchdog.flag());
         if (watchdog.barked()) {
             board_.ended(ExitCode::effect);
-            return cost_a_frame(result.status, describe_timeout(result, options_.frame_timeout));
+            return cost_a_frame(result.status, describe_timeout(result, watchdog.timeout()));
         }
         if (result.end == WorkerEnd::interrupted) return false;
-        board_.ended(result.end == WorkerEnd::exited ? ExitCode(result.exit_code) : ExitCode::effect);
+        board_.ended(result.end == WorkerEnd::exited          ? ExitCode(result.exit_code)
+                     : result.end == WorkerEnd::out_of_memory ? ExitCode::memory
+                                                              : ExitCode::effect);
         const bool has_seen_all = first_unfinished() == piece_.frames.size();
         if (result.end == WorkerEnd::exited && (has_seen_all || ends_the_run(ExitCode(result.exit_code))))
             return false;
@@ -137,9 +138,10 @@ private:
             ++ended_;
             board_.frame(event);
         };
-        // A frame's beginning; what native code says of its own steps is no progress.
+        // A frame's beginning, or the end of its passes; one pass or plug-in after the other is no progress.
         listener.on_status = [&](const WorkStatus& status) {
-            if (status.frame && status.plugin.empty()) watchdog.heard();
+            if (status.frame && status.plugin.empty() && status.pass.empty()) watchdog.heard();
+            watchdog.is_at(status);
         };
         return listener;
     }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "framework/batch/job_plan.h"
+#include "framework/batch/watchdog.h"
 #include "framework/batch/worker.h"
 #include "framework/core/error.h"
 
@@ -25,8 +26,10 @@ struct JobOptions {
     int warmup_frames = 0;  ///< before the frames of a worker that goes on behind a failed one
     int threads = 1;        ///< of each worker, for GL on software and for files
     std::chrono::duration<double> frame_timeout{std::chrono::duration<double>::max()};
-    std::optional<std::uint64_t> memory_bytes;  ///< address space of each worker (RLIMIT_AS)
-    bool stop_on_error = false;                 ///< the first frame that fails ends the run
+    PassLimit pass_limit;
+    std::optional<std::uint64_t> memory_bytes;    ///< address space of each worker (RLIMIT_AS)
+    std::optional<std::uint64_t> resident_bytes;  ///< memory that each worker really uses
+    bool stop_on_error = false;                   ///< the first frame that fails ends the run
 };
 
 /// Called on the workers' threads, one call at a time. Any may be empty.
@@ -43,10 +46,10 @@ struct JobsReport {
     ExitCode exit_code = ExitCode::done;
 };
 
-/// Runs the pieces. A worker that crashes, runs out of memory or says nothing for `frame_timeout` costs the
-/// frame that it was at; another one goes on behind that frame, where the look has history after the piece's
-/// warm-up. Three workers in turn that finish no frame give their piece up, and so does an error that every
-/// other frame would meet (usage, GL, output).
+/// Runs the pieces. A worker that crashes, runs out of memory, says nothing for `frame_timeout` or is longer
+/// at a pass than its limit costs the frame that it was at; another one goes on behind that frame, where the
+/// look has history after the piece's warm-up. Three workers in turn that finish no frame give their piece
+/// up, and so does an error that every other frame would meet (usage, GL, output).
 JobsReport run_jobs(const JobOptions& options, const JobListener& listener, const std::atomic<bool>& stop);
 
 }  // namespace aftershade

@@ -1,30 +1,16 @@
-// fork and exec with limits: internal to framework/batch.
+// A worker's process and its pipes: internal to framework/batch.
 #pragma once
 
 #include <sys/types.h>
 
 #include "framework/batch/worker.h"
+#include "framework/core/child_process.h"
 
 namespace aftershade {
 
-/// A file descriptor that closes itself.
-class Descriptor {
-public:
-    explicit Descriptor(int number = -1) : number_(number) {}
-    ~Descriptor() { reset(); }
-    Descriptor(Descriptor&& other) noexcept : number_(other.number_) { other.number_ = -1; }
-    Descriptor& operator=(Descriptor&& other) noexcept;
-
-    int get() const { return number_; }
-    void reset();
-
-private:
-    int number_;
-};
-
 struct SpawnedWorker {
     pid_t process = -1;             ///< also the id of its process group
-    Descriptor out, error, status;  ///< reading ends, not blocking
+    Descriptor out, error, status;  ///< reading ends, not blocking; of its own streams there are none
 };
 
 /// Throws Error(ExitCode::effect) where the program cannot be started.

@@ -2,21 +2,29 @@
 
 namespace aftershade {
 
-Watchdog::Watchdog(std::chrono::duration<double> patience, const std::atomic<bool>& stop)
-    : patience_(patience), stop_(stop), heard_(Clock::now()), thread_([this] { watch(); }) {}
+Watchdog::Watchdog(Duration patience, PassLimit pass, const std::atomic<bool>& stop)
+    : patience_(patience), pass_(pass), stop_(stop), heard_(Clock::now()), thread_([this] { watch(); }) {}
 
 Watchdog::~Watchdog() {
     done_ = true;
     thread_.join();
 }
 
+void Watchdog::is_at(const WorkStatus& status) {
+    const bool is_limited = !status.pass.empty() && (status.is_foreign || pass_.of_shipped_effects);
+    pass_began_ = is_limited ? Clock::now() : Clock::time_point::max();
+}
+
 void Watchdog::watch() {
     while (!done_) {
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
         if (stop_) flag_ = true;
-        if (!flag_ && Clock::now() - heard_.load() > patience_) {
+        const auto now = Clock::now(), pass_began = pass_began_.load();
+        by_pass_ = pass_began <= now && now - pass_began > pass_.timeout;
+        if (!flag_ && (by_pass_ || now - heard_.load() > patience_)) {
             barked_ = true;
             flag_ = true;
+            return;
         }
     }
 }

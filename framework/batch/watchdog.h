@@ -1,34 +1,50 @@
-// Notices that a worker has said nothing for too long.
+// Notices that a worker, or a pass of its, takes too long.
 #pragma once
 
 #include <atomic>
 #include <chrono>
 #include <thread>
 
+#include "framework/core/status.h"
+
 namespace aftershade {
 
-/// Raises a flag, run_worker's interrupt, when nothing was heard for a while, or when the user asked to stop.
-/// [heard() from any thread]
+/// How long one pass may take to compile or to draw.
+struct PassLimit {
+    std::chrono::duration<double> timeout{std::chrono::duration<double>::max()};
+    bool of_shipped_effects = false;  ///< besides those of strangers
+};
+
+/// Raises a flag, run_worker's interrupt, when nothing was heard for a while, when a pass takes too long, or
+/// when the user asked to stop. [heard() and is_at() from any thread]
 class Watchdog {
 public:
-    /// Without patience (infinite) only `stop` is passed on.
-    Watchdog(std::chrono::duration<double> patience, const std::atomic<bool>& stop);
+    using Duration = std::chrono::duration<double>;
+
+    /// Without patience (infinite) and a limit only `stop` is passed on.
+    Watchdog(Duration patience, PassLimit pass, const std::atomic<bool>& stop);
     ~Watchdog();
     Watchdog(const Watchdog&) = delete;
     Watchdog& operator=(const Watchdog&) = delete;
 
     void heard() { heard_ = Clock::now(); }
-    bool barked() const { return barked_; }  ///< the worker was silent for too long
+    void is_at(const WorkStatus& status);
+    bool barked() const { return barked_; }  ///< the worker, or its pass, took too long
+    /// The time that it had, once it barked.
+    Duration timeout() const { return by_pass_ ? pass_.timeout : patience_; }
+    bool barked_at_pass() const { return by_pass_; }
     const std::atomic<bool>& flag() const { return flag_; }
 
 private:
     using Clock = std::chrono::steady_clock;
     void watch();
 
-    const std::chrono::duration<double> patience_;
+    const Duration patience_;
+    const PassLimit pass_;
     const std::atomic<bool>& stop_;
     std::atomic<Clock::time_point> heard_;
-    std::atomic<bool> done_ = false, barked_ = false, flag_ = false;
+    std::atomic<Clock::time_point> pass_began_{Clock::time_point::max()};
+    std::atomic<bool> done_ = false, barked_ = false, by_pass_ = false, flag_ = false;
     std::thread thread_;  // last: it uses the others
 };
 

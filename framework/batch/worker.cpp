@@ -7,8 +7,10 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <utility>
 
 #include "framework/batch/spawn.h"
+#include "framework/core/memory_limit.h"
 
 namespace aftershade {
 
@@ -81,17 +83,14 @@ public:
         return waitid(P_PID, id_t(process_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
                info.si_pid == process_;
     }
+    pid_t process() const { return process_; }
     void signal_group(int number) const { kill(-process_, number); }
 
     /// Kills what is left of the group before the child is reaped: until then its id, which is the group's,
     /// cannot be given to another process.
     int finish() {
         signal_group(SIGKILL);
-        int status = 0;
-        while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
-        }
-        process_ = -1;
-        return status;
+        return reap(std::exchange(process_, -1));
     }
 
 private:
@@ -118,15 +117,28 @@ public:
             reason_ = WorkerEnd::timed_out;
             kill_at_ = now;
         }
+        if (!ours_ && uses_too_much(child, now)) {
+            ours_ = true;
+            reason_ = WorkerEnd::out_of_memory;
+            kill_at_ = now;
+        }
         if (now >= kill_at_) child.signal_group(SIGKILL);
     }
     WorkerEnd reason_or(WorkerEnd otherwise) const { return ours_ ? reason_ : otherwise; }
     double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
 private:
+    bool uses_too_much(const Child& child, Clock::time_point now) {
+        const auto& limit = command_.limits.resident_bytes;
+        if (!limit || now < look_at_memory_) return false;
+        look_at_memory_ = now + std::chrono::milliseconds(100);
+        return resident_bytes(child.process()) > *limit;
+    }
+
     const WorkerCommand& command_;
     const std::atomic<bool>* interrupt_;
     Clock::time_point start_ = Clock::now();
+    Clock::time_point look_at_memory_ = start_;
     bool ours_ = false;
     WorkerEnd reason_ = WorkerEnd::exited;
     Clock::time_point kill_at_ = Clock::time_point::max();
@@ -152,6 +164,10 @@ WorkerResult run_worker(const WorkerCommand& command, const WorkerListener& list
     LineReader out(std::move(spawned.out), listener.on_stdout);
     LineReader error(std::move(spawned.error), listener.on_stderr);
     LineReader status(std::move(spawned.status), [&](std::string_view line) {
+        if (const auto code = parse_last_word(line)) {
+            result.last_word = code;
+            return;
+        }
         if (const auto event = parse_event(line)) {
             if (listener.on_frame) listener.on_frame(*event);
             return;

@@ -11,15 +11,16 @@
 #include <string_view>
 #include <vector>
 
+#include "framework/core/child_process.h"
 #include "framework/core/status.h"
 
 namespace aftershade {
 
-struct WorkerLimits {
+struct WorkerLimits : ChildLimits {
     std::optional<std::chrono::milliseconds> wall_time;  ///< from the start; then the child is killed
-    std::optional<std::uint64_t> memory_bytes;  ///< RLIMIT_AS: address space, which is more than RAM used
-    std::optional<std::uint64_t> cpu_seconds;   ///< RLIMIT_CPU, of all threads
-    std::uint64_t core_bytes = 0;               ///< RLIMIT_CORE: no core files, as a rule
+    /// Memory that the child really uses (RSS), looked at ten times a second; then it is killed. Unlike
+    /// `memory_bytes` it leaves alone what GPU drivers reserve.
+    std::optional<std::uint64_t> resident_bytes;
 };
 
 struct WorkerCommand {
@@ -27,6 +28,8 @@ struct WorkerCommand {
     std::vector<std::string> arguments;
     std::map<std::string, std::string> environment;  ///< added to this process's, or in its place
     WorkerLimits limits;
+    /// It writes to this process's standard output and error, and the listener hears none of it.
+    bool shares_streams = false;
     /// How long a worker that was asked to end (SIGTERM, after an interrupt) may take before it is killed.
     std::chrono::milliseconds grace{2000};
 };
@@ -41,21 +44,26 @@ struct WorkerListener {
 };
 
 enum class WorkerEnd {
-    exited,       ///< by itself, with exit_code
-    signalled,    ///< by a signal that is not ours: a crash, or a limit of the system
-    timed_out,    ///< killed for its wall-clock time
-    interrupted,  ///< asked to end, or killed, because of the interrupt flag
+    exited,         ///< by itself, with exit_code
+    signalled,      ///< by a signal that is not ours: a crash, or a limit of the system
+    timed_out,      ///< killed for its wall-clock time
+    out_of_memory,  ///< killed for `resident_bytes`
+    interrupted,    ///< asked to end, or killed, because of the interrupt flag
 };
 
 struct WorkerResult {
     WorkerEnd end = WorkerEnd::exited;
-    int exit_code = 0;      ///< exited; also interrupted, where the worker ended by itself
-    int signal_number = 0;  ///< signalled
-    double seconds = 0;     ///< wall-clock
-    WorkStatus status;      ///< the last one; its fields are empty where none came
-    WorkerLimits limits;    ///< those of the command, for describe()
+    int exit_code = 0;             ///< exited; also interrupted, where the worker ended by itself
+    int signal_number = 0;         ///< signalled
+    double seconds = 0;            ///< wall-clock
+    WorkStatus status;             ///< the last one; its fields are empty where none came
+    std::optional<int> last_word;  ///< the exit code that the worker itself announced, if it did
+    WorkerLimits limits;           ///< those of the command, for describe()
 
+    /// Of any program: `aftershade` says so itself, see ended_in_order().
     bool succeeded() const { return end == WorkerEnd::exited && exit_code == 0; }
+    /// Whether `aftershade` came to the end of its work: a library that calls exit() gives no last word.
+    bool ended_in_order() const { return end == WorkerEnd::exited && last_word == exit_code; }
 };
 
 /// Runs the command to its end. The child leads a process group of its own; what is left of the group when
@@ -74,5 +82,7 @@ std::string describe_timeout(WorkerResult result, std::chrono::duration<double> 
 std::optional<WorkStatus> parse_status(std::string_view line);
 /// Likewise of a frame's end.
 std::optional<FrameEvent> parse_event(std::string_view line);
+/// Likewise of a process's last word.
+std::optional<int> parse_last_word(std::string_view line);
 
 }  // namespace aftershade

@@ -1,6 +1,5 @@
 // How a worker ended, in words.
 #include <csignal>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "framework/batch/worker.h"
@@ -10,21 +9,9 @@ namespace aftershade {
 
 namespace {
 
-/// " in prepare of step 'grade', frame 12"; "" where nothing is known.
-std::string where(const WorkStatus& status) {
-    std::string text;
-    if (!status.phase.empty()) text += " in " + status.phase;
-    if (!status.step.empty())
-        text += (status.phase.empty() ? " in step '" : " of step '") + status.step + "'";
-    if (status.frame) text += (text.empty() ? " in frame " : ", frame ") + std::to_string(*status.frame);
-    return text;
-}
-
 std::string signalled(const WorkerResult& result) {
     const int number = result.signal_number;
-    const char* name = sigabbrev_np(number);
-    const std::string text =
-        "(signal " + std::to_string(number) + (name ? ", SIG" + std::string(name) : "") + ")";
+    const std::string text = signal_text(number);
     if (number == SIGXCPU && result.limits.cpu_seconds)
         return " used up its " + std::to_string(*result.limits.cpu_seconds) + " s of processor time " + text;
     if (number == SIGKILL) return " was killed " + text + ", perhaps because memory ran out,";
@@ -36,19 +23,25 @@ std::string signalled(const WorkerResult& result) {
 
 std::string describe(const WorkerResult& result) {
     const bool in_plugin = !result.status.plugin.empty();
-    const std::string who = in_plugin ? "plug-in " + result.status.plugin : "the worker";
+    const std::string who = in_plugin                    ? "plug-in " + result.status.plugin
+                            : result.status.pass.empty() ? "the worker"
+                                                         : "the GL driver";
     switch (result.end) {
         case WorkerEnd::exited:
             return who + (in_plugin ? " ended the process with code " : " ended with code ") +
-                   std::to_string(result.exit_code) + where(result.status);
-        case WorkerEnd::signalled: return who + signalled(result) + where(result.status);
+                   std::to_string(result.exit_code) + place_text(result.status);
+        case WorkerEnd::signalled: return who + signalled(result) + place_text(result.status);
         case WorkerEnd::timed_out: {
             const double limit =
                 result.limits.wall_time ? double(result.limits.wall_time->count()) / 1000 : 0;
             return who + " did not finish within " + format_number(limit) + " s and was killed" +
-                   where(result.status);
+                   place_text(result.status);
         }
-        case WorkerEnd::interrupted: return who + " was interrupted" + where(result.status);
+        case WorkerEnd::out_of_memory:
+            return who + " took more memory than its limit of " +
+                   std::to_string(*result.limits.resident_bytes / (1024 * 1024)) + " MiB and was killed" +
+                   place_text(result.status);
+        case WorkerEnd::interrupted: return who + " was interrupted" + place_text(result.status);
     }
     return who;
 }
@@ -72,6 +65,14 @@ std::optional<FrameEvent> parse_event(std::string_view line) {
     return event;
 }
 
+std::optional<int> parse_last_word(std::string_view line) {
+    const auto json = nlohmann::json::parse(line, nullptr, false);
+    if (!json.is_object() || json.value("event", nlohmann::json()) != "end") return std::nullopt;
+    const auto code = json.find("code");
+    if (code == json.end() || !code->is_number_integer()) return std::nullopt;
+    return code->get<int>();
+}
+
 std::optional<WorkStatus> parse_status(std::string_view line) {
     const auto json = nlohmann::json::parse(line, nullptr, false);
     if (!json.is_object()) return std::nullopt;
@@ -82,8 +83,10 @@ std::optional<WorkStatus> parse_status(std::string_view line) {
         if (found->is_string()) value = found->get<std::string>();
         return found->is_string();
     };
-    if (!text("step", status.step) || !text("plugin", status.plugin) || !text("phase", status.phase))
+    if (!text("step", status.step) || !text("plugin", status.plugin) || !text("phase", status.phase) ||
+        !text("effect", status.effect) || !text("pass", status.pass))
         return std::nullopt;
+    status.is_foreign = json.value("foreign", nlohmann::json()) == true;
     if (const auto frame = json.find("frame"); frame != json.end()) {
         if (!frame->is_number_integer()) return std::nullopt;
         status.frame = frame->get<int>();

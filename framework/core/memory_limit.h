@@ -18,14 +18,20 @@ std::string out_of_memory_text(const std::exception& error);
 /// Bytes of address space that this process may still take; nullopt without a limit (RLIMIT_AS).
 std::optional<std::uint64_t> address_space_left();
 
+/// Memory that a process really uses; 0 where it is gone or /proc is not there.
+std::uint64_t resident_bytes(int process);
+/// Memory that this machine, or the control group of this process, has.
+std::uint64_t machine_memory_bytes();
+
 /// Throws Error(ExitCode::memory) where a limit leaves less than `bytes`; `what` needs them, such as
 /// "OpenGL".
 void require_address_space(std::uint64_t bytes, const std::string& what);
 
 /// At the start of main. Where the address space is limited, malloc keeps to one arena: each other one
-/// reserves 64 MiB for a thread, which are never used here. A crash in a library that does not check what
-/// malloc gave it, and an exception that ends a thread, then end the process with ExitCode::memory and a
-/// message, if memory is what was missing.
+/// reserves 64 MiB for a thread, which are never used here. llvmpipe gets as many threads as there is room
+/// for, unless LP_NUM_THREADS says how many. A crash in a library that does not check what malloc gave it,
+/// and an exception that ends a thread, then end the process with ExitCode::memory and a message, if memory
+/// is what was missing.
 void prepare_for_memory_limit();
 
 }  // namespace aftershade

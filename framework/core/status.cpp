@@ -15,7 +15,7 @@ namespace aftershade {
 namespace {
 
 // Escaping makes a byte six at most ("\u0001"), and PIPE_BUF is 4096 on Linux.
-constexpr std::size_t kMaxField = 220;
+constexpr std::size_t kMaxField = 128;
 constexpr std::size_t kMaxMessage = 640;
 
 std::string shortened(const std::string& text) {
@@ -30,6 +30,9 @@ std::string status_line(const WorkStatus& status) {
     if (!status.plugin.empty()) json["plugin"] = shortened(status.plugin);
     if (!status.phase.empty()) json["phase"] = shortened(status.phase);
     if (status.frame) json["frame"] = *status.frame;
+    if (!status.effect.empty()) json["effect"] = shortened(status.effect);
+    if (!status.pass.empty()) json["pass"] = shortened(status.pass);
+    if (status.is_foreign) json["foreign"] = true;
     return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
@@ -38,6 +41,24 @@ std::string event_line(const FrameEvent& event) {
         {"event", "frame"}, {"frame", event.frame}, {"outcome", event.outcome}, {"seconds", event.seconds}};
     if (!event.message.empty()) json["message"] = event.message.substr(0, kMaxMessage);
     return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+std::string last_word_line(int exit_code) {
+    return nlohmann::ordered_json{{"event", "end"}, {"code", exit_code}}.dump() + "\n";
+}
+
+std::string place_text(const WorkStatus& status) {
+    const std::string step = status.step.empty() ? "" : "step '" + status.step + "'";
+    std::string text;
+    if (!status.pass.empty()) {
+        text = std::string(" while ") + (status.phase == "compile" ? "compiling" : "drawing") + " pass '" +
+               status.pass + "'" + (step.empty() ? "" : " of " + step) + " (effect '" + status.effect + "')";
+    } else {
+        if (!status.phase.empty()) text += " in " + status.phase;
+        if (!step.empty()) text += (status.phase.empty() ? " in " : " of ") + step;
+    }
+    if (status.frame) text += (text.empty() ? " in frame " : ", frame ") + std::to_string(*status.frame);
+    return text;
 }
 
 StatusWriter::StatusWriter() {
@@ -64,6 +85,11 @@ void StatusWriter::write(const WorkStatus& status) {
 void StatusWriter::write(const FrameEvent& event) {
     const std::lock_guard lock(mutex_);
     send(event_line(event));
+}
+
+void StatusWriter::end(int exit_code) {
+    const std::lock_guard lock(mutex_);
+    send(last_word_line(exit_code));
 }
 
 void StatusWriter::send(const std::string& line) {

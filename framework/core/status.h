@@ -15,8 +15,11 @@ inline constexpr const char* kStatusFdVariable = "AFTERSHADE_STATUS_FD";
 struct WorkStatus {
     std::string step;    ///< of the look
     std::string plugin;  ///< the library whose code runs; empty while none does
-    std::string phase;   ///< "load", "create", "prepare", "draw", ...
+    std::string phase;   ///< "load", "create", "prepare", ... of a plug-in; "compile" or "draw" of a pass
     std::optional<int> frame;
+    std::string effect{};     ///< of the pass
+    std::string pass{};       ///< that is compiled or drawn; empty while none is
+    bool is_foreign = false;  ///< whether the effect is not one of the shipped ones
 
     bool operator==(const WorkStatus&) const = default;
 };
@@ -35,6 +38,13 @@ struct FrameEvent {
 /// longer than PIPE_BUF.
 std::string event_line(const FrameEvent& event);
 
+/// One line of JSON with its line end: {"event":"end","code":0}.
+std::string last_word_line(int exit_code);
+
+/// " in prepare of step 'grade', frame 12", " while compiling pass 'main' of step 'grade' (effect 'tint')";
+/// "" where nothing is known.
+std::string place_text(const WorkStatus& status);
+
 /// One line of JSON with its line end: {"step":"grade","plugin":"/x/libfoo.so","phase":"prepare","frame":12}.
 /// Never longer than PIPE_BUF, so that a write is whole: long names lose their beginnings.
 std::string status_line(const WorkStatus& status);
@@ -50,6 +60,8 @@ public:
     bool active() const { return descriptor_ >= 0; }
     void write(const WorkStatus& status);
     void write(const FrameEvent& event);
+    /// Last of all: without it an exit code counts for nothing, since any library may call exit().
+    void end(int exit_code);
     WorkStatus current() const;
 
 private:

@@ -5,6 +5,7 @@
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
+#include "framework/core/glsl_text.h"
 
 namespace aftershade {
 
@@ -14,6 +15,26 @@ Place author_place(const ShaderSource& source, const gpu::ShaderMessage& message
     if (message.line < 1 || message.line > int(source.lines.size())) return {"shader"};
     const SourceLine& line = source.lines[std::size_t(message.line) - 1];
     return {line.file, line.line, message.column};
+}
+
+/// llvmpipe (Mesa 22.3 to 25: lp_bld_limits.h) counts the iterations of all loops of an invocation together,
+/// and ends each loop after its first once 65,535 are over, without an error. So does it with a loop of two
+/// behind the author's main, whose bound no compiler can know.
+constexpr const char* kLoopGuard = R"(
+#undef main
+layout(std430, binding = $binding) restrict buffer AftershadeLoopGuard { uint aftershade_loops_ended; };
+void main() {
+    aftershade_author_main();
+    int wanted = 2 + int(aftershade_loops_ended >> 1), turns = 0;
+    while (turns < wanted) ++turns;
+    if (turns < wanted) aftershade_loops_ended = 1u;
+}
+)";
+
+void guard(ShaderSource& source) {
+    source.text.insert(source.text.find('\n') + 1, "#define main aftershade_author_main\n");
+    source.lines.insert(source.lines.begin() + 1, SourceLine{"<generated>", 1});
+    source.text += filled(kLoopGuard, {{"binding", std::to_string(kLoopGuardBinding)}});
 }
 
 std::string trimmed(std::ostringstream& text) {
@@ -45,9 +66,12 @@ ProgramCache::Sources ProgramCache::assemble(const ShaderContext& context, Diagn
     Sources sources;
     sources.is_compute = context.pass->kind == PassKind::compute;
     sources.main = assemble_shader(context, faults);
+    const bool guards = guards_loops_ && !faults.has_errors();
+    if (guards) guard(sources.main);
     if (sources.is_compute) return sources;
     const bool has_vertex = context.pass->has_vertex_shader();
     if (has_vertex) sources.vertex_lines = assemble_shader(context, faults, ShaderFile::vertex);
+    if (has_vertex && guards && !faults.has_errors()) guard(sources.vertex_lines);
     sources.vertex = has_vertex ? sources.vertex_lines.text : full_screen_;
     return sources;
 }

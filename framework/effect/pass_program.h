@@ -13,6 +13,9 @@
 
 namespace aftershade {
 
+/// The storage block of a guarded program: one word, which is not 0 once llvmpipe has ended a loop.
+inline constexpr int kLoopGuardBinding = 15;
+
 /// Programs by their full text, so that equal shaders compile once; those of earlier runs come from `store`.
 /// [the context's thread]
 class ProgramCache {
@@ -25,6 +28,9 @@ public:
     const gpu::Program& get(const ShaderContext& context);
     /// A full-screen shader of the host's own, glsl/host/<file>, with symbols defined after its first line.
     const gpu::Program& host(const std::string& file, const std::vector<std::string>& defines);
+    /// Programs made from now on report into a storage block whether llvmpipe ended one of their loops.
+    /// [before the first program]
+    void guard_loops() { guards_loops_ = true; }
     const std::filesystem::path& glsl_folder() const { return glsl_folder_; }
     int compiled_count() const { return compiled_; }  ///< programs made from text
     int loaded_count() const { return loaded_; }      ///< programs taken from the store
@@ -40,6 +46,7 @@ private:
     ProgramStore store_;
     std::string full_screen_;  // the vertex shader of a draw that has none
     std::map<std::string, gpu::Program> programs_;
+    bool guards_loops_ = false;
     int compiled_ = 0;
     int loaded_ = 0;
 };

@@ -3,6 +3,7 @@
 #include <system_error>
 #include <utility>
 
+#include "framework/core/data_path.h"
 #include "framework/core/document.h"
 
 namespace aftershade {
@@ -42,6 +43,12 @@ const EffectManifest* EffectRegistry::find(const std::string& id, Diagnostics& d
         manifest = manifests_.emplace(id, std::move(parsed)).first;
     }
     return manifest->second ? &*manifest->second : nullptr;
+}
+
+bool is_shipped(const EffectManifest& manifest) {
+    std::error_code failure;
+    const fs::path shipped = fs::weakly_canonical(data_path() / "effects", failure);
+    return !failure && fs::weakly_canonical(manifest.folder, failure).parent_path() == shipped && !failure;
 }
 
 }  // namespace aftershade

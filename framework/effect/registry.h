@@ -35,4 +35,8 @@ private:
     std::map<std::string, std::optional<EffectManifest>> manifests_;
 };
 
+/// Whether the effect is one of those that come with the program; all others are strangers'. Throws as
+/// data_path() does.
+bool is_shipped(const EffectManifest& manifest);
+
 }  // namespace aftershade

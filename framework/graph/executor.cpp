@@ -215,17 +215,26 @@ std::vector<PassTime> Executor::run(bool timed, const PassObserver& observer, Pa
     if (timed) times.reserve(bound_.size());
     for (std::size_t i = 0; i < bound_.size(); ++i) {
         if (!range.contains(compiled_.passes[i])) continue;
+        if (hooks_.begins) hooks_.begins(bound_[i].pass->name);
         if (timed) timer_.start();
         run_clears(clears_[i]);
         run_pass(bound_[i]);
         if (timed) times.push_back({bound_[i].pass->name, timer_.stop_ms()});
-        if (!observer) continue;
-        for (const BoundPass::Observed& written : bound_[i].observed)
-            observer(bound_[i].pass->name, *written.name, *written.texture);
+        if (observer)
+            for (const BoundPass::Observed& written : bound_[i].observed)
+                observer(bound_[i].pass->name, *written.name, *written.texture);
+        if (hooks_.ended) hooks_.ended(bound_[i].pass->name);
     }
     if (range.end < 0) run_clears(clears_.back());
     for_written([](auto& history) { history.current_is_newer = history.current != nullptr; });
     return times;
+}
+
+void Executor::set_hooks(PassHooks hooks) {
+    hooks_ = std::move(hooks);
+    if (!hooks_.storage.buffer) return;
+    for (BoundPass& bound : bound_)
+        if (bound.pass->kind != PassKind::clear) bound.storage.push_back(hooks_.storage);
 }
 
 Executor::History Executor::history() {

@@ -53,6 +53,15 @@ public:
     using PassObserver =
         std::function<void(const std::string& pass, const std::string& texture, const gpu::Texture& target)>;
 
+    /// What is done around each pass, by its name.
+    struct PassHooks {
+        std::function<void(const std::string& pass)> begins;
+        std::function<void(const std::string& pass)> ended;  ///< may throw: the frame is lost then
+        gpu::BufferBinding storage;  ///< besides the pass's own, of all but clears; none: its buffer is null
+    };
+    /// Once, before the first run. The buffer must outlive this.
+    void set_hooks(PassHooks hooks);
+
     /// Runs every pass. With `timed`, waits for each and returns its milliseconds (see gpu::Timer); else
     /// returns {}. `observer`, if any, sees each target right after its pass; its time is nobody's.
     /// At the end, each history that was written becomes what the next run reads as its `previous`. `range`:
@@ -131,6 +140,7 @@ private:
     std::vector<BoundPass> bound_;  // as compiled_.passes
     std::vector<Clears> clears_;    // one more than passes: what is cleared at the end
     gpu::Timer timer_;
+    PassHooks hooks_;
 };
 
 }  // namespace aftershade::graph

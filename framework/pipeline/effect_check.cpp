@@ -8,6 +8,7 @@
 #include <set>
 
 #include "framework/core/error.h"
+#include "framework/effect/registry.h"
 #include "framework/image/role.h"
 #include "framework/pipeline/renderer.h"
 
@@ -39,6 +40,7 @@ Pipeline pipeline_of(const EffectManifest& manifest, const Setting& setting) {
     PipelineStep step;
     step.name = manifest.id;
     step.manifest = &manifest;
+    step.is_foreign = !is_shipped(manifest);
     for (const InputSpec& input : manifest.inputs)
         // A role that the test capture never has: the input is not there.
         step.inputs[input.name] = {-1, setting.absent.contains(input.name) ? "aov:absent" : input.role};
@@ -153,6 +155,7 @@ std::string fault_of(gpu::Context& context, const EffectManifest& manifest, cons
     std::vector<std::string> roles;
     for (const OutputSpec& output : manifest.outputs) roles.push_back(output.role);
     PipelineRenderer renderer(context, pipeline, data_folder, natives);
+    renderer.guard_loops();
     // Two frames, so that history is read.
     for (const int number : {1, 2}) {
         Capture previous = make_test_capture(64, 36, number - 1), capture = make_test_capture(64, 36, number),
@@ -163,7 +166,8 @@ std::string fault_of(gpu::Context& context, const EffectManifest& manifest, cons
         frame.previous = &previous;
         frame.next = &next;
         try {
-            const std::string bad = first_bad_value(renderer.render(frame, roles, false));
+            // Timed, so that each pass has ended before the next begins: what fails is then known.
+            const std::string bad = first_bad_value(renderer.render(frame, roles, true));
             if (!bad.empty()) return bad;
         } catch (const Error& error) {
             return error.what();

@@ -49,6 +49,12 @@ int count_value(const CountSpec& count, const ParamReader& params) {
     return count.param.empty() ? count.number : int(std::get<std::int64_t>(params.get(count.param)));
 }
 
+WorkStatus status_of_pass(const PipelineStep& step, const std::string& pass, const std::string& phase,
+                          const StatusWriter* status) {
+    return {step.name,         "",   phase,          status ? status->current().frame : std::nullopt,
+            step.manifest->id, pass, step.is_foreign};
+}
+
 std::pair<int, int> grid_size(const GridSpec& grid, const ParamReader& params, int width, int height) {
     switch (grid.kind) {
         case GridSpec::Kind::size: return {grid.size[0], grid.size[1]};

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "framework/core/status.h"
 #include "framework/effect/param_reader.h"
 #include "framework/effect/pass_program.h"
 #include "framework/graph/frame_graph.h"
@@ -24,7 +25,8 @@ struct GraphTools {
     gpu::Context& context;
     ProgramCache& programs;
     StepFiles& files;
-    bool telemetry = false;  ///< keep the textures of the steps' statistics
+    bool telemetry = false;          ///< keep the textures of the steps' statistics
+    StatusWriter* status = nullptr;  ///< told which pass is compiled; may be null
 };
 
 /// Throws Error(ExitCode::effect) where a pass reads, or a step outputs, what no pass has written with these
@@ -55,6 +57,7 @@ private:
     void declare_native_tables(StepBuild& build);
     void add_pass(StepBuild& build, const PassSpec& spec);
     void add_turn(StepBuild& build, const PassSpec& spec, int turn, int turns);
+    const gpu::Program& program_of(const StepBuild& build, const ShaderContext& shader);
     void add_clear(StepBuild& build, const PassSpec& spec);
     void add_mix(StepBuild& build);
     graph::TextureHandle mask_of(const StepBuild& build);
@@ -85,6 +88,10 @@ private:
     std::vector<NativeTableBinding> native_tables_;
     std::vector<BlockBinding> blocks_;
 };
+
+/// A pass that is worked on in the frame that `status`, which may be null, is at.
+WorkStatus status_of_pass(const PipelineStep& step, const std::string& pass, const std::string& phase,
+                          const StatusWriter* status);
 
 /// Extent of a grid over a working grid of width x height px.
 std::pair<int, int> grid_size(const GridSpec& grid, const ParamReader& params, int width, int height);

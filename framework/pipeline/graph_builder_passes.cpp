@@ -89,6 +89,12 @@ void GraphBuilder::add_pass(StepBuild& build, const PassSpec& spec) {
     for (int turn = 0; turn < turns; ++turn) add_turn(build, spec, turn, turns);
 }
 
+const gpu::Program& GraphBuilder::program_of(const StepBuild& build, const ShaderContext& shader) {
+    const StatusScope scope(tools_.status,
+                            status_of_pass(build.step, shader.pass->name, "compile", tools_.status));
+    return tools_.programs.get(shader);
+}
+
 void GraphBuilder::add_clear(StepBuild& build, const PassSpec& spec) {
     graph::Pass pass;
     pass.name = build.step.name + "." + spec.name;
@@ -112,7 +118,7 @@ void GraphBuilder::add_turn(StepBuild& build, const PassSpec& spec, int turn, in
     const PassBindings bindings = pass_bindings(shader);
     graph::Pass pass;
     pass.name = build.prefix() + spec.name + (turns > 1 ? "[" + std::to_string(turn) + "]" : "");
-    pass.program = &tools_.programs.get(shader);
+    pass.program = &program_of(build, shader);
     pass.blend = spec.blend;
     bind_reads(build, spec, bindings, turn, tile_grid_size(build, spec, bindings), graph_, pass);
     bind_memory(build, bindings, pass);

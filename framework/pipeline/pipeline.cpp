@@ -114,9 +114,8 @@ bool Pipeline::has_history() const {
                        [](const PipelineStep& step) { return step.manifest->has_history(); });
 }
 
-bool Pipeline::has_native() const {
-    return std::any_of(steps.begin(), steps.end(),
-                       [](const PipelineStep& step) { return step.manifest->native.has_value(); });
+bool Pipeline::has_foreign() const {
+    return std::any_of(steps.begin(), steps.end(), [](const PipelineStep& step) { return step.is_foreign; });
 }
 
 int Pipeline::last_accumulating_step() const {

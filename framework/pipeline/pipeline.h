@@ -40,6 +40,7 @@ struct PipelineStep {
     /// By output: the image of that role before the step, which `mix` and `mask` let through. Empty where the
     /// step has neither.
     std::map<std::string, InputSource> before;
+    bool is_foreign = false;  ///< the effect is not one of the shipped ones
 
     /// Whether the input's conditions may hold: with values that differ from frame to frame they may.
     bool may_take(const InputSpec& input) const;
@@ -68,7 +69,8 @@ struct Pipeline {
     std::vector<std::string> neighbour_roles(int offset) const;
     bool writes_role(const std::string& role) const;
     bool has_history() const;
-    bool has_native() const;
+    /// Whether some effect is not one of the shipped ones.
+    bool has_foreign() const;
     /// The last step whose effect accumulates sub-frames; -1: none does.
     int last_accumulating_step() const;
 };

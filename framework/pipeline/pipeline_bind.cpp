@@ -137,6 +137,7 @@ private:
         step.name = look_step.name;
         step.manifest = effects_.find(look_step.effect, diagnostics_);
         if (!step.manifest) return std::nullopt;
+        step.is_foreign = !is_shipped(*step.manifest);
         apply_preset(look_step, step);
         for (const Member& member : look_step.params)
             set_value(step, member.key, member.value, member.key_place, "the look", look_step.folder);

@@ -69,7 +69,11 @@ PipelineRenderer::PipelineRenderer(gpu::Context& context, const Pipeline& pipeli
 
 PipelineRenderer::PipelineRenderer(gpu::Context& context, const Pipeline& pipeline,
                                    std::shared_ptr<ProgramCache> programs, NativeSources natives)
-    : context_(context), pipeline_(pipeline), programs_(std::move(programs)), natives_(natives) {}
+    : context_(context),
+      pipeline_(pipeline),
+      programs_(std::move(programs)),
+      status_(natives.status),
+      natives_(natives) {}
 
 PipelineRenderer::~PipelineRenderer() = default;
 
@@ -100,8 +104,9 @@ void PipelineRenderer::prepare(const FrameInputs& frame, const std::vector<std::
     // The old textures go before the new ones come, unless what they hold lives on.
     std::unique_ptr<BuiltGraph> old = std::move(built_);
     if (!pipeline_.has_history()) old.reset();
-    built_ = build_graph({context_, *programs_, files_, telemetry_}, graph_frame);
+    built_ = build_graph({context_, *programs_, files_, telemetry_, status_}, graph_frame);
     ++graphs_built_;
+    set_hooks();
     if (old) built_->executor->take_history_from(*old->executor);
 }
 
@@ -113,10 +118,60 @@ double PipelineRenderer::feed(const FrameInputs& frame, const std::vector<std::s
     return timer.stop_ms();
 }
 
+void PipelineRenderer::set_audit(bool audit) {
+    audit_ = audit;
+    if (audit) guard_loops();
+}
+
+void PipelineRenderer::guard_loops() {
+    if (loop_guard_ || context_.info().renderer.find("llvmpipe") == std::string::npos) return;
+    loop_guard_.emplace(context_, sizeof(std::uint32_t), "loop guard");
+    programs_->guard_loops();
+}
+
+namespace {
+
+/// The step of a pass of the graph, "step.pass" or "step.pass[2]"; nullptr for the host's own passes.
+const PipelineStep* step_of(const Pipeline& pipeline, const std::string& pass) {
+    for (const PipelineStep& step : pipeline.steps)
+        if (pass.starts_with(step.name + ".")) return &step;
+    return nullptr;
+}
+
+}  // namespace
+
+void PipelineRenderer::set_hooks() {
+    graph::Executor::PassHooks hooks;
+    if (status_ && status_->active())
+        hooks.begins = [this](const std::string& pass) {
+            if (const PipelineStep* step = step_of(pipeline_, pass))
+                status_->write(status_of_pass(*step, pass.substr(step->name.size() + 1), "draw", status_));
+        };
+    if (loop_guard_) {
+        hooks.storage = {&*loop_guard_, kLoopGuardBinding};
+        hooks.ended = [this](const std::string& pass) { require_whole_loops(pass); };
+    }
+    built_->executor->set_hooks(std::move(hooks));
+}
+
+void PipelineRenderer::require_whole_loops(const std::string& pass) {
+    const std::vector<std::byte> word = loop_guard_->read();
+    if (std::ranges::all_of(word, [](std::byte byte) { return byte == std::byte{0}; })) return;
+    loop_guard_->clear(0);
+    throw Error(ExitCode::effect,
+                "pass '" + pass +
+                    "': llvmpipe ended its loops after 65,535 iterations, so the picture is wrong; end the "
+                    "loops earlier, or split the work over a pass with \"repeat\"");
+}
+
 void PipelineRenderer::run_passes(bool timed, graph::PassRange range, FrameResult& result) {
     const auto observer = audit_ ? auditor(pipeline_, result.audit) : graph::Executor::PassObserver{};
     const auto times = built_->executor->run(timed, observer, range);
     result.times.insert(result.times.end(), times.begin(), times.end());
+    if (!status_ || !status_->active()) return;
+    WorkStatus between;
+    between.frame = status_->current().frame;
+    status_->write(between);
 }
 
 FrameResult PipelineRenderer::render(const FrameInputs& frame, const std::vector<std::string>& roles,

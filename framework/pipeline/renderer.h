@@ -12,6 +12,7 @@
 
 #include "framework/capture/capture.h"
 #include "framework/effect/pass_program.h"
+#include "framework/gpu/buffer.h"
 #include "framework/graph/executor.h"
 #include "framework/pipeline/audit.h"
 #include "framework/pipeline/native_steps.h"
@@ -55,7 +56,11 @@ public:
     /// `frame.capture->header.frame`; anything else begins history anew. Throws Error(ExitCode::effect).
     FrameResult render(const FrameInputs& frame, const std::vector<std::string>& roles, bool timed);
     /// Reads every input and every float texture back after its pass and looks for NaN and infinities. Slow.
-    void set_audit(bool audit) { audit_ = audit; }
+    /// Guards loops, too. [before the first frame]
+    void set_audit(bool audit);
+    /// A loop that llvmpipe ended before its time, without which the picture is wrong, is an error of its
+    /// pass. Does nothing with other renderers, which end none. [before the first frame]
+    void guard_loops();
     /// Reads the textures of the effects' telemetry back after each frame; they share no memory then.
     /// [before the first frame]
     void set_telemetry(bool telemetry) { telemetry_ = telemetry; }
@@ -95,6 +100,8 @@ private:
     std::string history_fault(const FrameInputs& frame) const;
     double feed(const FrameInputs& frame, const std::vector<std::string>& roles, const FrameBefore& before,
                 int first_pass);
+    void set_hooks();
+    void require_whole_loops(const std::string& pass);
     void run_passes(bool timed, graph::PassRange range, FrameResult& result);
     FrameTelemetry read_telemetry(int frame) const;
     void read_results(const std::vector<std::string>& roles, bool timed, FrameResult& result);
@@ -104,6 +111,8 @@ private:
     gpu::Context& context_;
     const Pipeline& pipeline_;
     std::shared_ptr<ProgramCache> programs_;
+    StatusWriter* status_ = nullptr;
+    std::optional<gpu::Buffer> loop_guard_;  // before the graph, whose passes it is bound to
     StepFiles files_;
     NativeSteps natives_;
     std::vector<ParamSet> params_;

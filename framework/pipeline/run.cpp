@@ -192,8 +192,6 @@ private:
             if (!warms_up(index)) outcomes_.skipped(number);
             return;
         }
-        // A plug-in may end this process: what is done must be on disk before its code runs.
-        if (setup_.pipeline.has_native()) finish_write();
         const auto begin = Clock::now();
         const RunHooks& hooks = setup_.hooks;
         if (hooks.before_frame) hooks.before_frame(number, renderer_);
@@ -201,8 +199,8 @@ private:
         try {
             frame = frame_run_.render(index, wanted_roles(setup_.outputs), report_, observer_);
         } catch (const Error& error) {
+            if (error.exit_code() != ExitCode::memory) finish_write();
             if (error.exit_code() != ExitCode::capture) throw;
-            finish_write();
             if (!warms_up(index)) outcomes_.failed(number, error);
             else if (observer_.frame_failed) observer_.frame_failed(error.what());
             if (hooks.frame_failed) hooks.frame_failed(number, renderer_);

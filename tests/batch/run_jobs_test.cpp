@@ -109,6 +109,26 @@ TEST(RunJobs, AHangCostsAFrame) {
     EXPECT_EQ(message_of(report, 2), "the worker did not finish within 0.5 s and was killed in frame 2");
 }
 
+TEST(RunJobs, APassThatTakesTooLongCostsAFrame) {
+    const auto at_pass = [](const std::string& foreign) {
+        return "[ $f = 2 ] && { say '{\"step\":\"grade\",\"phase\":\"draw\",\"frame\":2,\"effect\":\"tint\","
+               "\"pass\":\"main\"" +
+               foreign + "}'; sleep 1; }; done_";
+    };
+    JobOptions options = jobs_of_script(at_pass(",\"foreign\":true"), {{{1, 2, 3}}});
+    options.pass_limit.timeout = std::chrono::milliseconds(300);
+    const JobsReport report = run_jobs(options, {}, kGoOn);
+    EXPECT_EQ(outcomes(report), (Outcomes{{1, "done"}, {2, "failed"}, {3, "done"}}));
+    EXPECT_EQ(message_of(report, 2),
+              "the GL driver did not finish within 0.3 s and was killed while drawing pass 'main' of step 'grade' "
+              "(effect 'tint'), frame 2");
+    options = jobs_of_script(at_pass(""), {{{1, 2, 3}}});
+    options.pass_limit.timeout = std::chrono::milliseconds(300);
+    EXPECT_EQ(run_jobs(options, {}, kGoOn).exit_code, ExitCode::done) << "a shipped effect has its time";
+    options.pass_limit.of_shipped_effects = true;
+    EXPECT_EQ(run_jobs(options, {}, kGoOn).exit_code, ExitCode::partial);
+}
+
 TEST(RunJobs, AnErrorOfOneFrameIsItsMessage) {
     const JobsReport report = run_jobs(
         jobs_of_script("[ $f = 2 ] && { echo 'aftershade: error: step blur: too much' >&2; exit 5; }; done_",

@@ -98,6 +98,27 @@ TEST(Worker, LimitsMemory) {
     EXPECT_EQ(describe(run_worker(command)), "the worker ended with code 5");
 }
 
+TEST(Worker, LimitsTheMemoryThatIsReallyUsed) {
+    WorkerCommand command = worker({"--allocate"});
+    command.limits.resident_bytes = std::uint64_t(256) << 20;
+    const WorkerResult result = run_worker(command);
+    EXPECT_EQ(result.end, WorkerEnd::out_of_memory);
+    EXPECT_EQ(describe(result), "the worker took more memory than its limit of 256 MiB and was killed");
+}
+
+TEST(Worker, HasEndedInOrderOnlyWithItsLastWord) {
+    WorkerCommand command;
+    const auto ends = [&](const std::string& script) {
+        command.arguments = {"/bin/sh", "-c", script};
+        return run_worker(command).ended_in_order();
+    };
+    const std::string say = "echo '{\"event\":\"end\",\"code\":3}' >&$AFTERSHADE_STATUS_FD; ";
+    EXPECT_TRUE(ends(say + "exit 3"));
+    EXPECT_FALSE(ends("exit 3")) << "it said nothing";
+    EXPECT_FALSE(ends(say + "exit 0")) << "it said something else";
+    EXPECT_FALSE(ends(say + "kill -KILL $$"));
+}
+
 TEST(Worker, DoesNotWaitForWhatTheWorkerLeftBehind) {
     const WorkerResult result = run_worker(worker({"--orphan"}));
     EXPECT_TRUE(result.succeeded()) << describe(result);
@@ -128,13 +149,24 @@ TEST(Worker, AProgramThatIsNotThereIsNamed) {
     expect_no_children();
 }
 
+TEST(Status, NamesThePassThatIsCompiledOrDrawn) {
+    WorkStatus status{"grade", "", "compile", 12, "tint", "main", true};
+    EXPECT_EQ(parse_status(status_line(status)), status);
+    EXPECT_EQ(place_text(status), " while compiling pass 'main' of step 'grade' (effect 'tint'), frame 12");
+    status.phase = "draw";
+    EXPECT_EQ(place_text(status), " while drawing pass 'main' of step 'grade' (effect 'tint'), frame 12");
+    EXPECT_EQ(parse_last_word(last_word_line(5)), 5);
+    EXPECT_EQ(parse_last_word(status_line(status)), std::nullopt);
+    EXPECT_EQ(parse_last_word("{\"event\":\"end\",\"code\":\"5\"}"), std::nullopt);
+}
+
 TEST(Status, AnyTextComesBackAndALineFitsOneWrite) {
     const WorkStatus status{"a \"step\"\n", "/x/libfoo.so", "prepare", -3};
     EXPECT_EQ(parse_status(status_line(status)), status);
     EXPECT_EQ(status_line({"grade", "/x/libfoo.so", "prepare", 12}),
               "{\"step\":\"grade\",\"plugin\":\"/x/libfoo.so\",\"phase\":\"prepare\",\"frame\":12}\n");
     const std::string longest(5000, '\x01');
-    EXPECT_LE(status_line({longest, longest, longest, 1}).size(), 4096U);
+    EXPECT_LE(status_line({longest, longest, longest, 1, longest, longest, true}).size(), 4096U);
     for (const char* line : {"", "[]", "{\"step\":1}", "{\"frame\":\"x\"}", "{\"step\":\"a\""})
         EXPECT_EQ(parse_status(line), std::nullopt) << line;
 }

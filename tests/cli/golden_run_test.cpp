@@ -99,23 +99,25 @@ TEST_F(GoldenRun, TellsAnEffectThatFailsAndGoesOn) {
 }
 
 TEST_F(GoldenRun, CatchesAnOutputThatTheCaseDoesNotName) {
-    fs::create_directories(folder_ / "mine/litters");
-    write_text(folder_ / "mine/litters/effect.json",
-               R"({ "aftershade": 1, "version": "1.0.0", "summary": "A test.", "id": "litters",
+    fs::create_directories(folder_ / "mine/older");
+    write_text(folder_ / "mine/older/effect.json",
+               R"({ "aftershade": 1, "version": "1.0.0", "summary": "A test.", "id": "older",
         "inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
         "params": { "gain": { "type": "float", "default": 0.5, "doc": "." } },
         "native": { "uniforms": { "gain": { "type": "float", "doc": "Gain times the frame's number." } } },
         "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color"], "writes": ["color"] } ] })");
-    write_text(folder_ / "mine/litters/main.frag",
+    write_text(folder_ / "mine/older/main.frag",
                "#version 450 core\n#include <pass>\nvoid main() { out_color = texelFetch(color, "
                "ivec2(gl_FragCoord.xy), 0) * native.gain; }\n");
     write_text(folder_ / "golden.json", R"({ "aftershade": 1, "effect_paths": ["mine"], "cases": [
-    { "name": "tidy", "steps": [ { "effect": "litters" } ], "capture": "in_####.exr", "frames": "1" } ] })");
+    { "name": "tidy", "steps": [ { "effect": "older" } ], "capture": "in_####.exr", "frames": "1" } ] })");
     const std::vector<std::string> with_library = {"--plugin-path", AFTERSHADE_CASES};
     approve(with_library);
     EXPECT_EQ(run(with_library).exit_code, 0);
+    // No plug-in can write a file any more, so a library that is loaded into the program does.
+    const std::string litters = AFTERSHADE_CASES "/preload/litters.so";
     for (const std::string name : {"stray.exr", "0002.exr"}) {
-        const Environment littering = {{"LITTER", name}};
+        const Environment littering = {{"LITTER", name}, {"LD_PRELOAD", litters}};
         const CommandResult result = run(with_library, littering);
         EXPECT_EQ(result.exit_code, 2) << result.err;
         EXPECT_NE(result.err.find("FAILED tidy: failure\n    an output that the case does not name: " + name),

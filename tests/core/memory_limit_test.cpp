@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <functional>
 #include <new>
 #include <stdexcept>
@@ -51,6 +52,25 @@ int end_of_child(rlim_t limit_bytes, const std::function<void()>& work) {
 }
 
 constexpr rlim_t kMiB = 1024 * 1024;
+
+/// How many threads llvmpipe is held to under a limit; 0: to none.
+int llvmpipe_threads(rlim_t limit_bytes) {
+    return end_of_child(limit_bytes, [] {
+        const char* threads = std::getenv("LP_NUM_THREADS");
+        _exit(threads ? std::atoi(threads) : 0);
+    });
+}
+
+TEST(AddressSpace, ThatIsShortGetsLlvmpipeFewerThreads) {
+    if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "one core has one thread";
+    unsetenv("LP_NUM_THREADS");
+    EXPECT_EQ(llvmpipe_threads(RLIM_INFINITY), 0);
+    EXPECT_EQ(llvmpipe_threads(300 * kMiB), 1);
+    EXPECT_EQ(llvmpipe_threads(16'000 * kMiB), 0);
+    setenv("LP_NUM_THREADS", "7", 1);
+    EXPECT_EQ(llvmpipe_threads(300 * kMiB), 7) << "the user's word counts";
+    unsetenv("LP_NUM_THREADS");
+}
 
 TEST(AddressSpace, IsRequiredBeforeItRunsOut) {
     EXPECT_EQ(end_of_child(400 * kMiB, [] { require_address_space(100 * kMiB, "a test"); }), 0);

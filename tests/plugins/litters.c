@@ -1,9 +1,9 @@
-/* A library that writes a file of the name LITTER beside the frames of the run it works for. */
+/* For LD_PRELOAD: writes a file of the name LITTER beside the frames of the run that it is loaded into. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static void litter(void) {
+__attribute__((constructor)) static void litter(void) {
     const char *name = getenv("LITTER");
     static char words[65536];
     char path[4096];
@@ -21,7 +21,3 @@ static void litter(void) {
         if (written) fclose(written);
     }
 }
-
-#define CASE_ID "litters"
-#define CASE_PREPARE litter()
-#include "case.c"

@@ -4,6 +4,7 @@
 #include "framework/effect/native/native_call.h"
 #include "framework/effect/native/native_host.h"
 #include "framework/effect/native/native_library.h"
+#include "framework/effect/native/native_process.h"
 
 namespace aftershade {
 
@@ -16,12 +17,14 @@ struct NativeEffect::Impl {
     NativeHost host;
     const aftershade_instance* instance = nullptr;  // what calls of the plug-in receive
     aftershade_instance functions{};  // those that this host knows; null where the plug-in is older
+    int remote = 0;                   // the instance in another process; 0: in this one
 
     ~Impl() {
-        if (!instance) return;
+        if (!instance && remote == 0) return;
         const StatusScope scope(status, {step, library->place(), "destroy", {}});
         try {
-            call_plugin(place() + "destroy", [&] { functions.destroy(instance); });
+            if (remote > 0) library->process()->destroy(remote);
+            else call_plugin(place() + "destroy", [&] { functions.destroy(instance); });
         } catch (const Error&) {  // the work is done, and a destructor must not throw
         }
     }
@@ -37,6 +40,10 @@ struct NativeEffect::Impl {
 
     void create(const NativeLibrary::Effect& effect) {
         const StatusScope scope(status, {step, library->place(), "create", {}});
+        if (NativeProcess* const process = library->process()) {
+            remote = process->create(library->place(), declaration, step);
+            return;
+        }
         const aftershade_factory factory = checked_factory(effect.factory, place());
         const aftershade_instance* made = call_plugin(
             place() + "create", [&] { return factory.create(effect.factory, host.get(), step.c_str()); });
@@ -51,14 +58,19 @@ struct NativeEffect::Impl {
 };
 
 NativeEffect::NativeEffect(NativeRegistry& registry, NativeDeclaration declaration, std::string step,
-                           StatusWriter* status)
-    : impl_(std::make_unique<Impl>()) {
+                           StatusWriter* status) {
     const NativeRegistry::Entry& entry = registry.find(declaration.effect_id, declaration.effect_version);
-    impl_->library = entry.library;
+    *this = NativeEffect(entry.library, entry.effect, std::move(declaration), std::move(step), status);
+}
+
+NativeEffect::NativeEffect(std::shared_ptr<NativeLibrary> library, const NativeLibraryEffect& effect,
+                           NativeDeclaration declaration, std::string step, StatusWriter* status)
+    : impl_(std::make_unique<Impl>()) {
+    impl_->library = std::move(library);
     impl_->declaration = std::move(declaration);
     impl_->step = std::move(step);
     impl_->status = status;
-    impl_->create(entry.effect);
+    impl_->create(effect);
 }
 
 NativeEffect::~NativeEffect() = default;
@@ -68,6 +80,7 @@ NativeEffect& NativeEffect::operator=(NativeEffect&&) noexcept = default;
 NativeResult NativeEffect::prepare(const NativeFrame& frame) {
     Impl& impl = *impl_;
     const StatusScope scope(impl.status, {impl.step, impl.library->place(), "prepare", frame.number});
+    if (impl.remote > 0) return impl.library->process()->prepare(impl.remote, frame);
     NativeFaults faults;
     const NativeInput input(frame, faults);
     NativeOutput output(impl.declaration, faults);
@@ -89,8 +102,9 @@ NativeResult NativeEffect::prepare(const NativeFrame& frame) {
 
 void NativeEffect::reset() {
     Impl& impl = *impl_;
-    if (!impl.functions.reset) return;
+    if (!impl.functions.reset && impl.remote == 0) return;
     const StatusScope scope(impl.status, {impl.step, impl.library->place(), "reset", {}});
+    if (impl.remote > 0) return impl.library->process()->reset(impl.remote);
     call_plugin(impl.place() + "reset", [&] { impl.functions.reset(impl.instance); });
 }
 

@@ -17,7 +17,9 @@
 
 namespace aftershade {
 
+class NativeLibrary;
 class NativeRegistry;
+struct NativeLibraryEffect;
 
 enum class NativeScalar { float_, int_, uint_ };
 
@@ -122,6 +124,9 @@ public:
     /// where the plug-in makes no instance.
     NativeEffect(NativeRegistry& registry, NativeDeclaration declaration, std::string step,
                  StatusWriter* status = nullptr);
+    /// An effect that `library` offers.
+    NativeEffect(std::shared_ptr<NativeLibrary> library, const NativeLibraryEffect& effect,
+                 NativeDeclaration declaration, std::string step, StatusWriter* status = nullptr);
     ~NativeEffect();
     NativeEffect(NativeEffect&&) noexcept;
     NativeEffect& operator=(NativeEffect&&) noexcept;

@@ -6,6 +6,7 @@
 
 #include "framework/core/error.h"
 #include "framework/effect/native/native_host.h"
+#include "framework/effect/native/native_process.h"
 
 namespace aftershade {
 
@@ -52,6 +53,16 @@ std::shared_ptr<NativeLibrary> NativeLibrary::open(const fs::path& path) {
                         "'; define it as framework/plugin/aftershade_plugin.h shows, or take "
                         "the file out of the plug-in folder");
     library->start(*static_cast<const aftershade_library*>(entry));
+    return library;
+}
+
+std::shared_ptr<NativeLibrary> NativeLibrary::open_in(std::shared_ptr<NativeProcess> process,
+                                                      const fs::path& path) {
+    const NativeProcess::Offer offer = process->open(path);
+    const std::shared_ptr<NativeLibrary> library(new NativeLibrary(nullptr, path.string()));
+    library->process_ = std::move(process);
+    library->contact_ = offer.contact;
+    for (const auto& [id, version] : offer.effects) library->effects_.push_back({id, version, nullptr});
     return library;
 }
 

@@ -15,6 +15,7 @@
 namespace aftershade {
 
 class NativeHost;
+class NativeProcess;
 
 /// A library that the build linked into the executable.
 struct StaticNativeLibrary {
@@ -33,20 +34,26 @@ aftershade_library checked_library(const aftershade_library& entry, const std::s
 aftershade_factory checked_factory(const aftershade_factory* factory, const std::string& place);
 aftershade_instance checked_instance(const aftershade_instance* instance, const std::string& place);
 
+/// What a library offers.
+struct NativeLibraryEffect {
+    std::string id;
+    std::string version;
+    const aftershade_factory* factory;  ///< the library's own; of any minor. nullptr in another process
+};
+
 /// One library, loaded as long as this lives. [one thread at a time]
 class NativeLibrary {
 public:
-    struct Effect {
-        std::string id;
-        std::string version;
-        const aftershade_factory* factory;  ///< the library's own; of any minor
-    };
+    using Effect = NativeLibraryEffect;
 
     /// Loads a shared library with RTLD_NOW | RTLD_LOCAL and calls its init. Throws Error(ExitCode::effect)
     /// with the file and the reason: not a library, no entry, another ABI, init failed.
     static std::shared_ptr<NativeLibrary> open(const std::filesystem::path& path);
     /// The same for a library that is linked into the executable.
     static std::shared_ptr<NativeLibrary> adopt(const StaticNativeLibrary& library);
+    /// The same for a library that is loaded in another process, never in this one.
+    static std::shared_ptr<NativeLibrary> open_in(std::shared_ptr<NativeProcess> process,
+                                                  const std::filesystem::path& path);
     ~NativeLibrary();
     NativeLibrary(const NativeLibrary&) = delete;
     NativeLibrary& operator=(const NativeLibrary&) = delete;
@@ -54,13 +61,16 @@ public:
     const std::string& place() const { return place_; }      ///< its file, for messages
     const std::string& contact() const { return contact_; }  ///< where to report faults; may be empty
     const std::vector<Effect>& effects() const { return effects_; }
+    /// Where its code runs; nullptr for this process.
+    NativeProcess* process() const { return process_.get(); }
 
 private:
     NativeLibrary(void* handle, std::string place);
     void start(const aftershade_library& entry);
     void list_effects(const aftershade_library& library);
 
-    void* handle_ = nullptr;  // dlopen's; null where linked
+    void* handle_ = nullptr;  // dlopen's; null where linked, and in another process
+    std::shared_ptr<NativeProcess> process_;
     std::string place_;
     std::string contact_;
     std::unique_ptr<NativeHost> host_;
@@ -83,9 +93,11 @@ public:
     };
 
     /// `status`, which may be null, is told which library is being loaded and must outlive the registry.
+    /// Libraries of the folders run in `process`; without one in this process, where a fault of theirs is a
+    /// fault of it.
     explicit NativeRegistry(std::vector<std::filesystem::path> folders,
                             std::span<const StaticNativeLibrary> linked = shipped_native_libraries(),
-                            StatusWriter* status = nullptr);
+                            StatusWriter* status = nullptr, std::shared_ptr<NativeProcess> process = nullptr);
 
     /// Throws Error(ExitCode::effect) where no library offers `id` (naming the folders searched and the
     /// libraries that were refused), where two do (naming both), or where its version is not `version`,
@@ -96,6 +108,8 @@ public:
     /// Libraries that could not be used; the others still are. For warnings. Throws as `find` does for
     /// folders.
     const std::vector<Refusal>& refusals();
+    /// nullptr: this process.
+    const NativeProcess* process() const { return process_.get(); }
 
 private:
     void load();
@@ -105,6 +119,7 @@ private:
     std::vector<std::filesystem::path> folders_;
     std::vector<StaticNativeLibrary> linked_;
     StatusWriter* status_ = nullptr;
+    std::shared_ptr<NativeProcess> process_;
     bool loaded_ = false;
     std::set<std::filesystem::path> loaded_files_;
     std::map<std::string, std::vector<Entry>> entries_;  // by effect id; more than one is an error

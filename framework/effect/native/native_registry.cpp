@@ -23,8 +23,11 @@ std::string places_searched(const std::vector<fs::path>& folders) {
 }  // namespace
 
 NativeRegistry::NativeRegistry(std::vector<fs::path> folders, std::span<const StaticNativeLibrary> linked,
-                               StatusWriter* status)
-    : folders_(std::move(folders)), linked_(linked.begin(), linked.end()), status_(status) {}
+                               StatusWriter* status, std::shared_ptr<NativeProcess> process)
+    : folders_(std::move(folders)),
+      linked_(linked.begin(), linked.end()),
+      status_(status),
+      process_(std::move(process)) {}
 
 const NativeRegistry::Entry& NativeRegistry::find(const std::string& id, const std::string& version) {
     load();
@@ -87,7 +90,7 @@ void NativeRegistry::load_folder(const fs::path& folder) {
         if (!loaded_files_.insert(fs::canonical(file)).second) continue;
         const StatusScope scope(status_, {"", file.string(), "load", {}});
         try {
-            add(NativeLibrary::open(file));
+            add(process_ ? NativeLibrary::open_in(process_, file) : NativeLibrary::open(file));
         } catch (const Error& error) {
             refusals_.push_back({file, error.what()});
         }

@@ -1,0 +1,76 @@
+// What goes to native code in a process of its own, and what comes back, as bytes: internal to
+// framework/effect.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "framework/effect/native/native_effect.h"
+
+namespace aftershade {
+
+/// What a process of native code is asked for; the words of a request begin with one.
+enum class NativeRequest { open = 1, create, prepare, reset, destroy };
+
+/// Above any sound message: eight tables of the largest size.
+inline constexpr std::uint64_t kMaxNativeMessage = 256ull << 20;
+
+class WireWriter {
+public:
+    void number(std::int64_t value);
+    void real(double value);
+    void flag(bool value) { number(value ? 1 : 0); }
+    void text(std::string_view value);
+    const std::string& bytes() const { return bytes_; }
+
+private:
+    std::string bytes_;
+};
+
+/// Throws Error(ExitCode::effect) for bytes that no WireWriter wrote: they may be a plug-in's.
+class WireReader {
+public:
+    /// `bytes` must outlive this.
+    explicit WireReader(std::string_view bytes) : rest_(bytes) {}
+
+    std::int64_t number();
+    double real();
+    bool flag() { return number() != 0; }
+    std::string text();
+    /// Of things that follow, each of at least a byte.
+    std::size_t count();
+    void expect_end() const;
+
+private:
+    std::string_view take(std::size_t bytes);
+
+    std::string_view rest_;
+};
+
+void put(WireWriter& out, const NativeDeclaration& declaration);
+NativeDeclaration take_declaration(WireReader& in);
+
+/// A frame with what it points to. Never moved.
+struct WireFrame {
+    WireFrame() = default;
+    WireFrame(const WireFrame&) = delete;
+    WireFrame& operator=(const WireFrame&) = delete;
+
+    std::vector<ParamSpec> specs;
+    ParamSet params;
+    Camera camera;
+    NativeFrame frame;
+};
+/// Parameters arrive with their names, types, units and values; of curves and tables only that they are such,
+/// which is all that native code may ask.
+void put(WireWriter& out, const NativeFrame& frame);
+void take_frame(WireReader& in, WireFrame& frame);
+
+void put(WireWriter& out, const NativeResult& result);
+/// Unchecked: the one who sent it may have been tampered with.
+NativeResult take_result(WireReader& in);
+
+}  // namespace aftershade
