@@ -108,7 +108,7 @@ void require_what_was_asked(const Sequence& sequence, const Inspection& inspecti
     if (!inspection.capture && asks) throw Error(inspection.no_profile_code, inspection.no_profile_message);
 }
 
-/// "-" is the only Cryptomatte, or the one of objects.
+/// "" is the only Cryptomatte, or the one of objects.
 void add_coverage(const std::string& name, const CaptureReader& reader, Inspection& inspection) {
     if (!inspection.capture || inspection.cryptomattes.empty())
         throw Error(ExitCode::capture, inspection.file.string() + ": has no Cryptomatte");

@@ -48,14 +48,16 @@ int fail(ExitCode code, const char* message) {
 }
 
 /// An empty value is seldom a wish: it is the variable of a script that was never set, and would stand for
-/// everything. Throws CLI::ValidationError.
+/// everything. An option that may stand without a value has an empty one then. Throws CLI::ValidationError.
 void refuse_empty_values(const CLI::App& verb) {
-    for (const CLI::Option* option : verb.get_options())
+    for (const CLI::Option* option : verb.get_options()) {
+        if (option->get_items_expected_min() == 0) continue;
         for (const std::string& value : option->results())
             if (value.empty())
                 throw CLI::ValidationError(option->get_name(),
                                            "the value is empty; leave the option out, or set the variable "
                                            "that it comes from");
+    }
 }
 
 bool stdout_is_whole() {

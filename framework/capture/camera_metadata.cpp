@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "framework/capture/stored_matrices.h"
@@ -30,27 +32,59 @@ void set_if_known(Camera& camera, const CameraField& field, std::optional<double
         camera.set(field.name, *value, "attribute " + attribute);
 }
 
+struct StoredNumber {
+    double value = 0;
+    std::string attribute;
+};
+
+/// The first attribute of the source that the header has, in `unit`; nullopt where it is no number.
+std::optional<StoredNumber> find_number(const ExrMetadata& metadata, const CameraSource& source,
+                                        const std::string& unit) {
+    const std::vector<std::string> names = metadata.names();
+    for (const std::string& pattern : source.attributes) {
+        const auto fits = [&](const std::string& name) { return matches_pattern(name, pattern); };
+        const auto found = std::find_if(names.begin(), names.end(), fits);
+        if (found == names.end()) continue;
+        const auto stored = metadata.number(*found);
+        if (!stored) continue;
+        const bool converts = !source.times_sensor_width && source.unit != unit;
+        const auto value = converts ? convert_unit(*stored, source.unit, unit) : std::optional(*stored);
+        if (value) return StoredNumber{*value, *found};
+    }
+    return std::nullopt;
+}
+
+/// The angle of view is what the picture shows, whatever part of the film a renderer used: the sensor is as
+/// wide as the angle at the focal length.
+void set_by_field_of_view(const ExrMetadata& metadata, const Profile& profile, const Camera& known,
+                          Camera& camera) {
+    if (!profile.field_of_view) return;
+    const auto angle = find_number(metadata, *profile.field_of_view, "deg");
+    if (!angle || !(angle->value > 0 && angle->value < 180)) return;
+    const double widths = 2 * std::tan(angle->value * std::numbers::pi / 360);
+    const std::string origin = "attribute " + angle->attribute;
+    const auto given_width_mm = known.get("sensor_width"), given_focal_mm = known.get("focal_length");
+    const auto focal_mm = given_focal_mm ? given_focal_mm : camera.get("focal_length");
+    if (focal_mm && !given_width_mm) camera.set("sensor_width", *focal_mm * widths, origin);
+    else if (const auto width_mm = given_width_mm ? given_width_mm : camera.get("sensor_width"))
+        camera.set("focal_length", *width_mm / widths, origin);
+}
+
 }  // namespace
 
 Camera camera_of_metadata(const ExrPart& part, const Profile& profile, const Camera& known) {
     const ExrMetadata& metadata = part.metadata;
     Camera camera;
-    const std::vector<std::string> names = metadata.names();
     const std::optional<double> sensor_width = known.get("sensor_width");
     for (const auto& [name, source] : profile.camera) {
         const CameraField& field = *find_camera_field(name);
         if (source.times_sensor_width && !sensor_width) continue;
-        for (const std::string& pattern : source.attributes) {
-            const auto fits = [&](const std::string& n) { return matches_pattern(n, pattern); };
-            const auto found = std::find_if(names.begin(), names.end(), fits);
-            if (found == names.end()) continue;
-            auto stored = metadata.number(*found);
-            if (stored && source.times_sensor_width) *stored *= *sensor_width;
-            const bool same = source.times_sensor_width || source.unit == field.unit;
-            set_if_known(camera, field,
-                         stored && !same ? convert_unit(*stored, source.unit, field.unit) : stored, *found);
-        }
+        auto stored = find_number(metadata, source, field.unit);
+        if (!stored) continue;
+        if (source.times_sensor_width) stored->value *= *sensor_width;
+        set_if_known(camera, field, stored->value, stored->attribute);
     }
+    set_by_field_of_view(metadata, profile, known, camera);
     for (const CameraField& field : camera_fields()) {
         const std::string own = "aftershade/camera/" + field.name;
         set_if_known(camera, field, metadata.number(own), own);

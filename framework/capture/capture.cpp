@@ -136,9 +136,10 @@ void CaptureReader::add_role(OpenFrame& open, const std::string& role, const Rol
     auto found = find_role_channels(open, file, role, decoding);
     RoleDecoding luminance;
     luminance.layers = {{decoding.luminance.empty() && role == kColorRole ? "Y" : decoding.luminance}};
+    const bool has_luminance = !luminance.layers[0][0].empty() && !has_x_y_z(file.merged()) &&
+                               find_channels(luminance, "", file.merged());
     if (found) source.channels = std::move(*found);
-    else if (!luminance.layers[0][0].empty() && find_channels(luminance, "", file.merged()))
-        source.luminance = luminance.layers[0][0];
+    else if (has_luminance) source.luminance = luminance.layers[0][0];
     else if (own_file != open.role_files.end() && &file != &cryptomatte_file(open))
         throw Error(ExitCode::capture, file.path().string() + ": " +
                                            no_channels_for_role(*find_role(role), file.merged(),
@@ -203,8 +204,10 @@ CaptureReader::OpenFrame CaptureReader::open(int frame) const {
     const std::string& space =
         sequence_.color_space == "auto" ? open.profile->color_space : sequence_.color_space;
     open.stored_primaries = space == "auto" ? stored_primaries(part.metadata) : *color_space_primaries(space);
-    open.color_is_tristimulus = is_xyz(open.stored_primaries) && color != open.roles.end() &&
-                                !color->second.channels.empty() && color->second.channels[0][0] == "X";
+    const bool is_called_xyz =
+        color != open.roles.end() && !color->second.channels.empty() && color->second.channels[0][0] == "X";
+    if (is_called_xyz && space == "auto") open.stored_primaries = kXyz;
+    open.color_is_tristimulus = is_called_xyz && is_xyz(open.stored_primaries);
     // XYZ has no primaries that light could have: effects see it as Rec. 709.
     header.primaries = is_xyz(open.stored_primaries) ? kRec709 : open.stored_primaries;
     return open;

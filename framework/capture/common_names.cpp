@@ -88,8 +88,11 @@ bool has_layer(const ExrPart& part, const std::string& layer) {
 
 bool is_tristimulus(const ExrPart& part, const std::string& channel) {
     const bool is_one = channel == "X" || channel == "Y" || channel == "Z";
-    return is_one && has_tristimulus(part, "") && has_channel(part, "X") && has_channel(part, "Y") &&
-           has_channel(part, "Z") && !has_channel(part, "R");
+    return is_one && has_tristimulus(part, "") && has_x_y_z(part) && !has_channel(part, "R");
+}
+
+bool has_x_y_z(const ExrPart& part) {
+    return has_channel(part, "X") && has_channel(part, "Y") && has_channel(part, "Z");
 }
 
 std::vector<std::string> color_layers(const ExrPart& part) {

@@ -30,6 +30,10 @@ bool has_channel(const ExrPart& part, std::string_view name);
 /// Whether a channel is one of the three of a colour in CIE XYZ, and so no depth and no luminance.
 bool is_tristimulus(const ExrPart& part, const std::string& channel);
 
+/// Whether X, Y and Z stand side by side without a layer: a colour in CIE XYZ, positions or normals, so that
+/// Y is no luminance.
+bool has_x_y_z(const ExrPart& part);
+
 /// Whether a channel lies in the layer or in one below it.
 bool has_layer(const ExrPart& part, const std::string& layer);
 

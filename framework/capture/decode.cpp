@@ -142,7 +142,8 @@ std::vector<std::size_t> decode_velocity(Image& velocity, const RoleDecoding& de
     for (std::size_t pixel = 0; 2 * pixel + 1 < values.size(); ++pixel) {
         float& x = values[2 * pixel];
         float& y = values[2 * pixel + 1];
-        const bool marked = decoding.no_motion_above && x > *decoding.no_motion_above;
+        const bool marked = (decoding.no_motion_above && x > *decoding.no_motion_above) ||
+                            (decoding.no_motion_below && x < *decoding.no_motion_below);
         if (marked || !std::isfinite(x) || !std::isfinite(y)) {
             x = y = 0;
             without_motion.push_back(pixel);

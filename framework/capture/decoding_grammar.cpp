@@ -77,6 +77,7 @@ std::vector<Key> motion_keys(const ChannelRole& role) {
             optional("scale", scale, "Factor, or one each for x and y.", "1"),
             optional("premultiplied", boolean(), "Whether the vectors are multiplied by alpha.", "false"),
             optional("no_motion_above", number(), "A stored x above this means no motion data."),
+            optional("no_motion_below", number(), "A stored x below this means no motion data."),
             optional("shutter_frames", number({.above = 0}), "Number of frames that a vector spans.", "1")};
 }
 

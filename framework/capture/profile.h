@@ -60,8 +60,9 @@ struct RoleDecoding {
     std::array<float, 2> velocity_scale = {1, 1};
     VelocityDelta delta = VelocityDelta::cur_minus_prev;
     bool y_axis_up = false;
-    std::optional<float> no_motion_above;  ///< a stored x above this marks a pixel without motion data
-    double shutter_frames = 1;             ///< frames that the stored vector spans
+    /// A stored x above the one or below the other marks a pixel without motion data.
+    std::optional<float> no_motion_above, no_motion_below;
+    double shutter_frames = 1;  ///< frames that the stored vector spans
 };
 
 /// A camera value out of the header: the first of these attributes that is there. "*" stands for any text.
@@ -91,6 +92,7 @@ struct Profile {
     std::string lens_model;  ///< "thin" or "pinhole"; "" where not known
     std::map<std::string, RoleDecoding> roles;
     std::map<std::string, CameraSource> camera;  ///< by camera field
+    std::optional<CameraSource> field_of_view;   ///< across the picture's width
     std::vector<std::string> seen_on;            ///< real files, below the folder of captures for tests
     std::vector<ProfileFact> facts;
 };

@@ -33,6 +33,15 @@ Block detect_block() {
                 "false")}};
 }
 
+constexpr const char* kFieldOfViewDoc =
+    "Angle of view across the width: it gives `sensor_width` by the focal length, else `focal_length` by the "
+    "sensor's width.";
+
+/// As a value of the camera, though no camera holds it.
+CameraField field_of_view() {
+    return {kFieldOfView, "deg", 0, kFieldOfViewDoc};
+}
+
 Block source_block(const CameraField& field) {
     Block block{.name = "camera",
                 .thing = "camera." + field.name,
@@ -55,6 +64,8 @@ Form camera_sources() {
         .name = "", .unknown_key = "'{}' is not a camera value", .type = "[camera](#camera) by value"};
     for (const CameraField& field : camera_fields())
         block.keys.push_back(optional(field.name, grammar::object(source_block(field)), field.doc));
+    block.keys.push_back(
+        optional(kFieldOfView, grammar::object(source_block(field_of_view())), kFieldOfViewDoc));
     return grammar::object(std::move(block));
 }
 

@@ -66,6 +66,7 @@ void read_velocity(const grammar::Reader& reader, RoleDecoding& decoding) {
     decoding.bias = float(reader.number("bias"));
     decoding.premultiplied = reader.boolean("premultiplied");
     decoding.no_motion_above = number_if(reader, "no_motion_above");
+    decoding.no_motion_below = number_if(reader, "no_motion_below");
     decoding.shutter_frames = reader.number("shutter_frames");
 }
 
@@ -79,6 +80,19 @@ RoleDecoding read_decoding(const std::string& role_name, const Node& node) {
     if (role.kind == RoleKind::distance) read_depth(reader, decoding);
     if (role.kind == RoleKind::motion) read_velocity(reader, decoding);
     return decoding;
+}
+
+void read_camera_sources(const grammar::Reader& camera, Profile& profile) {
+    for (const CameraField& field : camera_fields())
+        if (const auto source = camera.object(field.name)) {
+            const bool has_unit = !field.unit.empty() && source->has("unit");
+            profile.camera[field.name] = {
+                source->texts("attributes"), has_unit ? source->text("unit") : field.unit,
+                counts_in_sensor_widths(field) && source->boolean("times_sensor_width")};
+        }
+    if (const auto source = camera.object(kFieldOfView))
+        profile.field_of_view = {source->texts("attributes"),
+                                 source->has("unit") ? source->text("unit") : "deg"};
 }
 
 /// profile.schema.json is none.
@@ -110,14 +124,7 @@ std::optional<Profile> parse_profile(const Node& node, Diagnostics& diagnostics)
     profile.color_space = reader.text("color_space");
     profile.lens_model = reader.text("lens_model");
     if (const Node* roles = reader.find("roles")) profile.roles = read_decodings(*roles);
-    if (const auto camera = reader.object("camera"))
-        for (const CameraField& field : camera_fields())
-            if (const auto source = camera->object(field.name)) {
-                const bool has_unit = !field.unit.empty() && source->has("unit");
-                profile.camera[field.name] = {
-                    source->texts("attributes"), has_unit ? source->text("unit") : field.unit,
-                    counts_in_sensor_widths(field) && source->boolean("times_sensor_width")};
-            }
+    if (const auto camera = reader.object("camera")) read_camera_sources(*camera, profile);
     profile.seen_on = reader.texts("seen_on");
     for (const grammar::Reader& fact : reader.objects("facts"))
         profile.facts.push_back({fact.text("fact"), fact.text("verified"), fact.text("source")});

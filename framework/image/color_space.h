@@ -17,6 +17,9 @@ using Chromaticities = std::array<float, 8>;
 /// ITU-R BT.709.
 inline constexpr Chromaticities kRec709 = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
 
+/// CIE XYZ: what is called X, Y and Z is stored as red, green and blue.
+inline constexpr Chromaticities kXyz = {1, 0, 0, 1, 0, 0, 1.0f / 3, 1.0f / 3};
+
 /// Row by row: out = matrix * rgb.
 using ColorMatrix = std::array<double, 9>;
 

@@ -122,6 +122,45 @@ TEST(CameraMetadata, HasArnoldsFocalLengthWhereTheWidthOfTheSensorIsKnown) {
                 1e-5);
 }
 
+/// The lens of a header of V-Ray with these attributes, beside what capture.json says.
+Camera vray_lens(std::map<std::string, ExrValue> attributes, const Camera& given = {}) {
+    const TemporaryFolder folder;
+    const Image image(2, 2, 3);
+    std::vector<ExrOutputChannel> channels;
+    for (int c = 0; c < 3; ++c) channels.push_back({std::string(1, "RGB"[c]), PixelType::half, &image, c});
+    ExrWriteOptions options;
+    options.data_window = options.display_window = {0, 0, 1, 1};
+    options.attributes = std::move(attributes);
+    options.attributes["vrayInfo/vraycore"] = std::string("3.60.04");
+    write_exr(folder / "f.exr", channels, options);
+    Diagnostics diagnostics;
+    for (const Profile& profile : read_profiles(AFTERSHADE_SOURCE_DIR "/profiles", diagnostics))
+        if (profile.id == "vray")
+            return camera_of_metadata(ExrFile(folder / "f.exr").parts()[0], profile, given);
+    throw std::runtime_error("no profile vray");
+}
+
+/// Headers that public pages print: of 3ds Max, without a focal length; of V-Ray 3.60.04 for Maya, a square
+/// picture of 36 x 24 mm film, which shows 24 mm of its width: 2 atan(12 / 35) = 37.85 degrees.
+TEST(CameraMetadata, HasVRaysLensByTheAngleThatThePictureShows) {
+    const Camera max = vray_lens({{"cameraAperture", 36.0f}, {"cameraFov", 54.4204f}});
+    EXPECT_NEAR(max.get("focal_length").value_or(0), 35.008, 1e-3);
+    EXPECT_NEAR(max.get("sensor_width").value_or(0), 36, 1e-6);
+    EXPECT_EQ(max.origin("focal_length"), "attribute cameraFov");
+
+    const std::map<std::string, ExrValue> square = {
+        {"cameraAperture", 35.9999f}, {"cameraFocalLength", 35.0f}, {"cameraFov", 37.8493f}};
+    EXPECT_NEAR(vray_lens(square).get("focal_length").value_or(0), 35, 1e-6);
+    EXPECT_NEAR(vray_lens(square).get("sensor_width").value_or(0), 24, 1e-3);
+
+    Camera given;
+    given.set("sensor_width", 48, "capture.json");
+    EXPECT_NEAR(vray_lens(square, given).get("focal_length").value_or(0), 70, 3e-3) << "the angle stays";
+    EXPECT_NEAR(vray_lens({{"cameraFov", 90.0f}}, given).get("focal_length").value_or(0), 24, 1e-5);
+    EXPECT_FALSE(vray_lens({{"cameraFov", 90.0f}}).get("focal_length"));
+    EXPECT_FALSE(vray_lens({{"cameraAperture", 36.0f}, {"cameraFov", 0.0f}}).get("focal_length"));
+}
+
 TEST(CameraMetadata, ReadsOpenExrsStandardAttributes) {
     const TemporaryFolder folder;
     const Image image(2, 2, 1);

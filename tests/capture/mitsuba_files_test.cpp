@@ -51,6 +51,34 @@ TEST(XyzFilm, IsAColourOfRec709) {
         for (int c = 0; c < 4; ++c) EXPECT_NEAR(color.at(x, 0, c), expected[x][c], 2e-3) << x << " " << c;
 }
 
+/// Beside the AOV integrator's images Mitsuba writes no chromaticities; Y alone would be a grey picture.
+TEST(XyzFilm, IsAColourBesideAovsToo) {
+    const WrittenRow file({{"X", {0.9505f, 0.4124f}},
+                           {"Y", {1, 0.2126f}},
+                           {"Z", {1.0891f, 0.0193f}},
+                           {"A", {1, 0.5f}},
+                           {"dd.T", {4, 5}},
+                           {"albedo.R", {0.25f, 0.25f}},
+                           {"albedo.G", {0.5f, 0.5f}},
+                           {"albedo.B", {0.75f, 0.75f}}},
+                          {{"generatedBy", kGeneratedBy}});
+    EXPECT_EQ(file.header().role_channels.at("color"), (std::vector<std::string>{"X", "Y", "Z", "A"}));
+    EXPECT_EQ(name_of_primaries(file.header().primaries), "rec709");
+    const Image color = file.image("color");
+    const float expected[2][4] = {{1, 1, 1, 1}, {1, 0, 0, 0.5f}};
+    for (int x = 0; x < 2; ++x)
+        for (int c = 0; c < 4; ++c) EXPECT_NEAR(color.at(x, 0, c), expected[x][c], 2e-3) << x << " " << c;
+    EXPECT_NEAR(file.image("albedo").at(0, 0, 0), 0.25, 1e-6) << "its primaries are not X, Y and Z";
+}
+
+/// Of an unknown producer they may be positions.
+TEST(XAndYAndZ, HaveNoLuminanceAmongThem) {
+    const WrittenRow file({{"X", {3}}, {"Y", {4}}, {"Z", {5}}}, {});
+    EXPECT_FALSE(file.header().role_channels.contains("color"));
+    const WrittenRow grey({{"Y", {4}}}, {});
+    EXPECT_EQ(grey.header().role_channels.at("color"), std::vector<std::string>{"Y"});
+}
+
 TEST(XyzFilm, IsRecognisedByItsChromaticitiesAlone) {
     const WrittenRow file({{"X", {0.9505f}}, {"Y", {1}}, {"Z", {1.0891f}}, {"A", {0.5f}}},
                           {{"chromaticities", kXyzChromaticities}});

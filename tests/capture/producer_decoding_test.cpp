@@ -65,6 +65,8 @@ const VelocityCase kVelocity[] = {
     {"nuke", "velocity", {5, 7}, {-5, 7}},
     // -mvec * (width, height)
     {"falcor", "velocity", {0.01f, 0.02f}, {-19.2f, -21.6f}},
+    // uv + velocity is where the pixel was, uv (0, 0) top left
+    {"godot", "velocity", {0.01f, 0.02f}, {-19.2f, -21.6f}},
     {"arnold", "velocity_next", {2, 3}, {2, -3}},
     // -1 to +1 across the width
     {"moonray", "velocity_next", {0.02f, 0.02f}, {19.2f, -10.8f}},
@@ -89,6 +91,14 @@ TEST(ProducerVelocity, OfUnityMarksPixelsWithoutMotionByAnXAboveOne) {
     EXPECT_EQ(missing, std::vector<std::size_t>{0});
     EXPECT_EQ(image.at(0, 0, 0), 0);
     EXPECT_NEAR(image.at(1, 0, 0), 19.2f, 1e-3);
+}
+
+TEST(ProducerVelocity, OfGodotMarksPixelsWithoutMotionByMinusOne) {
+    Image image = two_pixels({-1, -1}, {-0.5f, 0});
+    const auto missing = decode_velocity(image, profile("godot").roles.at("velocity"), context());
+    EXPECT_EQ(missing, std::vector<std::size_t>{0});
+    EXPECT_EQ(image.at(0, 0, 0), 0);
+    EXPECT_NEAR(image.at(1, 0, 0), 960, 1e-3);
 }
 
 TEST(ProducerVelocity, OfMoonrayIsDividedByAlpha) {
@@ -165,6 +175,15 @@ TEST(ProducerDepth, InAZBufferFollowsThePerspectiveDivide) {
     EXPECT_TRUE(std::isinf(image.floats()[3]));
     decoding.reversed = true;
     expect_depth(decoding, context(), {1, 1 - stored(2), 0}, {0.1f, 2, kInfinity});
+}
+
+TEST(ProducerDepth, OfGodotIsAReversedZBuffer) {
+    DecodeContext with = context();
+    with.camera.set("near", 0.1);
+    with.camera.set("far", 1000);
+    // near (far - z) / (z (far - near)), by hand for 2 m.
+    const float at_2_m = float(0.1 * (1000 - 2) / (2 * (1000 - 0.1)));
+    expect_depth(profile("godot").roles.at("depth"), with, {1, at_2_m, 0}, {0.1f, 2, kInfinity});
 }
 
 TEST(ProducerDepth, OfNukesScanlineRenderIsOneOverZ) {

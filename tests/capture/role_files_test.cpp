@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "tests/capture/capture_files.h"
 
@@ -59,6 +60,34 @@ TEST_F(RoleFiles, OfFalcorHoldTheirPassAsRGB) {
     EXPECT_EQ(channels_of("depth"), ChannelNames{"R"});
     EXPECT_EQ(channels_of("velocity"), (ChannelNames{"R", "G"}));
     EXPECT_EQ(channels_of("normal"), (ChannelNames{"R", "G", "B"}));
+}
+
+/// LuxCore 2.11.2 writes DEPTH three times: the distance from the camera, +inf where nothing was hit.
+TEST_F(RoleFiles, OfLuxcoreHoldTheirOutputAsRGB) {
+    sequence_.profile = "luxcore";
+    for (const char* role : {"albedo", "normal", "position"})
+        give(role, std::string(role) + ".exr", {"R", "G", "B"});
+    write_channels(folder_ / "DEPTH.exr", 2,
+                   {{"R", {5, std::numeric_limits<float>::infinity()}}, {"G", {5, 5}}, {"B", {5, 5}}});
+    sequence_.role_files.insert_or_assign("depth", FramePattern((folder_ / "DEPTH.exr").string()));
+    EXPECT_EQ(header().roles, (ChannelNames{"albedo", "color", "depth", "normal", "position"}));
+    EXPECT_EQ(channels_of("normal"), (ChannelNames{"R", "G", "B"}));
+    sequence_.camera.set("focal_length", 36);
+    sequence_.camera.set("sensor_width", 36);
+    const Image depth = CaptureReader(sequence_, profiles_as_shipped(), {})
+                            .read(1, std::vector<std::string>{"depth"})
+                            .images.at("depth");
+    // Two px wide, and so f is 2 px: the first one's middle lies 0.5 px beside the axis.
+    EXPECT_NEAR(depth.at(0, 0, 0), 5 * 2 / std::hypot(2, 0.5), 1e-5);
+    EXPECT_TRUE(std::isinf(depth.at(1, 0, 0)));
+}
+
+TEST_F(RoleFiles, OfGodotHoldTheirBufferAsImageSaveExrNamesIt) {
+    sequence_.profile = "godot";
+    give("depth", "depth.exr", {"R"});
+    give("velocity", "velocity.exr", {"R", "G"});
+    EXPECT_EQ(header().roles, (ChannelNames{"color", "depth", "velocity"}));
+    EXPECT_EQ(channels_of("velocity"), (ChannelNames{"R", "G"}));
 }
 
 TEST_F(RoleFiles, OfUnrealAndUnityHoldTheDepthInR) {

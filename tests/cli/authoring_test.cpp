@@ -159,6 +159,8 @@ TEST_F(Authoring, WatchTakesTheNamesOfObjectsFromEachLook) {
                     {"CryptoObject00.A", plane(0)}},
                    {{"cryptomatte/3ae39a5/name", std::string("CryptoObject")},
                     {"cryptomatte/3ae39a5/manifest", std::string(R"({"Cube":"0"})")}});
+    EXPECT_NE(command({"inspect", "in_0001.exr", "--cryptomatte"}).out.find("Cube"), std::string::npos)
+        << "the name of the Cryptomatte may be left out";
     write_text(folder_ / "look.json",
                R"({"aftershade": 1, "steps": [{"effect": "dof_simple", "params": {"focus_distance": 2,
                    "focal_length": 50, "sensor_width": 36, "f_number": 0.1}}]})");

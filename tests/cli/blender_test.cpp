@@ -150,6 +150,11 @@ TEST(InspectedBlenderFile, ListsItsCryptomattesAndOnDemandTheirObjects) {
     double expected_px = 0;
     for (const float amount : coverage_of_suzanne(*capture)) expected_px += double(amount);
     EXPECT_NEAR(json["cryptomattes"][0]["objects"]["Suzanne"].get<double>(), expected_px, 1e-3 * expected_px);
+    const CommandResult unnamed =
+        run_aftershade({"inspect", capture->string(), "--json", "--cryptomatte"}, folder.path());
+    ASSERT_EQ(unnamed.exit_code, 0) << unnamed.err;
+    EXPECT_EQ(nlohmann::json::parse(unnamed.out)["cryptomattes"][0]["objects"],
+              json["cryptomattes"][0]["objects"]);
 }
 
 }  // namespace
