@@ -118,7 +118,7 @@ CheckedRun checked_run(const RunArguments& options) {
     InputFiles inputs = run_inputs(*run.bound, checked, diagnostics);
     check_run_outputs(options, run.outputs, checked, inputs, diagnostics);
     check_worker_options(options, diagnostics);
-    check_stream_options(options, run.bound->pipeline, diagnostics);
+    check_stream_options(options, diagnostics);
     stop_at_errors(diagnostics);
     diagnostics.print(std::cerr);
     run.sequence = std::move(*sequence);

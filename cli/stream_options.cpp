@@ -18,7 +18,7 @@ void add_stream_options(CLI::App& app, StreamArguments& arguments) {
                  "Print the beginning of the ffmpeg command that reads the frames of -o -, and run nothing");
 }
 
-void check_stream_options(const RunArguments& arguments, const Pipeline& pipeline, Diagnostics& diagnostics) {
+void check_stream_options(const RunArguments& arguments, Diagnostics& diagnostics) {
     const StreamArguments& stream = arguments.stream;
     const auto count = std::ranges::count(arguments.outputs, kStandardOutput);
     if (count == 0) {

@@ -28,7 +28,7 @@ struct StreamArguments {
 void add_stream_options(CLI::App& app, StreamArguments& arguments);
 
 /// What cannot go with `-o -`, and options that are for it alone.
-void check_stream_options(const RunArguments& arguments, const Pipeline& pipeline, Diagnostics& diagnostics);
+void check_stream_options(const RunArguments& arguments, Diagnostics& diagnostics);
 
 /// "ffmpeg -f rawvideo ... -i -": the beginning of the command that reads the frames. "" where nothing is
 /// streamed.
