@@ -12,11 +12,15 @@ void add_effect_path_option(CLI::App& app, std::vector<std::string>& paths) {
         ->allow_extra_args(false);
 }
 
-EffectRegistry find_effects(const std::vector<std::string>& paths, Diagnostics& diagnostics) {
-    std::vector<std::filesystem::path> folders(paths.begin(), paths.end());
+void check_effect_paths(const std::vector<std::string>& paths, Diagnostics& diagnostics) {
     for (const std::string& folder : paths)
         if (std::error_code failure; !std::filesystem::is_directory(folder, failure))
             diagnostics.error({"--effect-path " + folder}, "no such folder");
+}
+
+EffectRegistry find_effects(const std::vector<std::string>& paths, Diagnostics& diagnostics) {
+    std::vector<std::filesystem::path> folders(paths.begin(), paths.end());
+    check_effect_paths(paths, diagnostics);
     folders.push_back(data_path() / "effects");
     return EffectRegistry(std::move(folders));
 }

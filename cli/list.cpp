@@ -1,14 +1,17 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "aftershade/host.h"
 #include "cli/capture_options.h"
 #include "cli/effect_options.h"
 #include "cli/profile_report.h"
 #include "cli/verbs.h"
+#include "framework/core/data_path.h"
 
 namespace aftershade::cli {
 
@@ -38,21 +41,25 @@ ExitCode list_profiles(bool as_json) {
 ExitCode list(const ListOptions& options) {
     if (options.profiles) return list_profiles(options.json);
     Diagnostics diagnostics;
-    EffectRegistry effects = find_effects(options.effect_paths, diagnostics);
+    check_effect_paths(options.effect_paths, diagnostics);
     stop_at_errors(diagnostics);
+    const host::Host host(
+        {.data = data_path(), .effect_paths = {options.effect_paths.begin(), options.effect_paths.end()}});
+    std::vector<host::Diagnostic> faults;
     nlohmann::ordered_json document = nlohmann::ordered_json::array();
-    for (const std::string& id : effects.ids()) {
-        const EffectManifest* manifest = effects.find(id, diagnostics);
-        if (!manifest) continue;
-        if (!options.json) fmt::print("{:<22} {:<8} {}\n", id, manifest->version, manifest->summary);
-        document.push_back({{"id", id},
-                            {"version", manifest->version},
-                            {"summary", manifest->summary},
-                            {"folder", manifest->folder.string()}});
+    for (const host::EffectInfo& effect : host.effects(&faults)) {
+        if (!options.json) fmt::print("{:<22} {:<8} {}\n", effect.id, effect.version, effect.summary);
+        document.push_back({{"id", effect.id},
+                            {"version", effect.version},
+                            {"summary", effect.summary},
+                            {"folder", effect.folder}});
     }
     if (options.json) fmt::print("{}\n", document.dump(2));
-    diagnostics.print(std::cerr);
-    return diagnostics.has_errors() ? ExitCode::usage : ExitCode::done;
+    for (const host::Diagnostic& fault : faults) std::cerr << host::to_string(fault) << "\n";
+    const auto is_error = [](const host::Diagnostic& fault) {
+        return fault.severity == host::Severity::error;
+    };
+    return std::ranges::any_of(faults, is_error) ? ExitCode::usage : ExitCode::done;
 }
 
 }  // namespace

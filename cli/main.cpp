@@ -8,10 +8,13 @@
 #include <exception>
 #include <iostream>
 #include <map>
+#include <new>
 #include <string>
 #include <string_view>
 
+#include "aftershade/error.h"
 #include "cli/compare_options.h"
+#include "cli/exit_code.h"
 #include "cli/verbs.h"
 #include "framework/core/memory_limit.h"
 
@@ -97,6 +100,9 @@ int main(int argc, char** argv) {
     } catch (const aftershade::Error& error) {
         if (aftershade::is_out_of_memory(error)) end_for_memory(error);
         return fail(error.exit_code(), error.what());
+    } catch (const aftershade::host::Error& error) {
+        if (error.kind() == aftershade::host::ErrorKind::memory) end_for_memory(std::bad_alloc());
+        return fail(aftershade::cli::exit_code_of(error.kind()), error.what());
     } catch (const std::exception& error) {
         if (aftershade::is_out_of_memory(error)) end_for_memory(error);
         return fail(ExitCode::effect, error.what());

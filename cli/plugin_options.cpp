@@ -57,11 +57,14 @@ void add_plugin_options(CLI::App& app, PluginOptions& options) {
         ->capture_default_str();
 }
 
+bool needs_worker(const PluginOptions& options, const Pipeline& pipeline) {
+    const std::vector<std::filesystem::path> given(options.paths.begin(), options.paths.end());
+    return pipeline.has_native() && !native_search_path(given).empty() && !std::getenv(kStatusFdVariable);
+}
+
 std::optional<ExitCode> run_in_worker(const PluginOptions& options, const Pipeline& pipeline,
                                       const std::atomic<bool>& stop) {
-    const std::vector<std::filesystem::path> given(options.paths.begin(), options.paths.end());
-    if (!pipeline.has_native() || native_search_path(given).empty() || std::getenv(kStatusFdVariable))
-        return std::nullopt;
+    if (!needs_worker(options, pipeline)) return std::nullopt;
     WorkerCommand command;
     command.arguments = own_arguments();
     command.arguments[0] = "/proc/self/exe";

@@ -22,6 +22,9 @@ struct PluginOptions {
 
 void add_plugin_options(CLI::App& app, PluginOptions& options);
 
+/// Whether run_in_worker() starts a worker.
+bool needs_worker(const PluginOptions& options, const Pipeline& pipeline);
+
 /// Runs this command once more as a worker and passes on what it prints, where some step has native code and
 /// there are folders of plug-ins: code from elsewhere may crash or hang, and files that are done must not
 /// suffer. Returns the exit code: the worker's, or 5 with a message that names plug-in and step. nullopt: go

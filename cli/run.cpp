@@ -15,11 +15,13 @@
 #include "cli/run_options.h"
 #include "cli/run_session.h"
 #include "cli/run_workers.h"
+#include "cli/stream_options.h"
 #include "cli/verbs.h"
 #include "framework/capture/frame_range.h"
 #include "framework/core/atomic_file.h"
 #include "framework/core/cores.h"
 #include "framework/core/data_path.h"
+#include "framework/file/frame_stream.h"
 #include "framework/pipeline/output.h"
 
 namespace aftershade::cli {
@@ -113,6 +115,7 @@ CheckedRun checked_run(const RunArguments& options) {
     }
     check_outputs(run.outputs, sequence.value_or(Sequence{}), diagnostics);
     check_worker_options(options, diagnostics);
+    check_stream_options(options, run.bound->pipeline, diagnostics);
     stop_at_errors(diagnostics);
     diagnostics.print(std::cerr);
     run.sequence = std::move(*sequence);
@@ -125,6 +128,14 @@ CheckedRun checked_run(const RunArguments& options) {
 ExitCode run_here(const RunArguments& options, CheckedRun& run, const CaptureReader& reader,
                   const std::vector<std::filesystem::path>& profile_documents,
                   const std::atomic<bool>& stop) {
+    std::optional<FrameStream> stream;
+    if (run.outputs.stream_format) {
+        if (options.progress != "none" && options.progress != "json")
+            std::cerr << kStandardOutput << ": " << options.stream.format << "; to read the frames: "
+                      << ffmpeg_command(reader, run.sequence, run.settings, run.outputs) << " OUTPUT\n";
+        stream.emplace(FrameStream::of_standard_output(*run.outputs.stream_format));
+        run.outputs.stream = &*stream;
+    }
     set_exr_threads(options.jobs.worker_threads > 0 ? options.jobs.worker_threads : allotted_cores());
     StatusWriter status;
     NativeRegistry natives(native_search_path({options.plugins.paths.begin(), options.plugins.paths.end()}),
@@ -139,7 +150,8 @@ ExitCode run_here(const RunArguments& options, CheckedRun& run, const CaptureRea
     const RunSession session{options,          status,       run.sequence, reader,
                              context,          run.settings, run.outputs,  parse_progress(options.progress),
                              profile_documents};
-    const bool resumes = !options.watch && options.resume.keeps_journal(run.settings.frames.size());
+    const bool resumes =
+        !options.watch && !stream && options.resume.keeps_journal(run.settings.frames.size());
     if (resumes || options.resume.dry_run) return render_stale(session, *run.bound, stop);
     const ExitCode code = render(session, session.run, pipeline, stop);
     if (!options.watch) return code;
@@ -155,6 +167,10 @@ ExitCode run(const RunArguments& options) {
     const auto profile_documents = documents_of(run.profiles, run.sequence);
     const CaptureReader reader(run.sequence, run.profiles, options.capture.limits);
     if (options.explain) return explain(run.sequence, reader, run.bound->pipeline);
+    if (options.stream.print_ffmpeg) {
+        std::cout << ffmpeg_command(reader, run.sequence, run.settings, run.outputs) << "\n";
+        return ExitCode::done;
+    }
     // A lone frame that cannot be read is reported before a context is made.
     require_first_frame(run.sequence, reader, run.bound->pipeline);
     if (!options.jobs.chunk.empty() && run.share.run.count() == 0) {

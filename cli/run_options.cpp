@@ -1,12 +1,15 @@
 #include "cli/run_options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 #include "cli/effect_options.h"
 #include "cli/gl_options.h"
+#include "framework/file/frame_stream.h"
 
 namespace aftershade::cli {
 
@@ -67,7 +70,8 @@ void add_frame_options(CLI::App& app, RunArguments& options) {
 void add_look_options(CLI::App& app, RunArguments& options) {
     app.add_option("look", options.look, "The look: a JSON file of effects in order")->required();
     add_capture_argument(app, options.capture);
-    app.add_option("-o,--output", options.outputs, "Output file or pattern (.exr, .png); repeatable")
+    app.add_option("-o,--output", options.outputs,
+                   "Output file or pattern (.exr, .png), or - for standard output; repeatable")
         ->required()
         ->allow_extra_args(false);
     app.add_option("--set", options.pipeline.sets, "step.param=value, above the look's own; repeatable")
@@ -134,7 +138,12 @@ void add_run_options(CLI::App& app, RunArguments& options) {
     add_job_options(app, options.jobs);
     add_frame_options(app, options);
     add_resume_options(app, options.resume);
+    add_stream_options(app, options.stream);
     add_backend_option(app, options.backend);
+}
+
+bool RunArguments::streams() const {
+    return std::ranges::find(outputs, kStandardOutput) != outputs.end();
 }
 
 bool RunArguments::changes_window() const {
@@ -159,7 +168,9 @@ LookVariables look_variables(const RunArguments& options, Diagnostics& diagnosti
 
 OutputOptions output_options(const RunArguments& options) {
     OutputOptions outputs;
-    outputs.patterns = options.outputs;
+    std::ranges::remove_copy(options.outputs, std::back_inserter(outputs.patterns), kStandardOutput);
+    if (options.streams())  // check_stream_options refuses other names
+        outputs.stream_format = find_stream_format(options.stream.format).value_or(StreamFormat::png);
     if (!options.roles.empty()) outputs.roles = options.roles;
     if (options.pixel_type == "float") outputs.color_type = PixelType::float32;
     outputs.keep_channels = options.keep_channels;
@@ -201,7 +212,8 @@ RunOptions run_options(const RunArguments& options, Diagnostics& diagnostics) {
     run.missing = missing_frame(options.missing);
     run.on_nan = nan_policy(options.on_nan);
     run.audit = options.audit;
-    run.stop_on_error = options.jobs.stop_on_error;
+    // A gap in a stream would shift every frame behind it.
+    run.stop_on_error = options.jobs.stop_on_error || options.streams();
     run.telemetry = !options.telemetry.empty() || !options.telemetry_plot.empty();
     return run;
 }

@@ -8,6 +8,7 @@
 #include "cli/job_options.h"
 #include "cli/plugin_options.h"
 #include "cli/resume.h"
+#include "cli/stream_options.h"
 #include "framework/core/diagnostics.h"
 #include "framework/pipeline/look.h"
 #include "framework/pipeline/output_options.h"
@@ -52,7 +53,10 @@ struct RunArguments {
     PluginOptions plugins;
     JobArguments jobs;
     ResumeArguments resume;
+    StreamArguments stream;
 
+    /// Whether frames go to standard output.
+    bool streams() const;
     /// Whether outputs have other pixels than the source.
     bool changes_window() const;
 };

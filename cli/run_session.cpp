@@ -96,6 +96,11 @@ ExitCode render(const RunSession& session, const RunOptions& run, const Pipeline
     if (session.progress == ProgressStyle::plain || session.progress == ProgressStyle::terminal)
         std::cerr << gpu::backend_name(gl.backend) << ": " << gl.renderer << ", " << gl.version << "\n";
     reporter.print_summary(report, gpu::Timer::clock_name(session.context));
+    if (session.outputs.stream && !report.failures.empty())
+        std::cerr
+            << "-o -: the stream ends before frame " << report.failures.front().frame
+            << ", since a gap would shift the frames behind it; --missing hold repeats a frame where the "
+               "file of the next one is not there\n";
     if (report.interrupted && !session.arguments.watch)
         std::cerr << continuation_text(own_arguments(), settings, report);
     if (settings.trace) write_text_file(session.arguments.trace, trace.json());

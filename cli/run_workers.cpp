@@ -162,6 +162,7 @@ void check_worker_options(const RunArguments& arguments, Diagnostics& diagnostic
     refuse(!arguments.trace.empty(), "--trace", "trace a run of a few frames");
     refuse(!arguments.history_in.empty(), "--history-in", "leave --jobs out, or let chunks warm up");
     refuse(!arguments.history_out.empty(), "--history-out", "leave --jobs out, or let chunks warm up");
+    refuse(arguments.streams(), "-o -", "leave --jobs out, or write out_####.png, which ffmpeg reads, too");
     refuse(arguments.watch, "--watch", "leave one of them out");
     refuse(arguments.resume.dry_run, "--dry-run", "ask without workers");
 }

@@ -87,6 +87,24 @@ void read_alpha(Image& color, bool is_opaque, CaptureHeader& header) {
             "\"opaque\" in capture.json, reads it as 1");
 }
 
+std::string window_text(const Window& window) {
+    return std::to_string(window.width()) + " x " + std::to_string(window.height()) + " px at (" +
+           std::to_string(window.min_x) + ", " + std::to_string(window.min_y) + ")";
+}
+
+/// A file of other windows covers another part of the picture only where it says so: by the main file's
+/// display window around its own data window. Else its pixels belong to a picture of another size.
+void require_one_picture(const std::string& role, const FrameFile& file, const FrameFile& main) {
+    const ExrPart& own = file.merged();
+    const ExrPart& picture = main.merged();
+    if (own.display_window == picture.display_window || own.data_window == picture.data_window) return;
+    throw Error(ExitCode::capture,
+                file.path().string() + ": the role '" + role + "' has a display window of " +
+                    window_text(own.display_window) + ", but that of " + main.path().string() + " is " +
+                    window_text(picture.display_window) +
+                    " (render both at one size; a crop keeps the whole picture's display window)");
+}
+
 }  // namespace
 
 CaptureReader::CaptureReader(const Sequence& sequence, std::vector<Profile> profiles, ReadLimits limits)
@@ -156,8 +174,11 @@ void CaptureReader::find_roles(OpenFrame& open) const {
 CaptureReader::OpenFrame CaptureReader::open(int frame) const {
     OpenFrame open;
     open.main = std::make_unique<FrameFile>(sequence_.path_of(frame), limits_, sequence_.view);
-    for (const auto& [role, pattern] : sequence_.role_files)
-        open.role_files[role] = std::make_unique<FrameFile>(pattern.path(frame), limits_, sequence_.view);
+    for (const auto& [role, pattern] : sequence_.role_files) {
+        auto& file = open.role_files[role];
+        file = std::make_unique<FrameFile>(pattern.path(frame), limits_, sequence_.view);
+        require_one_picture(role, *file, *open.main);
+    }
     const ExrPart& part = open.main->merged();
     CaptureHeader& header = open.header;
     header.frame = header.source_frame = frame;

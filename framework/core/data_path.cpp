@@ -10,7 +10,22 @@ namespace aftershade {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+thread_local const fs::path* scoped_folder = nullptr;
+
+}  // namespace
+
+DataPathScope::DataPathScope(const fs::path& folder) : before_(scoped_folder) {
+    scoped_folder = &folder;
+}
+
+DataPathScope::~DataPathScope() {
+    scoped_folder = before_;
+}
+
 fs::path data_path() {
+    if (scoped_folder) return *scoped_folder;
     std::vector<fs::path> places;
     if (const char* chosen = std::getenv("AFTERSHADE_DATA"); chosen && *chosen) {
         places.emplace_back(chosen);

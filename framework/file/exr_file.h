@@ -139,11 +139,18 @@ struct ExrWriteOptions {
     std::map<std::string, ExrValue> attributes;
 };
 
+/// A channel of halfs that was given finite values beyond 65504, which became infinite.
+struct HalfOverflow {
+    std::string channel;
+    std::size_t values = 0;
+};
+
 /// Writes one scan-line part: to a temporary file in the same folder, flushed, then renamed over `path`.
 /// Throws Error(ExitCode::output) that begins with the path; then no temporary file remains and an older file
-/// is whole.
-void write_exr(const std::filesystem::path& path, std::span<const ExrOutputChannel> channels,
-               const ExrWriteOptions& options);
+/// is whole. Returns what a half could not hold, channels in the order given.
+std::vector<HalfOverflow> write_exr(const std::filesystem::path& path,
+                                    std::span<const ExrOutputChannel> channels,
+                                    const ExrWriteOptions& options);
 
 /// What ExrWriteOptions::compression may be: what the OpenEXR of this build has, from "none" and "rle" to
 /// "dwab"; from 3.4 on also "htj2k256" and "htj2k32", from 3.5 on "lj2k" and "zstd".

@@ -85,6 +85,21 @@ private:
     std::uint64_t position_ = 0;
 };
 
+/// The same open file from its beginning, with a position of its own: for a second reader, which would find
+/// another file under the path if that was replaced. [refers to the file]
+class StreamView final : public Imf::IStream {
+public:
+    explicit StreamView(FileStream& file) : Imf::IStream(file.fileName()), file_(file) {}
+
+    bool read(char bytes[], int count) override;
+    std::uint64_t tellg() override { return position_; }
+    void seekg(std::uint64_t position) override { position_ = position; }
+
+private:
+    FileStream& file_;
+    std::uint64_t position_ = 0;
+};
+
 /// What the header of a file says before the library has allocated anything for it.
 struct FileLayout {
     bool multi_part = false;

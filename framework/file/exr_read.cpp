@@ -9,14 +9,10 @@
 #include <OpenEXR/ImfRgbaFile.h>
 #include <OpenEXR/ImfThreading.h>
 #include <OpenEXR/ImfTiledInputPart.h>
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cassert>
-#include <cerrno>
 #include <cstring>
 #include <iterator>
 #include <mutex>
@@ -55,6 +51,17 @@ char* bytes_of(Image& image) {
                                                   : reinterpret_cast<char*>(image.uints().data());
 }
 
+constexpr const char* kChanged = "was changed while it was read (render to another name and rename the file)";
+
+/// The limits were held against the first header, and memory is made by the second.
+void require_same_pixels(const fs::path& path, const Imf::Header& checked, const Imf::Header& read) {
+    const bool same = checked.dataWindow() == read.dataWindow() && checked.channels() == read.channels() &&
+                      checked.compression() == read.compression() &&
+                      checked.hasTileDescription() == read.hasTileDescription() &&
+                      (!read.hasTileDescription() || checked.tileDescription() == read.tileDescription());
+    if (!same) exr::fail(path, kChanged);
+}
+
 /// Fills the components whose name comes again later from the last one of that name.
 void copy_repeated(char* pixels, std::span<const std::string> names, const Image& image) {
     const std::size_t stride = names.size() * sizeof(float);
@@ -70,65 +77,6 @@ void copy_repeated(char* pixels, std::span<const std::string> names, const Image
 }
 
 }  // namespace
-
-namespace exr {
-
-FileStream::FileStream(const fs::path& path) : Imf::IStream(path.c_str()) {
-    // Not blocking: opening a pipe that nobody writes to would wait for ever.
-    const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (descriptor < 0) fail(path, fmt::format("cannot be opened: {}", std::strerror(errno)));
-    file_.reset(fdopen(descriptor, "rb"));
-    struct stat status = {};
-    if (!file_ || fstat(descriptor, &status) != 0)
-        fail(path, fmt::format("cannot be opened: {}", std::strerror(errno)));
-    if (S_ISDIR(status.st_mode)) fail(path, "is a folder, not an OpenEXR file");
-    if (!S_ISREG(status.st_mode))
-        fail(path, "is not a regular file (a pipe, socket or device cannot be read)");
-    size_ = std::uint64_t(status.st_size);
-    if (size_ == 0) fail(path, "the file is empty");
-}
-
-bool FileStream::read(char bytes[], int count) {
-    const std::size_t got = std::fread(bytes, 1, std::size_t(count), file_.get());
-    position_ += got;
-    if (got != std::size_t(count)) {
-        if (std::ferror(file_.get()))
-            throw Iex::IoExc(fmt::format("cannot be read: {}", std::strerror(errno)));
-        throw Iex::InputExc(fmt::format("the file ends at byte {}, where more is expected", size_));
-    }
-    return position_ < size_;
-}
-
-void FileStream::seekg(std::uint64_t position) {
-    if (position > size_) {
-        throw Iex::InputExc(
-            fmt::format("the file ends at byte {}, pixels are expected at {}", size_, position));
-    }
-    if (position == position_) return;
-    if (fseeko(file_.get(), off_t(position), SEEK_SET) != 0) {
-        throw Iex::IoExc(fmt::format("cannot be read: {}", std::strerror(errno)));
-    }
-    position_ = position;
-}
-
-void FileStream::clear() {
-    std::clearerr(file_.get());
-}
-
-void FileStream::read_at(std::uint64_t offset, std::span<char> bytes) {
-    std::size_t done = 0;
-    while (done < bytes.size()) {
-        const ssize_t got =
-            pread(fileno(file_.get()), bytes.data() + done, bytes.size() - done, off_t(offset + done));
-        if (got < 0 && errno == EINTR) continue;
-        if (got < 0) throw Iex::IoExc(fmt::format("cannot be read: {}", std::strerror(errno)));
-        if (got == 0)
-            throw Iex::InputExc(fmt::format("the file ends at byte {}, where more is expected", size_));
-        done += std::size_t(got);
-    }
-}
-
-}  // namespace exr
 
 struct ExrFile::Impl {
     fs::path path;
@@ -164,7 +112,11 @@ ExrFile::Impl::Impl(const fs::path& file_path, const ReadLimits& file_limits)
         const int threads = layout.largest_block_bytes > kThreadedBlockBytes ? 0 : Imf::globalThreadCount();
         // An incomplete part is refused, so the library looks for blocks only where all were found.
         file = std::make_unique<Imf::MultiPartInputFile>(*stream, threads, !layout.found_blocks.empty());
-        for (int i = 0; i < file->parts(); ++i) parts.push_back(exr::describe_part(file->header(i)));
+        if (std::size_t(file->parts()) != layout.headers.size()) exr::fail(path, kChanged);
+        for (int i = 0; i < file->parts(); ++i) {
+            require_same_pixels(path, layout.headers[std::size_t(i)], file->header(i));
+            parts.push_back(exr::describe_part(file->header(i)));
+        }
     });
 }
 
@@ -334,12 +286,14 @@ void ExrFile::prefetch(std::span<const ExrRequest> requests) const {
 Image ExrFile::read_luminance_chroma(int part) const {
     impl_->check_type(part);
     impl_->check_bytes(part, 4);
-    // The library's converter of 3.1 opens files by name and takes their first part.
+    // The library's converter of 3.1 takes a file's first part.
     if (part != 0) exr::fail(path(), "luminance-chroma is supported in the first part only");
     return exr::translate_errors(path(), ExitCode::capture, "damaged pixel data", [&] {
-        exr::check_blocks(*impl_->stream, path(), impl_->layout, part);
         const Window& window = parts()[std::size_t(part)].data_window;
-        Imf::RgbaInputFile input(path().c_str(), Imf::globalThreadCount());
+        exr::StreamView stream(*impl_->stream);
+        Imf::RgbaInputFile input(stream, Imf::globalThreadCount());
+        require_same_pixels(path(), impl_->file->header(part), input.header());
+        exr::check_blocks(*impl_->stream, path(), impl_->layout, part);
         std::vector<Imf::Rgba> pixels(std::size_t(window.width()) * std::size_t(window.height()));
         const std::ptrdiff_t origin = window.min_x + std::ptrdiff_t(window.min_y) * window.width();
         input.setFrameBuffer(pixels.data() - origin, 1, std::size_t(window.width()));

@@ -22,6 +22,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <type_traits>
@@ -128,13 +129,16 @@ Imf::Header make_header(const fs::path& path, std::span<const ExrOutputChannel> 
     return header;
 }
 
-/// Rounds to the nearest half, ties to even; beyond 65504 it becomes infinity.
-std::vector<half> to_halfs(const ExrOutputChannel& channel) {
+/// Rounds to the nearest half, ties to even; beyond 65504 it becomes infinity, which `overflows` counts.
+std::vector<half> to_halfs(const ExrOutputChannel& channel, std::size_t& overflows) {
     const std::span<const float> from = channel.image->floats();
     const auto stride = std::size_t(channel.image->channels());
     std::vector<half> result(from.size() / stride);
-    for (std::size_t i = 0; i < result.size(); ++i)
-        result[i] = half(from[i * stride + std::size_t(channel.component)]);
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        const float value = from[i * stride + std::size_t(channel.component)];
+        result[i] = half(value);
+        if (result[i].isInfinity() && std::isfinite(value)) ++overflows;
+    }
     return result;
 }
 
@@ -145,6 +149,7 @@ public:
         for (const ExrOutputChannel& channel : channels) add(channel);
     }
     const Imf::FrameBuffer& frame() const { return frame_; }
+    const std::vector<HalfOverflow>& overflows() const { return overflows_; }
 
 private:
     void add(const ExrOutputChannel& channel) {
@@ -152,7 +157,9 @@ private:
         assert(channel.component >= 0 && channel.component < image.channels());
         assert((image.type() == ComponentType::uint32) == (channel.type == PixelType::uint32));
         if (channel.type == PixelType::half) {
-            halfs_.push_back(to_halfs(channel));
+            std::size_t overflows = 0;
+            halfs_.push_back(to_halfs(channel, overflows));
+            if (overflows > 0) overflows_.push_back({channel.name, overflows});
             insert(channel, halfs_.back().data(), sizeof(half));
         } else if (channel.type == PixelType::float32) {
             insert(channel, image.floats().data() + channel.component,
@@ -171,6 +178,7 @@ private:
 
     Imath::Box2i window_;
     std::vector<std::vector<half>> halfs_;
+    std::vector<HalfOverflow> overflows_;
     Imf::FrameBuffer frame_;
 };
 
@@ -213,14 +221,14 @@ private:
 
 }  // namespace
 
-void write_exr(const fs::path& path, std::span<const ExrOutputChannel> channels,
-               const ExrWriteOptions& options) {
+std::vector<HalfOverflow> write_exr(const fs::path& path, std::span<const ExrOutputChannel> channels,
+                                    const ExrWriteOptions& options) {
     assert(!channels.empty());
     for ([[maybe_unused]] const ExrOutputChannel& channel : channels) {
         assert(channel.image && channel.image->width() == options.data_window.width() &&
                channel.image->height() == options.data_window.height());
     }
-    exr::translate_errors(path, ExitCode::output, "cannot be written", [&] {
+    return exr::translate_errors(path, ExitCode::output, "cannot be written", [&] {
         const Imf::Header header = make_header(path, channels, options);
         const Planes planes(channels, header.dataWindow());
         ExrOutputStream stream(path);
@@ -230,6 +238,7 @@ void write_exr(const fs::path& path, std::span<const ExrOutputChannel> channels,
             file.writePixels(options.data_window.height());
         }
         stream.commit();
+        return planes.overflows();
     });
 }
 

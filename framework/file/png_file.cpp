@@ -4,15 +4,16 @@
 #include "framework/core/error.h"
 #include "framework/core/memory_limit.h"
 #include "framework/file/output_stream.h"
+#include "framework/file/quantized.h"
 
 #include <fmt/format.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <new>
 #include <span>
@@ -33,15 +34,9 @@ namespace {
 constexpr std::uintmax_t kMaxPngBytes = 512u * 1024 * 1024;
 constexpr int kMaxSidePx = STBI_MAX_DIMENSIONS;
 
-std::uint8_t to_byte(float value) {
-    // The comparison is false for NaN.
-    if (!(value > 0.0f)) return 0;
-    return static_cast<std::uint8_t>(std::lround(255.0f * std::min(value, 1.0f)));
-}
-
 /// stb is written in C: an exception must not pass through it, so the failure is kept until it has returned.
 struct Sink {
-    OutputStream& stream;
+    std::string bytes;
     std::exception_ptr failure;
 };
 
@@ -49,10 +44,29 @@ void write_to_sink(void* context, void* bytes, int count) {
     Sink& sink = *static_cast<Sink*>(context);
     if (sink.failure) return;
     try {
-        sink.stream.write(bytes, std::size_t(count));
+        sink.bytes.append(static_cast<const char*>(bytes), std::size_t(count));
     } catch (...) {
         sink.failure = std::current_exception();
     }
+}
+
+constexpr std::size_t kSignatureBytes = 8, kChunkHeadBytes = 8, kChecksumBytes = 4;
+
+std::uint32_t number_at(std::span<const unsigned char> bytes, std::size_t at) {
+    return std::uint32_t(bytes[at]) << 24 | std::uint32_t(bytes[at + 1]) << 16 |
+           std::uint32_t(bytes[at + 2]) << 8 | std::uint32_t(bytes[at + 3]);
+}
+
+std::string number_text(std::uint32_t value) {
+    return {char(value >> 24), char(value >> 16), char(value >> 8), char(value)};
+}
+
+/// PNG specification, section 5.3: length, type, data, checksum of type and data.
+std::string chunk(const std::string& type, const std::string& data) {
+    const std::string checked = type + data;
+    const auto checksum =
+        std::uint32_t(crc32(0, reinterpret_cast<const Bytef*>(checked.data()), uInt(checked.size())));
+    return number_text(std::uint32_t(data.size())) + checked + number_text(checksum);
 }
 
 std::string read_bytes(const fs::path& path) {
@@ -66,53 +80,74 @@ std::string read_bytes(const fs::path& path) {
 }
 
 /// stb_image passes over the checksums of chunks and of the pixels: what it takes from a damaged file would
-/// be another picture. Chunks as the PNG specification, section 5.3, has them; of those that may be ignored
-/// nothing is asked.
-void check_chunks(const fs::path& path, std::span<const unsigned char> bytes) {
-    const auto number_at = [&](std::size_t at) {
-        return std::uint32_t(bytes[at]) << 24 | std::uint32_t(bytes[at + 1]) << 16 |
-               std::uint32_t(bytes[at + 2]) << 8 | std::uint32_t(bytes[at + 3]);
-    };
-    constexpr std::size_t kSignature = 8, kHead = 8, kChecksum = 4;
-    for (std::size_t at = kSignature; at + kHead + kChecksum <= bytes.size();) {
-        const std::size_t length = number_at(at);
+/// be another picture. Of chunks that may be ignored nothing is asked. `visit` gets each chunk's type and
+/// data.
+void check_chunks(const fs::path& path, std::span<const unsigned char> bytes,
+                  const std::function<void(const std::string&, std::span<const unsigned char>)>& visit = {}) {
+    for (std::size_t at = kSignatureBytes; at + kChunkHeadBytes + kChecksumBytes <= bytes.size();) {
+        const std::size_t length = number_at(bytes, at);
         const std::string type(bytes.begin() + std::ptrdiff_t(at) + 4,
                                bytes.begin() + std::ptrdiff_t(at) + 8);
-        if (length > bytes.size() - at - kHead - kChecksum) break;
+        if (length > bytes.size() - at - kChunkHeadBytes - kChecksumBytes) break;
         const auto checksum = std::uint32_t(crc32(0, &bytes[at + 4], uInt(4 + length)));
         const bool is_critical = type[0] >= 'A' && type[0] <= 'Z';
-        if (is_critical && checksum != number_at(at + kHead + length))
+        if (is_critical && checksum != number_at(bytes, at + kChunkHeadBytes + length))
             fail(path, fmt::format("damaged: the chunk {} at byte {} has another checksum than its bytes",
                                    type, at));
+        if (visit) visit(type, bytes.subspan(at + kChunkHeadBytes, length));
         if (type == "IEND") return;
-        at += kHead + length + kChecksum;
+        at += kChunkHeadBytes + length + kChecksumBytes;
     }
     fail(path, fmt::format("damaged: cut off, {} bytes do not reach its last chunk", bytes.size()));
 }
 
 }  // namespace
 
-void write_png(const fs::path& path, const Image& display) {
+std::string encode_png(const std::string& name, const Image& display, const PngText& text) {
     const int channels = display.channels();
     assert(channels == 1 || channels == 3 || channels == 4);
     assert(!display.empty());
     if (display.width() > kMaxSidePx || display.height() > kMaxSidePx) {
         throw Error(ExitCode::output,
-                    fmt::format("{}: {} x {} px is too large for PNG output, the limit is {} px a side",
-                                path.string(), display.width(), display.height(), kMaxSidePx));
+                    fmt::format("{}: {} x {} px is too large for PNG output, the limit is {} px a side", name,
+                                display.width(), display.height(), kMaxSidePx));
     }
     const std::span<const float> values = display.floats();
     std::vector<std::uint8_t> bytes(values.size());
-    std::ranges::transform(values, bytes.begin(), to_byte);
+    std::ranges::transform(values, bytes.begin(), quantized<std::uint8_t>);
 
-    OutputStream stream(path);
-    Sink sink{stream, nullptr};
+    Sink sink;
     const int written = stbi_write_png_to_func(write_to_sink, &sink, display.width(), display.height(),
                                                channels, bytes.data(), display.width() * channels);
     if (sink.failure) std::rethrow_exception(sink.failure);
-    if (written == 0)
-        throw Error(ExitCode::memory, path.string() + ": " + out_of_memory_text(std::bad_alloc()));
+    if (written == 0) throw Error(ExitCode::memory, name + ": " + out_of_memory_text(std::bad_alloc()));
+    constexpr std::size_t kSizeChunkBytes = kChunkHeadBytes + 13 + kChecksumBytes;  // IHDR, the first
+    std::string chunks;
+    for (const auto& [keyword, value] : text) chunks += chunk("tEXt", keyword + '\0' + value);
+    return sink.bytes.insert(kSignatureBytes + kSizeChunkBytes, chunks);
+}
+
+void write_png(const fs::path& path, const Image& display, const PngText& text) {
+    const std::string bytes = encode_png(path.string(), display, text);
+    OutputStream stream(path);
+    stream.write(bytes.data(), bytes.size());
     stream.commit();
+}
+
+std::optional<std::string> read_png_text(const fs::path& path, const std::string& keyword) {
+    std::optional<std::string> found;
+    try {
+        const std::string text = read_bytes(path);
+        const std::string head = keyword + '\0';
+        check_chunks(path, {reinterpret_cast<const unsigned char*>(text.data()), text.size()},
+                     [&](const std::string& type, std::span<const unsigned char> data) {
+                         const std::string content(data.begin(), data.end());
+                         if (type == "tEXt" && content.starts_with(head)) found = content.substr(head.size());
+                     });
+    } catch (const Error&) {
+        return std::nullopt;
+    }
+    return found;
 }
 
 Image read_png(const fs::path& path) {

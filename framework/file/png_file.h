@@ -2,15 +2,28 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
 
 #include "framework/image/image.h"
 
 namespace aftershade {
 
-/// Writes display-referred values in [0, 1], already encoded, of 1, 3 or 4 float channels: round(255 *
-/// clamp(v)), NaN as 0. A fourth channel is unassociated alpha. Appears by rename from a temporary file in
-/// the same folder. Throws Error(ExitCode::output).
-void write_png(const std::filesystem::path& path, const Image& display);
+/// Latin-1 text by keyword, as the PNG specification's chunk tEXt has it: a keyword of 1 to 79 characters.
+using PngText = std::map<std::string, std::string>;
+
+/// The bytes of a PNG of display-referred values in [0, 1], already encoded, of 1, 3 or 4 float channels:
+/// round(255 * clamp(v)), NaN as 0. A fourth channel is unassociated alpha. `name` is what the
+/// Error(ExitCode::output) of a picture that is too large begins with.
+std::string encode_png(const std::string& name, const Image& display, const PngText& text = {});
+
+/// Writes these bytes. The file appears by rename from a temporary file in the same folder. Throws
+/// Error(ExitCode::output).
+void write_png(const std::filesystem::path& path, const Image& display, const PngText& text = {});
+
+/// The text of a keyword; nullopt where the file is no whole PNG or has no such text.
+std::optional<std::string> read_png_text(const std::filesystem::path& path, const std::string& keyword);
 
 /// Reads PNG of 8 or 16 bits into [0, 1] floats, 1 to 4 channels as stored. Throws Error(ExitCode::capture).
 Image read_png(const std::filesystem::path& path);

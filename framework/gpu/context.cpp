@@ -11,6 +11,9 @@
 #include "framework/core/error.h"
 #include "framework/core/memory_limit.h"
 #include "framework/gpu/context_impl.h"
+#include "framework/gpu/egl_current.h"
+#include "framework/gpu/egl_platform.h"
+#include "framework/gpu/foreign_context.h"
 #include "framework/gpu/self_test.h"
 
 namespace aftershade::gpu {
@@ -101,6 +104,12 @@ std::vector<BackendReport> probe_backends() {
     return reports;
 }
 
+Context::Context(const SharedEglContext& shared) {
+    require_address_space(kContextBytes, "OpenGL");
+    impl_ = std::make_unique<Impl>(shared);
+    self_test(*this);
+}
+
 Context::Context(Backend backend) {
     // Mesa does not check every allocation: better refused here than a crash in there.
     require_address_space(kContextBytes, "OpenGL");
@@ -128,6 +137,10 @@ const ContextInfo& Context::info() const {
 
 void Context::make_current() {
     impl_->make_current();
+}
+
+void Context::release() noexcept {
+    if (current == impl_.get()) impl_->release();
 }
 
 void Context::abandon() noexcept {
@@ -165,8 +178,20 @@ const GladGLContext& Context::gl() const {
 Context::Impl::Impl(Backend backend) {
     if (current) current->release();
     platform = make_platform(backend);
-    current = this;
     info.backend = backend;
+    start();
+}
+
+Context::Impl::Impl(const SharedEglContext& shared) {
+    if (current) current->release();
+    platform = make_egl_platform(shared);
+    start();
+    info.backend = info.software ? Backend::egl_software : Backend::egl;
+}
+
+/// What the platform made current becomes a usable context.
+void Context::Impl::start() {
+    current = this;
     try {
         load_functions();
     } catch (...) {
@@ -206,6 +231,22 @@ bool Context::Impl::try_make_current() noexcept {
     } catch (const std::exception&) {
         return false;
     }
+}
+
+ForeignContextGuard::ForeignContextGuard() : found_(current_egl_context()) {
+    if (current && current->platform->is_current()) {
+        found_ = {};
+        return;
+    }
+    current = nullptr;
+    // EGL and OSMesa would not see each other's change.
+    if (found_.context) release_egl_context(found_);
+}
+
+ForeignContextGuard::~ForeignContextGuard() {
+    if (!found_.context) return;
+    if (current) current->release();
+    restore_egl_context(found_);
 }
 
 void Context::Impl::release() noexcept {

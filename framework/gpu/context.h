@@ -37,6 +37,12 @@ struct BackendReport {
 /// Tries egl, egl_software and osmesa in turn, each with the self-test, and leaves no context current.
 std::vector<BackendReport> probe_backends();
 
+/// An EGLDisplay and an EGLContext of desktop OpenGL.
+struct SharedEglContext {
+    void* display = nullptr;
+    void* context = nullptr;
+};
+
 /// Owns the GL context and its function table. Objects made from it keep a reference and must die first.
 /// Construction draws a known colour into a float framebuffer and reads it back; a context that cannot is
 /// refused. [one thread: the one that made it; several contexts may exist in one process, make_current()
@@ -46,12 +52,17 @@ public:
     /// Throws Error(ExitCode::gl) that lists each backend tried and why it was refused, and
     /// Error(ExitCode::memory) where a limit leaves too little address space.
     explicit Context(Backend backend);
+    /// On EGL, sharing textures, buffers and fences with a context of the caller's, which must outlive this
+    /// one. Throws as the other.
+    explicit Context(const SharedEglContext& shared);
     ~Context();
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;
 
     const ContextInfo& info() const;
     void make_current();
+    /// Leaves this thread without it, so that another thread may make it current.
+    void release() noexcept;
     /// After memory ran out: this context and its objects are never deleted. Mesa 22.3 may wait for ever in
     /// its clean-up for threads that ended then; the process that caught the failure should end (_exit).
     void abandon() noexcept;

@@ -26,6 +26,7 @@ struct Limits {
 struct Context::Impl {
     /// Throws Error(ExitCode::gl) whose message is the reason alone; else current in this thread.
     explicit Impl(Backend backend);
+    explicit Impl(const SharedEglContext& shared);
     ~Impl();
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
@@ -51,6 +52,7 @@ struct Context::Impl {
     bool abandoned = false;
 
 private:
+    void start();
     void load_functions();
     void set_state();
     void watch_errors();

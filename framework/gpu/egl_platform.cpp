@@ -1,6 +1,7 @@
 #include "framework/gpu/egl_platform.h"
 
 #include <cstdlib>
+#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -34,6 +35,8 @@ struct EglApi {
     PFNEGLCREATECONTEXTPROC create_context;
     PFNEGLDESTROYCONTEXTPROC destroy_context;
     PFNEGLMAKECURRENTPROC make_current;
+    PFNEGLGETCURRENTCONTEXTPROC get_current_context;
+    PFNEGLQUERYCONTEXTPROC query_context;
     PFNEGLQUERYDEVICESEXTPROC query_devices;             // null where there is no EGL_EXT_device_base
     PFNEGLQUERYDEVICESTRINGEXTPROC query_device_string;  // likewise
 };
@@ -62,6 +65,8 @@ EglApi load_egl() {
     load(egl.create_context, "eglCreateContext");
     load(egl.destroy_context, "eglDestroyContext");
     load(egl.make_current, "eglMakeCurrent");
+    load(egl.get_current_context, "eglGetCurrentContext");
+    load(egl.query_context, "eglQueryContext");
     const char* client = egl.query_string(EGL_NO_DISPLAY, EGL_EXTENSIONS);
     const bool enumerates = has_extension(client, "EGL_EXT_device_base") ||
                             (has_extension(client, "EGL_EXT_device_enumeration") &&
@@ -126,6 +131,39 @@ public:
         display_ = egl_.get_platform_display(candidate.platform, candidate.native, nullptr);
         if (display_ == EGL_NO_DISPLAY) fail("eglGetPlatformDisplay");
         initialize(candidate.force_software);
+        create_context(EGL_NO_CONTEXT);
+    }
+
+    /// The display is the caller's, and initialised.
+    EglPlatform(const EglApi& egl, const SharedEglContext& shared)
+        : egl_(egl), name_("the shared EGL display"), display_(shared.display) {
+        EGLint client = 0;
+        if (!egl_.query_context(display_, shared.context, EGL_CONTEXT_CLIENT_TYPE, &client))
+            fail("eglQueryContext of the shared context");
+        if (client != EGL_OPENGL_API)
+            throw Error(ExitCode::gl, "the shared context is not of desktop OpenGL");
+        create_context(shared.context);
+    }
+
+    // No eglTerminate: a display belongs to the process, and ending it would end the other contexts on it.
+    ~EglPlatform() override { egl_.destroy_context(display_, context_); }
+
+    void make_current() override {
+        // The API that a thread works with is what its last caller chose.
+        egl_.bind_api(EGL_OPENGL_API);
+        if (!egl_.make_current(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) fail("eglMakeCurrent");
+    }
+
+    bool is_current() const noexcept override { return egl_.get_current_context() == context_; }
+
+    void release() noexcept override {
+        egl_.make_current(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    }
+
+    Proc proc(const char* name) const override { return reinterpret_cast<Proc>(egl_.get_proc_address(name)); }
+
+private:
+    void create_context(EGLContext shared) {
         if (!has_extension(egl_.query_string(display_, EGL_EXTENSIONS), "EGL_KHR_surfaceless_context")) {
             throw Error(ExitCode::gl, fmt::format("{}: no EGL_KHR_surfaceless_context", name_));
         }
@@ -139,24 +177,10 @@ public:
                                      EGL_CONTEXT_OPENGL_DEBUG,
                                      EGL_TRUE,
                                      EGL_NONE};
-        context_ = egl_.create_context(display_, config(), EGL_NO_CONTEXT, attributes);
+        context_ = egl_.create_context(display_, config(), shared, attributes);
         if (context_ == EGL_NO_CONTEXT) fail("eglCreateContext(GL 4.5 core)");
     }
 
-    // No eglTerminate: a display belongs to the process, and ending it would end the other contexts on it.
-    ~EglPlatform() override { egl_.destroy_context(display_, context_); }
-
-    void make_current() override {
-        if (!egl_.make_current(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) fail("eglMakeCurrent");
-    }
-
-    void release() noexcept override {
-        egl_.make_current(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-    }
-
-    Proc proc(const char* name) const override { return reinterpret_cast<Proc>(egl_.get_proc_address(name)); }
-
-private:
     void initialize(bool force_software) {
         std::optional<ScopedVariable> variable;
         if (force_software) variable.emplace("LIBGL_ALWAYS_SOFTWARE", "1");
@@ -231,7 +255,20 @@ std::unique_ptr<Platform> open_candidate(const EglApi& egl, const Candidate& can
 
 }  // namespace
 
+std::unique_ptr<Platform> make_egl_platform(const SharedEglContext& shared) {
+    if (!shared.display || !shared.context)
+        throw Error(ExitCode::usage, "the shared EGL display and context may not be null");
+    auto platform = std::make_unique<EglPlatform>(load_egl(), shared);
+    platform->make_current();
+    if (!gl_string(*platform, kGlVersion).empty()) return platform;
+    platform->release();
+    throw Error(ExitCode::gl, "eglMakeCurrent succeeded but there is no GL (GL_VERSION is null)");
+}
+
 std::unique_ptr<Platform> make_egl_platform(Renderer kind) {
+    // One at a time in the process: ScopedVariable changes its environment.
+    static std::mutex opening;
+    const std::lock_guard lock(opening);
     const EglApi egl = load_egl();
     std::vector<Candidate> candidates = device_candidates(egl, kind);
     const char* client = egl.query_string(EGL_NO_DISPLAY, EGL_EXTENSIONS);

@@ -5,6 +5,7 @@
 #include <dlfcn.h>
 
 #include "framework/core/error.h"
+#include "framework/gpu/egl_current.h"
 
 #if defined(__SANITIZE_ADDRESS__)
 // OSMesaMakeCurrent keeps 160 bytes for each context to the end of the process (Mesa 22.3).
@@ -49,6 +50,7 @@ public:
     OsmesaPlatform()
         : destroy_(symbol<void (*)(OsmesaContext)>("OSMesaDestroyContext")),
           make_current_(symbol<MakeCurrent>("OSMesaMakeCurrent")),
+          get_current_(symbol<OsmesaContext (*)()>("OSMesaGetCurrentContext")),
           get_proc_(symbol<Proc (*)(const char*)>("OSMesaGetProcAddress")) {
         const auto create =
             symbol<OsmesaContext (*)(const int*, OsmesaContext)>("OSMesaCreateContextAttribs");
@@ -74,6 +76,10 @@ public:
         }
     }
 
+    bool is_current() const noexcept override {
+        return get_current_() == context_ && !current_egl_context().context;
+    }
+
     void release() noexcept override { make_current_(nullptr, nullptr, 0, 0, 0); }
 
     Proc proc(const char* name) const override { return get_proc_(name); }
@@ -83,6 +89,7 @@ private:
 
     void (*destroy_)(OsmesaContext);
     MakeCurrent make_current_;
+    OsmesaContext (*get_current_)();
     Proc (*get_proc_)(const char*);
     OsmesaContext context_ = nullptr;
     std::array<unsigned char, 4 * kBufferSide * kBufferSide> buffer_{};

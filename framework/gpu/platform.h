@@ -23,6 +23,8 @@ public:
 
     /// Throws Error(ExitCode::gl).
     virtual void make_current() = 0;
+    /// Whether it is current in this thread still, whatever other code made current since.
+    virtual bool is_current() const noexcept = 0;
     /// Leaves this thread without a context.
     virtual void release() noexcept = 0;
     virtual Proc proc(const char* name) const = 0;

@@ -23,7 +23,8 @@ struct ExrContent {
 void add_role(ExrContent& content, const ChannelRole& role, const Image& image, PixelType color_type) {
     content.outside[&image] = role.outside;
     const PixelType type = role.pixel_type == PixelType::half ? color_type : role.pixel_type;
-    for (int c = 0; c < role.channels; ++c)
+    // An AOV may have fewer channels than its role.
+    for (int c = 0; c < std::min(role.channels, image.channels()); ++c)
         content.channels.push_back({role.native_channels[std::size_t(c)], type, &image, c});
 }
 
@@ -102,7 +103,7 @@ ExrWriteOptions exr_write_options(const OutputOptions& options, const CaptureHea
     write.carry_over = header.metadata;
     write.attributes["aftershade/look"] = options.look;
     write.attributes["aftershade/renderer"] = options.renderer;
-    if (!options.fingerprint.empty()) write.attributes["aftershade/fingerprint"] = options.fingerprint;
+    if (!options.fingerprint.empty()) write.attributes[kFingerprintName] = options.fingerprint;
     write.attributes["aftershade/profile"] = header.profile;
     write.attributes["aftershade/channels"] = std::string(options.keep_channels ? "kept" : "native");
     write.attributes["aftershade/frame"] = header.frame;

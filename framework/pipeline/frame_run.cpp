@@ -24,6 +24,14 @@ std::shared_ptr<const Capture> timed_read(RunReport& report, const Read& read) {
 
 }  // namespace
 
+Window written_window(const Window& display, const RunOptions& run) {
+    Window full = display;
+    if (run.region)
+        full = {display.min_x + run.region->min_x, display.min_y + run.region->min_y,
+                display.min_x + run.region->max_x, display.min_y + run.region->max_y};
+    return scaled_window(full, display, run.scale_divisor);
+}
+
 void note_non_finite(int frame, RunReport& report) {
     if (report.frames_non_finite.empty() || report.frames_non_finite.back() != frame)
         report.frames_non_finite.push_back(frame);
@@ -76,11 +84,7 @@ void FrameRun::meet_non_finite(const Capture& capture, RunReport& report, const 
 FrameRun::Rendered FrameRun::finished(std::shared_ptr<const Capture> capture, FrameResult result) const {
     if (run_.region) {
         auto part = std::make_shared<Capture>(*capture);
-        const Window& display = capture->header.display_window;
-        const Window& r = *run_.region;
-        const Window full{display.min_x + r.min_x, display.min_y + r.min_y, display.min_x + r.max_x,
-                          display.min_y + r.max_y};
-        const Window region = scaled_window(full, display, run_.scale_divisor);
+        const Window region = written_window(capture->header.display_window, run_);
         crop_capture(*part, region);
         for (auto* images : {&result.images, &result.taps})
             for (auto& [name, image] : *images)

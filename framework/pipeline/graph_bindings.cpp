@@ -49,8 +49,10 @@ public:
     Giver(const GraphFeed& feed, graph::Executor& executor) : feed_(feed), executor_(executor) {}
 
     void operator()(const CaptureBinding& binding) const {
-        if (gpu::Texture* texture = executor_.texture(binding.texture))
-            upload(feed_.frame.inputs.at(binding.offset)->images.at(binding.role), *texture);
+        gpu::Texture* texture = executor_.texture(binding.texture);
+        const FrameInputs& inputs = feed_.frame.inputs;
+        if (!texture || (inputs.fill && inputs.fill(binding.role, binding.offset, *texture))) return;
+        upload(inputs.at(binding.offset)->images.at(binding.role), *texture);
     }
 
     void operator()(ParamBinding& binding) const {

@@ -67,14 +67,19 @@ Image cropped_for_png(const Image& display, const Window& data, const Window& wi
     return picture;
 }
 
-void write_png_output(const fs::path& path, const FrameResult& result, const Capture& capture) {
+/// What a display shows of the frame.
+Image display_picture(const FrameResult& result, const Capture& capture) {
     const auto made = result.images.find(kDisplayRole);
     const CaptureHeader& header = capture.header;
     const Image display = made != result.images.end()
                               ? made->second
                               : display_of_color(*find_image(kColorRole, result, capture), header.primaries);
-    write_png(path,
-              cropped_for_png(display, header.data_window, result.region.value_or(header.display_window)));
+    return cropped_for_png(display, header.data_window, result.region.value_or(header.display_window));
+}
+
+PngText png_text(const OutputOptions& options) {
+    if (options.fingerprint.empty()) return {};
+    return {{kFingerprintName, options.fingerprint}};
 }
 
 fs::path tap_path(const std::string& text, const std::string& tap, int frame) {
@@ -99,11 +104,13 @@ fs::path tap_path(const std::string& text, const std::string& tap, int frame) {
 
 fs::path path_of_tap(const OutputOptions& options, const std::string& tap, int frame) {
     const auto asked = options.tap_patterns.find(tap);
-    return asked == options.tap_patterns.end() ? tap_path(options.patterns.front(), tap, frame)
+    const std::string beside = options.patterns.empty() ? "####.exr" : options.patterns.front();
+    return asked == options.tap_patterns.end() ? tap_path(beside, tap, frame)
                                                : fs::path(FramePattern(asked->second).path(frame));
 }
 
-void write_false_color(const fs::path& path, const Image& image, const CaptureHeader& header) {
+void write_false_color(const fs::path& path, const Image& image, const OutputOptions& options,
+                       const CaptureHeader& header) {
     const FalseColor colors(std::string(kDataRole), image, header.primaries);
     Image picture(image.width(), image.height(), 3);
     for (int y = 0; y < image.height(); ++y)
@@ -111,7 +118,7 @@ void write_false_color(const fs::path& path, const Image& image, const CaptureHe
             const DisplayColor color = colors.color(x, y);
             for (int c = 0; c < 3; ++c) picture.at(x, y, c) = color[std::size_t(c)];
         }
-    write_png(path, picture);
+    write_png(path, picture, png_text(options));
 }
 
 void write_tap(const fs::path& path, const Image& image, const OutputOptions& options,
@@ -172,7 +179,7 @@ void check_outputs(const OutputOptions& options, const Sequence& sequence, Diagn
                 inputs.emplace(resolved(pattern.path(file)), pattern.path(file));
         }
     std::set<fs::path> named;
-    if (options.patterns.empty())
+    if (options.patterns.empty() && !options.stream_format)
         diagnostics.error({"-o"}, "no output; name at least one file, such as -o out_####.exr");
     for (const auto& [place, text, is_telemetry] : all_names(options)) {
         const FramePattern pattern(text);
@@ -212,6 +219,7 @@ std::vector<std::string> wanted_roles(const OutputOptions& options) {
             roles.insert(roles.end(), options.roles.begin(), options.roles.end());
         else roles.insert(roles.end(), {kDisplayRole, kColorRole});
     }
+    if (options.stream_format) roles.insert(roles.end(), {kDisplayRole, kColorRole});
     std::sort(roles.begin(), roles.end());
     roles.erase(std::unique(roles.begin(), roles.end()), roles.end());
     return roles;
@@ -234,12 +242,13 @@ std::vector<fs::path> write_outputs(const OutputOptions& options, const FrameRes
     for (const std::string& text : options.patterns) {
         const fs::path path = FramePattern(text).path(frame);
         if (extension(path) == ".exr") write_exr_output(path, options, result, capture, reader);
-        else write_png_output(path, result, capture);
+        else write_png(path, display_picture(result, capture), png_text(options));
         written.push_back(path);
     }
+    if (options.stream) options.stream->write(frame, display_picture(result, capture));
     for (const auto& [tap, image] : result.taps) {
         const fs::path path = path_of_tap(options, tap, frame);
-        if (extension(path) == ".png") write_false_color(path, image, capture.header);
+        if (extension(path) == ".png") write_false_color(path, image, options, capture.header);
         else write_tap(path, image, options, capture.header);
         written.push_back(path);
     }

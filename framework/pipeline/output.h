@@ -28,8 +28,8 @@ std::vector<std::filesystem::path> output_files(const OutputOptions& options, co
                                                 int frame);
 
 /// Writes one frame, each file by rename. A role that no step made is taken from the capture. PNG takes
-/// `display`, else color encoded as sRGB, over the display window. Returns the paths. Throws
-/// Error(ExitCode::output).
+/// `display`, else color encoded as sRGB, over the display window; so does the stream, if there is one.
+/// Returns the paths. Throws Error(ExitCode::output).
 std::vector<std::filesystem::path> write_outputs(const OutputOptions& options, const FrameResult& result,
                                                  const Capture& capture, const CaptureReader& reader);
 

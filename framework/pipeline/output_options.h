@@ -2,12 +2,17 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "framework/file/exr_file.h"
+#include "framework/file/frame_stream.h"
 
 namespace aftershade {
+
+/// The attribute of EXR outputs, and the text of PNG outputs, with the fingerprint.
+inline constexpr const char* kFingerprintName = "aftershade/fingerprint";
 
 struct OutputOptions {
     std::vector<std::string> patterns;        ///< "out.exr", "out_####.png": format by extension
@@ -18,9 +23,10 @@ struct OutputOptions {
     std::string compression = "zip";  ///< EXR
     std::string look{};               ///< written as attribute aftershade/look
     std::string renderer{};           ///< GL_RENDERER, written as attribute aftershade/renderer
-    std::string
-        fingerprint{};        ///< of what the frame is made of: attribute aftershade/fingerprint; "" for none
-    std::string telemetry{};  ///< "stats_####.json": numbers of each frame; "" for none
+    std::string fingerprint{};        ///< of what the frame is made of: kFingerprintName; "" for none
+    std::string telemetry{};          ///< "stats_####.json": numbers of each frame; "" for none
+    std::optional<StreamFormat> stream_format{};        ///< of frames that go into a pipe, too
+    FrameStream* stream = nullptr;                      ///< that pipe, once it is open
     std::map<std::string, std::string> tap_patterns{};  ///< by "step.texture"; else beside the first pattern
 };
 

@@ -145,31 +145,37 @@ const ParamSpec& mix_spec() {
     return spec;
 }
 
-void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header) {
-    const auto missing = [&](const std::string& who, const std::string& role) {
-        throw Error(ExitCode::capture,
-                    header.path.string() + ": " + who + " needs the role '" + role +
-                        "', which the profile '" + header.profile + "' does not find among the channels " +
-                        list_channels(header.channels) +
-                        (header.layer.empty() ? "" : ", in the layer '" + header.layer + "'") +
-                        " (name its channels in capture.json, as \"channels\": {\"" + role +
-                        "\": {\"channels\": [...]}}, or choose another "
-                        "--profile or --layer)");
-    };
+std::optional<MissingRole> find_missing_role(const Pipeline& pipeline,
+                                             const std::vector<std::string>& roles) {
     for (const PipelineStep& step : pipeline.steps) {
         for (const InputSpec& input : step.manifest->inputs) {
             const InputSource& source = step.inputs.at(input.name);
-            if (!input.optional && source.step < 0 && !contains(header.roles, source.output))
-                missing("step '" + step.name + "' (effect " + step.manifest->id + ")", source.output);
+            if (!input.optional && source.step < 0 && !contains(roles, source.output))
+                return MissingRole{"step '" + step.name + "' (effect " + step.manifest->id + ")",
+                                   source.output};
         }
         for (const auto& [output, source] : step.before)
-            if (source.step < 0 && !contains(header.roles, source.output))
-                missing("the mix of step '" + step.name + "'", source.output);
+            if (source.step < 0 && !contains(roles, source.output))
+                return MissingRole{"the mix of step '" + step.name + "'", source.output};
         for (const std::string& role : host_roles(step))
-            if (!contains(header.roles, role) && !is_coverage_role(role))
-                missing("a value or the mask of step '" + step.name + "'", role);
+            if (!contains(roles, role) && !is_coverage_role(role))
+                return MissingRole{"a value or the mask of step '" + step.name + "'", role};
     }
-    if (!contains(header.roles, kColorRole)) missing("the output", kColorRole);
+    if (!contains(roles, kColorRole)) return MissingRole{"the output", kColorRole};
+    return std::nullopt;
+}
+
+void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header) {
+    const auto missing = find_missing_role(pipeline, header.roles);
+    if (!missing) return;
+    throw Error(ExitCode::capture,
+                header.path.string() + ": " + missing->who + " needs the role '" + missing->role +
+                    "', which the profile '" + header.profile + "' does not find among the channels " +
+                    list_channels(header.channels) +
+                    (header.layer.empty() ? "" : ", in the layer '" + header.layer + "'") +
+                    " (name its channels in capture.json, as \"channels\": {\"" + missing->role +
+                    "\": {\"channels\": [...]}}, or choose another "
+                    "--profile or --layer)");
 }
 
 namespace {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -9,9 +10,11 @@
 
 #include "framework/capture/capture.h"
 #include "framework/core/diagnostics.h"
+#include "framework/core/document.h"
 #include "framework/core/param.h"
 #include "framework/effect/manifest/manifest.h"
 #include "framework/effect/registry.h"
+#include "framework/gpu/texture.h"
 #include "framework/pipeline/look.h"
 #include "framework/pipeline/value_source.h"
 
@@ -81,6 +84,8 @@ struct FrameInputs {
     const Capture* centre = nullptr;  ///< of several sub-frames: the one at the middle of the exposure
     double scale = 1;  ///< of the capture's pixels against those that values in px are meant for
     double fps = 24;
+    /// Fills the texture of a capture's image that is not in memory; false where it is. Empty: each is.
+    std::function<bool(const std::string& role, int offset, gpu::Texture& texture)> fill{};
 
     const Capture* at(int offset) const { return offset < 0 ? previous : offset > 0 ? next : capture; }
     /// Whether there is a capture at that offset, with an image of that role.
@@ -90,10 +95,17 @@ struct FrameInputs {
     }
 };
 
+/// A value of a program's, above the look's own. Messages say value.place.
+struct ValueOverride {
+    std::string name;  ///< "bokeh.f_number"
+    Node value;
+};
+
 /// One "--set step.param=value" or "--tap step.texture", as given.
 struct PipelineOptions {
     std::vector<std::string> sets;
     std::vector<std::string> taps;
+    std::vector<ValueOverride> overrides{};
 };
 
 /// Binds a look. Each input takes its role from the nearest earlier step that outputs it, else from the
@@ -108,6 +120,14 @@ ParamValue with_file(const ParamSpec& spec, ParamValue value, const std::filesys
 
 /// What every step takes from the host: "mix", 0 to 1.
 const ParamSpec& mix_spec();
+
+/// A role that the pipeline requires and a capture lacks.
+struct MissingRole {
+    std::string who;  ///< "step 'bokeh' (effect bokeh)"
+    std::string role;
+};
+/// `roles`: those that the capture has.
+std::optional<MissingRole> find_missing_role(const Pipeline& pipeline, const std::vector<std::string>& roles);
 
 /// Throws Error(ExitCode::capture) if the capture lacks a role that a step requires, naming the effect, the
 /// role, and the channels that the file does have.

@@ -46,16 +46,16 @@ public:
                 "expected step.param=value: the name of a step, a parameter of its effect, and a value");
             return;
         }
-        PipelineStep* step = find_step(text.substr(0, dot), place);
-        if (!step) return;
-        const Node value = parse_command_value(text.substr(equals + 1), place);
-        const std::string name = text.substr(dot + 1, equals - dot - 1);
-        if (name == "mix" && !step->manifest->find_param(name)) {
-            set_mix(*step, value);
-            find_before(*step, std::size_t(step - pipeline_.steps.data()), place);
-        } else {
-            set_value(*step, name, value, place, "--set", {});
-        }
+        apply(text.substr(0, dot), text.substr(dot + 1, equals - dot - 1),
+              parse_command_value(text.substr(equals + 1), place), "--set");
+    }
+
+    void apply_override(const ValueOverride& value) {
+        const std::size_t dot = value.name.find('.');
+        if (dot == std::string::npos)
+            diagnostics_.error(value.value.place,
+                               "expected step.param: the name of a step and a parameter of its effect");
+        else apply(value.name.substr(0, dot), value.name.substr(dot + 1), value.value, "set");
     }
 
     void add_tap(const std::string& text) {
@@ -111,6 +111,18 @@ public:
 
 private:
     enum class Absence { faulty, disabled };
+
+    void apply(const std::string& step_name, const std::string& name, const Node& value,
+               const std::string& origin) {
+        PipelineStep* step = find_step(step_name, value.place);
+        if (!step) return;
+        if (name == "mix" && !step->manifest->find_param(name)) {
+            set_mix(*step, value);
+            find_before(*step, std::size_t(step - pipeline_.steps.data()), value.place);
+        } else {
+            set_value(*step, name, value, value.place, origin, {});
+        }
+    }
 
     /// nullopt where the step has no manifest to be held against.
     std::optional<PipelineStep> bind(const LookStep& look_step) {
@@ -301,6 +313,7 @@ Pipeline bind_pipeline(const Look& look, EffectRegistry& effects, const Pipeline
     LookBinder binder(effects, diagnostics);
     for (const LookStep& step : look.steps) binder.add(step);
     for (const std::string& text : options.sets) binder.apply_set(text);
+    for (const ValueOverride& value : options.overrides) binder.apply_override(value);
     for (const std::string& text : options.taps) binder.add_tap(text);
     binder.check_relations_of_literals();
     return binder.take();

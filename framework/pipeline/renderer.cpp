@@ -64,7 +64,12 @@ graph::Executor::PassObserver auditor(const Pipeline& pipeline, std::vector<Audi
 
 PipelineRenderer::PipelineRenderer(gpu::Context& context, const Pipeline& pipeline,
                                    const std::filesystem::path& data_folder, NativeSources natives)
-    : context_(context), pipeline_(pipeline), programs_(context, data_folder / "glsl"), natives_(natives) {}
+    : PipelineRenderer(context, pipeline, std::make_shared<ProgramCache>(context, data_folder / "glsl"),
+                       natives) {}
+
+PipelineRenderer::PipelineRenderer(gpu::Context& context, const Pipeline& pipeline,
+                                   std::shared_ptr<ProgramCache> programs, NativeSources natives)
+    : context_(context), pipeline_(pipeline), programs_(std::move(programs)), natives_(natives) {}
 
 PipelineRenderer::~PipelineRenderer() = default;
 
@@ -90,11 +95,12 @@ void PipelineRenderer::prepare(const FrameInputs& frame, const std::vector<std::
     if (!valid) natives_.reset();
     natives_.prepare(pipeline_, frame, params_, valid);
     const GraphFrame graph_frame{pipeline_, frame, params_, natives_, roles};
-    if (built_ && built_->key.holds(graph_frame)) return;
+    const bool is_stale = std::exchange(is_stale_, false);
+    if (built_ && !is_stale && built_->key.holds(graph_frame)) return;
     // The old textures go before the new ones come, unless what they hold lives on.
     std::unique_ptr<BuiltGraph> old = std::move(built_);
     if (!pipeline_.has_history()) old.reset();
-    built_ = build_graph({context_, programs_, files_, telemetry_}, graph_frame);
+    built_ = build_graph({context_, *programs_, files_, telemetry_}, graph_frame);
     ++graphs_built_;
     if (old) built_->executor->take_history_from(*old->executor);
 }
@@ -192,8 +198,11 @@ void PipelineRenderer::read_results(const std::vector<std::string>& roles, bool 
     gpu::Timer timer(context_);
     timer.start();
     graph::Executor& executor = *built_->executor;
+    const auto is_kept = [&](const std::string& role) {
+        return std::find(kept_on_gpu_.begin(), kept_on_gpu_.end(), role) != kept_on_gpu_.end();
+    };
     for (const std::string& role : roles)
-        if (const auto handle = built_->results.find(role); handle != built_->results.end())
+        if (const auto handle = built_->results.find(role); handle != built_->results.end() && !is_kept(role))
             result.images[role] = read_back(*executor.texture(handle->second), find_role(role)->channels);
     for (const Tap& tap : pipeline_.taps)
         for (std::size_t i = 0; i < pipeline_.steps.size(); ++i)
@@ -202,6 +211,12 @@ void PipelineRenderer::read_results(const std::vector<std::string>& roles, bool 
                 result.taps[tap.text()] = read_back(texture, gpu::channel_count(texture.desc().format));
             }
     if (timed) result.times.push_back({"readback", timer.stop_ms()});
+}
+
+const gpu::Texture* PipelineRenderer::result_texture(const std::string& role) const {
+    if (!built_) return nullptr;
+    const auto handle = built_->results.find(role);
+    return handle == built_->results.end() ? nullptr : built_->executor->texture(handle->second);
 }
 
 void PipelineRenderer::save_history(const std::filesystem::path& path, const std::string& fingerprint) {

@@ -44,6 +44,9 @@ class PipelineRenderer {
 public:
     PipelineRenderer(gpu::Context& context, const Pipeline& pipeline,
                      const std::filesystem::path& data_folder, NativeSources natives = {});
+    /// The same with programs that several renderers of one context share.
+    PipelineRenderer(gpu::Context& context, const Pipeline& pipeline, std::shared_ptr<ProgramCache> programs,
+                     NativeSources natives = {});
     ~PipelineRenderer();
 
     /// Renders one frame; of sub-frames, give each in turn. Steps up to the last one that accumulates run for
@@ -56,6 +59,14 @@ public:
     /// Reads the textures of the effects' telemetry back after each frame; they share no memory then.
     /// [before the first frame]
     void set_telemetry(bool telemetry) { telemetry_ = telemetry; }
+
+    /// Results of these roles are not read back: result_texture() has them, FrameResult::images has not.
+    void keep_on_gpu(std::vector<std::string> roles) { kept_on_gpu_ = std::move(roles); }
+    /// What the last frame made of a role that was asked for; nullptr where no step makes it. Until the next.
+    const gpu::Texture* result_texture(const std::string& role) const;
+    /// Call after a change of the pipeline that the renderer refers to, unless only values changed that
+    /// decide over no input, mix or mask. History lives on where it fits.
+    void pipeline_changed() { is_stale_ = true; }
 
     /// What the next frame would read of this one (framework/pipeline/history_file.h). Throws
     /// Error(ExitCode::output).
@@ -92,7 +103,7 @@ private:
 
     gpu::Context& context_;
     const Pipeline& pipeline_;
-    ProgramCache programs_;
+    std::shared_ptr<ProgramCache> programs_;
     StepFiles files_;
     NativeSteps natives_;
     std::vector<ParamSet> params_;
@@ -104,6 +115,8 @@ private:
     std::unique_ptr<SavedHistory> saved_;  // loaded and not yet taken up
     bool audit_ = false;
     bool telemetry_ = false;
+    std::vector<std::string> kept_on_gpu_;
+    bool is_stale_ = false;
 };
 
 }  // namespace aftershade

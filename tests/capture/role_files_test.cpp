@@ -150,5 +150,55 @@ TEST(FalcorsPasses, AreReadFromAFileEach) {
     EXPECT_TRUE(capture.images.contains("velocity"));
 }
 
+/// A main file and a depth file of given windows, with the depth 1, 2, 3 ... by rows.
+class RoleFileWindows : public testing::Test {
+protected:
+    void write(const std::string& name, const char* channel, const Window& data, const Window& display) {
+        Image image(data.width(), data.height(), 1);
+        for (std::size_t i = 0; i < image.floats().size(); ++i) image.floats()[i] = float(i + 1);
+        std::vector<ExrOutputChannel> channels{{channel, PixelType::float32, &image, 0}};
+        if (std::string(channel) == "R")
+            for (const char* other : {"G", "B"}) channels.push_back({other, PixelType::float32, &image, 0});
+        ExrWriteOptions options;
+        options.data_window = data;
+        options.display_window = display;
+        write_exr(folder_ / name, channels, options);
+    }
+    Image depth() const {
+        Sequence sequence = sequence_of(folder_ / "color.exr", "native");
+        sequence.role_files.insert_or_assign("depth", FramePattern((folder_ / "z.exr").string()));
+        const CaptureReader reader(sequence, profiles_as_shipped(), {});
+        return reader.read(1, std::vector<std::string>{"depth"}).images.at("depth");
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_F(RoleFileWindows, OfAnotherSizeAreRefusedWithBoth) {
+    write("color.exr", "R", {0, 0, 15, 7}, {0, 0, 15, 7});
+    write("z.exr", "Z", {0, 0, 7, 3}, {0, 0, 7, 3});
+    const std::string message = error_of(ExitCode::capture, [&] { depth(); });
+    EXPECT_NE(
+        message.find("z.exr: the role 'depth' has a display window of 8 x 4 px at (0, 0), but that of "),
+        std::string::npos)
+        << message;
+    EXPECT_NE(message.find("color.exr is 16 x 8 px at (0, 0) (render both at one size"), std::string::npos)
+        << message;
+}
+
+TEST_F(RoleFileWindows, MayHoldAPartOfThePictureThatTheyDeclare) {
+    write("color.exr", "R", {0, 0, 15, 7}, {0, 0, 15, 7});
+    write("z.exr", "Z", {4, 2, 7, 3}, {0, 0, 15, 7});
+    const Image image = depth();
+    EXPECT_EQ(image.at(4, 2, 0), 1);
+    EXPECT_EQ(image.at(7, 3, 0), 8);
+    EXPECT_TRUE(std::isinf(image.at(3, 2, 0))) << "nothing was hit where the file says nothing";
+}
+
+TEST_F(RoleFileWindows, MayDifferInTheDisplayWindowAloneWhereTheirPixelsAreTheSame) {
+    write("color.exr", "R", {-2, -2, 17, 9}, {0, 0, 15, 7});
+    write("z.exr", "Z", {-2, -2, 17, 9}, {-2, -2, 17, 9});
+    EXPECT_EQ(depth().at(0, 0, 0), 1);
+}
+
 }  // namespace
 }  // namespace aftershade::test

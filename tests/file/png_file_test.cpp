@@ -116,5 +116,19 @@ TEST(PngFile, LeavesNothingBehindWhenItCannotBeWritten) {
     EXPECT_EQ(folder.file_count(), 1u);
 }
 
+TEST(PngFile, CarriesTextWithoutAChangeOfItsPixels) {
+    const TemporaryFolder folder;
+    const Image image = test::pattern_image(31, 17, 4);
+    write_png(folder / "plain.png", image);
+    write_png(folder / "text.png", image, {{"aftershade/fingerprint", "0123"}, {"Title", "A test"}});
+    EXPECT_EQ(read_png_text(folder / "text.png", "aftershade/fingerprint"), "0123");
+    EXPECT_EQ(read_png_text(folder / "text.png", "Title"), "A test");
+    EXPECT_EQ(read_png_text(folder / "text.png", "aftershade"), std::nullopt);
+    EXPECT_EQ(read_png_text(folder / "plain.png", "Title"), std::nullopt);
+    EXPECT_EQ(read_png_text(folder / "none.png", "Title"), std::nullopt);
+    EXPECT_TRUE(
+        std::ranges::equal(read_png(folder / "text.png").floats(), read_png(folder / "plain.png").floats()));
+}
+
 }  // namespace
 }  // namespace aftershade

@@ -1,0 +1,60 @@
+#include "cli/stream_options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "cli/run_options.h"
+#include "framework/file/frame_stream.h"
+#include "framework/pipeline/frame_run.h"
+
+namespace aftershade::cli {
+
+void add_stream_options(CLI::App& app, StreamArguments& arguments) {
+    app.add_option("--format", arguments.format,
+                   "Of the frames that -o - writes to standard output: rgb24, rgba, rgb48le or rgba64le "
+                   "(ffmpeg's rawvideo), or png (its image2pipe)")
+        ->check(CLI::IsMember(stream_format_names()));
+    app.add_flag("--print-ffmpeg", arguments.print_ffmpeg,
+                 "Print the beginning of the ffmpeg command that reads the frames of -o -, and run nothing");
+}
+
+void check_stream_options(const RunArguments& arguments, const Pipeline& pipeline, Diagnostics& diagnostics) {
+    const StreamArguments& stream = arguments.stream;
+    const auto count = std::ranges::count(arguments.outputs, kStandardOutput);
+    if (count == 0) {
+        for (const auto& [is_given, option] : {std::pair(!stream.format.empty(), "--format"),
+                                               std::pair(stream.print_ffmpeg, "--print-ffmpeg")})
+            if (is_given) diagnostics.error({option}, "is for frames on standard output; add -o -");
+        return;
+    }
+    const Place place{"-o -"};
+    if (count > 1) diagnostics.error(place, "standard output takes one stream of frames; write -o - once");
+    if (stream.format.empty())
+        diagnostics.error(place,
+                          "add the format of the frames: --format " + list_of_names(stream_format_names()));
+    const auto refuse = [&](bool is_given, const char* option, const char* why) {
+        if (is_given) diagnostics.error({option}, std::string(why));
+    };
+    refuse(arguments.watch, "--watch", "does not go with -o -, whose reader expects each frame once");
+    refuse(arguments.resume.resume, "--resume",
+           "does not go with -o -: a stream begins with its first frame");
+    refuse(arguments.resume.dry_run, "--dry-run",
+           "does not go with -o -, which renders every frame; leave one of them out");
+    refuse(needs_worker(arguments.plugins, pipeline), "-o -",
+           "steps of plug-ins run in a process of their own, which passes lines on and no frames; write "
+           "out_####.png, which ffmpeg reads, too");
+    refuse(arguments.progress == "openjd", "--progress openjd",
+           "writes to standard output, which -o - fills with frames; choose plain or json");
+}
+
+std::string ffmpeg_command(const CaptureReader& reader, const Sequence& sequence, const RunOptions& run,
+                           const OutputOptions& outputs) {
+    if (!outputs.stream_format) return "";
+    const CaptureHeader header = reader.read_header(sequence.file_number(run.frames.front()));
+    const Window window = written_window(header.display_window, run);
+    return "ffmpeg " +
+           ffmpeg_input_options(*outputs.stream_format, window.width(), window.height(), sequence.fps) +
+           " -i -";
+}
+
+}  // namespace aftershade::cli

@@ -1,0 +1,38 @@
+// `run -o -`: frames into a pipe.
+#pragma once
+
+#include <string>
+
+#include "framework/capture/capture.h"
+#include "framework/core/diagnostics.h"
+#include "framework/pipeline/output_options.h"
+#include "framework/pipeline/pipeline.h"
+#include "framework/pipeline/run_options.h"
+
+namespace CLI {
+class App;
+}  // namespace CLI
+
+namespace aftershade::cli {
+
+struct RunArguments;
+
+/// What -o names for standard output.
+inline constexpr const char* kStandardOutput = "-";
+
+struct StreamArguments {
+    std::string format;  ///< one of stream_format_names(); "" where nothing is streamed
+    bool print_ffmpeg = false;
+};
+
+void add_stream_options(CLI::App& app, StreamArguments& arguments);
+
+/// What cannot go with `-o -`, and options that are for it alone.
+void check_stream_options(const RunArguments& arguments, const Pipeline& pipeline, Diagnostics& diagnostics);
+
+/// "ffmpeg -f rawvideo ... -i -": the beginning of the command that reads the frames. "" where nothing is
+/// streamed.
+std::string ffmpeg_command(const CaptureReader& reader, const Sequence& sequence, const RunOptions& run,
+                           const OutputOptions& outputs);
+
+}  // namespace aftershade::cli

@@ -1,0 +1,57 @@
+// The public API over small frames: what the program writes is what a library's user gets.
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "aftershade/host.h"
+#include "framework/file/exr_file.h"
+#include "tests/host/host_setup.h"
+#include "tests/temporary_folder.h"
+
+namespace {
+
+using namespace aftershade::host;
+using namespace aftershade::test;
+
+TEST(HostApi, RendersWhatTheProgramWrites) {
+    const TemporaryFolder folder;
+    const std::string look = folder.path() / "look.json", out = folder.path() / "out.exr";
+    write_file(look, kBlurLook);
+    const std::string frame = std::string(AFTERSHADE_SOURCE_DIR) + "/scenes/suzanne";
+    ASSERT_EQ(std::system(("\"" AFTERSHADE_EXECUTABLE "\" run " + look + " " + frame + " -o " + out +
+                           " --frames 3 --backend osmesa --pixel-type float --scale 1/4 --progress none")
+                              .c_str()),
+              0);
+    Host host(osmesa());
+    Look from_file = host.load_look(look);
+    const Capture capture = from_file.read(frame, {.scale_divisor = 4});
+    const Result result = from_file.render(capture);
+    const aftershade::ExrFile written(out);
+    const std::vector<std::string> channels = {"R", "G", "B", "A"};
+    const auto expected = written.read_floats(0, channels);
+    const Image image = result.image("color");
+    ASSERT_EQ(image.floats().size(), expected.floats().size());
+    EXPECT_TRUE(std::ranges::equal(image.floats(), expected.floats()));
+}
+
+TEST(HostApi, ArraysGiveTheBitsOfFiles) {
+    Host host(osmesa());
+    Look look = host.parse_look(kBlurLook);
+    const Capture read = look.read(std::string(AFTERSHADE_SOURCE_DIR) + "/scenes/suzanne", {.scale_divisor = 4});
+    Capture arrays(read.data_window().width, read.data_window().height);
+    arrays.set_windows(read.data_window(), read.display_window());
+    arrays.set_camera(read.camera());
+    arrays.set_scale(read.scale());
+    arrays.set_frame(read.frame());
+    for (const std::string& role : read.roles()) {
+        const Image image = read.image(role);
+        arrays.set_image(role, {image.data(), image.type(), image.width(), image.height(), image.channels()});
+    }
+    EXPECT_TRUE(same_bits(look.render(arrays).image("color"), look.render(read).image("color")));
+}
+
+}  // namespace
