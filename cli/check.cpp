@@ -7,6 +7,7 @@
 
 #include "cli/capture_options.h"
 #include "cli/check_warmup.h"
+#include "cli/command_tree.h"
 #include "cli/effect_options.h"
 #include "cli/gl_options.h"
 #include "cli/plugin_options.h"
@@ -108,6 +109,7 @@ ExitCode check(const CheckOptions& options) {
 Verb add_check(CLI::App& app) {
     auto options = std::make_shared<CheckOptions>();
     app.add_option("subject", options->subject, "Folder of an effect, id of an effect, or a look")
+        ->type_name(kEffectId)
         ->required();
     app.add_flag("--no-gl", options->no_gl, "Only what the texts tell: compile no shader, render nothing");
     app.add_option("--warmup", options->warmup,

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "cli/capture_options.h"
+#include "cli/command_tree.h"
 #include "cli/effect_options.h"
 #include "cli/profile_report.h"
 #include "cli/verbs.h"
@@ -78,6 +79,7 @@ Verb add_describe(CLI::App& app) {
     auto options = std::make_shared<DescribeOptions>();
     app.add_option("what", options->what,
                    "Id of an effect, name of a scattering profile or path of one's .json")
+        ->type_name(kEffectId)
         ->required();
     add_effect_path_option(app, options->effect_paths);
     auto* json = app.add_flag("--json", options->json, "Machine-readable output");

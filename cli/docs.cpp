@@ -11,6 +11,7 @@
 #include "cli/capture_options.h"
 #include "cli/documents.h"
 #include "cli/effect_options.h"
+#include "cli/man_page.h"
 #include "cli/verbs.h"
 #include "framework/core/atomic_file.h"
 #include "framework/effect/describe.h"
@@ -26,6 +27,7 @@ struct DocsOptions {
     std::vector<std::string> effects;
     std::vector<std::string> effect_paths;
     std::string folder = "docs/effects";
+    std::string man_folder;
     bool check = false;
 };
 
@@ -108,19 +110,34 @@ ExitCode docs(const DocsOptions& options) {
     return options.check && !same ? ExitCode::partial : ExitCode::done;
 }
 
+ExitCode write_man_pages(const CLI::App& program, const fs::path& folder) {
+    for (const auto& [name, text] : man_pages(command_tree(program), AFTERSHADE_VERSION)) {
+        prepare_output_folder(folder / name);
+        write_text_file(folder / name, text);
+        fmt::print("{}\n", (folder / name).string());
+    }
+    return ExitCode::done;
+}
+
 }  // namespace
 
 Verb add_docs(CLI::App& app) {
     auto options = std::make_shared<DocsOptions>();
     app.add_option(
-        "effects", options->effects,
-        "Ids of effects (default: all, their index, the scene reference and the tables of other pages)");
+           "effects", options->effects,
+           "Ids of effects (default: all, their index, the scene reference and the tables of other pages)")
+        ->type_name(kEffectId);
     app.add_option("-o,--output", options->folder,
                    "Folder of the effects' pages; scene-reference.md and other pages stand beside it")
         ->capture_default_str();
     app.add_flag("--check", options->check, "Write nothing; exit 1 where a page is not what is declared");
+    app.add_option("--man", options->man_folder,
+                   "Write the manual page of each command to this folder instead");
     add_effect_path_option(app, options->effect_paths);
-    return [options] { return docs(*options); };
+    return [options, &app] {
+        if (!options->man_folder.empty()) return write_man_pages(*app.get_parent(), options->man_folder);
+        return docs(*options);
+    };
 }
 
 }  // namespace aftershade::cli

@@ -28,7 +28,8 @@ using Verb = std::function<ExitCode()>;
     VERB(check, "Check an effect or a look: documents, shaders, values; exit 1: no")                         \
     VERB(schema, "Print the JSON Schema of looks, captures, effects, scenes or profiles, for editors")       \
     VERB(docs, "Write the page of each effect from its manifest, and the scene reference")                   \
-    VERB(doctor, "Show which GL backends work on this machine, and why others do not")
+    VERB(doctor, "Show which GL backends work on this machine, and why others do not")                       \
+    VERB(completion, "Print a script that completes this command in bash, zsh or fish")
 
 #define AFTERSHADE_DECLARE_VERB(name, help) Verb add_##name(CLI::App& app);
 AFTERSHADE_VERBS(AFTERSHADE_DECLARE_VERB)

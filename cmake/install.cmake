@@ -33,6 +33,13 @@ target_include_directories(aftershade_plugin INTERFACE
 
 install(TARGETS aftershade RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
 install(DIRECTORY effects glsl profiles DESTINATION share/aftershade COMPONENT runtime)
+install(DIRECTORY ${PROJECT_BINARY_DIR}/printed/man1 DESTINATION share/man COMPONENT runtime)
+install(FILES ${PROJECT_BINARY_DIR}/printed/completions/aftershade DESTINATION share/bash-completion/completions
+        COMPONENT runtime)
+install(FILES ${PROJECT_BINARY_DIR}/printed/completions/_aftershade DESTINATION share/zsh/vendor-completions
+        COMPONENT runtime)
+install(FILES ${PROJECT_BINARY_DIR}/printed/completions/aftershade.fish DESTINATION share/fish/vendor_completions.d
+        COMPONENT runtime)
 install(TARGETS aftershade_shared aftershade_plugin EXPORT aftershadeTargets
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development)
 install(DIRECTORY framework/host/include/aftershade DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
