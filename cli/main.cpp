@@ -14,6 +14,7 @@
 #include "cli/compare_options.h"
 #include "cli/verbs.h"
 #include "framework/core/memory_limit.h"
+#include "framework/core/text.h"
 
 using aftershade::ExitCode;
 
@@ -22,7 +23,8 @@ namespace {
 int fail(ExitCode code, const char* message) {
     // Messages of documents bring their own "file:line:column: error: ".
     const bool has_place = std::string_view(message).find(": error: ") != std::string_view::npos;
-    std::fprintf(stderr, "%s%s\n", has_place ? "" : "aftershade: error: ", message);
+    std::fprintf(stderr, "%s%s\n",
+                 has_place ? "" : "aftershade: error: ", aftershade::printable_lines(message).c_str());
     return int(code);
 }
 

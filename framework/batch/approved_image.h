@@ -44,8 +44,9 @@ struct GoldenSidecar {
 struct ApprovedImage {
     std::filesystem::path file;
     std::string key;  ///< after the '@'; "" of the first
-    /// nullopt: absent, unreadable, or of another image.
+    /// nullopt: absent, damaged, or of another image.
     std::optional<GoldenSidecar> sidecar;
+    std::string sidecar_fault = {};  ///< of one that is there but damaged, with its path and the remedy
 };
 
 /// Approved images by one name ("lamps.color.0001"): that of `own` first (by sidecar, then by key), then the

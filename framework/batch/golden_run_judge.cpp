@@ -28,6 +28,10 @@ void compare_with(const ApprovedImage& approved, const GoldenCase& test, const R
     result.bits_equal = has_equal_bits(*result.comparison);
     result.verdict = result.comparison->verdict;
     result.reasons = reasons_of(*result.comparison);
+    if (!approved.sidecar_fault.empty()) {
+        result.verdict = std::max(result.verdict, Verdict::file_error);
+        result.reasons.push_back(approved.sidecar_fault);
+    }
     result.exact_tier = approved.sidecar && !look_hash.empty() && approved.sidecar->look_hash == look_hash &&
                         approved.sidecar->environment.equals(environment);
     if (!result.exact_tier || result.bits_equal) return;

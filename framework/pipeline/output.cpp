@@ -4,6 +4,9 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <string>
+#include <unordered_map>
+#include <unordered_set>
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
@@ -19,12 +22,31 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// With links followed, so that two ways to one file are one.
-fs::path resolved(const fs::path& path) {
-    std::error_code failure;
-    const fs::path result = fs::weakly_canonical(fs::absolute(path, failure), failure);
-    return failure ? path : result;
-}
+/// Paths with links followed, so that two ways to one file are one. A folder is followed once: a sequence may
+/// have a million files.
+class Resolver {
+public:
+    std::string operator()(const fs::path& path) {
+        std::error_code failure;
+        const fs::path folder = path.parent_path(), name = path.filename();
+        if (fs::is_symlink(path, failure) || name == "." || name == "..") return canonical(path);
+        const auto known = folders_.find(folder.native());
+        if (known != folders_.end()) return known->second + name.native();
+        const std::string found = canonical(folder.empty() ? fs::path(".") : folder) + "/";
+        return folders_.emplace(folder.native(), found).first->second + name.native();
+    }
+
+private:
+    static std::string canonical(const fs::path& path) {
+        std::error_code failure;
+        const fs::path result = fs::weakly_canonical(fs::absolute(path, failure), failure);
+        std::string text = failure ? path.string() : result.string();
+        while (text.ends_with('/')) text.pop_back();
+        return text;
+    }
+
+    std::unordered_map<std::string, std::string> folders_;
+};
 
 std::string extension(const fs::path& path) {
     std::string text = path.extension().string();
@@ -163,15 +185,18 @@ void prepare_output_folders(const OutputOptions& options, const Sequence& sequen
 }
 
 void check_outputs(const OutputOptions& options, const Sequence& sequence, Diagnostics& diagnostics) {
-    std::map<fs::path, fs::path> inputs;
-    for (const int frame : sequence.frames)
-        for (int subframe = 0; subframe < sequence.subframes; ++subframe) {
-            const int file = sequence.file_number(frame, subframe);
-            inputs.emplace(resolved(sequence.path_of(file)), sequence.path_of(file));
-            for (const auto& [role, pattern] : sequence.role_files)
-                inputs.emplace(resolved(pattern.path(file)), pattern.path(file));
-        }
-    std::set<fs::path> named;
+    Resolver resolved;
+    const auto for_each_input = [&](const auto& take) {
+        for (const int frame : sequence.frames)
+            for (int subframe = 0; subframe < sequence.subframes; ++subframe) {
+                const int file = sequence.file_number(frame, subframe);
+                take(sequence.path_of(file));
+                for (const auto& [role, pattern] : sequence.role_files) take(fs::path(pattern.path(file)));
+            }
+    };
+    std::unordered_set<std::string> inputs;
+    for_each_input([&](const fs::path& path) { inputs.insert(resolved(path)); });
+    std::set<std::string> named;
     if (options.patterns.empty())
         diagnostics.error({"-o"}, "no output; name at least one file, such as -o out_####.exr");
     for (const auto& [place, text, is_telemetry] : all_names(options)) {
@@ -187,9 +212,13 @@ void check_outputs(const OutputOptions& options, const Sequence& sequence, Diagn
         if (!sequence.frames.empty() && !named.insert(resolved(pattern.path(sequence.frames.front()))).second)
             diagnostics.error(place, "another output has this name");
         for (const int frame : sequence.frames) {
-            const auto input = inputs.find(resolved(pattern.path(frame)));
-            if (input == inputs.end()) continue;
-            diagnostics.error(place, "would replace the input " + input->second.string());
+            const std::string output = resolved(pattern.path(frame));
+            if (!inputs.contains(output)) continue;
+            fs::path input;
+            for_each_input([&](const fs::path& path) {
+                if (input.empty() && resolved(path) == output) input = path;
+            });
+            diagnostics.error(place, "would replace the input " + input.string());
             break;
         }
     }
