@@ -15,6 +15,7 @@
 #include "cli/verbs.h"
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 #include "framework/scattering/param_scattering.h"
 
 namespace aftershade::cli {
@@ -68,7 +69,7 @@ ExitCode describe(const DescribeOptions& options) {
         write_plot(profile_of(*manifest, diagnostics), options.plot);
         return ExitCode::done;
     }
-    fmt::print("{}{}", options.json ? describe_json(*manifest) : describe_text(*manifest),
+    fmt::print("{}{}", options.json ? describe_json(*manifest) : printable_lines(describe_text(*manifest)),
                options.json ? "\n" : "");
     return ExitCode::done;
 }

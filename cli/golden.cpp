@@ -104,10 +104,10 @@ ExitCode run(const GoldenOptions& options) {
     const GoldenSuiteResult result = run_golden_suite(
         setup.suite, setup.context.options,
         [](const GoldenCaseResult& test, int done, int all) {
-            std::cerr << line_of(test, done, all) << "\n";
+            std::cerr << printable_lines(line_of(test, done, all)) << "\n";
         },
         stop);
-    std::cerr << summary_of(result, setup.context);
+    std::cerr << printable_lines(summary_of(result, setup.context));
     if (result.interrupted) return ExitCode::interrupted;
     print_notes(result);
     write_reports(options, result, setup.context);
@@ -119,7 +119,8 @@ void print_approval(const GoldenApproval& approval) {
         if (test.verdict != Verdict::same) {
             std::cerr << fmt::format("\nFAILED {}: not rendered, its goldens are as they were\n",
                                      test.test->name);
-            for (const std::string& message : test.messages) std::cerr << "    " << message << "\n";
+            for (const std::string& message : test.messages)
+                std::cerr << "    " << printable_lines(message) << "\n";
         }
     std::cerr << "\n";
     for (const fs::path& path : approval.written) std::cout << path.string() << "\n";
@@ -151,7 +152,7 @@ ExitCode approve(const GoldenOptions& options) {
     const GoldenApproval approval = approve_goldens(
         setup.suite, approve_options,
         [](const GoldenCaseResult& test, int done, int all) {
-            std::cerr << line_of(test, done, all, "Drawn ") << "\n";
+            std::cerr << printable_lines(line_of(test, done, all, "Drawn ")) << "\n";
         },
         stop);
     if (approval.interrupted) {

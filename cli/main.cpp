@@ -21,6 +21,7 @@
 #include "framework/core/memory_limit.h"
 #include "framework/core/status.h"
 #include "framework/effect/native/native_process.h"
+#include "framework/core/text.h"
 
 using aftershade::ExitCode;
 
@@ -35,7 +36,8 @@ int end(int code) {
 int fail(ExitCode code, const char* message) {
     // Messages of documents bring their own "file:line:column: error: ".
     const bool has_place = std::string_view(message).find(": error: ") != std::string_view::npos;
-    std::fprintf(stderr, "%s%s\n", has_place ? "" : "aftershade: error: ", message);
+    std::fprintf(stderr, "%s%s\n",
+                 has_place ? "" : "aftershade: error: ", aftershade::printable_lines(message).c_str());
     return end(int(code));
 }
 

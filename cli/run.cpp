@@ -22,6 +22,7 @@
 #include "framework/core/atomic_file.h"
 #include "framework/core/cores.h"
 #include "framework/core/data_path.h"
+#include "framework/core/text.h"
 #include "framework/file/frame_stream.h"
 #include "framework/pipeline/output.h"
 
@@ -48,7 +49,7 @@ ExitCode explain(const Sequence& sequence, const CaptureReader& reader, const Pi
         reader.read(sequence.file_number(sequence.frames.front()), pipeline.capture_roles());
     FrameInputs frame;
     frame.capture = &capture;
-    std::cout << explain_params(pipeline, frame);
+    std::cout << printable_lines(explain_params(pipeline, frame));
     return ExitCode::done;
 }
 
@@ -148,7 +149,7 @@ ExitCode run_here(const RunArguments& options, CheckedRun& run, const CaptureRea
     const Pipeline& pipeline = run.bound->pipeline;
     if (run.settings.warmup_frames == 0 && !options.jobs.is_worker())
         if (const auto lost = lost_history_text(pipeline, run.sequence, reader, run.settings); !lost.empty())
-            std::cerr << "aftershade: warning: " << lost << "\n";
+            std::cerr << "aftershade: warning: " << printable(lost) << "\n";
     const RunSession session{options,          status,       run.sequence, reader,
                              context,          run.settings, run.outputs,  parse_progress(options.progress),
                              profile_documents};

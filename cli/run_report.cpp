@@ -84,7 +84,7 @@ void RunReporter::clear_line() {
 void RunReporter::say(const char* event, const std::string& text) {
     if (style_ == ProgressStyle::json) return print_json({{"event", event}, {"message", text}});
     clear_line();
-    fmt::print(stderr, "{}\n", text);
+    fmt::print(stderr, "{}\n", printable_lines(text));
 }
 
 void RunReporter::tell_conventions(const Capture& capture) {

@@ -12,6 +12,7 @@
 #include "cli/telemetry_plot.h"
 #include "framework/core/atomic_file.h"
 #include "framework/core/data_path.h"
+#include "framework/core/text.h"
 #include "framework/core/trace.h"
 #include "framework/gpu/timer.h"
 
@@ -42,7 +43,7 @@ public:
                 report_json({session_.arguments.look, session_.arguments.capture.capture,
                              frame_events(session_.run, outcomes_, current_), taken.count(), code_}));
         } catch (const Error& error) {
-            std::cerr << error.what() << "\n";
+            std::cerr << printable_lines(error.what()) << "\n";
         }
     }
     ReportFile(const ReportFile&) = delete;
@@ -183,7 +184,7 @@ ExitCode watch(const RunSession& session, WatchedLook look, const std::atomic<bo
             session.sequence.object_names = look.bound->pipeline.object_names();
             render(session, session.run, look.bound->pipeline, stop);
         } catch (const Error& error) {
-            std::cerr << error.what() << "\n";
+            std::cerr << printable_lines(error.what()) << "\n";
             continue;
         }
         const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - start;

@@ -26,6 +26,11 @@ set(AFTERSHADE_STANDARD_HEADERS
   <algorithm> <array> <atomic> <cmath> <cstdint> <filesystem> <functional> <future> <map> <memory> <mutex> <optional> <set>
   <span> <sstream> <string> <string_view> <utility> <variant> <vector>)
 set(AFTERSHADE_PRECOMPILED_HEADERS ${AFTERSHADE_STANDARD_HEADERS} <nlohmann/json.hpp>)
+if(AFTERSHADE_FUZZ)
+  # Counters at every branch, for libFuzzer to see where an input goes.
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif()
+
 add_library(aftershade_precompiled OBJECT ${PROJECT_SOURCE_DIR}/cmake/precompiled.cpp)
 target_link_libraries(aftershade_precompiled PRIVATE aftershade_options)
 target_precompile_headers(aftershade_precompiled PRIVATE ${AFTERSHADE_PRECOMPILED_HEADERS})

@@ -1,14 +1,16 @@
 #include "framework/batch/approved_image.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstdint>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <regex>
+#include <string_view>
 
 #include "framework/capture/frame_range.h"
 #include "framework/core/atomic_file.h"
+#include "framework/core/document.h"
 #include "framework/core/text.h"
 
 namespace aftershade {
@@ -18,9 +20,34 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-std::string first_match(const std::string& text, const char* pattern) {
-    std::smatch match;
-    return std::regex_search(text, match, std::regex(pattern)) ? match[1].str() : "";
+/// What of `text` follows the first `word`, up to one of `ends`.
+std::string after_word(std::string_view text, std::string_view word, std::string_view ends) {
+    const std::size_t found = text.find(word);
+    if (found == std::string_view::npos) return "";
+    text.remove_prefix(found + word.size());
+    return std::string(text.substr(0, text.find_first_of(ends)));
+}
+
+constexpr std::string_view kVersionDigits = "0123456789.";
+
+/// Where a sidecar of an earlier version does not say it.
+bool is_software(const std::string& renderer) {
+    constexpr std::array kNames = {"llvmpipe", "softpipe", "swrast", "SwiftShader", "software"};
+    return std::any_of(kNames.begin(), kNames.end(),
+                       [&](const char* name) { return renderer.find(name) != std::string::npos; });
+}
+
+/// "llvmpipe (LLVM 15.0.6, 256 bits)" without "(LLVM 15.0.6,".
+std::string without_llvm(const std::string& renderer) {
+    constexpr std::string_view kLlvm = "LLVM ";
+    const std::size_t found = renderer.find(kLlvm);
+    if (found == std::string::npos) return renderer;
+    const std::size_t digits = found + kLlvm.size();
+    std::size_t end = std::min(renderer.find_first_not_of(kVersionDigits, digits), renderer.size());
+    if (end == digits) return renderer;
+    if (end < renderer.size() && renderer[end] == ',') ++end;
+    const std::size_t begin = found > 0 && renderer[found - 1] == '(' ? found - 1 : found;
+    return renderer.substr(0, begin) + renderer.substr(end);
 }
 
 constexpr std::uintmax_t kMaxSidecarBytes = 1024 * 1024;
@@ -56,11 +83,9 @@ std::optional<GoldenSidecar> read_sidecar(const fs::path& image, std::optional<S
     GoldenSidecar sidecar;
     sidecar.environment = {text("backend"), text("renderer"), text("version"), text("cpu"), false};
     const auto software = json.find("software");
-    sidecar.environment.software =
-        software != json.end() && software->is_boolean()
-            ? software->get<bool>()
-            : std::regex_search(sidecar.environment.renderer,
-                                std::regex("llvmpipe|softpipe|swrast|SwiftShader|software"));
+    sidecar.environment.software = software != json.end() && software->is_boolean()
+                                       ? software->get<bool>()
+                                       : is_software(sidecar.environment.renderer);
     sidecar.command = text("command");
     sidecar.look_hash = text("look_hash");
     sidecar.image_hash = text("image_hash");
@@ -73,15 +98,15 @@ std::optional<GoldenSidecar> read_sidecar(const fs::path& image, std::optional<S
 }  // namespace
 
 std::string GoldenEnvironment::mesa() const {
-    return first_match(version, R"(Mesa (\S+))");
+    return after_word(version, "Mesa ", " \t");
 }
 std::string GoldenEnvironment::llvm() const {
-    return first_match(renderer, R"(LLVM (\d[\d.]*))");
+    return after_word(renderer, "LLVM ", " ,)");
 }
 
 std::string GoldenEnvironment::key() const {
     // LLVM's version follows from Mesa's package; the width of its vectors does not.
-    const std::string name = std::regex_replace(renderer, std::regex(R"(\(?LLVM [\d.]+,?)"), "");
+    const std::string name = without_llvm(renderer);
     const std::string driver = mesa();
     return slug(name + " " + (driver.empty() ? version : driver) + " " + cpu);
 }

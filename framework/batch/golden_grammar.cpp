@@ -1,5 +1,9 @@
 #include "framework/batch/golden_grammar.h"
 
+#include <algorithm>
+#include <cctype>
+#include <string>
+
 #include "framework/capture/document_forms.h"
 #include "framework/compare/compare_files.h"
 #include "framework/core/units.h"
@@ -50,11 +54,21 @@ Block tolerance_block() {
     return block;
 }
 
+/// "step.texture": one dot, and neither the '/' nor the '=' that a tap's file has on the command line.
+bool is_tap(const std::string& text) {
+    return std::count(text.begin(), text.end(), '.') == 1 && text.find_first_of("/=") == std::string::npos;
+}
+
+bool is_case_name(const std::string& name) {
+    const auto fits = [](unsigned char c) { return c < 0x80 && (std::isalnum(c) || c == '_' || c == '-'); };
+    return !name.empty() && name.front() != '-' && std::all_of(name.begin(), name.end(), fits);
+}
+
 /// What each case has, wherever it stands.
 std::vector<Key> common_keys() {
     const Form range = frame_range_form("'{}' is no range of frames");
     const Form steps = grammar::list(grammar::custom({.type = "[steps of a look](looks.md)"}));
-    const Form tap = text({.pattern = R"(^[^./=]*\.[^./=]*$)",
+    const Form tap = text({.pattern = {R"(^[^./=]*\.[^./=]*$)", is_tap},
                            .fault = "'{}' is not 'step.texture'",
                            .type = "`step.texture`"});
     return {
@@ -74,7 +88,7 @@ std::vector<Key> common_keys() {
 
 Block case_block() {
     const Form name =
-        text({.pattern = "^[A-Za-z0-9_][A-Za-z0-9_-]*$",
+        text({.pattern = {"^[A-Za-z0-9_][A-Za-z0-9_-]*$", is_case_name},
               .fault = "a case's name begins its files' names: letters, digits, '_' and '-', not '{}'"});
     Block block{.name = "case",
                 .thing = "the case",

@@ -24,7 +24,7 @@ Form files_by_role() {
     Block block{.name = "", .unknown_key = "'{}' is not a role", .type = "file by role"};
     for (const ChannelRole& role : channel_roles())
         block.keys.push_back(optional(role.name, text(), role.meaning));
-    block.others = {{kAovPattern, text()}};
+    block.others = {{aov_pattern(), text()}};
     return grammar::object(std::move(block));
 }
 

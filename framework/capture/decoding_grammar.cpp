@@ -188,7 +188,7 @@ Form decodings() {
                 .type = "[decoding](captures.md#how-a-role-is-decoded) by role"};
     for (const ChannelRole& role : channel_roles())
         block.keys.push_back(optional(role.name, grammar::object(decoding_block(role.name)), role.meaning));
-    block.others = {{kAovPattern, grammar::object(decoding_block(""))}};
+    block.others = {{aov_pattern(), grammar::object(decoding_block(""))}};
     return grammar::object(std::move(block));
 }
 

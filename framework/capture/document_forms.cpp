@@ -9,8 +9,7 @@ grammar::Form frame_range_form(const std::string& fault) {
         const auto frames = parse_frame_range(text);
         return frames && !frames->empty();
     };
-    return grammar::text({.pattern = frame_range_pattern(),
-                          .fits = is_range,
+    return grammar::text({.pattern = {frame_range_pattern(), is_range},
                           .fault = fault,
                           .type = "range such as \"1-24\" or \"1-100x2,120\"",
                           .noun = "a range of frames"});

@@ -13,8 +13,6 @@ namespace aftershade {
 
 namespace {
 
-constexpr std::size_t kMaxFrames = 1'000'000;
-
 std::optional<int> parse_int(std::string_view text) {
     int value = 0;
     const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -95,11 +93,11 @@ std::optional<std::vector<int>> parse_frame_range(std::string_view text) {
         const auto piece = parse_piece(part);
         if (!piece) return std::nullopt;
         const auto [first, last, step] = *piece;
-        if (step == 0 || std::size_t(std::abs(last - first) / step) >= kMaxFrames) return std::nullopt;
+        if (step == 0 || std::size_t(std::abs(last - first) / step) >= kMaxRangeFrames) return std::nullopt;
         const int direction = last >= first ? step : -step;
         for (int frame = first; direction > 0 ? frame <= last : frame >= last; frame += direction)
             if (seen.insert(frame).second) frames.push_back(frame);
-        if (frames.size() > kMaxFrames) return std::nullopt;
+        if (frames.size() > kMaxRangeFrames) return std::nullopt;
     }
     return frames;
 }

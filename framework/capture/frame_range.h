@@ -1,6 +1,7 @@
 // Frame numbers as people write them.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -9,9 +10,12 @@
 
 namespace aftershade {
 
+/// Frames that one text may name.
+inline constexpr std::size_t kMaxRangeFrames = 1'000'000;
+
 /// "7", "1-100", "1-100x2", "1-10:2", "1..10", "10-1" (backwards), "-5--1", and lists of these with commas.
 /// Frames come in the order written; a frame that is named again is dropped. nullopt for anything else, for a
-/// step of 0 and for more than a million frames.
+/// step of 0 and for more than kMaxRangeFrames frames.
 std::optional<std::vector<int>> parse_frame_range(std::string_view text);
 
 /// The shortest such text for frames in this order: "1-100", "1-99x2,120".

@@ -1,15 +1,24 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "framework/compare/comparison_report.h"
+#include "framework/core/text.h"
+#include "framework/core/units.h"
 
 namespace aftershade {
 
 namespace {
 
-std::string quoted(const std::string& field) {
+/// A field of RFC 4180. A name that a spreadsheet would take for a formula gets an apostrophe before it, as
+/// OWASP's "CSV Injection" says; numbers are ours.
+std::string quoted(std::string field) {
+    const bool is_number = parse_number(field).has_value() || field == "-inf";
+    if (!field.empty() && !is_number && std::string_view("=+-@\t\r").find(field[0]) != std::string_view::npos)
+        field.insert(0, "'");
     if (field.find_first_of(",\"\n\r") == std::string::npos) return field;
     std::string text = "\"";
     for (const char c : field) text += c == '"' ? std::string("\"\"") : std::string(1, c);
@@ -149,7 +158,7 @@ std::string text_of(const Comparison& comparison, const CompareRules& rules) {
                                    comparison.test.string());
     for (const LayerComparison& layer : comparison.layers) text += layer_text(layer, rules);
     for (const std::string& fault : comparison.faults) text += "! " + fault + "\n";
-    return text + std::string(verdict_name(comparison.verdict)) + "\n";
+    return printable_lines(text + std::string(verdict_name(comparison.verdict)) + "\n");
 }
 
 }  // namespace aftershade

@@ -131,6 +131,17 @@ Target target_of(const fs::path& named) {
     }
     return {named, false};  // a ring, which nothing can open
 }
+struct Descriptor {
+    explicit Descriptor(int opened) : number(opened) {}
+    ~Descriptor() {
+        if (number >= 0) close(number);
+    }
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+    const int number;
+};
+
+constexpr const char* kNotRegular = "is not a regular file";
 
 }  // namespace
 
@@ -313,16 +324,35 @@ std::string read_text_file(const fs::path& path, ExitCode code) {
 
 std::string read_regular_file(const fs::path& path, std::uintmax_t max_bytes, std::string& fault) {
     fault.clear();
-    std::error_code failure;
-    const fs::file_status status = fs::status(path, failure);
-    const std::uintmax_t size = fs::is_regular_file(status) ? fs::file_size(path, failure) : 0;
-    std::string text;
-    if (!fs::exists(status)) fault = "no such file";
-    else if (!fs::is_regular_file(status)) fault = "is not a regular file";
-    else if (!failure && size > max_bytes)
+    // Without O_NONBLOCK a pipe would wait for a writer. What is opened is what is judged.
+    const Descriptor file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+    struct stat status;
+    if (file.number < 0 || fstat(file.number, &status) != 0) {
+        fault = errno == ENOENT ? "no such file" : std::string("cannot be read: ") + std::strerror(errno);
+        // A socket, or a device that has no driver.
+        if (errno == ENXIO || errno == ENODEV) fault = kNotRegular;
+        return "";
+    }
+    if (!S_ISREG(status.st_mode)) {
+        fault = kNotRegular;
+        return "";
+    }
+    const auto too_large = [&](std::uintmax_t size) {
         fault = "the file has " + std::to_string(size) + " bytes, the limit is " + std::to_string(max_bytes);
-    else if (text = read_text_file(path, failure); failure) fault = "cannot be read: " + failure.message();
-    return text;
+        return std::string();
+    };
+    if (std::uintmax_t(status.st_size) > max_bytes) return too_large(std::uintmax_t(status.st_size));
+    std::string text;
+    text.reserve(std::size_t(status.st_size));
+    std::array<char, 65536> buffer;
+    ssize_t count = 0;
+    while ((count = read(file.number, buffer.data(), buffer.size())) > 0) {
+        text.append(buffer.data(), std::size_t(count));
+        if (text.size() > max_bytes) return too_large(text.size());
+    }
+    if (count == 0) return text;
+    fault = std::string("cannot be read: ") + std::strerror(errno);
+    return "";
 }
 
 bool file_begins_with(const fs::path& path, std::string_view bytes) {

@@ -82,7 +82,8 @@ std::string read_text_file(const std::filesystem::path& path, std::error_code& f
 std::string read_text_file(const std::filesystem::path& path, ExitCode code);
 /// The bytes of a regular file of at most `max_bytes`. Where it is none, is larger or cannot be read: "", and
 /// `fault` says why, as a message ends: "no such file", "the file has 9 bytes, the limit is 5". `fault` is
-/// cleared otherwise. Nothing else than a regular file is opened: a pipe would wait for a writer.
+/// cleared otherwise. Pipes and devices are refused, not waited for, and a file that grows while it is read
+/// ends at the limit.
 std::string read_regular_file(const std::filesystem::path& path, std::uintmax_t max_bytes,
                               std::string& fault);
 /// Whether a regular file begins with these bytes; false where it cannot be read.

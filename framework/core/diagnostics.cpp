@@ -25,7 +25,7 @@ void Diagnostics::warning(const Place& place, std::string message) {
 void Diagnostics::print(std::ostream& out) const {
     for (const Diagnostic& d : all_) {
         const char* kind = d.severity == Severity::error ? "error" : "warning";
-        out << to_string(d.place) << ": " << kind << ": " << d.message << "\n";
+        out << printable(to_string(d.place)) << ": " << kind << ": " << printable(d.message) << "\n";
     }
 }
 
@@ -52,13 +52,19 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates) {
+    constexpr std::size_t kLongestWord = 100;
     const std::string* best = nullptr;
     std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
     for (const std::string& candidate : candidates) {
         const bool begins = word.size() >= 3 && candidate.starts_with(word);
+        const std::size_t longer = std::max(word.size(), candidate.size());
+        // Each missing character is a change, so that long texts of strangers cost nothing.
+        if (longer > kLongestWord || longer - std::min(word.size(), candidate.size()) >= best_distance) {
+            if (!begins) continue;
+        }
         const std::size_t distance = begins ? 1 : edit_distance(word, candidate);
         // A distance of the word's own length means that nothing of it was kept.
-        if (distance < best_distance && distance < std::max(word.size(), candidate.size())) {
+        if (distance < best_distance && distance < longer) {
             best = &candidate;
             best_distance = distance;
         }

@@ -36,7 +36,8 @@ public:
     bool has_errors() const { return error_count_ > 0; }
     int error_count() const { return error_count_; }
     const std::vector<Diagnostic>& all() const { return all_; }
-    /// One line each: "file:line:column: error: message".
+    /// One line each: "file:line:column: error: message". Control characters, which names in documents may
+    /// hold, become '?'.
     void print(std::ostream& out) const;
 
 private:

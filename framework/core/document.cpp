@@ -4,6 +4,7 @@
 #include <cctype>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <unordered_set>
 #include <utility>
 
 #include "framework/core/atomic_file.h"
@@ -101,10 +102,9 @@ public:
     bool key(string_t& value) override {
         const Place at = place(string_start(offset() - 1));
         Node& object = *stack_.back();
-        for (const Member& member : object.members) {
-            if (member.key != value) continue;
+        if (!keys_.back().insert(value).second) {
             diagnostics_.error(at, "the key '" + value + "' stands twice in one object; first at line " +
-                                       std::to_string(member.key_place.line));
+                                       std::to_string(first_line_of(object, value)));
             return false;
         }
         object.members.push_back({value, at, {}});
@@ -199,6 +199,7 @@ private:
         node->kind = kind;
         node->place = place(offset() - 1);
         stack_.push_back(node);
+        keys_.emplace_back();
         if (stack_.size() <= std::size_t(kMaxDocumentDepth)) return true;
         diagnostics_.error(node->place,
                            "nested deeper than " + std::to_string(kMaxDocumentDepth) + " levels");
@@ -206,7 +207,13 @@ private:
     }
     bool close() {
         stack_.pop_back();
+        keys_.pop_back();
         return true;
+    }
+
+    static int first_line_of(const Node& object, const std::string& key) {
+        const auto same = [&](const Member& member) { return member.key == key; };
+        return std::find_if(object.members.begin(), object.members.end(), same)->key_place.line;
     }
 
     /// "[json.exception.parse_error.101] parse error at line 3, column 5: syntax error while ..." without its
@@ -227,6 +234,7 @@ private:
     const char* reached_ = nullptr;
     Node root_;
     std::vector<Node*> stack_;  // a parent's vector never grows while one of its children is open
+    std::vector<std::unordered_set<std::string>> keys_;  // of each open object
 };
 
 }  // namespace

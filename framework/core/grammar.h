@@ -100,9 +100,16 @@ Key required(std::string name, Form form, std::string doc);
 /// `default_text` is what an absent key stands for, in JSON; "" where no value does.
 Key optional(std::string name, Form form, std::string doc, const std::string& default_text = "");
 
+/// A set of texts, twice: for schemas as a regular expression of ECMA-262, for the program as a predicate.
+/// std::regex recurses for each character of a text, so no text of a document meets one.
+struct Pattern {
+    std::string regex = {};  ///< found anywhere in the text unless it is anchored; "": any text
+    std::function<bool(const std::string&)> fits = {};
+};
+
 /// Keys that are not declared by name but by a pattern: "aov:mist".
 struct OtherKeys {
-    std::string pattern;  ///< regular expression of ECMA-262
+    Pattern pattern;
     Form form;
 };
 
@@ -140,10 +147,7 @@ struct Range {
 Form number(Range range = {});
 
 struct Text {
-    std::string pattern =
-        {};  ///< regular expression of ECMA-262, found anywhere in the text unless it is anchored
-    std::function<bool(const std::string&)> fits =
-        {};                  ///< instead of the pattern, where code knows it better
+    Pattern pattern = {};
     std::string fault = {};  ///< for a text that does not fit; "{}" is the text
     int min_length = 0;
     std::string type = "text";      ///< in tables
@@ -151,6 +155,7 @@ struct Text {
 };
 Form text(Text text = {});
 /// a-z, 0-9 and _, beginning with a letter.
+Pattern snake_case_pattern();
 Form snake_case();
 /// Words that are known, but not here: `fault` says why, "{}" is the word.
 struct Elsewhere {
@@ -159,9 +164,9 @@ struct Elsewhere {
 };
 /// One of some words.
 Form choice(std::vector<std::string> words, Elsewhere elsewhere = {});
-/// A name of something known: "'dpth' is not a role; did you mean 'depth'?". What `other_pattern` fits is
+/// A name of something known: "'dpth' is not a role; did you mean 'depth'?". What fits `other` is
 /// one, too.
-Form name_of(std::vector<std::string> known, std::string noun, std::string other_pattern = "");
+Form name_of(std::vector<std::string> known, std::string noun, Pattern other = {});
 /// One value, in JSON: "true", "-1", "\"auto\"".
 Form constant(const std::string& json);
 
@@ -191,9 +196,7 @@ Form list(Form item, ListLimits limits = {});
 
 /// The names of an object whose members are all alike.
 struct MapNames {
-    std::string pattern = {};  ///< "": any
-    std::function<bool(const std::string&)> fits =
-        {};                   ///< instead of the pattern, where code knows it better
+    Pattern pattern = {};
     std::string fault = {};   ///< for a name that does not fit; "{}" is the name
     std::string by = "name";  ///< in tables: "texture by name"
     int min = 0;              ///< members

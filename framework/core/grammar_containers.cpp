@@ -101,7 +101,7 @@ public:
     }
     json schema(SchemaScope& scope) const override {
         json result = {{"type", "object"}};
-        if (!names_.pattern.empty()) result["propertyNames"] = {{"pattern", names_.pattern}};
+        if (!names_.pattern.regex.empty()) result["propertyNames"] = {{"pattern", names_.pattern.regex}};
         json value = scope.of(value_);
         if (!value.empty()) result["additionalProperties"] = std::move(value);
         if (names_.min > 0) result["minProperties"] = names_.min;
@@ -115,10 +115,7 @@ public:
     void visit(const BlockVisitor& visitor) const override { value_.type().visit(visitor); }
 
 private:
-    bool fits(const std::string& name) const {
-        if (names_.fits) return names_.fits(name);
-        return names_.pattern.empty() || matches(names_.pattern, name);
-    }
+    bool fits(const std::string& name) const { return !names_.pattern.fits || names_.pattern.fits(name); }
 
     Form value_;
     MapNames names_;
@@ -311,10 +308,8 @@ Form map(Form value, MapNames names) {
 }
 
 Form named(Form value, const std::string& thing, int min) {
-    return map(std::move(value), {.pattern = schema::kSnakeCase,
-                                  .fits = [](const std::string& name) { return is_snake_case(name); },
-                                  .fault = thing + " '{}' " + kMustBeSnakeCase,
-                                  .min = min});
+    return map(std::move(value),
+               {.pattern = snake_case_pattern(), .fault = thing + " '{}' " + kMustBeSnakeCase, .min = min});
 }
 
 Form object(Block block) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <map>
-#include <regex>
 
 namespace aftershade::grammar {
 
@@ -74,7 +73,7 @@ private:
     void check_member(const Member& member) {
         if (member.key == block_.selector || find_key(keys_, member.key)) return;
         for (const OtherKeys& other : block_.others)
-            if (matches(other.pattern, member.key)) {
+            if (other.pattern.fits(member.key)) {
                 other.form.type().check(member.value, spot_.entry(member.key), diagnostics_);
                 return;
             }
@@ -131,15 +130,6 @@ std::string filled(const std::string& text, const std::string& value) {
     for (std::size_t at = 0; (at = result.find("{}", at)) != std::string::npos; at += value.size())
         result.replace(at, 2, value);
     return result;
-}
-
-bool matches(const std::string& pattern, const std::string& text) {
-    constexpr std::size_t kLongest = 4096;
-    thread_local std::map<std::string, std::regex> compiled;
-    if (text.size() > kLongest) return false;
-    auto found = compiled.find(pattern);
-    if (found == compiled.end()) found = compiled.emplace(pattern, std::regex(pattern)).first;
-    return std::regex_search(text, found->second);
 }
 
 Node parsed_json(const std::string& text) {

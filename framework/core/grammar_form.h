@@ -89,9 +89,6 @@ Form make_form(Arguments&&... arguments) {
 void wrong_kind(const Node& node, const Spot& spot, const Words& words, Diagnostics& diagnostics);
 /// With "{}" replaced.
 std::string filled(const std::string& text, const std::string& value);
-/// Whether the regular expression (ECMA-262) is found in the text. A text of more than 4096 bytes fits none:
-/// std::regex recurses for each of them.
-bool matches(const std::string& pattern, const std::string& text);
 /// JSON of our own as a node, without a place.
 Node parsed_json(const std::string& text);
 bool equals(const Node& a, const Node& b);  ///< of scalars; a number is equal to the integer of its value

@@ -90,7 +90,7 @@ public:
     json schema(SchemaScope&) const override {
         json result = {{"type", "string"}};
         if (text_.min_length > 0) result["minLength"] = text_.min_length;
-        if (!text_.pattern.empty()) result["pattern"] = text_.pattern;
+        if (!text_.pattern.regex.empty()) result["pattern"] = text_.pattern.regex;
         return result;
     }
     Words words() const override { return {.type = text_.type, .noun = text_.noun, .nouns = "strings"}; }
@@ -98,8 +98,7 @@ public:
 private:
     bool fits(const std::string& text) const {
         if (text.size() < std::size_t(text_.min_length)) return false;
-        if (text_.fits) return text_.fits(text);
-        return text_.pattern.empty() || matches(text_.pattern, text);
+        return !text_.pattern.fits || text_.pattern.fits(text);
     }
 
     Text text_;
@@ -139,27 +138,28 @@ private:
 
 class NameOf : public FormType {
 public:
-    NameOf(std::vector<std::string> known, std::string noun, std::string other)
+    NameOf(std::vector<std::string> known, std::string noun, Pattern other)
         : known_(std::move(known)), noun_(std::move(noun)), other_(std::move(other)) {}
 
     bool takes(Node::Kind kind) const override { return kind == Node::Kind::string; }
     void check(const Node& node, const Spot& spot, Diagnostics& diagnostics) const override {
         if (!takes(node.kind)) return wrong_kind(node, spot, words(), diagnostics);
         if (std::find(known_.begin(), known_.end(), node.string) != known_.end()) return;
-        if (!other_.empty() && matches(other_, node.string)) return;
+        if (other_.fits && other_.fits(node.string)) return;
         diagnostics.error(node.place, node.string.empty() ? "'" + spot.key + "' is empty"
                                                           : "'" + node.string + "' is not " + noun_ +
                                                                 did_you_mean(node.string, known_));
     }
     json schema(SchemaScope&) const override {
-        if (other_.empty()) return schema::one_of(known_);
-        return schema::any_of({schema::one_of(known_), {{"type", "string"}, {"pattern", other_}}});
+        if (!other_.fits) return schema::one_of(known_);
+        return schema::any_of({schema::one_of(known_), {{"type", "string"}, {"pattern", other_.regex}}});
     }
     Words words() const override { return {.type = noun_, .noun = "a string", .nouns = "strings"}; }
 
 private:
     std::vector<std::string> known_;
-    std::string noun_, other_;
+    std::string noun_;
+    Pattern other_;
 };
 
 class Constant : public FormType {
@@ -216,9 +216,12 @@ Form text(Text rules) {
     return make_form<TextForm>(std::move(rules));
 }
 
+Pattern snake_case_pattern() {
+    return {schema::kSnakeCase, [](const std::string& name) { return is_snake_case(name); }};
+}
+
 Form snake_case() {
-    return text({.pattern = schema::kSnakeCase,
-                 .fits = [](const std::string& name) { return is_snake_case(name); },
+    return text({.pattern = snake_case_pattern(),
                  .fault = std::string("the name '{}' ") + kMustBeSnakeCase,
                  .type = "name",
                  .noun = "a name"});
@@ -228,8 +231,8 @@ Form choice(std::vector<std::string> words, Elsewhere elsewhere) {
     return make_form<Choice>(std::move(words), std::move(elsewhere));
 }
 
-Form name_of(std::vector<std::string> known, std::string noun, std::string other_pattern) {
-    return make_form<NameOf>(std::move(known), std::move(noun), std::move(other_pattern));
+Form name_of(std::vector<std::string> known, std::string noun, Pattern other) {
+    return make_form<NameOf>(std::move(known), std::move(noun), std::move(other));
 }
 
 Form constant(const std::string& text_of_value) {

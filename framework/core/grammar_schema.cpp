@@ -46,7 +46,7 @@ json object_of(const ObjectKeys& keys, const Block& block, SchemaScope& scope) {
     json object = schema::object(keys.properties, keys.required);
     if (object["properties"].empty()) object.erase("properties");
     for (const OtherKeys& other : block.others)
-        object["patternProperties"][other.pattern] = scope.of(other.form);
+        object["patternProperties"][other.pattern.regex] = scope.of(other.form);
     return object;
 }
 

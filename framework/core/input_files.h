@@ -38,9 +38,13 @@ private:
         auto operator<=>(const Identity&) const = default;
     };
     static std::optional<Identity> identity_of(const std::filesystem::path& file);
+    /// With links followed, so that two ways to one file are one.
+    std::filesystem::path resolved(const std::filesystem::path& path) const;
 
     std::map<Identity, std::filesystem::path> by_identity_;
     std::map<std::filesystem::path, std::filesystem::path> by_path_;
+    /// Folders with links followed: once each, since a sequence may have a million files.
+    mutable std::map<std::filesystem::path, std::filesystem::path> folders_;
     std::set<std::filesystem::path> outputs_;  ///< with links followed
 };
 

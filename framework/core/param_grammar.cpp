@@ -58,12 +58,12 @@ Form bind_form(ParamType type) {
 }
 
 Form requires_form() {
-    return grammar::list(
-        grammar::text({.pattern = R"(^\s*(<|<=|>|>=)\s*[a-z][a-z0-9_]*\s*$)",
-                       .fits = [](const std::string& text) { return parse_relation(text, {}).has_value(); },
-                       .fault = "'{}' is no relation; write '<', '<=', '>' or '>=' and the name of a "
-                                "parameter: \"> focal_length\"",
-                       .type = "[relation](#relations)"}));
+    return grammar::list(grammar::text(
+        {.pattern = {R"(^\s*(<|<=|>|>=)\s*[a-z][a-z0-9_]*\s*$)",
+                     [](const std::string& text) { return parse_relation(text, {}).has_value(); }},
+         .fault = "'{}' is no relation; write '<', '<=', '>' or '>=' and the name of a "
+                  "parameter: \"> focal_length\"",
+         .type = "[relation](#relations)"}));
 }
 
 /// Of numbers.

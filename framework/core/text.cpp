@@ -87,6 +87,17 @@ std::string printable(std::string_view text) {
     return result;
 }
 
+std::string printable_lines(std::string_view text) {
+    std::string result;
+    while (!text.empty()) {
+        const char first = text.front();
+        const std::string_view character = take_character(text);
+        if (first == '\n' || first == '\t') result += first;
+        else result += character.empty() ? "?" : character;
+    }
+    return result;
+}
+
 std::string json_string(std::string_view text) {
     constexpr int kOneLine = -1;
     return nlohmann::json(text).dump(kOneLine, ' ', false, nlohmann::json::error_handler_t::replace);

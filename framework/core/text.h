@@ -26,6 +26,8 @@ std::string joined(std::span<const std::string> parts, std::string_view last,
 /// For people: every byte of a control character, and of what is not UTF-8 (RFC 3629), becomes '?'. Names in
 /// files can be anything, a terminal's commands too.
 std::string printable(std::string_view text);
+/// The same of several lines: their ends and tabs are kept.
+std::string printable_lines(std::string_view text);
 /// A JSON string with its quotation marks; what is not UTF-8 becomes U+FFFD.
 std::string json_string(std::string_view text);
 /// The content of an element or an attribute of XML 1.0, SVG or HTML. Tabs and ends of lines are kept; other

@@ -1,7 +1,10 @@
 #include "framework/effect/glsl_tokens.h"
 
+#include <cctype>
 #include <string_view>
 #include <utility>
+
+#include "framework/core/units.h"
 
 namespace aftershade {
 
@@ -57,6 +60,34 @@ private:
 
 std::vector<Token> glsl_tokens(const ShaderSource& source) {
     return Tokens(source).take();
+}
+
+void check_shader_size(const ShaderSource& source, Diagnostics& diagnostics) {
+    constexpr std::string_view kOperators = "+-*/%<>=&|^?!", kEnds = ",;{}";
+    std::vector<std::size_t> terms = {0};  // of each open bracket, outermost first
+    const std::vector<Token> tokens = glsl_tokens(source);
+    for (std::size_t i = 0; i < tokens.size(); ++i) {
+        const char c = tokens[i].text[0];
+        if (c == '(' || c == '[') terms.push_back(0);
+        else if ((c == ')' || c == ']') && terms.size() > 1) terms.pop_back();
+        else if (kEnds.find(c) != std::string_view::npos) terms.back() = 0;
+        else if (kOperators.find(c) != std::string_view::npos && ++terms.back() == kMaxShaderTerms)
+            diagnostics.error(tokens[i].place,
+                              "an expression has more than " + std::to_string(kMaxShaderTerms) +
+                                  " operators, which is the limit (write it as a loop, or as "
+                                  "several statements)");
+        // "float v[9]": an index of a buffer may be as large as it likes.
+        const bool declares = c == '[' && i > 1 && i + 2 < tokens.size() && tokens[i + 2].text == "]" &&
+                              tokens[i - 1].is_word() && tokens[i - 2].is_word() &&
+                              tokens[i - 2].text != "return";
+        if (!declares) continue;
+        const auto elements = parse_number(tokens[i + 1].text);
+        if (elements && *elements > double(kMaxShaderArrayElements))
+            diagnostics.error(tokens[i + 1].place, "an array of " + tokens[i + 1].text +
+                                                       " elements; the limit is " +
+                                                       std::to_string(kMaxShaderArrayElements) +
+                                                       " (declare a buffer or a texture for more)");
+    }
 }
 
 }  // namespace aftershade

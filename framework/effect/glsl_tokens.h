@@ -19,4 +19,8 @@ struct Token {
 /// What the author wrote, without comments and without the host's own lines.
 std::vector<Token> glsl_tokens(const ShaderSource& source);
 
+/// Holds what the author wrote against kMaxShaderTerms and kMaxShaderArrayElements. What macros make of it is
+/// not seen here.
+void check_shader_size(const ShaderSource& source, Diagnostics& diagnostics);
+
 }  // namespace aftershade

@@ -7,6 +7,7 @@
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/path_bounds.h"
+#include "framework/effect/glsl_tokens.h"
 
 namespace aftershade {
 
@@ -47,6 +48,7 @@ public:
         if (!has_version_ || !has_pass_)
             diagnostics_.error({file.string(), 1, 1},
                                "a shader begins with '#version 450 core' and then has '#include <pass>'");
+        check_shader_size(source_, diagnostics_);
         return std::move(source_);
     }
 
@@ -60,6 +62,16 @@ public:
 
 private:
     void add_line(const std::string& text, const std::string& file, int line) {
+        if (is_too_large_) return;
+        if (source_.lines.size() == kMaxShaderLines || source_.text.size() + text.size() >= kMaxShaderBytes) {
+            is_too_large_ = true;
+            diagnostics_.error({file, line, 1},
+                               "with its includes the shader has more than " +
+                                   std::to_string(kMaxShaderLines) + " lines or " +
+                                   std::to_string(kMaxShaderBytes) +
+                                   " bytes, which is the limit (split the work into several passes)");
+            return;
+        }
         source_.text += text + "\n";
         source_.lines.push_back({file, line});
     }
@@ -71,17 +83,25 @@ private:
             diagnostics_.error(from, file.string() + " " + why);
             return;
         }
-        std::error_code failure;
-        std::istringstream in(read_text_file(file, failure));
-        if (failure) {
-            diagnostics_.error(from, "cannot read " + file.string());
+        if (depth_ == kMaxIncludeDepth) {
+            diagnostics_.error(from, "includes go deeper than " + std::to_string(kMaxIncludeDepth) +
+                                         " files, which is the limit (include from fewer files)");
             return;
         }
+        std::string fault;
+        std::istringstream in(read_regular_file(file, kMaxShaderFileBytes, fault));
+        if (!fault.empty()) {
+            diagnostics_.error(
+                from, "cannot read " + file.string() + (fault == "no such file" ? "" : ": " + fault));
+            return;
+        }
+        ++depth_;
         std::string line;
-        for (int number = 1; std::getline(in, line); ++number) {
+        for (int number = 1; std::getline(in, line) && !is_too_large_; ++number) {
             if (line.ends_with('\r')) line.pop_back();
             add_source_line(line, {file.string(), number, 1});
         }
+        --depth_;
     }
 
     void add_source_line(const std::string& line, const Place& place) {
@@ -139,6 +159,8 @@ private:
     const ShaderFile file_;
     ShaderSource source_;
     std::set<fs::path> included_;
+    int depth_ = 0;
+    bool is_too_large_ = false;
     bool has_version_ = false;
     bool has_pass_ = false;
     bool has_interface_ = true;

@@ -86,6 +86,16 @@ struct ShaderSource {
     std::vector<SourceLine> lines;  ///< of text, from its first
 };
 
+/// Bounds of a shader with its includes. A driver's compiler does not give up by itself: Mesa 22.3.6 runs out
+/// of stack on an expression of 20,000 terms, and takes minutes for large arrays.
+inline constexpr std::uintmax_t kMaxShaderFileBytes = 1024 * 1024;
+inline constexpr std::size_t kMaxShaderBytes = 2 * 1024 * 1024;
+inline constexpr std::size_t kMaxShaderLines = 20'000;
+inline constexpr int kMaxIncludeDepth = 64;
+inline constexpr std::size_t kMaxShaderTerms =
+    10'000;  ///< operators between two brackets, commas or semicolons
+inline constexpr std::size_t kMaxShaderArrayElements = 65'536;  ///< where the size is written as a number
+
 struct ShaderInclude {
     std::string name;
     bool is_shared = false;  ///< in <>, else in quotation marks

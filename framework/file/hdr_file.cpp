@@ -56,6 +56,13 @@ Image read_hdr(const fs::path& path) {
     if (!source.file) fail(path, fmt::format("cannot be opened: {}", std::strerror(errno)));
     const stbi_io_callbacks callbacks = {read_source, skip_source, is_at_end};
     int width = 0, height = 0, channels = 0;
+    stb::bytes_left = stb::kMaxImageBytes;
+    if (stbi_info_from_callbacks(&callbacks, &source, &width, &height, &channels) == 0)
+        fail(path, fmt::format("damaged: {}", stbi_failure_reason()));
+    if (const std::string fault = stb::fault_of_size(width, height, 3); !fault.empty()) fail(path, fault);
+    source.file.clear();
+    source.file.seekg(0);
+    source.past_end = false;
     const std::unique_ptr<float, decltype(&stbi_image_free)> pixels(
         stbi_loadf_from_callbacks(&callbacks, &source, &width, &height, &channels, 3), &stbi_image_free);
     if (!pixels) fail(path, fmt::format("damaged: {}", stbi_failure_reason()));

@@ -155,12 +155,15 @@ Image read_png(const fs::path& path) {
     const std::span bytes(reinterpret_cast<const unsigned char*>(text.data()), text.size());
     const int size = static_cast<int>(bytes.size());
     int width = 0, height = 0, channels = 0;
+    stb::bytes_left = stb::kMaxImageBytes;
     if (stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) == 0) {
         fail(path, fmt::format("not a PNG file that can be read: {}", stbi_failure_reason()));
     }
     if (width > kMaxSidePx || height > kMaxSidePx) {
         fail(path, fmt::format("{} x {} px, the limit is {} px a side", width, height, kMaxSidePx));
     }
+    if (const std::string fault = stb::fault_of_size(width, height, channels); !fault.empty())
+        fail(path, fault);
     check_chunks(path, bytes);
     const bool is_wide = stbi_is_16_bit_from_memory(bytes.data(), size) != 0;
     const auto load = [&](auto* from_memory, float maximum) {

@@ -4,6 +4,7 @@
 #include "aftershade/look.h"
 #include "framework/host/failures.h"
 #include "framework/host/rendering.h"
+#include "framework/core/input_files.h"
 #include "framework/pipeline/output.h"
 
 namespace aftershade::host {
@@ -105,7 +106,9 @@ void Result::write(const std::filesystem::path& path, const WriteOptions& option
         sequence.frames = {frame()};
         sequence.files = FramePattern::of_file(data_->capture->header.path.string());
         Diagnostics faults;
-        check_outputs(outputs, sequence, faults);
+        InputFiles inputs;
+        inputs.add(data_->capture->header.path);
+        check_outputs(outputs, sequence, inputs, faults);
         stop_at_errors(ErrorKind::usage, faults);
         for (const std::string& role : wanted_roles(outputs)) {
             const auto captured = data_->capture->images.find(role);

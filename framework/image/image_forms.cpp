@@ -1,6 +1,7 @@
 #include "framework/image/image_forms.h"
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -9,8 +10,18 @@
 
 namespace aftershade {
 
+grammar::Pattern aov_pattern() {
+    // In a regular expression of ECMA-262 a '.' is no end of a line.
+    const auto fits = [](const std::string& name) {
+        constexpr std::string_view kAov = "aov:";
+        return name.starts_with(kAov) && name.size() > kAov.size() &&
+               name.find_first_of("\r\n", kAov.size()) == std::string::npos;
+    };
+    return {"^aov:.+$", fits};
+}
+
 grammar::Form role_form() {
-    return grammar::name_of(role_names(), "a role", kAovPattern);
+    return grammar::name_of(role_names(), "a role", aov_pattern());
 }
 
 grammar::Form color_space_form() {

@@ -6,7 +6,7 @@
 namespace aftershade {
 
 /// What roles beside the fixed ones are named like: "aov:mist".
-inline constexpr const char* kAovPattern = "^aov:.+$";
+grammar::Pattern aov_pattern();
 
 /// The name of a role.
 grammar::Form role_form();

@@ -223,6 +223,9 @@ SavedHistory read_history(const fs::path& path) {
         return Error(ExitCode::usage, path.string() + ": " + why);
     };
     std::error_code failure;
+    // A pipe would wait for a writer.
+    if (fs::exists(path, failure) && !fs::is_regular_file(path, failure))
+        throw refuse("this history is not a regular file");
     const std::uintmax_t file_bytes = fs::file_size(path, failure);
     std::ifstream in(path, std::ios::binary);
     if (failure || !in) throw refuse("this history cannot be read");

@@ -69,14 +69,15 @@ public:
         read_variables(reader, overrides, user, scope);
         if (const Node* steps = reader.find("steps")) {
             for (const Node& step : steps->items) {
+                if (is_too_large_) break;
                 if (step.find("use")) use(step, scope);
-                else look_.steps.push_back(parse_step(step, scope));
+                else add_step(step, scope);
             }
             if (steps->items.empty())
                 diagnostics_.warning(steps->place, "the look has no steps: frames pass through");
         }
         for (const auto& [name, value] : scope.variables)
-            if (!scope.used.contains(name))
+            if (!scope.used.contains(name) && !is_too_large_)
                 diagnostics_.warning(value.place, "the variable '" + name + "' is never used");
         open_.pop_back();
     }
@@ -98,8 +99,13 @@ private:
 
     void read_variables(const grammar::Reader& reader, const LookVariables& overrides, const Place& user,
                         Scope& scope) {
-        if (const Node* vars = reader.find("vars"))
+        if (const Node* vars = reader.find("vars")) {
+            if (vars->members.size() > kMaxLookVariables)
+                return refuse_size(vars->place, "the look has " + std::to_string(vars->members.size()) +
+                                                    " variables; the limit is " +
+                                                    std::to_string(kMaxLookVariables));
             for (const Member& member : vars->members) scope.variables[member.key] = member.value;
+        }
         std::vector<std::string> known;
         for (const auto& [name, value] : scope.variables) known.push_back(name);
         for (const auto& [name, value] : overrides) {
@@ -111,6 +117,37 @@ private:
         }
     }
 
+    /// Said once; what follows is not read.
+    void refuse_size(const Place& place, const std::string& fault) {
+        if (!is_too_large_) diagnostics_.error(place, fault);
+        is_too_large_ = true;
+    }
+
+    static std::size_t count_values(const Node& node) {
+        std::size_t count = 1;
+        for (const Node& item : node.items) count += count_values(item);
+        for (const Member& member : node.members) count += count_values(member.value);
+        return count;
+    }
+
+    /// Whether a variable's value may be put in once more.
+    bool has_room_for(const Node& value, const Place& place) {
+        values_put_in_ += count_values(value);
+        if (values_put_in_ <= kMaxVariableValues) return true;
+        refuse_size(place, "variables put more than " + std::to_string(kMaxVariableValues) +
+                               " values into the look, which is the limit (write fewer {\"var\": ...} inside "
+                               "values of variables)");
+        return false;
+    }
+
+    std::string suggestion(const std::string& variable, const Scope& scope) const {
+        constexpr int kMostSuggestions = 100;  // each looks at every variable
+        if (diagnostics_.error_count() >= kMostSuggestions) return "";
+        std::vector<std::string> known;
+        for (const auto& [name, value] : scope.variables) known.push_back(name);
+        return did_you_mean(variable, known);
+    }
+
     /// Puts values in the place of {"var": "name"}, at any depth.
     Node with_variables(const Node& node, Scope& scope) {
         if (node.is_object() && node.members.size() == 1 && node.members[0].key == "var") {
@@ -118,13 +155,11 @@ private:
             const auto found = name.is_string() ? scope.variables.find(name.string) : scope.variables.end();
             if (found != scope.variables.end()) {
                 scope.used.insert(found->first);
-                return found->second;
+                return has_room_for(found->second, name.place) ? found->second : Node();
             }
-            std::vector<std::string> known;
-            for (const auto& [variable, value] : scope.variables) known.push_back(variable);
             diagnostics_.error(name.place, !name.is_string() ? std::string("'var' is the name of a variable")
                                                              : "the look has no variable '" + name.string +
-                                                                   "'" + did_you_mean(name.string, known));
+                                                                   "'" + suggestion(name.string, scope));
         }
         Node copy = node;
         for (Node& item : copy.items) item = with_variables(item, scope);
@@ -144,8 +179,17 @@ private:
         return copy;
     }
 
+    void add_step(const Node& node, Scope& scope) {
+        if (look_.steps.size() == kMaxLookSteps)
+            return refuse_size(node.place, "the look has more than " + std::to_string(kMaxLookSteps) +
+                                               " steps, which is the limit");
+        LookStep step = parse_step(node, scope);
+        if (!is_too_large_) look_.steps.push_back(std::move(step));
+    }
+
     LookStep parse_step(const Node& written, Scope& scope) {
         const Node node = filled(written, scope);
+        if (is_too_large_) return {};
         grammar::check(node, look_step_block(), diagnostics_);
         const grammar::Reader reader(node, look_step_block());
         LookStep step;
@@ -186,12 +230,25 @@ private:
             diagnostics_.error(place, "'" + file + "' uses itself: " + chain_to(canonical(path)));
             return;
         }
+        if (is_too_large_ || !may_use_another(file, place)) return;
         const auto document = read_document(path, diagnostics_);
         if (!document) {
             diagnostics_.error(place, "'" + file + "' cannot be used (see above)");
             return;
         }
         read(*document, scope.prefix + (name.empty() ? "" : name + "_"), enabled, variables, node.place);
+    }
+
+    bool may_use_another(const std::string& file, const Place& place) {
+        if (open_.size() == kMaxLookDepth)
+            refuse_size(place, "'" + file + "' cannot be used: it would be the look " +
+                                   std::to_string(kMaxLookDepth + 1) + " in a chain of 'use', the limit is " +
+                                   std::to_string(kMaxLookDepth) + " (write its steps here)");
+        else if (++uses_ > kMaxLookUses)
+            refuse_size(place, "'" + file + "' cannot be used: the look uses other looks more than " +
+                                   std::to_string(kMaxLookUses) +
+                                   " times, which is the limit (write the steps where they are used)");
+        return !is_too_large_;
     }
 
     std::string chain_to(const fs::path& last) const {
@@ -204,6 +261,9 @@ private:
     Look& look_;
     Diagnostics& diagnostics_;
     std::vector<fs::path> open_;  // looks being read, each used by the one before
+    std::size_t uses_ = 0;
+    std::size_t values_put_in_ = 0;
+    bool is_too_large_ = false;
 };
 
 void check_names(const Look& look, Diagnostics& diagnostics) {

@@ -60,6 +60,14 @@ struct Look {
     std::vector<std::filesystem::path> files;  ///< the look and every look that it uses
 };
 
+/// Bounds of a look with all looks that it uses, so that a small document cannot grow into one that fills the
+/// memory.
+inline constexpr std::size_t kMaxLookDepth = 32;  ///< looks in a chain of "use"
+inline constexpr std::size_t kMaxLookUses = 256;  ///< "use" in all, each as often as its look is used
+inline constexpr std::size_t kMaxLookSteps = 1000;
+inline constexpr std::size_t kMaxLookVariables = 1000;      ///< of each look
+inline constexpr std::size_t kMaxVariableValues = 100'000;  ///< of JSON, that variables put in
+
 /// Values by name, above a look's own "vars".
 using LookVariables = std::map<std::string, Node>;
 

@@ -29,14 +29,17 @@ bool is_native_source(const fs::path& file) {
 }
 
 /// A shader file and all that it includes, each once.
-void gather_shader(const fs::path& file, const fs::path& glsl_folder, std::set<fs::path>& files) {
-    if (!files.insert(file.lexically_normal()).second) return;
-    std::istringstream lines(read_text_file(file, ExitCode::usage));
+void gather_shader(const fs::path& file, const fs::path& glsl_folder, std::set<fs::path>& files,
+                   int depth = 0) {
+    if (depth >= kMaxIncludeDepth || !files.insert(file.lexically_normal()).second) return;
+    std::string fault;
+    std::istringstream lines(read_regular_file(file, kMaxShaderFileBytes, fault));
+    if (!fault.empty()) throw Error(ExitCode::usage, file.string() + ": " + fault);
     for (std::string line; std::getline(lines, line);) {
         const auto include = parse_include(line);
         if (!include || include->name == "pass" || include->name == "predicate") continue;
         gather_shader((include->is_shared ? glsl_folder : file.parent_path()) / include->name, glsl_folder,
-                      files);
+                      files, depth + 1);
     }
 }
 

@@ -18,8 +18,8 @@ namespace {
 
 /// The name of a step: the wiring means the input by "capture", and only check_names() knows every name.
 Form step_name() {
-    return text({.pattern = "^(?!capture$)[a-z][a-z0-9_]*$",
-                 .fits = [](const std::string& name) { return is_snake_case(name); },
+    return text({.pattern = {"^(?!capture$)[a-z][a-z0-9_]*$",
+                             [](const std::string& name) { return is_snake_case(name); }},
                  .fault = std::string("the name '{}' ") + kMustBeSnakeCase,
                  .type = "name"});
 }

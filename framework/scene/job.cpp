@@ -13,6 +13,7 @@
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
 #include "framework/core/units.h"
+#include "framework/image/role.h"
 #include "framework/scene/samples.h"
 
 namespace aftershade::scene {
@@ -71,6 +72,18 @@ bool has_texture_space(const Scene& scene, int object) {
         const glm::dvec2 ab = b - a, ac = c - a;
         return ab.x * ac.y != ab.y * ac.x && std::max(low.x, low.y) < 1 && std::min(high.x, high.y) > 0;
     });
+}
+
+constexpr double kGiB = 1024.0 * 1024 * 1024;
+
+/// Of one capture of every role, and the one before it, which is being written.
+std::uint64_t bytes_of_job(const Job& job) {
+    std::uint64_t channels = 0;
+    for (const std::string& role : role_names()) channels += std::uint64_t(find_role(role)->channels);
+    const bool is_texture = job.texture_object >= 0;
+    const std::uint64_t width = std::uint64_t(is_texture ? job.texture_side_px : job.width_px);
+    const std::uint64_t height = std::uint64_t(is_texture ? job.texture_side_px : job.height_px);
+    return 2 * width * height * channels * sizeof(float);
 }
 
 bool is_constant(const Light& light) {
@@ -261,6 +274,11 @@ void check_job(const Scene& scene, const Job& job, Diagnostics& diagnostics) {
         fault("--subframes", fmt::format("file numbers, {} times the frame's, go beyond the {} that a "
                                          "capture's range can have; choose lower frames",
                                          job.subframes, kMaxFileNumber));
+    if (const std::uint64_t bytes = bytes_of_job(job); bytes > kMaxJobBytes)
+        fault(job.texture_object >= 0 ? "--texture-size" : "--size",
+              fmt::format("rendering takes about {:.1f} GiB of memory, the limit is {:.0f} GiB; render fewer "
+                          "pixels at once",
+                          double(bytes) / kGiB, double(kMaxJobBytes) / kGiB));
     if (!job.captures && job.truths.empty()) fault("--truth-only", "there is no --truth to render");
     const bool scattering =
         std::any_of(job.truths.begin(), job.truths.end(), [](const Truth& t) { return t.scattering; });

@@ -47,6 +47,9 @@ struct Job {
     std::string compression = "zip";
 };
 
+/// Memory of the pictures that a job may keep at once.
+inline constexpr std::uint64_t kMaxJobBytes = 16ull * 1024 * 1024 * 1024;
+
 /// Faults that show before any work; `label` of each is the option's name.
 void check_job(const Scene& scene, const Job& job, Diagnostics& diagnostics);
 

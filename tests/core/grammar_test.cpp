@@ -108,6 +108,12 @@ TEST(Grammar, HasAHeadInDocuments) {
     EXPECT_EQ(schema["properties"]["aftershade"]["const"], 1);
 }
 
+bool is_lower(const std::string& text) {
+    return !text.empty() && text.find_first_not_of("abcdefghijklmnopqrstuvwxyz") == std::string::npos;
+}
+
+const Pattern kAov = {"^aov:.+$", [](const std::string& t) { return t.starts_with("aov:") && t.size() > 4; }};
+
 TEST(Grammar, SaysOfEachFormWhatDoesNotFit) {
     const std::tuple<Form, const char*, const char*> cases[] = {
         {boolean(), "1", "'key' must be true or false, not an integer"},
@@ -117,11 +123,11 @@ TEST(Grammar, SaysOfEachFormWhatDoesNotFit) {
         {number({.above = 0, .max = 4}), "5", "'key' must be above 0 and at most 4, not 5"},
         {number({.min = 0}), "-1", "'key' must be at least 0, not -1"},
         {text({.min_length = 1}), "\"\"", "'key' is empty"},
-        {text({.pattern = "^[a-z]+$", .fault = "'{}' is no word"}), "\"A\"", "'A' is no word"},
-        {text({.fits = [](const std::string& t) { return t == "x"; }, .noun = "the x"}), "\"y\"",
+        {text({.pattern = {"^[a-z]+$", is_lower}, .fault = "'{}' is no word"}), "\"A\"", "'A' is no word"},
+        {text({.pattern = {"^x$", [](const std::string& t) { return t == "x"; }}, .noun = "the x"}), "\"y\"",
          "'key' is 'y', which is not the x"},
         {snake_case(), "\"A\"", "the name 'A' must be snake_case: a-z, 0-9 and _, beginning with a letter"},
-        {name_of({"color", "depth"}, "a role", "^aov:.+$"), "\"dpth\"",
+        {name_of({"color", "depth"}, "a role", kAov), "\"dpth\"",
          "'dpth' is not a role; did you mean 'depth'?"},
         {constant("true"), "false", "'key' must be true"},
         {list(integer(), {.min = 2, .max = 2}), "[1]", "'key' holds 2 items, not 1"},
@@ -140,8 +146,8 @@ TEST(Grammar, SaysOfEachFormWhatDoesNotFit) {
         {with_fault(integer(1, 9), "'{}' is too much"), "10", "'key' is too much"},
         {shown_as(integer(1, 9), "digit"), "10", "'key' must be from 1 to 9, not 10"},
         {map(integer(), {.min = 1, .max = 1, .count_fault = "one name"}), "{}", "one name"},
-        {map(integer(),
-             {.fits = [](const std::string& name) { return name == "x"; }, .fault = "'{}' is no x"}),
+        {map(integer(), {.pattern = {"^x$", [](const std::string& name) { return name == "x"; }},
+                         .fault = "'{}' is no x"}),
          R"({"y": 1})", "'y' is no x"},
     };
     for (const auto& [form, value, message] : cases) EXPECT_EQ(fault(value, form), message);
@@ -162,7 +168,8 @@ TEST(Grammar, WritesTheSchemaOfEachForm) {
         {boolean(), R"({"type": "boolean"})"},
         {integer(1, 1024), R"({"type": "integer", "minimum": 1, "maximum": 1024})"},
         {number({.above = 0}), R"({"type": "number", "exclusiveMinimum": 0})"},
-        {text({.pattern = "^a", .min_length = 1}), R"({"type": "string", "minLength": 1, "pattern": "^a"})"},
+        {text({.pattern = {"^a", [](const std::string& t) { return t.starts_with("a"); }}, .min_length = 1}),
+         R"({"type": "string", "minLength": 1, "pattern": "^a"})"},
         {choice({"a", "b"}), R"({"enum": ["a", "b"]})"},
         {choice({"a"}), R"({"const": "a"})"},
         {constant("-1"), R"({"const": -1})"},
@@ -326,7 +333,7 @@ TEST(Grammar, PutsRulesThatSayTheSameWordBesideEachOther) {
 TEST(Grammar, TakesKeysByTheirPattern) {
     const Block block{.name = "files",
                       .keys = {optional("color", text(), "")},
-                      .others = {{"^aov:.+$", text()}},
+                      .others = {{kAov, text()}},
                       .unknown_key = "'{}' is not a role"};
     EXPECT_EQ(faults(R"({"color": "a", "aov:mist": "b"})", block), Lines{});
     EXPECT_EQ(faults(R"({"colour": "a", "aov:": "b", "aov:x": 1})", block),
@@ -438,12 +445,6 @@ TEST(GrammarTable, StandsInTheMarkedRegionsOfAPage) {
     with_tables("<!-- made by aftershade docs: kit.lens -->\n", tables, faults);
     EXPECT_EQ(faults, (Lines{"no table is named 'kit.lense'; did you mean 'kit.lens'?",
                              "a region begins that does not end in '<!-- end -->'"}));
-}
-
-TEST(Grammar, DoesNotRunOutOfStackOnALongText) {
-    const Form form = text({.pattern = "^(a|b)*$"});
-    EXPECT_EQ(fault("\"" + std::string(100, 'a') + "\"", form), "");
-    EXPECT_NE(fault("\"" + std::string(500000, 'a') + "\"", form), "");
 }
 
 }  // namespace

@@ -16,8 +16,7 @@ bool is_value(const std::string& name) {
 }
 
 void declare(grammar::Block& declaration, const grammar::Block&) {
-    const grammar::Form value = grammar::text({.pattern = "^[a-z0-9_]+$",
-                                               .fits = is_value,
+    const grammar::Form value = grammar::text({.pattern = {"^[a-z0-9_]+$", is_value},
                                                .fault = "'{}' cannot name a value: a-z, 0-9 and _ only",
                                                .type = "name"});
     declaration.keys.push_back(grammar::required(

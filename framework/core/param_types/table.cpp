@@ -80,8 +80,7 @@ void declare(grammar::Block& declaration, const grammar::Block& column) {
         "columns",
         grammar::map(
             grammar::object(column),
-            {.pattern = "^(?!(object|objects|name)$)[a-z][a-z0-9_]*$",
-             .fits = is_column,
+            {.pattern = {"^(?!(object|objects|name)$)[a-z][a-z0-9_]*$", is_column},
              .fault = std::string("column '{}' ") + kMustBeSnakeCase +
                       ", and not 'object', 'objects' or 'name', by which a row says for which object it is",
              .min = 1,

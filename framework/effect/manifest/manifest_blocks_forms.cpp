@@ -39,17 +39,23 @@ Form condition_on_param() {
     return one_or_more(value, kFault);
 }
 
-constexpr const char* kOnParam = R"(^(?!has\.))";
+grammar::Pattern on_input() {
+    return {R"(^has\.)", [](const std::string& name) { return name.starts_with("has."); }};
+}
+
+grammar::Pattern on_param() {
+    return {R"(^(?!has\.))", [](const std::string& name) { return !name.starts_with("has."); }};
+}
 
 Block conditions_block() {
     return {.name = "",
-            .others = {{R"(^has\.)", condition_on_input()}, {kOnParam, condition_on_param()}},
+            .others = {{on_input(), condition_on_input()}, {on_param(), condition_on_param()}},
             .type = "[conditions](#conditions)"};
 }
 
 Block conditions_of_input_block() {
     return {.name = "",
-            .others = {{kOnParam, condition_on_param()}},
+            .others = {{on_param(), condition_on_param()}},
             .unknown_key =
                 "whether an input is there is asked by passes; the conditions of an input are on "
                 "parameters",
@@ -74,22 +80,20 @@ CountLimits element_count(const std::string& element) {
 }
 
 Form identifier_form(const std::string& thing) {
-    return text({.pattern = schema::kSnakeCase,
-                 .fits = [](const std::string& name) { return is_snake_case(name); },
+    return text({.pattern = grammar::snake_case_pattern(),
                  .fault = thing + " '{}' " + kMustBeSnakeCase,
                  .type = "name"});
 }
 
 Form reference_form(const std::string& pattern, const std::string& type) {
-    return text({.pattern = pattern, .fits = [](const std::string&) { return true; }, .type = type});
+    return text({.pattern = {pattern, [](const std::string&) { return true; }}, .type = type});
 }
 
 Form count_form(const CountLimits& limits) {
-    return grammar::any_of({grammar::integer(limits.least, limits.most),
-                            text({.pattern = schema::kSnakeCase,
-                                  .fits = [](const std::string& name) { return is_snake_case(name); },
-                                  .type = "[count](#counts)",
-                                  .noun = "the name of an int parameter"})});
+    return grammar::any_of(
+        {grammar::integer(limits.least, limits.most), text({.pattern = grammar::snake_case_pattern(),
+                                                            .type = "[count](#counts)",
+                                                            .noun = "the name of an int parameter"})});
 }
 
 Form texel_form() {

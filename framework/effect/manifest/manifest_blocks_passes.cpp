@@ -34,8 +34,8 @@ Form level_form(const std::string& key, int most) {
         "'" + key + R"(' is an integer, "pass.index", "pass.index + 1" or "pass.index - 1")";
     return grammar::by_kind(
         {integer(0, most),
-         text({.pattern = R"(^pass\.index( *[-+] *[0-9]{1,2})?$)",
-               .fits = [](const std::string& turn) { return pass_offset(turn).has_value(); },
+         text({.pattern = {R"(^pass\.index( *[-+] *[0-9]{1,2})?$)",
+                           [](const std::string& turn) { return pass_offset(turn).has_value(); }},
                .fault = fault,
                .type = "`\"pass.index + 1\"`"})},
         fault);
@@ -77,8 +77,7 @@ bool is_define(const std::string& name) {
 Form defines_form() {
     return grammar::map(
         grammar::by_kind({text(), integer()}, "a define is a string or an integer"),
-        {.pattern = "^(?!GL_)(?!.*__)[A-Za-z_][A-Za-z0-9_]*$",
-         .fits = is_define,
+        {.pattern = {"^(?!GL_)(?!.*__)[A-Za-z_][A-Za-z0-9_]*$", is_define},
          .fault = "'{}' cannot name a define: letters, 0-9 and _ only; GLSL keeps GL_... and __ for itself"});
 }
 

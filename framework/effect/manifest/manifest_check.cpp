@@ -4,7 +4,6 @@
 #include <array>
 #include <filesystem>
 #include <map>
-#include <regex>
 #include <set>
 #include <string>
 #include <utility>
@@ -47,9 +46,24 @@ const std::set<std::string> kTaken = {
     "determinant", "inverse",    "equal",       "any",       "all",         "not",     "texture", "barrier",
     "fwidth",      "noise1"};
 
+/// "vec2" .. "fvec4", "mat2" .. "dmat4x3": GLSL's types of several numbers, and those that it keeps for
+/// itself.
+bool is_vector_or_matrix(std::string_view name) {
+    const auto is_side = [](char c) { return c >= '2' && c <= '4'; };
+    if (!name.empty() && std::string_view("bdiuhf").find(name.front()) != std::string_view::npos) {
+        if (name.substr(1).starts_with("mat") && name.front() != 'd') return false;
+        name.remove_prefix(1);
+    }
+    const bool is_matrix = name.starts_with("mat");
+    if (!is_matrix && !name.starts_with("vec")) return false;
+    name.remove_prefix(3);
+    const bool is_square = name.size() == 1 && is_side(name[0]);
+    return is_square ||
+           (is_matrix && name.size() == 3 && is_side(name[0]) && name[1] == 'x' && is_side(name[2]));
+}
+
 bool is_word(const std::string& name) {
-    static const std::regex types("[bdiuhf]?vec[234]|d?mat[234](x[234])?");
-    return kWords.contains(name) || std::regex_match(name, types);
+    return kWords.contains(name) || is_vector_or_matrix(name);
 }
 
 class NameChecker {

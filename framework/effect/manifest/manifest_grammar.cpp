@@ -44,8 +44,7 @@ bool is_version(std::string_view text) {
 }
 
 Form version_form() {
-    return text({.pattern = R"(^(0|[1-9][0-9]*)\.(0|[1-9][0-9]*)\.(0|[1-9][0-9]*)$)",
-                 .fits = is_version,
+    return text({.pattern = {R"(^(0|[1-9][0-9]*)\.(0|[1-9][0-9]*)\.(0|[1-9][0-9]*)$)", is_version},
                  .fault = "'version' is '{}' but must be MAJOR.MINOR.PATCH, such as 1.0.0",
                  .type = "`MAJOR.MINOR.PATCH`"});
 }
@@ -171,11 +170,15 @@ Block statistic_block() {
             optional("doc", text(), "One sentence with the unit.")}};
 }
 
+bool any_name(const std::string&) {
+    return true;
+}
+
 /// The parser checks names and values, which the parameters declare.
 Block preset_block() {
     return {.name = "",
             .thing = "preset '{}'",
-            .others = {{"^", grammar::custom({.type = "value"})}},
+            .others = {{{"^", any_name}, grammar::custom({.type = "value"})}},
             .type = "values by parameter"};
 }
 
@@ -231,7 +234,7 @@ Block make_effect_block() {
                                   "Images that it takes."),
                          required("outputs",
                                   grammar::map(grammar::object(output_block()),
-                                               {.pattern = schema::kSnakeCase,
+                                               {.pattern = grammar::snake_case_pattern(),
                                                 .fault = std::string("output '{}' ") + kMustBeSnakeCase,
                                                 .min = 1,
                                                 .count_fault = "the effect has no outputs"}),
