@@ -32,14 +32,17 @@ void write_pictures(const CompareOptions& options, const ComparisonPictures& pic
 
 /// Words that only the files can prove wrong.
 void check_labels(const Comparison& comparison) {
-    if (comparison.unknown_roles.empty()) return;
     std::string text;
-    for (const std::string& label : comparison.unknown_roles)
-        text += (text.empty() ? "" : "\n") +
-                ("--role " + label + ": error: no layer of either file is called so" +
-                 did_you_mean(label, comparison.labels) + " (there are " +
-                 list_of_names(comparison.labels, "and") + ")");
-    throw Error(kCompareUsage, text);
+    const auto refuse = [&](const std::string& word, const std::vector<std::string>& labels) {
+        for (const std::string& label : labels)
+            text +=
+                (text.empty() ? "" : "\n") + (word + label + ": error: no layer of either file is called so" +
+                                              did_you_mean(label, comparison.labels) + " (there are " +
+                                              list_of_names(comparison.labels, "and") + ")");
+    };
+    refuse("--role ", comparison.unknown_roles);
+    refuse("--layer ", comparison.unknown_layers);
+    if (!text.empty()) throw Error(kCompareUsage, text);
 }
 
 Verdict compare(const CompareOptions& options, const CompareRules& rules) {
@@ -69,10 +72,9 @@ Verdict file_error(const char* message) {
 }
 
 ExitCode run(const CompareOptions& options) {
-    const CompareRules rules = rules_of(options);
     Verdict verdict = Verdict::file_error;
     try {
-        verdict = compare(options, rules);
+        verdict = compare(options, rules_of(options));
     } catch (const Error& error) {
         if (error.exit_code() == kCompareUsage) throw;
         verdict = file_error(error.what());

@@ -137,6 +137,16 @@ void add_compare_options(CLI::App& app, CompareOptions& options) {
     app.add_option("--role", options.roles,
                    "LAYER=ROLE: color, display, alpha, depth, velocity, id, data or ignore; repeatable")
         ->allow_extra_args(false);
+    auto* shift = app.add_option("--forgive-shift", options.forgive_shift_px,
+                                 "A pixel passes by a neighbour within PX that fits, in both files (0)")
+                      ->type_name("PX")
+                      ->check(CLI::Range(0, Forgive::kMaxShift_px));
+    app.add_option("--forgive-blur", options.forgive_blur_px,
+                   "A pixel passes where it fits after a Gaussian of this sigma over both files (0)")
+        ->type_name("PX")
+        ->check(CLI::Range(0.0, Forgive::kMaxBlur_px))
+        ->excludes(shift);
+    add_compare_area_options(app, options.areas);
     app.add_option("--flip", options.flip,
                    "auto (LDR of encoded colours, HDR of light), ldr, hdr, both or none");
     app.add_flag("--no-ssim", options.no_ssim, "Leave SSIM and MS-SSIM out");
@@ -180,7 +190,9 @@ CompareRules rules_of(const CompareOptions& options) {
     rules.warn_flip = options.warn.flip, rules.warn_ssim = options.warn.ssim;
     rules.ssim = !options.no_ssim;
     rules.threads = options.threads;
+    rules.forgive = {options.forgive_shift_px, options.forgive_blur_px};
     read_roles(options, rules, diagnostics);
+    read_compare_areas(options.areas, options.reference, rules, diagnostics);
     read_flip(options, rules, diagnostics);
     check_outputs(options, diagnostics);
     if ((rules.fail_flip || rules.warn_flip) && rules.flip_choice == FlipChoice::none)

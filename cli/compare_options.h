@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/compare_areas.h"
 #include "framework/compare/compare_files.h"
 #include "framework/core/diagnostics.h"
 #include "framework/core/error.h"
@@ -38,12 +39,16 @@ struct CompareOptions {
     std::vector<double> viewing;
     std::optional<int> exposures;
     std::vector<std::string> roles;
+    CompareAreaOptions areas;
+    int forgive_shift_px = 0;
+    double forgive_blur_px = 0;
     int threads = 0;
 };
 
 void add_compare_options(CLI::App& app, CompareOptions& options);
 
-/// Throws Error(kCompareUsage) with every fault of the words.
+/// Throws Error(kCompareUsage) with every fault of the words, Error(ExitCode::capture) where a mask or
+/// objects cannot be read.
 CompareRules rules_of(const CompareOptions& options);
 
 }  // namespace aftershade::cli

@@ -1,7 +1,9 @@
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
+#include <ctime>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -149,6 +151,8 @@ ExitCode approve(const GoldenOptions& options) {
     approve_options.renew_sidecars = options.renew_sidecars;
     approve_options.command =
         shell_line({"aftershade", "golden", "approve", options.suite}) + setup.context.with_options;
+    approve_options.approver = approver_of(options, setup.suite.folder());
+    approve_options.approved = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)));
     const GoldenApproval approval = approve_goldens(
         setup.suite, approve_options,
         [](const GoldenCaseResult& test, int done, int all) {
@@ -160,6 +164,8 @@ ExitCode approve(const GoldenOptions& options) {
         return ExitCode::interrupted;
     }
     print_approval(approval);
+    if (!approval.written.empty() && !approve_options.approver.empty())
+        std::cerr << fmt::format("approved by {}, {}\n", approve_options.approver, approve_options.approved);
     return ExitCode(int(approval.verdict));
 }
 
@@ -224,6 +230,10 @@ Verb add_golden(CLI::App& app) {
     approve_verb->add_flag(
         "--renew-sidecars", options->renew_sidecars,
         "Where the bits are equal: write what gives them now (renderer, hash of look and effects)");
+    approve_verb
+        ->add_option("--approver", options->approver,
+                     "Who approves, for the sidecars of new images (git's user.name, else $USER)")
+        ->type_name("NAME");
     auto* report_verb = app.add_subcommand(
         "report", "Make the page again from a folder that run --report wrote; prints its path");
     report_verb->add_option("report", options->report, "Folder with report.json and images/")->required();

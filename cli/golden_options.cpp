@@ -27,16 +27,17 @@ namespace {
     throw Error(kCompareUsage, message);
 }
 
-/// "" where git is absent or the folder is in no repository.
-std::string commit_of(const fs::path& folder) {
+/// The last line that git prints; "" where git is absent or fails.
+std::string line_of_git(const fs::path& folder, const std::vector<std::string>& words) {
     WorkerCommand command;
-    command.arguments = {"/usr/bin/git", "-C", fs::absolute(folder).string(), "rev-parse", "HEAD"};
+    command.arguments = {"/usr/bin/git", "-C", fs::absolute(folder).string()};
+    command.arguments.insert(command.arguments.end(), words.begin(), words.end());
     command.limits.wall_time = std::chrono::seconds(10);
-    std::string commit;
+    std::string last;
     WorkerListener listener;
-    listener.on_stdout = [&](std::string_view line) { commit = line; };
+    listener.on_stdout = [&](std::string_view line) { last = line; };
     try {
-        return run_worker(command, listener).succeeded() ? commit : "";
+        return run_worker(command, listener).succeeded() ? last : "";
     } catch (const Error&) {
         return "";
     }
@@ -124,9 +125,15 @@ GoldenSetup prepare_golden(const GoldenOptions& options) {
     if (!options.backend.empty()) same.insert(same.end(), {"--backend", options.backend});
     setup.context.with_options = same.empty() ? "" : " " + shell_line(same);
     setup.context.version = AFTERSHADE_VERSION;
-    setup.context.commit =
-        commit_of(setup.suite.file.parent_path().empty() ? "." : setup.suite.file.parent_path());
+    setup.context.commit = line_of_git(setup.suite.folder(), {"rev-parse", "HEAD"});
     return setup;
+}
+
+std::string approver_of(const GoldenOptions& options, const fs::path& folder) {
+    if (!options.approver.empty()) return options.approver;
+    if (const std::string name = line_of_git(folder, {"config", "user.name"}); !name.empty()) return name;
+    const char* user = std::getenv("USER");
+    return user ? user : "";
 }
 
 }  // namespace aftershade::cli

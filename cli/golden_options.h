@@ -1,6 +1,7 @@
 // The words of `aftershade golden`.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct GoldenOptions {
     std::string junit, report;
     // approve
     bool any_renderer = false, add = false, renew_sidecars = false;
+    std::string approver;  ///< "": git's user.name, else $USER
     // report
     std::string page;
     double page_limit_mb = 128;  ///< run too
@@ -37,5 +39,8 @@ struct GoldenSetup {
     GoldenReportContext context;
 };
 GoldenSetup prepare_golden(const GoldenOptions& options);
+
+/// --approver, else git's user.name in the folder, else $USER; "" where none of them is set.
+std::string approver_of(const GoldenOptions& options, const std::filesystem::path& folder);
 
 }  // namespace aftershade::cli

@@ -89,6 +89,8 @@ std::optional<GoldenSidecar> read_sidecar(const fs::path& image, std::optional<S
     sidecar.command = text("command");
     sidecar.look_hash = text("look_hash");
     sidecar.image_hash = text("image_hash");
+    sidecar.approver = text("approver");
+    sidecar.approved = text("approved");
     if (sidecar.image_hash.empty() || sidecar.image_hash == file_hash(image)) return sidecar;
     fault = {Verdict::warning,
              file.string() + ": is of another image than " + image.filename().string() + kRemedy};
@@ -171,7 +173,10 @@ std::string sidecar_text(const GoldenSidecar& sidecar) {
     json["command"] = sidecar.command;
     json["look_hash"] = sidecar.look_hash;
     json["image_hash"] = sidecar.image_hash;
-    return json.dump(2) + "\n";
+    if (!sidecar.approver.empty()) json["approver"] = sidecar.approver;
+    if (!sidecar.approved.empty()) json["approved"] = sidecar.approved;
+    // Names of people need not be UTF-8.
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string file_hash(const fs::path& file) {

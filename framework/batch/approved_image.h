@@ -37,9 +37,11 @@ nlohmann::ordered_json json_of(const GoldenEnvironment& environment);
 /// What made an approved image. Older ones have renderer, version, cpu and backend only.
 struct GoldenSidecar {
     GoldenEnvironment environment;
-    std::string command;     ///< that approved it
-    std::string look_hash;   ///< of the look and its effects (look_hash.h)
-    std::string image_hash;  ///< of the image file's bytes: a sidecar of another image says nothing
+    std::string command;        ///< that approved it
+    std::string look_hash;      ///< of the look and its effects (look_hash.h)
+    std::string image_hash;     ///< of the image file's bytes: a sidecar of another image says nothing
+    std::string approver = {};  ///< who approved it; "" where nobody is named
+    std::string approved = {};  ///< the day, UTC: "2025-03-14"; "" where it is not known
 };
 
 /// Why a sidecar that is there is not believed, and what that is worth.

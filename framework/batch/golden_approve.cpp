@@ -87,7 +87,7 @@ private:
     void take(const GoldenCase& test, const RenderedImage& image, const std::string& look_hash) {
         const GoldenEnvironment& own = options_.run.environment;
         const std::vector<ApprovedImage> approved = approved_images(test.goldens, image.name, own);
-        const GoldenSidecar sidecar{own, options_.command, look_hash, ""};
+        GoldenSidecar sidecar{own, options_.command, look_hash, "", "", ""};
         const auto equal = std::ranges::find_if(
             approved, [&](const ApprovedImage& other) { return same_bits(other.file, image.file); });
         if (equal != approved.end()) {
@@ -99,6 +99,8 @@ private:
         if (const auto input = inputs_.replaced_by(target))
             throw Error(ExitCode::usage, target.string() + ": would replace the input " + input->string() +
                                              " (choose another folder for 'goldens')");
+        sidecar.approver = options_.approver;
+        sidecar.approved = options_.approved;
         staging_.add(target, image.file, sidecar);
         approval_.written.push_back(target);
         for (const ApprovedImage& other : approved)
@@ -114,6 +116,9 @@ private:
             if (old.environment.equals(sidecar.environment) && old.look_hash == sidecar.look_hash &&
                 old.image_hash == sidecar.image_hash)
                 return;
+            // The picture is the one that was looked at then.
+            sidecar.approver = old.approver;
+            sidecar.approved = old.approved;
         }
         staging_.add_text(sidecar_path(approved.file), sidecar_text(sidecar));
         approval_.renewed.push_back(sidecar_path(approved.file));

@@ -15,39 +15,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The numbers of `fail` or of `warn` that stand there; whether any of a pixel's does.
-bool read_level(const grammar::Reader& reader, const std::string& word, const std::string& many,
-                Tolerance& level, std::optional<double>& flip, std::optional<double>& ssim) {
-    bool any = false;
-    const auto read = [&](const std::string& key, auto& target) {
-        if (reader.has(key)) target = reader.number(key), any = true;
-    };
-    read(word, level.limit);
-    read(word + "_percent", level.percent);
-    read("hard_" + word, level.hard);
-    if (reader.has("allow_" + many))
-        level.allowed = std::uint64_t(reader.integer("allow_" + many)), any = true;
-    if (reader.has(word + "_flip")) flip = reader.number(word + "_flip");
-    if (reader.has(word + "_ssim")) ssim = reader.number(word + "_ssim");
-    return any;
-}
-
-CompareRules read_tolerance(const grammar::Reader& reader, Diagnostics& diagnostics) {
-    CompareRules rules;
-    read_level(reader, "fail", "failures", rules.fail, rules.fail_flip, rules.fail_ssim);
-    Tolerance warn = rules.fail;
-    warn.percent = 0, warn.hard = std::numeric_limits<double>::infinity();
-    const bool warns = read_level(reader, "warn", "warnings", warn, rules.warn_flip, rules.warn_ssim);
-    rules.warn = warns ? warn : rules.fail;
-    rules.nan_equal = reader.boolean("nan_equal");
-    rules.threads = 1;  // cases run beside each other
-    if (reader.has("hard_fail") && rules.fail.hard < rules.fail.limit)
-        diagnostics.error(reader.place("hard_fail"), "'hard_fail' must be at least 'fail'");
-    if (reader.has("hard_warn") && rules.warn->hard < rules.warn->limit)
-        diagnostics.error(reader.place("hard_warn"), "'hard_warn' must be at least 'warn'");
-    return rules;
-}
-
 /// The steps, as a look of their own whose faults are told with the document's lines.
 void read_steps(const Node& steps, GoldenCase& result, Diagnostics& diagnostics) {
     Node version;
@@ -78,11 +45,6 @@ std::vector<std::string> GoldenCase::image_stems() const {
     return stems;
 }
 
-CompareRules parse_golden_tolerance(const Node& node, Diagnostics& diagnostics) {
-    grammar::check(node, golden_tolerance_block(), diagnostics);
-    return read_tolerance({node, golden_tolerance_block()}, diagnostics);
-}
-
 void read_golden_case(const grammar::Reader& reader, const fs::path& folder, GoldenCase& result,
                       Diagnostics& diagnostics) {
     result.capture = (folder / reader.text("capture")).lexically_normal();
@@ -95,8 +57,10 @@ void read_golden_case(const grammar::Reader& reader, const fs::path& folder, Gol
         diagnostics.error(reader.place("outputs"), "'outputs' must name a role, or 'taps' a texture");
     result.rules.threads = 1;
     result.rules.warn = result.rules.fail;
-    if (const auto tolerance = reader.object("tolerance"))
-        result.rules = read_tolerance(*tolerance, diagnostics);
+    if (const auto tolerance = reader.object("tolerance")) {
+        result.rules = read_golden_tolerance(*tolerance, diagnostics);
+        result.areas = read_golden_areas(*tolerance, result.folder, diagnostics);
+    }
     result.tags = reader.texts("tags");
     result.skip = reader.text("skip");
     result.optional = reader.boolean("optional");

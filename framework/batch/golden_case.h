@@ -9,15 +9,26 @@
 #include <string>
 #include <vector>
 
+#include "framework/compare/compare_area.h"
 #include "framework/compare/compare_files.h"
 #include "framework/core/diagnostics.h"
 #include "framework/core/document.h"
+#include "framework/core/object_keys.h"
 
 namespace aftershade::grammar {
 class Reader;
 }
 
 namespace aftershade {
+
+/// Pixels of a case's images that are left out or have limits of their own.
+struct GoldenArea {
+    std::optional<AreaShape> rectangle;
+    std::filesystem::path mask;     ///< of a mask, with its
+    std::string channel;            ///< "" for the file's only one
+    std::vector<TableKey> objects;  ///< of the case's capture
+    std::optional<Levels> levels;   ///< nullopt: left out
+};
 
 struct GoldenCase {
     std::string name;               ///< unique in its suite: "vignette", of an effect "bloom/lamps"
@@ -32,21 +43,31 @@ struct GoldenCase {
     std::vector<std::string> sets;  ///< "step.param=value", above the look's own
     std::vector<std::string> taps;  ///< "step.texture", each an image like an output
     std::vector<std::string> outputs{"color"};  ///< roles
-    CompareRules rules;                         ///< the tolerance
+    CompareRules rules;                         ///< the tolerance but for its areas
+    std::vector<GoldenArea> areas;
     std::vector<std::string> tags;
     std::string skip;       ///< why it is not run; "" where it is
     bool optional = false;  ///< skipped, not failed, where its capture is absent
 
     /// "lamps.color", of a tap "lamps.bloom.bright": what FramePattern adds ".0001.exr" to.
     std::vector<std::string> image_stems() const;
+    /// The whole tolerance of a frame. Reads masks and objects: throws Error(ExitCode::capture).
+    CompareRules rules_of(int frame) const;
 };
 
 /// "lamps.color" and 1: "lamps.color.0001".
 std::string golden_image_name(const std::string& image_stem, int frame);
 
 /// Keys of compare's flags: fail, fail_percent, hard_fail, allow_failures, fail_flip, fail_ssim; the same
-/// with `warn`; nan_equal. Without any `warn` key only a failing image is told of.
+/// with `warn`; nan_equal, forgive_shift, forgive_blur, layers. Without any `warn` key only a failing image
+/// is told of.
 CompareRules parse_golden_tolerance(const Node& node, Diagnostics& diagnostics);
+
+/// A tolerance that has been checked, without its areas.
+CompareRules read_golden_tolerance(const grammar::Reader& reader, Diagnostics& diagnostics);
+/// Its areas. Masks lie relative to `folder`.
+std::vector<GoldenArea> read_golden_areas(const grammar::Reader& tolerance,
+                                          const std::filesystem::path& folder, Diagnostics& diagnostics);
 
 /// What cases in golden.json and cases of effects share; the document has been checked. Paths are relative to
 /// `folder`.

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "framework/capture/document_forms.h"
+#include "framework/compare/compare_area.h"
 #include "framework/compare/compare_files.h"
+#include "framework/core/schema_pieces.h"
 #include "framework/core/units.h"
 #include "framework/image/image_forms.h"
 
@@ -24,8 +27,9 @@ Form texts() {
     return grammar::list(text());
 }
 
-/// What a verdict of `word` allows. Only `fail` has defaults: without a `warn` key nothing warns.
-void add_level(const std::string& word, const std::string& many, const Tolerance* usual,
+/// What a verdict of `word` allows. Only `fail` has defaults: without a `warn` key nothing warns. Measures of
+/// how a picture looks are of whole layers.
+void add_level(const std::string& word, const std::string& many, const Tolerance* usual, bool of_layers,
                std::vector<Key>& keys) {
     const Form share = grammar::number({.min = 0, .max = 1});
     const auto number = [&](double Tolerance::*member) { return usual ? format_number(usual->*member) : ""; };
@@ -40,17 +44,83 @@ void add_level(const std::string& word, const std::string& many, const Tolerance
     add("hard_" + word, grammar::number({.min = 0}), "Largest difference of any pixel; default: no limit.");
     add("allow_" + many, grammar::integer(0), "Number of pixels that may exceed it, whatever the percentage.",
         usual ? std::to_string(usual->allowed) : "");
+    if (!of_layers) return;
     add(word + "_flip", share, "Largest mean FLIP.");
     add(word + "_ssim", share, "Smallest SSIM.");
 }
 
+Block layer_block() {
+    Block block{.name = "layer", .thing = "the tolerance of the layer '{}'", .doc = "Limits of one layer."};
+    add_level("fail", "failures", nullptr, true, block.keys);
+    add_level("warn", "warnings", nullptr, true, block.keys);
+    return block;
+}
+
+/// Objects are read, and refused, by whoever reads the area.
+Form objects() {
+    const Form one =
+        grammar::custom({.type = "[entry](params.md#objects)", .schema = schema::object_key().dump()});
+    return grammar::any_of({one, grammar::list(one, {.min = 1})});
+}
+
+/// Where something else holds.
+std::vector<Key> place_keys() {
+    const Form corner = grammar::integer(-kMaxAreaSide_px, kMaxAreaSide_px);
+    return {
+        optional("rectangle", grammar::list(corner, {.min = 4, .max = 4}),
+                 "x, y, width and height in px of the display window."),
+        optional("mask", text({.min_length = 1, .type = "path from the document's folder"}),
+                 "Picture over the display window: the pixels above a half."),
+        optional("channel", text({.min_length = 1}), "Channel of the mask; default: its only one."),
+        optional("object", objects(), "Objects of the case's capture: the pixels that they cover at all.")};
+}
+
+std::vector<grammar::Rule> place_rules() {
+    return {grammar::exactly_one_of({"rectangle", "mask", "object"},
+                                    "an area has one of 'rectangle', 'mask' and 'object'"),
+            grammar::needs("channel", "mask", "'channel' is of a 'mask'")};
+}
+
+Block ignore_block() {
+    return {.name = "ignore",
+            .thing = "the area",
+            .doc = "Pixels that are left out.",
+            .keys = place_keys(),
+            .rules = place_rules()};
+}
+
+Block area_block() {
+    Block block{.name = "area",
+                .thing = "the area",
+                .doc = "Pixels with limits of their own.",
+                .keys = place_keys(),
+                .rules = place_rules()};
+    const Tolerance usual;
+    add_level("fail", "failures", &usual, false, block.keys);
+    add_level("warn", "warnings", nullptr, false, block.keys);
+    return block;
+}
+
 Block tolerance_block() {
     const Tolerance usual;
-    Block block{.name = "tolerance", .thing = "the tolerance", .doc = "Limits, as the options of `compare`."};
-    add_level("fail", "failures", &usual, block.keys);
-    add_level("warn", "warnings", nullptr, block.keys);
-    block.keys.push_back(
-        optional("nan_equal", grammar::boolean(), "Whether NaN in both images counts as equal.", "false"));
+    Block block{.name = "tolerance",
+                .thing = "the tolerance",
+                .doc = "Limits, as the options of `compare`.",
+                .rules = {grammar::at_most_one_of({"forgive_shift", "forgive_blur"})}};
+    add_level("fail", "failures", &usual, true, block.keys);
+    add_level("warn", "warnings", nullptr, true, block.keys);
+    for (Key key :
+         {optional("nan_equal", grammar::boolean(), "Whether NaN in both images counts as equal.", "false"),
+          optional("forgive_shift", grammar::integer(0, Forgive::kMaxShift_px), "Shift that is forgiven, px.",
+                   "0"),
+          optional("forgive_blur", grammar::number({.min = 0, .max = Forgive::kMaxBlur_px}),
+                   "Blur that is forgiven: standard deviation, px.", "0"),
+          optional("layers", grammar::map(grammar::object(layer_block()), {.by = "layer"}),
+                   "Limits of layers, by names such as `RGB` and `Z`: keys that replace those above."),
+          optional("ignore", grammar::list(grammar::object(ignore_block())), "Pixels to leave out."),
+          optional("areas", grammar::list(grammar::object(area_block())),
+                   "Pixels with limits of their own; where areas overlap, the first counts.")})
+        block.keys.push_back(std::move(key));
     return block;
 }
 

@@ -87,10 +87,12 @@ Json json_of(const ApprovedImage& approved) {
     json["sidecar"] = json_of(approved.sidecar->environment);
     json["sidecar"]["command"] = approved.sidecar->command;
     json["sidecar"]["look_hash"] = approved.sidecar->look_hash;
+    json["sidecar"]["approver"] = text_or_null(approved.sidecar->approver);
+    json["sidecar"]["approved"] = text_or_null(approved.sidecar->approved);
     return json;
 }
 
-Json json_of(const GoldenImage& image, const CompareRules& rules) {
+Json json_of(const GoldenImage& image) {
     const GoldenPictures& pictures = image.pictures;
     return {{"name", image.name},
             {"output", image.output},
@@ -110,7 +112,7 @@ Json json_of(const GoldenImage& image, const CompareRules& rules) {
               {"side_by_side", text_or_null(pictures.side_by_side)},
               {"reference_exr", text_or_null(pictures.reference_exr)},
               {"test_exr", text_or_null(pictures.test_exr)}}},
-            {"comparison", image.comparison ? json_of(*image.comparison, rules) : Json(nullptr)}};
+            {"comparison", image.comparison ? json_of(*image.comparison, image.rules) : Json(nullptr)}};
 }
 
 std::string golden_command(const std::string& verb, const GoldenReportContext& context,
@@ -123,7 +125,7 @@ std::string golden_command(const std::string& verb, const GoldenReportContext& c
 Json json_of(const GoldenCaseResult& result, const GoldenReportContext& context) {
     const GoldenCase& test = *result.test;
     Json images = Json::array();
-    for (const GoldenImage& image : result.images) images.push_back(json_of(image, test.rules));
+    for (const GoldenImage& image : result.images) images.push_back(json_of(image));
     return {{"name", test.name},
             {"file", test.file.string()},
             {"look", test.look.empty() ? Json(nullptr) : Json(test.look.string())},
@@ -149,12 +151,29 @@ std::string approve_command(const GoldenReportContext& context, const std::vecto
     return cases.empty() ? "" : golden_command("approve", context, cases);
 }
 
+/// What the verdict of a case did not look at, the most of any image; "" where it looked at everything.
+std::string allowances_of(const GoldenCaseResult& test) {
+    std::string text;
+    double most_percent = -1;
+    for (const GoldenImage& image : test.images) {
+        if (!image.comparison) continue;
+        double percent = 0;
+        for (const LayerComparison& layer : image.comparison->layers)
+            percent = std::max(percent, layer.left_out_percent());
+        if (percent <= most_percent) continue;
+        most_percent = percent;
+        text = allowances_of(*image.comparison, image.rules);
+    }
+    return text;
+}
+
 std::string line_of(const GoldenCaseResult& test, int done, int all, const char* good) {
     std::string name = test.test->name + " ";
     name.resize(std::max(name.size(), kNameWidth), '.');
     const int digits = int(std::to_string(all).size());
+    const std::string note = test.skipped.empty() ? allowances_of(test) : test.skipped;
     return fmt::format("{:>{}}/{} {} {} {:7.2f} s{}", done, digits, all, name, word_of(test, good),
-                       test.seconds, test.skipped.empty() ? "" : "  (" + test.skipped + ")");
+                       test.seconds, note.empty() ? "" : "  (" + note + ")");
 }
 
 std::string summary_of(const GoldenSuiteResult& result, const GoldenReportContext& context) {

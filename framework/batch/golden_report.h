@@ -21,6 +21,9 @@ struct GoldenReportContext {
 /// A command for a shell that approves these cases' images; "" for none.
 std::string approve_command(const GoldenReportContext& context, const std::vector<std::string>& cases);
 
+/// What the verdict of a case did not look at, as allowances_of(Comparison) says it; "" where it looked at
+/// everything.
+std::string allowances_of(const GoldenCaseResult& test);
 /// " 3/42 bloom/lamps ........   Passed    0.41 s"; `good` has six letters.
 std::string line_of(const GoldenCaseResult& test, int done, int all, const char* good = "Passed");
 /// Failures and warnings again with their reasons, what approves them, and one line of sums.

@@ -8,10 +8,12 @@
 #include <chrono>
 #include <exception>
 #include <mutex>
+#include <set>
 #include <thread>
 
 #include "framework/batch/look_hash.h"
 #include "framework/core/data_path.h"
+#include "framework/core/diagnostics.h"
 #include "framework/core/error.h"
 #include "framework/core/scratch_folder.h"
 
@@ -36,6 +38,23 @@ void skip(GoldenCaseResult& result, const std::string& why, const GoldenRunOptio
     result.messages.push_back("skipped, and --no-skip: " + why);
 }
 
+/// A limit for a layer that no image has would be held to nothing, unseen.
+void check_layers(GoldenCaseResult& result) {
+    std::set<std::string> labels;
+    for (const GoldenImage& image : result.images) {
+        if (!image.comparison) return;  // which layers there are is not known
+        labels.insert(image.comparison->labels.begin(), image.comparison->labels.end());
+    }
+    const std::vector<std::string> known(labels.begin(), labels.end());
+    for (const auto& [label, levels] : result.test->rules.layers) {
+        if (labels.contains(label)) continue;
+        result.verdict = std::max(result.verdict, Verdict::failure);
+        result.messages.push_back("tolerance.layers: no image of the case has a layer '" + label + "'" +
+                                  did_you_mean(label, known) + " (there are " + list_of_names(known, "and") +
+                                  ")");
+    }
+}
+
 void run_case(const GoldenRunOptions& options, const fs::path& work, ReportPictures* pictures,
               const std::atomic<bool>& interrupt, GoldenCaseResult& result, bool& interrupted) {
     const GoldenCase& test = *result.test;
@@ -51,6 +70,7 @@ void run_case(const GoldenRunOptions& options, const fs::path& work, ReportPictu
         result.images.push_back(judge_image(test, image, result.look_hash, options.environment, pictures));
         result.verdict = std::max(result.verdict, result.images.back().verdict);
     }
+    check_layers(result);
 }
 
 }  // namespace

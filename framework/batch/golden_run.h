@@ -37,6 +37,7 @@ struct GoldenImage {
     bool exact_tier = false;
     bool bits_equal = false;
     std::optional<Comparison> comparison;
+    CompareRules rules;  ///< of the comparison; areas by name alone
     GoldenPictures pictures;
 };
 

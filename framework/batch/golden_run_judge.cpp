@@ -21,10 +21,10 @@ std::vector<std::string> reasons_of(const Comparison& comparison) {
 }
 
 /// The image against one approved image.
-void compare_with(const ApprovedImage& approved, const GoldenCase& test, const RenderedImage& rendered,
+void compare_with(const ApprovedImage& approved, const CompareRules& rules, const RenderedImage& rendered,
                   const std::string& look_hash, const GoldenEnvironment& environment, GoldenImage& result) {
     result.approved = approved;
-    result.comparison = compare_files(approved.file, rendered.file, test.rules);
+    result.comparison = compare_files(approved.file, rendered.file, rules);
     result.bits_equal = has_equal_bits(*result.comparison);
     result.verdict = result.comparison->verdict;
     result.reasons = reasons_of(*result.comparison);
@@ -77,8 +77,8 @@ void copy_into(const fs::path& from, const fs::path& to) {
 }
 
 /// The names in the result begin with that of the report's folder of pictures.
-void write_pictures(const GoldenCase& test, const RenderedImage& rendered, ReportPictures& report,
-                    GoldenImage& result) {
+void write_pictures(const GoldenCase& test, const CompareRules& rules, const RenderedImage& rendered,
+                    ReportPictures& report, GoldenImage& result) {
     std::string stem = test.name + "." + rendered.name.substr(test.stem.size() + 1);
     std::ranges::replace(stem, '/', '.');
     const auto path = [&](const std::string& kind, const char* extension = ".png") {
@@ -93,9 +93,9 @@ void write_pictures(const GoldenCase& test, const RenderedImage& rendered, Repor
     // Without an approved image the new one stands for both; there is no difference to be seen.
     const fs::path reference = result.approved ? result.approved->file : rendered.file;
     PictureTaker taker;
-    pictures.difference_scale = difference_scale(result, test.rules);
+    pictures.difference_scale = difference_scale(result, rules);
     ComparisonPictures all({true, pictures.difference_scale}, true, true, true);
-    const Comparison comparison = compare_files(reference, rendered.file, test.rules,
+    const Comparison comparison = compare_files(reference, rendered.file, rules,
                                                 [&](const LayerComparison& layer, LayerImages& images) {
                                                     taker.add(layer, images);
                                                     all.add(layer, images);
@@ -123,6 +123,20 @@ void write_pictures(const GoldenCase& test, const RenderedImage& rendered, Repor
     pictures.heat_map = told(path("flip"));
 }
 
+struct RulesOrFault {
+    CompareRules rules;  ///< without areas where they cannot be read
+    std::string fault;
+};
+
+RulesOrFault rules_or_fault(const GoldenCase& test, int frame) {
+    try {
+        return {test.rules_of(frame), ""};
+    } catch (const Error& error) {
+        if (error.exit_code() != ExitCode::capture) throw;
+        return {test.rules, error.what()};
+    }
+}
+
 }  // namespace
 
 bool has_equal_bits(const Comparison& comparison) {
@@ -136,9 +150,10 @@ GoldenImage judge_image(const GoldenCase& test, const RenderedImage& rendered, c
     const std::vector<ApprovedImage> approved = approved_images(test.goldens, rendered.name, environment);
     GoldenImage best;
     bool own_bits_differ = false;
+    const auto [rules, fault] = rules_or_fault(test, rendered.frame);
     for (const ApprovedImage& candidate : approved) {
         GoldenImage result;
-        compare_with(candidate, test, rendered, look_hash, environment, result);
+        compare_with(candidate, rules, rendered, look_hash, environment, result);
         own_bits_differ |= result.exact_tier && !result.bits_equal;
         if (!best.approved || result.verdict < best.verdict) best = std::move(result);
         if (best.verdict == Verdict::same || (own_bits_differ && best.verdict == Verdict::warning)) break;
@@ -156,7 +171,13 @@ GoldenImage judge_image(const GoldenCase& test, const RenderedImage& rendered, c
         best.verdict = Verdict::failure;
         best.reasons = {"no golden " + (test.goldens / (rendered.name + ".exr")).string()};
     }
-    if (pictures) write_pictures(test, rendered, *pictures, best);
+    if (!fault.empty()) {
+        best.verdict = Verdict::file_error;
+        best.reasons.push_back(fault);
+    }
+    if (pictures) write_pictures(test, rules, rendered, *pictures, best);
+    best.rules = rules;
+    for (CompareArea& area : best.rules.areas) area.shape = {};
     return best;
 }
 

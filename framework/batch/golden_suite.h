@@ -18,6 +18,9 @@ struct GoldenSuite {
     /// Folders of effects: searched before the shipped ones, and with `cases_of_effects` the place of cases.
     std::vector<std::filesystem::path> effect_paths;
     std::vector<GoldenCase> cases;  ///< those of the document, then those of effects by name
+
+    /// That the document lies in.
+    std::filesystem::path folder() const { return file.has_parent_path() ? file.parent_path() : "."; }
 };
 
 /// `argument` is the document, or the folder of a golden.json. Faults of it and of every case go to

@@ -48,7 +48,8 @@ public:
         : reference_(reference), test_(test), rules_(rules), visit_(visit), result_(result) {}
 
     void run() {
-        check_roles();
+        check_labels();
+        check_areas();
         compare_parts();
         reference_.prefetch();
         test_.prefetch();
@@ -71,13 +72,23 @@ private:
         result_.faults.push_back(std::move(text));
     }
 
-    void check_roles() {
+    /// An area that is nowhere would be left out of nothing, unseen.
+    void check_areas() {
+        if (reference_.layers().empty()) return;
+        for (const CompareArea& area : rules_.areas)
+            if (std::string why = fault_of(area, reference_.layers().front().display_window); !why.empty())
+                fault(std::move(why));
+    }
+
+    void check_labels() {
         std::set<std::string> labels;
         for (const LayerFile* file : {&reference_, &test_})
             for (const LayerInfo& layer : file->layers()) labels.insert(layer.label());
         result_.labels = {labels.begin(), labels.end()};
         for (const auto& [label, role] : rules_.roles)
             if (!labels.contains(label)) result_.unknown_roles.push_back(label);
+        for (const auto& [label, levels] : rules_.layers)
+            if (!labels.contains(label)) result_.unknown_layers.push_back(label);
     }
 
     bool is_ignored(const LayerInfo& layer) const {
@@ -156,7 +167,14 @@ private:
         if (!is_empty(comparison.window)) {
             images.reference = read(reference_, reference, comparison);
             images.test = read(test_, test, comparison);
-            compare_layer(images.reference, images.test, rules_, comparison);
+            images.areas = pixel_areas(rules_.areas, comparison.window, reference.display_window,
+                                       rules_.difference_rules(comparison.label));
+            compare_layer(images, rules_, comparison);
+            if (comparison.differences.pixels == 0)
+                fault(fmt::format(
+                    "layer '{}': every pixel is left out, so that nothing is compared; leave less "
+                    "out, or the layer by its role 'ignore'",
+                    comparison.label));
         } else {
             reference_.read(reference, comparison.channels);
             test_.read(test, comparison.channels);

@@ -4,16 +4,18 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <limits>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "framework/compare/compare_area.h"
+#include "framework/compare/compare_levels.h"
 #include "framework/compare/flip.h"
 #include "framework/compare/layer.h"
 #include "framework/compare/layer_file.h"
+#include "framework/compare/pixel_areas.h"
 #include "framework/compare/pixel_differences.h"
 
 namespace aftershade {
@@ -23,30 +25,18 @@ enum class Verdict { same = 0, warning = 1, failure = 2, different_size = 3, fil
 /// "same", "warning", "failure", "different size or channels", "file error".
 std::string_view verdict_name(Verdict verdict);
 
-/// A level is exceeded where more than `percent` of a layer's pixels, and more than `allowed` pixels, differ
-/// by more than `limit`; or more than `allowed` by more than `hard`. Both are always looked at, whatever the
-/// other says (idiff's -hardfail is not looked at where no pixel exceeds -fail, nor its -warn).
-struct Tolerance {
-    double limit = 1e-6;  ///< of a pixel's difference; see DifferenceRules
-    double percent = 0;   ///< of the pixels
-    double hard = std::numeric_limits<double>::infinity();
-    std::uint64_t allowed = 0;  ///< pixels
-};
-
 /// Which FLIP is computed of the layers with colours. `automatic`: LDR of encoded colours, HDR of light.
 enum class FlipChoice { automatic, ldr, hdr, both, none };
 
-struct CompareRules {
-    Tolerance fail;
-    /// nullopt: as `fail`, but with percent 0, so that what only `percent` lets pass is a warning, as
-    /// idiff's.
-    std::optional<Tolerance> warn;
+/// The levels are those of every layer that has none of its own.
+struct CompareRules : Levels {
+    std::map<std::string, Levels> layers;  ///< by LayerInfo::label()
+    std::vector<CompareArea> areas;        ///< at most PixelAreas::kMost
+    Forgive forgive;
     bool nan_equal = false;
     /// Where data windows differ in one display window: outside of its own, a file has +inf of depth and 0 of
     /// all else, as docs/conventions.md says; both windows are compared. Else that is a different size.
     bool fill_outside = false;
-    std::optional<double> fail_flip, warn_flip;  ///< exceeded by the mean of a layer's FLIP, LDR or HDR
-    std::optional<double> fail_ssim, warn_ssim;  ///< exceeded where a layer's SSIM is below
     FlipChoice flip_choice = FlipChoice::automatic;
     FlipOptions flip;
     bool ssim = true;  ///< SSIM and MS-SSIM of the layers with colours
@@ -55,8 +45,8 @@ struct CompareRules {
     ReadLimits limits;
     int threads = 0;  ///< 0: as many as there are cores; changes no figure
 
-    Tolerance warn_tolerance() const;
-    DifferenceRules difference_rules() const;
+    const Levels& levels_of(const std::string& label) const;
+    DifferenceRules difference_rules(const std::string& label) const;
 };
 
 struct LayerComparison {
@@ -66,12 +56,14 @@ struct LayerComparison {
     Window window;  ///< compared: what both data windows cover, or either; places add its corner
     std::uint64_t absent_in_reference = 0, absent_in_test = 0;  ///< pixels that only the other image has
     PixelDifferences differences;
+    std::vector<std::string> areas;  ///< names of those of PixelDifferences::by_area but its first
     std::optional<FlipResult> ldr_flip, hdr_flip;
     std::optional<double> ssim, ms_ssim;  ///< mean over R, G and B; see ssim.h
     Verdict verdict = Verdict::same;
     std::vector<std::string> reasons;  ///< of the verdict: what was exceeded, by how much
 
-    double failing_percent() const;
+    double failing_percent() const;   ///< of the pixels that are not left out
+    double left_out_percent() const;  ///< of all pixels of the window
 };
 
 struct Comparison {
@@ -80,14 +72,16 @@ struct Comparison {
     /// What keeps the files from being compared: layers, channels and windows that one has and the other has
     /// not, or why a file cannot be read.
     std::vector<std::string> faults;
-    std::vector<LayerComparison> layers;     ///< in the reference's order; without FLIP's error images
-    std::vector<std::string> unknown_roles;  ///< labels in CompareRules::roles that neither file has
-    std::vector<std::string> labels;         ///< of every layer of either file
+    std::vector<LayerComparison> layers;      ///< in the reference's order; without FLIP's error images
+    std::vector<std::string> unknown_roles;   ///< labels in CompareRules::roles that neither file has
+    std::vector<std::string> unknown_layers;  ///< likewise in CompareRules::layers
+    std::vector<std::string> labels;          ///< of every layer of either file
 };
 
 /// The two images of a layer over LayerComparison::window, kept for pictures of the differences.
 struct LayerImages {
     Image reference, test;
+    PixelAreas areas = {};
 };
 
 /// Called after each layer; the images may be moved from.
@@ -100,8 +94,8 @@ Comparison compare_files(const std::filesystem::path& reference, const std::file
                          const CompareRules& rules, const LayerVisitor& visit = {});
 
 /// One layer of which both images cover `layer.window`, already read: figures, verdict and reasons.
-/// `comparison` brings label, role, channels and window.
-void compare_layer(const Image& reference, const Image& test, const CompareRules& rules,
-                   LayerComparison& comparison);
+/// `comparison` brings label, role, channels and window, `images.areas` what CompareRules::areas give there.
+/// With every pixel left out nothing is measured, and the verdict stays.
+void compare_layer(const LayerImages& images, const CompareRules& rules, LayerComparison& comparison);
 
 }  // namespace aftershade

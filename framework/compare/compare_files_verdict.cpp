@@ -16,9 +16,10 @@ struct Level {
     const char* word;  ///< as the flags are called
     Verdict verdict;
     Tolerance tolerance;
+    std::uint64_t pixels;
     const FailingPixels& above;
     const FailingPixels& hard;
-    std::optional<double> flip, ssim;
+    std::string where;  ///< ": " after an area's name; "" of the layer
 };
 
 std::string not_comparable(const PixelDifferences& differences) {
@@ -30,30 +31,52 @@ std::string not_comparable(const PixelDifferences& differences) {
                            : "");
 }
 
+void say(LayerComparison& comparison, Verdict verdict, std::string reason) {
+    comparison.verdict = std::max(comparison.verdict, verdict);
+    comparison.reasons.push_back(std::move(reason));
+}
+
 void judge(const Level& level, LayerComparison& comparison) {
-    const auto say = [&](std::string reason) {
-        comparison.verdict = std::max(comparison.verdict, level.verdict);
-        comparison.reasons.push_back(std::move(reason));
-    };
-    const double pixels = double(comparison.differences.pixels);
+    const double pixels = double(level.pixels);
     const Tolerance& tolerance = level.tolerance;
     const double let_pass = std::max(double(tolerance.allowed), tolerance.percent / 100 * pixels);
     if (double(level.above.count) > let_pass)
-        say(fmt::format("{} pixels ({:.6g} %) differ by more than {} {:.6g}{}", level.above.count,
-                        100 * double(level.above.count) / pixels, level.word, tolerance.limit,
+        say(comparison, level.verdict,
+            fmt::format("{}{} pixels ({:.6g} %) differ by more than {} {:.6g}{}", level.where,
+                        level.above.count, 100 * double(level.above.count) / pixels, level.word,
+                        tolerance.limit,
                         let_pass > 0 ? fmt::format(", {:.6g} may", std::floor(let_pass)) : "") +
-            not_comparable(comparison.differences));
+                not_comparable(comparison.differences));
     if (level.hard.count > tolerance.allowed)
-        say(fmt::format("{} pixels differ by more than hard{} {:.6g}{}", level.hard.count, level.word,
-                        tolerance.hard,
+        say(comparison, level.verdict,
+            fmt::format("{}{} pixels differ by more than hard{} {:.6g}{}", level.where, level.hard.count,
+                        level.word, tolerance.hard,
                         tolerance.allowed > 0 ? fmt::format(", {} may", tolerance.allowed) : ""));
+}
+
+void judge_look(const char* word, Verdict verdict, const std::optional<double>& flip_limit,
+                const std::optional<double>& ssim_limit, LayerComparison& comparison) {
     for (const auto& [name, flip] :
          {std::pair{"LDR-FLIP", &comparison.ldr_flip}, std::pair{"HDR-FLIP", &comparison.hdr_flip}})
-        if (level.flip && *flip && !((*flip)->mean <= *level.flip))
-            say(fmt::format("{} {:.6g} is above {}-flip {:.6g}", name, (*flip)->mean, level.word,
-                            *level.flip));
-    if (level.ssim && comparison.ssim && !(*comparison.ssim >= *level.ssim))
-        say(fmt::format("SSIM {:.6g} is below {}-ssim {:.6g}", *comparison.ssim, level.word, *level.ssim));
+        if (flip_limit && *flip && !((*flip)->mean <= *flip_limit))
+            say(comparison, verdict,
+                fmt::format("{} {:.6g} is above {}-flip {:.6g}", name, (*flip)->mean, word, *flip_limit));
+    if (ssim_limit && comparison.ssim && !(*comparison.ssim >= *ssim_limit))
+        say(comparison, verdict,
+            fmt::format("SSIM {:.6g} is below {}-ssim {:.6g}", *comparison.ssim, word, *ssim_limit));
+    if (ssim_limit && is_perceptual(comparison.role) && !comparison.ssim &&
+        comparison.differences.left_out > 0)
+        say(comparison, verdict,
+            fmt::format("SSIM cannot be held to {}-ssim {:.6g}: every pixel with a whole window is left out",
+                        word, *ssim_limit));
+}
+
+/// The layer first, then each area with limits of its own.
+std::vector<const Levels*> levels_by_area(const CompareRules& rules, const std::string& label) {
+    std::vector<const Levels*> levels{&rules.levels_of(label)};
+    for (const CompareArea& area : rules.areas)
+        if (area.levels) levels.push_back(&*area.levels);
+    return levels;
 }
 
 }  // namespace
@@ -64,7 +87,7 @@ std::string_view verdict_name(Verdict verdict) {
     return names[std::size_t(verdict)];
 }
 
-Tolerance CompareRules::warn_tolerance() const {
+Tolerance Levels::warn_tolerance() const {
     if (warn) return *warn;
     Tolerance same_limit;
     same_limit.limit = fail.limit;
@@ -72,28 +95,57 @@ Tolerance CompareRules::warn_tolerance() const {
     return same_limit;
 }
 
-DifferenceRules CompareRules::difference_rules() const {
+DifferenceRules Levels::difference_limits() const {
     const Tolerance warning = warn_tolerance();
-    return {fail.limit, fail.hard, warning.limit, warning.hard, nan_equal};
+    return {fail.limit, fail.hard, warning.limit, warning.hard, false, {}};
+}
+
+const Levels& CompareRules::levels_of(const std::string& label) const {
+    const auto own = layers.find(label);
+    return own == layers.end() ? *this : own->second;
+}
+
+DifferenceRules CompareRules::difference_rules(const std::string& label) const {
+    DifferenceRules result = levels_of(label).difference_limits();
+    result.nan_equal = nan_equal;
+    result.forgive = forgive;
+    return result;
 }
 
 double LayerComparison::failing_percent() const {
     return differences.pixels == 0 ? 0 : 100 * double(differences.failing.count) / double(differences.pixels);
 }
 
-void compare_layer(const Image& reference, const Image& test, const CompareRules& rules,
-                   LayerComparison& comparison) {
-    comparison.differences = pixel_differences(reference, test, comparison.role, rules.difference_rules(),
+double LayerComparison::left_out_percent() const {
+    const double all = double(differences.pixels + differences.left_out);
+    return all == 0 ? 0 : 100 * double(differences.left_out) / all;
+}
+
+void compare_layer(const LayerImages& images, const CompareRules& rules, LayerComparison& comparison) {
+    comparison.differences = pixel_differences(images.reference, images.test, comparison.role,
+                                               rules.difference_rules(comparison.label), images.areas,
                                                thread_count(rules.threads));
-    measure_perceptually(reference, test, rules, comparison);
+    for (const CompareArea& area : rules.areas)
+        if (area.levels) comparison.areas.push_back(area.name);
     const PixelDifferences& d = comparison.differences;
-    judge({"fail", Verdict::failure, rules.fail, d.failing, d.hard_failing, rules.fail_flip, rules.fail_ssim},
-          comparison);
-    // A failure tells what a warning would.
-    if (comparison.verdict < Verdict::failure)
-        judge({"warn", Verdict::warning, rules.warn_tolerance(), d.warning, d.hard_warning, rules.warn_flip,
-               rules.warn_ssim},
+    if (d.pixels == 0) return;
+    measure_perceptually(images, rules, comparison);
+    const std::vector<const Levels*> levels = levels_by_area(rules, comparison.label);
+    const auto where = [&](std::size_t area) {
+        return area == 0 ? "" : "in the area " + comparison.areas[area - 1] + ": ";
+    };
+    for (std::size_t i = 0; i < d.by_area.size(); ++i)
+        judge({"fail", Verdict::failure, levels[i]->fail, d.by_area[i].pixels, d.by_area[i].failing,
+               d.by_area[i].hard_failing, where(i)},
               comparison);
+    judge_look("fail", Verdict::failure, levels[0]->fail_flip, levels[0]->fail_ssim, comparison);
+    // A failure tells what a warning would.
+    if (comparison.verdict >= Verdict::failure) return;
+    for (std::size_t i = 0; i < d.by_area.size(); ++i)
+        judge({"warn", Verdict::warning, levels[i]->warn_tolerance(), d.by_area[i].pixels,
+               d.by_area[i].warning, d.by_area[i].hard_warning, where(i)},
+              comparison);
+    judge_look("warn", Verdict::warning, levels[0]->warn_flip, levels[0]->warn_ssim, comparison);
 }
 
 }  // namespace aftershade

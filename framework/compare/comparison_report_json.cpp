@@ -24,14 +24,33 @@ Json window_json(const Window& window) {
     return {{"min", {window.min_x, window.min_y}}, {"max", {window.max_x, window.max_y}}};
 }
 
-Json pixels_json(const FailingPixels& pixels, const LayerComparison& layer) {
-    const double all = double(std::max<std::uint64_t>(layer.differences.pixels, 1));
+Json pixels_json(const FailingPixels& pixels, const LayerComparison& layer, std::uint64_t of_pixels) {
+    const double all = double(std::max<std::uint64_t>(of_pixels, 1));
     Json json{{"pixels", pixels.count}, {"percent", 100 * double(pixels.count) / all}, {"box", nullptr}};
     if (pixels.count == 0) return json;
     const Window& box = pixels.box;
     json["box"] = window_json({box.min_x + layer.window.min_x, box.min_y + layer.window.min_y,
                                box.max_x + layer.window.min_x, box.max_y + layer.window.min_y});
     return json;
+}
+
+Json pixels_json(const FailingPixels& pixels, const LayerComparison& layer) {
+    return pixels_json(pixels, layer, layer.differences.pixels);
+}
+
+/// Those with limits of their own.
+Json areas_json(const LayerComparison& layer) {
+    Json areas = Json::array();
+    for (std::size_t i = 0; i < layer.areas.size(); ++i) {
+        const LimitCounts& counts = layer.differences.by_area[i + 1];
+        areas.push_back({{"area", layer.areas[i]},
+                         {"pixels", counts.pixels},
+                         {"failing", pixels_json(counts.failing, layer, counts.pixels)},
+                         {"hard_failing", pixels_json(counts.hard_failing, layer, counts.pixels)},
+                         {"warning", pixels_json(counts.warning, layer, counts.pixels)},
+                         {"hard_warning", pixels_json(counts.hard_warning, layer, counts.pixels)}});
+    }
+    return areas;
 }
 
 Json counts_json(const NonFiniteCounts& counts) {
@@ -77,6 +96,8 @@ void add_measures(Json& json, const LayerComparison& layer, const CompareRules& 
     json["relative_mse_epsilon"] = kRelativeMseEpsilon;
     json["max_pixel_difference"] = number(d.largest_pixel);
     json["mean_pixel_difference"] = measured ? number(d.mean_pixel) : nullptr;
+    json["forgiven_pixels"] = d.forgiven;
+    json["areas"] = areas_json(layer);
     json["failing"] = pixels_json(d.failing, layer);
     json["hard_failing"] = pixels_json(d.hard_failing, layer);
     json["warning"] = pixels_json(d.warning, layer);
@@ -98,6 +119,8 @@ Json layer_json(const LayerComparison& layer, const CompareRules& rules) {
               {"reasons", layer.reasons},
               {"window", window_json(layer.window)},
               {"pixels", layer.differences.pixels},
+              {"left_out_pixels", layer.differences.left_out},
+              {"left_out_percent", layer.left_out_percent()},
               {"absent_in_reference", layer.absent_in_reference},
               {"absent_in_test", layer.absent_in_test}};
     if (layer.differences.pixels > 0) add_measures(json, layer, rules);
@@ -111,6 +134,33 @@ Json tolerance_json(const Tolerance& tolerance, const std::optional<double>& fli
         {"allowed", tolerance.allowed},     {"flip", number(flip)},         {"ssim", number(ssim)}};
 }
 
+void add_levels(Json& json, const Levels& levels) {
+    json["fail"] = tolerance_json(levels.fail, levels.fail_flip, levels.fail_ssim);
+    json["warn"] = tolerance_json(levels.warn_tolerance(), levels.warn_flip, levels.warn_ssim);
+}
+
+Json rules_json(const CompareRules& rules) {
+    Json json;
+    add_levels(json, rules);
+    json["nan_equal"] = rules.nan_equal;
+    json["forgive_shift_px"] = rules.forgive.shift_px;
+    json["forgive_blur_px"] = rules.forgive.blur_px;
+    json["layers"] = Json::object();
+    for (const auto& [label, levels] : rules.layers) add_levels(json["layers"][label], levels);
+    json["ignore"] = Json::array();
+    json["areas"] = Json::array();
+    for (const CompareArea& area : rules.areas) {
+        if (!area.levels) {
+            json["ignore"].push_back(area.name);
+            continue;
+        }
+        Json one{{"area", area.name}};
+        add_levels(one, *area.levels);
+        json["areas"].push_back(std::move(one));
+    }
+    return json;
+}
+
 }  // namespace
 
 nlohmann::ordered_json json_of(const Comparison& comparison, const CompareRules& rules) {
@@ -120,10 +170,7 @@ nlohmann::ordered_json json_of(const Comparison& comparison, const CompareRules&
               {"verdict", verdict_name(comparison.verdict)},
               {"exit_code", int(comparison.verdict)},
               {"faults", comparison.faults},
-              {"rules",
-               {{"fail", tolerance_json(rules.fail, rules.fail_flip, rules.fail_ssim)},
-                {"warn", tolerance_json(rules.warn_tolerance(), rules.warn_flip, rules.warn_ssim)},
-                {"nan_equal", rules.nan_equal}}},
+              {"rules", rules_json(rules)},
               {"layers", Json::array()}};
     for (const LayerComparison& layer : comparison.layers) json["layers"].push_back(layer_json(layer, rules));
     return json;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <string_view>
@@ -58,7 +59,9 @@ std::string csv_row(const Comparison& comparison, const LayerComparison& layer) 
                                              optional_number(mean_of(layer.ldr_flip)),
                                              optional_number(mean_of(layer.hdr_flip)),
                                              optional_number(layer.ssim),
-                                             optional_number(layer.ms_ssim)};
+                                             optional_number(layer.ms_ssim),
+                                             fmt::format("{}", d.left_out),
+                                             fmt::format("{}", d.forgiven)};
     std::string row;
     for (const std::string& field : fields) row += (row.empty() ? "" : ",") + quoted(field);
     return row + "\r\n";
@@ -111,11 +114,36 @@ std::string failing_line(const LayerComparison& layer, const CompareRules& rules
     const FailingPixels& failing = layer.differences.failing;
     std::string text =
         fmt::format("  {} of {} pixels ({:.4g} %) over {:g}{}", failing.count, layer.differences.pixels,
-                    layer.failing_percent(), rules.fail.limit, unit_of(layer.role));
+                    layer.failing_percent(), rules.levels_of(layer.label).fail.limit, unit_of(layer.role));
     if (failing.count > 0)
         text += fmt::format(", in {} x {} px from ({}, {})", failing.box.width(), failing.box.height(),
                             failing.box.min_x + layer.window.min_x, failing.box.min_y + layer.window.min_y);
     return text + "\n";
+}
+
+std::string forgiven_text(const Forgive& forgive) {
+    if (forgive.shift_px > 0) return fmt::format("a shift of up to {} px", forgive.shift_px);
+    return fmt::format("a blur of sigma {:g} px", forgive.blur_px);
+}
+
+/// What the figures above do not count.
+std::string allowance_lines(const LayerComparison& layer, const CompareRules& rules) {
+    const PixelDifferences& d = layer.differences;
+    std::string text, names;
+    for (const CompareArea& area : rules.areas)
+        if (!area.levels) names += (names.empty() ? "" : "; ") + area.name;
+    if (!names.empty())
+        text += fmt::format("  left out: {} of {} pixels ({:.4g} %): {}\n", d.left_out, d.pixels + d.left_out,
+                            layer.left_out_percent(), names);
+    if (rules.forgive.any())
+        text += fmt::format("  forgiven: {} pixels, by {}\n", d.forgiven, forgiven_text(rules.forgive));
+    std::size_t i = 0;
+    for (const CompareArea& area : rules.areas) {
+        if (!area.levels || ++i >= d.by_area.size()) continue;
+        text += fmt::format("  area {}: {} of {} pixels over {:g}\n", area.name, d.by_area[i].failing.count,
+                            d.by_area[i].pixels, area.levels->fail.limit);
+    }
+    return text;
 }
 
 std::string non_finite_line(const PixelDifferences& d) {
@@ -133,6 +161,8 @@ std::string layer_text(const LayerComparison& layer, const CompareRules& rules) 
     if (layer.absent_in_reference + layer.absent_in_test > 0)
         text += fmt::format("  {} pixels are absent in the reference, {} in the test image\n",
                             layer.absent_in_reference, layer.absent_in_test);
+    if (layer.differences.pixels + layer.differences.left_out == 0) return text;
+    text += allowance_lines(layer, rules);
     if (layer.differences.pixels == 0) return text;
     if (layer.differences.bits_equal) return text + "  equal bits\n" + non_finite_line(layer.differences);
     return text + measure_lines(layer) + failing_line(layer, rules) + non_finite_line(layer.differences) +
@@ -144,7 +174,7 @@ std::string layer_text(const LayerComparison& layer, const CompareRules& rules) 
 std::string csv_header() {
     return "reference,test,layer,role,verdict,pixels,failing_pixels,failing_percent,max_error,max_x,max_y,"
            "max_channel,mean_absolute,rmse,psnr_db,relative_mse,max_pixel_difference,ldr_flip,hdr_flip,ssim,"
-           "ms_ssim\r\n";
+           "ms_ssim,left_out_pixels,forgiven_pixels\r\n";
 }
 
 std::string csv_rows(const Comparison& comparison) {
@@ -153,12 +183,28 @@ std::string csv_rows(const Comparison& comparison) {
     return rows;
 }
 
+std::string allowances_of(const Comparison& comparison, const CompareRules& rules) {
+    std::string text;
+    if (rules.forgive.any()) text = "forgives " + forgiven_text(rules.forgive);
+    double all = 0, left_out = 0;
+    for (const LayerComparison& layer : comparison.layers) {
+        left_out += double(layer.differences.left_out);
+        all += double(layer.differences.left_out + layer.differences.pixels);
+    }
+    if (std::ranges::any_of(rules.areas, [](const CompareArea& area) { return !area.levels; }))
+        text += fmt::format("{}{:.4g} % of the pixels left out", text.empty() ? "" : "; ",
+                            all > 0 ? 100 * left_out / all : 0);
+    return text;
+}
+
 std::string text_of(const Comparison& comparison, const CompareRules& rules) {
     std::string text = fmt::format("reference: {}\ntest:      {}\n", comparison.reference.string(),
                                    comparison.test.string());
     for (const LayerComparison& layer : comparison.layers) text += layer_text(layer, rules);
     for (const std::string& fault : comparison.faults) text += "! " + fault + "\n";
-    return printable_lines(text + std::string(verdict_name(comparison.verdict)) + "\n");
+    const std::string allowances = allowances_of(comparison, rules);
+    return printable_lines(text + std::string(verdict_name(comparison.verdict)) +
+                           (allowances.empty() ? "" : " (" + allowances + ")") + "\n");
 }
 
 }  // namespace aftershade

@@ -49,6 +49,14 @@ Window hull(const Window& a, const Window& b) {
             std::max(a.max_y, b.max_y)};
 }
 
+/// No difference where none is looked at.
+void clear_left_out(const PixelAreas& areas, Image& difference) {
+    for (int y = 0; y < difference.height(); ++y)
+        for (int x = 0; x < difference.width(); ++x)
+            if (areas.is_left_out(x, y, difference.width()))
+                for (int c = 0; c < difference.channels(); ++c) difference.at(x, y, c) = 0;
+}
+
 }  // namespace
 
 DisplayColor magma_color(float t) {
@@ -85,6 +93,7 @@ void ComparisonPictures::add(const LayerComparison& layer, const LayerImages& im
     if (difference_) {
         Plane plane{
             {}, difference_image(images.reference, images.test, layer.role, options_), layer.window, colors};
+        clear_left_out(images.areas, plane.image);
         for (const std::string& channel : layer.channels) plane.channels.push_back(prefix + channel);
         differences_.push_back(std::move(plane));
     }

@@ -25,6 +25,7 @@ Image difference_image(const Image& reference, const Image& test, LayerRole role
                        const DifferenceOptions& options);
 
 /// A row of three pictures, reference, test and difference, in one scale of colours, with what they show.
+/// Pixels that are left out are blue in the difference.
 struct SideBySideRow {
     std::array<Image, 3> pictures;  ///< three display channels, at most kSideBySideWidth_px wide
     std::array<std::string, 3> captions;
@@ -46,7 +47,8 @@ public:
     void add(const LayerComparison& layer, const LayerImages& images);
 
     /// .exr: every channel under its name (after its part's, "part.channel") over the union of the windows
-    /// compared, 0 outside. .png: the first layer with colours, else the first, as |difference| * scale.
+    /// compared, 0 outside and where pixels are left out. .png: the first layer with colours, else the first,
+    /// as |difference| * scale.
     void write_difference(const std::filesystem::path& path) const;
     /// .png: magma of the first layer that has FLIP. .exr: "flip" or "<layer>.flip" of each layer. HDR-FLIP
     /// where there are both.

@@ -28,6 +28,7 @@ constexpr float kNothingHitFrom = 1e9f;
 constexpr DisplayColor kPaper = {0.11f, 0.11f, 0.12f};
 constexpr DisplayColor kBright = {1, 1, 1};
 constexpr DisplayColor kQuiet = {0.72f, 0.72f, 0.74f};
+constexpr DisplayColor kLeftOut = {0.16f, 0.3f, 0.55f};  // no colour of magma
 
 /// Renderers write ids as floats; hashes of names are floats that are no integers.
 std::uint32_t id_at(const Image& image, std::size_t index) {
@@ -127,6 +128,8 @@ std::string measures_of(const LayerComparison& layer) {
     if (layer.role != LayerRole::id)
         text +=
             fmt::format("   max {:.4g}   RMSE {:.4g}   PSNR {:.2f} dB", d.largest.value, d.rmse, d.psnr_db);
+    if (d.left_out > 0) text += fmt::format("   {:.4g} % left out", layer.left_out_percent());
+    if (d.forgiven > 0) text += fmt::format("   {} forgiven", d.forgiven);
     if (layer.role == LayerRole::depth) text += fmt::format("   relative {:.4g}", d.largest_pixel);
     if (layer.ldr_flip) text += fmt::format("   LDR-FLIP {:.4f}", layer.ldr_flip->mean);
     if (layer.hdr_flip) text += fmt::format("   HDR-FLIP {:.4f}", layer.hdr_flip->mean);
@@ -139,6 +142,7 @@ double bright_difference(const LayerComparison& layer, const LayerImages& images
     std::vector<double> differences;
     for (int y = 0; y < images.reference.height(); ++y)
         for (int x = 0; x < images.reference.width(); ++x) {
+            if (images.areas.is_left_out(x, y, images.reference.width())) continue;
             const double difference = pixel_difference(images.reference, images.test, x, y, layer.role, true);
             if (difference > 0 && std::isfinite(difference)) differences.push_back(difference);
         }
@@ -150,11 +154,15 @@ double bright_difference(const LayerComparison& layer, const LayerImages& images
 
 void add_difference(const LayerComparison& layer, const LayerImages& images, SideBySideRow& row) {
     const int width = images.reference.width(), height = images.reference.height();
+    const auto seen = [&](int x, int y, double value) {
+        return images.areas.is_left_out(x, y, width) ? kLeftOut : magma_color(float(value));
+    };
+    const std::string note = layer.differences.left_out > 0 ? "blue is left out; " : "";
     const std::optional<FlipResult>& flip = layer.hdr_flip ? layer.hdr_flip : layer.ldr_flip;
     if (flip) {
         row.pictures[2] = tile(
-            width, height, [&](int x, int y) { return magma_color(flip->error.at(x, y, 0)); }, true);
-        row.captions[2] = layer.hdr_flip ? "HDR-FLIP, bright is 1" : "LDR-FLIP, bright is 1";
+            width, height, [&](int x, int y) { return seen(x, y, flip->error.at(x, y, 0)); }, true);
+        row.captions[2] = note + (layer.hdr_flip ? "HDR-FLIP, bright is 1" : "LDR-FLIP, bright is 1");
         return;
     }
     const double bright = bright_difference(layer, images);
@@ -162,7 +170,7 @@ void add_difference(const LayerComparison& layer, const LayerImages& images, Sid
         width, height,
         [&](int x, int y) {
             const double difference = pixel_difference(images.reference, images.test, x, y, layer.role, true);
-            return magma_color(float(difference / bright));
+            return seen(x, y, difference / bright);
         },
         true);
     const char* what = layer.role == LayerRole::depth      ? "relative difference"
@@ -170,6 +178,7 @@ void add_difference(const LayerComparison& layer, const LayerImages& images, Sid
                                                            : "difference";
     row.captions[2] = layer.role == LayerRole::id ? "other ids are bright"
                                                   : fmt::format("{}, bright >= {:.4g}", what, bright);
+    row.captions[2].insert(0, note);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "framework/compare/ssim.h"
 #include "framework/core/parallel.h"
@@ -86,6 +87,35 @@ void measure_flip(const Image& reference, const Image& test, const CompareRules&
     comparison.hdr_flip->exposures = exposures.count;
 }
 
+/// The test image with the reference's values where pixels are left out.
+Image with_reference_values(const LayerImages& images) {
+    Image test = images.test;
+    for (int y = 0; y < test.height(); ++y)
+        for (int x = 0; x < test.width(); ++x) {
+            if (!images.areas.is_left_out(x, y, test.width())) continue;
+            for (int c = 0; c < test.channels(); ++c) test.at(x, y, c) = images.reference.at(x, y, c);
+        }
+    return test;
+}
+
+/// Of the pixels that count alone.
+void leave_out(const PixelAreas& areas, FlipResult& flip) {
+    double sum = 0;
+    std::uint64_t pixels = 0;
+    flip.max = -1;
+    for (int y = 0; y < flip.error.height(); ++y)
+        for (int x = 0; x < flip.error.width(); ++x) {
+            float& error = flip.error.at(x, y, 0);
+            if (areas.is_left_out(x, y, flip.error.width())) {
+                error = 0;
+                continue;
+            }
+            sum += error, ++pixels;
+            if (error > flip.max) flip.max = error, flip.max_x = x, flip.max_y = y;
+        }
+    flip.mean = sum / double(pixels);
+}
+
 }  // namespace
 
 Image linear_rgb(const Image& image, LayerRole role, int threads) {
@@ -103,20 +133,27 @@ Image linear_rgb(const Image& image, LayerRole role, int threads) {
     return rgb;
 }
 
-void measure_perceptually(const Image& reference, const Image& test, const CompareRules& rules,
-                          LayerComparison& comparison) {
+void measure_perceptually(const LayerImages& images, const CompareRules& rules, LayerComparison& comparison) {
+    const Image& reference = images.reference;
     const bool picture = reference.channels() == 1 || reference.channels() == 3;
     if (!is_perceptual(comparison.role) || !picture || reference.type() != ComponentType::float32) return;
+    const bool leaves_out = comparison.differences.left_out > 0;
+    const Image substituted = leaves_out ? with_reference_values(images) : Image();
+    const Image& test = leaves_out ? substituted : images.test;
     measure_flip(reference, test, rules, comparison);
+    if (leaves_out)
+        for (std::optional<FlipResult>* flip : {&comparison.ldr_flip, &comparison.hdr_flip})
+            if (*flip) leave_out(images.areas, **flip);
     if (!rules.ssim) return;
+    const bool scales = std::min(reference.width(), reference.height()) >= kMsSsimMinSide_px && !leaves_out;
     if (comparison.differences.bits_equal) {
         comparison.ssim = 1;
-        if (std::min(reference.width(), reference.height()) >= kMsSsimMinSide_px) comparison.ms_ssim = 1;
+        if (scales) comparison.ms_ssim = 1;
         return;
     }
     const auto [r, t] = encoded_pair(reference, test, comparison.role, rules.threads);
-    const SsimFigures figures = ssim_figures(r, t, rules.threads);
-    comparison.ssim = figures.ssim;
+    const SsimFigures figures = ssim_figures(r, t, rules.threads, leaves_out ? images.areas : PixelAreas{});
+    if (figures.measured) comparison.ssim = figures.ssim;
     comparison.ms_ssim = figures.ms_ssim;
 }
 

@@ -1,12 +1,14 @@
 #include "framework/compare/pixel_differences.h"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <cmath>
 #include <span>
 #include <vector>
 
+#include "framework/compare/forgiveness.h"
+#include "framework/compare/pixel_areas.h"
+#include "framework/compare/pixel_pair.h"
 #include "framework/core/parallel.h"
 
 namespace aftershade {
@@ -14,65 +16,6 @@ namespace aftershade {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// Two values of one channel.
-struct Pair {
-    double reference = 0, test = 0;
-    bool finite = true;  ///< both are
-    bool same_bits = true;
-    bool comparable = true;  ///< finite, or equal under the rules
-    double difference() const {
-        if (finite) return std::abs(reference - test);
-        return comparable ? 0 : kInfinity;
-    }
-};
-
-Pair pair_at(const Image& reference, const Image& test, std::size_t index, bool nan_equal) {
-    if (reference.type() == ComponentType::uint32) {
-        const std::uint32_t r = reference.uints()[index], t = test.uints()[index];
-        return {double(r), double(t), true, r == t, true};
-    }
-    const float r = reference.floats()[index], t = test.floats()[index];
-    Pair pair{r, t, std::isfinite(r) && std::isfinite(t), true, true};
-    pair.same_bits = std::bit_cast<std::uint32_t>(r) == std::bit_cast<std::uint32_t>(t);
-    if (!pair.finite) pair.comparable = std::isnan(r) && std::isnan(t) ? nan_equal : r == t;
-    return pair;
-}
-
-double relative_difference(const Pair& pair) {
-    const double difference = pair.difference();
-    return difference == 0 || difference == kInfinity ? difference : difference / std::abs(pair.reference);
-}
-
-double end_point_error(std::span<const Pair> pairs) {
-    const auto length = [](std::span<const Pair> vector) {
-        double sum = 0;
-        for (const Pair& pair : vector) sum += pair.difference() * pair.difference();
-        return std::sqrt(sum);
-    };
-    return pairs.size() == 4 ? std::max(length(pairs.first(2)), length(pairs.last(2))) : length(pairs);
-}
-
-double difference_of(std::span<const Pair> pairs, LayerRole role) {
-    if (role == LayerRole::velocity) return end_point_error(pairs);
-    double largest = 0;
-    for (const Pair& pair : pairs) {
-        double difference = pair.difference();
-        if (role == LayerRole::depth) difference = relative_difference(pair);
-        if (role == LayerRole::id) difference = pair.same_bits ? 0 : kInfinity;
-        largest = std::max(largest, difference);
-    }
-    return largest;
-}
-
-/// The values of one pixel.
-void take_pixel(const Image& reference, const Image& test, int x, int y, bool nan_equal,
-                std::vector<Pair>& pairs) {
-    const auto channels = std::size_t(reference.channels());
-    const std::size_t first = (std::size_t(y) * std::size_t(reference.width()) + std::size_t(x)) * channels;
-    pairs.resize(channels);
-    for (std::size_t c = 0; c < channels; ++c) pairs[c] = pair_at(reference, test, first + c, nan_equal);
-}
 
 void add(FailingPixels& pixels, int x, int y) {
     if (pixels.count++ == 0) {
@@ -94,6 +37,14 @@ void add(FailingPixels& sum, const FailingPixels& more) {
                std::max(sum.box.max_x, more.box.max_x), std::max(sum.box.max_y, more.box.max_y)};
 }
 
+void add(LimitCounts& sum, const LimitCounts& more) {
+    sum.pixels += more.pixels;
+    add(sum.failing, more.failing);
+    add(sum.hard_failing, more.hard_failing);
+    add(sum.warning, more.warning);
+    add(sum.hard_warning, more.hard_warning);
+}
+
 void count(NonFiniteCounts& counts, double value) {
     counts.nan += std::isnan(value) ? 1 : 0;
     counts.infinite += std::isinf(value) ? 1 : 0;
@@ -110,41 +61,62 @@ struct RowSums {
 
 class RowCounter {
 public:
-    RowCounter(const Image& reference, const Image& test, LayerRole role, const DifferenceRules& rules)
-        : reference_(reference), test_(test), role_(role), rules_(rules) {}
+    RowCounter(const Image& reference, const Image& test, LayerRole role, const DifferenceRules& rules,
+               const PixelAreas& areas, int threads)
+        : reference_(reference),
+          test_(test),
+          role_(role),
+          rules_(rules),
+          areas_(areas),
+          forgiveness_(reference, test, role, rules, areas, threads) {}
 
     RowSums row(int y) const {
         RowSums sums;
-        std::vector<Pair> pairs;
+        sums.figures.by_area.resize(areas_.limits.size() + 1);
+        std::vector<ValuePair> pairs;
         for (int x = 0; x < reference_.width(); ++x) {
-            take_pixel(reference_, test_, x, y, rules_.nan_equal, pairs);
+            const std::size_t area = areas_.at(x, y, reference_.width());
+            if (area == PixelAreas::kLeftOut) {
+                ++sums.figures.left_out;
+                continue;
+            }
+            take_pair(reference_, {x, y}, test_, {x, y}, rules_.nan_equal, pairs);
             for (std::size_t c = 0; c < pairs.size(); ++c) add_value(pairs[c], x, y, int(c), sums);
-            judge_pixel(pairs, x, y, sums.figures, sums);
+            judge_pixel(difference_of(pairs, role_), {x, y}, area, pairs, sums);
         }
+        for (const LimitCounts& area : sums.figures.by_area) add(sums.figures, area);
         return sums;
     }
 
 private:
-    void judge_pixel(std::span<const Pair> pairs, int x, int y, PixelDifferences& figures,
-                     RowSums& sums) const {
-        const double difference = difference_of(pairs, role_);
-        figures.largest_pixel = std::max(figures.largest_pixel, difference);
-        if (difference < kInfinity) sums.pixel_sum += difference, ++sums.finite_pixels;
+    void judge_pixel(PixelDifference difference, PixelPlace place, std::size_t area,
+                     std::vector<ValuePair>& pairs, RowSums& sums) const {
+        PixelDifferences& figures = sums.figures;
+        figures.largest_pixel = std::max(figures.largest_pixel, difference.value);
+        if (difference.value < kInfinity) sums.pixel_sum += difference.value, ++sums.finite_pixels;
+        const DifferenceRules& limits = area == 0 ? rules_ : areas_.limits[area - 1];
         // Fails above any limit, infinity too.
-        const bool wrong =
-            role_ == LayerRole::id ? difference > 0 : !std::ranges::all_of(pairs, &Pair::comparable);
-        if (wrong || difference > rules_.fail) add(figures.failing, x, y);
-        if (wrong || difference > rules_.warn) add(figures.warning, x, y);
-        if (difference > rules_.hard_fail) add(figures.hard_failing, x, y);
-        if (difference > rules_.hard_warn) add(figures.hard_warning, x, y);
+        const auto exceeds = [&](double limit) { return !difference.comparable || difference.value > limit; };
+        if (forgiveness_.forgives()) {
+            const double least = std::min({limits.fail, limits.hard_fail, limits.warn, limits.hard_warn});
+            const bool failed = exceeds(limits.fail);
+            if (exceeds(least)) difference = forgiveness_.least(place, difference, least, pairs);
+            if (failed && !exceeds(limits.fail)) ++figures.forgiven;
+        }
+        LimitCounts& counts = figures.by_area[area];
+        ++counts.pixels;
+        if (exceeds(limits.fail)) add(counts.failing, place.x, place.y);
+        if (exceeds(limits.warn)) add(counts.warning, place.x, place.y);
+        if (difference.value > limits.hard_fail) add(counts.hard_failing, place.x, place.y);
+        if (difference.value > limits.hard_warn) add(counts.hard_warning, place.x, place.y);
     }
 
-    bool is_larger(const Pair& pair, const RowSums& sums) const {
+    bool is_larger(const ValuePair& pair, const RowSums& sums) const {
         if (!sums.has_largest) return role_ != LayerRole::id || !pair.same_bits;
         return role_ != LayerRole::id && pair.difference() > sums.figures.largest.value;
     }
 
-    void add_value(const Pair& pair, int x, int y, int channel, RowSums& sums) const {
+    void add_value(const ValuePair& pair, int x, int y, int channel, RowSums& sums) const {
         PixelDifferences& figures = sums.figures;
         figures.bits_equal = figures.bits_equal && pair.same_bits;
         count(figures.reference_counts, pair.reference);
@@ -170,6 +142,8 @@ private:
     const Image& test_;
     LayerRole role_;
     const DifferenceRules& rules_;
+    const PixelAreas& areas_;
+    Forgiveness forgiveness_;
 };
 
 void add(RowSums& total, const RowSums& row, LayerRole role) {
@@ -181,10 +155,10 @@ void add(RowSums& total, const RowSums& row, LayerRole role) {
     if (row.has_largest && (larger || !total.has_largest)) sum.largest = more.largest;
     total.has_largest = total.has_largest || row.has_largest;
     sum.largest_pixel = std::max(sum.largest_pixel, more.largest_pixel);
-    add(sum.failing, more.failing);
-    add(sum.hard_failing, more.hard_failing);
-    add(sum.warning, more.warning);
-    add(sum.hard_warning, more.hard_warning);
+    add(sum, static_cast<const LimitCounts&>(more));
+    for (std::size_t i = 0; i < more.by_area.size(); ++i) add(sum.by_area[i], more.by_area[i]);
+    sum.left_out += more.left_out;
+    sum.forgiven += more.forgiven;
     sum.reference_counts.nan += more.reference_counts.nan;
     sum.reference_counts.infinite += more.reference_counts.infinite;
     sum.test_counts.nan += more.test_counts.nan;
@@ -215,24 +189,31 @@ void finish(RowSums& total, LayerRole role) {
 }  // namespace
 
 PixelDifferences pixel_differences(const Image& reference, const Image& test, LayerRole role,
-                                   const DifferenceRules& rules, int threads) {
+                                   const DifferenceRules& rules, const PixelAreas& areas, int threads) {
     assert(reference.width() == test.width() && reference.height() == test.height());
     assert(reference.channels() == test.channels() && reference.type() == test.type());
-    const RowCounter counter(reference, test, role, rules);
+    assert(areas.of_pixel.empty() ||
+           areas.of_pixel.size() == std::size_t(reference.width()) * std::size_t(reference.height()));
+    const RowCounter counter(reference, test, role, rules, areas, threads);
     std::vector<RowSums> rows(std::size_t(reference.height()));
     for_each_row(reference.height(), threads, [&](int y) { rows[std::size_t(y)] = counter.row(y); });
     RowSums total;
+    total.figures.by_area.resize(areas.limits.size() + 1);
     for (int y = 0; y < reference.height(); ++y) add(total, rows[std::size_t(y)], role);
-    total.figures.pixels = std::uint64_t(reference.width()) * std::uint64_t(reference.height());
     finish(total, role);
     return total.figures;
 }
 
+PixelDifferences pixel_differences(const Image& reference, const Image& test, LayerRole role,
+                                   const DifferenceRules& rules, int threads) {
+    return pixel_differences(reference, test, role, rules, PixelAreas{}, threads);
+}
+
 double pixel_difference(const Image& reference, const Image& test, int x, int y, LayerRole role,
                         bool nan_equal) {
-    std::vector<Pair> pairs;
-    take_pixel(reference, test, x, y, nan_equal, pairs);
-    return difference_of(pairs, role);
+    std::vector<ValuePair> pairs;
+    take_pair(reference, {x, y}, test, {x, y}, nan_equal, pairs);
+    return difference_of(pairs, role).value;
 }
 
 }  // namespace aftershade

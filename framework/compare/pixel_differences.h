@@ -4,11 +4,25 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "framework/compare/layer.h"
 #include "framework/image/image.h"
 
 namespace aftershade {
+
+struct PixelAreas;
+
+/// What differences a comparison forgives; at most one of the two. Forgiveness (forgiveness.h) defines both.
+struct Forgive {
+    static constexpr int kMaxShift_px = 64;
+    static constexpr double kMaxBlur_px = 32;
+
+    int shift_px = 0;    ///< 0 to kMaxShift_px
+    double blur_px = 0;  ///< standard deviation, 0 to kMaxBlur_px
+    bool any() const { return shift_px > 0 || blur_px > 0; }
+    bool operator==(const Forgive&) const = default;
+};
 
 /// When a pixel counts as failing. A pixel's difference is, by role:
 ///   color, display, alpha, data   the largest |reference - test| of its channels;
@@ -25,6 +39,7 @@ struct DifferenceRules {
     double warn = 1e-6;
     double hard_warn = std::numeric_limits<double>::infinity();
     bool nan_equal = false;
+    Forgive forgive;  ///< of a layer; areas have their layer's
 };
 
 /// The pixel and channel of the largest |reference - test|; of ids the first that differ.
@@ -41,6 +56,12 @@ struct FailingPixels {
     Window box;  ///< empty (width 0) where there are none
 };
 
+/// Pixels under one set of limits, and those of them above each.
+struct LimitCounts {
+    std::uint64_t pixels = 0;
+    FailingPixels failing, hard_failing, warning, hard_warning;
+};
+
 struct NonFiniteCounts {
     std::uint64_t nan = 0, infinite = 0;  ///< values, not pixels
     bool operator==(const NonFiniteCounts&) const = default;
@@ -51,9 +72,11 @@ struct NonFiniteCounts {
 /// compare only where their eps is this.
 inline constexpr double kRelativeMseEpsilon = 1e-2;
 
-/// Means run over the values that are finite in both images (`values` of them), in double precision.
-struct PixelDifferences {
-    std::uint64_t pixels = 0;
+/// Of the pixels that are not left out. Means run over the values that are finite in both images (`values` of
+/// them), in double precision. Only the counts of LimitCounts forgive.
+struct PixelDifferences : LimitCounts {  ///< its counts: of each pixel by the limits that hold there
+    std::uint64_t left_out = 0;          ///< pixels; not among `pixels`
+    std::uint64_t forgiven = 0;  ///< pixels whose own difference fails, and that pass because it is forgiven
     std::uint64_t values = 0;
     std::uint64_t incomparable = 0;  ///< values that are not finite in either and not equal under the rules
     LargestDifference largest;
@@ -65,15 +88,18 @@ struct PixelDifferences {
     /// magnitude in the reference (1 where that is 0).
     double psnr_db = std::numeric_limits<double>::infinity();
     double psnr_peak = 1;
-    double largest_pixel = 0;  ///< the largest difference of a pixel as DifferenceRules defines it
-    double mean_pixel = 0;     ///< over pixels where it is finite; depth: relative; velocity: px
-    FailingPixels failing, hard_failing, warning, hard_warning;
+    double largest_pixel = 0;          ///< the largest difference of a pixel as DifferenceRules defines it
+    double mean_pixel = 0;             ///< over pixels where it is finite; depth: relative; velocity: px
+    std::vector<LimitCounts> by_area;  ///< first the pixels in no area, then each area of PixelAreas::limits
     NonFiniteCounts reference_counts, test_counts;
     bool bits_equal = true;  ///< every stored value has the same bits
 };
 
-/// Both images must have one size, type and channel count (asserted). The figures do not depend on `threads`.
-/// [thread-safe]
+/// Both images must have one size, type and channel count (asserted), and `areas` that many pixels or none.
+/// The figures do not depend on `threads`. [thread-safe]
+PixelDifferences pixel_differences(const Image& reference, const Image& test, LayerRole role,
+                                   const DifferenceRules& rules, const PixelAreas& areas, int threads = 1);
+/// Every pixel under `rules`.
 PixelDifferences pixel_differences(const Image& reference, const Image& test, LayerRole role,
                                    const DifferenceRules& rules, int threads = 1);
 

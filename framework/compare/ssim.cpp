@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "framework/compare/row_filter.h"
@@ -75,13 +76,14 @@ struct Extent {
 
 struct Means {
     double ssim = 0, contrast = 0;
+    std::uint64_t pixels = 0;
 };
 
 /// Local means, variances and covariance of a band of rows: first each row across, then down.
 class Band {
 public:
-    Band(const Plane& reference, const Plane& test, const Window11& weights)
-        : reference_(reference), test_(test), weights_(weights), columns_(reference.width) {
+    Band(const Plane& reference, const Plane& test, const Window11& weights, const PixelAreas& areas)
+        : reference_(reference), test_(test), weights_(weights), areas_(areas), columns_(reference.width) {
         const auto row = std::size_t(rows::padded(columns_.count()));
         for (std::size_t m = 0; m < kMoments; ++m) {
             ring_[m].resize(kSsimWindow_px * row);
@@ -131,6 +133,8 @@ private:
             rows::convolve_down(taps.data(), weights_, means_[m].data(), columns_.count());
         }
         for (std::size_t x = 0; x < std::size_t(columns_.count()); ++x) {
+            if (areas_.is_left_out(columns_.first + int(x), y, reference_.width)) continue;
+            ++total.pixels;
             const double r = means_[kR][x], t = means_[kT][x];
             const double variance = means_[kRR][x] - r * r + means_[kTT][x] - t * t;
             const double covariance = means_[kRT][x] - r * t;
@@ -143,48 +147,55 @@ private:
     const Plane& reference_;
     const Plane& test_;
     const Window11& weights_;
+    const PixelAreas& areas_;
     Extent columns_;
     std::array<std::vector<double>, kMoments> ring_, padded_, means_;
 };
 
-Means means_of(const Plane& reference, const Plane& test, int threads) {
+/// Means over the pixels that count; sums of none.
+Means means_of(const Plane& reference, const Plane& test, int threads, const PixelAreas& areas) {
     static const Window11 weights = gaussian_window();
-    const Extent rows(reference.height), columns(reference.width);
+    const Extent rows(reference.height);
     const int bands = (rows.count() + kBandHeight_px - 1) / kBandHeight_px;
     std::vector<Means> sums(std::size_t(bands), Means{});
     for_each_row(bands, threads, [&](int band) {
         const int first = rows.first + band * kBandHeight_px;
         sums[std::size_t(band)] =
-            Band(reference, test, weights).sum(first, std::min(first + kBandHeight_px, rows.last));
+            Band(reference, test, weights, areas).sum(first, std::min(first + kBandHeight_px, rows.last));
     });
     Means means;
-    for (const Means& sum : sums) means.ssim += sum.ssim, means.contrast += sum.contrast;
-    const double pixels = double(rows.count()) * columns.count();
-    return {means.ssim / pixels, means.contrast / pixels};
+    for (const Means& sum : sums)
+        means.ssim += sum.ssim, means.contrast += sum.contrast, means.pixels += sum.pixels;
+    const double pixels = double(std::max<std::uint64_t>(means.pixels, 1));
+    return {means.ssim / pixels, means.contrast / pixels, means.pixels};
 }
 
 }  // namespace
 
-SsimFigures ssim_figures(const Image& reference, const Image& test, int threads) {
+SsimFigures ssim_figures(const Image& reference, const Image& test, int threads, const PixelAreas& areas) {
     assert(reference.width() == test.width() && reference.height() == test.height());
     assert(reference.channels() == test.channels() && !reference.empty());
-    const bool scales = std::min(reference.width(), reference.height()) >= kMsSsimMinSide_px;
+    const bool scales =
+        std::min(reference.width(), reference.height()) >= kMsSsimMinSide_px && areas.of_pixel.empty();
     double sum = 0, multi_scale_sum = 0;
+    bool any = false;
     for (int c = 0; c < reference.channels(); ++c) {
         Plane r = plane_of(reference, c), t = plane_of(test, c);
-        Means means = means_of(r, t, thread_count(threads));
+        Means means = means_of(r, t, thread_count(threads), areas);
         sum += means.ssim;
+        any = means.pixels > 0;
         if (!scales) continue;
         double product = 1;
         for (std::size_t scale = 0; scale + 1 < kMsSsimScales; ++scale) {
             product *= std::pow(std::max(means.contrast, 0.0), kScaleWeights[scale]);
             r = halved(r), t = halved(t);
-            means = means_of(r, t, thread_count(threads));
+            means = means_of(r, t, thread_count(threads), areas);
         }
         multi_scale_sum += product * std::pow(std::max(means.ssim, 0.0), kScaleWeights.back());
     }
     SsimFigures figures;
     figures.ssim = sum / reference.channels();
+    figures.measured = any;
     if (scales) figures.ms_ssim = multi_scale_sum / reference.channels();
     return figures;
 }

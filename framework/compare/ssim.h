@@ -7,6 +7,7 @@
 
 #include <optional>
 
+#include "framework/compare/pixel_areas.h"
 #include "framework/image/image.h"
 
 namespace aftershade {
@@ -20,7 +21,9 @@ inline constexpr int kMsSsimMinSide_px = kSsimWindow_px << (kMsSsimScales - 1);
 
 struct SsimFigures {
     double ssim = 1;
-    std::optional<double> ms_ssim;  ///< nullopt where a side is below kMsSsimMinSide_px
+    std::optional<double>
+        ms_ssim;           ///< nullopt where a side is below kMsSsimMinSide_px, or pixels are left out
+    bool measured = true;  ///< false where no pixel with a window counts
 };
 
 /// Of encoded values in 0..1, of 1 to 4 channels, each by itself: 1 for equal images. Both images have one
@@ -29,7 +32,8 @@ struct SsimFigures {
 /// SSIM: population variances; mean over the pixels whose window lies inside, as scikit-image with
 /// gaussian_weights and data_range 1. A side below 11 px is extended by reflection, and all its pixels count.
 /// MS-SSIM: weights 0.0448, 0.2856, 0.3001, 0.2363, 0.1333 over scales halved by means of 2 x 2 px; a mean
-/// below 0 counts as 0. [thread-safe]
-SsimFigures ssim_figures(const Image& reference, const Image& test, int threads = 0);
+/// below 0 counts as 0. Pixels that `areas` leaves out have no window of their own. [thread-safe]
+SsimFigures ssim_figures(const Image& reference, const Image& test, int threads = 0,
+                         const PixelAreas& areas = {});
 
 }  // namespace aftershade

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -233,6 +234,77 @@ TEST_F(CompareCommand, SaysNothingWhenQuiet) {
     const CommandResult result = compare({"r.exr", "t.exr", "-q"});
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_EQ(result.out + result.err, "");
+}
+
+TEST_F(CompareCommand, LeavesOutAreasAndSaysSo) {
+    // Pixel i is (3 i + 2, i + 5), 0 to 6: the seven lie in 19 x 7 px from (2, 5).
+    EXPECT_EQ(code({"--ignore", "2,5,19,7"}), 0);
+    EXPECT_EQ(code({"--ignore", "2,5,19,6"}), 2);
+    const CommandResult text = compare({"r.exr", "t.exr", "--ignore", "2,5,4,2", "--ignore", "8,7,13,5"});
+    EXPECT_EQ(text.exit_code, 0) << text.out;
+    EXPECT_NE(text.out.find("left out: 73 of 768 pixels (9.505 %): 2,5,4,2; 8,7,13,5"), std::string::npos)
+        << text.out;
+    EXPECT_NE(text.out.find("same (9.505 % of the pixels left out)\n"), std::string::npos) << text.out;
+    const Json report = json({"r.exr", "t.exr", "--ignore", "2,5,19,7"});
+    EXPECT_EQ(report["layers"][0]["left_out_pixels"], 133);
+    EXPECT_EQ(report["rules"]["ignore"], Json::array({"2,5,19,7"}));
+    const Image mask = picture(32, 24, 1, [](int, int y, int) { return y >= 5 && y < 12 ? 1.0f : 0.0f; });
+    write_png(folder_ / "mask.png", mask);
+    EXPECT_EQ(code({"--ignore", "mask:mask.png"}), 0);
+    EXPECT_EQ(code({"--ignore", "mask:none.png"}), 4);
+    const CommandResult all = compare({"r.exr", "r.exr", "--ignore", "0,0,32,24"});
+    EXPECT_EQ(all.exit_code, 3) << "nothing was compared";
+    EXPECT_NE(all.out.find("every pixel is left out"), std::string::npos) << all.out;
+    for (const char* where : {"1,2,3", "1,2,3,4,5", "1,2,3,0", "1,2,3,x", "0.5,0,1,1", "mask", "object:"})
+        EXPECT_EQ(code({"--ignore", where}), 64) << where;
+    EXPECT_EQ(code({"--ignore", "40,0,8,8"}), 3) << "outside of the picture";
+}
+
+TEST_F(CompareCommand, HoldsAreasAndLayersToLimitsOfTheirOwn) {
+    EXPECT_EQ(code({"--area", "2,5,19,7=0.3"}), 0);
+    EXPECT_EQ(code({"--area", "2,5,19,7=0.2"}), 2);
+    EXPECT_EQ(code({"--layer", "RGB=0.3"}), 0);
+    EXPECT_EQ(code({"--fail", "0.3", "--layer", "RGB=0.2"}), 2);
+    const CommandResult wrong = compare({"r.exr", "t.exr", "--layer", "RGX=0.3"});
+    EXPECT_EQ(wrong.exit_code, 64);
+    EXPECT_NE(wrong.err.find("did you mean 'RGB'"), std::string::npos) << wrong.err;
+    for (const char* word : {"2,5,19,7", "2,5,19,7=-1", "2,5,19,7=x", "=1"})
+        EXPECT_EQ(code({"--area", word}), 64) << word;
+}
+
+TEST_F(CompareCommand, ForgivesAShiftOrABlurWhereItIsAskedAndNamesIt) {
+    const auto value = [](int x, int y, int c) { return hashed(x / 4, y / 4, c, 2); };
+    write_rgb(folder_ / "r.exr", picture(32, 24, 3, value));
+    write_rgb(folder_ / "t.exr",
+              picture(32, 24, 3, [&](int x, int y, int c) { return value(std::min(x + 1, 31), y, c); }));
+    EXPECT_EQ(code({}), 2);
+    const CommandResult shift = compare({"r.exr", "t.exr", "--forgive-shift", "1"});
+    EXPECT_EQ(shift.exit_code, 0) << shift.out;
+    EXPECT_NE(shift.out.find("same (forgives a shift of up to 1 px)\n"), std::string::npos) << shift.out;
+    EXPECT_NE(shift.out.find("forgiven: 168 pixels, by a shift of up to 1 px"), std::string::npos)
+        << shift.out;
+    EXPECT_EQ(json({"r.exr", "t.exr", "--forgive-shift", "1"})["layers"][0]["forgiven_pixels"], 168);
+    EXPECT_EQ(code({"--forgive-blur", "8", "--fail", "0.2"}), 0);
+    EXPECT_EQ(code({"--forgive-shift", "1", "--forgive-blur", "1"}), 64);
+    EXPECT_EQ(code({"--forgive-shift", "65"}), 64);
+}
+
+TEST_F(CompareCommand, LeavesOutObjectsByTheirIds) {
+    Image ids(32, 24, 1, ComponentType::uint32);
+    for (int y = 5; y < 12; ++y)
+        for (int x = 0; x < 32; ++x) ids.uint_at(x, y, 0) = 7;
+    const Image reference = picture(32, 24, 3, [](int x, int y, int c) { return 0.5f * hashed(x, y, c, 1); });
+    Image test = reference;
+    for (int i = 0; i < 7; ++i) test.at(3 * i + 2, i + 5, 0) += 0.25f;
+    write_exr_file(folder_ / "r.exr", {{{"R", "G", "B"}, reference}, {{"object_id.I"}, ids}});
+    write_exr_file(folder_ / "t.exr", {{{"R", "G", "B"}, test}, {{"object_id.I"}, ids}});
+    EXPECT_EQ(code({}), 2);
+    EXPECT_EQ(code({"--ignore", "object:7"}), 0);
+    EXPECT_EQ(code({"--ignore", "object:8"}), 2);
+    write_rgb(folder_ / "plain.exr", reference);
+    EXPECT_EQ(compare({"plain.exr", "t.exr", "--ignore", "object:7"}).exit_code, 4) << "which has no ids";
+    EXPECT_EQ(
+        compare({"plain.exr", "plain.exr", "--ignore", "object:7", "--objects-from", "t.exr"}).exit_code, 0);
 }
 
 }  // namespace

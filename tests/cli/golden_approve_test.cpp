@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <regex>
 #include <thread>
 
 #include "framework/batch/approved_image.h"
@@ -206,6 +207,38 @@ TEST_F(GoldenApprove, WritesNothingWhenItIsInterrupted) {
     if (fs::exists(folder_ / "goldens")) {
         EXPECT_EQ(contents(folder_ / "goldens").size(), 0u);
     }
+}
+
+TEST_F(GoldenApprove, NamesWhoApprovedAndWhen) {
+    const Environment nobody{
+        {"GIT_CONFIG_GLOBAL", "/dev/null"}, {"GIT_CONFIG_SYSTEM", "/dev/null"}, {"USER", ""}};
+    const auto sidecar = [&](const std::string& name) {
+        return Json::parse(read_text(sidecar_path(image(name))));
+    };
+    ASSERT_EQ(golden({"approve", "golden.json", "--filter", "corner"}, nobody).exit_code, 0);
+    EXPECT_FALSE(sidecar("corner.color.0001").contains("approver")) << "nobody is invented";
+    EXPECT_TRUE(std::regex_match(sidecar("corner.color.0001")["approved"].get<std::string>(),
+                                 std::regex("20[0-9]{2}-[01][0-9]-[0-3][0-9]")));
+    const CommandResult result = golden({"approve", "golden.json", "--approver", "Ada \"L\" <b>"}, nobody);
+    EXPECT_NE(result.err.find("approved by Ada \"L\" <b>, 20"), std::string::npos) << result.err;
+    EXPECT_EQ(sidecar("lens.color.0001")["approver"], "Ada \"L\" <b>");
+    EXPECT_FALSE(sidecar("corner.color.0001").contains("approver")) << "which had the same bits";
+    const Json approved = case_of(report(), "lens")["images"][0]["approved"]["sidecar"];
+    EXPECT_EQ(approved["approver"], "Ada \"L\" <b>");
+    EXPECT_EQ(approved["approved"], sidecar("lens.color.0001")["approved"]);
+    // Whoever renews sidecars has looked at nothing.
+    Json old = sidecar("lens.color.0001");
+    old["look_hash"] = "0";
+    write_text(sidecar_path(image("lens.color.0001")), old.dump());
+    ASSERT_EQ(golden({"approve", "golden.json", "--renew-sidecars", "--approver", "Eve"}, nobody).exit_code,
+              0);
+    EXPECT_EQ(sidecar("lens.color.0001")["approver"], "Ada \"L\" <b>");
+    EXPECT_NE(sidecar("lens.color.0001")["look_hash"], "0");
+    darken("corner.color.0001");
+    ASSERT_EQ(
+        golden({"approve", "golden.json"}, {{"GIT_CONFIG_GLOBAL", "/dev/null"}, {"USER", "grace"}}).exit_code,
+        0);
+    EXPECT_EQ(sidecar("corner.color.0001")["approver"], "grace");
 }
 
 }  // namespace

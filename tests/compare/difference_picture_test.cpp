@@ -61,7 +61,7 @@ protected:
         layer.role = role;
         for (int c = 0; c < reference.channels(); ++c) layer.channels.push_back(std::to_string(c));
         layer.window = {0, 0, reference.width() - 1, reference.height() - 1};
-        compare_layer(reference, test, {}, layer);
+        compare_layer({reference, test, {}}, {}, layer);
         return side_by_side_row(layer, {reference, test});
     }
     static float at_middle(const Image& picture, int channel) {

@@ -16,7 +16,7 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 
 import { axeSource, colorsAt, compareWithPng, openBrowser, openPage, seenColorsAt, viewerOf } from "./browser.mjs";
-import { golden, makeReport, program, rebuildPage } from "./suite.mjs";
+import { approver, golden, makeReport, program, rebuildPage } from "./suite.mjs";
 
 const folder = mkdtempSync(join(tmpdir(), "aftershade-page-"));
 let browser, suite, report, file, json;
@@ -397,6 +397,25 @@ inPage("frees pictures far from the window and reads them again", async (page) =
   await viewerOf(page, "lens");
   assert.equal(await size(), width);
   assert.equal(await exposureOf(before), -1);
+});
+
+// ---- what a verdict leaves aside, who approved ----
+
+inPage("says what is left out, what is forgiven, and who approved when", async (page) => {
+  await page.locator("#case-left_out > summary").click();
+  const details = page.locator("#case-left_out .details");
+  await details.waitFor();
+  const text = await details.innerText();
+  const layer = caseOf("left_out").images[0].comparison.layers[0];
+  assert.equal(caseOf("left_out").verdict, "same");
+  assert.equal(layer.left_out_pixels, 20);
+  assert.match(text, /20 left out/);
+  assert.match(text, /forgives a shift of up to 2 px; leaves out 30,16,4,5/);
+  assert.match(text, /Every bit that is not left out is as approved/);
+  const { sidecar } = caseOf("left_out").images[0].approved;
+  assert.equal(sidecar.approver, approver);
+  assert.match(sidecar.approved, /^\d{4}-\d\d-\d\d$/);
+  assert.ok(text.includes(`${approver}, ${sidecar.approved}`), text);
 });
 
 // ---- approving ----

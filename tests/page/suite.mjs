@@ -37,6 +37,7 @@ void main() {
 `,
 };
 
+export const approver = "Ada <b>Lovelace</b>";
 const broken = "float broken() { return parm; }";
 
 const corner = "corner.exr"; // of the capture: 40 x 30 px from (200, 100)
@@ -60,6 +61,11 @@ function casesOf(changed) {
       tags: ["slow", "<b>bold</b>"],
     },
     cardCase("one_pixel", { change: 0.5 }, { tolerance: { fail: 0.004 } }),
+    cardCase(
+      "left_out",
+      { change: 0.5 },
+      { tolerance: { fail: 0.004, forgive_shift: 2, ignore: [{ rectangle: [30, 16, 4, 5] }] } },
+    ),
     cardCase("poisoned", { poison: true }),
     cardCase("inside_tolerance", { change: 0.03125 }, { tolerance: { fail: 0.1 } }),
     cardCase("warned", { change: 0.25 }, { tolerance: { fail: 1, warn: 0.01 } }),
@@ -121,7 +127,7 @@ export function makeReport(folder) {
   };
   write(false);
   draw(folder, "in.exr", corner, "--region", "200,100,40,30");
-  const approved = golden(folder, "approve", ".");
+  const approved = golden(folder, "approve", ".", "--approver", approver);
   if (approved.code !== 0) throw new Error(approved.err);
   copyFileSync(join(folder, "goldens/passing.color.0001.exr"), join(folder, "goldens/gone.color.0001.exr"));
   // What no look makes: a golden of other pixels than the picture's, and one of other layers.

@@ -20,6 +20,11 @@ function figure(value) {
 
 const exactFigure = (value) => (typeof value === "number" ? exact(value) : figure(value));
 
+/** What the failing pixels of a layer leave aside. */
+function notCounted({ left_out_pixels: leftOut, forgiven_pixels: forgiven }) {
+  return (leftOut ? `, ${leftOut} left out` : "") + (forgiven ? `, ${forgiven} forgiven` : "");
+}
+
 function metricsTable(image) {
   const heads = [
     "Layer",
@@ -46,13 +51,13 @@ function metricsTable(image) {
       return [
         `${layer.layer} (${layer.role})`,
         layer.verdict,
-        "no pixel in common",
+        layer.left_out_pixels ? "every pixel is left out" : "no pixel in common",
         ...Array(heads.length - 3).fill("\u2013"),
       ];
     return [
       `${layer.layer} (${layer.role})`,
       layer.verdict,
-      `${layer.failing.pixels} of ${layer.pixels} (${figure(layer.failing.percent)} %)`,
+      `${layer.failing.pixels} of ${layer.pixels} (${figure(layer.failing.percent)} %)${notCounted(layer)}`,
       figure(worst.value),
       worst.value === 0 ? "\u2013" : `${worst.x}, ${worst.y} ${worst.channel}`,
       exactFigure(worst.reference),
@@ -77,11 +82,20 @@ function metricsTable(image) {
   );
 }
 
-function toleranceWords({ fail, warn, nan_equal }) {
-  const words = [levelWords("fails", fail)];
-  if (warn && JSON.stringify(warn) !== JSON.stringify(fail)) words.push(levelWords("warns", warn));
-  if (nan_equal) words.push("NaN equals NaN");
+function toleranceWords(rules) {
+  const words = [bothLevels(rules)];
+  if (rules.nan_equal) words.push("NaN equals NaN");
+  if (rules.forgive_shift_px) words.push(`forgives a shift of up to ${rules.forgive_shift_px} px`);
+  if (rules.forgive_blur_px) words.push(`forgives a blur of sigma ${figure(rules.forgive_blur_px)} px`);
+  for (const [layer, own] of Object.entries(rules.layers ?? {})) words.push(`layer ${layer} ${bothLevels(own)}`);
+  for (const own of rules.areas ?? []) words.push(`area ${own.area} ${bothLevels(own)}`);
+  for (const area of rules.ignore ?? []) words.push(`leaves out ${area}`);
   return words.join("; ");
+}
+
+function bothLevels({ fail, warn }) {
+  const same = !warn || JSON.stringify(warn) === JSON.stringify(fail);
+  return [levelWords("fails", fail), same ? null : levelWords("warns", warn)].filter(Boolean).join("; ");
 }
 
 function levelWords(does, { limit, percent, hard, allowed, flip, ssim }) {
@@ -113,7 +127,13 @@ function imageSection(image, report, viewers) {
     parts.push(element("p", { class: "missing" }, `Pictures are missing: ${image.shown.missing}`));
   else if (isAsApproved(image)) {
     parts.push(
-      element("p", { class: "quiet" }, "Every bit is as approved."),
+      element(
+        "p",
+        { class: "quiet" },
+        image.comparison?.layers.some((layer) => layer.left_out_pixels)
+          ? "Every bit that is not left out is as approved."
+          : "Every bit is as approved.",
+      ),
       element("img", {
         class: "whole",
         src: smallPicture(image, report),
@@ -138,7 +158,8 @@ function imageSection(image, report, viewers) {
           : "the tolerance",
       ],
       ["Tolerance", image.comparison ? toleranceWords(image.comparison.rules) : null],
-      ["Approved by", sidecar?.command],
+      ["Approved by", [sidecar?.approver, sidecar?.approved].filter(Boolean).join(", ") || null],
+      ["Approved with", sidecar?.command],
       [
         "Files",
         image.pictures.test_exr

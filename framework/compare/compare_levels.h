@@ -1,0 +1,35 @@
+// What a layer, or an area of it, is held to.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "framework/compare/pixel_differences.h"
+
+namespace aftershade {
+
+/// A level is exceeded where more than `percent` of a layer's pixels, and more than `allowed` pixels, differ
+/// by more than `limit`; or more than `allowed` by more than `hard`. Both are always looked at, whatever the
+/// other says (idiff's -hardfail is not looked at where no pixel exceeds -fail, nor its -warn).
+struct Tolerance {
+    double limit = 1e-6;  ///< of a pixel's difference; see DifferenceRules
+    double percent = 0;   ///< of the pixels
+    double hard = std::numeric_limits<double>::infinity();
+    std::uint64_t allowed = 0;  ///< pixels
+};
+
+struct Levels {
+    Tolerance fail;
+    /// nullopt: as `fail`, but with percent 0, so that what only `percent` lets pass is a warning, as
+    /// idiff's.
+    std::optional<Tolerance> warn;
+    std::optional<double> fail_flip, warn_flip;  ///< exceeded by the mean of a layer's FLIP, LDR or HDR
+    std::optional<double> fail_ssim, warn_ssim;  ///< exceeded where a layer's SSIM is below
+
+    Tolerance warn_tolerance() const;
+    /// The limits of a pixel alone.
+    DifferenceRules difference_limits() const;
+};
+
+}  // namespace aftershade

@@ -1,0 +1,27 @@
+// Which pixels of two images count, and under which limits.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "framework/compare/pixel_differences.h"
+
+namespace aftershade {
+
+/// For each pixel of an image, row by row, what it is held to: 0 the layer's limits, kLeftOut nothing, i the limits
+/// limits[i - 1] of an area. Empty: every pixel is held to the layer's. [value type]
+struct PixelAreas {
+    static constexpr std::uint8_t kLeftOut = 255;
+    static constexpr std::size_t kMost = 254;  ///< areas with limits of their own
+
+    std::vector<std::uint8_t> of_pixel;
+    std::vector<DifferenceRules> limits;
+
+    std::uint8_t at(int x, int y, int width) const {
+        return of_pixel.empty() ? 0 : of_pixel[std::size_t(y) * std::size_t(width) + std::size_t(x)];
+    }
+    bool is_left_out(int x, int y, int width) const { return at(x, y, width) == kLeftOut; }
+};
+
+}  // namespace aftershade

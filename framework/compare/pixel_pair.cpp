@@ -1,0 +1,77 @@
+#include "framework/compare/pixel_pair.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+namespace aftershade {
+
+namespace {
+
+constexpr double kEndless = std::numeric_limits<double>::infinity();
+
+ValuePair pair_of(std::uint32_t reference, std::uint32_t test) {
+    return {double(reference), double(test), true, reference == test, true};
+}
+
+ValuePair pair_of(float reference, float test, bool nan_equal) {
+    ValuePair pair{reference, test, std::isfinite(reference) && std::isfinite(test), true, true};
+    pair.same_bits = std::bit_cast<std::uint32_t>(reference) == std::bit_cast<std::uint32_t>(test);
+    if (!pair.finite)
+        pair.comparable = std::isnan(reference) && std::isnan(test) ? nan_equal : reference == test;
+    return pair;
+}
+
+double relative_difference(const ValuePair& pair) {
+    const double difference = pair.difference();
+    return difference == 0 || difference == kEndless ? difference : difference / std::abs(pair.reference);
+}
+
+double end_point_error(std::span<const ValuePair> pairs) {
+    const auto length = [](std::span<const ValuePair> vector) {
+        double sum = 0;
+        for (const ValuePair& pair : vector) sum += pair.difference() * pair.difference();
+        return std::sqrt(sum);
+    };
+    return pairs.size() == 4 ? std::max(length(pairs.first(2)), length(pairs.last(2))) : length(pairs);
+}
+
+double value_of(std::span<const ValuePair> pairs, LayerRole role) {
+    if (role == LayerRole::velocity) return end_point_error(pairs);
+    double largest = 0;
+    for (const ValuePair& pair : pairs) {
+        double difference = pair.difference();
+        if (role == LayerRole::depth) difference = relative_difference(pair);
+        if (role == LayerRole::id) difference = pair.same_bits ? 0 : kEndless;
+        largest = std::max(largest, difference);
+    }
+    return largest;
+}
+
+std::size_t first_value(const Image& image, PixelPlace place) {
+    return (std::size_t(place.y) * std::size_t(image.width()) + std::size_t(place.x)) *
+           std::size_t(image.channels());
+}
+
+}  // namespace
+
+void take_pair(const Image& reference, PixelPlace in_reference, const Image& test, PixelPlace in_test,
+               bool nan_equal, std::vector<ValuePair>& pairs) {
+    const auto channels = std::size_t(reference.channels());
+    const std::size_t r = first_value(reference, in_reference), t = first_value(test, in_test);
+    pairs.resize(channels);
+    for (std::size_t c = 0; c < channels; ++c)
+        pairs[c] = reference.type() == ComponentType::uint32
+                       ? pair_of(reference.uints()[r + c], test.uints()[t + c])
+                       : pair_of(reference.floats()[r + c], test.floats()[t + c], nan_equal);
+}
+
+PixelDifference difference_of(std::span<const ValuePair> pairs, LayerRole role) {
+    const double value = value_of(pairs, role);
+    const bool comparable =
+        role == LayerRole::id ? value == 0 : std::ranges::all_of(pairs, &ValuePair::comparable);
+    return {value, comparable};
+}
+
+}  // namespace aftershade
