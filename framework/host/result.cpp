@@ -103,9 +103,10 @@ void Result::write(const std::filesystem::path& path, const WriteOptions& option
         outputs.renderer = data_->renderer;
         aftershade::Sequence sequence;
         sequence.frames = {frame()};
-        sequence.files = FramePattern::of_file(data_->capture->header.path.string());
+        InputFiles inputs;
+        inputs.add(data_->capture->header.path);
         Diagnostics faults;
-        check_outputs(outputs, sequence, faults);
+        check_outputs(outputs, sequence, inputs, faults);
         stop_at_errors(ErrorKind::usage, faults);
         for (const std::string& role : wanted_roles(outputs)) {
             const auto captured = data_->capture->images.find(role);
