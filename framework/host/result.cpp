@@ -4,7 +4,6 @@
 #include "aftershade/look.h"
 #include "framework/host/failures.h"
 #include "framework/host/rendering.h"
-#include "framework/core/input_files.h"
 #include "framework/pipeline/output.h"
 
 namespace aftershade::host {
@@ -104,10 +103,9 @@ void Result::write(const std::filesystem::path& path, const WriteOptions& option
         outputs.renderer = data_->renderer;
         aftershade::Sequence sequence;
         sequence.frames = {frame()};
-        sequence.files = FramePattern::of_file(data_->capture->header.path.string());
-        Diagnostics faults;
         InputFiles inputs;
         inputs.add(data_->capture->header.path);
+        Diagnostics faults;
         check_outputs(outputs, sequence, inputs, faults);
         stop_at_errors(ErrorKind::usage, faults);
         for (const std::string& role : wanted_roles(outputs)) {
