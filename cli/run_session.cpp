@@ -40,7 +40,7 @@ public:
             write_text_file(
                 session_.arguments.jobs.report,
                 report_json({session_.arguments.look, session_.arguments.capture.capture,
-                             frame_events(session_.run, outcomes_, current_), taken.count(), code_}));
+                             frame_events(session_.run, outcomes_, current_), taken.count(), code_, error_}));
         } catch (const Error& error) {
             std::cerr << error.what() << "\n";
         }
@@ -68,6 +68,7 @@ public:
             return report;
         } catch (const Error& error) {
             ended(error.exit_code());
+            error_ = error.what();
             throw;
         }
     }
@@ -77,6 +78,7 @@ private:
     const std::vector<int>& current_;
     std::vector<FrameOutcome> outcomes_;
     ExitCode code_ = ExitCode::effect;  // of an error
+    std::string error_;                 // its message
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
