@@ -35,25 +35,37 @@ std::vector<FrameEvent> frame_events(const RunOptions& run, const std::vector<Fr
     return events;
 }
 
+namespace {
+
+std::string cause_of_not_run(const BatchSummary& summary) {
+    if (!summary.error.empty()) return "the run ended: " + summary.error;
+    if (summary.exit_code == ExitCode::interrupted) return "the run was interrupted";
+    return "the run ended at a frame that failed";
+}
+
+}  // namespace
+
 std::string report_json(const BatchSummary& summary) {
     nlohmann::ordered_json frames = nlohmann::ordered_json::array();
     for (const FrameEvent& event : summary.frames) {
         nlohmann::ordered_json entry = {{"frame", event.frame}, {"outcome", event.outcome}};
         if (event.outcome == "done") entry["seconds"] = event.seconds;
         if (!event.message.empty()) entry["message"] = event.message;
+        else if (event.outcome == "not run") entry["message"] = cause_of_not_run(summary);
         frames.push_back(std::move(entry));
     }
-    const nlohmann::ordered_json report = {{"aftershade_report", 1},
-                                           {"look", summary.look},
-                                           {"capture", summary.capture},
-                                           {"exit_code", int(summary.exit_code)},
-                                           {"seconds", summary.seconds},
-                                           {"done", count_outcome(summary.frames, "done")},
-                                           {"current", count_outcome(summary.frames, "current")},
-                                           {"failed", count_outcome(summary.frames, "failed")},
-                                           {"skipped", count_outcome(summary.frames, "skipped")},
-                                           {"not_run", count_outcome(summary.frames, "not run")},
-                                           {"frames", std::move(frames)}};
+    nlohmann::ordered_json report = {{"aftershade_report", 1},
+                                     {"look", summary.look},
+                                     {"capture", summary.capture},
+                                     {"exit_code", int(summary.exit_code)},
+                                     {"seconds", summary.seconds},
+                                     {"done", count_outcome(summary.frames, "done")},
+                                     {"current", count_outcome(summary.frames, "current")},
+                                     {"failed", count_outcome(summary.frames, "failed")},
+                                     {"skipped", count_outcome(summary.frames, "skipped")},
+                                     {"not_run", count_outcome(summary.frames, "not run")},
+                                     {"frames", std::move(frames)}};
+    if (!summary.error.empty()) report["error"] = summary.error;
     return report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 

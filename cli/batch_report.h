@@ -15,6 +15,7 @@ struct BatchSummary {
     std::vector<FrameEvent> frames;
     double seconds = 0;
     ExitCode exit_code = ExitCode::done;
+    std::string error{};  ///< the message of what ended the run; "" where nothing did
 };
 
 /// The outcomes of a run in this process; frames without one are "not run" unless they are current.
@@ -24,6 +25,7 @@ FrameEvent frame_event(const FrameOutcome& outcome);
 
 int count_outcome(const std::vector<FrameEvent>& frames, const std::string& outcome);
 
+/// Frames that were not run say why, unless they have a message of their own.
 /// {"look": ..., "frames": [{"frame": 12, "outcome": "failed", "seconds": 0.4, "message": "..."}], ...}
 std::string report_json(const BatchSummary& summary);
 

@@ -11,6 +11,7 @@
 #include "cli/capture_options.h"
 #include "cli/check_velocity.h"
 #include "cli/inspect_report.h"
+#include "cli/inspect_sheet.h"
 #include "cli/verbs.h"
 #include "framework/capture/sample_means.h"
 #include "framework/core/data_path.h"
@@ -19,6 +20,7 @@
 #include "framework/image/role.h"
 #include "framework/inspect/contact_sheet.h"
 #include "framework/inspect/depth_kind.h"
+#include "framework/inspect/frame_sheet.h"
 
 namespace aftershade::cli {
 
@@ -27,6 +29,7 @@ namespace {
 struct InspectOptions {
     CaptureOptions capture;
     std::string contact_sheet;
+    int columns = 0;  ///< of a contact sheet of frames; 0: as many as fit
     std::vector<std::string> check_velocity;
     std::optional<std::string> cryptomatte;
     bool json = false;
@@ -36,9 +39,21 @@ void check_options(const InspectOptions& options, const std::optional<Sequence>&
                    Diagnostics& diagnostics) {
     if (!options.contact_sheet.empty() && !options.contact_sheet.ends_with(".png"))
         diagnostics.error({"--contact-sheet " + options.contact_sheet}, "a contact sheet is a .png file");
-    if (sequence && !options.capture.frames.empty() && sequence->frames.size() > 1)
+    if (options.columns > 0 && options.contact_sheet.empty())
+        diagnostics.error({"--columns"}, "is for a contact sheet of frames; add --contact-sheet FILE.png");
+    if (sequence && !options.capture.frames.empty() && sequence->frames.size() > 1 &&
+        options.contact_sheet.empty())
         diagnostics.error({"--frames " + options.capture.frames},
-                          std::to_string(sequence->frames.size()) + " frames; inspect looks at one");
+                          std::to_string(sequence->frames.size()) +
+                              " frames; inspect looks at one, and puts several on a --contact-sheet");
+}
+
+/// Whether the contact sheet has frames rather than the roles of one frame.
+bool wants_frames(const InspectOptions& options, const Sequence& sequence) {
+    const bool has_pictures = sequence.path_of(0).extension() == ".png";
+    return !options.contact_sheet.empty() &&
+           (has_pictures || options.columns > 0 ||
+            (sequence.frames.size() > 1 && !options.capture.frames.empty()));
 }
 
 std::string without_path(const std::string& message, const std::filesystem::path& path) {
@@ -159,6 +174,8 @@ ExitCode inspect(const InspectOptions& options) {
 
     set_exr_threads(int(std::thread::hardware_concurrency()));
     const CaptureReader reader(*sequence, std::move(profiles), options.capture.limits);
+    if (wants_frames(options, *sequence))
+        return write_frame_sheet(options.contact_sheet, options.columns, *sequence, reader);
     Inspection inspection = inspect_frame(*sequence, sequence->file_number(sequence->frames.front()), reader,
                                           options.capture.limits);
     find_depth_kind_of(reader, inspection);
@@ -187,14 +204,20 @@ Verb add_inspect(CLI::App& app) {
         "Two consecutive frames: do their motion vectors mean what the profile says? Exit 1: no");
     check->expected(2)->type_name("A B");
     capture->required(false)->excludes(check);
-    add_capture_options(app, options->capture, "The frame to look at (default: the first)");
+    add_capture_options(app, options->capture,
+                        "The frame to look at (default: the first), or those of a contact sheet");
     app.add_flag("--json", options->json, "Machine-readable output");
     app.add_option(
            "--cryptomatte", options->cryptomatte,
            "List the objects of this Cryptomatte with their coverage (without a name: of the one of objects)")
         ->expected(0, 1);
     app.add_option("--contact-sheet", options->contact_sheet,
-                   "Write every role in false colour to this .png file");
+                   "Write every role in false colour to this .png file; of several --frames, or of a pattern "
+                   "of PNG files, thumbnails of the colour");
+    app.add_option("--columns", options->columns,
+                   "Of a contact sheet of frames, which is then of all frames unless --frames names some "
+                   "(default: as many as fit)")
+        ->check(CLI::Range(1, kMostSheetFrames));
     return [options] {
         if (!options->check_velocity.empty())
             return check_velocity_of_files(options->check_velocity, options->capture, options->json);

@@ -76,14 +76,26 @@ void print_openjd_progress(std::size_t done, std::size_t count, const std::strin
     std::fflush(stdout);
 }
 
-void RunReporter::clear_line() {
-    if (has_line_) fmt::print(stderr, "\r\033[K");
-    has_line_ = false;
+std::string rate_text(std::size_t done, std::size_t count, double elapsed_s) {
+    return fmt::format("{:.3g} frames/s, {} left", double(done) / elapsed_s,
+                       duration_text(elapsed_s / double(done) * double(count - done)));
+}
+
+void ProgressLine::clear() {
+    if (is_shown_) fmt::print(stderr, "\r\033[K");
+    is_shown_ = false;
+}
+
+void ProgressLine::show(ProgressStyle style, const std::string& text) {
+    clear();
+    is_shown_ = style == ProgressStyle::terminal;
+    fmt::print(stderr, "{}{}", text, is_shown_ ? "" : "\n");
+    std::fflush(stderr);
 }
 
 void RunReporter::say(const char* event, const std::string& text) {
     if (style_ == ProgressStyle::json) return print_json({{"event", event}, {"message", text}});
-    clear_line();
+    line_.clear();
     fmt::print(stderr, "{}\n", printable_lines(text));
 }
 
@@ -116,14 +128,10 @@ void RunReporter::show_progress(int frame) {
         return print_json(line);
     }
     std::string text = fmt::format("frame {} ({}/{})", frame, started_, frame_count_);
-    if (done > 0) text += fmt::format(", {:.3g} frames/s, {} left", done / elapsed_s, duration_text(left_s));
+    if (done > 0) text += ", " + rate_text(std::size_t(done), std::size_t(frame_count_), elapsed_s);
     if (style_ == ProgressStyle::openjd)
         print_openjd_progress(std::size_t(done), std::size_t(frame_count_), text);
-    if (style_ != ProgressStyle::terminal) return say("frame", text);
-    clear_line();
-    fmt::print(stderr, "{}", text);
-    std::fflush(stderr);
-    has_line_ = true;
+    line_.show(style_, text);
 }
 
 void RunReporter::begin_frame(const Capture& capture) {
@@ -137,7 +145,7 @@ RunObserver RunReporter::observer() {
     RunObserver observer;
     observer.frame_started = [this](const Capture& capture) { begin_frame(capture); };
     observer.file_written = [this](const std::filesystem::path& path) {
-        clear_line();
+        line_.clear();
         fmt::print("{}\n", path.string());
         if (std::fflush(stdout) != 0)
             throw Error(ExitCode::output,
@@ -204,7 +212,7 @@ void RunReporter::print_json_summary(const RunReport& report) const {
 }
 
 void RunReporter::print_summary(const RunReport& report, const std::string& clock) {
-    clear_line();
+    line_.clear();
     if (style_ == ProgressStyle::none) return;
     frame_count_ -= warmup_frames_ + report.frames_unwritten;  // what was to be written
     if (style_ == ProgressStyle::json) return print_json_summary(report);

@@ -26,6 +26,20 @@ ProgressStyle parse_progress(const std::string& name);
 /// https://github.com/OpenJobDescription/openjd-specifications/wiki/How-Jobs-Are-Run#stdoutstderr-messages
 void print_openjd_progress(std::size_t done, std::size_t count, const std::string& status);
 
+/// "12.5 frames/s, 48 s left": of `count` frames that many are done.
+std::string rate_text(std::size_t done, std::size_t count, double elapsed_s);
+
+/// The last line of stderr while a run works: on a terminal one that changes, else a line each time.
+class ProgressLine {
+public:
+    /// Takes the line away that a terminal shows, before anything else is printed.
+    void clear();
+    void show(ProgressStyle style, const std::string& text);
+
+private:
+    bool is_shown_ = false;
+};
+
 class RunReporter {
 public:
     /// Of `frame_count` frames the first ones only warm history up.
@@ -38,7 +52,6 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
 
-    void clear_line();
     /// A line of its own, or {"event": event, "message": text}.
     void say(const char* event, const std::string& text);
     void begin_frame(const Capture& capture);
@@ -51,7 +64,7 @@ private:
     int frame_count_ = 0;
     int warmup_frames_ = 0;
     int started_ = 0;
-    bool has_line_ = false;
+    ProgressLine line_;
     Clock::time_point begin_{};
     std::string profile_;
     std::set<std::string> notes_;  ///< that have been told

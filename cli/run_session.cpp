@@ -41,7 +41,7 @@ public:
             write_text_file(
                 session_.arguments.jobs.report,
                 report_json({session_.arguments.look, session_.arguments.capture.capture,
-                             frame_events(session_.run, outcomes_, current_), taken.count(), code_}));
+                             frame_events(session_.run, outcomes_, current_), taken.count(), code_, error_}));
         } catch (const Error& error) {
             std::cerr << printable_lines(error.what()) << "\n";
         }
@@ -69,6 +69,7 @@ public:
             return report;
         } catch (const Error& error) {
             ended(error.exit_code());
+            error_ = error.what();
             throw;
         }
     }
@@ -78,6 +79,7 @@ private:
     const std::vector<int>& current_;
     std::vector<FrameOutcome> outcomes_;
     ExitCode code_ = ExitCode::effect;  // of an error
+    std::string error_;                 // its message
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 

@@ -39,14 +39,14 @@ public:
     JobListener listener() {
         JobListener listener;
         listener.on_stdout = [this](std::string_view line) {
-            clear_line();
+            line_.clear();
             fmt::print("{}\n", line);
             std::fflush(stdout);
         };
         listener.on_stderr = [this](std::string_view line) {
             // Every worker says the same of what all frames have in common.
             if (!said_.emplace(line).second) return;
-            clear_line();
+            line_.clear();
             fmt::print(stderr, "{}\n", line);
         };
         listener.on_frame = [this](const FrameEvent& event) { frame(event); };
@@ -54,7 +54,7 @@ public:
     }
 
     void finish(const JobsReport& report, std::size_t workers, double seconds) {
-        clear_line();
+        line_.clear();
         fmt::print(stderr, "{}", failures_text(report.frames));
         if (style_ == ProgressStyle::none || style_ == ProgressStyle::json) return;
         const std::size_t done = frames_of(report.frames, "done").size();
@@ -67,11 +67,6 @@ public:
     }
 
 private:
-    void clear_line() {
-        if (has_line_) fmt::print(stderr, "\r\033[K");
-        has_line_ = false;
-    }
-
     void frame(const FrameEvent& event) {
         ++ended_;
         if (style_ == ProgressStyle::none) return;
@@ -87,18 +82,14 @@ private:
         if (style_ == ProgressStyle::openjd)
             print_openjd_progress(ended_, frame_count_,
                                   fmt::format("frame {} {}", event.frame, event.outcome));
-        clear_line();
-        fmt::print(stderr, "frame {} {} ({}/{}), {:.2f} frames/s, {:.0f} s left", event.frame, event.outcome,
-                   ended_, frame_count_, double(ended_) / seconds, left);
-        has_line_ = style_ == ProgressStyle::terminal;
-        if (!has_line_) fmt::print(stderr, "\n");
-        std::fflush(stderr);
+        line_.show(style_, fmt::format("frame {} {} ({}/{}), {}", event.frame, event.outcome, ended_,
+                                       frame_count_, rate_text(ended_, frame_count_, seconds)));
     }
 
     ProgressStyle style_;
     std::size_t frame_count_;
     std::size_t ended_ = 0;
-    bool has_line_ = false;
+    ProgressLine line_;
     std::set<std::string, std::less<>> said_;
     Clock::time_point start_ = Clock::now();
 };
@@ -191,8 +182,9 @@ ExitCode run_by_workers(const RunArguments& arguments, const JobFrames& frames, 
     reporter.finish(report, options.pieces.size(), seconds);
     if (report.interrupted) fmt::print(stderr, "{}", continuation(report));
     if (!arguments.jobs.report.empty())
-        write_text_file(arguments.jobs.report, report_json({arguments.look, arguments.capture.capture,
-                                                            report.frames, seconds, report.exit_code}));
+        write_text_file(arguments.jobs.report,
+                        report_json({arguments.look, arguments.capture.capture, report.frames, seconds,
+                                     report.exit_code, report.error}));
     return report.exit_code;
 }
 

@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <string>
+#include <utility>
 
 #include "cli/run_options.h"
 #include "framework/file/frame_stream.h"

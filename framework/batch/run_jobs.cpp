@@ -45,11 +45,21 @@ public:
         if (event.outcome == "failed" && options_.stop_on_error) stop_ = true;
         if (listener_.on_frame) listener_.on_frame(event);
     }
-    void ended(ExitCode code) {
+    void ended(ExitCode code, const std::string& error = "") {
         const std::lock_guard lock(mutex_);
         if (code == ExitCode::done || ends_the_run(worst_)) return;
         worst_ = code;
-        if (ends_the_run(code)) stop_ = true;
+        if (!ends_the_run(code)) return;
+        stop_ = true;
+        error_ = error;
+    }
+    /// Frames that nobody will render.
+    void given_up(const std::vector<int>& frames, const std::string& why) {
+        const std::lock_guard lock(mutex_);
+        for (const int frame : frames)
+            if (const auto found = frames_.find(frame);
+                found != frames_.end() && found->second.outcome == "not run")
+                found->second.message = why;
     }
     /// Set by an error that ends the whole run.
     const std::atomic<bool>& stop() const { return stop_; }
@@ -57,6 +67,7 @@ public:
     JobsReport report(bool interrupted) const {
         JobsReport report;
         report.interrupted = interrupted;
+        report.error = error_;
         std::size_t done = 0, skipped = 0;
         for (const auto& [number, event] : frames_) {
             report.frames.push_back(event);
@@ -79,6 +90,7 @@ private:
     std::map<int, FrameEvent> frames_;
     std::atomic<bool> stop_ = false;
     ExitCode worst_ = ExitCode::done;
+    std::string error_;
 };
 
 /// One piece, by as many workers as it takes.
@@ -94,6 +106,8 @@ public:
             if (!run_one()) return;
             if (ended_ > 0) idle_workers = -1;
         }
+        board_.given_up(piece_.frames,
+                        std::to_string(kMostIdleWorkers) + " workers in turn finished no frame");
     }
 
 private:
@@ -117,7 +131,8 @@ private:
         if (result.end == WorkerEnd::interrupted) return false;
         board_.ended(result.end == WorkerEnd::exited          ? ExitCode(result.exit_code)
                      : result.end == WorkerEnd::out_of_memory ? ExitCode::memory
-                                                              : ExitCode::effect);
+                                                              : ExitCode::effect,
+                     last_error_);
         const bool has_seen_all = first_unfinished() == piece_.frames.size();
         if (result.end == WorkerEnd::exited && (has_seen_all || ends_the_run(ExitCode(result.exit_code))))
             return false;

@@ -44,6 +44,7 @@ struct JobsReport {
     bool interrupted = false;
     /// done, partial, interrupted; or, where no frame was made, what the workers ended with.
     ExitCode exit_code = ExitCode::done;
+    std::string error;  ///< the message of an error that ended the run for every worker; "" without one
 };
 
 /// Runs the pieces. A worker that crashes, runs out of memory, says nothing for `frame_timeout` or is longer

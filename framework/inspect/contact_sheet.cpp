@@ -12,6 +12,7 @@
 #include "framework/image/false_color.h"
 #include "framework/image/label_text.h"
 #include "framework/image/role.h"
+#include "framework/inspect/footprint.h"
 
 namespace aftershade {
 
@@ -29,18 +30,6 @@ constexpr DisplayColor kPaper = {0.11f, 0.11f, 0.12f};
 constexpr DisplayColor kBlank = {0.2f, 0.2f, 0.21f};
 constexpr DisplayColor kBright = {1, 1, 1};
 constexpr DisplayColor kQuiet = {0.72f, 0.72f, 0.74f};
-
-/// The pixels of an image that a pixel of its tile stands for: `first` up to, not including, `last`.
-struct Footprint {
-    int first = 0, last = 0;
-    Footprint(int at, int tile_px, int image_px)
-        : first(int(std::int64_t(at) * image_px / tile_px)),
-          last(std::max(int(std::int64_t(at + 1) * image_px / tile_px), first + 1)) {}
-    int middle() const { return (first + last) / 2; }
-    int step() const {
-        return std::max(1, (last - first) / 4);
-    }  // of 4 x 4 samples, the eye asks for no more
-};
 
 PixelFault worst_fault(const FalseColor& picture, const Footprint& columns, const Footprint& rows) {
     PixelFault worst = PixelFault::none;

@@ -1,7 +1,6 @@
 #include "framework/pipeline/output.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 #include <utility>
@@ -9,9 +8,9 @@
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
 #include "framework/file/png_file.h"
+#include "framework/image/display.h"
 #include "framework/image/false_color.h"
 #include "framework/image/role.h"
-#include "framework/image/srgb.h"
 #include "framework/pipeline/exr_output.h"
 
 namespace aftershade {
@@ -27,40 +26,6 @@ std::string extension(const fs::path& path) {
     return text;
 }
 
-/// Display-referred RGB with straight alpha, for an sRGB monitor.
-Image display_of_color(Image color, const Chromaticities& primaries) {
-    if (primaries != kRec709) convert_colors(color, conversion_matrix(primaries, kRec709));
-    Image display(color.width(), color.height(), 4);
-    for (std::size_t i = 0; i < color.floats().size(); i += 4) {
-        const float alpha = color.floats()[i + 3];
-        for (std::size_t c = 0; c < 3; ++c) {
-            const float premultiplied = color.floats()[i + c];
-            display.floats()[i + c] = float(encode_srgb(alpha > 0 ? premultiplied / alpha : premultiplied));
-        }
-        display.floats()[i + 3] = alpha;
-    }
-    return display;
-}
-
-/// The pixels of the display window; 0 where the data window does not reach. An opaque picture loses its
-/// alpha.
-Image cropped_for_png(const Image& display, const Window& data, const Window& window) {
-    bool opaque = data.contains(window.min_x, window.min_y) && data.contains(window.max_x, window.max_y);
-    for (int y = window.min_y; opaque && y <= window.max_y; ++y)
-        for (int x = window.min_x; opaque && x <= window.max_x; ++x)
-            opaque = display.at(x - data.min_x, y - data.min_y, 3) >= 1.0f;
-    Image picture(window.width(), window.height(), opaque ? 3 : 4);
-    for (int y = 0; y < window.height(); ++y)
-        for (int x = 0; x < window.width(); ++x) {
-            const int source_x = x + window.min_x - data.min_x;
-            const int source_y = y + window.min_y - data.min_y;
-            if (!data.contains(x + window.min_x, y + window.min_y)) continue;
-            for (int c = 0; c < picture.channels(); ++c)
-                picture.at(x, y, c) = display.at(source_x, source_y, c);
-        }
-    return picture;
-}
-
 /// What a display shows of the frame.
 Image display_picture(const FrameResult& result, const Capture& capture) {
     const auto made = result.images.find(kDisplayRole);
@@ -68,7 +33,7 @@ Image display_picture(const FrameResult& result, const Capture& capture) {
     const Image display = made != result.images.end()
                               ? made->second
                               : display_of_color(*find_image(kColorRole, result, capture), header.primaries);
-    return cropped_for_png(display, header.data_window, result.region.value_or(header.display_window));
+    return cropped_display(display, header.data_window, result.region.value_or(header.display_window));
 }
 
 PngText png_text(const OutputOptions& options) {

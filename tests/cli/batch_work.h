@@ -79,13 +79,12 @@ protected:
         return names;
     }
 
-    TemporaryFolder folder_;
-
-private:
     static std::string head() {
         return "#version 450 core\n#include <pass>\nvoid main() {\nivec2 p = ivec2(gl_FragCoord.xy);\n";
     }
-    void write_effect(const std::string& id, const std::string& sections, const std::string& shader) {
+    /// effects/<id>, color in and out, whose main.frag has these statements, `p` being the pixel; and a look
+    /// <id>.json of it alone.
+    void write_effect(const std::string& id, const std::string& sections, const std::string& shader) const {
         const std::filesystem::path effect = folder_ / ("effects/" + id);
         std::filesystem::create_directories(effect);
         write_text(effect / "effect.json",
@@ -97,6 +96,8 @@ private:
         write_text(folder_ / (id + ".json"),
                    R"({ "aftershade": 1, "steps": [ { "effect": ")" + id + "\" } ] }");
     }
+
+    TemporaryFolder folder_;
 };
 
 }  // namespace aftershade::test

@@ -9,6 +9,7 @@
 
 #include "framework/core/error.h"
 #include "framework/file/png_file.h"
+#include "framework/inspect/frame_sheet.h"
 #include "tests/cli/command.h"
 #include "tests/real_captures.h"
 #include "tests/synthetic_capture.h"
@@ -200,6 +201,38 @@ TEST_F(Inspect, PutsEveryRoleOnAContactSheet) {
     EXPECT_TRUE(nothing["profile"]["id"].is_null());
     EXPECT_FALSE(fs::exists(folder_ / "b.png"));
     inspect({"a.exr", "--contact-sheet", "no/such/folder.png"}, ExitCode::output);
+}
+
+TEST_F(Inspect, PutsTheFramesOfASequenceOnAContactSheet) {
+    for (int frame = 1; frame <= 3; ++frame) {
+        const std::string number = std::to_string(frame);
+        SyntheticScene scene{.width = 96, .height = 54, .background = {0.2f * float(frame), 0.2f, 0.4f}};
+        write_capture(make_capture(scene, frame), folder_ / ("in_" + number + ".exr"));
+        Image picture(96, 54, 1);
+        std::fill(picture.floats().begin(), picture.floats().end(), 0.2f * float(frame));
+        write_png(folder_ / ("p_" + number + ".png"), picture);
+    }
+    const CommandResult result =
+        inspect({"in_#.exr", "--frames", "1-3", "--contact-sheet", "sheet.png", "--columns", "2"});
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(result.err, "contact sheet: sheet.png\n");
+    const Image sheet = read_png(folder_ / "sheet.png");
+    const FrameSheet layout("", 3, 2, 96, 54);
+    for (int i = 0; i < 3; ++i) {
+        const double linear = 0.2 * (i + 1);
+        EXPECT_NEAR(sheet.at(layout.cell_x(i) + 40, layout.cell_y(i) + 40, 0),
+                    1.055 * std::pow(linear, 1 / 2.4) - 0.055, 0.51 / 255)
+            << i;
+    }
+    inspect({"p_#.png", "--contact-sheet", "grey.png", "--columns", "2"});
+    EXPECT_NEAR(read_png(folder_ / "grey.png").at(layout.cell_x(2) + 40, layout.cell_y(2) + 40, 1), 0.6f,
+                0.01f);
+    fs::remove(folder_ / "in_2.exr");
+    const CommandResult gap =
+        inspect({"in_#.exr", "--frames", "1-3", "--contact-sheet", "gap.png"}, ExitCode::partial);
+    EXPECT_NE(gap.err.find("aftershade: error: in_2.exr: "), std::string::npos) << gap.err;
+    EXPECT_NE(inspect({"in_1.exr", "--columns", "2"}, ExitCode::usage).err.find("--columns: error: is for"),
+              std::string::npos);
 }
 
 TEST_F(Inspect, ShowsTheOtherRolesWhereOneCannotBeDecoded) {

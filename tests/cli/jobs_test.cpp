@@ -26,6 +26,16 @@ protected:
         for (int frame = first; frame <= last; ++frame)
             EXPECT_EQ(bytes("many", frame), bytes("one", frame)) << frame;
     }
+    /// The report has the message of what ended the run, and so has each frame that was not run.
+    void expect_cause(const std::string& part) const {
+        const nlohmann::json made = report();
+        const std::string error = made.value("error", "");
+        EXPECT_NE(error.find(part), std::string::npos) << made.dump(2);
+        for (const auto& frame : made["frames"])
+            if (frame["outcome"] == "not run") {
+                EXPECT_EQ(frame.value("message", ""), "the run ended: " + error) << frame;
+            }
+    }
     nlohmann::json report(const std::string& name = "report.json") const {
         return nlohmann::json::parse(read_text(folder_ / name));
     }
@@ -94,6 +104,7 @@ TEST_F(Jobs, StopAtTheFirstErrorWhereAsked) {
     run({"spread.json", "in_####.exr", "-o", "one/f_####.exr", "--stop-on-error", "--report", "report.json"},
         1);
     EXPECT_EQ(report()["not_run"], 38) << "in one process no frame behind the second is begun";
+    EXPECT_EQ(report()["frames"][2]["message"], "the run ended at a frame that failed");
 }
 
 TEST_F(Jobs, AReportOfAnErrorHasItsExitCode) {
@@ -101,6 +112,15 @@ TEST_F(Jobs, AReportOfAnErrorHasItsExitCode) {
     run({"spread.json", "in_####.exr", "-o", "taken/f_####.exr", "--report", "report.json"}, 6);
     EXPECT_EQ(report()["exit_code"], 6);
     EXPECT_GT(report()["not_run"].get<int>(), 0);
+    expect_cause("f_0003.exr");
+}
+
+TEST_F(Jobs, AReportOfWorkersHasTheErrorThatEndedThemAll) {
+    fs::create_directories(folder_ / "taken/f_0003.exr");
+    run({"spread.json", "in_####.exr", "-o", "taken/f_####.exr", "--jobs", "2", "--report", "report.json"},
+        6);
+    EXPECT_EQ(report()["exit_code"], 6);
+    expect_cause("f_0003.exr");
 }
 
 TEST_F(Jobs, WithHistoryNeedADeclaredOrAGivenWarmup) {

@@ -5,6 +5,7 @@
 
 #include "framework/file/png_file.h"
 #include "tests/cli/command.h"
+#include "tests/cli/native_effect.h"
 #include "tests/synthetic_capture.h"
 
 namespace aftershade::test {
@@ -12,7 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kCases = AFTERSHADE_CASES;
 const std::string kExamples = AFTERSHADE_EXAMPLES;
 const std::vector<std::string> kRed{"R"};
 
@@ -26,18 +26,8 @@ protected:
         }
     }
 
-    /// An effect that multiplies by the uniform `gain` of the library with that id.
     void write_effect(const std::string& id) {
-        fs::create_directories(folder_ / "effects" / id);
-        write_text(folder_ / "effects" / id / "effect.json",
-                   R"({ "aftershade": 1, "version": "1.0.0", "summary": "A test.", "id": ")" + id + R"(",
-            "inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
-            "params": { "gain": { "type": "float", "default": 0.5, "doc": "." } },
-            "native": { "uniforms": { "gain": { "type": "float", "doc": "Gain times the frame's number." } } },
-            "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color"], "writes": ["color"] } ] })");
-        write_text(folder_ / "effects" / id / "main.frag",
-                   "#version 450 core\n#include <pass>\nvoid main() { out_color = texelFetch(color, "
-                   "ivec2(gl_FragCoord.xy), 0) * native.gain; }\n");
+        write_native_effect(folder_.path(), id);
         write_text(folder_ / "look.json",
                    R"({ "aftershade": 1, "steps": [ { "effect": ")" + id + R"(", "name": "graded" } ] })");
     }

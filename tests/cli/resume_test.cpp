@@ -1,13 +1,9 @@
 // Runs that leave out what earlier ones have written, against runs that nobody disturbed.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
-#include "framework/core/error.h"
-#include "framework/file/exr_file.h"
-#include "tests/cli/command.h"
-#include "tests/synthetic_capture.h"
+#include "tests/cli/batch_work.h"
 
 namespace aftershade::test {
 namespace {
@@ -16,45 +12,26 @@ namespace fs = std::filesystem;
 
 constexpr int kFrames = 6;
 
-class Resume : public testing::Test {
+class Resume : public BatchWork {
 protected:
     Resume() {
         for (int frame = 1; frame <= kFrames; ++frame) write_input(frame, 0.1f);
-        write_effect("trail", R"("textures": { "kept": { "format": "rgba16f", "history": true, "doc": "." } },
-            "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color", "kept.prev"],
-                          "writes": ["kept"] },
-                        { "name": "show", "shader": "show.frag", "reads": ["kept"], "writes": ["color"] } ])",
-                     "out_kept = frame.history_valid ? mix(now, texelFetch(kept_prev, p, 0), 0.5) : now;",
-                     "color, p, 0");
-        write_text(folder_ / "effects/trail/show.frag",
-                   kHead + "void main() { out_color = texelFetch(kept, ivec2(gl_FragCoord.xy), 0); }\n");
-        write_effect(
-            "tint",
-            R"("params": { "gain": { "type": "float", "default": 2, "min": 0, "max": 9, "doc": "." } },
-            "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color"], "writes": ["color"] } ])",
-            "out_color = now * param.gain;", "color, p, 0");
-        write_text(folder_ / "trail.json", R"({ "aftershade": 1, "steps": [ { "effect": "trail" } ] })");
-        write_text(folder_ / "tint.json", R"({ "aftershade": 1, "steps": [ { "effect": "tint" } ] })");
+        write_tint("now");
     }
 
     void write_input(int frame, float red) const {
         SyntheticScene scene{
             .width = 64, .height = 36, .background = {red, 0.2f, 0.4f}, .background_depth_m = 8};
         scene.box = SyntheticBox{4, 6, 16, 12, 5, 2};
-        write_capture(make_capture(scene, frame), folder_ / ("in_000" + std::to_string(frame) + ".exr"));
+        write_capture(make_capture(scene, frame), frame_path(frame));
     }
-
-    void write_effect(const std::string& id, const std::string& sections, const std::string& statement,
-                      const std::string& now) const {
-        fs::create_directories(folder_ / "effects" / id);
-        write_text(folder_ / "effects" / id / "effect.json",
-                   R"({ "aftershade": 1, "version": "1.0.0", "summary": "A test.", "id": ")" + id +
-                       R"(", "inputs": { "color": { "role": "color" } },
-                           "outputs": { "color": { "role": "color" } }, )" +
-                       sections + "}");
-        write_text(folder_ / "effects" / id / "main.frag",
-                   kHead + "void main() { ivec2 p = ivec2(gl_FragCoord.xy); vec4 now = texelFetch(" + now +
-                       ");\n" + statement + " }\n");
+    /// `now` is what of the pixel the gain multiplies.
+    void write_tint(const std::string& now) const {
+        write_effect(
+            "tint",
+            R"("params": { "gain": { "type": "float", "default": 2, "min": 0, "max": 9, "doc": "." } },
+            "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color"], "writes": ["color"] } ])",
+            "vec4 now = texelFetch(color, p, 0); out_color = " + now + " * param.gain;");
     }
 
     CommandResult run(const std::string& look, const std::vector<std::string>& more = {},
@@ -91,9 +68,6 @@ protected:
         EXPECT_EQ(outputs("out_"), outputs("whole_"));
     }
     bool has_checkpoints() const { return fs::exists(folder_ / ".aftershade/history"); }
-
-    const std::string kHead = "#version 450 core\n#include <pass>\n";
-    TemporaryFolder folder_;
 };
 
 TEST_F(Resume, ASecondRunLeavesEveryFrameAlone) {
@@ -147,10 +121,7 @@ TEST_F(Resume, SaysWhyFramesAreNotCurrent) {
               "frame 1: --overwrite renders every frame");
     EXPECT_EQ(lines_of_text(dry_run("tint", {"--tap", "tint.color"})).front(),
               "frame 1: output out.tint.color.0001.exr is missing");
-    write_effect("tint",
-                 R"("params": { "gain": { "type": "float", "default": 2, "min": 0, "max": 9, "doc": "." } },
-            "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color"], "writes": ["color"] } ])",
-                 "out_color = now.bgra * param.gain;", "color, p, 0");
+    write_tint("now.bgra");
     EXPECT_EQ(lines_of_text(dry_run("tint")).front(), "frame 1: effect tint changed");
     write_text(folder_ / "out_0006.exr", "another file");
     EXPECT_EQ(lines_of_text(dry_run("tint"))[5], "frame 6: output out_0006.exr changed");
