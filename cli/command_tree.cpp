@@ -10,7 +10,8 @@ namespace aftershade::cli {
 
 namespace {
 
-/// "TEXT:{a,b}" is a type with its choices, "INT:INT in [1 - 9]" one with its limits (CLI::Option::get_type_name).
+/// "TEXT:{a,b}" is a type with its choices, "INT:INT in [1 - 9]" one with its limits
+/// (CLI::Option::get_type_name).
 void read_type(const std::string& text, CommandOption& option) {
     const std::size_t colon = text.find(':');
     option.type = text.substr(0, colon);
@@ -39,7 +40,8 @@ CommandOption command_option(const CLI::Option& declared) {
     return option;
 }
 
-Command command(const CLI::App& app, const std::vector<std::string>& path, const std::string& parents_footer) {
+Command command(const CLI::App& app, const std::vector<std::string>& path,
+                const std::string& parents_footer) {
     Command result;
     result.path = path;
     result.description = app.get_description();
@@ -63,7 +65,9 @@ void collect(const Command& command, std::vector<const Command*>& commands) {
 
 }  // namespace
 
-Command command_tree(const CLI::App& app) { return command(app, {}, ""); }
+Command command_tree(const CLI::App& app) {
+    return command(app, {}, "");
+}
 
 std::vector<const Command*> all_commands(const Command& root) {
     std::vector<const Command*> commands;

@@ -1,4 +1,5 @@
-// The program's commands and options as data, read from their declarations: man pages and completion scripts are made of it.
+// The program's commands and options as data, read from their declarations: man pages and completion scripts
+// are made of it.
 #pragma once
 
 #include <string>
@@ -14,10 +15,10 @@ namespace aftershade::cli {
 inline constexpr const char* kEffectId = "EFFECT";
 
 struct CommandOption {
-    std::vector<std::string> names;    ///< "-o", "--output"; of a positional its one name, such as "look"
-    std::string description;           ///< as `--help` prints it
-    std::string type;                  ///< "TEXT", "INT", ...; "" for a flag
-    std::string limits;                ///< what the value must keep, such as "INT in [1 - 100]"; "" if anything goes
+    std::vector<std::string> names;  ///< "-o", "--output"; of a positional its one name, such as "look"
+    std::string description;         ///< as `--help` prints it
+    std::string type;                ///< "TEXT", "INT", ...; "" for a flag
+    std::string limits;  ///< what the value must keep, such as "INT in [1 - 100]"; "" if anything goes
     std::vector<std::string> choices;  ///< the words that it takes, if it takes no others
     std::string default_value;         ///< "" if `--help` shows none
     std::string group;                 ///< heading in `--help`; "" under "Options"

@@ -86,7 +86,8 @@ std::optional<Limited> limited(const std::string& word, const std::string& text,
     const auto limit =
         equals == std::string::npos || equals == 0 ? std::nullopt : parse_number(text.substr(equals + 1));
     if (!limit || !(*limit >= 0)) {
-        diagnostics.error({word + " " + text}, fmt::format("expected {}, with a limit of at least 0", expected));
+        diagnostics.error({word + " " + text},
+                          fmt::format("expected {}, with a limit of at least 0", expected));
         return std::nullopt;
     }
     Limited result;
@@ -102,7 +103,8 @@ void add_compare_area_options(CLI::App& app, CompareAreaOptions& options) {
     const auto add = [&](const char* name, auto& target, const std::string& help) {
         return app.add_option(name, target, help)->group(group);
     };
-    add("--ignore", options.ignored, std::string("Leave these pixels out; WHERE is ") + kWhere + "; repeatable")
+    add("--ignore", options.ignored,
+        std::string("Leave these pixels out; WHERE is ") + kWhere + "; repeatable")
         ->type_name("WHERE")
         ->allow_extra_args(false);
     add("--area", options.areas, "WHERE=LIMIT: hold these pixels to a --fail of their own; repeatable")
@@ -129,8 +131,9 @@ void read_compare_areas(const CompareAreaOptions& options, const std::string& re
         }
     }
     if (rules.areas.size() > PixelAreas::kMost)
-        diagnostics.error({"--ignore, --area"}, fmt::format("there are {} areas, more than {}; draw them into a mask",
-                                                            rules.areas.size(), PixelAreas::kMost));
+        diagnostics.error({"--ignore, --area"},
+                          fmt::format("there are {} areas, more than {}; draw them into a mask",
+                                      rules.areas.size(), PixelAreas::kMost));
     for (const std::string& text : options.layers)
         if (const auto own = limited("--layer", text, "LAYER=LIMIT, such as Z=0.001", diagnostics)) {
             Levels& levels = rules.layers.try_emplace(own->name, rules).first->second;

@@ -11,7 +11,9 @@ namespace aftershade::cli {
 
 Verb add_completion(CLI::App& app) {
     auto shell = std::make_shared<std::string>();
-    app.add_option("shell", *shell, "bash, zsh or fish")->required()->check(CLI::IsMember({"bash", "zsh", "fish"}));
+    app.add_option("shell", *shell, "bash, zsh or fish")
+        ->required()
+        ->check(CLI::IsMember({"bash", "zsh", "fish"}));
     app.footer(
         "bash: source <(aftershade completion bash)\n"
         "zsh:  source <(aftershade completion zsh), after compinit\n"

@@ -20,8 +20,7 @@ Image as_rgb(Image picture) {
     Image rgb(picture.width(), picture.height(), picture.channels() + 2);
     for (int y = 0; y < picture.height(); ++y)
         for (int x = 0; x < picture.width(); ++x)
-            for (int c = 0; c < rgb.channels(); ++c)
-                rgb.at(x, y, c) = picture.at(x, y, c < 3 ? 0 : 1);
+            for (int c = 0; c < rgb.channels(); ++c) rgb.at(x, y, c) = picture.at(x, y, c < 3 ? 0 : 1);
     return rgb;
 }
 
@@ -45,8 +44,8 @@ ExitCode write_frame_sheet(const std::string& path, int columns, const Sequence&
                            const CaptureReader& reader) {
     const auto count = sequence.frames.size();
     if (count > std::size_t(kMostSheetFrames))
-        throw Error(ExitCode::usage, "--contact-sheet: " + std::to_string(count) +
-                                         " frames, the limit is " + std::to_string(kMostSheetFrames) +
+        throw Error(ExitCode::usage, "--contact-sheet: " + std::to_string(count) + " frames, the limit is " +
+                                         std::to_string(kMostSheetFrames) +
                                          "; choose some, such as --frames 1-5000x10");
     const std::string title = std::filesystem::path(sequence.files.text()).filename().string();
     std::optional<FrameSheet> sheet;
@@ -70,7 +69,8 @@ ExitCode write_frame_sheet(const std::string& path, int columns, const Sequence&
             else missing.push_back({frame, why});
         }
     }
-    if (!sheet) throw Error(ExitCode::capture, title + ": no frame can be read, so there is no contact sheet");
+    if (!sheet)
+        throw Error(ExitCode::capture, title + ": no frame can be read, so there is no contact sheet");
     write_png(path, sheet->picture());
     std::cerr << "contact sheet: " << path << "\n";
     return is_whole ? ExitCode::done : ExitCode::partial;

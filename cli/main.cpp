@@ -20,8 +20,8 @@
 #include "cli/verbs.h"
 #include "framework/core/memory_limit.h"
 #include "framework/core/status.h"
-#include "framework/effect/native/native_process.h"
 #include "framework/core/text.h"
+#include "framework/effect/native/native_process.h"
 
 using aftershade::ExitCode;
 

@@ -8,7 +8,8 @@ namespace aftershade::cli {
 
 namespace {
 
-/// Text that man prints as it is: hyphens stay what a shell takes, and no line is taken for a request (groff_char(7)).
+/// Text that man prints as it is: hyphens stay what a shell takes, and no line is taken for a request
+/// (groff_char(7)).
 std::string roff(std::string_view text) {
     std::string result;
     for (const char c : text)
@@ -23,8 +24,12 @@ std::string roff(std::string_view text) {
     return result;
 }
 
-std::string bold(std::string_view text) { return "\\fB" + roff(text) + "\\fR"; }
-std::string italic(std::string_view text) { return "\\fI" + roff(text) + "\\fR"; }
+std::string bold(std::string_view text) {
+    return "\\fB" + roff(text) + "\\fR";
+}
+std::string italic(std::string_view text) {
+    return "\\fI" + roff(text) + "\\fR";
+}
 
 std::string value_text(const CommandOption& option) {
     if (option.choices.empty()) return italic(option.type);

@@ -4,7 +4,8 @@ namespace aftershade::cli {
 
 namespace {
 
-constexpr const char* kBashFunction = R"(# Completion of aftershade for bash, made by: aftershade completion bash
+constexpr const char* kBashFunction =
+    R"(# Completion of aftershade for bash, made by: aftershade completion bash
 
 # The longest row of words that names a command, of the words before the cursor.
 _aftershade_command() {

@@ -70,7 +70,8 @@ std::string fish_completion(const Command& root) {
         for (const CommandOption& option : command->options)
             lines += begin + (option.positional ? argument_line(option) : option_line(option)) + "\n";
     }
-    return "# Completion of aftershade for fish, made by: aftershade completion fish\n\nset -g __aftershade_commands" +
+    return "# Completion of aftershade for fish, made by: aftershade completion fish\n\nset -g "
+           "__aftershade_commands" +
            names + "\n" + kFishFunction + lines;
 }
 

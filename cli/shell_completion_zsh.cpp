@@ -36,8 +36,7 @@ std::string action(const CommandOption& option) {
 }
 
 std::string positional_spec(const CommandOption& option, int place) {
-    const std::string where =
-        option.repeatable ? "*" : std::to_string(place) + (option.required ? "" : ":");
+    const std::string where = option.repeatable ? "*" : std::to_string(place) + (option.required ? "" : ":");
     return "'" + where + ":" + zsh_text(option.names.front()) + ":" + action(option) + "'";
 }
 
@@ -82,8 +81,9 @@ std::string function(const Command& command) {
 std::string zsh_completion(const Command& root) {
     std::string text = kZshBegin;
     for (const Command* command : all_commands(root)) text += function(*command);
-    return text + "if [ \"$funcstack[1]\" = _aftershade ]; then _aftershade \"$@\"; "
-                  "else compdef _aftershade aftershade; fi\n";
+    return text +
+           "if [ \"$funcstack[1]\" = _aftershade ]; then _aftershade \"$@\"; "
+           "else compdef _aftershade aftershade; fi\n";
 }
 
 }  // namespace aftershade::cli

@@ -51,8 +51,8 @@ std::set<std::string> array_of(const std::string& script, const std::string& nam
     const std::size_t begin = script.find(name + "=(");
     if (begin == std::string::npos) return {};
     const std::size_t open = begin + name.size() + 2;
-    const std::string body = std::regex_replace(script.substr(open, script.find("\n)", open) - open),
-                                                std::regex("#[^\n]*"), "");
+    const std::string body =
+        std::regex_replace(script.substr(open, script.find("\n)", open) - open), std::regex("#[^\n]*"), "");
     return all_matches(body.substr(0, body.find(')')), R"(([\w.+-]+))");
 }
 

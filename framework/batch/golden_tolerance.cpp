@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 namespace {
 
 /// The numbers of `fail` or of `warn` that stand there; whether any of a pixel's does.
-bool read_level(const grammar::Reader& reader, const std::string& word, const std::string& many, bool of_layers,
-                Tolerance& level, std::optional<double>& flip, std::optional<double>& ssim) {
+bool read_level(const grammar::Reader& reader, const std::string& word, const std::string& many,
+                bool of_layers, Tolerance& level, std::optional<double>& flip, std::optional<double>& ssim) {
     bool any = false;
     const auto read = [&](const std::string& key, auto& target) {
         if (reader.has(key)) target = reader.number(key), any = true;
@@ -45,7 +45,8 @@ ReadLevels read_levels(const grammar::Reader& reader, const ReadLevels& base, bo
     Tolerance warn = levels.fail;
     warn.percent = 0, warn.hard = std::numeric_limits<double>::infinity();
     if (base.warns) warn = *base.levels.warn;
-    result.warns |= read_level(reader, "warn", "warnings", of_layers, warn, levels.warn_flip, levels.warn_ssim);
+    result.warns |=
+        read_level(reader, "warn", "warnings", of_layers, warn, levels.warn_flip, levels.warn_ssim);
     levels.warn = result.warns ? warn : levels.fail;
     if (levels.fail.hard < levels.fail.limit)
         diagnostics.error(reader.place("hard_fail"), "'hard_fail' must be at least 'fail'");
@@ -111,9 +112,9 @@ std::vector<GoldenArea> read_golden_areas(const grammar::Reader& tolerance, cons
         area.levels = read_levels(reader, {}, false, diagnostics).levels;
     }
     if (areas.size() > PixelAreas::kMost)
-        diagnostics.error(tolerance.node().place,
-                          "'ignore' and 'areas' have more than " + std::to_string(PixelAreas::kMost) +
-                              " items; draw them into a mask");
+        diagnostics.error(tolerance.node().place, "'ignore' and 'areas' have more than " +
+                                                      std::to_string(PixelAreas::kMost) +
+                                                      " items; draw them into a mask");
     return areas;
 }
 

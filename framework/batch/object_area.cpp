@@ -22,8 +22,8 @@ namespace {
 
 }  // namespace
 
-AreaShape object_area(const std::string& capture, std::optional<int> frame, const std::vector<TableKey>& objects,
-                      const ReadLimits& limits) {
+AreaShape object_area(const std::string& capture, std::optional<int> frame,
+                      const std::vector<TableKey>& objects, const ReadLimits& limits) {
     Diagnostics diagnostics;
     std::optional<Sequence> sequence = open_sequence(capture, diagnostics);
     std::vector<Profile> profiles = read_profiles(data_path() / "profiles", diagnostics);
@@ -37,7 +37,8 @@ AreaShape object_area(const std::string& capture, std::optional<int> frame, cons
     const Capture read = reader.read(sequence->file_number(frame.value_or(sequence->frames.front())),
                                      std::vector<std::string>{role});
     if (!named && !std::ranges::count(read.header.roles, kObjectIdRole))
-        throw Error(ExitCode::capture, read.header.path.string() + ": has no object ids: neither a Cryptomatte nor the " +
+        throw Error(ExitCode::capture, read.header.path.string() +
+                                           ": has no object ids: neither a Cryptomatte nor the " +
                                            "role object_id");
     return covered_area(read.images.at(role), 0, read.header.data_window, read.header.display_window);
 }

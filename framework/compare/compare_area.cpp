@@ -45,8 +45,7 @@ MaskSource source_of(const LayerFile& file, const std::string& channel) {
             if (name == channel || (layer.part + "." + name) == channel) return {&layer, {name}};
             names.push_back(layer.part.empty() ? name : layer.part + "." + name);
         }
-    if (channel.empty() && names.size() == 1)
-        return {&file.layers().front(), file.layers().front().channels};
+    if (channel.empty() && names.size() == 1) return {&file.layers().front(), file.layers().front().channels};
     throw Error(ExitCode::capture,
                 channel.empty()
                     ? fmt::format("{}: a mask has one channel, and this file has {}: name one of {}",
@@ -106,14 +105,15 @@ std::string fault_of(const CompareArea& area, const Window& display) {
     if (!shape.display) {
         const Window whole{0, 0, display.width() - 1, display.height() - 1};
         if (meet(shape.window, whole)) return "";
-        return fmt::format("the area {} lies outside of the picture, which has {}", area.name, size_text(display));
+        return fmt::format("the area {} lies outside of the picture, which has {}", area.name,
+                           size_text(display));
     }
     const bool fits = shape.from_corner ? has_size_of(*shape.display, display) : *shape.display == display;
     if (fits) return "";
     return fmt::format(
-        "the area {} is of a display window of {} from ({}, {}), the picture's has {} from ({}, {})", area.name,
-        size_text(*shape.display), shape.display->min_x, shape.display->min_y, size_text(display), display.min_x,
-        display.min_y);
+        "the area {} is of a display window of {} from ({}, {}), the picture's has {} from ({}, {})",
+        area.name, size_text(*shape.display), shape.display->min_x, shape.display->min_y, size_text(display),
+        display.min_x, display.min_y);
 }
 
 PixelAreas pixel_areas(const std::vector<CompareArea>& areas, const Window& window, const Window& display,
@@ -132,10 +132,12 @@ PixelAreas pixel_areas(const std::vector<CompareArea>& areas, const Window& wind
             mark = std::uint8_t(result.limits.size());
         }
         const AreaShape& shape = area.shape;
-        const Window place = shape.from_corner ? moved(shape.window, display.min_x, display.min_y) : shape.window;
+        const Window place =
+            shape.from_corner ? moved(shape.window, display.min_x, display.min_y) : shape.window;
         for (int y = std::max(place.min_y, window.min_y); y <= std::min(place.max_y, window.max_y); ++y)
             for (int x = std::max(place.min_x, window.min_x); x <= std::min(place.max_x, window.max_x); ++x) {
-                const auto at = std::size_t(y - place.min_y) * std::size_t(place.width()) + std::size_t(x - place.min_x);
+                const auto at =
+                    std::size_t(y - place.min_y) * std::size_t(place.width()) + std::size_t(x - place.min_x);
                 if (!shape.inside.empty() && !shape.inside[at]) continue;
                 std::uint8_t& pixel =
                     result.of_pixel[std::size_t(y - window.min_y) * width + std::size_t(x - window.min_x)];

@@ -17,11 +17,12 @@ namespace aftershade {
 
 /// Some pixels of a picture. [value type]
 struct AreaShape {
-    /// In px of the files where `display` is a file's own window, else from the display window's upper left pixel.
+    /// In px of the files where `display` is a file's own window, else from the display window's upper left
+    /// pixel.
     Window window;
     std::vector<std::uint8_t> inside;  ///< for each pixel of the window; empty: all of them
-    /// The display window of what the shape was read from, which must be that of the pictures; of a PNG, which has
-    /// none, only the size counts. nullopt: a rectangle.
+    /// The display window of what the shape was read from, which must be that of the pictures; of a PNG,
+    /// which has none, only the size counts. nullopt: a rectangle.
     std::optional<Window> display;
     bool from_corner = true;  ///< the window is from the display window's upper left pixel
 };
@@ -32,9 +33,9 @@ inline constexpr int kMaxAreaSide_px = 1 << 20;
 AreaShape rectangle_area(int x, int y, int width, int height);
 /// Where `coverage`, of one channel, is above `limit`, over `window` in px of a file of that display window.
 AreaShape covered_area(const Image& coverage, float limit, const Window& window, const Window& display);
-/// The pixels of a picture file whose value is above a half: of an OpenEXR file in `channel` (its only one where that
-/// is ""), of a PNG in any colour channel. Throws Error(ExitCode::capture), which begins with the path, where the file
-/// cannot be read, or has no such channel.
+/// The pixels of a picture file whose value is above a half: of an OpenEXR file in `channel` (its only one
+/// where that is ""), of a PNG in any colour channel. Throws Error(ExitCode::capture), which begins with the
+/// path, where the file cannot be read, or has no such channel.
 AreaShape mask_area(const std::filesystem::path& path, const std::string& channel, const ReadLimits& limits);
 
 struct CompareArea {
@@ -46,8 +47,8 @@ struct CompareArea {
 /// What keeps an area from being found in a picture of that display window; "" where nothing does.
 std::string fault_of(const CompareArea& area, const Window& display);
 
-/// The areas over `window`, in px of files of that display window. What any area leaves out is left out; among areas
-/// with limits the first counts. `layer` has the rules that areas share with their layer.
+/// The areas over `window`, in px of files of that display window. What any area leaves out is left out;
+/// among areas with limits the first counts. `layer` has the rules that areas share with their layer.
 PixelAreas pixel_areas(const std::vector<CompareArea>& areas, const Window& window, const Window& display,
                        const DifferenceRules& layer);
 

@@ -18,8 +18,8 @@ std::vector<double> gaussian(double sigma_px) {
     return weights;
 }
 
-/// Values of both images, and of the weight that each has in the filter, interleaved: reference, test, 1; zero where a
-/// value takes no part.
+/// Values of both images, and of the weight that each has in the filter, interleaved: reference, test, 1;
+/// zero where a value takes no part.
 struct Filtered {
     int width = 0, height = 0;
     std::vector<double> values;

@@ -28,8 +28,8 @@ struct PixelPlace {
     int x = 0, y = 0;
 };
 
-/// The values of a pixel of each image, channel by channel, into `pairs`. Both images have one type and channel
-/// count.
+/// The values of a pixel of each image, channel by channel, into `pairs`. Both images have one type and
+/// channel count.
 void take_pair(const Image& reference, PixelPlace in_reference, const Image& test, PixelPlace in_test,
                bool nan_equal, std::vector<ValuePair>& pairs);
 

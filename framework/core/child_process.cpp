@@ -142,10 +142,10 @@ pid_t spawn_child(const ChildCommand& command) {
     std::vector<char*> argument_pointers = pointers(arguments);
     std::vector<char*> environment_pointers = pointers(environment);
     Pipe report = make_pipe();
-    const ChildPlan plan{argument_pointers.data(),        environment_pointers.data(),
-                         command.descriptors.data(),      int(command.descriptors.size()),
-                         report.write.get(),              command.limits,
-                         command.leads_group,             getpid()};
+    const ChildPlan plan{argument_pointers.data(),   environment_pointers.data(),
+                         command.descriptors.data(), int(command.descriptors.size()),
+                         report.write.get(),         command.limits,
+                         command.leads_group,        getpid()};
     const pid_t process = fork();
     if (process < 0)
         throw Error(ExitCode::effect, arguments[0] + ": cannot start a process: " + std::strerror(errno));

@@ -25,7 +25,7 @@ namespace {
 // ---- Landlock: by raw system calls, since Debian 12's headers stop at its second ABI ----
 
 constexpr long kLandlockCreateRuleset = 444, kLandlockRestrictSelf = 446;  // of every processor
-constexpr unsigned kLandlockVersion = 1;                                  // LANDLOCK_CREATE_RULESET_VERSION
+constexpr unsigned kLandlockVersion = 1;                                   // LANDLOCK_CREATE_RULESET_VERSION
 
 /// struct landlock_ruleset_attr; older ABIs know the first fields only.
 struct LandlockRuleset {
@@ -81,24 +81,113 @@ constexpr std::uint32_t kArchitecture = 0;
 
 /// What loaders, C and C++ libraries and threads need, and what reads files.
 constexpr std::array kAllowed = {
-    SYS_read, SYS_readv, SYS_pread64, SYS_preadv, SYS_write, SYS_writev, SYS_close, SYS_lseek, SYS_fstat,
-    SYS_newfstatat, SYS_statx, SYS_faccessat, SYS_faccessat2, SYS_readlinkat, SYS_getcwd, SYS_getdents64,
-    SYS_statfs, SYS_fstatfs, SYS_fadvise64, SYS_dup, SYS_dup3, SYS_pipe2, SYS_ppoll, SYS_pselect6,
-    SYS_epoll_create1, SYS_epoll_ctl, SYS_epoll_pwait, SYS_eventfd2, SYS_mmap, SYS_mprotect, SYS_munmap,
-    SYS_mremap, SYS_madvise, SYS_brk, SYS_mincore, SYS_mlock, SYS_munlock, SYS_memfd_create, SYS_ftruncate,
-    SYS_membarrier, SYS_futex, SYS_set_robust_list, SYS_get_robust_list, SYS_rseq, SYS_set_tid_address,
-    SYS_exit, SYS_exit_group, SYS_sched_yield, SYS_sched_getaffinity, SYS_sched_setaffinity,
-    SYS_sched_getparam, SYS_sched_getscheduler, SYS_sched_get_priority_max, SYS_sched_get_priority_min,
-    SYS_getpriority, SYS_getcpu, SYS_getpid, SYS_gettid, SYS_getppid, SYS_getpgid, SYS_getuid, SYS_geteuid,
-    SYS_getgid, SYS_getegid, SYS_getrandom, SYS_clock_gettime, SYS_clock_getres, SYS_clock_nanosleep,
-    SYS_nanosleep, SYS_gettimeofday, SYS_times, SYS_getrusage, SYS_sysinfo, SYS_uname, SYS_rt_sigaction,
-    SYS_rt_sigprocmask, SYS_rt_sigreturn, SYS_rt_sigtimedwait, SYS_rt_sigsuspend, SYS_rt_sigpending,
-    SYS_sigaltstack, SYS_restart_syscall, SYS_setitimer, SYS_timer_create, SYS_timer_settime,
-    SYS_timer_delete, SYS_timerfd_create, SYS_timerfd_settime,
+    SYS_read,
+    SYS_readv,
+    SYS_pread64,
+    SYS_preadv,
+    SYS_write,
+    SYS_writev,
+    SYS_close,
+    SYS_lseek,
+    SYS_fstat,
+    SYS_newfstatat,
+    SYS_statx,
+    SYS_faccessat,
+    SYS_faccessat2,
+    SYS_readlinkat,
+    SYS_getcwd,
+    SYS_getdents64,
+    SYS_statfs,
+    SYS_fstatfs,
+    SYS_fadvise64,
+    SYS_dup,
+    SYS_dup3,
+    SYS_pipe2,
+    SYS_ppoll,
+    SYS_pselect6,
+    SYS_epoll_create1,
+    SYS_epoll_ctl,
+    SYS_epoll_pwait,
+    SYS_eventfd2,
+    SYS_mmap,
+    SYS_mprotect,
+    SYS_munmap,
+    SYS_mremap,
+    SYS_madvise,
+    SYS_brk,
+    SYS_mincore,
+    SYS_mlock,
+    SYS_munlock,
+    SYS_memfd_create,
+    SYS_ftruncate,
+    SYS_membarrier,
+    SYS_futex,
+    SYS_set_robust_list,
+    SYS_get_robust_list,
+    SYS_rseq,
+    SYS_set_tid_address,
+    SYS_exit,
+    SYS_exit_group,
+    SYS_sched_yield,
+    SYS_sched_getaffinity,
+    SYS_sched_setaffinity,
+    SYS_sched_getparam,
+    SYS_sched_getscheduler,
+    SYS_sched_get_priority_max,
+    SYS_sched_get_priority_min,
+    SYS_getpriority,
+    SYS_getcpu,
+    SYS_getpid,
+    SYS_gettid,
+    SYS_getppid,
+    SYS_getpgid,
+    SYS_getuid,
+    SYS_geteuid,
+    SYS_getgid,
+    SYS_getegid,
+    SYS_getrandom,
+    SYS_clock_gettime,
+    SYS_clock_getres,
+    SYS_clock_nanosleep,
+    SYS_nanosleep,
+    SYS_gettimeofday,
+    SYS_times,
+    SYS_getrusage,
+    SYS_sysinfo,
+    SYS_uname,
+    SYS_rt_sigaction,
+    SYS_rt_sigprocmask,
+    SYS_rt_sigreturn,
+    SYS_rt_sigtimedwait,
+    SYS_rt_sigsuspend,
+    SYS_rt_sigpending,
+    SYS_sigaltstack,
+    SYS_restart_syscall,
+    SYS_setitimer,
+    SYS_timer_create,
+    SYS_timer_settime,
+    SYS_timer_delete,
+    SYS_timerfd_create,
+    SYS_timerfd_settime,
 #if defined(__x86_64__)
-    SYS_stat, SYS_lstat, SYS_access, SYS_readlink, SYS_getdents, SYS_dup2, SYS_pipe, SYS_poll, SYS_select,
-    SYS_epoll_create, SYS_epoll_wait, SYS_eventfd, SYS_arch_prctl, SYS_time, SYS_alarm, SYS_pause,
-    SYS_getrlimit, SYS_getpgrp,
+    SYS_stat,
+    SYS_lstat,
+    SYS_access,
+    SYS_readlink,
+    SYS_getdents,
+    SYS_dup2,
+    SYS_pipe,
+    SYS_poll,
+    SYS_select,
+    SYS_epoll_create,
+    SYS_epoll_wait,
+    SYS_eventfd,
+    SYS_arch_prctl,
+    SYS_time,
+    SYS_alarm,
+    SYS_pause,
+    SYS_getrlimit,
+    SYS_getpgrp,
 #endif
 };
 
@@ -119,14 +208,13 @@ std::vector<Guarded> guarded_calls() {
     return {
         {SYS_openat, 2, Test::has_none, {kWrites}},
 #if defined(__x86_64__)
-        {SYS_open, 1, Test::has_none, {kWrites}},
+            {SYS_open, 1, Test::has_none, {kWrites}},
 #endif
-        {SYS_clone, 0, Test::has_all, {CLONE_THREAD | CLONE_VM | CLONE_SIGHAND}},
-        {SYS_tgkill, 0, Test::is_one_of, {self}},
-        {SYS_kill, 0, Test::is_one_of, {self}},
-        {SYS_ioctl, 1, Test::is_one_of, {TCGETS, FIONREAD, FIOCLEX, FIONCLEX, TIOCGWINSZ}},
-        {SYS_fcntl, 1, Test::is_one_of, {F_DUPFD, F_GETFD, F_SETFD, F_GETFL, F_SETFL, F_DUPFD_CLOEXEC}},
-        {SYS_prctl, 0, Test::is_one_of, {PR_SET_NAME, PR_GET_NAME, PR_GET_DUMPABLE, PR_GET_PDEATHSIG}},
+            {SYS_clone, 0, Test::has_all, {CLONE_THREAD | CLONE_VM | CLONE_SIGHAND}},
+            {SYS_tgkill, 0, Test::is_one_of, {self}}, {SYS_kill, 0, Test::is_one_of, {self}},
+            {SYS_ioctl, 1, Test::is_one_of, {TCGETS, FIONREAD, FIOCLEX, FIONCLEX, TIOCGWINSZ}},
+            {SYS_fcntl, 1, Test::is_one_of, {F_DUPFD, F_GETFD, F_SETFD, F_GETFL, F_SETFL, F_DUPFD_CLOEXEC}},
+            {SYS_prctl, 0, Test::is_one_of, {PR_SET_NAME, PR_GET_NAME, PR_GET_DUMPABLE, PR_GET_PDEATHSIG}},
     };
 }
 
@@ -164,9 +252,7 @@ public:
     sock_fprog program() { return {static_cast<unsigned short>(code_.size()), code_.data()}; }
 
 private:
-    void add(std::initializer_list<sock_filter> instructions) {
-        code_.insert(code_.end(), instructions);
-    }
+    void add(std::initializer_list<sock_filter> instructions) { code_.insert(code_.end(), instructions); }
 
     void add(const Guarded& call) {
         std::vector<sock_filter> body{load(offset_of_argument(call.argument, false))};

@@ -27,8 +27,7 @@ DisplayColor mean_over_black(const Image& display, const Footprint& columns, con
     std::array<double, 3> sum{};
     for (int y = rows.first; y < rows.last; ++y)
         for (int x = columns.first; x < columns.last; ++x) {
-            const float alpha =
-                display.channels() == 4 ? std::clamp(display.at(x, y, 3), 0.0f, 1.0f) : 1.0f;
+            const float alpha = display.channels() == 4 ? std::clamp(display.at(x, y, 3), 0.0f, 1.0f) : 1.0f;
             for (int c = 0; c < 3; ++c)
                 sum[std::size_t(c)] += double(std::clamp(display.at(x, y, c), 0.0f, 1.0f) * alpha);
         }
@@ -73,8 +72,8 @@ void FrameSheet::write_label(const std::string& text) {
 void FrameSheet::add(int frame, const Image& display) {
     assert(display.channels() >= 3 && !display.empty());
     // A frame of another shape than the first is fitted into its cell.
-    const double scale = std::min(double(tile_width_px_) / display.width(),
-                                  double(tile_height_px_) / display.height());
+    const double scale =
+        std::min(double(tile_width_px_) / display.width(), double(tile_height_px_) / display.height());
     const int width = std::clamp(int(std::lround(display.width() * scale)), 1, tile_width_px_);
     const int height = std::clamp(int(std::lround(display.height() * scale)), 1, tile_height_px_);
     const int left = cell_x(added_) + (tile_width_px_ - width) / 2;
@@ -83,7 +82,7 @@ void FrameSheet::add(int frame, const Image& display) {
         for (int x = 0; x < width; ++x)
             fill_rectangle(sheet_, left + x, top + y, 1, 1,
                            mean_over_black(display, Footprint(x, width, display.width()),
-                                      Footprint(y, height, display.height())));
+                                           Footprint(y, height, display.height())));
     write_label(std::to_string(frame));
     ++added_;
 }

@@ -28,9 +28,11 @@ api::FlipChoice flip_from(const std::string& name) {
     return found->second;
 }
 
-api::CompareOptions compare_options(double limit, double percent, std::uint64_t allowed, std::optional<double> fail_flip,
-                                    std::optional<double> fail_ssim, bool nan_equal, const std::string& flip, bool ssim,
-                                    bool maps, double pixels_per_degree, const std::map<std::string, std::string>& roles) {
+api::CompareOptions compare_options(double limit, double percent, std::uint64_t allowed,
+                                    std::optional<double> fail_flip, std::optional<double> fail_ssim,
+                                    bool nan_equal, const std::string& flip, bool ssim, bool maps,
+                                    double pixels_per_degree,
+                                    const std::map<std::string, std::string>& roles) {
     api::CompareOptions options;
     options.fail.limit = limit;
     options.fail.percent = percent;
@@ -46,7 +48,9 @@ api::CompareOptions compare_options(double limit, double percent, std::uint64_t 
     return options;
 }
 
-nb::object optional_to(const std::optional<double>& value) { return value ? nb::cast(*value) : nb::none(); }
+nb::object optional_to(const std::optional<double>& value) {
+    return value ? nb::cast(*value) : nb::none();
+}
 
 nb::dict layer_to(const api::LayerFigures& layer) {
     nb::dict result;
@@ -87,8 +91,9 @@ nb::dict comparison_to(const api::Comparison& comparison) {
 
 void bind_compare(nb::module_& module) {
     nb::class_<api::CompareOptions>(module, "CompareOptions")
-        .def(nb::new_(&compare_options), "limit"_a, "percent"_a, "allowed"_a, "fail_flip"_a.none(), "fail_ssim"_a.none(),
-             "nan_equal"_a, "flip"_a, "ssim"_a, "maps"_a, "pixels_per_degree"_a, "roles"_a);
+        .def(nb::new_(&compare_options), "limit"_a, "percent"_a, "allowed"_a, "fail_flip"_a.none(),
+             "fail_ssim"_a.none(), "nan_equal"_a, "flip"_a, "ssim"_a, "maps"_a, "pixels_per_degree"_a,
+             "roles"_a);
     module.def(
         "compare_files",
         [](const fs::path& reference, const fs::path& test, const api::CompareOptions& options) {
@@ -101,7 +106,8 @@ void bind_compare(nb::module_& module) {
         "reference"_a, "test"_a, "options"_a);
     module.def(
         "compare_arrays",
-        [](const InputArray& reference, const InputArray& test, const std::string& role, const api::CompareOptions& options) {
+        [](const InputArray& reference, const InputArray& test, const std::string& role,
+           const api::CompareOptions& options) {
             const api::ArrayView a = view_from(reference), b = view_from(test);
             const auto comparison = [&] {
                 const nb::gil_scoped_release released;

@@ -15,14 +15,17 @@ using namespace nb::literals;
 namespace fs = std::filesystem;
 
 api::Backend backend_from(const std::string& name) {
-    for (const auto backend : {api::Backend::automatic, api::Backend::egl, api::Backend::egl_software, api::Backend::osmesa})
+    for (const auto backend :
+         {api::Backend::automatic, api::Backend::egl, api::Backend::egl_software, api::Backend::osmesa})
         if (name == api::backend_name(backend)) return backend;
-    throw nb::value_error(("backend '" + name + "' is unknown; it is auto, egl, egl-software or osmesa").c_str());
+    throw nb::value_error(
+        ("backend '" + name + "' is unknown; it is auto, egl, egl-software or osmesa").c_str());
 }
 
 HostPointer make_host(const fs::path& data, const std::vector<fs::path>& effect_paths,
                       const std::vector<fs::path>& profile_paths, const std::vector<fs::path>& plugin_paths,
-                      const std::string& backend, const fs::path& cache, int max_side_px, std::uint64_t max_image_bytes) {
+                      const std::string& backend, const fs::path& cache, int max_side_px,
+                      std::uint64_t max_image_bytes) {
     api::HostOptions options;
     options.data = data;
     options.effect_paths = effect_paths;
@@ -39,7 +42,9 @@ nb::object optional_to(const std::optional<Number>& value) {
     return value ? nb::cast(*value) : nb::none();
 }
 
-nb::object optional_value_to(const std::optional<api::Value>& value) { return value ? value_to(*value) : nb::none(); }
+nb::object optional_value_to(const std::optional<api::Value>& value) {
+    return value ? value_to(*value) : nb::none();
+}
 
 }  // namespace
 
@@ -52,7 +57,8 @@ nb::dict param_to(const api::ParamInfo& info) {
     result["default"] = optional_value_to(info.default_value);
     result["min"] = optional_to(info.min);
     result["max"] = optional_to(info.max);
-    result["ui_range"] = info.ui_range ? nb::object(nb::make_tuple((*info.ui_range)[0], (*info.ui_range)[1])) : nb::none();
+    result["ui_range"] =
+        info.ui_range ? nb::object(nb::make_tuple((*info.ui_range)[0], (*info.ui_range)[1])) : nb::none();
     result["values"] = info.values;
     result["from_"] = info.from;
     result["identity"] = optional_value_to(info.identity);
@@ -92,7 +98,8 @@ nb::dict effect_to(const api::EffectInfo& info) {
     nb::dict presets;
     for (const api::PresetInfo& preset : info.presets) {
         nb::dict values;
-        for (const api::PresetValue& value : preset.values) values[value.param.c_str()] = value_to(value.value);
+        for (const api::PresetValue& value : preset.values)
+            values[value.param.c_str()] = value_to(value.value);
         presets[preset.name.c_str()] = values;
     }
     result["inputs"] = inputs;
@@ -112,8 +119,8 @@ nb::dict effect_to(const api::EffectInfo& info) {
 void bind_host(nb::module_& module) {
     module.def("library_version", [] { return std::string(api::library_version()); });
     nb::class_<SharedHost>(module, "Host")
-        .def(nb::new_(&make_host), "data"_a, "effect_paths"_a, "profile_paths"_a, "plugin_paths"_a, "backend"_a, "cache"_a,
-             "max_side_px"_a, "max_image_bytes"_a)
+        .def(nb::new_(&make_host), "data"_a, "effect_paths"_a, "profile_paths"_a, "plugin_paths"_a,
+             "backend"_a, "cache"_a, "max_side_px"_a, "max_image_bytes"_a)
         .def("close", [](SharedHost& self) { self.call([&] { self.host.close(); }); })
         .def_prop_ro("is_closed", [](const SharedHost& self) { return self.host.is_closed(); })
         .def("gl",
@@ -134,9 +141,12 @@ void bind_host(nb::module_& module) {
                      result.append(effect_to(effect));
                  return result;
              })
-        .def("effect",
-             [](SharedHost& self, const std::string& id) { return effect_to(self.call([&] { return self.host.effect(id); })); },
-             "id"_a)
+        .def(
+            "effect",
+            [](SharedHost& self, const std::string& id) {
+                return effect_to(self.call([&] { return self.host.effect(id); }));
+            },
+            "id"_a)
         .def("profiles", [](SharedHost& self) {
             nb::dict result;
             for (const api::NameAndSummary& profile : self.call([&] { return self.host.profiles(); }))

@@ -40,7 +40,8 @@ std::map<std::string, api::Value> values_from(const nb::dict& values) {
     return result;
 }
 
-api::LookOptions look_options(const std::vector<std::string>& taps, const nb::dict& variables, const fs::path& folder) {
+api::LookOptions look_options(const std::vector<std::string>& taps, const nb::dict& variables,
+                              const fs::path& folder) {
     api::LookOptions options;
     options.taps = taps;
     options.variables = values_from(variables);
@@ -53,7 +54,8 @@ api::NonFinite non_finite_from(const std::string& name) {
     if (name == "report") return api::NonFinite::report;
     if (name == "fail") return api::NonFinite::fail;
     if (name == "mend") return api::NonFinite::mend;
-    throw nb::value_error(("non_finite '" + name + "' is unknown; it is ignore, report, fail or mend").c_str());
+    throw nb::value_error(
+        ("non_finite '" + name + "' is unknown; it is ignore, report, fail or mend").c_str());
 }
 
 /// Keeps the captures that host::RenderOptions points to.
@@ -69,8 +71,9 @@ struct RenderRequest {
     }
 };
 
-RenderRequest render_request(const std::vector<std::string>& roles, bool timed, bool telemetry, const std::string& non_finite,
-                             const api::Capture* previous, const api::Capture* next, bool begins_shot, double fps) {
+RenderRequest render_request(const std::vector<std::string>& roles, bool timed, bool telemetry,
+                             const std::string& non_finite, const api::Capture* previous,
+                             const api::Capture* next, bool begins_shot, double fps) {
     RenderRequest request;
     request.options.roles = roles;
     request.options.timed = timed;
@@ -126,8 +129,8 @@ nb::list list_to(const Items& items, Convert convert) {
     return result;
 }
 
-void write_result(const api::Result& result, const fs::path& path, const std::vector<std::string>& roles, bool half,
-                  bool crop_to_display, const std::string& compression) {
+void write_result(const api::Result& result, const fs::path& path, const std::vector<std::string>& roles,
+                  bool half, bool crop_to_display, const std::string& compression) {
     const nb::gil_scoped_release released;
     result.write(path, {roles, half, crop_to_display, compression});
 }
@@ -137,17 +140,25 @@ void bind_result(nb::module_& module) {
         .def_prop_ro("frame", &api::Result::frame)
         .def_prop_ro("is_pending", &api::Result::is_pending)
         .def_prop_ro("roles", &api::Result::roles)
-        .def("image", [](const api::Result& self, const std::string& role) { return array_from(self.image(role)); }, "role"_a)
+        .def(
+            "image",
+            [](const api::Result& self, const std::string& role) { return array_from(self.image(role)); },
+            "role"_a)
         .def_prop_ro("taps", &api::Result::taps)
-        .def("tap", [](const api::Result& self, const std::string& name) { return array_from(self.tap(name)); }, "name"_a)
+        .def(
+            "tap",
+            [](const api::Result& self, const std::string& name) { return array_from(self.tap(name)); },
+            "name"_a)
         .def_prop_ro("times_ms",
                      [](const api::Result& self) {
                          return list_to(self.times(), [](const api::PassTime& time) {
                              return nb::make_tuple(time.pass, time.milliseconds);
                          });
                      })
-        .def_prop_ro("statistics", [](const api::Result& self) { return list_to(self.statistics(), statistic_to); })
-        .def_prop_ro("non_finite", [](const api::Result& self) { return list_to(self.non_finite(), non_finite_to); })
+        .def_prop_ro("statistics",
+                     [](const api::Result& self) { return list_to(self.statistics(), statistic_to); })
+        .def_prop_ro("non_finite",
+                     [](const api::Result& self) { return list_to(self.non_finite(), non_finite_to); })
         .def_prop_ro("messages", &api::Result::messages)
         .def_prop_ro("history_reset", &api::Result::history_reset)
         .def_prop_ro("gpu_bytes", &api::Result::gpu_bytes)
@@ -164,23 +175,32 @@ void bind_session(nb::module_& module) {
             "capture"_a, "request"_a)
         .def(
             "render_subframe",
-            [](SessionOnHost& self, const api::Capture& capture, int index, int count, const RenderRequest& request) {
-                return self.host->call([&] { return self.held->render_subframe(capture, index, count, request.pointing()); });
+            [](SessionOnHost& self, const api::Capture& capture, int index, int count,
+               const RenderRequest& request) {
+                return self.host->call(
+                    [&] { return self.held->render_subframe(capture, index, count, request.pointing()); });
             },
             "capture"_a, "index"_a, "count"_a, "request"_a)
         .def(
             "render_frame",
             [](SessionOnHost& self, const SequenceOfHost& sequence, int frame, const RenderRequest& request) {
-                return self.host->call([&] { return self.held->render(sequence.sequence, frame, request.options); });
+                return self.host->call(
+                    [&] { return self.held->render(sequence.sequence, frame, request.options); });
             },
             "sequence"_a, "frame"_a, "request"_a)
         .def("reset", [](SessionOnHost& self) { self.host->call([&] { self.held->reset(); }); })
         .def(
             "save_history",
-            [](SessionOnHost& self, const fs::path& path) { self.host->call([&] { self.held->save_history(path); }); }, "path"_a)
+            [](SessionOnHost& self, const fs::path& path) {
+                self.host->call([&] { self.held->save_history(path); });
+            },
+            "path"_a)
         .def(
             "load_history",
-            [](SessionOnHost& self, const fs::path& path) { self.host->call([&] { self.held->load_history(path); }); }, "path"_a);
+            [](SessionOnHost& self, const fs::path& path) {
+                self.host->call([&] { self.held->load_history(path); });
+            },
+            "path"_a);
 }
 
 LookOnHost load_look(const HostPointer& host, const fs::path& path, const api::LookOptions& options) {
@@ -194,22 +214,29 @@ LookOnHost parse_look(const HostPointer& host, const std::string& json, const ap
 }  // namespace
 
 void bind_look(nb::module_& module) {
-    nb::class_<api::LookOptions>(module, "LookOptions").def(nb::new_(&look_options), "taps"_a, "variables"_a, "folder"_a);
+    nb::class_<api::LookOptions>(module, "LookOptions")
+        .def(nb::new_(&look_options), "taps"_a, "variables"_a, "folder"_a);
     nb::class_<RenderRequest>(module, "RenderOptions")
-        .def(nb::new_(&render_request), "roles"_a, "timed"_a, "telemetry"_a, "non_finite"_a, "previous"_a.none(),
-             "next"_a.none(), "begins_shot"_a, "fps"_a);
+        .def(nb::new_(&render_request), "roles"_a, "timed"_a, "telemetry"_a, "non_finite"_a,
+             "previous"_a.none(), "next"_a.none(), "begins_shot"_a, "fps"_a);
     bind_result(module);
     bind_session(module);
     nb::class_<LookOnHost>(module, "Look")
         .def_static("load", &load_look, "host"_a, "path"_a, "options"_a)
         .def_static("parse", &parse_look, "host"_a, "json"_a, "options"_a)
-        .def_prop_ro("steps", [](LookOnHost& self) { return self.host->call([&] { return self.held->steps(); }); })
-        .def_prop_ro("inputs", [](LookOnHost& self) { return self.host->call([&] { return self.held->inputs(); }); })
-        .def_prop_ro("outputs", [](LookOnHost& self) { return self.host->call([&] { return self.held->outputs(); }); })
-        .def_prop_ro("has_history", [](LookOnHost& self) { return self.host->call([&] { return self.held->has_history(); }); })
+        .def_prop_ro("steps",
+                     [](LookOnHost& self) { return self.host->call([&] { return self.held->steps(); }); })
+        .def_prop_ro("inputs",
+                     [](LookOnHost& self) { return self.host->call([&] { return self.held->inputs(); }); })
+        .def_prop_ro("outputs",
+                     [](LookOnHost& self) { return self.host->call([&] { return self.held->outputs(); }); })
+        .def_prop_ro(
+            "has_history",
+            [](LookOnHost& self) { return self.host->call([&] { return self.held->has_history(); }); })
         .def_prop_ro("warnings",
                      [](LookOnHost& self) {
-                         return list_to(self.host->call([&] { return self.held->warnings(); }), diagnostic_to);
+                         return list_to(self.host->call([&] { return self.held->warnings(); }),
+                                        diagnostic_to);
                      })
         .def_prop_ro("params",
                      [](LookOnHost& self) {
@@ -223,7 +250,10 @@ void bind_look(nb::module_& module) {
             },
             "values"_a)
         .def(
-            "reset", [](LookOnHost& self, const std::string& name) { self.host->call([&] { self.held->reset(name); }); },
+            "reset",
+            [](LookOnHost& self, const std::string& name) {
+                self.host->call([&] { self.held->reset(name); });
+            },
             "name"_a)
         .def(
             "get",
@@ -243,8 +273,9 @@ void bind_look(nb::module_& module) {
                 return self.host->call([&] { return self.held->render(capture, request.pointing()); });
             },
             "capture"_a, "request"_a)
-        .def("session",
-             [](LookOnHost& self) { return SessionOnHost(self.host, self.host->call([&] { return self.held->session(); })); });
+        .def("session", [](LookOnHost& self) {
+            return SessionOnHost(self.host, self.host->call([&] { return self.held->session(); }));
+        });
 }
 
 }  // namespace aftershade::python

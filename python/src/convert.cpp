@@ -63,7 +63,8 @@ api::ArrayView view_from(const InputArray& array) {
     const bool channels_are_close = array.ndim() == 2 || array.shape(2) == 1 || array.stride(2) == 1;
     const bool pixels_are_close = array.shape(1) == 1 || array.stride(1) == view.channels;
     if (!channels_are_close || !pixels_are_close)
-        throw nb::value_error("the array's pixels must lie side by side, as numpy.ascontiguousarray makes them");
+        throw nb::value_error(
+            "the array's pixels must lie side by side, as numpy.ascontiguousarray makes them");
     view.row_stride = array.shape(0) == 1 ? 0 : std::ptrdiff_t(array.stride(0)) * 4;
     return view;
 }

@@ -45,8 +45,12 @@ api::Matrix4 matrix_from(nb::handle object) {
     return matrix;
 }
 
-void read(nb::handle object, std::optional<double>& field) { field = nb::cast<double>(object); }
-void read(nb::handle object, std::optional<api::Matrix4>& field) { field = matrix_from(object); }
+void read(nb::handle object, std::optional<double>& field) {
+    field = nb::cast<double>(object);
+}
+void read(nb::handle object, std::optional<api::Matrix4>& field) {
+    field = matrix_from(object);
+}
 void read(nb::handle object, std::optional<std::array<double, 2>>& field) {
     field = nb::cast<std::array<double, 2>>(object);
 }

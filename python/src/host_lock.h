@@ -11,8 +11,8 @@
 
 namespace aftershade::python {
 
-/// A Host that is given to the thread that calls it: calls on one Host wait for each other, and other threads of Python run
-/// in the meantime.
+/// A Host that is given to the thread that calls it: calls on one Host wait for each other, and other threads
+/// of Python run in the meantime.
 struct SharedHost {
     explicit SharedHost(host::HostOptions options) : host(std::move(options)) { host.detach(); }
 

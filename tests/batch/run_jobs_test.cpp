@@ -119,9 +119,10 @@ TEST(RunJobs, APassThatTakesTooLongCostsAFrame) {
     options.pass_limit.timeout = std::chrono::milliseconds(300);
     const JobsReport report = run_jobs(options, {}, kGoOn);
     EXPECT_EQ(outcomes(report), (Outcomes{{1, "done"}, {2, "failed"}, {3, "done"}}));
-    EXPECT_EQ(message_of(report, 2),
-              "the GL driver did not finish within 0.3 s and was killed while drawing pass 'main' of step 'grade' "
-              "(effect 'tint'), frame 2");
+    EXPECT_EQ(
+        message_of(report, 2),
+        "the GL driver did not finish within 0.3 s and was killed while drawing pass 'main' of step 'grade' "
+        "(effect 'tint'), frame 2");
     options = jobs_of_script(at_pass(""), {{{1, 2, 3}}});
     options.pass_limit.timeout = std::chrono::milliseconds(300);
     EXPECT_EQ(run_jobs(options, {}, kGoOn).exit_code, ExitCode::done) << "a shipped effect has its time";

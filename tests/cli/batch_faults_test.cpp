@@ -22,16 +22,16 @@ constexpr bool kCanLimitMemory = true;
 #endif
 
 struct BatchFault {
-    std::string what;                     ///< a sentence, as the test's name
-    std::vector<std::string> options{};   ///< beside the look, the capture and the output
-    std::set<ExitCode> exit_codes;        ///< more than one where the machine decides
-    std::string message;                  ///< regular expression, somewhere on stderr unless the exit is 0
-    std::set<int> frames{};               ///< that are written, exactly
+    std::string what;                    ///< a sentence, as the test's name
+    std::vector<std::string> options{};  ///< beside the look, the capture and the output
+    std::set<ExitCode> exit_codes;       ///< more than one where the machine decides
+    std::string message;                 ///< regular expression, somewhere on stderr unless the exit is 0
+    std::set<int> frames{};              ///< that are written, exactly
     std::string look = "nothing.json";
     std::function<void(const fs::path& folder)> prepare{};
     bool broken_gl = false;
-    int limit_kB = 0;         ///< of the address space
-    bool is_full = false;     ///< the outputs' disk
+    int limit_kB = 0;      ///< of the address space
+    bool is_full = false;  ///< the outputs' disk
     bool is_read_only = false;
 };
 void PrintTo(const BatchFault& fault, std::ostream* out) {
@@ -194,7 +194,8 @@ protected:
 
 TEST_P(BatchFaultTest, HasItsExitCodeAndMessageAndLeavesWholeFilesOnly) {
     const BatchFault& fault = GetParam();
-    if (fault.limit_kB > 0 && !kCanLimitMemory) GTEST_SKIP() << "the sanitizer needs all of the address space";
+    if (fault.limit_kB > 0 && !kCanLimitMemory)
+        GTEST_SKIP() << "the sanitizer needs all of the address space";
     std::optional<SmallDisk> disk;
     if (fault.is_full || fault.is_read_only) {
         disk.emplace(folder_ / "out");
@@ -208,8 +209,8 @@ TEST_P(BatchFaultTest, HasItsExitCodeAndMessageAndLeavesWholeFilesOnly) {
     const CommandResult result = run_with_fault();
     EXPECT_TRUE(fault.exit_codes.contains(ExitCode(result.exit_code))) << result.exit_code << result.err;
     if (result.exit_code != 0 || !fault.exit_codes.contains(ExitCode::memory)) {
-        EXPECT_TRUE(std::regex_search(result.err, std::regex(fault.message)))
-            << fault.message << "\n" << result.err;
+        EXPECT_TRUE(std::regex_search(result.err, std::regex(fault.message))) << fault.message << "\n"
+                                                                              << result.err;
     }
     expect_whole_files_only(result);
 }

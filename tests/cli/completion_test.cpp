@@ -77,8 +77,8 @@ TEST_F(Completion, OfFishOffersCommandsOptionsChoicesAndEffects) {
     const std::string script = script_of("fish").string();
     const auto offers = [&](const std::string& line) {
         Words words;
-        for (const std::string& offer :
-             lines_of_text(run({"/usr/bin/fish", "-N", "-c", "source " + script + "; complete -C '" + line + "'"}).out))
+        for (const std::string& offer : lines_of_text(
+                 run({"/usr/bin/fish", "-N", "-c", "source " + script + "; complete -C '" + line + "'"}).out))
             words.push_back(offer.substr(0, offer.find('\t')));
         return words;
     };
@@ -93,14 +93,17 @@ TEST_F(Completion, OfZshIsSoundZsh) {
     if (!fs::exists("/usr/bin/zsh")) GTEST_SKIP() << "zsh is not installed";
     const CommandResult checked = run({"/usr/bin/zsh", "-f", "-n", script_of("zsh").string()});
     EXPECT_EQ(checked.exit_code, 0) << checked.err;
-    // _arguments parses every row before it completes; outside of completion it reports only rows that it refuses.
+    // _arguments parses every row before it completes; outside of completion it reports only rows that it
+    // refuses.
     const CommandResult defined =
         run({"/usr/bin/zsh", "-f", "-c",
              "autoload -Uz compinit; compinit -u -D; source " + script_of("zsh").string() +
                  "; print -rl ${(ok)functions[(I)_aftershade*]}"});
     const Words functions = lines_of_text(defined.out);
-    for (const char* name : {"_aftershade", "_aftershade_run", "_aftershade_golden_approve", "_aftershade_effects"})
-        EXPECT_NE(std::find(functions.begin(), functions.end(), name), functions.end()) << name << defined.err;
+    for (const char* name :
+         {"_aftershade", "_aftershade_run", "_aftershade_golden_approve", "_aftershade_effects"})
+        EXPECT_NE(std::find(functions.begin(), functions.end(), name), functions.end())
+            << name << defined.err;
 }
 
 TEST_F(Completion, NamesTheShellsThatItHas) {
@@ -123,7 +126,8 @@ TEST_F(ManPages, AreThereForEveryCommandAndSoundForMandoc) {
     for (const auto& page : fs::directory_iterator(folder_ / "man1")) {
         const CommandResult checked = run({"/usr/bin/mandoc", "-Tlint", "-Wwarning", page.path().string()});
         for (const std::string& line : lines_of_text(checked.out))
-            EXPECT_NE(line.find("missing date"), std::string::npos) << line;  // dates would change every build
+            EXPECT_NE(line.find("missing date"), std::string::npos)
+                << line;  // dates would change every build
     }
 }
 

@@ -1,5 +1,5 @@
-// What strangers wrote: each fault of a plug-in or a shader is an exit with a reason, and plug-ins are kept from
-// everything but their work.
+// What strangers wrote: each fault of a plug-in or a shader is an exit with a reason, and plug-ins are kept
+// from everything but their work.
 #include <gtest/gtest.h>
 
 #include <regex>
@@ -14,10 +14,10 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::string kCases = AFTERSHADE_CASES;
-constexpr const char* kBehaviours[] = {"work",    "exit_0",   "exit_5",      "exit_6", "exit_130",  "crash",
-                                       "abort",   "sleep",    "spin",        "talk",   "escape",    "memory",
-                                       "lie",     "lie_long", "environment", "files",  "processes", "others",
-                                       "sockets", "nothing"};
+constexpr const char* kBehaviours[] = {"work",   "exit_0",    "exit_5", "exit_6",   "exit_130",
+                                       "crash",  "abort",     "sleep",  "spin",     "talk",
+                                       "escape", "memory",    "lie",    "lie_long", "environment",
+                                       "files",  "processes", "others", "sockets",  "nothing"};
 
 class Strangers : public testing::Test {
 protected:
@@ -67,7 +67,7 @@ protected:
         return run_aftershade(arguments, folder_.path(), environment);
     }
     CommandResult run(const std::vector<std::string>& more, const Environment& environment = {}) const {
-        std::vector<std::string> arguments{"run",     "look.json", "in_####.exr", "-o", "out_####.exr",
+        std::vector<std::string> arguments{"run",      "look.json", "in_####.exr", "-o", "out_####.exr",
                                            "--frames", "1"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return aftershade(arguments, environment);
@@ -122,8 +122,8 @@ TEST_P(PluginThat, CostsItsFrameAtMost) {
         return;
     }
     EXPECT_EQ(result.exit_code, 5) << result.err;
-    EXPECT_TRUE(has(result.err, "aftershade: error: plug-in " + kCases + "/behaves\\.so " + behaviour.message +
-                                    " in prepare of step 'graded', frame 1"))
+    EXPECT_TRUE(has(result.err, "aftershade: error: plug-in " + kCases + "/behaves\\.so " +
+                                    behaviour.message + " in prepare of step 'graded', frame 1"))
         << result.err;
     EXPECT_FALSE(fs::exists(folder_ / "out_0001.exr"));
 }
@@ -156,12 +156,13 @@ INSTANTIATE_TEST_SUITE_P(Would, PluginThat, testing::ValuesIn(behaviours()),
 
 TEST_F(Strangers, PluginsHaveOneTimeLimitWithWorkersAndWithout) {
     write_plugin_effect(kBehaviours);
-    const CommandResult result = run({"--plugin-path", kCases, "--set", "graded.what=sleep",
-                                      "--plugin-timeout", "0.5", "--jobs", "1"});
+    const CommandResult result = run(
+        {"--plugin-path", kCases, "--set", "graded.what=sleep", "--plugin-timeout", "0.5", "--jobs", "1"});
     EXPECT_EQ(result.exit_code, 5) << result.err;
-    EXPECT_TRUE(has(result.err, "1 of 1 frames failed:\n  frame 1: plug-in .*behaves\\.so did not finish within 0\\.5 "
-                                "s and was killed in prepare of step 'graded', frame 1; give it longer with "
-                                "--plugin-timeout"))
+    EXPECT_TRUE(has(result.err,
+                    "1 of 1 frames failed:\n  frame 1: plug-in .*behaves\\.so did not finish within 0\\.5 "
+                    "s and was killed in prepare of step 'graded', frame 1; give it longer with "
+                    "--plugin-timeout"))
         << result.err;
 }
 
@@ -180,7 +181,8 @@ TEST_F(Strangers, PluginsCannotMakeACheckSucceed) {
         const CommandResult result =
             aftershade({"check", "behaves", "--plugin-path", kCases, "--plugin-timeout", "0.3"});
         EXPECT_EQ(result.exit_code, 1) << result.err;
-        EXPECT_TRUE(has(result.err, "behaves/effect\\.json: error: with the defaults: plug-in .*behaves\\.so"))
+        EXPECT_TRUE(
+            has(result.err, "behaves/effect\\.json: error: with the defaults: plug-in .*behaves\\.so"))
             << result.err;
         EXPECT_TRUE(has(result.out, "behaves: [1-9] errors")) << result.out;
     }
@@ -189,8 +191,7 @@ TEST_F(Strangers, PluginsCannotMakeACheckSucceed) {
 TEST_F(Strangers, AWorkerThatEndsWithoutItsLastWordHasFailed) {
     write_shader("plain", "");
     for (const std::string code : {"0", "5", "130"}) {
-        const CommandResult result =
-            run({}, {{"QUIT", code}, {"LD_PRELOAD", kCases + "/preload/quits.so"}});
+        const CommandResult result = run({}, {{"QUIT", code}, {"LD_PRELOAD", kCases + "/preload/quits.so"}});
         EXPECT_EQ(result.exit_code, 5) << result.err;
         EXPECT_NE(result.err.find("aftershade: error: the worker ended with code " + code +
                                   " before its work was done"),
@@ -231,12 +232,14 @@ TEST_F(Strangers, AShaderThatTakesTooLongIsNamed) {
     std::string lines;
     for (int i = 0; i < 6'000; ++i) lines += "c = c * 1.01 + sin(c * " + std::to_string(i) + ".0);\n";
     write_shader("long", lines);
-    const std::string late = "the GL driver did not finish within 0\\.5 s and was killed while "
-                             "(compiling|drawing) pass 'main' of step '";
+    const std::string late =
+        "the GL driver did not finish within 0\\.5 s and was killed while "
+        "(compiling|drawing) pass 'main' of step '";
     const CommandResult result = run({"--pass-timeout", "0.5"});
     EXPECT_EQ(result.exit_code, 5) << result.err;
-    EXPECT_TRUE(has(result.err, late + "graded' \\(effect 'long'\\), frame 1; make the pass cheaper, or give it "
-                                       "longer with --pass-timeout"))
+    EXPECT_TRUE(has(result.err, late +
+                                    "graded' \\(effect 'long'\\), frame 1; make the pass cheaper, or give it "
+                                    "longer with --pass-timeout"))
         << result.err;
     const CommandResult by_jobs = run({"--jobs", "1", "--pass-timeout", "0.5"});
     EXPECT_EQ(by_jobs.exit_code, 5) << by_jobs.err;

@@ -88,7 +88,8 @@ TEST_F(VerdictAudit, OfASuiteWithEachOfItsInputsSpoiled) {
          },
          one, 3, "10"},
         {"NaN in the golden",
-         [&] { change_pixels(corner(), [](Image& pixels) { pixels.at(3, 4, 1) = kNan; }); }, one, 2, "corner.color.0001: RGB: 1 pixels differ"},
+         [&] { change_pixels(corner(), [](Image& pixels) { pixels.at(3, 4, 1) = kNan; }); }, one, 2,
+         "corner.color.0001: RGB: 1 pixels differ"},
         {"a filter that fits nothing", [] {}, {"--filter", "corners"}, 64, "did you mean 'corner'?"},
         {"an output that no golden has",
          [&] {

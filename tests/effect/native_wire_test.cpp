@@ -97,7 +97,8 @@ TEST(NativeWire, BringsAFrameWithItsParametersAndCamera) {
     ASSERT_EQ(got.specs.size(), 3u);
     EXPECT_EQ(got.specs[0].unit, "px");
     EXPECT_EQ(got.specs[2].type, ParamType::color);
-    for (const ParamSpec& spec : specs) EXPECT_EQ(got.params.get(spec.name), values.get(spec.name)) << spec.name;
+    for (const ParamSpec& spec : specs)
+        EXPECT_EQ(got.params.get(spec.name), values.get(spec.name)) << spec.name;
     EXPECT_EQ(got.camera.get("f_number"), 1.4);
     EXPECT_EQ(got.camera.camera_from_world, camera.camera_from_world);
     EXPECT_EQ(got.camera.ndc_from_world, std::nullopt);

@@ -55,7 +55,8 @@ std::vector<std::string> environment_of_plugins() {
 }
 
 /// A result with what its declaration does not allow taken as a fault, as if the plug-in had set it here.
-NativeResult checked(const NativeDeclaration& declaration, NativeResult&& untrusted, const std::string& what) {
+NativeResult checked(const NativeDeclaration& declaration, NativeResult&& untrusted,
+                     const std::string& what) {
     NativeFaults faults;
     NativeOutput taken(declaration, faults);
     const aftershade_output* output = taken.get();
@@ -92,7 +93,8 @@ struct NativeProcess::Impl {
             const std::size_t left = kMaxPrinted - std::min(kMaxPrinted, count_);
             count_ += bytes.size();
             pending_ += bytes.substr(0, left);
-            for (std::size_t end; (end = pending_.find('\n')) != std::string::npos; pending_.erase(0, end + 1))
+            for (std::size_t end; (end = pending_.find('\n')) != std::string::npos;
+                 pending_.erase(0, end + 1))
                 print(pending_.substr(0, end));
             if (left > 0 && count_ > kMaxPrinted)
                 print("aftershade: warning: plug-ins print more than 1 MiB; the rest is left out");
@@ -102,9 +104,7 @@ struct NativeProcess::Impl {
         }
 
     private:
-        static void print(const std::string& line) {
-            std::fprintf(stderr, "%s\n", printable(line).c_str());
-        }
+        static void print(const std::string& line) { std::fprintf(stderr, "%s\n", printable(line).c_str()); }
         std::size_t count_ = 0;
         std::string pending_;
     };
@@ -146,7 +146,8 @@ struct NativeProcess::Impl {
         WireReader in(hello);
         held = Confinement{int(in.number()), in.flag()};
         if (const auto gaps = confinement_gaps(*held); !gaps.empty() && starts == 1)
-            std::fprintf(stderr, "aftershade: warning: this kernel does not keep plug-ins from being able to %s\n",
+            std::fprintf(stderr,
+                         "aftershade: warning: this kernel does not keep plug-ins from being able to %s\n",
                          joined(gaps, " and to ", ", to ").c_str());
     }
 
@@ -217,8 +218,8 @@ struct NativeProcess::Impl {
     void wait(short what, const WorkStatus& place, Clock::time_point deadline) {
         const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
         if (left <= 0)
-            refuse(place, "did not finish within " + format_number(options.timeout.count()) +
-                              " s and was killed",
+            refuse(place,
+                   "did not finish within " + format_number(options.timeout.count()) + " s and was killed",
                    "; give it longer with --plugin-timeout");
         std::array<pollfd, 2> wanted = {{{stream.get(), what, 0}, {output.get(), POLLIN, 0}}};
         poll(wanted.data(), wanted.size(), int(std::min<std::int64_t>(left, 1000)));
@@ -233,7 +234,8 @@ struct NativeProcess::Impl {
         if (got == 0) output.reset();
     }
 
-    [[noreturn]] void refuse(const WorkStatus& place, const std::string& why, const std::string& remedy = "") {
+    [[noreturn]] void refuse(const WorkStatus& place, const std::string& why,
+                             const std::string& remedy = "") {
         finish(true);
         throw Error(ExitCode::effect, subject(place) + " " + why + place_text(place) + remedy);
     }

@@ -121,7 +121,8 @@ private:
 }  // namespace
 
 int serve_native_code(int descriptor) {
-    // An interrupt lets the run finish its frame, for which it needs this process; a terminal sends it to all.
+    // An interrupt lets the run finish its frame, for which it needs this process; a terminal sends it to
+    // all.
     for (const int number : {SIGINT, SIGTERM}) std::signal(number, SIG_IGN);
     const Confinement held = confine_native_code();
     const Stream stream(descriptor);

@@ -223,8 +223,8 @@ void put(WireWriter& out, const NativeFrame& frame) {
         for (const int each : {image.width_px, image.height_px, image.channels}) out.number(each);
         out.flag(image.present);
     }
-    for (const int each : {frame.number, frame.width_px, frame.height_px, frame.display_width_px,
-                           frame.display_height_px})
+    for (const int each :
+         {frame.number, frame.width_px, frame.height_px, frame.display_width_px, frame.display_height_px})
         out.number(each);
     out.real(frame.fps);
     out.flag(frame.history_valid);
