@@ -19,6 +19,8 @@
 #include <set>
 #include <utility>
 
+#include "framework/core/child_process.h"
+
 namespace aftershade {
 
 namespace fs = std::filesystem;
@@ -131,16 +133,6 @@ Target target_of(const fs::path& named) {
     }
     return {named, false};  // a ring, which nothing can open
 }
-struct Descriptor {
-    explicit Descriptor(int opened) : number(opened) {}
-    ~Descriptor() {
-        if (number >= 0) close(number);
-    }
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    const int number;
-};
-
 constexpr const char* kNotRegular = "is not a regular file";
 
 }  // namespace
@@ -327,7 +319,7 @@ std::string read_regular_file(const fs::path& path, std::uintmax_t max_bytes, st
     // Without O_NONBLOCK a pipe would wait for a writer. What is opened is what is judged.
     const Descriptor file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
     struct stat status;
-    if (file.number < 0 || fstat(file.number, &status) != 0) {
+    if (file.get() < 0 || fstat(file.get(), &status) != 0) {
         fault = errno == ENOENT ? "no such file" : std::string("cannot be read: ") + std::strerror(errno);
         // A socket, or a device that has no driver.
         if (errno == ENXIO || errno == ENODEV) fault = kNotRegular;
@@ -346,7 +338,7 @@ std::string read_regular_file(const fs::path& path, std::uintmax_t max_bytes, st
     text.reserve(std::size_t(status.st_size));
     std::array<char, 65536> buffer;
     ssize_t count = 0;
-    while ((count = read(file.number, buffer.data(), buffer.size())) > 0) {
+    while ((count = read(file.get(), buffer.data(), buffer.size())) > 0) {
         text.append(buffer.data(), std::size_t(count));
         if (text.size() > max_bytes) return too_large(text.size());
     }

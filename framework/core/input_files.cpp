@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-fs::path canonical(const fs::path& path) {
+fs::path canonical_path(const fs::path& path) {
     std::error_code failure;
     const fs::path result = fs::weakly_canonical(fs::absolute(path, failure), failure);
     return failure ? path : result;
@@ -42,11 +42,11 @@ InputFiles::InputFiles() {
 fs::path InputFiles::resolved(const fs::path& path) const {
     std::error_code failure;
     const fs::path name = path.filename();
-    if (name.empty() || name == "." || name == ".." || fs::is_symlink(path, failure)) return canonical(path);
+    if (name.empty() || name == "." || name == ".." || fs::is_symlink(path, failure)) return canonical_path(path);
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
     const auto known = folders_.find(folder);
     if (known != folders_.end()) return known->second / name;
-    return folders_.emplace(folder, canonical(folder)).first->second / name;
+    return folders_.emplace(folder, canonical_path(folder)).first->second / name;
 }
 
 /// Of regular files alone: any number of outputs may go to one pipe or to /dev/null.

@@ -188,7 +188,7 @@ Comparison compare_arrays(const aftershade::Image& reference, const aftershade::
         layer.role = as;
         layer.channels = std::move(channels);
         layer.window = {0, 0, a.width() - 1, a.height() - 1};
-        compare_layer(a, b, rules, layer);
+        compare_layer({a, b}, rules, layer);
         comparison.verdict = std::max(comparison.verdict, Verdict(int(layer.verdict)));
         comparison.labels.push_back(label);
         comparison.layers.push_back(figures_of(layer, options.maps ? flip_map(layer) : Image()));
