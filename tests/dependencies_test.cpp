@@ -74,7 +74,7 @@ TEST(Dependencies, AreThoseThatTheScriptsInstall) {
 
 TEST(Dependencies, AreThoseThatCMakeLooksFor) {
     std::string cmake = text_of(kSources / "CMakeLists.txt");
-    for (const char* folder : {"cmake", "framework", "cli", "effects", "tests"})
+    for (const char* folder : {"cmake", "framework", "cli", "effects", "python", "tests"})
         for (const auto& entry : fs::recursive_directory_iterator(kSources / folder))
             if (entry.path().filename() == "CMakeLists.txt" || entry.path().extension() == ".cmake")
                 cmake += text_of(entry.path());

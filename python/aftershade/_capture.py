@@ -38,7 +38,7 @@ def read_options(
     alpha: str = "keep",
     roles: Iterable[str] = (),
     scale_divisor: int = 1,
-) -> Any:
+) -> _native.CaptureOptions:
     if alpha not in ("keep", "opaque"):
         raise ValueError(f"alpha '{alpha}' is unknown; it is keep or opaque")
     return _native.CaptureOptions(profile, view, layer, color_space, alpha == "opaque", list(roles), scale_divisor)
@@ -61,6 +61,7 @@ class Capture:
         host: Host | None = None,
         **options: Any,
     ) -> None:
+        self._native: _native.Capture
         if isinstance(source, Mapping):
             if options:
                 raise TypeError(f"{', '.join(sorted(options))}: for files only, and these are arrays")
@@ -73,7 +74,7 @@ class Capture:
             self.frame = frame
 
     @classmethod
-    def _of(cls, native: Any) -> Capture:
+    def _of(cls, native: _native.Capture) -> Capture:
         capture = cls.__new__(cls)
         capture._native = native
         return capture
@@ -91,7 +92,7 @@ class Capture:
 
     def __getitem__(self, role: str) -> NDArray[Any]:
         """The image of a role: a read-only view of its pixels."""
-        return self._native.image(role)
+        return np.asarray(self._native.image(role))
 
     def __setitem__(self, role: str, pixels: ArrayLike) -> None:
         self._native.set_image(role, host_array(pixels))
@@ -135,11 +136,13 @@ class Capture:
 
     @property
     def data_window(self) -> Window:
-        return tuple(self._native.data_window)
+        x, y, width, height = self._native.data_window
+        return x, y, width, height
 
     @property
     def display_window(self) -> Window:
-        return tuple(self._native.display_window)
+        x, y, width, height = self._native.display_window
+        return x, y, width, height
 
     def set_windows(self, data: Window, display: Window) -> None:
         self._native.set_windows(data, display)
@@ -162,7 +165,7 @@ class Capture:
         return f"<aftershade.Capture frame {self.frame}, {width} x {height} px: {', '.join(self.roles)}>"
 
 
-def _of_arrays(images: Mapping[str, ArrayLike]) -> Any:
+def _of_arrays(images: Mapping[str, ArrayLike]) -> _native.Capture:
     arrays = {role: host_array(pixels) for role, pixels in images.items()}
     if not arrays:
         raise ValueError("a capture needs an image, such as {'color': array}")

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, Union
 
+import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
@@ -27,21 +28,20 @@ def _render_options(
     next: Capture | None = None,
     begins_shot: bool = False,
     fps: float = 24,
-) -> Any:
-    return _native.RenderOptions(
-        list(roles), timed, telemetry, non_finite, previous and previous._native, next and next._native, begins_shot, fps
-    )
+) -> _native.RenderOptions:
+    before, after = (one._native if one is not None else None for one in (previous, next))
+    return _native.RenderOptions(list(roles), timed, telemetry, non_finite, before, after, begins_shot, fps)
 
 
 class Result:
     """What a look made of one frame: images by role. In a notebook it shows itself as a picture."""
 
-    def __init__(self, native: Any) -> None:
+    def __init__(self, native: _native.Result) -> None:
         self._native = native
 
     def __getitem__(self, role: str) -> NDArray[Any]:
         """The image of a role: a read-only array that shares the result's pixels."""
-        return self._native.image(role)
+        return np.asarray(self._native.image(role))
 
     def __contains__(self, role: str) -> bool:
         return role in self._native.roles
@@ -61,7 +61,7 @@ class Result:
 
     def tap(self, name: str) -> NDArray[Any]:
         """An intermediate texture that the look was loaded with: "bokeh.coc"."""
-        return self._native.tap(name)
+        return np.asarray(self._native.tap(name))
 
     @property
     def taps(self) -> list[str]:
@@ -267,7 +267,7 @@ class Look:
             return Capture(frame, host=self.host)
         return Capture._of(self._native.read(Path(frame), read_options()))
 
-    def _keep(self, native: Any) -> Result:
+    def _keep(self, native: _native.Result) -> Result:
         result = Result(native)
         if not result.is_pending:
             self._last = result
