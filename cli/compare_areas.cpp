@@ -34,6 +34,8 @@ std::optional<AreaShape> rectangle_of(const std::string& text) {
     return rectangle_area(int(numbers[0]), int(numbers[1]), int(numbers[2]), int(numbers[3]));
 }
 
+constexpr std::string_view kMaskPrefix = "mask:", kObjectPrefix = "object:";
+
 class AreaReader {
 public:
     AreaReader(const CompareAreaOptions& options, const std::string& reference, const ReadLimits& limits,
@@ -43,8 +45,8 @@ public:
           diagnostics_(diagnostics) {}
 
     std::optional<CompareArea> read(const std::string& word, const std::string& where) {
-        if (where.starts_with("mask:")) return mask(where.substr(5));
-        if (where.starts_with("object:")) return objects(word, where.substr(7));
+        if (where.starts_with(kMaskPrefix)) return mask(where.substr(kMaskPrefix.size()));
+        if (where.starts_with(kObjectPrefix)) return objects(word, where.substr(kObjectPrefix.size()));
         if (const auto shape = rectangle_of(where)) return CompareArea{where, *shape, std::nullopt};
         diagnostics_.error({word + " " + where}, fmt::format("'{}' is no area; expected {}", where, kWhere));
         return std::nullopt;

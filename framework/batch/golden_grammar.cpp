@@ -59,7 +59,12 @@ Block layer_block() {
 /// Objects are read, and refused, by whoever reads the area.
 Form objects() {
     const Form one =
-        grammar::custom({.type = "[entry](params.md#objects)", .schema = schema::object_key().dump()});
+        grammar::custom({.type = "[entry](params.md#objects)",
+                         .schema = schema::object_key().dump(),
+                         .check = [](const Node& node, const grammar::Spot& spot, Diagnostics& diagnostics) {
+                             if (node.kind == Node::Kind::array)
+                                 diagnostics.error(node.place, "'" + spot.key + "' must name an object");
+                         }});
     return grammar::any_of({one, grammar::list(one, {.min = 1})});
 }
 

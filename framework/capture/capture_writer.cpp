@@ -52,6 +52,14 @@ void add_mark(const Profile& profile, std::map<std::string, ExrValue>& attribute
     attributes.emplace(name, text);
 }
 
+bool shares_channels(const RoleDecoding& one, const RoleDecoding& other) {
+    for (const auto& layer : one.layers)
+        for (const std::string& name : layer)
+            for (const auto& others : other.layers)
+                if (std::find(others.begin(), others.end(), name) != others.end()) return true;
+    return false;
+}
+
 void require_exact_ids(const std::filesystem::path& path, const Image& image, bool ids_as_uint) {
     constexpr std::uint32_t kLargestExactFloat = 1u << 24;
     if (image.type() != ComponentType::uint32 || ids_as_uint) return;
@@ -75,9 +83,15 @@ std::vector<std::string> write_capture(const std::filesystem::path& path, const 
         profile.color_space == "auto" ? header.primaries : *color_space_primaries(profile.color_space);
     std::vector<std::string> left_out;
     std::map<std::string, Image> stored;
+    const auto colors = profile.roles.find(std::string(kColorRole));
     for (const auto& [role, image] : capture.images) {
         const auto found = profile.roles.find(role);
-        if (found == profile.roles.end() || found->second.layers.empty()) {
+        // Of producers with a file for each role several have the channels of color, which one file cannot
+        // hold.
+        const bool shares_colors = role != kColorRole && found != profile.roles.end() &&
+                                   colors != profile.roles.end() &&
+                                   shares_channels(found->second, colors->second);
+        if (found == profile.roles.end() || found->second.layers.empty() || shares_colors) {
             left_out.push_back(role);
             continue;
         }

@@ -3,7 +3,9 @@
 #include <sys/stat.h>
 
 #include <mutex>
+#include <set>
 #include <system_error>
+#include <utility>
 
 namespace aftershade {
 
@@ -39,51 +41,69 @@ InputFiles::InputFiles() {
     for (const fs::path& file : documents().files) add(file);
 }
 
-fs::path InputFiles::resolved(const fs::path& path) const {
+const InputFiles::Folder& InputFiles::folder_of(const std::string& text) const {
+    const auto known = folders_.find(text);
+    if (known != folders_.end()) return known->second;
+    Folder folder;
+    folder.path = canonical_path(text).native();
+    if (!folder.path.ends_with('/')) folder.path += '/';
     std::error_code failure;
-    const fs::path name = path.filename();
-    if (name.empty() || name == "." || name == ".." || fs::is_symlink(path, failure)) return canonical_path(path);
-    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-    const auto known = folders_.find(folder);
-    if (known != folders_.end()) return known->second / name;
-    return folders_.emplace(folder, canonical_path(folder)).first->second / name;
+    for (fs::directory_iterator at(text, failure), end; !failure && at != end; at.increment(failure))
+        folder.names.insert(at->path().filename().native());
+    return folders_.emplace(text, std::move(folder)).first->second;
 }
 
-/// Of regular files alone: any number of outputs may go to one pipe or to /dev/null.
-std::optional<InputFiles::Identity> InputFiles::identity_of(const fs::path& file) {
+InputFiles::Found InputFiles::find(const fs::path& path) const {
+    const std::string& text = path.native();
+    const std::size_t slash = text.rfind('/');
+    const std::string name = slash == std::string::npos ? text : text.substr(slash + 1);
+    const bool is_plain = !name.empty() && name != "." && name != "..";
     struct stat status = {};
-    if (stat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
-    return Identity{std::uint64_t(status.st_dev), std::uint64_t(status.st_ino)};
+    if (is_plain) {
+        const Folder& folder = folder_of(slash == std::string::npos ? "." : text.substr(0, slash + 1));
+        if (!folder.names.contains(name) || lstat(path.c_str(), &status) != 0)
+            return {std::nullopt, true, folder.path + name};
+    }
+    const std::string resolved = canonical_path(path).native();
+    if (stat(path.c_str(), &status) != 0) return {std::nullopt, true, resolved};
+    const bool is_file = S_ISREG(status.st_mode);
+    const Identity identity{std::uint64_t(status.st_dev), std::uint64_t(status.st_ino)};
+    return {is_file ? std::optional(identity) : std::nullopt, is_file, resolved};
 }
 
 void InputFiles::add(const fs::path& file) {
     if (file.empty()) return;
-    if (const auto identity = identity_of(file)) by_identity_.emplace(*identity, file);
-    else by_path_.emplace(resolved(file), file);
+    const Found found = find(file);
+    if (found.identity) by_identity_.emplace(*found.identity, file);
+    else by_path_.emplace(found.path, file);
 }
 
 void InputFiles::add(std::span<const fs::path> files) {
     for (const fs::path& file : files) add(file);
 }
 
-std::optional<fs::path> InputFiles::replaced_by(const fs::path& output) const {
-    if (const auto identity = identity_of(output)) {
-        const auto input = by_identity_.find(*identity);
+std::optional<fs::path> InputFiles::input_at(const Found& output) const {
+    if (output.identity) {
+        const auto input = by_identity_.find(*output.identity);
         return input == by_identity_.end() ? std::nullopt : std::optional(input->second);
     }
-    const auto input = by_path_.find(resolved(output));
+    const auto input = by_path_.find(output.path);
     return input == by_path_.end() ? std::nullopt : std::optional(input->second);
+}
+
+std::optional<fs::path> InputFiles::replaced_by(const fs::path& output) const {
+    return input_at(find(output));
 }
 
 bool InputFiles::check_output(const Place& place, const fs::path& output, Diagnostics& diagnostics) {
     if (output.empty()) return true;
-    if (const auto input = replaced_by(output)) {
+    const Found found = find(output);
+    if (const auto input = input_at(found)) {
         diagnostics.error(place, "would replace the input " + input->string());
         return false;
     }
-    std::error_code failure;
-    const bool is_file = !fs::exists(output, failure) || fs::is_regular_file(output, failure);
-    if (is_file && !outputs_.insert(resolved(output)).second) {
+    // Any number of outputs may go to one pipe or to /dev/null.
+    if (found.is_file && !outputs_.insert(found.path).second) {
         diagnostics.error(place, "another output has this name");
         return false;
     }

@@ -6,8 +6,10 @@
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <set>
 #include <span>
+#include <string>
+#include <unordered_map>
+#include <unordered_set>
 
 #include "framework/core/diagnostics.h"
 
@@ -37,15 +39,25 @@ private:
         std::uint64_t inode = 0;
         auto operator<=>(const Identity&) const = default;
     };
-    static std::optional<Identity> identity_of(const std::filesystem::path& file);
-    /// With links followed, so that two ways to one file are one.
-    std::filesystem::path resolved(const std::filesystem::path& path) const;
+    /// What lies at a path.
+    struct Found {
+        std::optional<Identity> identity;  ///< of a regular file
+        bool is_file = true;               ///< a regular file, or nothing yet
+        std::string path;                  ///< with links followed, so that two ways to one file are one
+    };
+    /// Read once, since a sequence may have a million files.
+    struct Folder {
+        std::string path;                       ///< with links followed, and a slash
+        std::unordered_set<std::string> names;  ///< of what lies in it
+    };
+    const Folder& folder_of(const std::string& text) const;
+    Found find(const std::filesystem::path& path) const;
+    std::optional<std::filesystem::path> input_at(const Found& output) const;
 
     std::map<Identity, std::filesystem::path> by_identity_;
-    std::map<std::filesystem::path, std::filesystem::path> by_path_;
-    /// Folders with links followed: once each, since a sequence may have a million files.
-    mutable std::map<std::filesystem::path, std::filesystem::path> folders_;
-    std::set<std::filesystem::path> outputs_;  ///< with links followed
+    std::unordered_map<std::string, std::filesystem::path> by_path_;
+    mutable std::unordered_map<std::string, Folder> folders_;
+    std::unordered_set<std::string> outputs_;  ///< with links followed
 };
 
 /// Every reader of documents notes them here, so that none is forgotten where a document names others.

@@ -50,6 +50,8 @@ std::vector<EffectInfo> Host::effects(std::vector<Diagnostic>* faults) const {
     return called(data, [&] {
         EffectRegistry registry = data.registry();
         Diagnostics found;
+        for (const auto& [folder, reason] : registry.unreadable())
+            found.warning({folder.string()}, "cannot be read, and its effects are left out: " + reason);
         std::vector<EffectInfo> effects;
         for (const std::string& id : registry.ids())
             if (const EffectManifest* manifest = registry.find(id, found))

@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <ctime>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <thread>
 #include <utility>
 
 #include "framework/core/error.h"
@@ -146,10 +148,26 @@ void RunLock::open_file() {
     }
 }
 
+namespace {
+
+/// Within a second: the worker of a run that was killed a moment ago holds its frames until the kernel has
+/// ended it.
+bool lock_soon(int file, off_t begin, off_t count) {
+    constexpr int kTries = 50;
+    for (int i = 0; i < kTries; ++i) {
+        if (lock_bytes(file, F_OFD_SETLK, F_WRLCK, begin, count)) return true;
+        if (errno != EAGAIN && errno != EACCES) return false;
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    return lock_bytes(file, F_OFD_SETLK, F_WRLCK, begin, count);
+}
+
+}  // namespace
+
 bool RunLock::take(const std::vector<int>& frames) {
     for (const Range& range : ranges_of(frames)) {
         const off_t count = off_t(range.last) - range.first + 1;
-        if (lock_bytes(file_, F_OFD_SETLK, F_WRLCK, kFirstFrame + range.first, count)) continue;
+        if (lock_soon(file_, kFirstFrame + range.first, count)) continue;
         held_ = errno == EAGAIN || errno == EACCES;
         if (!held_) return false;  // no locks here
         std::string who = "another run";

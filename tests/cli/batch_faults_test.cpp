@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFrames = 4;
+constexpr int kFaultFrames = 4;
 
 #if defined(__SANITIZE_ADDRESS__)
 constexpr bool kCanLimitMemory = false;  // the sanitizer reserves terabytes of address space
@@ -163,7 +163,7 @@ std::vector<BatchFault> plugin_faults() {
 
 class BatchFaultTest : public BatchWork, public testing::WithParamInterface<BatchFault> {
 protected:
-    BatchFaultTest() { write_frames(1, kFrames); }
+    BatchFaultTest() { write_frames(1, kFaultFrames); }
 
     CommandResult run_with_fault() {
         const BatchFault& fault = GetParam();
@@ -178,7 +178,7 @@ protected:
     void expect_whole_files_only(const CommandResult& result) const {
         EXPECT_TRUE(temporaries().empty());
         const bool has_all = !GetParam().limit_kB || result.exit_code == 0;
-        for (int frame = 1; frame <= kFrames; ++frame) {
+        for (int frame = 1; frame <= kFaultFrames; ++frame) {
             const std::string name = FramePattern("out/f_####.exr").path(frame);
             const bool exists = fs::exists(folder_ / name);
             if (has_all) {

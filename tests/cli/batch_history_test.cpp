@@ -21,7 +21,7 @@ protected:
     }
 };
 
-TEST_F(BatchHistory, AWorkerBehindACrashWarmsUpOnTheFramesBeforeIt) {
+TEST_F(BatchHistory, APluginThatCrashesCostsItsFrameAndNoHistory) {
     write_native_effect(folder_.path(), "crashes_late");  // in frame 3
     write_native_effect(folder_.path(), "older");
     const auto look = [&](const std::string& id) {
@@ -41,9 +41,9 @@ TEST_F(BatchHistory, AWorkerBehindACrashWarmsUpOnTheFramesBeforeIt) {
         const std::string number = FramePattern("####").path(frame);
         EXPECT_EQ(pixels("out_" + number + ".exr"), pixels("whole_" + number + ".exr")) << frame;
     }
-    // With one frame of warm-up the trail lacks frame 1.
+    // No warm-up is needed: the plug-in has a process of its own, and the worker lives on.
     film("crashes_late", "short_####.exr", {"--jobs", "1", "--warmup", "1"}, int(ExitCode::partial));
-    EXPECT_NE(pixels("short_0004.exr"), pixels("whole_0004.exr"));
+    EXPECT_EQ(pixels("short_0004.exr"), pixels("whole_0004.exr"));
 }
 
 TEST_F(BatchHistory, FramesBehindAFailedOneAreRenderedAgainUntilItCanBeRead) {

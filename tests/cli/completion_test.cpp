@@ -27,7 +27,7 @@ protected:
     }
 
     CommandResult run(const std::vector<std::string>& words) {
-        return Command(words, folder_, {{"PATH", kFolderOfProgram + ":/usr/bin:/bin"}}).wait();
+        return Command(words, folder_.path(), {{"PATH", kFolderOfProgram + ":/usr/bin:/bin"}}).wait();
     }
 
     /// What bash offers for the last word.

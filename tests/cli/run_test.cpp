@@ -307,12 +307,13 @@ TEST(Doctor, PrintsALineForEachBackend) {
     const CommandResult result = run_aftershade({"doctor"}, folder.path());
     EXPECT_EQ(result.exit_code, 0) << result.out;
     const auto lines = lines_of_text(result.out);
-    ASSERT_EQ(lines.size(), 5u) << result.out;
+    ASSERT_EQ(lines.size(), 6u) << result.out;
     EXPECT_TRUE(lines[0].starts_with("backend       usable  renderer"));
     EXPECT_TRUE(lines[1].starts_with("egl  "));
     EXPECT_TRUE(lines[2].starts_with("egl-software  "));
     EXPECT_TRUE(lines[3].starts_with("osmesa        yes     llvmpipe")) << lines[3];
     EXPECT_TRUE(lines[4].starts_with("cpu  "));
+    EXPECT_TRUE(lines[5].starts_with("plug-ins  ")) << lines[5];
 }
 
 TEST(Doctor, PrintsJson) {

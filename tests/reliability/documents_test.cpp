@@ -22,6 +22,7 @@
 #include "framework/core/error.h"
 #include "framework/core/grammar_form.h"
 #include "framework/core/grammar_schema.h"
+#include "framework/core/input_files.h"
 #include "framework/core/text.h"
 #include "framework/effect/glsl_tokens.h"
 #include "framework/effect/manifest/manifest_grammar.h"
@@ -81,12 +82,12 @@ ordered_json use_of(int number, const std::string& name) {
     return {{"use", std::to_string(number) + ".json"}, {"name", name}};
 }
 
-const ordered_json kOneStep = {{{"effect", "view_transform"}}};
+const ordered_json kOneStep = ordered_json::array({{{"effect", "view_transform"}}});
 
 TEST(HostileLooks, ThatUseOneAnotherInALongChainAreRefused) {
     const TemporaryFolder folder;
     constexpr int kLooks = 2000;
-    for (int i = 0; i < kLooks; ++i) write_look(folder, i, {use_of(i + 1, "a")});
+    for (int i = 0; i < kLooks; ++i) write_look(folder, i, ordered_json::array({use_of(i + 1, "a")}));
     write_look(folder, kLooks, kOneStep);
     Diagnostics faults;
     read_look(folder / "0.json", faults);
@@ -99,7 +100,8 @@ TEST(HostileLooks, ThatDoubleByUseAreRefused) {
     const Within limit(5);
     const TemporaryFolder folder;
     constexpr int kDoublings = 16;
-    for (int i = 0; i < kDoublings; ++i) write_look(folder, i, {use_of(i + 1, "a"), use_of(i + 1, "b")});
+    for (int i = 0; i < kDoublings; ++i)
+        write_look(folder, i, ordered_json::array({use_of(i + 1, "a"), use_of(i + 1, "b")}));
     write_look(folder, kDoublings, ordered_json::array());
     Diagnostics faults;
     read_look(folder / "0.json", faults);
@@ -114,8 +116,8 @@ TEST(HostileLooks, WhoseVariablesDoubleAreRefused) {
     const ordered_json var = {{"var", "x"}};
     for (int i = 0; i < kDoublings; ++i) {
         ordered_json use = use_of(i + 1, "a");
-        use["vars"] = {{"x", {var, var}}};
-        write_look(folder, i, {use}, {{"x", 1}});
+        use["vars"] = {{"x", ordered_json::array({var, var})}};
+        write_look(folder, i, ordered_json::array({use}), {{"x", 1}});
     }
     write_look(folder, kDoublings, kOneStep, {{"x", 1}});
     Diagnostics faults;
@@ -127,9 +129,12 @@ TEST(HostileLooks, WhoseVariablesDoubleAreRefused) {
 TEST(HostileLooks, OfManyVariablesOrStepsAreRefused) {
     const Within limit(5);
     const TemporaryFolder folder;
-    ordered_json vars, steps;
-    for (int i = 0; i < 80'000; ++i) vars["v" + std::to_string(i)] = 1;
-    write_look(folder, 0, kOneStep, vars);
+    std::string vars;
+    for (int i = 0; i < 80'000; ++i)
+        vars += std::string(i == 0 ? "" : ", ") + "\"v" + std::to_string(i) + "\": 1";
+    write_text(folder / "0.json",
+               R"({"aftershade": 1, "vars": {)" + vars + R"(}, "steps": )" + kOneStep.dump() + "}");
+    ordered_json steps;
     for (int i = 0; i < 20'000; ++i)
         steps.push_back({{"effect", "view_transform"}, {"name", "a" + std::to_string(i)}});
     write_look(folder, 1, steps);
@@ -303,10 +308,12 @@ TEST(FrameRanges, OfAMillionFramesAreHeldAgainstTheOutputsInTime) {
     OutputOptions outputs;
     outputs.patterns = {"out_####.exr"};
     Diagnostics faults;
-    check_outputs(outputs, sequence, faults);
+    InputFiles inputs;
+    for (const int frame : sequence.frames) inputs.add(sequence.path_of(frame));
+    check_outputs(outputs, sequence, inputs, faults);
     EXPECT_FALSE(faults.has_errors()) << text_of(faults);
     outputs.patterns = {"./in_####.exr"};
-    check_outputs(outputs, sequence, faults);
+    check_outputs(outputs, sequence, inputs, faults);
     EXPECT_TRUE(has_error(faults, "would replace the input in_0001.exr")) << text_of(faults);
 }
 
@@ -348,7 +355,7 @@ TEST(HostileShaders, ThatIncludeWhatIsNoFileAreRefusedAtOnce) {
     write_text(shader.folder / "large.glsl", std::string(kMaxShaderFileBytes + 1, ' '));
     const Diagnostics faults = shader.faults();
     EXPECT_TRUE(has_error(faults, "pipe.glsl: is not a regular file")) << text_of(faults);
-    EXPECT_TRUE(has_error(faults, "zero.glsl: is not a regular file")) << text_of(faults);
+    EXPECT_TRUE(has_error(faults, "zero.glsl leads out of the folder")) << text_of(faults);
     EXPECT_TRUE(has_error(faults, "large.glsl: the file has 1048577 bytes, the limit is 1048576"))
         << text_of(faults);
 }

@@ -350,6 +350,7 @@ TEST_F(SchemaAgreement, OfAGoldenSuiteChangedEverywhere) {
              "/steps",                               // as the schema of looks says
              "'outputs' must name a role",           // or 'taps' a texture
              "needs 'cases'",                        // or 'cases_of_effects'
+             "'rectangle' has a width and a height of at least 1 px",  // of four numbers the last two
          });
 }
 
