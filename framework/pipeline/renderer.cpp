@@ -81,6 +81,7 @@ std::string PipelineRenderer::history_fault(const FrameInputs& frame) const {
     const CaptureHeader& header = frame.capture->header;
     if (!last_) return "the first frame";
     if (frame.begins_shot) return "a cut";
+    if (is_partial_) return "frame " + std::to_string(last_->frame) + " lacks sub-frames";
     if (!(last_->window == header.data_window)) return "another data window";
     if (header.frame != last_->frame + 1)
         return "it follows frame " + std::to_string(last_->frame) + ", not " +
@@ -196,7 +197,8 @@ FrameResult PipelineRenderer::render(const FrameInputs& frame, const std::vector
     }
     const CaptureHeader& header = frame.capture->header;
     last_ = {header.frame, header.data_window, header.camera};
-    if (accumulates && frame.subframe + 1 < frame.subframe_count) return result;
+    is_partial_ = accumulates && frame.subframe + 1 < frame.subframe_count;
+    if (is_partial_) return result;
 
     FrameInputs once = frame;
     if (accumulates && frame.centre) {

@@ -119,6 +119,7 @@ private:
     std::unique_ptr<BuiltGraph> built_;
     int graphs_built_ = 0;
     std::optional<Last> last_;             // capture, sub-frames too
+    bool is_partial_ = false;              // of the last frame not all sub-frames came
     std::optional<Camera> camera_before_;  // of the last whole frame
     std::string frame_fault_;              // why this frame began history anew
     std::unique_ptr<SavedHistory> saved_;  // loaded and not yet taken up
