@@ -82,6 +82,7 @@ std::optional<ExitCode> run_in_worker(const PluginOptions& options, bool is_fore
     const double longest_s = std::max(options.timeout_s, options.pass_timeout_s) + 2;
     command.grace = std::chrono::milliseconds(std::int64_t(longest_s * 1000));
     Watchdog watchdog(Watchdog::Duration::max(), options.pass_limit(), watch_for_interrupt());
+    command.hangs = &watchdog.barked_flag();
     WorkerListener listener;
     listener.on_status = [&](const WorkStatus& status) { watchdog.is_at(status); };
     return code_of(run_worker(command, listener, &watchdog.flag()), watchdog);

@@ -32,6 +32,8 @@ public:
     bool barked() const { return barked_; }  ///< the worker, or its pass, took too long
     /// The time that it had, once it barked.
     Duration timeout() const { return by_pass_ ? pass_.timeout : patience_; }
+    /// What barked() says; never lowered.
+    const std::atomic<bool>& barked_flag() const { return barked_; }
     bool barked_at_pass() const { return by_pass_; }
     const std::atomic<bool>& flag() const { return flag_; }
 

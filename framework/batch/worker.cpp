@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -108,9 +109,11 @@ public:
         if (!ours_ && interrupt_ && *interrupt_) {
             ours_ = true;
             reason_ = WorkerEnd::interrupted;
+            asked_at_ = now;
             kill_at_ = now + command_.grace;
             child.signal_group(SIGTERM);
         }
+        if (ours_ && command_.hangs && *command_.hangs) kill_at_ = std::min(kill_at_, asked_at_ + kHungGrace);
         const auto& wall_time = command_.limits.wall_time;
         if (!ours_ && wall_time && now >= start_ + *wall_time) {
             ours_ = true;
@@ -135,10 +138,13 @@ private:
         return resident_bytes(child.process()) > *limit;
     }
 
+    static constexpr std::chrono::milliseconds kHungGrace{500};
+
     const WorkerCommand& command_;
     const std::atomic<bool>* interrupt_;
     Clock::time_point start_ = Clock::now();
     Clock::time_point look_at_memory_ = start_;
+    Clock::time_point asked_at_ = start_;  // to end
     bool ours_ = false;
     WorkerEnd reason_ = WorkerEnd::exited;
     Clock::time_point kill_at_ = Clock::time_point::max();

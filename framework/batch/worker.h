@@ -32,6 +32,8 @@ struct WorkerCommand {
     bool shares_streams = false;
     /// How long a worker that was asked to end (SIGTERM, after an interrupt) may take before it is killed.
     std::chrono::milliseconds grace{2000};
+    /// Once raised: the worker hangs, and half a second is all that it is given. May be null.
+    const std::atomic<bool>* hangs = nullptr;
 };
 
 /// What a worker says while it runs; each may be empty. Called on the thread that runs run_worker. A line has
