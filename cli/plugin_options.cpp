@@ -27,7 +27,8 @@ ExitCode fail(ExitCode code, const std::string& text) {
     return code;
 }
 
-ExitCode code_of(const WorkerResult& result, const Watchdog& watchdog) {
+ExitCode code_of(WorkerResult result, const Watchdog& watchdog) {
+    if (watchdog.barked() && watchdog.barked_at_pass()) result.status = watchdog.status_at_bark();
     if (watchdog.barked())
         return fail(ExitCode::effect, describe_timeout(result, watchdog.timeout()) +
                                           "; make the pass cheaper, or give it longer with --pass-timeout");

@@ -123,8 +123,9 @@ private:
         command.limits.resident_bytes = options_.resident_bytes;
         Watchdog watchdog(options_.frame_timeout, options_.pass_limit, interrupt_);
         last_error_.clear();
-        const WorkerResult result = run_worker(command, listener(watchdog), &watchdog.flag());
+        WorkerResult result = run_worker(command, listener(watchdog), &watchdog.flag());
         if (watchdog.barked()) {
+            if (watchdog.barked_at_pass()) result.status = watchdog.status_at_bark();
             board_.ended(ExitCode::effect);
             return cost_a_frame(result.status, describe_timeout(result, watchdog.timeout()));
         }

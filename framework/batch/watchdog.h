@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <mutex>
 #include <thread>
 
 #include "framework/core/status.h"
@@ -35,6 +36,8 @@ public:
     /// What barked() says; never lowered.
     const std::atomic<bool>& barked_flag() const { return barked_; }
     bool barked_at_pass() const { return by_pass_; }
+    /// Where the worker was when it had taken too long: it may have moved before it was killed. Empty before.
+    WorkStatus status_at_bark() const;
     const std::atomic<bool>& flag() const { return flag_; }
 
 private:
@@ -47,7 +50,9 @@ private:
     std::atomic<Clock::time_point> heard_;
     std::atomic<Clock::time_point> pass_began_{Clock::time_point::max()};
     std::atomic<bool> done_ = false, barked_ = false, by_pass_ = false, flag_ = false;
-    std::thread thread_;  // last: it uses the others
+    mutable std::mutex mutex_;
+    WorkStatus status_, status_at_bark_;  // guarded by mutex_
+    std::thread thread_;                  // last: it uses the others
 };
 
 }  // namespace aftershade

@@ -10,8 +10,11 @@
 #include <chrono>
 #include <cstring>
 #include <ctime>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -150,25 +153,51 @@ void RunLock::open_file() {
 
 namespace {
 
-/// Within a second: the worker of a run that was killed a moment ago holds its frames until the kernel has
-/// ended it.
-bool lock_soon(int file, off_t begin, off_t count) {
-    constexpr int kTries = 50;
-    for (int i = 0; i < kTries; ++i) {
-        if (lock_bytes(file, F_OFD_SETLK, F_WRLCK, begin, count)) return true;
-        if (errno != EAGAIN && errno != EACCES) return false;
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    }
-    return lock_bytes(file, F_OFD_SETLK, F_WRLCK, begin, count);
+std::string first_line(const std::string& file) {
+    std::ifstream in(file);
+    std::string line;
+    std::getline(in, line);
+    return line;
+}
+
+/// A worker whose run was killed: the kernel is about to end it, or has just done so.
+bool is_orphaned_worker(const json& holder) {
+    if (!holder.value("command", "").starts_with("/proc/self/exe ") ||
+        holder.value("host", "") != host_name())
+        return false;
+    const std::string process = "/proc/" + std::to_string(holder.value("pid", 0));
+    const std::string stat = first_line(process + "/stat");  // "pid (name) state parent ..."
+    std::istringstream fields(stat.substr(std::min(stat.rfind(')'), stat.size() - 1) + 1));
+    std::string state, parent;
+    fields >> state >> parent;
+    std::error_code failure;
+    return stat.empty() || fs::read_symlink("/proc/" + parent + "/exe", failure) !=
+                               fs::read_symlink(process + "/exe", failure);
 }
 
 }  // namespace
 
+/// Waits for orphaned workers, at most a second.
+bool RunLock::lock_frames(int first, int last) {
+    constexpr int kTries = 50;
+    const off_t count = off_t(last) - first + 1;
+    for (int i = 0;; ++i) {
+        if (lock_bytes(file_, F_OFD_SETLK, F_WRLCK, kFirstFrame + first, count)) return true;
+        held_ = errno == EAGAIN || errno == EACCES;
+        bool is_ending = false;
+        if (held_)
+            kept_lines(read_all(file_), [&](const std::string&, const json& holder) {
+                is_ending |= overlaps(holder, {{first, last}}) && is_orphaned_worker(holder);
+                return false;
+            });
+        if (!is_ending || i == kTries) return false;
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+}
+
 bool RunLock::take(const std::vector<int>& frames) {
     for (const Range& range : ranges_of(frames)) {
-        const off_t count = off_t(range.last) - range.first + 1;
-        if (lock_soon(file_, kFirstFrame + range.first, count)) continue;
-        held_ = errno == EAGAIN || errno == EACCES;
+        if (lock_frames(range.first, range.last)) continue;
         if (!held_) return false;  // no locks here
         std::string who = "another run";
         kept_lines(read_all(file_), [&](const std::string&, const json& holder) {

@@ -29,6 +29,7 @@ public:
 private:
     void open_file();
     bool take(const std::vector<int>& frames);
+    bool lock_frames(int first, int last);
     void add_holder(const std::vector<int>& frames, const std::string& command);
 
     std::filesystem::path path_;
