@@ -19,7 +19,7 @@ void choose_frames(const CaptureOptions& options, Sequence& sequence, Diagnostic
     const Place place{"--frames " + options.frames};
     const auto frames = parse_frame_range(options.frames);
     if (!frames) {
-        diagnostics.error(place, "not a frame range such as 1-100x2,120");
+        diagnostics.error(place, frame_range_fault(options.frames));
         return;
     }
     // A capture with a range says which frames there are; else the disk does, when they are read.
@@ -53,28 +53,28 @@ CLI::Option* add_capture_argument(CLI::App& app, CaptureOptions& options) {
 void add_capture_options(CLI::App& app, CaptureOptions& options, const std::string& frames_help) {
     app.add_option("--frames", options.frames, frames_help);
     app.add_option("--profile", options.profile,
-                   "Conventions of the capture's producer (default: the capture's, else auto)");
+                   "Conventions of the capture's producer (default: as the capture declares, else auto)");
     app.add_option("--profile-path", options.profile_paths,
-                   "Folder of profiles, searched before the shipped ones; repeatable")
+                   "Search this folder for profiles before the shipped ones; repeatable")
         ->allow_extra_args(false);
     app.add_option("--role", options.role_files,
-                   "role=file or pattern, for a role in files of its own; repeatable")
+                   "ROLE=FILE: read a role from its own file or pattern; repeatable")
         ->allow_extra_args(false);
-    app.add_option("--view", options.view, "View of a multi-view file (default: the file's first)");
-    app.add_option(
-        "--layer", options.layer,
-        "Layer of a file with several, such as a view layer of Blender (default: the file's first)");
-    app.add_option(
-           "--alpha", options.alpha,
-           "Alpha of color: keep, or opaque where the stored one means nothing (default: the capture's)")
+    app.add_option("--view", options.view, "View of a multi-view file (default: the first)");
+    app.add_option("--layer", options.layer,
+                   "Layer of a file with several, such as a Blender view layer (default: the first)");
+    app.add_option("--alpha", options.alpha,
+                   "keep the alpha of color, or set it to opaque where the stored one is meaningless "
+                   "(default: as the capture declares)")
         ->check(CLI::IsMember(alpha_names()));
     app.add_option("--color-space", options.color_space,
-                   "Primaries of the stored colours: auto, rec709, acescg, ap0, rec2020");
-    app.add_option("--max-size", options.limits.max_side_px, "Refuse images with a side above this, px")
+                   "Primaries of the stored colours: auto, rec709, acescg, ap0 or rec2020");
+    app.add_option("--max-size", options.limits.max_side_px,
+                   "Refuse images with a side longer than this, in px")
         ->check(CLI::Range(1, 65536))
         ->capture_default_str();
     app.add_option("--max-image-bytes", options.limits.max_image_bytes,
-                   "Refuse images of more bytes than this")
+                   "Refuse images larger than this, in bytes")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
 }

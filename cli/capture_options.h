@@ -40,7 +40,7 @@ void add_capture_options(CLI::App& app, CaptureOptions& options, const std::stri
 std::vector<Profile> load_profiles(const std::vector<std::string>& profile_paths, Diagnostics& diagnostics);
 
 /// nullopt after a fault in capture.json, or after frames were not found while the user has other faults to
-/// mend.
+/// fix.
 std::optional<Sequence> find_sequence(const CaptureOptions& options, const std::vector<Profile>& profiles,
                                       Diagnostics& diagnostics);
 

@@ -15,6 +15,7 @@
 #include "framework/core/data_path.h"
 #include "framework/core/error.h"
 #include "framework/core/status.h"
+#include "framework/core/text.h"
 #include "framework/effect/lint.h"
 #include "framework/effect/usage_check.h"
 #include "framework/pipeline/effect_check.h"
@@ -41,7 +42,8 @@ struct CheckOptions {
 ExitCode verdict(const Diagnostics& diagnostics, const CheckOptions& options) {
     diagnostics.print(std::cerr);
     const int warnings = int(diagnostics.all().size()) - diagnostics.error_count();
-    fmt::print("{}: {} errors, {} warnings\n", options.subject, diagnostics.error_count(), warnings);
+    fmt::print("{}: {}, {}\n", options.subject, counted(std::size_t(diagnostics.error_count()), "error"),
+               counted(std::size_t(warnings), "warning"));
     const bool sound = !diagnostics.has_errors() && (warnings == 0 || !options.strict);
     return sound ? ExitCode::done : ExitCode::partial;
 }
@@ -93,7 +95,7 @@ ExitCode check(const CheckOptions& options) {
     if (!fs::is_regular_file(subject, failure)) {
         const auto ids = effects.ids();
         words.error({"EFFECT|LOOK"}, "'" + options.subject +
-                                         "' is no folder of an effect, no effect and no look" +
+                                         "' is not a shipped effect, an effect's folder or a look" +
                                          did_you_mean(options.subject, ids));
     }
     stop_at_words();
@@ -108,13 +110,13 @@ ExitCode check(const CheckOptions& options) {
 
 Verb add_check(CLI::App& app) {
     auto options = std::make_shared<CheckOptions>();
-    app.add_option("subject", options->subject, "Folder of an effect, id of an effect, or a look")
+    app.add_option("subject", options->subject, "An effect's id or folder, or a look")
         ->type_name(kEffectId)
         ->required();
-    app.add_flag("--no-gl", options->no_gl, "Only what the texts tell: compile no shader, render nothing");
+    app.add_flag("--no-gl", options->no_gl, "Check the documents only; compile no shader, render nothing");
     app.add_option("--warmup", options->warmup,
-                   "Of a look: measure on this capture how many frames a chunk must render before its first");
-    app.add_flag("--strict", options->strict, "Warnings are a failure too");
+                   "For a look: measure on this capture how many warm-up frames a chunk needs");
+    app.add_flag("--strict", options->strict, "Treat warnings as faults");
     add_effect_path_option(app, options->effect_paths);
     add_plugin_options(app, options->plugins);
     add_backend_option(app, options->backend);

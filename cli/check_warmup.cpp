@@ -65,8 +65,8 @@ ExitCode check_warmup(const WarmupCheck& check) {
     const ScratchFolder scratch;
     const auto measured =
         measure_warmup({context, pipeline, *sequence, reader, run, {}, data_path()}, scratch.path());
-    fmt::print("{:>8}  {:>9}   frame {} after so many frames, against all {} before it\n", "warm-up", "error",
-               run.frames.back(), run.frames.size() - 1);
+    fmt::print("{:>8}  {:>9}   frame {} after this many frames, against all {} before it\n", "warm-up",
+               "error", run.frames.back(), run.frames.size() - 1);
     for (const WarmupError& one : measured) fmt::print("{:>8}  {:>9.3g}\n", one.frames, one.error);
     return verdict(warmup_of(pipeline), measured);
 }

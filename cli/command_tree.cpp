@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <set>
 #include <string_view>
 
 #include "framework/core/text.h"
@@ -10,20 +11,41 @@ namespace aftershade::cli {
 
 namespace {
 
-/// "TEXT:{a,b}" is a type with its choices, "INT:INT in [1 - 9]" one with its limits
-/// (CLI::Option::get_type_name).
+/// "INT in [1 - 9]" as "1 to 9"; CLI11's words for numbers above or from 0 as themselves.
+std::string limits_of(const std::string& text) {
+    if (text == "POSITIVE") return "above 0";
+    if (text == "NONNEGATIVE") return "at least 0";
+    const std::size_t open = text.find('['), dash = text.find(" - ");
+    if (open == std::string::npos || dash == std::string::npos || !text.ends_with(']')) return text;
+    return text.substr(open + 1, dash - open - 1) + " to " + text.substr(dash + 3, text.size() - dash - 4);
+}
+
+/// "TEXT:{a,b}" is a type with its choices, "INT:INT in [1 - 9]" one with its limits, "UINT:SIZE [b, ...]" a
+/// number of bytes with a unit (CLI::Option::get_type_name).
 void read_type(const std::string& text, CommandOption& option) {
     const std::size_t colon = text.find(':');
     option.type = text.substr(0, colon);
     if (colon == std::string::npos) return;
     const std::string rest = text.substr(colon + 1);
+    if (rest.starts_with("SIZE ")) {
+        option.type = "SIZE";
+        return;
+    }
     if (!rest.starts_with('{') || !rest.ends_with('}')) {
-        option.limits = rest;
+        option.limits = limits_of(rest);
         return;
     }
     for (const std::string_view word : split(std::string_view(rest).substr(1, rest.size() - 2), ','))
         option.choices.emplace_back(word);
 }
+
+std::vector<std::string> names_of(const std::set<CLI::Option*>& options) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : options) names.push_back(option->get_name());
+    return names;
+}
+
+}  // namespace
 
 CommandOption command_option(const CLI::Option& declared) {
     CommandOption option;
@@ -37,8 +59,12 @@ CommandOption command_option(const CLI::Option& declared) {
     if (declared.get_group() != "Options") option.group = declared.get_group();
     option.required = declared.get_required();
     option.repeatable = declared.get_items_expected_max() > 1;
+    option.needs = names_of(declared.get_needs());
+    option.excludes = names_of(declared.get_excludes());
     return option;
 }
+
+namespace {
 
 Command command(const CLI::App& app, const std::vector<std::string>& path,
                 const std::string& parents_footer) {

@@ -7,6 +7,7 @@
 
 namespace CLI {
 class App;
+class Option;
 }  // namespace CLI
 
 namespace aftershade::cli {
@@ -15,13 +16,14 @@ namespace aftershade::cli {
 inline constexpr const char* kEffectId = "EFFECT";
 
 struct CommandOption {
-    std::vector<std::string> names;  ///< "-o", "--output"; of a positional its one name, such as "look"
-    std::string description;         ///< as `--help` prints it
-    std::string type;                ///< "TEXT", "INT", ...; "" for a flag
-    std::string limits;  ///< what the value must keep, such as "INT in [1 - 100]"; "" if anything goes
+    std::vector<std::string> names;    ///< "-o", "--output"; of a positional its one name, such as "look"
+    std::string description;           ///< as `--help` prints it
+    std::string type;                  ///< "TEXT", "INT", ...; "" for a flag
+    std::string limits;                ///< what the value must keep, such as "1 to 100"; "" if anything goes
     std::vector<std::string> choices;  ///< the words that it takes, if it takes no others
     std::string default_value;         ///< "" if `--help` shows none
     std::string group;                 ///< heading in `--help`; "" under "Options"
+    std::vector<std::string> needs, excludes;  ///< options that this one needs, and cannot go with
     bool positional = false;
     bool required = false;
     bool repeatable = false;
@@ -39,6 +41,8 @@ struct Command {
     std::vector<CommandOption> options;  ///< positionals first
     std::vector<Command> subcommands;
 };
+
+CommandOption command_option(const CLI::Option& declared);
 
 /// `app` and all of its subcommands; options that `--help` hides are left out.
 Command command_tree(const CLI::App& app);

@@ -36,8 +36,8 @@ void check_labels(const Comparison& comparison) {
     const auto refuse = [&](const std::string& word, const std::vector<std::string>& labels) {
         for (const std::string& label : labels)
             text +=
-                (text.empty() ? "" : "\n") + (word + label + ": error: no layer of either file is called so" +
-                                              did_you_mean(label, comparison.labels) + " (there are " +
+                (text.empty() ? "" : "\n") + (word + label + ": error: neither file has this layer" +
+                                              did_you_mean(label, comparison.labels) + " (the layers are " +
                                               list_of_names(comparison.labels, "and") + ")");
     };
     refuse("--role ", comparison.unknown_roles);

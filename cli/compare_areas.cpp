@@ -48,7 +48,8 @@ public:
         if (where.starts_with(kMaskPrefix)) return mask(where.substr(kMaskPrefix.size()));
         if (where.starts_with(kObjectPrefix)) return objects(word, where.substr(kObjectPrefix.size()));
         if (const auto shape = rectangle_of(where)) return CompareArea{where, *shape, std::nullopt};
-        diagnostics_.error({word + " " + where}, fmt::format("'{}' is no area; expected {}", where, kWhere));
+        diagnostics_.error({word + " " + where},
+                           fmt::format("'{}' is not an area; expected {}", where, kWhere));
         return std::nullopt;
     }
 
@@ -105,18 +106,30 @@ void add_compare_area_options(CLI::App& app, CompareAreaOptions& options) {
     const auto add = [&](const char* name, auto& target, const std::string& help) {
         return app.add_option(name, target, help)->group(group);
     };
-    add("--ignore", options.ignored,
-        std::string("Leave these pixels out; WHERE is ") + kWhere + "; repeatable")
+    add("--ignore", options.ignored, std::string("Ignore these pixels; WHERE is ") + kWhere + "; repeatable")
         ->type_name("WHERE")
         ->allow_extra_args(false);
-    add("--area", options.areas, "WHERE=LIMIT: hold these pixels to a --fail of their own; repeatable")
+    add("--area", options.areas, "WHERE=LIMIT: use this --fail for these pixels; repeatable")
         ->type_name("WHERE=LIMIT")
         ->allow_extra_args(false);
-    add("--layer", options.layers, "LAYER=LIMIT: hold this layer to a --fail of its own; repeatable")
+    add("--layer", options.layers, "LAYER=LIMIT: use this --fail for this layer; repeatable")
         ->type_name("LAYER=LIMIT")
         ->allow_extra_args(false);
     add("--objects-from", options.objects_from,
-        "Capture whose Cryptomatte or object_id object: looks in (the reference)");
+        "Capture whose Cryptomatte or object_id resolves object:NAME (default: the reference)");
+}
+
+std::vector<std::filesystem::path> compare_area_inputs(const CompareAreaOptions& options) {
+    std::vector<std::filesystem::path> files = {options.objects_from};
+    const auto add = [&](const std::string& where) {
+        if (!where.starts_with(kMaskPrefix)) return;
+        files.emplace_back(where.substr(kMaskPrefix.size()));
+        files.emplace_back(
+            files.back().string().substr(0, files.back().string().rfind(',')));  // before a channel
+    };
+    for (const std::string& where : options.ignored) add(where);
+    for (const std::string& text : options.areas) add(text.substr(0, text.rfind('=')));
+    return files;
 }
 
 void read_compare_areas(const CompareAreaOptions& options, const std::string& reference, CompareRules& rules,

@@ -1,6 +1,7 @@
 // Parts of pictures that `compare` leaves out or holds to limits of their own: --ignore, --area, --layer.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,9 @@ struct CompareAreaOptions {
 };
 
 void add_compare_area_options(CLI::App& app, CompareAreaOptions& options);
+
+/// The files that these words name: masks and the capture of the objects.
+std::vector<std::filesystem::path> compare_area_inputs(const CompareAreaOptions& options);
 
 /// Reads masks and objects. Faults of words go to `diagnostics`; a file that cannot be read is
 /// Error(ExitCode::capture).

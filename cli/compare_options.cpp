@@ -21,14 +21,16 @@ void add_tolerance(CLI::App& app, const std::string& word, const char* verdict, 
     };
     const bool fails = word == "fail";
     add(word, options.limit,
-        fails ? "A pixel fails above this difference (1e-6)" : "A pixel warns above it (as --fail)");
-    add(word + "percent", options.percent, "Percent of a layer's pixels that may (0)");
-    add("hard" + word, options.hard, "No pixel may differ by more (inf)");
+        fails ? "Largest difference of a pixel that passes (default: 1e-6)"
+              : "Largest difference of a pixel without a warning (default: as --fail)");
+    add(word + "percent", options.percent, "Percentage of a layer's pixels that may exceed it (default: 0)");
+    add("hard" + word, options.hard, "Largest difference of any pixel (default: inf)");
     add(std::string("allow") + (fails ? "failures" : "warnings"), options.allowed,
-        fails ? "Pixels that may differ by any amount (0)" : "The same (as --allowfailures)")
+        fails ? "Number of pixels that may differ by any amount (default: 0)"
+              : "Number of pixels that may differ without a warning (default: as --allowfailures)")
         ->check(CLI::NonNegativeNumber);  // strtoull takes -1 for a number of its own
-    add(word + "-flip", options.flip, "... where a layer's mean FLIP is above this");
-    add(word + "-ssim", options.ssim, "... where a layer's SSIM is below this");
+    add(word + "-flip", options.flip, "Largest mean FLIP error of a layer");
+    add(word + "-ssim", options.ssim, "Smallest SSIM of a layer");
 }
 
 void check_number(const std::string& word, const std::optional<double>& value, double max,
@@ -59,7 +61,7 @@ void read_roles(const CompareOptions& options, CompareRules& rules, Diagnostics&
         if (equals == std::string::npos || equals == 0)
             diagnostics.error({"--role " + text}, "expected LAYER=ROLE, such as Z=data");
         else if (role != "ignore" && !find_layer_role(role))
-            diagnostics.error({"--role " + text}, "'" + role + "' is no role; there are " +
+            diagnostics.error({"--role " + text}, "'" + role + "' is not a role; choose from " +
                                                       list_of_names(names, "and") +
                                                       did_you_mean(role, names));
         else rules.roles[text.substr(0, equals)] = find_layer_role(role);
@@ -109,6 +111,7 @@ void check_outputs(const CompareOptions& options, Diagnostics& diagnostics) {
     InputFiles inputs;
     for (const std::string& input : {options.reference, options.test})
         inputs.add(std::filesystem::path(input));
+    inputs.add(compare_area_inputs(options.areas));
     for (const auto& [word, path] : outputs) {
         const bool png = path.ends_with(".png"), exr = path.ends_with(".exr");
         if (word == "--side-by-side" && !png)
@@ -118,7 +121,8 @@ void check_outputs(const CompareOptions& options, Diagnostics& diagnostics) {
         inputs.check_output({word + " " + path}, path, diagnostics);
     }
     if (options.scale == 0 || !std::isfinite(options.scale))
-        diagnostics.error({"--scale"}, fmt::format("{:g} is no factor", options.scale));
+        diagnostics.error({"--scale"},
+                          fmt::format("{:g} is not a factor; write a finite number", options.scale));
 }
 
 }  // namespace
@@ -126,52 +130,59 @@ void check_outputs(const CompareOptions& options, Diagnostics& diagnostics) {
 void add_compare_options(CLI::App& app, CompareOptions& options) {
     app.footer(
         "Exit codes: 0 same, 1 warning, 2 failure, 3 different size, channels or parts, 4 a file cannot be "
-        "read or\nwritten, 64 wrong usage.");
-    app.add_option("reference", options.reference, "What it should be: .exr, .png or .hdr")->required();
-    app.add_option("test", options.test, "What it is")->required();
+        "read or written, 64 wrong usage.");
+    app.add_option("reference", options.reference, "The expected picture: .exr, .png or .hdr")->required();
+    app.add_option("test", options.test, "The picture to judge")->required();
     add_tolerance(app, "fail", "failure, exit 2", options.fail);
     add_tolerance(app, "warn", "warning, exit 1", options.warn);
-    app.add_flag("--nan-equal", options.nan_equal, "NaN equals NaN (else a pixel with one fails)");
+    app.add_flag("--nan-equal", options.nan_equal,
+                 "Treat NaN as equal to NaN (otherwise a pixel with one fails)");
     app.add_flag("--fill-outside", options.fill_outside,
-                 "Data windows may differ: outside, depth is infinite and all else 0");
+                 "Let data windows differ: outside one, depth is infinite and all else is 0");
     app.add_option("--role", options.roles,
                    "LAYER=ROLE: color, display, alpha, depth, velocity, id, data or ignore; repeatable")
         ->allow_extra_args(false);
-    auto* shift = app.add_option("--forgive-shift", options.forgive_shift_px,
-                                 "A pixel passes by a neighbour within PX that fits, in both files (0)")
-                      ->type_name("PX")
-                      ->check(CLI::Range(0, Forgive::kMaxShift_px));
-    app.add_option("--forgive-blur", options.forgive_blur_px,
-                   "A pixel passes where it fits after a Gaussian of this sigma over both files (0)")
+    auto* shift =
+        app.add_option("--forgive-shift", options.forgive_shift_px,
+                       "Pass a pixel that matches a neighbour within PX, in both directions (default: 0)")
+            ->type_name("PX")
+            ->check(CLI::Range(0, Forgive::kMaxShift_px));
+    app.add_option(
+           "--forgive-blur", options.forgive_blur_px,
+           "Pass a pixel that matches after a Gaussian blur of this sigma over both files (default: 0)")
         ->type_name("PX")
         ->check(CLI::Range(0.0, Forgive::kMaxBlur_px))
         ->excludes(shift);
     add_compare_area_options(app, options.areas);
     app.add_option("--flip", options.flip,
-                   "auto (LDR of encoded colours, HDR of light), ldr, hdr, both or none");
-    app.add_flag("--no-ssim", options.no_ssim, "Leave SSIM and MS-SSIM out");
+                   "FLIP metric: auto (LDR for encoded colours, HDR for light), ldr, hdr, both or none");
+    app.add_flag("--no-ssim", options.no_ssim, "Skip SSIM and MS-SSIM");
     auto* ppd = app.add_option("--ppd", options.pixels_per_degree,
-                               "FLIP: pixels per degree of visual angle (67.0206)");
-    app.add_option("--viewing", options.viewing, "FLIP: distance m, width px and width m of the display")
+                               "FLIP: pixels per degree of visual angle (default: 67.0206)");
+    app.add_option("--viewing", options.viewing,
+                   "FLIP: the display's distance in m, width in px and width in m")
         ->expected(3)
         ->excludes(ppd);
     app.add_option("--tone-mapper", options.tone_mapper, "HDR-FLIP: aces, reinhard or hable");
-    app.add_option("--start-exposure", options.start_exposure, "HDR-FLIP: stops (from the reference)");
-    app.add_option("--stop-exposure", options.stop_exposure, "HDR-FLIP: stops (from the reference)");
-    app.add_option("--exposures", options.exposures, "HDR-FLIP: how many (one a stop)");
+    app.add_option("--start-exposure", options.start_exposure,
+                   "HDR-FLIP: stops (default: from the reference)");
+    app.add_option("--stop-exposure", options.stop_exposure, "HDR-FLIP: stops (default: from the reference)");
+    app.add_option("--exposures", options.exposures, "HDR-FLIP: number of exposures (default: one per stop)");
     app.add_option("-o,--output", options.output,
-                   "Write reference - test: .exr every layer, .png the first as |difference|");
-    app.add_flag("--abs", options.absolute, "-o: the absolute value");
-    app.add_option("--scale", options.scale, "-o: times this factor (1)");
-    app.add_option("--heat-map", options.heat_map, "Write FLIP's errors: .png in magma, .exr as they are");
+                   "Write reference minus test: all layers to .exr, |difference| of the first to .png");
+    app.add_flag("--abs", options.absolute, "-o: write absolute values");
+    app.add_option("--scale", options.scale, "-o: multiply by this factor (default: 1)");
+    app.add_option("--heat-map", options.heat_map,
+                   "Write the FLIP error map: .png in magma colours, .exr as values");
     app.add_option("--side-by-side", options.side_by_side,
-                   "Write reference, test and difference of every layer, with labels, to this .png");
+                   "Write every layer's reference, test and difference, labelled, to this .png");
     app.add_flag("--only-different", options.only_different,
-                 "Write pictures only where the verdict is not `same` (idiff's -od)");
-    app.add_flag("--json", options.json, "Everything for machines on stdout; for people on stderr");
-    app.add_option("--csv", options.csv, "Write a line for each layer to this file");
-    app.add_flag("-q,--quiet", options.quiet, "Nothing for people but errors");
-    app.add_option("--threads", options.threads, "At most so many (as there are cores); changes no figure")
+                 "Write pictures only if the verdict is not `same` (idiff's -od)");
+    app.add_flag("--json", options.json, "Print the report as JSON on stdout; text goes to stderr");
+    app.add_option("--csv", options.csv, "Write one line per layer to this file");
+    app.add_flag("-q,--quiet", options.quiet, "Print errors only");
+    app.add_option("--threads", options.threads,
+                   "Largest number of threads (default: all cores); does not change results")
         ->check(CLI::Range(0, 1024));
 }
 

@@ -79,12 +79,13 @@ ExitCode describe(const DescribeOptions& options) {
 Verb add_describe(CLI::App& app) {
     auto options = std::make_shared<DescribeOptions>();
     app.add_option("what", options->what,
-                   "Id of an effect, name of a scattering profile or path of one's .json")
+                   "An effect's id, a scattering profile's name, or the path of its .json")
         ->type_name(kEffectId)
         ->required();
     add_effect_path_option(app, options->effect_paths);
-    auto* json = app.add_flag("--json", options->json, "Machine-readable output");
-    app.add_option("--plot", options->plot, "Draw the scattering profile, an effect's default one, as SVG")
+    auto* json = app.add_flag("--json", options->json, "Print JSON");
+    app.add_option("--plot", options->plot,
+                   "Plot the scattering profile, or an effect's default one, to this .svg")
         ->type_name("FILE")
         ->excludes(json);
     return [options] { return describe(*options); };

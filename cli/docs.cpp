@@ -123,16 +123,15 @@ ExitCode write_man_pages(const CLI::App& program, const fs::path& folder) {
 
 Verb add_docs(CLI::App& app) {
     auto options = std::make_shared<DocsOptions>();
-    app.add_option(
-           "effects", options->effects,
-           "Ids of effects (default: all, their index, the scene reference and the tables of other pages)")
+    app.add_option("effects", options->effects,
+                   "Ids of effects (default: all, with their index, the scene reference and the tables of "
+                   "other pages)")
         ->type_name(kEffectId);
     app.add_option("-o,--output", options->folder,
-                   "Folder of the effects' pages; scene-reference.md and other pages stand beside it")
+                   "Folder for the effects' pages; scene-reference.md and other pages go next to it")
         ->capture_default_str();
-    app.add_flag("--check", options->check, "Write nothing; exit 1 where a page is not what is declared");
-    app.add_option("--man", options->man_folder,
-                   "Write the manual page of each command to this folder instead");
+    app.add_flag("--check", options->check, "Write nothing; exit 1 if a page is out of date");
+    app.add_option("--man", options->man_folder, "Write each command's manual page to this folder instead");
     add_effect_path_option(app, options->effect_paths);
     return [options, &app] {
         if (!options->man_folder.empty()) return write_man_pages(*app.get_parent(), options->man_folder);

@@ -61,7 +61,7 @@ void print_json(const std::vector<gpu::BackendReport>& reports) {
 
 Verb add_doctor(CLI::App& app) {
     auto json = std::make_shared<bool>(false);
-    app.add_flag("--json", *json, "Machine-readable output");
+    app.add_flag("--json", *json, "Print JSON");
     return [json] {
         const std::vector<gpu::BackendReport> reports = gpu::probe_backends();
         if (*json) print_json(reports);

@@ -11,7 +11,7 @@ namespace aftershade::cli {
 
 struct Document {
     std::string name;  ///< as `aftershade schema` takes it
-    /// JSON Schema; a look's knows the effects of these folders and the shipped ones.
+    /// JSON Schema; a look's lists the effects of these folders and the shipped ones.
     std::function<std::string(const std::vector<std::string>& effect_paths)> schema;
     /// What the docs have tables of, "<name>.<block>", and of the blocks that these refer to.
     std::vector<const grammar::Block*> blocks = {};

@@ -11,13 +11,14 @@ namespace aftershade::cli {
 void add_allow_path_option(CLI::App& app) {
     app.add_option_function<std::vector<std::string>>(
            "--allow-path", [](const std::vector<std::string>& folders) { allow_folders(folders); },
-           "Folder that links of effects, buffers of meshes and goldens of suites may lead to; repeatable")
+           "Let links in effects, mesh buffers and goldens lead into this folder; repeatable")
         ->allow_extra_args(false);
 }
 
 void add_effect_path_option(CLI::App& app, std::vector<std::string>& paths) {
     add_allow_path_option(app);
-    app.add_option("--effect-path", paths, "Folder of effects, searched before the shipped ones; repeatable")
+    app.add_option("--effect-path", paths,
+                   "Search this folder for effects before the shipped ones; repeatable")
         ->allow_extra_args(false);
 }
 
@@ -32,8 +33,8 @@ EffectRegistry find_effects(const std::vector<std::string>& paths, Diagnostics& 
     check_effect_paths(paths, diagnostics);
     folders.push_back(data_path() / "effects");
     EffectRegistry effects(std::move(folders));
-    for (const auto& [folder, reason] : effects.unreadable())
-        diagnostics.warning({folder.string()}, "cannot be read, and its effects are left out: " + reason);
+    effects.warn_of_unreadable(diagnostics);
+    effects.warn_of_hidden(diagnostics);
     return effects;
 }
 

@@ -16,12 +16,12 @@ namespace aftershade::cli {
 /// With --allow-path.
 void add_effect_path_option(CLI::App& app, std::vector<std::string>& paths);
 
-/// A path that is no folder is a fault.
+/// A path that is not a folder is a fault.
 void check_effect_paths(const std::vector<std::string>& paths, Diagnostics& diagnostics);
 /// --allow-path, for verbs whose documents name files (framework/core/path_bounds.h).
 void add_allow_path_option(CLI::App& app);
 
-/// The shipped effects, below those of `paths`; a path that is no folder is a fault.
+/// The shipped effects, below those of `paths`; a path that is not a folder is a fault.
 EffectRegistry find_effects(const std::vector<std::string>& paths, Diagnostics& diagnostics);
 
 }  // namespace aftershade::cli

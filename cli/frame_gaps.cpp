@@ -26,12 +26,12 @@ void add_missing_frames(const CaptureOptions& options, MissingFrame missing, Seq
     if (gaps.step > 1)
         diagnostics.warning(place, "only every " + ordinal(gaps.step) + " frame of " + range +
                                        " is there; the sequence is taken to have that step (--frames " +
-                                       range + " asks for all frames)");
+                                       range + " runs all frames)");
     if (gaps.count == 0) return;
     if (gaps.whole.empty()) {
         const std::string text = std::to_string(gaps.count) + " frames of " + range + " are missing";
         if (missing == MissingFrame::skip) diagnostics.warning(place, text + "; they are left out");
-        else diagnostics.error(place, text + "; name those that are meant with --frames");
+        else diagnostics.error(place, text + "; choose frames with --frames");
         return;
     }
     if (missing == MissingFrame::error)

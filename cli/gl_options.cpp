@@ -9,7 +9,7 @@ namespace aftershade::cli {
 
 void add_backend_option(CLI::App& app, std::string& backend) {
     app.add_option("--backend", backend,
-                   "auto, egl, egl-software or osmesa (default: $AFTERSHADE_BACKEND, else auto)");
+                   "GL backend: auto, egl, egl-software or osmesa (default: $AFTERSHADE_BACKEND, else auto)");
 }
 
 gpu::Backend chosen_backend(const std::string& option) {

@@ -26,9 +26,9 @@ namespace fs = std::filesystem;
 
 void print_head(const GoldenReportContext& context) {
     const GoldenEnvironment& environment = context.options.environment;
-    std::cerr << fmt::format("{}: {} cases, {} at a time, {}: {}, {}, {}\n", context.suite->argument,
-                             context.suite->cases.size(), context.options.jobs, environment.backend,
-                             environment.renderer, environment.version, environment.cpu);
+    std::cerr << fmt::format("{}: {}, {} at a time, {}: {}, {}, {}\n", context.suite->argument,
+                             counted(context.suite->cases.size(), "case"), context.options.jobs,
+                             environment.backend, environment.renderer, environment.version, environment.cpu);
 }
 
 fs::path write_page(const fs::path& report, fs::path page, double limit_mb) {
@@ -66,7 +66,7 @@ void print_notes(const GoldenSuiteResult& result) {
             if (image.approved && !image.approved->sidecar && !image.approved->sidecar_fault)
                 bare.push_back(image.approved->file);
     if (bare.empty()) return;
-    std::cerr << fmt::format("note: {}{}: no sidecar tells what made {}, so that only the tolerance counts\n",
+    std::cerr << fmt::format("note: {}{}: no sidecar records what made {}, so only the tolerance counts\n",
                              bare.front().string(),
                              bare.size() > 1 ? fmt::format(" and {} more goldens", bare.size() - 1) : "",
                              bare.size() > 1 ? "them" : "it");
@@ -133,8 +133,9 @@ void print_approval(const GoldenApproval& approval) {
             "{}: warning: approved too, by another renderer for another look or other effects; "
             "approve it again there, or remove it\n",
             path.string());
-    std::cerr << fmt::format("{} images written, {} sidecars renewed, {} unchanged\n",
-                             approval.written.size(), approval.renewed.size(), approval.unchanged);
+    std::cerr << fmt::format("{} written, {} renewed, {} unchanged\n",
+                             counted(approval.written.size(), "image"),
+                             counted(approval.renewed.size(), "sidecar"), approval.unchanged);
 }
 
 ExitCode approve(const GoldenOptions& options) {
@@ -185,7 +186,7 @@ ExitCode report(const GoldenOptions& options) {
 CLI::Option* add_page_limit(CLI::App& app, GoldenOptions& options) {
     return app
         .add_option("--page-limit", options.page_limit_mb,
-                    "MiB of pictures inside index.html; what is more is shown from the files beside it")
+                    "MiB of pictures to embed in index.html; it links to the rest")
         ->check(CLI::Range(0.0, 400.0))
         ->capture_default_str();
 }
@@ -209,35 +210,35 @@ Verb add_golden(CLI::App& app) {
     app.require_subcommand(1);
     app.footer(
         "Exit codes: 0 same, 1 warning, 2 failure, 3 different size or channels, 4 a file cannot be read or "
-        "written\n(or no GL), 64 wrong usage, 130 interrupted.");
+        "written (or no GL), 64 wrong usage, 130 interrupted.");
     auto options = std::make_shared<GoldenOptions>();
-    auto* run_verb = app.add_subcommand("run", "Render every case and compare it with its goldens");
+    auto* run_verb = app.add_subcommand("run", "Render the cases and compare them with their goldens");
     add_shared_golden_options(*run_verb, *options);
-    run_verb->add_flag("--no-skip", options->no_skip, "A case that is skipped fails");
+    run_verb->add_flag("--no-skip", options->no_skip, "Treat skipped cases as failures");
     run_verb->add_option("--junit", options->junit, "Write JUnit XML to this file");
     run_verb->add_option("--report", options->report,
-                         "Write index.html (the page to look at), report.json and pictures to this folder");
+                         "Write a report (index.html, report.json, pictures) to this folder");
     add_page_limit(*run_verb, *options)->needs("--report");
-    run_verb->add_flag("--json", options->json, "The same report.json on stdout");
-    auto* approve_verb = app.add_subcommand(
-        "approve", "Render every case and keep what is new as its goldens; prints their paths");
+    run_verb->add_flag("--json", options->json, "Print report.json on stdout");
+    auto* approve_verb =
+        app.add_subcommand("approve", "Render the cases, keep new results as goldens and print their paths");
     add_shared_golden_options(*approve_verb, *options);
+    approve_verb->add_flag("--add", options->add,
+                           "Add a golden for this renderer and keep those of other renderers");
     approve_verb->add_flag(
-        "--add", options->add,
-        "Keep goldens of other renderers: the new image is another one, named by this renderer");
-    approve_verb->add_flag("--any-renderer", options->any_renderer,
-                           "Also where the goldens are of hardware and this is software, or the other way");
-    approve_verb->add_flag(
-        "--renew-sidecars", options->renew_sidecars,
-        "Where the bits are equal: write what gives them now (renderer, hash of look and effects)");
+        "--any-renderer", options->any_renderer,
+        "Approve even if the goldens are from hardware and this renderer is software, or vice versa");
+    approve_verb->add_flag("--renew-sidecars", options->renew_sidecars,
+                           "If the bits are equal, update the sidecar (renderer, hash of look and effects)");
     approve_verb
         ->add_option("--approver", options->approver,
-                     "Who approves, for the sidecars of new images (git's user.name, else $USER)")
+                     "Name for the sidecars of new images (default: git's user.name, else $USER)")
         ->type_name("NAME");
-    auto* report_verb = app.add_subcommand(
-        "report", "Make the page again from a folder that run --report wrote; prints its path");
-    report_verb->add_option("report", options->report, "Folder with report.json and images/")->required();
-    report_verb->add_option("-o,--output", options->page, "The page (index.html in that folder)");
+    auto* report_verb =
+        app.add_subcommand("report", "Rebuild the page of a report folder and print its path");
+    report_verb->add_option("report", options->report, "The folder that run --report wrote")->required();
+    report_verb->add_option("-o,--output", options->page,
+                            "Write the page here (default: index.html in that folder)");
     add_page_limit(*report_verb, *options);
     return [options, approve_verb, report_verb] {
         return with_own_codes([&] {

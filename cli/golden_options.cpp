@@ -68,29 +68,31 @@ void check_words(const GoldenOptions& options, const GoldenSuite& suite, Diagnos
         diagnostics.error({"--filter " + filter}, "fits no case's name or tag" + did_you_mean(filter, words));
     }
     if (!options.report.empty() && fs::exists(options.report) && !fs::is_directory(options.report))
-        diagnostics.error({"--report " + options.report}, "is no folder");
+        diagnostics.error({"--report " + options.report}, "is not a folder");
 }
 
 }  // namespace
 
 void add_shared_golden_options(CLI::App& app, GoldenOptions& options) {
-    app.add_option("suite", options.suite, "A golden.json, or the folder of one")->required();
+    app.add_option("suite", options.suite, "A golden.json or its folder")->required();
     app.add_option("--filter", options.filters,
-                   "Only cases whose name fits this glob, or that have this tag; repeatable")
+                   "Only cases whose name matches this glob or that have this tag; repeatable")
         ->allow_extra_args(false);
-    app.add_option("-j,--jobs", options.jobs, "Cases at a time (as many as there are cores)")
+    app.add_option("-j,--jobs", options.jobs, "Cases to render at a time (default: one per core)")
         ->check(CLI::Range(0, 1024));
-    app.add_option("--timeout", options.timeout_s, "Seconds that one case may take")
+    app.add_option("--timeout", options.timeout_s, "Time limit per case, in seconds")
         ->check(CLI::Range(0.1, 1e6))
         ->capture_default_str();
     app.add_option("--effect-path", options.effect_paths,
-                   "Folder of effects, searched before the suite's and the shipped ones; repeatable")
+                   "Search this folder for effects before the suite's and the shipped ones; repeatable")
         ->allow_extra_args(false);
     add_allow_path_option(app);
-    app.add_option("--plugin-path", options.plugin_paths, "Folder of native plug-ins; repeatable")
+    app.add_option("--plugin-path", options.plugin_paths,
+                   "Search this folder for native plug-ins; repeatable")
         ->allow_extra_args(false);
-    app.add_option("--backend", options.backend,
-                   "auto, egl, egl-software or osmesa (default: $AFTERSHADE_BACKEND, else osmesa)");
+    app.add_option(
+        "--backend", options.backend,
+        "GL backend: auto, egl, egl-software or osmesa (default: $AFTERSHADE_BACKEND, else osmesa)");
 }
 
 GoldenSetup prepare_golden(const GoldenOptions& options) {

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -21,6 +22,7 @@
 #include "framework/inspect/contact_sheet.h"
 #include "framework/inspect/depth_kind.h"
 #include "framework/inspect/frame_sheet.h"
+#include "framework/inspect/pixel_samples.h"
 
 namespace aftershade::cli {
 
@@ -32,6 +34,7 @@ struct InspectOptions {
     int columns = 0;  ///< of a contact sheet of frames; 0: as many as fit
     std::vector<std::string> check_velocity;
     std::optional<std::string> cryptomatte;
+    std::vector<int> pixel;  ///< x and y; empty: none
     bool json = false;
 };
 
@@ -45,7 +48,7 @@ void check_options(const InspectOptions& options, const std::optional<Sequence>&
         options.contact_sheet.empty())
         diagnostics.error({"--frames " + options.capture.frames},
                           std::to_string(sequence->frames.size()) +
-                              " frames; inspect looks at one, and puts several on a --contact-sheet");
+                              " frames; inspect shows one; --contact-sheet shows several");
 }
 
 /// Whether the contact sheet has frames rather than the roles of one frame.
@@ -61,15 +64,27 @@ std::string without_path(const std::string& message, const std::filesystem::path
     return message.starts_with(prefix) ? message.substr(prefix.size()) : message;
 }
 
+InspectedPart inspect_part(const ExrFile& file, int index, const InspectOptions& options) {
+    InspectedPart part{
+        file.parts()[std::size_t(index)], inspect_channels(file, index, options.capture.limits), {}, {}};
+    const bool readable = std::ranges::all_of(part.channels, &InspectedChannel::readable);
+    if (readable && part.header.is_deep()) part.sample_counts = sample_histogram(file, index);
+    if (readable && !options.pixel.empty())
+        part.at_pixel = samples_at(file, index, options.pixel[0], options.pixel[1]);
+    return part;
+}
+
 /// Throws Error(ExitCode::capture) where the frame's file, or that of one of its roles, cannot be opened.
 Inspection inspect_frame(const Sequence& sequence, int frame, const CaptureReader& reader,
-                         const ReadLimits& limits) {
+                         const InspectOptions& options) {
+    const ReadLimits& limits = options.capture.limits;
     Inspection inspection;
     inspection.file = sequence.path_of(frame);
+    if (!options.pixel.empty()) inspection.pixel = {options.pixel[0], options.pixel[1]};
     const ExrFile file(inspection.file, limits);
     for (const auto& [role, pattern] : sequence.role_files) ExrFile(pattern.path(frame), limits);
     for (std::size_t i = 0; i < file.parts().size(); ++i)
-        inspection.parts.push_back({file.parts()[i], inspect_channels(file, int(i), limits)});
+        inspection.parts.push_back(inspect_part(file, int(i), options));
     try {
         inspection.capture = reader.read_header(frame);
         inspection.cryptomattes = reader.cryptomattes(frame);
@@ -88,9 +103,20 @@ void note_averaged_depth(const Image& depth, Inspection& inspection) {
     if (!edges.are_of_means()) return;
     inspection.capture->notes.push_back(fmt::format(
         "the depth is averaged over samples: at {} of {} edges pixels have a depth between the two "
-        "surfaces; say \"sampling\": \"mean\" with the depth's channels in capture.json, which "
-        "repairs them",
+        "surfaces; set \"sampling\": \"mean\" next to the depth's channels in capture.json to repair them",
         edges.mixed, edges.mixed + edges.sharp));
+}
+
+/// What becomes of deep samples, as many layers as there may be.
+void note_deep_reduction(const CaptureReader& reader, Inspection& inspection) {
+    if (!inspection.capture || inspection.capture->layer_roles.empty()) return;
+    try {
+        const std::vector<std::string> roles = {inspection.capture->layer_roles.back()};
+        const Capture capture = reader.read(inspection.capture->frame, roles);
+        if (capture.deep) inspection.capture->notes.push_back(capture.deep->text(capture.deep_layers));
+    } catch (const Error&) {
+        // Said where the channels are listed, or by whoever needs the role.
+    }
 }
 
 /// The depth as the profile decodes it, held to its own edges and to the positions of its pixels.
@@ -150,8 +176,10 @@ Capture read_role_by_role(const CaptureHeader& header, const CaptureReader& read
 void write_contact_sheet(const std::string& path, const CaptureHeader& header, const CaptureReader& reader) {
     Capture capture;
     std::map<std::string, std::string> unreadable;
+    std::vector<std::string> roles = header.roles;
+    roles.insert(roles.end(), header.layer_roles.begin(), header.layer_roles.end());
     try {
-        capture = reader.read(header.frame, header.roles);
+        capture = reader.read(header.frame, roles);
     } catch (const Error&) {
         capture = read_role_by_role(header, reader, unreadable);
     }
@@ -167,6 +195,7 @@ ExitCode inspect(const InspectOptions& options) {
     const std::optional<Sequence> sequence = find_sequence(options.capture, profiles, diagnostics);
     check_options(options, sequence, diagnostics);
     InputFiles inputs;
+    inputs.add(diagnostics.documents());
     if (sequence) inputs.add(files_of_sequence(*sequence));
     inputs.check_output({"--contact-sheet " + options.contact_sheet}, options.contact_sheet, diagnostics);
     stop_at_errors(diagnostics);
@@ -176,8 +205,9 @@ ExitCode inspect(const InspectOptions& options) {
     const CaptureReader reader(*sequence, std::move(profiles), options.capture.limits);
     if (wants_frames(options, *sequence))
         return write_frame_sheet(options.contact_sheet, options.columns, *sequence, reader);
-    Inspection inspection = inspect_frame(*sequence, sequence->file_number(sequence->frames.front()), reader,
-                                          options.capture.limits);
+    Inspection inspection =
+        inspect_frame(*sequence, sequence->file_number(sequence->frames.front()), reader, options);
+    note_deep_reduction(reader, inspection);
     find_depth_kind_of(reader, inspection);
     if (options.cryptomatte) add_coverage(*options.cryptomatte, reader, inspection);
     std::cout << (options.json ? json_of(inspection) + "\n" : text_of(inspection)) << std::flush;
@@ -201,22 +231,27 @@ Verb add_inspect(CLI::App& app) {
     CLI::Option* capture = add_capture_argument(app, options->capture);
     CLI::Option* check = app.add_option(
         "--check-velocity", options->check_velocity,
-        "Two consecutive frames: do their motion vectors mean what the profile says? Exit 1: no");
+        "Check the motion vectors of two consecutive frames against the profile; exits 1 on a mismatch");
     check->expected(2)->type_name("A B");
     capture->required(false)->excludes(check);
     add_capture_options(app, options->capture,
-                        "The frame to look at (default: the first), or those of a contact sheet");
-    app.add_flag("--json", options->json, "Machine-readable output");
+                        "The frame to show (default: the first), or the frames of a contact sheet");
+    app.add_flag("--json", options->json, "Print JSON");
     app.add_option(
            "--cryptomatte", options->cryptomatte,
-           "List the objects of this Cryptomatte with their coverage (without a name: of the one of objects)")
+           "List the objects of this Cryptomatte by coverage (without a name: of the Cryptomatte of objects)")
         ->expected(0, 1);
+    app.add_option("--pixel", options->pixel,
+                   "List what the file stores at this pixel: every sample of a deep one")
+        ->expected(2)
+        ->delimiter(',')
+        ->type_name("X,Y");
     app.add_option("--contact-sheet", options->contact_sheet,
-                   "Write every role in false colour to this .png file; of several --frames, or of a pattern "
-                   "of PNG files, thumbnails of the colour");
+                   "Write all roles in false colour to this .png; for several frames or PNG files, "
+                   "thumbnails of the colour");
     app.add_option("--columns", options->columns,
-                   "Of a contact sheet of frames, which is then of all frames unless --frames names some "
-                   "(default: as many as fit)")
+                   "Number of columns of a contact sheet of frames (default: as many as fit); shows all "
+                   "frames unless --frames is given")
         ->check(CLI::Range(1, kMostSheetFrames));
     return [options] {
         if (!options->check_velocity.empty())

@@ -55,6 +55,34 @@ std::string channel_table(const std::vector<InspectedChannel>& channels) {
     return table;
 }
 
+std::string sample_lines(const InspectedPart& part) {
+    std::string text;
+    for (const SampleCount& count : part.sample_counts) {
+        const std::string samples = count.least == count.most
+                                        ? std::to_string(count.least)
+                                        : fmt::format("{} to {}", count.least, count.most);
+        const Window& window = part.header.data_window;
+        text += fmt::format("  {:>14}  {:>12} px  {:>6.2f} %\n", samples, count.pixels,
+                            100 * double(count.pixels) / (double(window.width()) * window.height()));
+    }
+    return text.empty() ? "" : "  samples in a pixel\n" + text;
+}
+
+std::string pixel_lines(const Inspection& inspection, const InspectedPart& part) {
+    if (!inspection.pixel) return "";
+    const auto [x, y] = *inspection.pixel;
+    std::string text = fmt::format("  pixel ({}, {})\n", x, y);
+    if (part.at_pixel.channels.empty()) return text + "    outside of the data window\n";
+    if (part.at_pixel.samples.empty()) return text + "    no samples\n";
+    for (std::size_t c = 0; c < part.at_pixel.channels.size(); ++c) {
+        text += fmt::format("    {:<12}", printable(part.at_pixel.channels[c]));
+        for (const std::vector<double>& sample : part.at_pixel.samples)
+            text += fmt::format("  {:>10.6g}", sample[c]);
+        text += "\n";
+    }
+    return text;
+}
+
 std::vector<std::string> channels_of(const CaptureHeader& capture, const std::string& role) {
     const auto found = capture.role_channels.find(role);
     return found == capture.role_channels.end() ? std::vector<std::string>{} : found->second;
@@ -75,6 +103,7 @@ std::string role_lines(const Inspection& inspection) {
 std::string layer_lines(const CaptureHeader& capture) {
     std::string text;
     if (!capture.layer.empty()) text += fmt::format("layer: {}\n", printable(capture.layer));
+    if (capture.layer_count > 1) text += fmt::format("layers, front to back: {}\n", capture.layer_count);
     for (const std::string& note : capture.notes) text += fmt::format("note: {}\n", printable(note));
     return text;
 }
@@ -175,6 +204,17 @@ Json part_json(const InspectedPart& part) {
               {"compression", part.header.compression},
               {"channels", Json::array()}};
     for (const InspectedChannel& channel : part.channels) json["channels"].push_back(channel_json(channel));
+    for (const SampleCount& count : part.sample_counts)
+        json["samples"].push_back({{"least", count.least}, {"most", count.most}, {"pixels", count.pixels}});
+    return json;
+}
+
+/// null where none was asked for.
+Json pixel_json(const Inspection& inspection) {
+    if (!inspection.pixel) return nullptr;
+    Json json{{"x", (*inspection.pixel)[0]}, {"y", (*inspection.pixel)[1]}, {"parts", Json::array()}};
+    for (const InspectedPart& part : inspection.parts)
+        json["parts"].push_back({{"channels", part.at_pixel.channels}, {"samples", part.at_pixel.samples}});
     return json;
 }
 
@@ -217,7 +257,8 @@ const InspectedChannel* Inspection::first_unreadable() const {
 std::string text_of(const Inspection& inspection) {
     std::string text = inspection.file.string() + "\n";
     for (std::size_t i = 0; i < inspection.parts.size(); ++i)
-        text += part_title(inspection.parts[i], i) + channel_table(inspection.parts[i].channels);
+        text += part_title(inspection.parts[i], i) + channel_table(inspection.parts[i].channels) +
+                sample_lines(inspection.parts[i]) + pixel_lines(inspection, inspection.parts[i]);
     if (inspection.capture)
         text += fmt::format("profile: {} ({})\n", inspection.capture->profile,
                             printable(inspection.capture->profile_reason));
@@ -234,12 +275,14 @@ std::string text_of(const Inspection& inspection) {
 std::string json_of(const Inspection& inspection) {
     Json json{{"file", inspection.file.string()}, {"parts", Json::array()}};
     for (const InspectedPart& part : inspection.parts) json["parts"].push_back(part_json(part));
+    json["pixel"] = pixel_json(inspection);
     if (inspection.capture)
         json["profile"] = {{"id", inspection.capture->profile},
                            {"reason", inspection.capture->profile_reason}};
     else json["profile"] = {{"id", nullptr}, {"reason", inspection.no_profile_reason}};
     json["layer"] = inspection.capture ? inspection.capture->layer : "";
     json["layers"] = inspection.capture ? inspection.capture->layers : std::vector<std::string>();
+    json["layer_count"] = inspection.capture ? inspection.capture->layer_count : 0;
     json["notes"] = inspection.capture ? inspection.capture->notes : std::vector<std::string>();
     json["roles"] = Json::object();
     if (inspection.capture)

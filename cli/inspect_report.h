@@ -1,6 +1,7 @@
 // What `inspect` shows of a capture, as text for people and as JSON.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -10,12 +11,15 @@
 #include "framework/core/error.h"
 #include "framework/file/exr_file.h"
 #include "framework/inspect/channel_statistics.h"
+#include "framework/inspect/pixel_samples.h"
 
 namespace aftershade::cli {
 
 struct InspectedPart {
     ExrPart header;
     std::vector<InspectedChannel> channels;
+    std::vector<SampleCount> sample_counts;  ///< of deep parts that can be read
+    PixelSamples at_pixel;                   ///< where one was requested
 };
 
 struct Inspection {
@@ -25,9 +29,10 @@ struct Inspection {
     std::string no_profile_reason;         ///< without the file's name
     std::string no_profile_message;        ///< with it
     ExitCode no_profile_code = ExitCode::capture;
-    std::string depth_kind;  ///< "planar, fits position to 0.02 %"; "" where no position tells it
+    std::string depth_kind;  ///< "planar, fits position to 0.02 %"; "" where no position shows it
+    std::optional<std::array<int, 2>> pixel;  ///< that was requested, in the file's coordinates
     std::vector<CryptomatteLayer> cryptomattes;
-    std::string coverage_of;               ///< the Cryptomatte of `coverage`; "" where none was asked for
+    std::string coverage_of;               ///< the Cryptomatte of `coverage`; "" where none was requested
     std::vector<ObjectCoverage> coverage;  ///< of its objects
 
     /// The fixed roles that the capture lacks; all where no profile fits.
@@ -37,8 +42,8 @@ struct Inspection {
 };
 
 std::string text_of(const Inspection& inspection);
-/// {file, parts, profile, layer, layers, notes, roles, depth_kind, missing, camera, lights, cryptomattes},
-/// indented, without a line end.
+/// {file, parts, pixel, profile, layer, layers, layer_count, notes, roles, depth_kind, missing, camera,
+/// lights, cryptomattes}, indented, without a line end.
 std::string json_of(const Inspection& inspection);
 
 }  // namespace aftershade::cli

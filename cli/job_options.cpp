@@ -68,26 +68,22 @@ std::optional<FarmTask> task_of(const Environment& environment) {
 }  // namespace
 
 void add_job_options(CLI::App& app, JobArguments& options) {
-    app.add_option(
-        "--jobs", options.jobs,
-        "Worker processes that render at the same time: a number, or auto for this machine's cores");
-    app.add_option(
-        "--chunk", options.chunk,
-        "Render one part of the frames: 3/8 for the third of eight, auto/8 or auto with the number "
-        "from Slurm, Kubernetes, AWS Batch, PBS or Grid Engine");
-    app.add_option(
-           "--warmup", options.warmup,
-           "Frames that a look with history renders before a chunk without writing them: a number, or "
-           "auto for what the effects declare")
+    app.add_option("--jobs", options.jobs, "Number of worker processes, or auto for one per core");
+    app.add_option("--chunk", options.chunk,
+                   "Render one part of the frames: 3/8 is the third of eight; auto/8 and auto take the "
+                   "number from Slurm, Kubernetes, AWS Batch, PBS or Grid Engine");
+    app.add_option("--warmup", options.warmup,
+                   "Frames to render before a chunk without writing them, for looks with history: a number, "
+                   "or auto for what the effects declare")
         ->capture_default_str();
     app.add_option("--frame-timeout", options.frame_timeout_s,
-                   "Seconds after which a worker that finishes no frame is killed; the frame has failed")
+                   "Kill a worker that finishes no frame in this many seconds; its frame fails")
         ->check(CLI::Range(0.1, 1e6));
     app.add_option("--max-memory", options.memory_bytes,
-                   "Address space of each worker, such as 4GB; a frame that needs more has failed")
+                   "Limit each worker's address space, such as 4GB; a frame that needs more fails")
         ->transform(CLI::AsSizeValue(false));
-    app.add_flag("--stop-on-error", options.stop_on_error, "End at the first frame that fails");
-    app.add_option("--report", options.report, "Write how each frame ended (.json)");
+    app.add_flag("--stop-on-error", options.stop_on_error, "Stop at the first frame that fails");
+    app.add_option("--report", options.report, "Write the outcome of each frame to this .json");
     // A worker's own, which no user needs.
     app.add_option("--worker-frames", options.worker_frames)->group("");
     app.add_option("--worker-warmup", options.worker_warmup_frames)->group("");

@@ -52,7 +52,8 @@ std::optional<Chunk> parse_chunk(const std::string& text,
                                  const std::function<const char*(const char*)>& environment,
                                  Diagnostics& diagnostics);
 
-/// The run as far as its division matters. `has_saved_history`: it goes on from a file and needs no warm-up.
+/// The run as far as its division matters. `has_saved_history`: it continues from a file and needs no
+/// warm-up.
 JobFrames job_frames(const JobArguments& arguments, const Pipeline& pipeline, const Sequence& sequence,
                      bool has_saved_history, Diagnostics& diagnostics);
 

@@ -69,7 +69,7 @@ Verb add_list(CLI::App& app) {
     auto options = std::make_shared<ListOptions>();
     add_effect_path_option(app, options->effect_paths);
     app.add_flag("--scattering-profiles", options->profiles, "List the shipped scattering profiles instead");
-    app.add_flag("--json", options->json, "Machine-readable output");
+    app.add_flag("--json", options->json, "Print JSON");
     return [options] { return list(*options); };
 }
 

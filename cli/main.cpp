@@ -8,16 +8,20 @@
 #include <exception>
 #include <iostream>
 #include <map>
+#include <memory>
 #include <new>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 #include "aftershade/error.h"
 #include "cli/compare_options.h"
 #include "cli/exit_code.h"
+#include "cli/help_formatter.h"
 #include "cli/plugin_options.h"
 #include "cli/verbs.h"
+#include "framework/core/diagnostics.h"
 #include "framework/core/memory_limit.h"
 #include "framework/core/status.h"
 #include "framework/core/text.h"
@@ -62,6 +66,26 @@ void refuse_empty_values(const CLI::App& verb) {
     }
 }
 
+/// What is wrong with the first word that stands where a command is expected; "" where all name one.
+std::string unknown_command(const CLI::App& app, int argc, char** argv) {
+    const CLI::App* command = &app;
+    for (int i = 1; i < argc && argv[i][0] != '-'; ++i) {
+        const CLI::App* next = nullptr;
+        std::vector<std::string> names;
+        for (const CLI::App* below : command->get_subcommands([](const CLI::App*) { return true; })) {
+            names.push_back(below->get_name());
+            if (names.back() == argv[i]) next = below;
+        }
+        if (names.empty()) return "";
+        if (!next)
+            return "'" + std::string(argv[i]) + "' is not a command" +
+                   aftershade::did_you_mean(argv[i], names,
+                                            "; choose from " + aftershade::joined(names, " and "));
+        command = next;
+    }
+    return "";
+}
+
 bool stdout_is_whole() {
     std::cout.flush();
     return std::fflush(stdout) == 0 && std::cout && std::ferror(stdout) == 0;
@@ -78,14 +102,14 @@ int main(int argc, char** argv) {
         return aftershade::serve_native_code(aftershade::kNativeDescriptor);
     // A file above the shell's limit is then an output that cannot be written, not the end of the process.
     std::signal(SIGXFSZ, SIG_IGN);
-    CLI::App app{"Runs chains of shader effects over G-buffer captures, without a display.", "aftershade"};
+    CLI::App app{"Run chains of GLSL effects over G-buffer captures, without a display.", "aftershade"};
+    app.formatter(std::make_shared<aftershade::cli::HelpFormatter>());
     app.set_version_flag("--version", std::string("aftershade " AFTERSHADE_VERSION));
     app.require_subcommand(1);
     app.footer(
-        "Exit codes: 0 done, 1 some frames failed, 2 wrong words or documents, 3 no readable frame or role,\n"
-        "4 no usable GL, 5 an effect failed, 6 an output could not be written, 7 out of memory, 130 "
-        "interrupted;\n"
-        "compare and golden have their own.");
+        "Exit codes: 0 done, 1 some frames failed, 2 wrong arguments or documents, 3 no readable frame or "
+        "role, 4 no usable GL, 5 an effect failed, 6 an output could not be written, 7 out of memory, "
+        "130 interrupted. compare and golden have their own.");
     std::map<CLI::App*, aftershade::cli::Verb> verbs;
     const auto add = [&](const char* name, const char* help, auto add_options) {
         CLI::App* verb = app.add_subcommand(name, help);
@@ -105,8 +129,11 @@ int main(int argc, char** argv) {
         const int code = app.exit(asked_for_help);
         return stdout_is_whole() ? code : fail(ExitCode::output, stdout_fault(errno).c_str());
     } catch (const CLI::ParseError& error) {
+        const ExitCode code = keeps_idiffs_codes() ? aftershade::cli::kCompareUsage : ExitCode::usage;
+        if (const std::string fault = unknown_command(app, argc, argv); !fault.empty())
+            return fail(code, fault.c_str());
         app.exit(error);
-        return end(int(keeps_idiffs_codes() ? aftershade::cli::kCompareUsage : ExitCode::usage));
+        return end(int(code));
     }
     aftershade::prepare_for_memory_limit();
     const auto fail_for_stdout = [&](int number) {

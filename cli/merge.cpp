@@ -60,11 +60,11 @@ ExitCode merge(const MergeArguments& options) {
 Verb add_merge(CLI::App& app) {
     auto options = std::make_shared<MergeArguments>();
     app.add_option("reports", options->reports,
-                   "Reports of run --report, or a folder of them; of a frame in several the last counts")
+                   "Reports of run --report, or a folder of them; for a frame in several, the last counts")
         ->required();
-    app.add_option("-o,--output", options->output, "The merged report (.json)")->required();
+    app.add_option("-o,--output", options->output, "Write the merged report to this .json")->required();
     app.add_option("--tasks", options->tasks,
-                   "How many reports the folder should have: 0001.json, 0002.json, ...")
+                   "Number of reports to expect in the folder: 0001.json, 0002.json, ...")
         ->check(CLI::PositiveNumber);
     return [options] { return merge(*options); };
 }

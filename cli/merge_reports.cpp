@@ -45,7 +45,7 @@ std::string add_report(const std::filesystem::path& file, BatchSummary& batch,
         batch.seconds += report.at("seconds").get<double>();
         for (auto& [frame, event] : added) frames[frame] = std::move(event);
     } catch (const Json::exception&) {
-        return "is no report of run --report";
+        return "is not a report of run --report";
     }
     return "";
 }

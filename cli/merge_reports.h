@@ -17,7 +17,7 @@ struct MissingReport {
 struct MergedReport {
     BatchSummary batch;  ///< frames in order; seconds are the sum over the tasks
     int tasks = 0;
-    std::vector<MissingReport> missing;  ///< also those that are no reports
+    std::vector<MissingReport> missing;  ///< also those that are not reports
 };
 
 /// A frame that several reports name is as the last of them has it. The exit code is `partial` where a frame

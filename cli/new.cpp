@@ -89,8 +89,9 @@ ExitCode make(const NewOptions& options) {
 
 Verb add_new(CLI::App& app) {
     auto options = std::make_shared<NewOptions>();
-    app.add_option("id", options->id, "Id of the effect, and the name of its folder: snake_case")->required();
-    app.add_option("--path", options->folder, "Where the folder is made")->capture_default_str();
+    app.add_option("id", options->id, "The effect's id and the name of its folder, in snake_case")
+        ->required();
+    app.add_option("--path", options->folder, "Create the folder here")->capture_default_str();
     return [options] { return make(*options); };
 }
 

@@ -51,14 +51,15 @@ PassLimit PluginOptions::pass_limit() const {
 }
 
 void add_plugin_options(CLI::App& app, PluginOptions& options) {
-    app.add_option("--plugin-path", options.paths,
-                   "Folder of native plug-ins (*.so), before those of AFTERSHADE_PLUGIN_PATH; repeatable")
+    app.add_option(
+           "--plugin-path", options.paths,
+           "Search this folder for native plug-ins (*.so) before those of AFTERSHADE_PLUGIN_PATH; repeatable")
         ->allow_extra_args(false);
-    app.add_option("--plugin-timeout", options.timeout_s, "Seconds that one call of a plug-in may take")
+    app.add_option("--plugin-timeout", options.timeout_s, "Time limit per call of a plug-in, in seconds")
         ->check(CLI::Range(0.1, 1e6))
         ->capture_default_str();
     app.add_option("--plugin-memory", options.memory_bytes,
-                   "Address space of the process that plug-ins run in, such as 8GB (default: 4GB)")
+                   "Limit the address space of the plug-in process (default: 4GB)")
         ->transform(CLI::AsSizeValue(false));
     app.add_option_function<double>(
            "--pass-timeout",
@@ -66,8 +67,8 @@ void add_plugin_options(CLI::App& app, PluginOptions& options) {
                options.pass_timeout_s = seconds;
                options.limits_every_pass = true;
            },
-           "Seconds that a pass may take to compile or to draw (default: 60 for effects that are not "
-           "shipped, none for the shipped ones)")
+           "Time limit for a pass to compile or to draw, in seconds (default: 60 for effects that are not "
+           "shipped, none for shipped ones)")
         ->check(CLI::Range(0.1, 1e6));
 }
 

@@ -1,5 +1,5 @@
-// What strangers wrote: --plugin-path, the limits of plug-ins and passes, and the process that a command with
-// strangers' effects works in.
+// Untrusted code: --plugin-path, the limits of plug-ins and passes, and the process that a command with
+// untrusted effects works in.
 #pragma once
 
 #include <cstdint>
@@ -32,13 +32,13 @@ struct PluginOptions {
 void add_plugin_options(CLI::App& app, PluginOptions& options);
 
 /// Runs this command once more as a worker, which writes to the same streams, where `is_foreign` says that it
-/// uses what strangers wrote, or --plugin-path or --pass-timeout is given: a shader may crash or stop the GL
+/// uses untrusted code, or --plugin-path or --pass-timeout is given: a shader may crash or stop the GL
 /// driver. Returns the exit code: the worker's, or 5 (7 for memory) with a message that names the pass.
 /// nullopt: work in this process, which is the worker or needs none. Interrupts are watched for while it
 /// runs.
 std::optional<ExitCode> run_in_worker(const PluginOptions& options, bool is_foreign);
 
-/// Memory that a worker with strangers' effects may use: three quarters of the machine's.
+/// Memory that a worker with untrusted effects may use: three quarters of the machine's.
 std::uint64_t foreign_memory_bytes();
 
 /// The linked libraries and those of the folders; the latter run in a process of their own, confined.

@@ -9,6 +9,7 @@
 #include "cli/effect_options.h"
 #include "cli/interrupt.h"
 #include "cli/verbs.h"
+#include "framework/capture/deep_layers.h"
 #include "framework/capture/frame_range.h"
 #include "framework/core/input_files.h"
 #include "framework/scene/job.h"
@@ -39,50 +40,59 @@ struct RenderArguments {
 };
 
 void add_options(CLI::App& app, RenderArguments& options) {
-    app.add_option("scene", options.scene, "scene.json, or its folder")->required();
-    app.add_option("-o,--output", options.folder, "Folder of the capture; is made where it is not there")
-        ->required();
+    app.add_option("scene", options.scene, "A scene.json or its folder")->required();
+    app.add_option("-o,--output", options.folder, "Folder for the capture; created if missing")->required();
     app.add_option("--frames", options.frames, "Frames to render, such as 1-24 (default: the scene's)");
     app.add_option("--size", options.size, "WIDTHxHEIGHT in px (default: the scene's)");
-    app.add_option("--truth", options.truths,
-                   "The true picture too: lens, shutter, antialias, joined by +, or scattering; repeatable")
+    app.add_option(
+           "--truth", options.truths,
+           "Also render a true picture: lens, shutter and antialias, joined by +, or scattering; repeatable")
         ->allow_extra_args(false);
-    app.add_option("--truth-method", options.method,
-                   "accumulation (one set of samples for all pixels) or interleaved (each its own)")
+    app.add_option(
+           "--truth-method", options.method,
+           "accumulation (all pixels share one set of samples) or interleaved (each pixel has its own)")
         ->check(CLI::IsMember({"accumulation", "interleaved"}))
         ->capture_default_str();
-    app.add_option("--samples", options.samples, "Of each truth, 1 to 65536 (default: 256; scattering: 2048)")
+    app.add_option("--samples", options.samples, "Samples of each truth (default: 256; scattering: 2048)")
         ->check(CLI::Range(1, scene::kMaxSamples));
     app.add_option("--surface", options.surface,
                    "scattering: light from the visible surface, or from the whole object")
         ->check(CLI::IsMember({"visible", "whole"}))
         ->capture_default_str();
     app.add_flag("--truth-only", options.only_truth, "Write no capture");
-    app.add_option("--subframes", options.job.subframes, "Captures over each frame's exposure")
+    app.add_option("--layers", options.job.layers,
+                   "Surfaces behind one another, each in files of its own that capture.json names as layers")
+        ->check(CLI::Range(1, kMostLayers))
+        ->capture_default_str();
+    app.add_flag(
+        "--deep", options.job.deep,
+        "Deep captures: every surface that 16 rays a pixel meet, with the share of the rays as its alpha");
+    app.add_option("--subframes", options.job.subframes, "Number of captures over each frame's exposure")
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();
-    app.add_option("--jitter", options.jitter, "Moves the pixels' samples: none, or halton (16 phases)")
+    app.add_option("--jitter", options.jitter, "Jitter of the pixel samples: none, or halton (16 phases)")
         ->check(CLI::IsMember({"none", "halton"}))
         ->capture_default_str();
-    app.add_option("--space", options.space, "screen, or uv: one object over its texture coordinates")
+    app.add_option("--space", options.space, "screen, or uv for one object over its texture coordinates")
         ->check(CLI::IsMember({"screen", "uv"}))
         ->capture_default_str();
-    app.add_option("--object", options.object, "uv: the object's name");
-    app.add_option("--texture-size", options.texture_size, "uv: px of each side")
+    app.add_option("--object", options.object, "--space uv: the object's name");
+    app.add_option("--texture-size", options.texture_size, "--space uv: side of the picture, in px")
         ->check(CLI::Range(1, 8192))
         ->capture_default_str();
     app.add_option("--profile", options.profile,
-                   "Whose conventions the files keep: native, blender, unreal, nuke, ...")
+                   "Conventions of the files: native, blender, unreal, nuke, ...")
         ->capture_default_str();
-    app.add_option("--profile-path", options.profile_paths, "Folders of further profiles; repeatable")
+    app.add_option("--profile-path", options.profile_paths,
+                   "Search this folder for profiles before the shipped ones; repeatable")
         ->allow_extra_args(false);
     app.add_option("--compression", options.job.compression, "none, rle, zips, zip or piz")
         ->check(CLI::IsMember({"none", "rle", "zips", "zip", "piz"}))
         ->capture_default_str();
-    app.add_option("--seed", options.job.seed, "Another set of samples");
+    app.add_option("--seed", options.job.seed, "Seed of the random samples");
     add_allow_path_option(app);
-    app.add_flag("--json", options.json, "A report on stdout");
-    app.add_flag("--quiet", options.quiet, "No line for each frame");
+    app.add_flag("--json", options.json, "Print a report as JSON on stdout");
+    app.add_flag("--quiet", options.quiet, "Do not print a line per frame");
 }
 
 Place place_of(const std::string& option, const std::string& value) {
@@ -133,7 +143,7 @@ void complete_job(const RenderArguments& options, const scene::Scene& scene, sce
     if (!options.frames.empty()) {
         const auto frames = parse_frame_range(options.frames);
         if (frames && !frames->empty()) job.frames = *frames;
-        else diagnostics.error(place_of("--frames", options.frames), "is not a range such as 1-100x2,120");
+        else diagnostics.error(place_of("--frames", options.frames), frame_range_fault(options.frames));
     }
     for (const std::string& text : options.truths) {
         if (const auto truth = scene::parse_truth(text)) job.truths.push_back(*truth);
@@ -187,8 +197,12 @@ ExitCode render(RenderArguments options) {
     std::filesystem::path path = options.scene;
     if (std::filesystem::is_directory(path)) path /= "scene.json";
     const auto scene = scene::read_scene(path, diagnostics);
+    if (options.job.deep && options.profile != "native")
+        diagnostics.error(place_of("--profile", options.profile), "--deep writes the native channels alone");
     if (scene) complete_job(options, *scene, options.job, diagnostics);
-    if (InputFiles inputs; options.job.captures)
+    InputFiles inputs;
+    inputs.add(diagnostics.documents());
+    if (options.job.captures)
         inputs.check_output(place_of("-o", options.folder),
                             std::filesystem::path(options.folder) / "capture.json", diagnostics);
     diagnostics.print(std::cerr);

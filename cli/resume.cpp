@@ -51,22 +51,19 @@ ResumeOptions options_of(const ResumeArguments& arguments, const ResumeNeeds& ne
 
 void add_resume_options(CLI::App& app, ResumeArguments& arguments) {
     const std::string group =
-        "Runs of several frames leave out frames that are current, by the journal "
-        "in .aftershade beside the first output";
+        "Resuming (a run of several frames skips those that its journal lists as current)";
     auto* const resume =
-        app.add_flag("--resume", arguments.resume, "Do so for a run of one frame, too")->group(group);
-    app.add_flag("--overwrite", arguments.overwrite, "Render every frame, whatever the journal says")
-        ->group(group);
-    app.add_flag("--dry-run", arguments.dry_run,
-                 "Say which frames would be rendered and why, and run nothing")
+        app.add_flag("--resume", arguments.resume, "Skip a current frame even if the run has only one")
+            ->group(group);
+    app.add_flag("--overwrite", arguments.overwrite, "Render every frame, current or not")->group(group);
+    app.add_flag("--dry-run", arguments.dry_run, "List the frames to render, with reasons, and run nothing")
         ->group(group);
     app.add_flag("--no-journal", arguments.no_journal,
-                 "Render every frame, and keep no journal, lock or checkpoint")
+                 "Render every frame, without journal, lock or checkpoints")
         ->excludes(resume)
         ->group(group);
     app.add_option("--checkpoint", arguments.checkpoint_frames,
-                   "Save the history of a look that has one after so many frames, for a run that goes on "
-                   "after a kill; 0: never")
+                   "Save a look's history every this many frames, so that a killed run can resume; 0: never")
         ->check(CLI::Range(0, 1000000))
         ->capture_default_str()
         ->group(group);

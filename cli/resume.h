@@ -21,7 +21,7 @@ struct ResumeArguments {
     bool no_journal = false;
     int checkpoint_frames = 10;
 
-    /// Whether a run of so many frames keeps a journal and leaves out what is current.
+    /// Whether a run of this many frames keeps a journal and leaves out what is current.
     bool keeps_journal(std::size_t frames) const { return !no_journal && (frames > 1 || resume); }
 };
 

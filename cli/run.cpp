@@ -110,6 +110,11 @@ CheckedRun checked_run(const RunArguments& options) {
     std::optional<Sequence> sequence = find_sequence(options.capture, run.profiles, diagnostics);
     run.outputs = output_options(options);
     run.settings = run_options(options, diagnostics);
+    if (sequence && !sequence->layers.empty() && run.outputs.keep_channels)
+        diagnostics.error({"--keep-channels"},
+                          "keeps the channels of one file, and the capture's " +
+                              std::to_string(sequence->layers.size()) +
+                              " layers are several pictures; choose roles with --output-roles");
     if (sequence) {
         sequence->object_names = run.bound->pipeline.object_names();
         add_missing_frames(options.capture, run.settings.missing, *sequence, diagnostics);

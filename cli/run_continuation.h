@@ -1,4 +1,4 @@
-// How an interrupted run goes on, and where a run that begins in the middle of a shot lacks its history.
+// How an interrupted run resumes, and where a run that begins in the middle of a shot lacks its history.
 #pragma once
 
 #include <string>
@@ -10,14 +10,14 @@
 
 namespace aftershade::cli {
 
-/// What to tell after an interrupt: how far the run came, and the command that does the rest, in a line of
+/// The message after an interrupt: how far the run came, and the command that does the rest, in a line of
 /// its own. With history that was not saved, the rest begins where the history began, so that its pictures
 /// are those of an uncut run. "" where nothing is left.
 std::string continuation_text(const std::vector<std::string>& command, const RunOptions& run,
                               const RunReport& report);
 
-/// A warning where the first frame is not the first of its shot and there is no history to go on with; "" if
-/// all is well, or if the look has no history.
+/// A warning where the first frame is not the first of its shot and there is no history to continue from; ""
+/// if all is well, or if the look has no history.
 std::string lost_history_text(const Pipeline& pipeline, const Sequence& sequence, const CaptureReader& reader,
                               const RunOptions& run);
 

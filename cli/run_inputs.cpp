@@ -14,6 +14,7 @@ namespace fs = std::filesystem;
 
 InputFiles run_inputs(const BoundLook& bound, const Sequence& sequence, const Diagnostics& faults) {
     InputFiles inputs;
+    inputs.add(faults.documents());
     if (!faults.has_errors()) inputs.add(files_of_pipeline(bound.pipeline, data_path() / "glsl"));
     inputs.add(files_of_sequence(sequence));
     return inputs;

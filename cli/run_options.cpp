@@ -50,23 +50,6 @@ NanPolicy nan_policy(const std::string& word) {
     return word == "fail" ? NanPolicy::fail : word == "mend" ? NanPolicy::mend : NanPolicy::warn;
 }
 
-void add_frame_options(CLI::App& app, RunArguments& options) {
-    app.add_option("--var", options.variables, "name=value, above the look's own \"vars\"; repeatable")
-        ->allow_extra_args(false);
-    app.add_option("--scale", options.scale, "Render at 1/n of the size; values in px scale along")
-        ->capture_default_str();
-    app.add_option("--region", options.region, "x,y,w,h: only these px of the display window, at full scale");
-    app.add_option("--region-margin", options.region_margin_px,
-                   "px rendered around the region for effects that look around; not written")
-        ->check(CLI::Range(0, 16384))
-        ->capture_default_str();
-    app.add_option("--history-in", options.history_in,
-                   "Go on from the history that a run over the frames before wrote");
-    app.add_option("--history-out", options.history_out,
-                   "Write the history after the last frame, for the next chunk of the sequence");
-    app.add_option("--graph", options.graph, "Draw the frame graph of the last frame: .dot or .svg");
-}
-
 void add_look_options(CLI::App& app, RunArguments& options) {
     app.add_option("look", options.look, "The look: a JSON file of effects in order")->required();
     add_capture_argument(app, options.capture);
@@ -74,24 +57,55 @@ void add_look_options(CLI::App& app, RunArguments& options) {
                    "Output file or pattern (.exr, .png), or - for standard output; repeatable")
         ->required()
         ->allow_extra_args(false);
-    app.add_option("--set", options.pipeline.sets, "step.param=value, above the look's own; repeatable")
+    app.add_option("--set", options.pipeline.sets,
+                   "STEP.PARAM=VALUE: override a value of the look; repeatable")
         ->allow_extra_args(false);
-    app.add_option(
-           "--tap", options.pipeline.taps,
-           "step.texture to write as EXR beside the first output, or step.texture=FILE (.exr, or .png "
-           "in false colour); repeatable")
+    app.add_option("--var", options.variables, "NAME=VALUE: override one of the look's \"vars\"; repeatable")
         ->allow_extra_args(false);
-    add_capture_options(app, options.capture, "Frames to run, such as 1-100x2,120");
+    app.add_option("--look-folder", options.look_folder,
+                   "Resolve files named in the look in this folder (default: the look's own)");
+    add_effect_path_option(app, options.effect_paths);
+    app.add_flag("--watch", options.watch,
+                 "Keep running, and render again whenever the look, a manifest or a shader changes");
+    app.add_option("--progress", options.progress,
+                   "Progress: auto, none, plain, json (one object per line, on stderr) or openjd "
+                   "(Open Job Description, on stdout)")
+        ->capture_default_str();
+}
+
+void add_fault_options(CLI::App& app, RunArguments& options) {
+    app.add_option("--missing", options.missing,
+                   "If a frame's file is missing: error, skip it, or hold the previous one")
+        ->check(CLI::IsMember({"error", "skip", "hold"}))
+        ->capture_default_str();
+    app.add_option("--on-nan", options.on_nan,
+                   "If a capture or an output has NaN or infinite pixels: warn, fail the frame, or mend: "
+                   "replace them from the pixels around")
+        ->check(CLI::IsMember({"warn", "fail", "mend"}))
+        ->capture_default_str();
 }
 
 void add_output_options(CLI::App& app, RunArguments& options) {
+    app.add_option("--tap", options.pipeline.taps,
+                   "STEP.TEXTURE: write this intermediate as EXR next to the first output; "
+                   "STEP.TEXTURE=FILE: write it there (.exr, or .png in false colour); repeatable")
+        ->allow_extra_args(false);
+    app.add_option("--scale", options.scale, "Render at 1/n of the size; values in px scale accordingly")
+        ->capture_default_str();
+    app.add_option("--region", options.region,
+                   "X,Y,W,H: render only these px of the display window, at full scale");
+    app.add_option("--region-margin", options.region_margin_px,
+                   "Render this many px around the region, for effects that read neighbours; they are not "
+                   "written")
+        ->check(CLI::Range(0, 16384))
+        ->capture_default_str();
     app.add_option("--output-roles", options.roles, "Roles in EXR outputs (default: color)")->delimiter(',');
-    app.add_option("--pixel-type", options.pixel_type, "half or float, for roles that are half by default")
+    app.add_option("--pixel-type", options.pixel_type, "Type of roles that are half by default")
         ->check(CLI::IsMember({"half", "float"}));
     app.add_flag(
         "--keep-channels", options.keep_channels,
-        "EXR: every channel of the source too, bit for bit but for those of roles that a step changed");
-    app.add_option("--crop", options.crop, "EXR: data (the windows as they are) or display (its pixels only)")
+        "EXR: also copy the source's channels bit for bit, except those of roles that a step changed");
+    app.add_option("--crop", options.crop, "EXR: keep the data window, or crop to the display window")
         ->check(CLI::IsMember({"data", "display"}))
         ->capture_default_str();
     app.add_option("--compression", options.compression,
@@ -99,47 +113,47 @@ void add_output_options(CLI::App& app, RunArguments& options) {
         ->capture_default_str();
 }
 
+void add_history_options(CLI::App& app, RunArguments& options) {
+    app.add_option("--history-in", options.history_in,
+                   "Continue from the history that a run over the preceding frames wrote");
+    app.add_option("--history-out", options.history_out,
+                   "Write the history after the last frame, for the next chunk of the sequence");
+}
+
+void add_diagnosis_options(CLI::App& app, RunArguments& options) {
+    app.add_flag("--explain", options.explain,
+                 "Print every parameter's value and its source, and run nothing");
+    app.add_flag("--audit", options.audit,
+                 "Name the pass that first writes NaN or infinite values, with place and count; slow");
+    app.add_option("--telemetry", options.telemetry,
+                   "Write each frame's statistics, memory by format and time by pass to this .json");
+    app.add_option("--telemetry-plot", options.telemetry_plot,
+                   "Plot the effects' statistics over the frames to this .svg");
+    app.add_option("--graph", options.graph, "Draw the frame graph of the last frame: .dot or .svg");
+    app.add_option("--trace", options.trace,
+                   "Write a timeline to this .json, for chrome://tracing or ui.perfetto.dev");
+}
+
 }  // namespace
 
 void add_run_options(CLI::App& app, RunArguments& options) {
+    const auto begin_group = [&](const char* heading) { app.option_defaults()->group(heading); };
     add_look_options(app, options);
+    begin_group("Capture");
+    add_capture_options(app, options.capture, "Frames to run, such as 1-100x2,120");
+    add_fault_options(app, options);
+    begin_group("Output");
     add_output_options(app, options);
-    app.add_option("--missing", options.missing,
-                   "A frame whose file is not there: error, skip, or hold the last one")
-        ->check(CLI::IsMember({"error", "skip", "hold"}))
-        ->capture_default_str();
-    app.add_option(
-           "--on-nan", options.on_nan,
-           "NaN or infinite pixels of a capture or an output: warn, fail the frame, or mend them from "
-           "the pixels around")
-        ->check(CLI::IsMember({"warn", "fail", "mend"}))
-        ->capture_default_str();
-    app.add_flag("--explain", options.explain,
-                 "Print every parameter's value and where it is from, and run nothing");
-    app.add_flag("--audit", options.audit,
-                 "Tell which pass first writes NaN or infinite values, where and how many; slow");
-    app.add_option(
-        "--telemetry", options.telemetry,
-        "Write each frame's numbers: the effects' statistics, memory by format, time by pass (.json)");
-    app.add_option("--telemetry-plot", options.telemetry_plot,
-                   "Plot the effects' statistics over the frames (.svg)");
-    app.add_option("--look-folder", options.look_folder,
-                   "Folder that files named in the look lie in (default: the look's own)");
-    add_effect_path_option(app, options.effect_paths);
-    app.add_option("--progress", options.progress,
-                   "auto, none, plain, json (an object a line, on stderr) or openjd (Open Job Description, "
-                   "on stdout)")
-        ->capture_default_str();
-    app.add_option("--trace", options.trace,
-                   "Write what was done when (.json), for chrome://tracing or ui.perfetto.dev");
-    app.add_flag("--watch", options.watch,
-                 "Stay, and render again whenever the look, a manifest or a shader changes");
-    add_plugin_options(app, options.plugins);
-    add_job_options(app, options.jobs);
-    add_frame_options(app, options);
-    add_resume_options(app, options.resume);
     add_stream_options(app, options.stream);
+    add_resume_options(app, options.resume);
+    begin_group("Workers and chunks of a sequence");
+    add_job_options(app, options.jobs);
+    add_history_options(app, options);
+    begin_group("Diagnosis");
+    add_diagnosis_options(app, options);
+    begin_group("Machine, and code that is not shipped");
     add_backend_option(app, options.backend);
+    add_plugin_options(app, options.plugins);
 }
 
 bool RunArguments::streams() const {

@@ -107,6 +107,9 @@ void RunReporter::tell_conventions(const Capture& capture) {
     profile_ = profile;
     for (const std::string& note : header.notes)
         if (notes_.insert(note).second) say("note", path + ": note: " + printable(note));
+    // Figures differ from frame to frame; the first stands for all.
+    if (capture.deep && notes_.insert("deep").second)
+        say("note", path + ": note: " + capture.deep->text(capture.deep_layers));
     if (capture.pixels_without_motion > 0)
         say("note",
             fmt::format("frame {}: {} pixels have no motion data; {}", header.frame,

@@ -1,5 +1,5 @@
-// What `run` tells a person or a program while it works and at the end. All on stderr; stdout holds the paths
-// of the files written, one a line.
+// What `run` prints for a person or a program while it works and at the end. All on stderr; stdout holds the
+// paths of the files written, one a line.
 #pragma once
 
 #include <chrono>
@@ -67,7 +67,7 @@ private:
     ProgressLine line_;
     Clock::time_point begin_{};
     std::string profile_;
-    std::set<std::string> notes_;  ///< that have been told
+    std::set<std::string> notes_;  ///< already printed
 };
 
 }  // namespace aftershade::cli

@@ -13,11 +13,11 @@ namespace aftershade::cli {
 
 void add_stream_options(CLI::App& app, StreamArguments& arguments) {
     app.add_option("--format", arguments.format,
-                   "Of the frames that -o - writes to standard output: rgb24, rgba, rgb48le or rgba64le "
-                   "(ffmpeg's rawvideo), or png (its image2pipe)")
+                   "Format of the frames of -o -: rgb24, rgba, rgb48le or rgba64le (ffmpeg's rawvideo), or "
+                   "png (its image2pipe)")
         ->check(CLI::IsMember(stream_format_names()));
     app.add_flag("--print-ffmpeg", arguments.print_ffmpeg,
-                 "Print the beginning of the ffmpeg command that reads the frames of -o -, and run nothing");
+                 "Print the start of the ffmpeg command that reads the frames of -o -, and run nothing");
 }
 
 void check_stream_options(const RunArguments& arguments, Diagnostics& diagnostics) {

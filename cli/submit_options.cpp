@@ -15,39 +15,38 @@ namespace fs = std::filesystem;
 constexpr int kMostTasks = 1'000'000;  // as many frames as a sequence may have
 
 void add_division_options(CLI::App& app, SubmitArguments& options) {
-    auto* tasks = app.add_option("--tasks", options.tasks, "How many tasks the frames are divided among")
+    auto* tasks = app.add_option("--tasks", options.tasks, "Number of tasks to divide the frames among")
                       ->check(CLI::Range(1, kMostTasks));
     app.add_option("--frames-per-task", options.frames_per_task,
-                   "Frames of one task (default: 10, or 4 times the warm-up where that is more)")
+                   "Frames per task (default: 10, or 4 times the warm-up if that is more)")
         ->check(CLI::Range(1, kMostTasks))
         ->excludes(tasks);
     app.add_option(
            "--history", options.history,
-           "What a task knows of frames before its own: exact (tasks run in turn and hand history on), "
-           "warmup (it renders a few of them first), none; auto is warmup where the look has history")
+           "What a task gets from the frames before its own: exact (tasks run in turn and pass history on), "
+           "warmup (it renders a few of them first) or none; auto is warmup if the look has history")
         ->check(CLI::IsMember({"auto", "exact", "warmup", "none"}))
         ->capture_default_str();
 }
 
 void add_resource_options(CLI::App& app, SubmitArguments& options) {
-    app.add_option("--cpus", options.cpus, "Processor cores of a task")
+    app.add_option("--cpus", options.cpus, "CPU cores per task")
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();
-    app.add_option("--memory", options.memory_bytes, "Memory of a task, such as 4GB (default: the farm's)")
+    app.add_option("--memory", options.memory_bytes, "Memory per task, such as 4GB (default: the farm's)")
         ->transform(CLI::AsSizeValue(false));
-    app.add_option("--time", options.minutes,
-                   "Minutes after which the farm ends a task (default: the farm's)")
+    app.add_option("--time", options.minutes, "Time limit per task, in minutes (default: the farm's)")
         ->check(CLI::Range(1, 1'000'000));
-    app.add_option("--retries", options.retries, "How often a task that failed is tried again")
+    app.add_option("--retries", options.retries, "How often to retry a failed task")
         ->check(CLI::Range(0, 100))
         ->capture_default_str();
     app.add_option("--program", options.program,
-                   "The aftershade that tasks start (default: this one; of an image: aftershade)");
-    app.add_option("--image", options.image, "kubernetes: image of the container");
+                   "The aftershade program that tasks run (default: this one; in a container: aftershade)");
+    app.add_option("--image", options.image, "kubernetes: the container image");
     app.add_option("--volume-claim", options.volume_claim,
-                   "kubernetes: PersistentVolumeClaim of the volume with the files");
+                   "kubernetes: the PersistentVolumeClaim of the volume with the files");
     app.add_option("--mount", options.mount,
-                   "kubernetes: folder at which the volume appears, here and there (default: this folder)");
+                   "kubernetes: the volume's mount folder, here and in the container (default: this folder)");
 }
 
 }  // namespace
@@ -56,18 +55,17 @@ void add_submit_options(CLI::App& app, SubmitArguments& options) {
     app.add_option("--to", options.farm, "slurm, openjd, kubernetes, opencue or parallel")
         ->required()
         ->check(CLI::IsMember(farm_names()));
-    app.add_option("look", options.look, "The look")->required();
+    app.add_option("look", options.look, "The look: a JSON file of effects in order")->required();
     app.add_option("capture", options.capture, "capture.json, a pattern such as frame_####.exr, or a folder")
         ->required();
     app.add_option("-o,--output", options.outputs, "Output pattern (.exr, .png); repeatable")
         ->required()
         ->allow_extra_args(false);
-    app.add_option(
-        "options", options.run_options,
-        "Behind --: options of `aftershade run`, such as -- --frames 1-480 --set STEP.PARAM=VALUE");
-    app.add_option("--folder", options.folder, "Folder for the job's files; must be new or empty")
+    app.add_option("options", options.run_options,
+                   "After --: options of `aftershade run`, such as -- --frames 1-480 --set STEP.PARAM=VALUE");
+    app.add_option("--folder", options.folder, "Folder for the job's files, new or empty")
         ->capture_default_str();
-    app.add_option("--name", options.name, "The job's name (default: aftershade-, and the look's)");
+    app.add_option("--name", options.name, "The job's name (default: aftershade- and the look's name)");
     add_division_options(app, options);
     add_resource_options(app, options);
 }

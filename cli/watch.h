@@ -12,7 +12,7 @@
 
 namespace aftershade::cli {
 
-/// Looks at times and sizes: editors replace files in more ways than notifications tell of alike, and a few
+/// Looks at times and sizes: editors replace files in more ways than notifications report alike, and a few
 /// dozen files cost microseconds.
 class FileWatch {
 public:

@@ -37,8 +37,11 @@ if(AFTERSHADE_PYTHON)
   list(APPEND CPACK_COMPONENTS_ALL python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-aftershade)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  # An extension fits one minor version of Python.
+  get_directory_property(python_minor DIRECTORY ${PROJECT_SOURCE_DIR}/python DEFINITION Python_VERSION_MINOR)
+  math(EXPR next_minor "${python_minor} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
-      "aftershade (= ${PROJECT_VERSION}), python3-numpy, python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR})")
+      "aftershade (= ${PROJECT_VERSION}), python3-numpy, python3 (>= 3.${python_minor}), python3 (<< 3.${next_minor})")
   set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Shader effects over G-buffer captures: the Python module
  Looks, captures and comparisons with NumPy arrays.")
 endif()

@@ -34,7 +34,8 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
     {"effect", {"core", "scattering", "image", "file", "gpu", "graph", "plugin"}},
     {"pipeline", {"core", "image", "file", "capture", "gpu", "graph", "effect", "plugin"}},
     {"batch", {"core", "image", "file", "capture", "compare", "gpu", "graph", "effect", "pipeline"}},
-    {"host", {"core", "image", "file", "capture", "compare", "gpu", "graph", "effect", "pipeline"}},
+    {"host",
+     {"core", "image", "file", "capture", "inspect", "compare", "gpu", "graph", "effect", "pipeline"}},
     {"scene", {"core", "scattering", "image", "file", "capture"}},
 };
 

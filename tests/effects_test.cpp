@@ -107,7 +107,7 @@ TEST_P(EveryEffect, DeclaresWhatItsShadersUseAndUsesWhatItDeclares) {
 }
 
 /// What came before a cut, a gap or another size must leave no trace.
-TEST_P(EveryEffect, BeginsAnewAtACutAGapAndAnotherSize) {
+TEST_P(EveryEffect, RestartsAtACutAGapAndAnotherSize) {
     const auto frame_of = [&](int number, int width) {
         return with_aovs(make_capture({.width = width,
                                        .height = 20,

@@ -134,6 +134,20 @@ inline bool same_bits(const Image& a, const Image& b) {
            std::memcmp(a.floats().data(), b.floats().data(), a.floats().size_bytes()) == 0;
 }
 
+/// With what no capture has by itself but the effect cannot do without: small numbers.
+inline Capture with_aovs(const EffectManifest& manifest, Capture capture) {
+    // Any of them: the test may have taken any role away.
+    const Image& other = capture.images.begin()->second;
+    for (const InputSpec& input : manifest.inputs) {
+        if (!input.role.starts_with("aov:") || input.optional) continue;
+        Image image(other.width(), other.height(), 4);
+        for (std::size_t i = 0; i < image.floats().size(); ++i) image.floats()[i] = 0.001f * float(i % 5);
+        capture.images[input.role] = std::move(image);
+        capture.header.roles.push_back(input.role);
+    }
+    return capture;
+}
+
 class EveryEffect : public testing::TestWithParam<std::string> {
 protected:
     void SetUp() override {
@@ -152,19 +166,7 @@ protected:
         return LookRunner(look_of(GetParam(), values), backend).run(frame);
     }
 
-    /// With what no capture has by itself but the effect cannot do without: small numbers.
-    Capture with_aovs(Capture capture) const {
-        // Any of them: the test may have taken any role away.
-        const Image& other = capture.images.begin()->second;
-        for (const InputSpec& input : manifest().inputs) {
-            if (!input.role.starts_with("aov:") || input.optional) continue;
-            Image image(other.width(), other.height(), 4);
-            for (std::size_t i = 0; i < image.floats().size(); ++i) image.floats()[i] = 0.001f * float(i % 5);
-            capture.images[input.role] = std::move(image);
-            capture.header.roles.push_back(input.role);
-        }
-        return capture;
-    }
+    Capture with_aovs(Capture capture) const { return test::with_aovs(manifest(), std::move(capture)); }
 
 private:
     const EffectManifest* manifest_ = nullptr;

@@ -2,33 +2,25 @@
 #pragma once
 
 #include <memory>
-#include <sstream>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "framework/effect/registry.h"
+#include "aftershade/host.h"
 #include "framework/gpu/context.h"
-#include "framework/pipeline/look.h"
-#include "framework/pipeline/renderer.h"
+#include "framework/host/rendering.h"
 
 namespace aftershade::test {
 
-/// A fault in the look ends the test by an exception that lists all faults.
+/// A session of the public API, but with captures and results of the modules below: tests look at more of
+/// them than the API gives. A fault in the look ends the test by an exception that lists all faults.
 class LookRunner {
 public:
     LookRunner(const std::string& look, gpu::Backend backend, std::vector<std::string> taps = {})
-        : effects_({data_ / "effects"}) {
-        Diagnostics diagnostics;
-        const auto node = parse_document(look, "test look", diagnostics);
-        if (node)
-            if (const auto parsed = parse_look(*node, diagnostics))
-                pipeline_ = bind_pipeline(*parsed, effects_, {{}, std::move(taps)}, diagnostics);
-        std::ostringstream faults;
-        diagnostics.print(faults);
-        if (diagnostics.has_errors()) throw std::runtime_error(faults.str());
-        context_ = std::make_unique<gpu::Context>(backend);
-        renderer_ = std::make_unique<PipelineRenderer>(*context_, pipeline_, data_);
-    }
+        : host_({.data = AFTERSHADE_SOURCE_DIR, .backend = host::Backend(int(backend))}),
+          look_(host_.parse_look(look, {.taps = std::move(taps), .name = "test look"})),
+          session_(look_.session()) {}
 
     FrameResult run(const Capture& capture) {
         FrameInputs frame;
@@ -36,16 +28,26 @@ public:
         return run(frame);
     }
     FrameResult run(const FrameInputs& frame) {
-        return renderer_->render(frame, {"color", "display", "irradiance", "velocity"}, false);
+        const auto public_capture = [&](const Capture* capture) -> std::optional<host::Capture> {
+            if (!capture) return std::nullopt;
+            return host::Access::capture({*capture, {}, frame.scale});
+        };
+        const auto previous = public_capture(frame.previous), next = public_capture(frame.next);
+        const host::Result result =
+            session_.render_subframe(*public_capture(frame.capture), frame.subframe, frame.subframe_count,
+                                     {.non_finite = host::NonFinite::ignore,
+                                      .previous = previous ? &*previous : nullptr,
+                                      .next = next ? &*next : nullptr,
+                                      .begins_shot = frame.begins_shot,
+                                      .fps = frame.fps});
+        return host::Access::frame(result);
     }
     Image color(const Capture& capture) { return run(capture).images.at("color"); }
 
 private:
-    const std::filesystem::path data_ = AFTERSHADE_SOURCE_DIR;
-    EffectRegistry effects_;
-    Pipeline pipeline_;
-    std::unique_ptr<gpu::Context> context_;
-    std::unique_ptr<PipelineRenderer> renderer_;
+    host::Host host_;
+    host::Look look_;
+    host::Session session_;
 };
 
 /// A look of one step; `params`: the members of its "params".

@@ -1,4 +1,4 @@
-// Chromatic adaptation from the light that shall look neutral to the light that does at the defaults.
+// Chromatic adaptation from the light that looks neutral to the light that does at the defaults.
 
 const float kNeutralKelvin = 6500.0;
 

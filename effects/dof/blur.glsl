@@ -1,29 +1,38 @@
 // Gathers at one point what the lens spreads over it, from one level of `light`. Lengths in px of that level; CoC differences
-// in px at full size.
-#include <lens/packing.glsl>
-#include "outline.glsl"
-#include "reach.glsl"
-
-// Surfaces whose CoC radii differ by less are one, by more are two; between, both.
-float in_front(float tap_coc, float coc) { return clamp(coc - tap_coc, 0.0, 1.0); }
-
-Light tap_light(ivec2 texel, int level) {
-    // Not textureSize, which llvmpipe answers for the level of the first of its lanes.
-    ivec2 last = max(frame.size >> level, ivec2(1)) - 1;
-    return unpack_light(texelFetch(light, clamp(texel, ivec2(0), last), level));
-}
+// in px at full size. SILHOUETTES: in tiles where a surface lies clearly in front of another; elsewhere nothing is hidden, and software
+// GL, which runs both sides of a branch, is spared what follows from it.
+#include "taps.glsl"
+#include "plate.glsl"
+#include "levels.glsl"
 
 int half_width(float reach, float dy) { return int(ceil(sqrt(max(reach * reach - dy * dy, 0.0)))); }
 
 struct Layer {
     vec4 color;     // premultiplied by opacity
     float opacity;
+    vec2 hides;     // opacity of what lies in front of the visible surface, and of that with the surface itself
 };
 
+const Layer kNothing = Layer(vec4(0.0), 0.0, vec2(0.0));
+
+// Which taps count in front of a point: blurs too narrow for half size, the wider ones, or all.
+const int kNarrow = 0, kWide = 1, kAll = 2;
+
+float part_of(int which, float coc) {
+    float wide = clamp(abs(coc) - kFullSizePx + 1.0, 0.0, 1.0);
+    return which == kAll ? 1.0 : which == kWide ? wide : 1.0 - wide;
+}
+
 // What lies in front of CoC radius `coc` spreads over the point as far as its own CoC reaches, thinned by that area.
-Layer gather_front(vec2 center, float coc, float reach_px, int level) {
+// visible_coc: of the surface that the point shows. Where it hides the surface of `coc`, it covers at least as much of the point as
+// of its own aperture, so that no slope of its CoC opens a gap.
+Layer gather_front(vec2 center, float coc, float visible_coc, float reach_px, int level, int which) {
     float texels_per_px = 1.0 / float(1 << level), reach = reach_px * texels_per_px + 0.5;
-    Layer front = Layer(vec4(0.0), 0.0);
+#ifdef SILHOUETTES
+    bool hides = visible_coc < coc - kClear;
+    float own_radius = abs(visible_coc) * texels_per_px, aperture_sum = 0.0, own_sum = 0.0;
+#endif
+    Layer front = kNothing;
     ivec2 low = ivec2(floor(center - reach)), high = ivec2(floor(center + reach));
     for (int y = low.y; y <= high.y; ++y) {
         float dy = float(y) + 0.5 - center.y;
@@ -31,16 +40,42 @@ Layer gather_front(vec2 center, float coc, float reach_px, int level) {
         int end = int(floor(center.x)) + width;
         for (int x = int(floor(center.x)) - width; x <= end; ++x) {
             Light tap = tap_light(ivec2(x, y), level);
-            float radius = abs(tap.coc) * texels_per_px;
-            float gauge_to = gauge(center - vec2(x, y) - 0.5, tap.coc);
-            float weight = in_front(tap.coc, coc) * cover(radius, gauge_to) / spread_area(radius);
+            vec2 offset = center - vec2(x, y) - 0.5;
+            float radius = abs(tap.coc) * texels_per_px, part = part_of(which, tap.coc);
+            float spread = part * cover(radius, gauge(offset, tap.coc)) / spread_area(radius);
+            float weight = in_front(tap.coc, coc) * spread;
             front.color += weight * tap.color;
             front.opacity += weight;
+#ifdef SILHOUETTES
+            if (hides) {
+                front.hides += spread * vec2(in_front(tap.coc, visible_coc), in_front(tap.coc, min(visible_coc + 2.0 * kClear, coc)));
+                float seen = cover(own_radius, gauge(offset, visible_coc));
+                aperture_sum += seen;
+                own_sum += seen * part * in_front(tap.coc, coc);
+            }
+#endif
         }
     }
-    front.color /= max(front.opacity, 1.0);
-    front.opacity = min(front.opacity, 1.0);
+    float opacity = min(front.opacity, 1.0);
+#ifdef SILHOUETTES
+    float least = aperture_sum > 0.0 ? own_sum / aperture_sum : 0.0;
+    if (front.opacity > 0.0) opacity = max(opacity, min(least, 1.0));
+#endif
+    front.color *= front.opacity > 0.0 ? opacity / front.opacity : 0.0;
+    front.opacity = opacity;
+#ifdef SILHOUETTES
+    front.hides = hides ? min(front.hides, vec2(opacity)) : vec2(opacity);
+#else
+    front.hides = vec2(opacity);
+#endif
     return front;
+}
+
+// Both lie in front of one point, of other light.
+Layer both(Layer a, Layer b) {
+    Layer sum = Layer(a.color + b.color, a.opacity + b.opacity, a.hides + b.hides);
+    float scale = 1.0 / max(sum.opacity, 1.0);
+    return Layer(scale * sum.color, scale * sum.opacity, min(sum.hides, vec2(1.0)));
 }
 
 struct Back {
@@ -48,8 +83,8 @@ struct Back {
     float share;  // of the own surface
 };
 
-// The point's own surface and what is behind it, each seen through the point's own aperture. A coarse level may show neither:
-// then the point's own light is all there is.
+// The point's own surface and what is behind it, each seen through the point's own aperture, with the plate in place of what hides
+// them. A coarse level may show neither: then the point's own light is all there is.
 Back gather_back(vec2 center, Light point, int level) {
     const float kLeastWeight = 1e-3;
     float coc = point.coc;
@@ -63,6 +98,9 @@ Back gather_back(vec2 center, Light point, int level) {
         int end = int(floor(center.x)) + width;
         for (int x = int(floor(center.x)) - width; x <= end; ++x) {
             Light tap = tap_light(ivec2(x, y), level);
+#ifdef SILHOUETTES
+            if (tap.coc < coc - kClear) tap = plate_tap(ivec2(x, y), level, tap);
+#endif
             float seen = cover(radius, gauge(center - vec2(x, y) - 0.5, coc));
             float further = seen * in_front(coc, tap.coc);
             float same = seen * (1.0 - in_front(tap.coc, coc)) - further;

@@ -1,7 +1,3 @@
-#include "reach.glsl"
+#include "blurred.glsl"
 
-bool blurred_tiles(ivec2 tile) {
-    vec2 own = texelFetch(tile_coc, tile, 0).rg;
-    float reach_px = front_reach_px(texelFetch(around, tile, 0), own.y);
-    return max(max(-own.x, own.y), reach_px) >= kLeastBlurPx;
-}
+bool blurred_tiles(ivec2 tile) { return is_blurred(tile); }

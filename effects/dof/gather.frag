@@ -1,20 +1,19 @@
 #version 450 core
 #include <pass>
 #include "blur.glsl"
-#include "levels.glsl"
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
-    Light own = tap_light(p, 1);
+    Light own = unpack_light(texelFetch(plate_half, p, 0));
     vec2 center = 2.0 * vec2(p) + 1.0;
     vec4 around_coc = texelFetch(around, min(2 * p, frame.size - 1) / kTile, 0);
-    float reach_px = front_reach_px(around_coc, own.coc);
+    float visible_coc = tap_light(p, 1).coc, reach_px = front_reach_px(around_coc, own.coc, visible_coc);
     bool is_blurred = abs(own.coc) > kFullSizePx - 1.0;
     if (reach_px > kFullSizePx || is_blurred) prepare_outline_at(center);
-    Layer over = Layer(vec4(0.0), 0.0);
+    Layer over = kNothing;
     if (reach_px > kFullSizePx) {
         int level = level_for(reach_px, around_coc);
-        over = gather_front(center / float(1 << level), own.coc, reach_px, level);
+        over = gather_front(center / float(1 << level), own.coc, visible_coc, reach_px, level, kWide);
     }
     Back surface = Back(own.color, 1.0);
     if (is_blurred) {
@@ -25,4 +24,5 @@ void main() {
     float opacity = unpackHalf2x16(packHalf2x16(vec2(over.opacity))).x;
     out_front = pack_light(Light(over.color * (over.opacity > 0.0 ? opacity / over.opacity : 0.0), opacity));
     out_back = pack_light(Light(surface.color, surface.share));
+    out_hides = over.hides;
 }

@@ -20,10 +20,17 @@ float highlight_share(float amount, vec2 around_amount, float radius_px, vec2 pi
 }
 #endif
 
+#ifdef SILHOUETTES
+#include "unmix.glsl"
+#endif
+
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     vec4 texel = texelFetch(color, p, 0);
     float coc_px = texelFetch(coc, p, 0).r;
+#ifdef SILHOUETTES
+    texel.rgb = unmixed(p, texel.rgb, coc_px);
+#endif
 #ifdef HAS_SURROUND
     vec2 around_amount = texelFetch(surround, p / 8, 0).rg;
     float share = highlight_share(dot(texel.rgb, vec3(1.0)), around_amount, abs(coc_px), vec2(p) + 0.5);

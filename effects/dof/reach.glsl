@@ -9,3 +9,9 @@ float front_reach_px(vec4 around_coc, float coc) {
     float far_px = coc > around_coc.z - kClear ? around_coc.y : coc;
     return max(-around_coc.x, max(far_px, 0.0));
 }
+
+// The same at a point that shows a surface of `visible_coc`, which may hide that of `coc`.
+float front_reach_px(vec4 around_coc, float coc, float visible_coc) {
+    float reach_px = front_reach_px(around_coc, coc);
+    return visible_coc < coc - kClear ? max(reach_px, max(abs(visible_coc), front_reach_px(around_coc, visible_coc))) : reach_px;
+}

@@ -1,30 +1,11 @@
 #version 450 core
 #include <pass>
 #include <lens/packing.glsl>
+#include "majority.glsl"
 
-// The mean of those of 2 x 2 texels that show the surface that most of them show: a mean over the edge of two surfaces would
-// belong to neither. Where there are as many of both, texels take turns.
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy), last = ivec2(light_size.xy) - 1;
     Light texels[4];
     for (int i = 0; i < 4; ++i) texels[i] = unpack_light(texelFetch(light, min(2 * p + ivec2(i & 1, i >> 1), last), 0));
-    int most = 0, first = (p.x ^ p.y) & 1;
-    Light best = texels[0];
-    for (int k = 0; k < 4; ++k) {
-        int i = first == 0 ? k : 3 - k;
-        vec4 sum = vec4(0.0);
-        float coc_sum = 0.0;
-        int friends = 0;
-        for (int j = 0; j < 4; ++j)
-            if (abs(texels[j].coc - texels[i].coc) <= 1.0) {
-                sum += texels[j].color;
-                coc_sum += texels[j].coc;
-                ++friends;
-            }
-        if (friends > most) {
-            most = friends;
-            best = Light(sum / float(friends), coc_sum / float(friends));
-        }
-    }
-    out_light = pack_light(best);
+    out_light = pack_light(majority(texels, p));
 }

@@ -1,5 +1,12 @@
 // What dof_layered must do, against closed forms and against a renderer's own lens.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "framework/image/role.h"
 #include "tests/aperture_family.h"
+#include "tests/lens.h"
 
 namespace aftershade::test::dof_layered {
 namespace {
@@ -11,6 +18,39 @@ INSTANTIATE_TYPED_TEST_SUITE_P(DofLayered, ApertureOfBlades, Named);
 
 TEST(DofLayered, SeesThroughTheEdgeOfANearObjectWhatItFillsInBehindIt) {
     expect_near_ramp(near_box_over_focus(Named::kEffect), 48, 0.03f);
+}
+
+/// A strip of 8 px at half the focus distance hides a green part of a grey wall in focus. In its middle the
+/// lens sees past it the very point of the wall behind it: the part of the aperture's disk that the strip
+/// leaves open.
+TEST(DofLayered, TakesWhatLiesBehindFromTheSecondLayerOfTheCapture) {
+    constexpr int kSide = 128, kLeft = 60, kWidth = 8;
+    const Lens lens;
+    const SyntheticBox box{.x = kLeft, .y = 0, .width = kWidth, .height = kSide, .color = {0.8f, 0, 0}};
+    Capture capture = make_capture({.width = kSide,
+                                    .height = kSide,
+                                    .background = {0.25f, 0.25f, 0.25f},
+                                    .background_depth_m = 2,
+                                    .box = box},
+                                   0);
+    const auto middle = [&] {
+        const Image out =
+            run_step(Named::kEffect, capture, lens.params() + ", \"blades\": 0").images.at("color");
+        return out.at(kSide / 2, kSide / 2, 1);
+    };
+    EXPECT_LT(middle(), 0.25f);  // the guess knows no green
+    Image color(kSide, kSide, 4), depth(kSide, kSide, 1);
+    std::ranges::fill(depth.floats(), std::numeric_limits<float>::infinity());
+    for (int y = 0; y < kSide; ++y)
+        for (int x = kLeft; x < kLeft + kWidth; ++x) {
+            color.at(x, y, 1) = color.at(x, y, 3) = 1;
+            depth.at(x, y, 0) = 2;
+        }
+    capture.images[layer_role(1, "color")] = std::move(color);
+    capture.images[layer_role(1, "depth")] = std::move(depth);
+    const double h = kWidth / 2.0 / lens.radius_px;
+    const double strip = 2 / std::numbers::pi * (std::asin(h) + h * std::sqrt(1 - h * h));
+    EXPECT_NEAR(middle(), 1 - strip, 0.03);
 }
 
 /// A slanted plane lies in many layers; where its own light is even, no layer may show through another.

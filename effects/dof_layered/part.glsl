@@ -6,7 +6,21 @@ struct Part {
     vec2 share;
 };
 
-// What one pixel is in the layer of this pass: what is seen there, or the push-pull behind it.
+#if defined(HAS_SECOND) && defined(HAS_SECOND_DEPTH)
+#define KNOWS_BEHIND 1
+#include <lens/coc.glsl>
+
+// The layer of what lies behind a pixel; what the picture shows nowhere is at the nearest or the farthest.
+float layer_behind(ivec2 p, Layers layers) {
+    float px_per_mm = float(frame.display_size.x) / param.sensor_width;
+    float at_infinity_px = coc_radius_at_infinity_px(param.focus_distance, param.focal_length, param.f_number, px_per_mm,
+                                                     LENS_MODEL == LENS_MODEL_THIN);
+    float coc_px = coc_radius_px(texelFetch(second_depth, p, 0).r, param.focus_distance, at_infinity_px);
+    return layer_of(layers, clamp(coc_px, -layers.near_px - kSharp, layers.far_px + kSharp));
+}
+#endif
+
+// What one pixel is in the layer of this pass: what is seen there, or what the capture has behind it, or the push-pull.
 Part part_at(ivec2 p, Layers layers) {
     float behind = float(pass.index) - layer_of(layers, texelFetch(coc, p, 0).r);
     float seen = seen_in(behind), hidden = hidden_in(behind);
@@ -14,6 +28,15 @@ Part part_at(ivec2 p, Layers layers) {
     if (seen > 0.0) part.light = seen * texelFetch(color, p, 0);
     if (hidden > 0.0) {
         vec3 at = vec3((vec2(p) + 0.5) * color_size.zw, float(pass.index));
+#ifdef KNOWS_BEHIND
+        vec4 known = texelFetch(second, p, 0);
+        if (known.a > 0.0) {
+            float deeper = float(pass.index) - layer_behind(p, layers);
+            part.light += hidden * seen_in(deeper) * known;
+            part.share += hidden * vec2(seen_in(deeper) * known.a, seen_from(deeper));
+            hidden *= hidden_in(deeper);
+        }
+#endif
         part.light += hidden * textureLod(hidden_light, at, 0.0);
         part.share += hidden * textureLod(hidden_share, at, 0.0).rg;
     }

@@ -110,7 +110,7 @@ TEST(SssPreintegrated, IsNearTheRenderersScatteringOnABall) {
         for (int c = 0; c < 3; ++c) {
             const double off = worst(capture, light, truth.irradiance, c);
             RecordProperty(fmt::format("{}_{}", integral, c), fmt::format("{:.4f}", off));
-            // The ring is no part of a ball's surface, and Burley's profile is none for a line.
+            // The ring is not part of a ball's surface, and Burley's profile is none for a line.
             if (std::strcmp(integral, "sphere") == 0) {
                 EXPECT_LT(off, 0.002) << c;
                 EXPECT_GT(worst(capture, capture.images.at("irradiance"), truth.irradiance, c), 0.02);

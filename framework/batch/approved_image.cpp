@@ -73,7 +73,8 @@ std::optional<GoldenSidecar> read_sidecar(const fs::path& image, std::optional<S
     if (!unreadable.empty() || !json.is_object()) {
         fault = {Verdict::file_error,
                  file.string() + ": " +
-                     (unreadable.empty() ? "is no sidecar, not even a JSON object" : unreadable) + kRemedy};
+                     (unreadable.empty() ? "is not a sidecar, not even a JSON object" : unreadable) +
+                     kRemedy};
         return std::nullopt;
     }
     const auto text = [&](const char* key) {

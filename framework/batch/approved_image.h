@@ -1,5 +1,5 @@
 // Approved images on disk: <case>.<output>.<frame>.exr, <case>.<output>.<frame>@<key>.exr for further
-// renderers, and beside each a sidecar .json that tells what made it.
+// renderers, and beside each a sidecar .json that records what made it.
 #pragma once
 
 #include <filesystem>
@@ -40,7 +40,7 @@ struct GoldenSidecar {
     std::string command;        ///< that approved it
     std::string look_hash;      ///< of the look and its effects (look_hash.h)
     std::string image_hash;     ///< of the image file's bytes: a sidecar of another image says nothing
-    std::string approver = {};  ///< who approved it; "" where nobody is named
+    std::string approver = {};  ///< who approved it; "" where no one is named
     std::string approved = {};  ///< the day, UTC: "2025-03-14"; "" where it is not known
 };
 

@@ -76,7 +76,7 @@ std::string row_script(const FarmJob& job) {
         "    [ -e {0}/history/\"$name\" ] && [ -e {0}/reports/\"$name\".json ] && continue\n"
         "    code=0\n"
         "    sh {0}/task.sh \"$task\" || code=$?\n"
-        "    # After 1, some frames failed, there is a history to go on from.\n"
+        "    # After 1, some frames failed, the history of the others is there.\n"
         "    [ \"$code\" -le 1 ] || exit \"$code\"\n"
         "    [ \"$code\" -eq 0 ] || worst=1\n"
         "done\n"

@@ -13,9 +13,9 @@ namespace aftershade {
 struct GoldenApproveOptions {
     GoldenRunOptions run;
     bool add = false;             ///< beside those of other renderers, instead of in place of the first
-    bool renew_sidecars = false;  ///< where the bits are equal, say anew what gives them
+    bool renew_sidecars = false;  ///< where the bits are equal, record again what gives them
     std::string command;          ///< for the sidecars
-    std::string approver;         ///< for those of images with new bits; "": nobody is named
+    std::string approver;         ///< for those of images with new bits; "": no one is named
     std::string approved;         ///< the day, UTC
 };
 

@@ -1,4 +1,4 @@
-// Cases of golden suites: a look over a capture, and the images that it shall give.
+// Cases of golden suites: a look over a capture, and the images that it must give.
 //
 // They stand in a golden.json (golden_suite.h) or, for an effect, in effects/<id>/cases/<case>.json with the
 // images beside them.
@@ -60,7 +60,7 @@ std::string golden_image_name(const std::string& image_stem, int frame);
 
 /// Keys of compare's flags: fail, fail_percent, hard_fail, allow_failures, fail_flip, fail_ssim; the same
 /// with `warn`; nan_equal, forgive_shift, forgive_blur, layers. Without any `warn` key only a failing image
-/// is told of.
+/// is reported.
 CompareRules parse_golden_tolerance(const Node& node, Diagnostics& diagnostics);
 
 /// A tolerance that has been checked, without its areas.

@@ -141,7 +141,7 @@ bool is_case_name(const std::string& name) {
 
 /// What each case has, wherever it stands.
 std::vector<Key> common_keys() {
-    const Form range = frame_range_form("'{}' is no range of frames");
+    const Form range = frame_range_form("'{}' is not a range of frames");
     const Form steps = grammar::list(grammar::custom({.type = "[steps of a look](looks.md)"}));
     const Form tap = text({.pattern = {R"(^[^./=]*\.[^./=]*$)", is_tap},
                            .fault = "'{}' is not 'step.texture'",

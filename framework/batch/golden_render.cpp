@@ -177,7 +177,7 @@ RenderedCase render_case(const GoldenCase& test, const GoldenRenderOptions& opti
     if (!rendered.absent.empty() && !test.optional) {
         rendered.verdict = Verdict::file_error;
         rendered.messages.push_back(rendered.absent +
-                                    " (a case that may lack its capture says \"optional\": true)");
+                                    " (set \"optional\": true in the case if its capture may be missing)");
         rendered.absent.clear();
         return rendered;
     }

@@ -188,18 +188,17 @@ std::string summary_of(const GoldenSuiteResult& result, const GoldenReportContex
                 text += "    to approve: " + approve_command(context, {test.test->name}) + "\n";
         }
     for (const fs::path& orphan : result.orphans)
-        text += fmt::format("\nFAILED {}: no case gives this golden; remove it, or mend the case\n",
+        text += fmt::format("\nFAILED {}: no case gives this golden; remove it, or fix the case\n",
                             orphan.string());
     if (const auto names = cases_to_approve(result); names.size() > 1)
         text += "\nto approve all: " + approve_command(context, names) + "\n";
     const Counts counts = count(result);
     return text +
-           fmt::format(
-               "\n{} passed, {} with warnings, {} failed, {} skipped{}, {} cases in {:.2f} s: {}\n",
-               counts.passed, counts.warned, counts.failed, counts.skipped,
-               result.orphans.empty() ? "" : fmt::format(", {} orphaned goldens", result.orphans.size()),
-               result.cases.size(), result.seconds,
-               result.interrupted ? "interrupted" : verdict_name(result.verdict));
+           fmt::format("\n{} passed, {} with warnings, {} failed, {} skipped{}, {} in {:.2f} s: {}\n",
+                       counts.passed, counts.warned, counts.failed, counts.skipped,
+                       result.orphans.empty() ? "" : ", " + counted(result.orphans.size(), "orphaned golden"),
+                       counted(result.cases.size(), "case"), result.seconds,
+                       result.interrupted ? "interrupted" : verdict_name(result.verdict));
 }
 
 std::string junit_of(const GoldenSuiteResult& result, const GoldenReportContext& context) {

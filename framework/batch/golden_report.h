@@ -1,4 +1,4 @@
-// What a golden suite found: for people as ctest tells it, JUnit for CI, JSON for pages.
+// What a golden suite found: for people as ctest prints it, JUnit for CI, JSON for pages.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,12 +9,12 @@
 
 namespace aftershade {
 
-/// What the result itself does not know.
+/// What the result itself lacks.
 struct GoldenReportContext {
     const GoldenSuite* suite = nullptr;
     GoldenRunOptions options;
     std::string version;       ///< of aftershade
-    std::string commit;        ///< of the folder of the suite; "" where git knows none
+    std::string commit;        ///< of the folder of the suite; "" where git has none
     std::string with_options;  ///< " --effect-path x": added to approve commands
 };
 

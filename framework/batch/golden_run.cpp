@@ -50,8 +50,8 @@ void check_layers(GoldenCaseResult& result) {
         if (labels.contains(label)) continue;
         result.verdict = std::max(result.verdict, Verdict::failure);
         result.messages.push_back("tolerance.layers: no image of the case has a layer '" + label + "'" +
-                                  did_you_mean(label, known) + " (there are " + list_of_names(known, "and") +
-                                  ")");
+                                  did_you_mean(label, known) + " (the layers are " +
+                                  list_of_names(known, "and") + ")");
     }
 }
 

@@ -56,15 +56,16 @@ private:
     std::optional<SideBySideRow> row_;
 };
 
-/// Eight times what `fail` lets pass is white, or the largest difference where that is smaller: of light a
-/// few pixels would leave all others black.
+/// Eight times what `fail` lets pass is white: of light a few pixels would leave all others black. With a
+/// limit near 0 that would make every difference white, so a sixteenth of the largest one is white at least,
+/// and the largest at most.
 double difference_scale(const GoldenImage& result, const CompareRules& rules) {
     double largest = 0;
     if (result.comparison)
         for (const LayerComparison& layer : result.comparison->layers)
             if (largest == 0 || is_perceptual(layer.role))
                 largest = std::max(largest, layer.differences.largest.value);
-    const double white = std::min(largest, 8 * rules.fail.limit);
+    const double white = std::min(largest, std::max(8 * rules.fail.limit, largest / 16));
     return white > 0 && std::isfinite(white) ? 1 / white : 1;
 }
 

@@ -143,6 +143,7 @@ std::optional<GoldenSuite> read_golden_suite(const std::string& argument, Diagno
     if (node) SuiteReader(suite, diagnostics).read(*node);
     check_tags(suite, diagnostics);
     if (diagnostics.has_errors()) return std::nullopt;
+    suite.documents = diagnostics.documents();
     return suite;
 }
 
@@ -176,6 +177,7 @@ std::vector<fs::path> orphaned_goldens(const GoldenSuite& suite, const std::vect
 
 InputFiles suite_inputs(const GoldenSuite& suite, bool with_goldens) {
     InputFiles inputs;
+    inputs.add(suite.documents);
     std::set<fs::path> goldens;
     for (const GoldenCase& test : suite.cases) {
         inputs.add(test.look);
@@ -189,6 +191,7 @@ InputFiles suite_inputs(const GoldenSuite& suite, bool with_goldens) {
         } catch (const Error&) {
             // An absent or faulty capture is its case's verdict.
         }
+        inputs.add(faults.documents());
     }
     std::error_code failure;
     if (with_goldens)

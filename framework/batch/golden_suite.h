@@ -17,7 +17,8 @@ struct GoldenSuite {
     std::string argument;  ///< the file or folder as the user named it, for commands
     /// Folders of effects: searched before the shipped ones, and with `cases_of_effects` the place of cases.
     std::vector<std::filesystem::path> effect_paths;
-    std::vector<GoldenCase> cases;  ///< those of the document, then those of effects by name
+    std::vector<std::filesystem::path> documents;  ///< that were read
+    std::vector<GoldenCase> cases;                 ///< those of the document, then those of effects by name
 
     /// That the document lies in.
     std::filesystem::path folder() const { return file.has_parent_path() ? file.parent_path() : "."; }

@@ -57,7 +57,7 @@ ReadLevels read_levels(const grammar::Reader& reader, const ReadLevels& base, bo
 
 void read_rectangle(const grammar::Reader& reader, GoldenArea& area, Diagnostics& diagnostics) {
     const std::vector<double> numbers = reader.numbers("rectangle");
-    if (numbers.size() != 4) return;  // told of already
+    if (numbers.size() != 4) return;  // already reported
     if (numbers[2] < 1 || numbers[3] < 1)
         diagnostics.error(reader.place("rectangle"), "'rectangle' has a width and a height of at least 1 px");
     else area.rectangle = rectangle_area(int(numbers[0]), int(numbers[1]), int(numbers[2]), int(numbers[3]));

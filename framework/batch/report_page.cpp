@@ -168,7 +168,7 @@ private:
         const fs::path file = file_of(name).lexically_relative(report_);
         std::string fault;
         const std::string bytes = read_file_below(report_, file, kMaxPictureBytes, fault);
-        if (fault.empty() && !bytes.starts_with(kPngMagic)) fault = "is no PNG";
+        if (fault.empty() && !bytes.starts_with(kPngMagic)) fault = "is not a PNG";
         if (!fault.empty()) throw Error(ExitCode::capture, file.string() + ": " + fault);
         return store_.add(base64(std::as_bytes(std::span(bytes))));
     }
@@ -267,7 +267,7 @@ void write_report_page(const fs::path& report, const fs::path& page, const Repor
         add_images(data, report, store);
     } catch (const Json::exception& error) {
         throw Error(ExitCode::capture,
-                    fmt::format("{}: is no report of a golden suite: {}", file.string(), error.what()));
+                    fmt::format("{}: is not a report of a golden suite: {}", file.string(), error.what()));
     }
     data["palette"] = palette();
     std::error_code failure;

@@ -8,7 +8,7 @@
 
 namespace aftershade {
 
-/// Knows files by a list of the names that reports have written here, DIR/images/.pictures. A name alone
+/// Recognises files by a list of the names that reports have written here, DIR/images/.pictures. A name alone
 /// would not do: "shot.0001.reference.exr" may be anybody's; nor would the report.json of an earlier run,
 /// which a run that was killed has not written.
 class ReportPictures {

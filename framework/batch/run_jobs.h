@@ -23,7 +23,7 @@ struct JobOptions {
     std::vector<std::string> command;
     /// What is added to the command for some frames.
     std::function<std::vector<std::string>(const JobPiece&)> frame_arguments;
-    int warmup_frames = 0;  ///< before the frames of a worker that goes on behind a failed one
+    int warmup_frames = 0;  ///< before the frames of a worker that continues after a failed one
     int threads = 1;        ///< of each worker, for GL on software and for files
     std::chrono::duration<double> frame_timeout{std::chrono::duration<double>::max()};
     PassLimit pass_limit;
@@ -48,7 +48,7 @@ struct JobsReport {
 };
 
 /// Runs the pieces. A worker that crashes, runs out of memory, says nothing for `frame_timeout` or is longer
-/// at a pass than its limit costs the frame that it was at; another one goes on behind that frame, where the
+/// at a pass than its limit costs the frame that it was at; another one continues after that frame, where the
 /// look has history after the piece's warm-up. Three workers in turn that finish no frame give their piece
 /// up, and so does an error that every other frame would meet (usage, GL, output).
 JobsReport run_jobs(const JobOptions& options, const JobListener& listener, const std::atomic<bool>& stop);

@@ -13,7 +13,7 @@ namespace aftershade {
 /// How long one pass may take to compile or to draw.
 struct PassLimit {
     std::chrono::duration<double> timeout{std::chrono::duration<double>::max()};
-    bool of_shipped_effects = false;  ///< besides those of strangers
+    bool of_shipped_effects = false;  ///< besides untrusted ones
 };
 
 /// Raises a flag, run_worker's interrupt, when nothing was heard for a while, when a pass takes too long, or

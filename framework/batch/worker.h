@@ -30,7 +30,7 @@ struct WorkerCommand {
     WorkerLimits limits;
     /// It writes to this process's standard output and error, and the listener hears none of it.
     bool shares_streams = false;
-    /// How long a worker that was asked to end (SIGTERM, after an interrupt) may take before it is killed.
+    /// How long a worker may take to end after SIGTERM (after an interrupt) before it is killed.
     std::chrono::milliseconds grace{2000};
     /// Once raised: the worker hangs, and half a second is all that it is given. May be null.
     const std::atomic<bool>* hangs = nullptr;

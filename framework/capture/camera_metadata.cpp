@@ -135,7 +135,7 @@ std::vector<CaptureLight> lights_of_metadata(const ExrMetadata& metadata, const 
     const auto text = metadata.text(name);
     const auto names = metadata.names();
     if (!text && std::find(names.begin(), names.end(), name) != names.end())
-        throw Error(ExitCode::capture, path.string() + ": attribute " + name + " is no text");
+        throw Error(ExitCode::capture, path.string() + ": attribute " + name + " is not a text");
     if (!text) return {};
     Diagnostics diagnostics;
     std::vector<CaptureLight> lights;

@@ -25,7 +25,7 @@ void add_attributes(const Camera& camera, const std::vector<CaptureLight>& light
                     std::map<std::string, ExrValue>& attributes);
 
 /// The attribute aftershade/lights; none where there is no such text. Throws Error(ExitCode::capture) that
-/// begins with `path` where the text is no list of lights.
+/// begins with `path` where the text is not a list of lights.
 std::vector<CaptureLight> lights_of_metadata(const ExrMetadata& metadata, const std::filesystem::path& path);
 
 }  // namespace aftershade

@@ -10,6 +10,7 @@
 #include "framework/capture/camera_motion.h"
 #include "framework/capture/cryptomatte.h"
 #include "framework/capture/decode.h"
+#include "framework/capture/layer_roles.h"
 #include "framework/capture/sample_means.h"
 #include "framework/core/error.h"
 #include "framework/image/role.h"
@@ -38,22 +39,24 @@ std::vector<std::string> present_of(const std::vector<std::string>& names) {
     return present;
 }
 
-/// One layer over the grid, in the role's channel order. Of a component that the file lacks, alpha is 1 and
-/// others 0.
+/// One layer over the grid, in the role's channel order. Of a component that the file lacks, alpha is 1, or
+/// what deep samples cover, and others 0.
 Image read_layer(const FrameFile& file, const std::vector<std::string>& names, const Window& grid,
-                 float outside) {
+                 float outside, const DeepRead& how) {
     const std::vector<std::string> present = present_of(names);
     if (present.empty()) return Image(grid.width(), grid.height(), int(names.size()));
-    Image stored = file.read_floats(present, grid, outside);
+    Image stored = file.read_floats(present, grid, outside, how);
     if (present.size() == names.size()) return stored;
 
     constexpr std::size_t kAlpha = 3;
     Image filled(stored.width(), stored.height(), int(names.size()));
+    Image covered;
+    if (file.deep_part_of(present.front())) covered = file.read_deep_alpha(present.front(), grid, how);
     const std::size_t pixels = stored.floats().size() / present.size();
     for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
         std::size_t next = 0;
         for (std::size_t c = 0; c < names.size(); ++c) {
-            const float absent = c == kAlpha ? 1.0f : 0.0f;
+            const float absent = c != kAlpha ? 0.0f : covered.empty() ? 1.0f : covered.floats()[pixel];
             filled.floats()[pixel * names.size() + c] =
                 names[c].empty() ? absent : stored.floats()[pixel * present.size() + next++];
         }
@@ -61,10 +64,11 @@ Image read_layer(const FrameFile& file, const std::vector<std::string>& names, c
     return filled;
 }
 
-Image read_layers(const FrameFile& file, const FoundChannels& channels, const Window& grid, float outside) {
-    Image image = read_layer(file, channels[0], grid, outside);
+Image read_layers(const FrameFile& file, const FoundChannels& channels, const Window& grid, float outside,
+                  const DeepRead& how) {
+    Image image = read_layer(file, channels[0], grid, outside, how);
     for (std::size_t i = 1; i < channels.size(); ++i) {
-        const Image layer = read_layer(file, channels[i], grid, outside);
+        const Image layer = read_layer(file, channels[i], grid, outside, how);
         for (std::size_t j = 0; j < layer.floats().size(); ++j) image.floats()[j] += layer.floats()[j];
     }
     return image;
@@ -170,14 +174,19 @@ void CaptureReader::find_roles(OpenFrame& open) const {
         open.header.roles.push_back(role);
         if (source.file != open.main.get() || source.channels.empty()) open.header.derived_roles.insert(role);
     }
+    if (!deep_picture(open)) return;
+    open.header.layer_count = sequence_.deep_layers;
+    for (int layer = 0; layer < sequence_.deep_layers; ++layer)
+        for (const auto& [role, source] : open.roles)
+            if (is_deep(open, role)) open.header.layer_roles.push_back(layer_role(layer, role));
 }
 
-CaptureReader::OpenFrame CaptureReader::open(int frame) const {
+CaptureReader::OpenFrame CaptureReader::open(int frame, int deep_layers) const {
     OpenFrame open;
-    open.main = std::make_unique<FrameFile>(sequence_.path_of(frame), limits_, sequence_.view);
+    open.main = std::make_unique<FrameFile>(sequence_.path_of(frame), limits_, sequence_.view, deep_layers);
     for (const auto& [role, pattern] : sequence_.role_files) {
         auto& file = open.role_files[role];
-        file = std::make_unique<FrameFile>(pattern.path(frame), limits_, sequence_.view);
+        file = std::make_unique<FrameFile>(pattern.path(frame), limits_, sequence_.view, deep_layers);
         require_one_picture(role, *file, *open.main);
     }
     const ExrPart& part = open.main->merged();
@@ -214,6 +223,11 @@ CaptureReader::OpenFrame CaptureReader::open(int frame) const {
 }
 
 bool CaptureReader::has_frame(int frame) const {
+    for (std::size_t i = 0; i < sequence_.layers.size(); ++i) {
+        const Sequence own = sequence_of_layer(sequence_, i);
+        if (!CaptureReader(own, {}, limits_).has_frame(frame)) return false;
+    }
+    if (!sequence_.layers.empty()) return true;
     std::error_code unreadable;
     const auto exists = [&](const auto& role_file) {
         return std::filesystem::exists(role_file.second.path(frame), unreadable);
@@ -223,7 +237,7 @@ bool CaptureReader::has_frame(int frame) const {
 }
 
 CaptureHeader CaptureReader::read_header(int frame) const {
-    return open(frame).header;
+    return sequence_.layers.empty() ? open(frame).header : read_layered_header(frame);
 }
 
 void CaptureReader::read_motion(const OpenFrame& open, const std::string& role, Image& velocity,
@@ -253,11 +267,12 @@ void CaptureReader::read_motion(const OpenFrame& open, const std::string& role, 
     capture.motion_from_camera = true;
 }
 
-Image CaptureReader::read_ids(const RoleSource& source, const Window& grid) const {
+Image CaptureReader::read_ids(const RoleSource& source, const Window& grid, int layer) const {
     const FrameFile& file = *source.file;
+    const DeepRead how{layer, false};
     if (file.type_of(source.channels[0][0]) == PixelType::uint32)
-        return file.read_uints(source.channels[0], grid);
-    return decode_ids(file.read_floats(source.channels[0], grid, 0),
+        return file.read_uints(source.channels[0], grid, how);
+    return decode_ids(file.read_floats(source.channels[0], grid, 0, how),
                       file.path().string() + ": " + source.channels[0][0]);
 }
 
@@ -268,12 +283,14 @@ Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, c
     const RoleSource& source = open.roles.at(name);
     const FrameFile& file = *source.file;
     if (source.from_cryptomatte) return read_cryptomatte_role(open, role.kind);
-    if (role.type == ComponentType::uint32) return read_ids(source, header.data_window);
+    if (role.type == ComponentType::uint32) return read_ids(source, header.data_window, open.layer);
     // A stored value beyond the data window is none: it gets the role's value after decoding, except where
     // decoding itself turns it into that.
     const float outside = role.kind == RoleKind::distance ? source.decoding.no_hit : role.outside;
-    Image image = source.luminance.empty() ? read_layers(file, source.channels, header.data_window, outside)
-                                           : file.read_luminance_chroma(source.luminance, header.data_window);
+    const DeepRead how{open.layer, is_blended(role.kind)};
+    Image image = source.luminance.empty()
+                      ? read_layers(file, source.channels, header.data_window, outside, how)
+                      : file.read_luminance_chroma(source.luminance, header.data_window);
     if (source.decoding.is_mean) repair_means(image);
     if (role.kind == RoleKind::distance)
         decode_depth(
@@ -303,16 +320,13 @@ void CaptureReader::prefetch(const OpenFrame& open, std::span<const std::string>
     for (const auto& [file, wanted] : requests) file->prefetch(wanted);
 }
 
-Capture CaptureReader::read(int frame, std::span<const std::string> roles) const {
-    OpenFrame open = this->open(frame);
-    Capture capture;
+void CaptureReader::read_images(OpenFrame& open, std::span<const std::string> roles, Capture& capture) const {
     const auto wants = [&](const std::string& role) {
         return open.roles.contains(role) && std::find(roles.begin(), roles.end(), role) != roles.end();
     };
     const auto is_premultiplied = [&](const auto& entry) {
         return entry.second.decoding.premultiplied && wants(entry.first);
     };
-    prefetch(open, roles);
     Image color;
     const bool needs_color = std::any_of(open.roles.begin(), open.roles.end(), is_premultiplied);
     if (open.roles.contains(kColorRole) && (wants(kColorRole) || needs_color))
@@ -320,14 +334,23 @@ Capture CaptureReader::read(int frame, std::span<const std::string> roles) const
     for (const auto& [role, source] : open.roles)
         if (role != kColorRole && wants(role))
             capture.images[role] = read_role(open, role, color.empty() ? nullptr : &color, capture);
-    read_alpha(color, sequence_.alpha_is_opaque, open.header);
+    read_alpha(color, sequence_.alpha_is_opaque, capture.header);
     if (wants(kColorRole)) capture.images[kColorRole] = std::move(color);
+}
+
+Capture CaptureReader::read(int frame, std::span<const std::string> roles) const {
+    if (!sequence_.layers.empty()) return read_layered(frame, roles);
+    OpenFrame open = this->open(frame, std::min(asked_layers(roles), sequence_.deep_layers));
+    Capture capture;
+    prefetch(open, roles_of_any_layer(roles));
+    capture.header = open.header;
+    read_images(open, roles, capture);
     for (const std::string& role : roles)
         if (is_coverage_role(role)) capture.images[role] = read_coverage(open, role);
     if (const auto ids = capture.images.find(kObjectIdRole);
         ids != capture.images.end() && !sequence_.object_names.empty())
         require_names(open, ids->second, sequence_.object_names);
-    capture.header = std::move(open.header);
+    read_deep_layers(open, roles, capture);
     return capture;
 }
 

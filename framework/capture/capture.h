@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "framework/capture/cryptomatte.h"
+#include "framework/capture/deep_layers.h"
 #include "framework/capture/light.h"
 #include "framework/capture/profile.h"
 #include "framework/capture/sequence.h"
@@ -22,6 +23,8 @@
 #include "framework/image/role.h"
 
 namespace aftershade {
+
+class DeepPart;
 
 /// The header of one frame, read before its pixels: what it has, and where.
 struct CaptureHeader {
@@ -37,7 +40,9 @@ struct CaptureHeader {
     Window data_window;               ///< colour's: the working grid
     Window display_window;
     float pixel_aspect = 1;
-    std::vector<std::string> roles;                                 ///< that can be read, sorted
+    int layer_count = 1;                   ///< of a deep capture, and of capture.json's "layers"
+    std::vector<std::string> layer_roles;  ///< "layer1:depth": what can be read of layers, front to back
+    std::vector<std::string> roles;        ///< that can be read, sorted
     std::map<std::string, std::vector<std::string>> role_channels;  ///< the stored channels of each
     /// Roles that the main file does not store as they are: from files of their own, luminance, Cryptomatte.
     std::set<std::string> derived_roles;
@@ -55,6 +60,9 @@ struct Capture {
     std::size_t pixels_without_motion =
         0;  ///< of velocity: filled, from the camera where that is known, else with 0
     bool motion_from_camera = false;
+    /// Of a deep capture: what became of its samples, and as how many layers.
+    std::optional<DeepReduction> deep;
+    int deep_layers = 0;
     /// By role, as they were read; filled by whoever looks for them (framework/pipeline/nan_policy.h).
     std::map<std::string, NonFinitePixels> non_finite;
 };
@@ -78,13 +86,16 @@ public:
     bool has_frame(int frame) const;
     /// Throws Error(ExitCode::capture): no such file, not readable, no profile.
     CaptureHeader read_header(int frame) const;
-    /// Reads the header and the roles asked for. A role that the files lack is left out of `images`. The role
-    /// coverage_role() is the share of each pixel that the objects cover, by the file's Cryptomatte; without
-    /// one it is 0 or 1, by object_id. Throws Error(ExitCode::capture) where objects are asked for by names
-    /// that the file cannot have.
+    /// Reads the header and the requested roles. A role that the files lack is left out of `images`. A role
+    /// of a layer, layer_role(), is read where the capture has that layer; the last layer that is read
+    /// holds what lies behind it, too. Other roles are of the whole picture: layers put over one another. The
+    /// role coverage_role() is the share of each pixel that the objects cover, by the file's Cryptomatte;
+    /// without one it is 0 or 1, by object_id. Throws Error(ExitCode::capture) where objects are requested by
+    /// names that the file cannot have.
     Capture read(int frame, std::span<const std::string> roles) const;
 
-    /// The Cryptomattes of a frame, and how much of its pixels the objects of one cover.
+    /// The Cryptomattes of a frame, and how much of its pixels the objects of one cover; of a capture with
+    /// layers those of the first.
     std::vector<CryptomatteLayer> cryptomattes(int frame) const;
     std::vector<ObjectCoverage> cryptomatte_coverage(int frame, const std::string& name) const;
     /// The full name of the one that is called `name` or "<layer>.<name>"; with "" of the one that objects
@@ -97,14 +108,15 @@ public:
     /// Every channel of the frame's main file, in this view, bit for bit and under its own name; but the
     /// channels of the roles in `changed` hold those images, brought back to the producer's conventions. Of a
     /// role that the file stores as a sum of layers the first layer holds all. Channels of another data
-    /// window are placed in the working grid.
+    /// window are placed in the working grid. Deep channels are flattened. Throws Error(ExitCode::usage)
+    /// where the capture has layers: no file is the whole picture's.
     std::vector<StoredChannel> read_stored_channels(int frame,
                                                     const std::map<std::string, const Image*>& changed) const;
 
 private:
     struct OpenFrame;
     struct RoleSource;
-    OpenFrame open(int frame) const;
+    OpenFrame open(int frame, int deep_layers = 1) const;
     const Profile& choose_profile(const ExrPart& part, CaptureHeader& header) const;
     void choose_layer(OpenFrame& open) const;
     void take_data_of_other_layer(OpenFrame& open) const;
@@ -120,11 +132,20 @@ private:
     Image read_coverage(const OpenFrame& open, const std::string& role) const;
     void require_names(const OpenFrame& open, const Image& ids, std::span<const std::string> names) const;
     void add_role(OpenFrame& open, const std::string& role, const RoleDecoding& decoding) const;
-    /// Unpacks what read_role will ask for of these roles.
+    /// Unpacks what read_role will need of these roles.
     void prefetch(const OpenFrame& open, std::span<const std::string> roles) const;
-    Image read_ids(const RoleSource& source, const Window& grid) const;
+    Image read_ids(const RoleSource& source, const Window& grid, int layer = -1) const;
     Image read_role(const OpenFrame& open, const std::string& role, const Image* color,
                     Capture& capture) const;
+    /// The images of one layer of the frame, or of the whole picture, as `open` says.
+    void read_images(OpenFrame& open, std::span<const std::string> roles, Capture& capture) const;
+    /// The first layer as a sequence of its own; nullopt where the capture is one picture.
+    std::optional<Sequence> front_layer() const;
+    CaptureHeader read_layered_header(int frame) const;
+    Capture read_layered(int frame, std::span<const std::string> roles) const;
+    void read_deep_layers(OpenFrame& open, std::span<const std::string> roles, Capture& capture) const;
+    static bool is_deep(const OpenFrame& open, const std::string& role);
+    static DeepPart* deep_picture(const OpenFrame& open);
     void read_motion(const OpenFrame& open, const std::string& role, Image& velocity, const Image* color,
                      Capture& capture) const;
 

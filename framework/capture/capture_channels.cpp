@@ -3,9 +3,20 @@
 
 #include "framework/capture/capture_internal.h"
 #include "framework/capture/encode_role.h"
+#include "framework/core/error.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
+
+namespace {
+
+/// Of deep samples: what has no mean.
+bool is_deep_depth(const std::string& channel) {
+    const std::string name = channel.substr(channel.rfind('.') + 1);
+    return name == "Z" || name == "ZBack";
+}
+
+}  // namespace
 
 /// The role's image as the file stores it: one image per stored channel.
 std::map<std::string, Image> CaptureReader::encode_role(const OpenFrame& open, const std::string& name,
@@ -28,6 +39,7 @@ std::map<std::string, Image> CaptureReader::encode_role(const OpenFrame& open, c
 }
 
 std::map<std::string, RoleDecoding> CaptureReader::decodings(int frame) const {
+    if (const auto front = front_layer()) return CaptureReader(*front, profiles_, limits_).decodings(frame);
     std::map<std::string, RoleDecoding> decodings;
     for (const auto& [role, source] : open(frame).roles) decodings[role] = source.decoding;
     return decodings;
@@ -35,6 +47,10 @@ std::map<std::string, RoleDecoding> CaptureReader::decodings(int frame) const {
 
 std::vector<StoredChannel> CaptureReader::read_stored_channels(
     int frame, const std::map<std::string, const Image*>& changed) const {
+    if (!sequence_.layers.empty())
+        throw Error(ExitCode::usage, "--keep-channels writes the channels of one file, and the capture has " +
+                                         std::to_string(sequence_.layers.size()) +
+                                         " layers (choose roles with --output-roles)");
     const OpenFrame open = this->open(frame);
     std::map<std::string, Image> encoded;
     for (const auto& [role, image] : changed)
@@ -55,7 +71,7 @@ std::vector<StoredChannel> CaptureReader::read_stored_channels(
         if (const auto replaced = encoded.find(channel.name); replaced != encoded.end())
             stored.image = std::move(replaced->second);
         else if (channel.type == PixelType::uint32) stored.image = open.main->read_uints(one, grid);
-        else stored.image = open.main->read_floats(one, grid, 0);
+        else stored.image = open.main->read_floats(one, grid, 0, {-1, !is_deep_depth(channel.name)});
         channels.push_back(std::move(stored));
     }
     return channels;

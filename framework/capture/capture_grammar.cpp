@@ -1,7 +1,9 @@
 #include "framework/capture/capture_grammar.h"
 
+#include <algorithm>
 #include <limits>
 
+#include "framework/capture/deep_layers.h"
 #include "framework/capture/document_forms.h"
 #include "framework/core/grammar_schema.h"
 #include "framework/image/camera.h"
@@ -78,17 +80,46 @@ Block make_light_block() {
         .path = "light"};
 }
 
-/// Without a main file the colour's own file takes its place.
+bool has_picture(const Node& node) {
+    const Node* files = node.find("files");
+    return node.find("frames") || (files && files->find("color"));
+}
+
+/// Without a main file the colour's own file takes its place; or every layer has a picture.
 grammar::Rule frames_rule() {
     const auto check = [](const Node& node, const std::string& thing, Diagnostics& diagnostics) {
-        const Node* files = node.find("files");
-        if (!node.find("frames") && !(files && files->find("color")))
-            diagnostics.error(node.place, thing + " has no 'frames'");
+        const Node* layers = node.find("layers");
+        const bool in_layers = layers && std::all_of(layers->items.begin(), layers->items.end(), has_picture);
+        if (!has_picture(node) && !in_layers) diagnostics.error(node.place, thing + " has no 'frames'");
     };
-    return grammar::custom_rule({.check = check,
-                                 .schema = R"({"anyOf": [{"required": ["frames"]}, {"required": ["files"],
-                                     "properties": {"files": {"required": ["color"]}}}]})",
-                                 .sentence = "`frames` is required unless `files` has a file for color."});
+    return grammar::custom_rule(
+        {.check = check,
+         .schema = R"({"anyOf": [{"required": ["frames"]},
+             {"required": ["files"], "properties": {"files": {"required": ["color"]}}},
+             {"required": ["layers"], "properties": {"layers": {"items": {"anyOf": [{"required": ["frames"]},
+                 {"required": ["files"], "properties": {"files": {"required": ["color"]}}}]}}}}]})",
+         .sentence =
+             "`frames` is required unless `files` has a file for color, here or in each of `layers`."});
+}
+
+Block make_layer_block() {
+    return {
+        .name = "layer",
+        .thing = "the layer",
+        .doc = "One of the pictures that lie behind one another. What it lacks is the capture's.",
+        .keys = {optional("frames", text(),
+                          "Pattern of its main files; with it, `files` of the capture are not the layer's."),
+                 optional("files", files_by_role(),
+                          "File patterns of its roles that are stored in separate files."),
+                 optional("layer", text(),
+                          "Layer of the file, such as a view layer of Blender, or a part's name."),
+                 optional("view", text(), "View of a multi-view file."),
+                 optional("profile", text(), "Producer profile."),
+                 optional("channels", decodings(), "Decoding by role."),
+                 optional("alpha", grammar::choice(alpha_names()), "Alpha of its color; opaque: read 1."),
+                 optional("holdout", grammar::boolean(),
+                          "What lies in front is cut out of it: it is divided by what that lets through.",
+                          "false")}};
 }
 
 Block make_capture_block() {
@@ -99,33 +130,37 @@ Block make_capture_block() {
         .name = "capture",
         .thing = "the capture",
         .doc = "The document.",
-        .keys = {optional("files", files_by_role(),
-                          "File patterns of roles that are stored in separate files."),
-                 optional("frames", text(),
-                          "Pattern of the main files, relative to this document: `gbuffer_####.exr`."),
-                 optional("range", range, "Frames to use; default: every file that matches the pattern."),
-                 optional("fps", grammar::number({.above = 0}), "Frames per second.", "24"),
-                 optional("profile", text(), "Producer profile; auto: detected from the file's header.",
-                          "\"auto\""),
-                 optional("view", text(), "View of a multi-view file; default: the first."),
-                 optional("layer", text(),
-                          "Layer of a file with several, such as Blender's view layers; default: the first."),
-                 optional(
-                     "color_space", color_space_form(),
-                     "Primaries of the stored colours; auto: the profile's, else the file's chromaticities.",
-                     "\"auto\""),
-                 optional("alpha", grammar::choice(alpha_names()),
-                          "Alpha of color; opaque: ignore the stored alpha and read 1.", R"("keep")"),
-                 optional("channels", decodings(), "Decoding by role, instead of the profile's."),
-                 optional("camera", grammar::object(capture_camera_block()),
-                          "Camera values, instead of the files'."),
-                 optional("lights", grammar::list(grammar::object(capture_light_block())),
-                          "Lights, instead of the files'."),
-                 optional("cryptomatte", grammar::object(cryptomatte_block()),
-                          "Source of the roles mask and object_id."),
-                 optional("cuts", grammar::list(frame_number), "First frame of each shot."),
-                 optional("subframes", grammar::integer(1, 1024),
-                          "Files per frame: files N * frame to N * frame + N - 1 are one exposure.", "1")},
+        .keys =
+            {optional("files", files_by_role(), "File patterns of roles that are stored in separate files."),
+             optional("frames", text(),
+                      "Pattern of the main files, relative to this document: `gbuffer_####.exr`."),
+             optional("range", range, "Frames to use; default: every file that matches the pattern."),
+             optional("fps", grammar::number({.above = 0}), "Frames per second.", "24"),
+             optional("profile", text(), "Producer profile; auto: detected from the file's header.",
+                      "\"auto\""),
+             optional("view", text(), "View of a multi-view file; default: the first."),
+             optional("layer", text(),
+                      "Layer of a file with several, such as Blender's view layers; default: the first."),
+             optional("color_space", color_space_form(),
+                      "Primaries of the stored colours; auto: the profile's, else the file's chromaticities.",
+                      "\"auto\""),
+             optional("alpha", grammar::choice(alpha_names()),
+                      "Alpha of color; opaque: ignore the stored alpha and read 1.", R"("keep")"),
+             optional("channels", decodings(), "Decoding by role, instead of the profile's."),
+             optional("camera", grammar::object(capture_camera_block()),
+                      "Camera values, instead of the files'."),
+             optional("lights", grammar::list(grammar::object(capture_light_block())),
+                      "Lights, instead of the files'."),
+             optional("cryptomatte", grammar::object(cryptomatte_block()),
+                      "Source of the roles mask and object_id."),
+             optional("cuts", grammar::list(frame_number), "First frame of each shot."),
+             optional("layers",
+                      grammar::list(grammar::object(capture_layer_block()), {.min = 2, .max = kMostLayers}),
+                      "Pictures that lie behind one another, the nearest first."),
+             optional("deep_layers", grammar::integer(1, kMostLayers),
+                      "Most layers that the samples of deep files are reduced to.", "4"),
+             optional("subframes", grammar::integer(1, 1024),
+                      "Files per frame: files N * frame to N * frame + N - 1 are one exposure.", "1")},
         .rules = {frames_rule()},
         .is_document = true};
 }
@@ -144,6 +179,11 @@ const Block& capture_camera_block() {
 
 const Block& capture_light_block() {
     static const Block block = make_light_block();
+    return block;
+}
+
+const Block& capture_layer_block() {
+    static const Block block = make_layer_block();
     return block;
 }
 

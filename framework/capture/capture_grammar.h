@@ -18,6 +18,7 @@ inline constexpr std::string_view kOpaqueAlpha = "opaque";
 const grammar::Block& capture_block();
 const grammar::Block& capture_camera_block();
 const grammar::Block& capture_light_block();
+const grammar::Block& capture_layer_block();
 /// How the stored channels of a role become its image: in "channels" of a capture, in "roles" of a profile.
 /// One for every image that is passed through, "aov:<name>".
 const grammar::Block& decoding_block(const std::string& role);

@@ -1,4 +1,4 @@
-// Shared by the sources of CaptureReader; nobody else includes it.
+// Shared by the sources of CaptureReader; no other file includes it.
 #pragma once
 
 #include <map>
@@ -24,12 +24,13 @@ struct CaptureReader::OpenFrame {
     std::unique_ptr<FrameFile> main;
     std::map<std::string, std::unique_ptr<FrameFile>> role_files;
     const Profile* profile = nullptr;
-    bool is_foreign_layer = false;  // the user chose a layer that the profile does not know as such
+    bool is_foreign_layer = false;  // the user chose a layer that the profile does not list
     std::map<std::string, RoleSource> roles;
     Chromaticities stored_primaries{};
     bool color_is_tristimulus = false;  // its channels are X, Y and Z
     /// object_id as the file stores it, where a Cryptomatte has taken its place.
     std::optional<RoleSource> ids_by_number;
+    int layer = -1;  ///< of deep parts, that roles are read of; -1: the whole picture
     CaptureHeader header;
 };
 

@@ -253,11 +253,15 @@ void CaptureReader::require_names(const OpenFrame& open, const Image& ids,
 }
 
 std::vector<CryptomatteLayer> CaptureReader::cryptomattes(int frame) const {
+    if (const auto front = front_layer())
+        return CaptureReader(*front, profiles_, limits_).cryptomattes(frame);
     const OpenFrame open = this->open(frame);
     return find_cryptomattes(cryptomatte_file(open));
 }
 
 std::string CaptureReader::cryptomatte_name(int frame, const std::string& name) const {
+    if (const auto front = front_layer())
+        return CaptureReader(*front, profiles_, limits_).cryptomatte_name(frame, name);
     const OpenFrame open = this->open(frame);
     const FrameFile& file = cryptomatte_file(open);
     const std::vector<CryptomatteLayer> mattes = find_cryptomattes(file);
@@ -268,6 +272,8 @@ std::string CaptureReader::cryptomatte_name(int frame, const std::string& name) 
 }
 
 std::vector<ObjectCoverage> CaptureReader::cryptomatte_coverage(int frame, const std::string& name) const {
+    if (const auto front = front_layer())
+        return CaptureReader(*front, profiles_, limits_).cryptomatte_coverage(frame, name);
     const OpenFrame open = this->open(frame);
     const FrameFile& file = cryptomatte_file(open);
     const std::vector<CryptomatteLayer> mattes = find_cryptomattes(file);

@@ -71,7 +71,28 @@ void require_exact_ids(const std::filesystem::path& path, const Image& image, bo
                         " is above 16777216, which the profile's floats cannot hold; use native");
 }
 
+ExrWriteOptions write_options(const CaptureHeader& header, const Chromaticities& primaries,
+                              const CaptureWriteOptions& options) {
+    ExrWriteOptions write;
+    write.data_window = header.data_window;
+    write.display_window = header.display_window;
+    write.pixel_aspect = header.pixel_aspect;
+    write.compression = options.compression;
+    write.attributes = options.attributes;
+    add_attributes(header.camera, header.lights, write.attributes);
+    write.attributes["chromaticities"] = std::vector<float>(primaries.begin(), primaries.end());
+    if (options.fps > 0) write.attributes["framesPerSecond"] = float(options.fps);
+    return write;
+}
+
 }  // namespace
+
+void write_deep_capture(const std::filesystem::path& path, const DeepImage& image,
+                        const CaptureHeader& header, const CaptureWriteOptions& options) {
+    ExrWriteOptions write = write_options(header, header.primaries, options);
+    if (write.compression != "none" && write.compression != "rle") write.compression = "zips";
+    write_deep_exr(path, image, write);
+}
 
 std::vector<std::string> write_capture(const std::filesystem::path& path, const Capture& capture,
                                        const Profile& profile, const CaptureWriteOptions& options) {
@@ -112,16 +133,8 @@ std::vector<std::string> write_capture(const std::filesystem::path& path, const 
         channels.push_back({name,
                             image.type() == ComponentType::uint32 ? PixelType::uint32 : PixelType::float32,
                             &image, 0});
-    ExrWriteOptions write;
-    write.data_window = header.data_window;
-    write.display_window = header.display_window;
-    write.pixel_aspect = header.pixel_aspect;
-    write.compression = options.compression;
-    write.attributes = options.attributes;
+    ExrWriteOptions write = write_options(header, primaries, options);
     add_mark(profile, write.attributes);
-    add_attributes(header.camera, header.lights, write.attributes);
-    write.attributes["chromaticities"] = std::vector<float>(primaries.begin(), primaries.end());
-    if (options.fps > 0) write.attributes["framesPerSecond"] = float(options.fps);
     write_exr(path, channels, write);
     return left_out;
 }
@@ -141,6 +154,8 @@ void write_capture_document(const std::filesystem::path& path, const CaptureDocu
     if (!document.lens_model.empty()) json["camera"]["lens_model"] = document.lens_model;
     if (!document.lights.empty())
         json["lights"] = nlohmann::ordered_json::parse(format_lights(document.lights));
+    if (!document.layers_behind.empty()) json["layers"] = {nlohmann::ordered_json::object()};
+    for (const std::string& frames : document.layers_behind) json["layers"].push_back({{"frames", frames}});
     json["cuts"] = document.cuts;
     json["subframes"] = document.subframes;
     const std::string text = json.dump(2) + "\n";

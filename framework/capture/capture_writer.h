@@ -8,6 +8,7 @@
 
 #include "framework/capture/capture.h"
 #include "framework/capture/light.h"
+#include "framework/file/deep_image.h"
 
 namespace aftershade {
 
@@ -25,6 +26,12 @@ struct CaptureWriteOptions {
 std::vector<std::string> write_capture(const std::filesystem::path& path, const Capture& capture,
                                        const Profile& profile, const CaptureWriteOptions& options);
 
+/// Writes one deep frame with the native channels that `image` has, and the same attributes as
+/// write_capture() of the profile native. Compression other than none and rle becomes zips. Throws
+/// Error(ExitCode::output).
+void write_deep_capture(const std::filesystem::path& path, const DeepImage& image,
+                        const CaptureHeader& header, const CaptureWriteOptions& options);
+
 /// What capture.json says of a sequence. Its camera and lights overrule those of the frames' headers, so
 /// they hold what is the same in all of them.
 struct CaptureDocument {
@@ -37,6 +44,7 @@ struct CaptureDocument {
     std::vector<CaptureLight> lights;
     std::vector<int> cuts;
     int subframes = 1;
+    std::vector<std::string> layers_behind;  ///< patterns; `frames` are the first layer's
 };
 
 /// By rename. Throws Error(ExitCode::output).

@@ -13,7 +13,7 @@ namespace aftershade {
 
 /// Layers that hold a colour: every prefix before R, G and B, in upper or lower case or in full (`red`), in
 /// the file's order; "" for none, which may also be before X, Y and Z where the chromaticities are CIE XYZ's.
-/// Without Cryptomattes and layers whose name says that they are no picture.
+/// Without Cryptomattes and layers whose name says that they are not a picture.
 std::vector<std::string> color_layers(const ExrPart& part);
 
 /// The colour of a file whose profile does not name it: of `layer`, or of a layer below it. With "" the
@@ -31,7 +31,7 @@ bool has_channel(const ExrPart& part, std::string_view name);
 bool is_tristimulus(const ExrPart& part, const std::string& channel);
 
 /// Whether X, Y and Z stand side by side without a layer: a colour in CIE XYZ, positions or normals, so that
-/// Y is no luminance.
+/// Y is not a luminance.
 bool has_x_y_z(const ExrPart& part);
 
 /// Whether a channel lies in the layer or in one below it.

@@ -68,7 +68,7 @@ Image read_ranks(const FrameFile& file, const RankChannels& channels, const Wind
                     file.path().string() + ": the Cryptomatte ids in " + channels[0] + " are " +
                         (lossy ? "compressed with loss (" + compression + ")" : "stored as half") +
                         ", which destroys them (write them as float, zip)");
-    return file.read_floats(channels, grid, 0);
+    return file.read_floats(channels, grid, 0, {-1, false});  // of deep samples what shows most
 }
 
 std::vector<std::string> names_of(std::span<const CryptomatteLayer> layers) {

@@ -36,7 +36,7 @@ void encode_depth(Image& depth, const RoleDecoding& decoding, const DecodeContex
 /// The way back. Pixels that had no motion data get the motion that they were filled with.
 void encode_velocity(Image& velocity, const RoleDecoding& decoding, const DecodeContext& context = {});
 
-/// Floats as unsigned integers. Throws Error(ExitCode::capture) naming the first pixel that is no whole
+/// Floats as unsigned integers. Throws Error(ExitCode::capture) naming the first pixel that is not a whole
 /// number.
 Image decode_ids(const Image& stored, const std::string& file);
 

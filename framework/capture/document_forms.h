@@ -7,7 +7,8 @@
 
 namespace aftershade {
 
-/// "1-100x2,120": at least one frame. `fault` is said of a text that is no range; "{}" is the text.
+/// "1-100x2,120": at least one frame. `fault` is the message for a text that is not a range; "{}" is the
+/// text.
 grammar::Form frame_range_form(const std::string& fault);
 
 }  // namespace aftershade

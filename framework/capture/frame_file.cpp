@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <utility>
 
 #include "framework/capture/common_names.h"
 #include "framework/core/diagnostics.h"
@@ -12,10 +13,6 @@
 namespace aftershade {
 
 namespace {
-
-bool is_deep(const ExrPart& part) {
-    return part.type.starts_with("deep");
-}
 
 /// "forward.left.u" without the view "left"; the view stands before the last component. "" where it is not in
 /// the name.
@@ -66,16 +63,20 @@ bool is_color_layer(const std::string& layer) {
 
 }  // namespace
 
-FrameFile::FrameFile(const std::filesystem::path& path, const ReadLimits& limits, const std::string& view)
+FrameFile::FrameFile(const std::filesystem::path& path, const ReadLimits& limits, const std::string& view,
+                     int deep_layers)
     : file_(path, limits) {
     choose_view(view);
     const std::vector<ExrPart>& parts = file_.parts();
-    if (std::all_of(parts.begin(), parts.end(), is_deep))
-        throw Error(ExitCode::capture, path.string() +
-                                           ": holds nothing but deep data, which is not supported; " +
-                                           exr_flatten_remedy(path));
     const int color_part = find_color_part();
-    for (int i = 0; i < int(parts.size()); ++i) add_part(i, color_part);
+    // A flat picture beside its deep one is the picture.
+    for (const bool deep : {false, true})
+        for (int i = 0; i < int(parts.size()); ++i) {
+            const ExrPart& part = parts[std::size_t(i)];
+            if (part.is_deep() != deep || !is_in_view(part)) continue;
+            if (deep) deep_[i] = std::make_unique<DeepPart>(file_, i, deep_layers);
+            add_part(i, color_part);
+        }
     for (const auto& [other, name] : merged_.other_names) stored_.emplace(other, stored_.at(name));
     const auto color = stored_.find("R");
     int hero = color != stored_.end() ? color->second.part : -1;
@@ -85,19 +86,20 @@ FrameFile::FrameFile(const std::filesystem::path& path, const ReadLimits& limits
 }
 
 bool FrameFile::is_in_view(const ExrPart& part) const {
-    return !is_deep(part) && (part.view.empty() || part.view == view_);
+    return part.view.empty() || part.view == view_;
 }
 
 /// The part that "R" is taken from: the first that has it and is called as a picture usually is, else the
 /// first that has it; -1 where none has.
 int FrameFile::find_color_part() const {
     int first = -1;
-    for (int i = 0; i < int(file_.parts().size()); ++i) {
-        const ExrPart& part = file_.parts()[std::size_t(i)];
-        if (!is_in_view(part) || !has_channel(part, "R")) continue;
-        if (is_color_layer(layer_of(part, view_))) return i;
-        if (first < 0) first = i;
-    }
+    for (const bool deep : {false, true})
+        for (int i = 0; i < int(file_.parts().size()); ++i) {
+            const ExrPart& part = file_.parts()[std::size_t(i)];
+            if (part.is_deep() != deep || !is_in_view(part) || !has_channel(part, "R")) continue;
+            if (is_color_layer(layer_of(part, view_))) return i;
+            if (first < 0) first = i;
+        }
     return first;
 }
 
@@ -117,7 +119,6 @@ void FrameFile::choose_view(const std::string& wanted) {
 
 void FrameFile::add_part(int index, int color_part) {
     const ExrPart& part = file_.parts()[std::size_t(index)];
-    if (!is_in_view(part)) return;
     const bool views_in_names = part.view.empty() && !views_.empty();
     const bool is_layer = file_.parts().size() > 1;
     const std::string layer = is_layer ? layer_of(part, view_) : "";
@@ -175,29 +176,44 @@ PixelType FrameFile::type_of(const std::string& channel) const {
     return PixelType::half;
 }
 
-Image FrameFile::read_floats(std::span<const std::string> channels, const Window& grid, float outside) const {
+DeepPart* FrameFile::deep_part_of(const std::string& channel) const {
+    const auto found = deep_.find(stored(channel).part);
+    return found == deep_.end() ? nullptr : found->second.get();
+}
+
+Image FrameFile::read_floats(std::span<const std::string> channels, const Window& grid, float outside,
+                             const DeepRead& how) const {
     // Mostly all channels of one role lie in one part: then one read serves.
     const int part = stored(channels.front()).part;
     std::vector<std::string> names;
     for (const std::string& channel : channels)
         if (stored(channel).part == part) names.push_back(stored(channel).name);
-    if (names.size() == channels.size())
-        return place_in_window(file_.read_floats(part, names), part_of(channels.front()).data_window, grid,
-                               outside);
+    if (names.size() == channels.size()) {
+        DeepPart* const deep = deep_part_of(channels.front());
+        return place_in_window(deep ? deep->read_floats(names, how, outside) : file_.read_floats(part, names),
+                               part_of(channels.front()).data_window, grid, outside);
+    }
 
     Image image(grid.width(), grid.height(), int(channels.size()));
     for (std::size_t c = 0; c < channels.size(); ++c) {
-        const Image one = read_floats(channels.subspan(c, 1), grid, outside);
+        const Image one = read_floats(channels.subspan(c, 1), grid, outside, how);
         for (std::size_t i = 0; i < one.floats().size(); ++i)
             image.floats()[i * channels.size() + c] = one.floats()[i];
     }
     return image;
 }
 
-Image FrameFile::read_uints(std::span<const std::string> channels, const Window& grid) const {
+Image FrameFile::read_uints(std::span<const std::string> channels, const Window& grid,
+                            const DeepRead& how) const {
     const Stored& first = stored(channels.front());
-    return place_in_window(file_.read_uints(first.part, std::vector<std::string>{first.name}),
-                           part_of(channels.front()).data_window, grid, 0);
+    DeepPart* const deep = deep_part_of(channels.front());
+    Image ids = deep ? deep->read_uints(first.name, how)
+                     : file_.read_uints(first.part, std::vector<std::string>{first.name});
+    return place_in_window(std::move(ids), part_of(channels.front()).data_window, grid, 0);
+}
+
+Image FrameFile::read_deep_alpha(const std::string& channel, const Window& grid, const DeepRead& how) const {
+    return place_in_window(deep_part_of(channel)->read_alpha(how), part_of(channel).data_window, grid, 0);
 }
 
 void FrameFile::prefetch(std::span<const Request> requests) const {
@@ -207,7 +223,8 @@ void FrameFile::prefetch(std::span<const Request> requests) const {
         ExrRequest one{stored(request.channels.front()).part, {}, request.type};
         for (const std::string& channel : request.channels)
             if (stored(channel).part == one.part) one.channels.push_back(stored(channel).name);
-        if (one.channels.size() == request.channels.size()) stored_requests.push_back(std::move(one));
+        if (DeepPart* const deep = deep_part_of(request.channels.front())) deep->expect(one.channels);
+        else if (one.channels.size() == request.channels.size()) stored_requests.push_back(std::move(one));
     }
     file_.prefetch(stored_requests);
 }

@@ -3,10 +3,12 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "framework/capture/deep_part.h"
 #include "framework/file/exr_file.h"
 #include "framework/image/image.h"
 
@@ -20,9 +22,13 @@ namespace aftershade {
 /// go by the layer's name as well. [one thread at a time]
 class FrameFile {
 public:
-    /// `view` empty: the default view, the first that the file names. Throws Error(ExitCode::capture): not
-    /// readable, no such view (the message lists those there are), nothing but deep data.
-    FrameFile(const std::filesystem::path& path, const ReadLimits& limits, const std::string& view);
+    /// `view` empty: the default view, the first that the file names. Deep parts are reduced to
+    /// `deep_layers`. Throws Error(ExitCode::capture): not readable, no such view (the message lists those
+    /// there are).
+    FrameFile(const std::filesystem::path& path, const ReadLimits& limits, const std::string& view,
+              int deep_layers = 1);
+    FrameFile(const FrameFile&) = delete;
+    FrameFile& operator=(const FrameFile&) = delete;
 
     const std::filesystem::path& path() const { return file_.path(); }
     const std::vector<std::string>& views() const { return views_; }  ///< empty where the file names none
@@ -37,10 +43,16 @@ public:
     const std::string& compression_of(const std::string& channel) const;
 
     /// Interleaved in the order given, over `grid`; pixels that a channel's own window does not cover are
-    /// `outside`.
-    Image read_floats(std::span<const std::string> channels, const Window& grid, float outside) const;
-    Image read_uints(std::span<const std::string> channels, const Window& grid) const;
-    /// Channels as read_floats or read_uints will ask for them.
+    /// `outside`. `how` is for channels of deep parts.
+    Image read_floats(std::span<const std::string> channels, const Window& grid, float outside,
+                      const DeepRead& how = {}) const;
+    Image read_uints(std::span<const std::string> channels, const Window& grid,
+                     const DeepRead& how = {}) const;
+    /// The part that a channel lies in, where it is deep; nullptr where it is flat.
+    DeepPart* deep_part_of(const std::string& channel) const;
+    /// What samples cover, of the deep part that has the channel.
+    Image read_deep_alpha(const std::string& channel, const Window& grid, const DeepRead& how) const;
+    /// Channels as read_floats or read_uints will request them.
     struct Request {
         std::vector<std::string> channels;
         ComponentType type = ComponentType::float32;
@@ -72,6 +84,7 @@ private:
     std::string view_;
     ExrPart merged_;
     std::map<std::string, Stored> stored_;
+    std::map<int, std::unique_ptr<DeepPart>> deep_;  // by part
 };
 
 }  // namespace aftershade

@@ -1,5 +1,6 @@
 #include "framework/capture/frame_range.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <cstdlib>
@@ -26,9 +27,10 @@ bool take(std::string_view& text, std::string_view word) {
     return true;
 }
 
-/// Takes a number of at most nine digits off the front.
+constexpr std::size_t kMaxDigits = 9;
+
+/// Takes a number of at most kMaxDigits digits off the front.
 std::optional<int> take_number(std::string_view& text) {
-    constexpr std::size_t kMaxDigits = 9;
     const std::size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
     if (digits > kMaxDigits) return std::nullopt;
     const auto number = parse_int(text.substr(0, digits));
@@ -100,6 +102,21 @@ std::optional<std::vector<int>> parse_frame_range(std::string_view text) {
         if (frames.size() > kMaxRangeFrames) return std::nullopt;
     }
     return frames;
+}
+
+std::string frame_range_fault(std::string_view text) {
+    if (parse_frame_range(text)) return "";
+    std::size_t digits = 0, most_digits = 0;
+    for (const char c : text)
+        most_digits = std::max(most_digits, digits = c >= '0' && c <= '9' ? digits + 1 : 0);
+    const auto is_sound = [](std::string_view part) {
+        const auto piece = parse_piece(part);
+        return piece && piece->step != 0;
+    };
+    if (most_digits <= kMaxDigits && !std::ranges::all_of(split(text, ','), is_sound))
+        return "not a frame range such as 1-100x2,120";
+    return "too long: a range names at most " + std::to_string(kMaxRangeFrames) +
+           " frames, with numbers of at most " + std::to_string(kMaxDigits) + " digits (split the run)";
 }
 
 std::string format_frame_range(std::span<const int> frames) {

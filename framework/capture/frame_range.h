@@ -18,6 +18,9 @@ inline constexpr std::size_t kMaxRangeFrames = 1'000'000;
 /// step of 0 and for more than kMaxRangeFrames frames.
 std::optional<std::vector<int>> parse_frame_range(std::string_view text);
 
+/// Why parse_frame_range() refuses the text, with the limit or an example; "" where it does not.
+std::string frame_range_fault(std::string_view text);
+
 /// The shortest such text for frames in this order: "1-100", "1-99x2,120".
 std::string format_frame_range(std::span<const int> frames);
 
@@ -39,7 +42,7 @@ public:
     std::string with(std::string_view number) const;
     /// The frame number in `name` if the pattern fits it.
     std::optional<int> match(std::string_view name) const;
-    /// The same with so many #.
+    /// The same with this many #.
     FramePattern padded(int width) const;
 
 private:

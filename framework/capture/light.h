@@ -1,4 +1,4 @@
-// Lights of a capture, for effects that need to know them: capture.json's "lights", or the attribute
+// Lights of a capture, for effects that need them: capture.json's "lights", or the attribute
 // aftershade/lights.
 #pragma once
 

@@ -85,7 +85,7 @@ struct Profile {
     std::string summary;
     /// Any of these in the header, by name or as "name=text" ...
     std::vector<std::string> detect_attributes;
-    std::vector<std::string> detect_channels;  ///< ... or all of these channels tell that the profile fits
+    std::vector<std::string> detect_channels;  ///< ... or all of these channels show that the profile fits
     bool rewrites = false;  ///< also writes other producers' files again, whose attributes then say more
     std::string color_space =
         "auto";              ///< of the stored colours; auto: the header's chromaticities, else Rec. 709

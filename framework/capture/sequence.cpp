@@ -1,8 +1,10 @@
 #include "framework/capture/sequence.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include "framework/capture/capture_grammar.h"
 #include "framework/core/document.h"
@@ -22,16 +24,41 @@ FramePattern file_or_pattern(const std::string& text) {
     return fs::is_regular_file(text, failure) ? FramePattern::of_file(text) : FramePattern(text);
 }
 
-void read_frames(const grammar::Reader& reader, const fs::path& folder, Sequence& sequence,
-                 Diagnostics& diagnostics) {
+std::map<std::string, FramePattern> read_role_files(const grammar::Reader& reader, const fs::path& folder) {
+    std::map<std::string, FramePattern> result;
     if (const Node* files = reader.find("files"))
         for (const Member& member : files->members)
             if (find_role(member.key) && member.value.is_string())
-                sequence.role_files.insert_or_assign(
-                    member.key, file_or_pattern((folder / member.value.string).string()));
+                result.insert_or_assign(member.key, file_or_pattern((folder / member.value.string).string()));
+    return result;
+}
+
+LayerSource read_layer(const grammar::Reader& reader, const fs::path& folder) {
+    LayerSource layer;
+    layer.role_files = read_role_files(reader, folder);
+    if (reader.has("frames")) layer.files = file_or_pattern((folder / reader.text("frames")).string());
+    else if (const auto color = layer.role_files.find(kColorRole); color != layer.role_files.end())
+        layer.files = color->second;
+    if (const Node* channels = reader.find("channels")) layer.channels = read_decodings(*channels);
+    for (const auto& [key, value] :
+         {std::pair{"profile", &layer.profile}, {"view", &layer.view}, {"layer", &layer.layer}})
+        if (reader.has(key)) *value = reader.text(key);
+    if (reader.has("alpha")) layer.alpha_is_opaque = reader.text("alpha") == kOpaqueAlpha;
+    layer.is_held_out = reader.boolean("holdout");
+    return layer;
+}
+
+void read_frames(const grammar::Reader& reader, const fs::path& folder, Sequence& sequence,
+                 Diagnostics& diagnostics) {
+    sequence.role_files = read_role_files(reader, folder);
     // Without a main file the colour's own file takes its place.
     if (reader.has("frames")) sequence.files = file_or_pattern((folder / reader.text("frames")).string());
     else if (sequence.role_files.contains(kColorRole)) sequence.files = sequence.role_files.at(kColorRole);
+    for (const grammar::Reader& layer : reader.objects("layers"))
+        sequence.layers.push_back(read_layer(layer, folder));
+    // Where each layer has files of its own, those in front stand for the capture's.
+    if (sequence.files.text().empty() && !sequence.layers.empty() && sequence.layers.front().files)
+        sequence.files = *sequence.layers.front().files;
     if (!reader.has("range")) return;
     const auto numbers = *parse_frame_range(reader.text("range"));
     if (numbers.size() > 1 && reader.has("frames") && !sequence.files.has_frame() &&
@@ -67,6 +94,7 @@ std::optional<Sequence> read_capture_document(const fs::path& path, Diagnostics&
     if (const Node* cuts = reader.find("cuts"))
         for (const Node& cut : cuts->items) sequence.cuts.push_back(int(cut.integer));
     sequence.subframes = int(reader.integer("subframes"));
+    sequence.deep_layers = int(reader.integer("deep_layers"));
     if (diagnostics.error_count() > errors_before) return std::nullopt;
     return sequence;
 }
@@ -195,7 +223,27 @@ std::optional<Sequence> open_sequence(const std::string& argument, Diagnostics& 
     return sequence;
 }
 
+Sequence sequence_of_layer(const Sequence& sequence, std::size_t index) {
+    const LayerSource& layer = sequence.layers[index];
+    Sequence own = sequence;
+    own.layers.clear();
+    if (layer.files || !layer.role_files.empty()) own.role_files = layer.role_files;
+    if (layer.files) own.files = *layer.files;
+    for (const auto& [role, decoding] : layer.channels) own.channels.insert_or_assign(role, decoding);
+    own.profile = layer.profile.value_or(sequence.profile);
+    own.view = layer.view.value_or(sequence.view);
+    own.layer = layer.layer.value_or(sequence.layer);
+    own.alpha_is_opaque = layer.alpha_is_opaque.value_or(sequence.alpha_is_opaque);
+    return own;
+}
+
 std::vector<fs::path> files_of_sequence(const Sequence& sequence) {
+    if (!sequence.layers.empty()) {
+        std::vector<fs::path> files;
+        for (std::size_t i = 0; i < sequence.layers.size(); ++i)
+            std::ranges::move(files_of_sequence(sequence_of_layer(sequence, i)), std::back_inserter(files));
+        return files;
+    }
     std::set<int> numbers;
     for (const int frame : sequence.frames)
         for (int file = sequence.file_number(frame - 1); file < sequence.file_number(frame + 2); ++file)
@@ -221,7 +269,8 @@ void add_role_file(Sequence& sequence, const std::string& text, Diagnostics& dia
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals + 1 == text.size())
         diagnostics.error(place, "expected role=file, such as depth=z.####.exr");
-    else if (const std::string role = text.substr(0, equals); !find_role(role))
+    else if (const std::string role = text.substr(0, equals);
+             !find_role(role) || split_layer_role(role).layer >= 0)
         diagnostics.error(place, "'" + role + "' is not a role" + did_you_mean(role, role_names()));
     else sequence.role_files.insert_or_assign(role, file_or_pattern(text.substr(equals + 1)));
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/capture/deep_layers.h"
 #include "framework/capture/frame_range.h"
 #include "framework/capture/light.h"
 #include "framework/capture/profile.h"
@@ -23,6 +24,17 @@ struct CryptomatteChoice {
     std::vector<std::string> mask;  ///< objects whose coverage is the role `mask`; empty: none
 };
 
+/// One of "layers" of a capture.json: what it has of its own. The rest is the capture's; but who has files
+/// has them all.
+struct LayerSource {
+    std::optional<FramePattern> files;
+    std::map<std::string, FramePattern> role_files;
+    std::map<std::string, RoleDecoding> channels;  ///< instead of the capture's, by role
+    std::optional<std::string> profile, view, layer;
+    std::optional<bool> alpha_is_opaque;
+    bool is_held_out = false;  ///< what lies in front of it is cut out of it
+};
+
 /// Ordered captures. Made from a capture.json, a bare EXR file, a pattern of files, or a folder of them.
 struct Sequence {
     std::vector<int> frames;       ///< in the order to be run
@@ -31,23 +43,29 @@ struct Sequence {
     std::map<std::string, FramePattern> role_files;  ///< roles that lie in files of their own
     std::map<std::string, RoleDecoding> channels;    ///< of capture.json, instead of the profile's
     std::string profile = "auto";
-    std::string color_space = "auto";  ///< of the stored colours; auto: the profile's
-    std::string view;                  ///< of multi-view files; "" for the default
-    std::string layer;                 ///< of files with several layers; "" for the first
-    bool alpha_is_opaque = false;      ///< the stored alpha of color means nothing: it is read as 1
+    std::string color_space = "auto";      ///< of the stored colours; auto: the profile's
+    std::string view;                      ///< of multi-view files; "" for the default
+    std::string layer;                     ///< of files with several layers; "" for the first
+    bool alpha_is_opaque = false;          ///< the stored alpha of color means nothing: it is read as 1
+    int deep_layers = kDefaultDeepLayers;  ///< most layers that deep pixels are reduced to
+    std::vector<LayerSource> layers;       ///< front to back; empty: the files hold one picture
     double fps = 24;
     int subframes = 1;  ///< a frame is this many captures: the files subframes * frame + 0 .. subframes - 1
     Camera camera;      ///< of capture.json
     std::optional<std::vector<CaptureLight>> lights;  ///< of capture.json
     std::vector<int> cuts;                            ///< frames that begin a shot
     std::optional<CryptomatteChoice> cryptomatte;
-    /// Objects that the role object_id is asked for by name: it is read from the Cryptomatte that has them.
+    /// Objects that the role object_id is requested for by name: it is read from the Cryptomatte that has
+    /// them.
     std::vector<std::string> object_names;
 
     /// The number in the name of a frame's file, by which a CaptureReader reads it.
     int file_number(int frame, int subframe = 0) const { return frame * subframes + subframe; }
     std::filesystem::path path_of(int file) const { return files.path(file); }
 };
+
+/// One layer as a sequence of its own.
+Sequence sequence_of_layer(const Sequence& sequence, std::size_t layer);
 
 /// The capture.json that CAPTURE of the command line names, by itself or by its folder.
 std::optional<std::filesystem::path> capture_document(const std::string& argument);

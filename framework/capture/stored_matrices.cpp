@@ -273,7 +273,7 @@ StoredMatrices of_camera_transform(const ExrPart& part, const Camera& lens) {
     const auto axes = axes_of_transform(*stored, part.metadata);
     if (part.metadata.number("cameraProjection").value_or(0) != 0 || !axes) {
         result.fault = axes ? "cameraTransform is of a camera that does not project in perspective"
-                            : "cameraTransform does not tell which of its rows is up";
+                            : "cameraTransform does not show which of its rows is up";
         return result;
     }
     const glm::dmat4 camera_from_world = glm::inverse(glm::dmat4(

@@ -183,6 +183,7 @@ private:
         if (visit_) visit_(comparison, images);
         for (std::optional<FlipResult>* flip : {&comparison.ldr_flip, &comparison.hdr_flip})
             if (*flip) (*flip)->error = Image();
+        comparison.ssim_map = Image();
         result_.layers.push_back(std::move(comparison));
     }
 

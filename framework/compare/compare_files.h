@@ -39,7 +39,8 @@ struct CompareRules : Levels {
     bool fill_outside = false;
     FlipChoice flip_choice = FlipChoice::automatic;
     FlipOptions flip;
-    bool ssim = true;  ///< SSIM and MS-SSIM of the layers with colours
+    bool ssim = true;       ///< SSIM and MS-SSIM of the layers with colours
+    bool ssim_map = false;  ///< ... with LayerComparison::ssim_map
     /// By LayerInfo::label(); nullopt: the layer is not looked at.
     std::map<std::string, std::optional<LayerRole>> roles;
     ReadLimits limits;
@@ -59,6 +60,7 @@ struct LayerComparison {
     std::vector<std::string> areas;  ///< names of those of PixelDifferences::by_area but its first
     std::optional<FlipResult> ldr_flip, hdr_flip;
     std::optional<double> ssim, ms_ssim;  ///< mean over R, G and B; see ssim.h
+    Image ssim_map;                       ///< of each pixel's window; 1 everywhere for equal bits
     Verdict verdict = Verdict::same;
     std::vector<std::string> reasons;  ///< of the verdict: what was exceeded, by how much
 
@@ -72,7 +74,7 @@ struct Comparison {
     /// What keeps the files from being compared: layers, channels and windows that one has and the other has
     /// not, or why a file cannot be read.
     std::vector<std::string> faults;
-    std::vector<LayerComparison> layers;      ///< in the reference's order; without FLIP's error images
+    std::vector<LayerComparison> layers;  ///< in the reference's order; without FLIP's error images and maps
     std::vector<std::string> unknown_roles;   ///< labels in CompareRules::roles that neither file has
     std::vector<std::string> unknown_layers;  ///< likewise in CompareRules::layers
     std::vector<std::string> labels;          ///< of every layer of either file

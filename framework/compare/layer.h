@@ -28,7 +28,7 @@ bool is_perceptual(LayerRole role);
 struct LayerInfo {
     std::string part;   ///< "" where the file has one part only
     std::string name;   ///< up to the last dot: "diffuse" of diffuse.R; "" of R
-    std::string group;  ///< tells layers of one name apart: "color", "alpha", "depth", "id", "" or a channel
+    std::string group;  ///< separates layers of one name: "color", "alpha", "depth", "id", "" or a channel
     LayerRole role = LayerRole::data;
     std::vector<std::string> channels;  ///< whole names; R G B, X Y Z W, u v in that order, others as stored
     ComponentType type = ComponentType::float32;  ///< uint32 where every channel is uint

@@ -10,7 +10,7 @@
 
 namespace aftershade {
 
-/// OpenEXR, PNG or Radiance, told by its first bytes. OpenEXR: every part, level 0 of tiles; parts with
+/// OpenEXR, PNG or Radiance, recognised by its first bytes. OpenEXR: every part, level 0 of tiles; parts with
 /// subsampled chroma as R, G, B, A of half precision. PNG: `display`, value / maximum. Radiance: `color`.
 /// Headers are read on construction. [one thread at a time]
 class LayerFile {
@@ -28,7 +28,7 @@ public:
     /// Some channels of a layer, in the order asked for, over its own data window. Cut-off and damaged pixels
     /// throw Error(ExitCode::capture).
     Image read(const LayerInfo& layer, const std::vector<std::string>& channels) const;
-    /// Unpacks what will be asked for in one pass, where that fits into the limits. Never fails.
+    /// Unpacks what will be requested in one pass, where that fits into the limits. Never fails.
     void prefetch() const;
 
 private:

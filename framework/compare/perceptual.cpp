@@ -148,11 +148,16 @@ void measure_perceptually(const LayerImages& images, const CompareRules& rules, 
     const bool scales = std::min(reference.width(), reference.height()) >= kMsSsimMinSide_px && !leaves_out;
     if (comparison.differences.bits_equal) {
         comparison.ssim = 1;
+        if (rules.ssim_map) {
+            comparison.ssim_map = Image(reference.width(), reference.height(), 1);
+            std::ranges::fill(comparison.ssim_map.floats(), 1.0f);
+        }
         if (scales) comparison.ms_ssim = 1;
         return;
     }
     const auto [r, t] = encoded_pair(reference, test, comparison.role, rules.threads);
-    const SsimFigures figures = ssim_figures(r, t, rules.threads, leaves_out ? images.areas : PixelAreas{});
+    const SsimFigures figures = ssim_figures(r, t, rules.threads, leaves_out ? images.areas : PixelAreas{},
+                                             rules.ssim_map ? &comparison.ssim_map : nullptr);
     if (figures.measured) comparison.ssim = figures.ssim;
     comparison.ms_ssim = figures.ms_ssim;
 }

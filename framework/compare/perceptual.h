@@ -8,8 +8,8 @@ namespace aftershade {
 /// Fills FLIP and SSIM of a color or display layer of one or three channels over one size; others are left
 /// alone. Light goes into HDR-FLIP as it is, and clamped and sRGB-encoded into SSIM; encoded colours are
 /// clamped, and decoded for FLIP. Where a value is not finite, SSIM sees 0 in both images, or 0 and 1 where
-/// they are not the same NaN or infinity. Equal bits are not measured: 0 and 1. Pixels that are left out are
-/// no part of any mean, and their neighbours see the reference there in both images; MS-SSIM, whose scales
+/// they are not the same NaN or infinity. Equal bits are not measured: 0 and 1. Pixels that are left out do
+/// not count in any mean, and their neighbours see the reference there in both images; MS-SSIM, whose scales
 /// have no such pixels, is then not measured. [thread-safe]
 void measure_perceptually(const LayerImages& images, const CompareRules& rules, LayerComparison& comparison);
 

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "framework/compare/row_filter.h"
@@ -79,11 +80,23 @@ struct Means {
     std::uint64_t pixels = 0;
 };
 
+/// Where the SSIM of pixels is added up over the channels; none where `image` is null.
+struct Map {
+    Image* image = nullptr;
+    double share = 1;  ///< of a channel
+};
+
 /// Local means, variances and covariance of a band of rows: first each row across, then down.
 class Band {
 public:
-    Band(const Plane& reference, const Plane& test, const Window11& weights, const PixelAreas& areas)
-        : reference_(reference), test_(test), weights_(weights), areas_(areas), columns_(reference.width) {
+    Band(const Plane& reference, const Plane& test, const Window11& weights, const PixelAreas& areas,
+         const Map& map)
+        : reference_(reference),
+          test_(test),
+          weights_(weights),
+          areas_(areas),
+          map_(map),
+          columns_(reference.width) {
         const auto row = std::size_t(rows::padded(columns_.count()));
         for (std::size_t m = 0; m < kMoments; ++m) {
             ring_[m].resize(kSsimWindow_px * row);
@@ -139,29 +152,38 @@ private:
             const double variance = means_[kRR][x] - r * r + means_[kTT][x] - t * t;
             const double covariance = means_[kRT][x] - r * t;
             const double contrast = (2 * covariance + kSsimC2) / (variance + kSsimC2);
+            const double ssim = contrast * (2 * r * t + kSsimC1) / (r * r + t * t + kSsimC1);
             total.contrast += contrast;
-            total.ssim += contrast * (2 * r * t + kSsimC1) / (r * r + t * t + kSsimC1);
+            total.ssim += ssim;
+            if (map_.image) add_to_map(columns_.first + int(x), y, ssim);
         }
+    }
+
+    void add_to_map(int x, int y, double ssim) {
+        float& value = map_.image->at(x, y, 0);
+        value = float(map_.share * ssim) + (std::isnan(value) ? 0 : value);
     }
 
     const Plane& reference_;
     const Plane& test_;
     const Window11& weights_;
     const PixelAreas& areas_;
+    const Map& map_;
     Extent columns_;
     std::array<std::vector<double>, kMoments> ring_, padded_, means_;
 };
 
 /// Means over the pixels that count; sums of none.
-Means means_of(const Plane& reference, const Plane& test, int threads, const PixelAreas& areas) {
+Means means_of(const Plane& reference, const Plane& test, int threads, const PixelAreas& areas,
+               const Map& map = {}) {
     static const Window11 weights = gaussian_window();
     const Extent rows(reference.height);
     const int bands = (rows.count() + kBandHeight_px - 1) / kBandHeight_px;
     std::vector<Means> sums(std::size_t(bands), Means{});
     for_each_row(bands, threads, [&](int band) {
         const int first = rows.first + band * kBandHeight_px;
-        sums[std::size_t(band)] =
-            Band(reference, test, weights, areas).sum(first, std::min(first + kBandHeight_px, rows.last));
+        sums[std::size_t(band)] = Band(reference, test, weights, areas, map)
+                                      .sum(first, std::min(first + kBandHeight_px, rows.last));
     });
     Means means;
     for (const Means& sum : sums)
@@ -172,16 +194,21 @@ Means means_of(const Plane& reference, const Plane& test, int threads, const Pix
 
 }  // namespace
 
-SsimFigures ssim_figures(const Image& reference, const Image& test, int threads, const PixelAreas& areas) {
+SsimFigures ssim_figures(const Image& reference, const Image& test, int threads, const PixelAreas& areas,
+                         Image* map) {
     assert(reference.width() == test.width() && reference.height() == test.height());
     assert(reference.channels() == test.channels() && !reference.empty());
     const bool scales =
         std::min(reference.width(), reference.height()) >= kMsSsimMinSide_px && areas.of_pixel.empty();
+    if (map) {
+        *map = Image(reference.width(), reference.height(), 1);
+        std::ranges::fill(map->floats(), std::numeric_limits<float>::quiet_NaN());
+    }
     double sum = 0, multi_scale_sum = 0;
     bool any = false;
     for (int c = 0; c < reference.channels(); ++c) {
         Plane r = plane_of(reference, c), t = plane_of(test, c);
-        Means means = means_of(r, t, thread_count(threads), areas);
+        Means means = means_of(r, t, thread_count(threads), areas, {map, 1.0 / reference.channels()});
         sum += means.ssim;
         any = means.pixels > 0;
         if (!scales) continue;

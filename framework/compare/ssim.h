@@ -32,8 +32,10 @@ struct SsimFigures {
 /// SSIM: population variances; mean over the pixels whose window lies inside, as scikit-image with
 /// gaussian_weights and data_range 1. A side below 11 px is extended by reflection, and all its pixels count.
 /// MS-SSIM: weights 0.0448, 0.2856, 0.3001, 0.2363, 0.1333 over scales halved by means of 2 x 2 px; a mean
-/// below 0 counts as 0. Pixels that `areas` leaves out have no window of their own. [thread-safe]
+/// below 0 counts as 0. Pixels that `areas` leaves out have no window of their own. `map`, where given,
+/// becomes one channel, of each pixel's window, whose mean is the SSIM; NaN where no window counts.
+/// [thread-safe]
 SsimFigures ssim_figures(const Image& reference, const Image& test, int threads = 0,
-                         const PixelAreas& areas = {});
+                         const PixelAreas& areas = {}, Image* map = nullptr);
 
 }  // namespace aftershade

@@ -267,7 +267,7 @@ void write_directly(const fs::path& path, std::string_view text) {
         throw Error(ExitCode::output, path.string() + ": cannot be written: " + why);
     };
     const int file = open_directly(path);
-    if (file < 0) fail(errno == ENXIO ? "it is a pipe that nobody reads" : std::strerror(errno));
+    if (file < 0) fail(errno == ENXIO ? "it is a pipe without a reader" : std::strerror(errno));
     int failure = 0;
     while (!text.empty() && failure == 0) {
         const ssize_t written = write(file, text.data(), text.size());

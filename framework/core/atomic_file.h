@@ -62,21 +62,21 @@ private:
 };
 
 /// Removes what AtomicFile left in `folder` when its process was killed, and returns the paths. A file counts
-/// as left behind if its name says this host and a process that no longer runs, and nobody holds its lock;
-/// those of other hosts stay, since their processes cannot be seen from here.
+/// as left behind if its name says this host and a process that no longer runs, and no process holds its
+/// lock; those of other hosts stay, since their processes cannot be seen from here.
 std::vector<std::filesystem::path> remove_stale_temporaries(const std::filesystem::path& folder);
 
-/// Makes the folder of a file that shall be written, and removes what a killed run left in it: better before
+/// Makes the folder of a file to be written, and removes what a killed run left in it: better before
 /// the work than after it. Throws Error(ExitCode::output) naming the file and the reason where the folder
-/// cannot be made or nothing can be written into it. "" is no file.
+/// cannot be made or nothing can be written into it. "" is not a file.
 void prepare_output_folder(const std::filesystem::path& file);
 
 /// Replaces the file by this text; a pipe, a socket, a device and what /dev/stdout leads to get it directly.
-/// Throws Error(ExitCode::output) naming the path, also for a pipe that nobody reads.
+/// Throws Error(ExitCode::output) naming the path, also for a pipe without a reader.
 void write_text_file(const std::filesystem::path& path, std::string_view text);
 
-/// The file's bytes as they are, also where the system does not know their number (/proc). "" where it cannot
-/// be read; `failure` says why, and is cleared otherwise.
+/// The file's bytes as they are, also where the system does not report their number (/proc). "" where it
+/// cannot be read; `failure` says why, and is cleared otherwise.
 std::string read_text_file(const std::filesystem::path& path, std::error_code& failure);
 /// The same. Throws Error(code) naming the path and the system's reason.
 std::string read_text_file(const std::filesystem::path& path, ExitCode code);

@@ -1,4 +1,4 @@
-// What the kernel keeps native code of strangers from: Landlock and seccomp, where it has them.
+// What the kernel keeps untrusted native code from: Landlock and seccomp, where it has them.
 #pragma once
 
 #include <string>

@@ -51,14 +51,15 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::string did_you_mean(std::string_view word, std::span<const std::string> candidates) {
+std::string did_you_mean(std::string_view word, std::span<const std::string> candidates,
+                         std::string_view otherwise) {
     constexpr std::size_t kLongestWord = 100;
     const std::string* best = nullptr;
     std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
     for (const std::string& candidate : candidates) {
         const bool begins = word.size() >= 3 && candidate.starts_with(word);
         const std::size_t longer = std::max(word.size(), candidate.size());
-        // Each missing character is a change, so that long texts of strangers cost nothing.
+        // Each missing character is a change, so that long untrusted texts cost nothing.
         if (longer > kLongestWord || longer - std::min(word.size(), candidate.size()) >= best_distance) {
             if (!begins) continue;
         }
@@ -69,7 +70,7 @@ std::string did_you_mean(std::string_view word, std::span<const std::string> can
             best_distance = distance;
         }
     }
-    return best ? "; did you mean '" + *best + "'?" : "";
+    return best ? "; did you mean '" + *best + "'?" : std::string(otherwise);
 }
 
 std::string list_of_names(std::span<const std::string> names, std::string_view conjunction) {

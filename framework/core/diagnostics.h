@@ -1,6 +1,7 @@
 // Faults in the user's documents, collected so that all of them are printed at once, like a compiler.
 #pragma once
 
+#include <filesystem>
 #include <ostream>
 #include <span>
 #include <string>
@@ -40,13 +41,21 @@ public:
     /// hold, become '?'.
     void print(std::ostream& out) const;
 
+    /// Every reader of documents notes them here, whether or not they have faults, so that InputFiles can
+    /// hold outputs against all of them.
+    void note_document(const std::filesystem::path& file) { documents_.push_back(file); }
+    const std::vector<std::filesystem::path>& documents() const { return documents_; }
+
 private:
     std::vector<Diagnostic> all_;
     int error_count_ = 0;
+    std::vector<std::filesystem::path> documents_;
 };
 
-/// "; did you mean 'focus_distance'?" where a candidate is close enough to `word` by edit distance, else "".
-std::string did_you_mean(std::string_view word, std::span<const std::string> candidates);
+/// "; did you mean 'focus_distance'?" where a candidate is close enough to `word` by edit distance, else
+/// `otherwise`.
+std::string did_you_mean(std::string_view word, std::span<const std::string> candidates,
+                         std::string_view otherwise = "");
 
 /// "'a', 'b' or 'c'", for messages.
 std::string list_of_names(std::span<const std::string> names, std::string_view conjunction = "or");

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "framework/core/atomic_file.h"
-#include "framework/core/input_files.h"
 
 namespace aftershade {
 
@@ -103,7 +102,7 @@ public:
         const Place at = place(string_start(offset() - 1));
         Node& object = *stack_.back();
         if (!keys_.back().insert(value).second) {
-            diagnostics_.error(at, "the key '" + value + "' stands twice in one object; first at line " +
+            diagnostics_.error(at, "the key '" + value + "' occurs twice in one object; first at line " +
                                        std::to_string(first_line_of(object, value)));
             return false;
         }
@@ -266,7 +265,7 @@ std::optional<Node> parse_document(std::string_view text, const std::string& fil
 std::optional<Node> read_document(const std::filesystem::path& path, Diagnostics& diagnostics) {
     std::string fault;
     const std::string text = read_regular_file(path, kMaxDocumentBytes, fault);
-    note_document(path);
+    diagnostics.note_document(path);
     if (fault.empty()) return parse_document(text, path.string(), diagnostics);
     diagnostics.error({path.string()}, fault);
     return std::nullopt;

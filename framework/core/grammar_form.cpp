@@ -181,7 +181,7 @@ const Block* kind_of(const Node& node, const Block& block) {
 }
 
 Key selector_key(const Block& block) {
-    constexpr const char* kDoc = "What kind it is, and so which keys it has.";
+    constexpr const char* kDoc = "Kind, which decides the other keys.";
     const Form form = choice(names_of(block.kinds));
     if (block.default_kind.empty()) return required(block.selector, form, kDoc);
     return optional(block.selector, form, kDoc, "\"" + block.default_kind + "\"");

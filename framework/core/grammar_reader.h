@@ -15,7 +15,7 @@
 namespace aftershade::grammar {
 
 /// Each value is the document's where it is there and sound, else the declared default, else nothing: 0, "",
-/// false, an empty list. It reports no fault: check() has. The block must declare each key that is asked for;
+/// false, an empty list. It reports no fault: check() has. The block must declare each key that is read;
 /// its selector is kind(). Node and block outlive the reader. [any thread]
 class Reader {
 public:
@@ -58,8 +58,9 @@ public:
 
     /// nullopt where there is no object.
     std::optional<Reader> object(std::string_view key) const;
-    std::vector<Reader> objects(std::string_view key) const;  ///< of a list; what is no object is left out
-    std::size_t index() const { return index_; }              ///< of one of objects(), in its list
+    std::vector<Reader> objects(
+        std::string_view key) const;              ///< of a list; what is not an object is left out
+    std::size_t index() const { return index_; }  ///< of one of objects(), in its list
     struct Named;
     std::vector<Named> named(std::string_view key) const;  ///< of a map
 

@@ -254,7 +254,7 @@ const std::vector<Key>& head_keys() {
     static const std::vector<Key> keys = {
         required("aftershade", custom({.type = "`1`", .schema = R"({"const": 1})", .check = check_version}),
                  "Version of the format."),
-        optional("$schema", text(), "Where an editor finds the schema.")};
+        optional("$schema", text(), "Path of the schema, for editors.")};
     return keys;
 }
 

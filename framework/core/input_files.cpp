@@ -2,8 +2,6 @@
 
 #include <sys/stat.h>
 
-#include <mutex>
-#include <set>
 #include <system_error>
 #include <utility>
 
@@ -19,27 +17,7 @@ fs::path canonical_path(const fs::path& path) {
     return failure ? path : result;
 }
 
-struct Documents {
-    std::mutex mutex;
-    std::set<fs::path> files;
-};
-
-Documents& documents() {
-    static Documents all;
-    return all;
-}
-
 }  // namespace
-
-void note_document(const fs::path& file) {
-    const std::scoped_lock lock(documents().mutex);
-    documents().files.insert(file);
-}
-
-InputFiles::InputFiles() {
-    const std::scoped_lock lock(documents().mutex);
-    for (const fs::path& file : documents().files) add(file);
-}
 
 const InputFiles::Folder& InputFiles::folder_of(const std::string& text) const {
     const auto known = folders_.find(text);
@@ -73,9 +51,9 @@ InputFiles::Found InputFiles::find(const fs::path& path) const {
 
 void InputFiles::add(const fs::path& file) {
     if (file.empty()) return;
-    const Found found = find(file);
+    Found found = find(file);
     if (found.identity) by_identity_.emplace(*found.identity, file);
-    else by_path_.emplace(found.path, file);
+    else by_path_.emplace(std::move(found.path), file);
 }
 
 void InputFiles::add(std::span<const fs::path> files) {
@@ -97,13 +75,13 @@ std::optional<fs::path> InputFiles::replaced_by(const fs::path& output) const {
 
 bool InputFiles::check_output(const Place& place, const fs::path& output, Diagnostics& diagnostics) {
     if (output.empty()) return true;
-    const Found found = find(output);
+    Found found = find(output);
     if (const auto input = input_at(found)) {
         diagnostics.error(place, "would replace the input " + input->string());
         return false;
     }
     // Any number of outputs may go to one pipe or to /dev/null.
-    if (found.is_file && !outputs_.insert(found.path).second) {
+    if (found.is_file && !outputs_.insert(std::move(found.path)).second) {
         diagnostics.error(place, "another output has this name");
         return false;
     }

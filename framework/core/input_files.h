@@ -19,10 +19,7 @@ namespace aftershade {
 /// found, and by their paths with links followed, where they are not there yet. [one thread at a time]
 class InputFiles {
 public:
-    /// With the documents that this process has read so far (note_document).
-    InputFiles();
-
-    /// A file that is read, or will be. "" is none.
+    /// A file that is read, or will be; Diagnostics::documents() lists what has been. "" is none.
     void add(const std::filesystem::path& file);
     void add(std::span<const std::filesystem::path> files);
 
@@ -59,9 +56,5 @@ private:
     mutable std::unordered_map<std::string, Folder> folders_;
     std::unordered_set<std::string> outputs_;  ///< with links followed
 };
-
-/// Every reader of documents notes them here, so that none is forgotten where a document names others.
-/// [thread-safe]
-void note_document(const std::filesystem::path& file);
 
 }  // namespace aftershade

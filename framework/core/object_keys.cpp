@@ -77,7 +77,7 @@ std::vector<TableKey> object_range_keys(std::string_view text, const Node& node,
         if (const auto range = parse_range(piece)) keys.push_back(*range);
         else
             diagnostics.error(node.place, label + ": '" + std::string(trimmed(piece)) +
-                                              "' is no range of ids; write \"3-7,9\", each from 0 to "
+                                              "' is not a range of ids; write \"3-7,9\", each from 0 to "
                                               "4294967295 and rising");
     }
     return keys;

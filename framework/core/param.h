@@ -68,7 +68,8 @@ struct TableValue {
     bool operator==(const TableValue&) const = default;
 };
 
-/// What a value holds that only its type's own module knows. Immutable, since values share it. [thread-safe]
+/// What a value holds that only its type's own module defines. Immutable, since values share it.
+/// [thread-safe]
 class ValueContent {
 public:
     virtual ~ValueContent() = default;
@@ -179,7 +180,7 @@ std::optional<ParamValue> parse_param_value(const ParamSpec& spec, const Node& n
                                             Diagnostics& diagnostics);
 
 /// The value as a document would write it, without unit; one line. Of a table, a row's cells stand in the
-/// order of its columns under "cells": the value does not know their names.
+/// order of its columns under "cells": the value does not hold their names.
 std::string format_value(const ParamValue& value);
 /// The same with the columns' names, as a document would write a table too.
 std::string format_value(const ParamSpec& spec, const ParamValue& value);
@@ -212,7 +213,7 @@ struct RelationFault {
 std::vector<RelationFault> check_relations(std::span<const ParamSpec> specs, const ParamSet& values);
 /// "bokeh.focus_distance: 0.04 m must be above focal_length, 50 mm"; `step` is "bokeh".
 std::string relation_message(const std::string& step, const RelationFault& fault);
-/// For a manifest: relations to parameters that do not exist, are no scalars or measure something else, and
+/// For a manifest: relations to parameters that do not exist, are not scalars or measure something else, and
 /// defaults that do not hold.
 void check_relation_declarations(std::span<const ParamSpec> specs, Diagnostics& diagnostics);
 

@@ -61,7 +61,7 @@ Form requires_form() {
     return grammar::list(grammar::text(
         {.pattern = {R"(^\s*(<|<=|>|>=)\s*[a-z][a-z0-9_]*\s*$)",
                      [](const std::string& text) { return parse_relation(text, {}).has_value(); }},
-         .fault = "'{}' is no relation; write '<', '<=', '>' or '>=' and the name of a "
+         .fault = "'{}' is not a relation; write '<', '<=', '>' or '>=' and the name of a "
                   "parameter: \"> focal_length\"",
          .type = "[relation](#relations)"}));
 }
@@ -70,12 +70,12 @@ Form requires_form() {
 std::vector<Key> range_keys() {
     constexpr const char* kEnds = "'ui' holds two numbers, the ends of a slider";
     return {optional("unit", grammar::shown_as(grammar::choice(unit_names()), "unit"),
-                     "That GLSL receives: " + joined(unit_names(), " or ") +
-                         "; by default none, of an angle `deg`."),
-            optional("min", grammar::number(), "Of each component; of a curve's y."),
+                     "Unit that GLSL receives: " + joined(unit_names(), " or ") +
+                         "; default: none, for an angle `deg`."),
+            optional("min", grammar::number(), "Limits of each component, or of a curve's y."),
             optional("max", grammar::number(), "Likewise."),
             optional("ui", grammar::list(grammar::number(), {.min = 2, .max = 2, .fault = kEnds}),
-                     "Ends of a slider, within them.")};
+                     "Ends of a slider, within the limits.")};
 }
 
 /// Of a parameter that is no column.
@@ -92,14 +92,14 @@ std::vector<Key> manifest_keys(ParamType type, const ParamSources& sources) {
                                        "`camera.<field>`"),
                      "The default where the capture has that value."));
     if (type->is_scalar)
-        keys.push_back(optional("requires", requires_form(), "How it stands to other parameters."));
+        keys.push_back(optional("requires", requires_form(), "Relation to other parameters."));
     return keys;
 }
 
 /// What the declaration of every type, and of this one, has; `column` is that of a table's columns.
 Block declaration_of(ParamType type, const Block& column) {
     Block block{.name = std::string(type->name)};
-    Key value = optional("default", grammar::make_form<AnyValue>(type), "Where nobody sets another.");
+    Key value = optional("default", grammar::make_form<AnyValue>(type), "The value when none is set.");
     value.required = type->has_default;
     block.keys.push_back(std::move(value));
     if (type->has_range)
@@ -120,7 +120,7 @@ Block block_of(const std::string& name, std::string doc) {
 
 /// Of a table: of a block type, a uniform, and without a relation to anything else.
 Block column_block(std::span<const ParamType> types) {
-    Block block = block_of("column", "What a table has for each object.");
+    Block block = block_of("column", "A column of a table, with a value per object.");
     block.name.clear();
     block.type = "[column](#tables)";
     for (const ParamType type : types)

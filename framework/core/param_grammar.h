@@ -16,8 +16,8 @@ namespace aftershade {
 /// What a parameter of a type may be "from". Without: any text.
 using ParamSources = std::function<std::vector<std::string>(ParamType type)>;
 
-/// One entry of a manifest's "params", which is of one of `types`. What a default must be beside its kind,
-/// read_param_spec() knows.
+/// One entry of a manifest's "params", which is of one of `types`. read_param_spec() checks what a default
+/// must be beside its kind.
 grammar::Block param_block(std::span<const ParamType> types, const ParamSources& sources = {});
 
 /// "> focal_length", spaces where one likes. nullopt for any other text.

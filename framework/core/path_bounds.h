@@ -1,4 +1,4 @@
-// Where the files of documents that may come from strangers can lie.
+// Where the files of documents from untrusted sources can lie.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,13 @@
 namespace aftershade {
 
 /// "" where `file` lies in `folder` or below with links followed, or in a folder that the user allowed. Else
-/// why not, with the remedy, as a message goes on after the file's name: "leads out of the folder 'effects/x'
+/// why not, with the remedy, as a message continues after the file's name: "leads out of the folder
+/// 'effects/x'
 /// ...".
 std::string out_of_bounds(const std::filesystem::path& file, const std::filesystem::path& folder);
 
 /// The bytes of a regular file of at most `max_bytes` that lies in `folder` under the relative path `name`,
-/// and is reached without following a link: for folders that come from strangers. Else "", and `fault` says
+/// and is reached without following a link: for untrusted folders. Else "", and `fault` says
 /// why, as a message ends.
 std::string read_file_below(const std::filesystem::path& folder, const std::filesystem::path& name,
                             std::uintmax_t max_bytes, std::string& fault);

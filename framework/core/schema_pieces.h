@@ -25,7 +25,7 @@ json snake_case();
 /// {"anyOf": [...]}
 json any_of(std::vector<json> forms);
 
-/// As a ParamSpec's unit: strings in every unit that there is.
+/// As a ParamSpec's unit: strings in every unit.
 inline constexpr const char* kAnyUnit = "*";
 /// A number with limits; the spec's unit adds strings such as "85 mm" in any unit that converts to it.
 json quantity(const ParamSpec& spec);

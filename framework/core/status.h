@@ -1,4 +1,4 @@
-// What this process is doing, told to the process that started it, so that a crash can be blamed on
+// What this process is doing, reported to the process that started it, so that a crash can be blamed on
 // something.
 #pragma once
 

@@ -78,6 +78,10 @@ std::string joined(std::span<const std::string> parts, std::string_view last, st
     return text;
 }
 
+std::string counted(std::size_t count, std::string_view noun) {
+    return std::to_string(count) + " " + std::string(noun) + (count == 1 ? "" : "s");
+}
+
 std::string printable(std::string_view text) {
     std::string result;
     while (!text.empty()) {

@@ -23,6 +23,9 @@ std::vector<std::string_view> split(std::string_view text, char separator);
 std::string joined(std::span<const std::string> parts, std::string_view last,
                    std::string_view between = ", ");
 
+/// "1 frame", "0 frames"; the plural of `noun` ends in s.
+std::string counted(std::size_t count, std::string_view noun);
+
 /// For people: every byte of a control character, and of what is not UTF-8 (RFC 3629), becomes '?'. Names in
 /// files can be anything, a terminal's commands too.
 std::string printable(std::string_view text);

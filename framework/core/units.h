@@ -10,7 +10,7 @@ namespace aftershade {
 
 struct Quantity {
     double value = 0;
-    std::string unit;  ///< a name that is_unit() knows
+    std::string unit;  ///< a name that is_unit() accepts
 };
 
 /// um mm cm m km in ft, deg rad turn, px, s ms, ev (stops).

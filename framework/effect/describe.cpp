@@ -42,6 +42,7 @@ private:
 std::string input_flags(const InputSpec& input) {
     std::string flags = input.optional ? ", optional" : "";
     if (input.history) flags += ", with the frame before";
+    if (input.layer >= 0) flags += ", of layer " + std::to_string(input.layer);
     if (input.from_capture) flags += ", the capture's own";
     if (input.frame != 0) flags += input.frame < 0 ? ", of the frame before" : ", of the next frame";
     return flags;

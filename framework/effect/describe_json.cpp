@@ -43,6 +43,7 @@ std::string describe_json(const EffectManifest& manifest) {
         json entry = {{"role", input.role}, {"optional", input.optional}, {"doc", input.doc}};
         if (input.history) entry["history"] = true;
         if (input.frame != 0) entry["frame"] = input.frame;
+        if (input.layer >= 0) entry["layer"] = input.layer;
         if (input.from_capture) entry["from"] = "capture";
         result["inputs"][input.name] = entry;
     }

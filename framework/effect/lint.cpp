@@ -52,7 +52,7 @@ private:
             if (std::none_of(manifest_.passes.begin(), manifest_.passes.end(), reads) &&
                 std::none_of(manifest_.telemetry.begin(), manifest_.telemetry.end(), tells))
                 diagnostics_.warning(texture.place, "no pass reads the texture '" + texture.name +
-                                                        "': it is only written where it is tapped");
+                                                        "'; it is written only for a tap");
         }
     }
 
@@ -76,7 +76,7 @@ private:
                 if (format.ends_with("16f") || format.ends_with("8"))
                     diagnostics_.warning(
                         texture->place,
-                        "the texture '" + texture->name + "' is made of " + pass.reads[0].name +
+                        "the texture '" + texture->name + "' is made from " + pass.reads[0].name +
                             " but has the format " + format +
                             ", which keeps 11 bits or fewer; r32f or rg32f keeps what it holds");
             }
@@ -87,8 +87,8 @@ private:
         for (const auto& [pass, tokens] : tokens_)
             if (has_member(tokens, "frame", "history_valid")) return;
         diagnostics_.warning({(manifest_.folder / "effect.json").string()},
-                             "the effect has history, but no shader asks frame.history_valid: after a cut it "
-                             "would blend with nothing");
+                             "the effect has history, but no shader reads frame.history_valid: after a cut "
+                             "it would blend with nothing");
     }
 
     static bool has_member(const std::vector<Token>& tokens, const std::string& block,
@@ -154,7 +154,7 @@ private:
                     if (tokens[at].text == ")" && --depth == 0) break;
                     if (tokens[at].text != "param") continue;
                     diagnostics_.warning(tokens[i].place,
-                                         "a parameter bounds this loop; say \"max_iterations\" in pass '" +
+                                         "a parameter bounds this loop; set \"max_iterations\" in pass '" +
                                              pass.name + "': llvmpipe silently ends loops after 65,535");
                     return;
                 }

@@ -9,8 +9,8 @@
 namespace aftershade {
 
 /// Warnings with their places: a texture that no output depends on, half or 8-bit formats for what is written
-/// from depth, velocity, positions or ids alone, history whose shaders never ask frame.history_valid, an sRGB
-/// encoding in an effect that makes no display, loops bounded by a parameter in a pass without
+/// from depth, velocity, positions or ids alone, history whose shaders never test frame.history_valid, an
+/// sRGB encoding in an effect that makes no display, loops bounded by a parameter in a pass without
 /// "max_iterations".
 void lint_effect(const EffectManifest& manifest, const std::filesystem::path& glsl_folder,
                  Diagnostics& diagnostics);

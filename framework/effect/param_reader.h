@@ -10,7 +10,7 @@
 
 namespace aftershade {
 
-/// What may be asked of a parameter's value: all of it, or of one that reaches shaders through a texture or a
+/// What may be read of a parameter's value: all of it, or of one that reaches shaders through a texture or a
 /// storage block only what decides sizes and text. Contents of tables, curves and profiles change without a
 /// new graph.
 enum class ParamAspect {

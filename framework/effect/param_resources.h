@@ -66,7 +66,7 @@ ParamTexture param_texture(const ParamSpec& spec, const ParamValue& value);
 /// rows of kLutRow.
 ParamTexture file_texture(const ParamFile& file);
 
-/// The id of an object by its name; nullopt for a name that there is not.
+/// The id of an object by its name; nullopt for a name that does not exist.
 using ObjectIds = std::function<std::optional<std::uint32_t>(const std::string&)>;
 
 /// Bytes of the storage block of a parameter that shaders look up by object, with room for that many entries:
@@ -74,8 +74,8 @@ using ObjectIds = std::function<std::optional<std::uint32_t>(const std::string&)
 std::size_t table_buffer_bytes(const ParamSpec& spec, std::size_t entries);
 
 /// The bytes of a table's storage block, std430, at most table_buffer_bytes(). Rows whose name `ids` does not
-/// know are left out: the caller has been asked and reports them. A row by name goes before one by id; of two
-/// names for one id the first.
+/// resolve are left out: the caller reports them. A row by name goes before one by id; of two names for one
+/// id the first.
 std::vector<std::byte> table_buffer(const ParamSpec& spec, const TableValue& table, const ObjectIds& ids);
 
 }  // namespace aftershade

@@ -1,11 +1,15 @@
 #include "framework/effect/pass_program.h"
 
+#include <filesystem>
+#include <set>
 #include <sstream>
+#include <string>
 #include <utility>
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
 #include "framework/core/glsl_text.h"
+#include "framework/effect/usage_check.h"
 
 namespace aftershade {
 
@@ -113,6 +117,21 @@ const gpu::Program& ProgramCache::host(const std::string& file, const std::vecto
     return programs_.emplace(key, make(sources, "host." + file)).first->second;
 }
 
+namespace {
+
+/// A wrong name in the shader is found by its text, too, which offers the right one.
+void add_hints(const EffectManifest& manifest, const std::filesystem::path& glsl_folder,
+               const ShaderSource& source, Diagnostics& faults) {
+    std::set<std::string> files;
+    for (const SourceLine& line : source.lines) files.insert(line.file);
+    Diagnostics hints;
+    check_declared_used(manifest, glsl_folder, hints);
+    for (const Diagnostic& hint : hints.all())
+        if (files.contains(hint.place.file)) faults.error(hint.place, hint.message);
+}
+
+}  // namespace
+
 const gpu::Program& ProgramCache::get(const ShaderContext& context) {
     const PassSpec& pass = *context.pass;
     const std::string where = "pass " + pass.name + ", " + context_.info().renderer;
@@ -126,6 +145,7 @@ const gpu::Program& ProgramCache::get(const ShaderContext& context) {
             return programs_.emplace(key, std::move(program)).first->second;
         } catch (const gpu::ShaderError& error) {
             const ShaderSource& source = sources.of_stage(error.stage());
+            add_hints(*context.manifest, glsl_folder_, source, faults);
             for (const gpu::ShaderMessage& message : error.messages())
                 if (message.error)
                     faults.error(author_place(source, message), message.text + "   [" + where + "]");

@@ -19,11 +19,28 @@ EffectRegistry::EffectRegistry(std::vector<fs::path> folders, fs::path glsl_fold
             std::error_code unreadable;
             const fs::path& effect = at->path();
             const fs::file_type type = fs::status(effect / "effect.json", unreadable).type();
-            if (type == fs::file_type::regular) folders_.emplace(effect.filename().string(), effect);
-            else if (type == fs::file_type::none) unreadable_.emplace(effect, unreadable.message());
+            if (type == fs::file_type::regular) {
+                const std::string id = effect.filename().string();
+                if (!folders_.emplace(id, effect).second) hidden_.emplace_back(id, effect);
+            } else if (type == fs::file_type::none) unreadable_.emplace(effect, unreadable.message());
         }
         if (failure && failure != std::errc::no_such_file_or_directory)
             unreadable_.emplace(folder, failure.message());
+    }
+}
+
+void EffectRegistry::warn_of_unreadable(Diagnostics& diagnostics) const {
+    for (const auto& [folder, reason] : unreadable_)
+        diagnostics.warning({folder.string()}, "cannot be read, and its effects are left out: " + reason);
+}
+
+void EffectRegistry::warn_of_hidden(Diagnostics& diagnostics) const {
+    for (const auto& [id, folder] : hidden_) {
+        const fs::path& used = folders_.at(id);
+        std::error_code failure;
+        if (fs::equivalent(used, folder, failure)) continue;
+        diagnostics.warning({used.string()},
+                            "hides the effect '" + id + "' of " + folder.string() + " (rename one of them)");
     }
 }
 

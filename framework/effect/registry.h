@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "framework/core/diagnostics.h"
@@ -23,19 +24,22 @@ public:
     /// Ids of all effects, sorted. The first folder wins where two have an effect of one id.
     std::vector<std::string> ids() const;
     bool contains(const std::string& id) const { return folders_.contains(id); }
-    /// Folders that could not be read, with the reason; what they hold is left out.
-    const std::map<std::filesystem::path, std::string>& unreadable() const { return unreadable_; }
+    /// A warning for each folder that could not be read; what it holds is left out.
+    void warn_of_unreadable(Diagnostics& diagnostics) const;
+    /// A warning for each effect that has the id of one in a later folder, which it hides.
+    void warn_of_hidden(Diagnostics& diagnostics) const;
     /// nullptr after faults in the manifest, which go to `diagnostics` the first time.
     const EffectManifest* find(const std::string& id, Diagnostics& diagnostics);
 
 private:
     std::filesystem::path glsl_folder_;
-    std::map<std::string, std::filesystem::path> folders_;     // by id
-    std::map<std::filesystem::path, std::string> unreadable_;  // reasons
+    std::map<std::string, std::filesystem::path> folders_;               // by id
+    std::map<std::filesystem::path, std::string> unreadable_;            // reasons
+    std::vector<std::pair<std::string, std::filesystem::path>> hidden_;  // ids and folders
     std::map<std::string, std::optional<EffectManifest>> manifests_;
 };
 
-/// Whether the effect is one of those that come with the program; all others are strangers'. Throws as
+/// Whether the effect is one of those that come with the program; all others are untrusted. Throws as
 /// data_path() does.
 bool is_shipped(const EffectManifest& manifest);
 

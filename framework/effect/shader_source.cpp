@@ -109,7 +109,9 @@ private:
             add_include(include->is_shared, include->name, place);
         } else if (is_version(line)) {
             if (source_.lines.empty() && line == "#version 450 core") has_version_ = true;
-            else diagnostics_.error(place, "'#version 450 core' stands once, as the first line of a shader");
+            else
+                diagnostics_.error(place,
+                                   "'#version 450 core' must appear once, as the first line of a shader");
             add_line(line, place.file, place.line);
         } else {
             add_line(line, place.file, place.line);

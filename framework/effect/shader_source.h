@@ -49,7 +49,7 @@ struct ShaderContext {
 /// Where everything of a pass is bound. The GLSL is written from this and the host binds by it.
 struct PassBindings {
     std::vector<ReadSpec> reads;  ///< sampler i is reads[i]
-    int first_param_sampler = 0;  ///< then one for each curve and each file that there is ...
+    int first_param_sampler = 0;  ///< then one for each curve and each file that is given ...
     std::vector<const ParamSpec*> param_samplers;
     int first_native_sampler = 0;  ///< ... and one for each native table
     std::vector<const NativeTableSpec*> native_tables;

@@ -117,7 +117,7 @@ private:
             const std::string word = std::string(kOut) + name;
             if (std::find(targets.begin(), targets.end(), word) == targets.end())
                 once(place,
-                     "'" + word + "' is no target of a pass with this shader" + did_you_mean(word, meant));
+                     "'" + word + "' is not a target of a pass with this shader" + did_you_mean(word, meant));
         }
         for (const auto& [name, place] : uses.params) check_member(name, place);
         for (const auto& [name, place] : uses.natives) check_native_member(name, place);

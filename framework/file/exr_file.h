@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "framework/file/deep_image.h"
 #include "framework/image/color_space.h"
 #include "framework/image/image.h"
 #include "framework/image/pixel_type.h"
@@ -69,12 +70,13 @@ struct ExrPart {
     float pixel_aspect = 1;
     std::vector<ExrChannel> channels;  ///< in the file's order
     ExrMetadata metadata;
+    bool is_deep() const { return type.starts_with("deep"); }
     /// Second names of channels, each with the first: "Beauty.R" for "R" of a part that is called Beauty.
     /// Only FrameFile::merged() has any.
     std::map<std::string, std::string> other_names;
 };
 
-/// What one call of read_floats or read_uints asks for.
+/// What one call of read_floats or read_uints requests.
 struct ExrRequest {
     int part = 0;
     std::vector<std::string> channels;
@@ -104,11 +106,16 @@ public:
     /// files and channels that do not exist are errors.
     Image read_floats(int part, std::span<const std::string> channels) const;
     Image read_uints(int part, std::span<const std::string> channels) const;
-    /// Unpacks what these reads will ask for in one pass over each part, instead of one for each read: all
+    /// Unpacks what these reads will request in one pass over each part, instead of one for each read: all
     /// channels of a block are compressed together. The next read of exactly a request's channels takes what
     /// is kept for it. Never fails: what cannot be read, or would be more than the limits allow, is left to
-    /// the reads, which tell; so is a request that shares a channel with one before it.
+    /// the reads, which report it; so is a request that shares a channel with one before it.
     void prefetch(std::span<const ExrRequest> requests) const;
+    /// The samples of the named channels of a deep part (of level 0 where tiled); half becomes float, uint
+    /// stays. Sample counts are read first, and held against the limits before there is memory for the
+    /// samples; without channels they are all that is read. Flat parts, incomplete files and channels that do
+    /// not exist are errors.
+    DeepImage read_deep(int part, std::span<const std::string> channels) const;
     /// RGBA of a part that stores luminance Y, or Y with subsampled RY and BY, as OpenEXR's own RgbaInputFile
     /// converts it, to half precision.
     Image read_luminance_chroma(int part) const;
@@ -151,6 +158,10 @@ struct HalfOverflow {
 std::vector<HalfOverflow> write_exr(const std::filesystem::path& path,
                                     std::span<const ExrOutputChannel> channels,
                                     const ExrWriteOptions& options);
+
+/// Writes one deep scan-line part in the same way, floats as float; compression is none, rle or zips.
+void write_deep_exr(const std::filesystem::path& path, const DeepImage& image,
+                    const ExrWriteOptions& options);
 
 /// What ExrWriteOptions::compression may be: what the OpenEXR of this build has, from "none" and "rle" to
 /// "dwab"; from 3.4 on also "htj2k256" and "htj2k32", from 3.5 on "lj2k" and "zstd".

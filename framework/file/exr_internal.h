@@ -1,14 +1,17 @@
-// Shared by the EXR sources of this folder; nobody else includes it.
+// Shared by the EXR sources of this folder; no other file includes it.
 #pragma once
 
 #include "framework/core/error.h"
 #include "framework/core/memory_limit.h"
 #include "framework/core/text.h"
+#include "framework/file/deep_image.h"
 #include "framework/file/exr_file.h"
 
+#include <Imath/ImathBox.h>
 #include <OpenEXR/ImfCompression.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfPixelType.h>
 
 #include <array>
@@ -64,7 +67,7 @@ struct FileCloser {
 };
 using FileHandle = std::unique_ptr<std::FILE, FileCloser>;
 
-/// A regular file as Imf reads it. Knows its size, so that sizes claimed in it can be checked.
+/// A regular file as Imf reads it. Keeps its size, so that sizes claimed in it can be checked.
 class FileStream final : public Imf::IStream {
 public:
     /// Throws Error(ExitCode::capture) where `path` is missing, unreadable, empty or no regular file.
@@ -121,6 +124,28 @@ FileLayout read_layout(FileStream& file, const std::filesystem::path& path, cons
 /// compressed, all of them: the library reads a short block as what its buffer held before. Throws
 /// Error(ExitCode::capture).
 void check_blocks(FileStream& file, const std::filesystem::path& path, const FileLayout& layout, int part);
+
+/// An open file and what is known of it, for reading a deep part. [refers to the reader's]
+struct DeepSource {
+    const std::filesystem::path& path;
+    const ReadLimits& limits;
+    FileStream& stream;
+    const FileLayout& layout;
+    Imf::MultiPartInputFile& file;
+};
+
+/// The samples of the named channels of a deep part, level 0 where tiled. The sizes of the blocks and the
+/// counts of samples are held against the file and the limits first. Throws Error(ExitCode::capture).
+DeepImage read_deep(const DeepSource& source, int part, std::span<const std::string> names);
+
+bool is_tiled_part(const Imf::Header& header);
+/// Where the blocks of level 0 begin, out of the table at `table`.
+std::vector<std::uint64_t> block_offsets(FileStream& file, const Imf::Header& header, std::uint64_t table);
+/// One block of level 0: its pixels' rectangle, and "lines 32 to 47".
+Imath::Box2i block_box(const Imf::Header& header, std::uint64_t index);
+std::string block_label(const Imf::Header& header, std::uint64_t index);
+void require_no_missing_block(const std::filesystem::path& path, const Imf::Header& header,
+                              std::span<const std::uint64_t> offsets);
 
 /// What every file begins with.
 inline constexpr std::string_view kMagic = "\x76\x2f\x31\x01";

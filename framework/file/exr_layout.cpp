@@ -19,6 +19,10 @@ namespace fs = std::filesystem;
 
 static_assert(std::endian::native == std::endian::little, "EXR files are read here as little-endian");
 
+bool is_tiled_part(const Imf::Header& header) {
+    return header.hasType() && Imf::isTiled(header.type());
+}
+
 namespace {
 
 std::int64_t side(int first, int last) {
@@ -49,10 +53,6 @@ std::uint64_t bytes_per_pixel(const Imf::Header& header) {
         bytes += i.channel().type == Imf::HALF ? 2 : 4;
     }
     return bytes;
-}
-
-bool is_tiled_part(const Imf::Header& header) {
-    return header.hasType() && Imf::isTiled(header.type());
 }
 
 std::uint64_t block_bytes(const Imf::Header& header) {
@@ -158,7 +158,8 @@ std::uint64_t block_count(const Imf::Header& header) {
     return std::uint64_t((height + lines - 1) / lines);
 }
 
-/// One block of level 0: its pixels' rectangle.
+}  // namespace
+
 Imath::Box2i block_box(const Imf::Header& header, std::uint64_t index) {
     const Imath::Box2i& all = header.dataWindow();
     Imath::Box2i box = all;
@@ -182,22 +183,6 @@ std::string block_label(const Imf::Header& header, std::uint64_t index) {
     return fmt::format("the tile at ({}, {})", box.min.x, box.min.y);
 }
 
-/// Fewer bytes than this cannot hold the block's pixels.
-std::uint64_t least_stored_bytes(const Imf::Header& header, std::uint64_t index) {
-    if (header.compression() != Imf::NO_COMPRESSION) return 1;
-    const Imath::Box2i box = block_box(header, index);
-    std::uint64_t bytes = 0;
-    for (auto i = header.channels().begin(); i != header.channels().end(); ++i) {
-        const Imf::Channel& channel = i.channel();
-        if (!is_tiled_part(header) && box.min.y % channel.ySampling != 0) continue;
-        const std::uint64_t samples = std::uint64_t(side(box.min.x, box.max.x) / channel.xSampling) *
-                                      std::uint64_t(side(box.min.y, box.max.y));
-        bytes += samples * (channel.type == Imf::HALF ? 2 : 4);
-    }
-    return bytes;
-}
-
-/// Of level 0, which comes first in the table.
 std::vector<std::uint64_t> block_offsets(FileStream& file, const Imf::Header& header, std::uint64_t table) {
     std::uint64_t count = 0;
     if (is_tiled_part(header)) {
@@ -211,6 +196,23 @@ std::vector<std::uint64_t> block_offsets(FileStream& file, const Imf::Header& he
     std::vector<std::uint64_t> offsets(count);
     file.read_at(table, {reinterpret_cast<char*>(offsets.data()), offsets.size() * sizeof(std::uint64_t)});
     return offsets;
+}
+
+namespace {
+
+/// Fewer bytes than this cannot hold the block's pixels.
+std::uint64_t least_stored_bytes(const Imf::Header& header, std::uint64_t index) {
+    if (header.compression() != Imf::NO_COMPRESSION) return 1;
+    const Imath::Box2i box = block_box(header, index);
+    std::uint64_t bytes = 0;
+    for (auto i = header.channels().begin(); i != header.channels().end(); ++i) {
+        const Imf::Channel& channel = i.channel();
+        if (!is_tiled_part(header) && box.min.y % channel.ySampling != 0) continue;
+        const std::uint64_t samples = std::uint64_t(side(box.min.x, box.max.x) / channel.xSampling) *
+                                      std::uint64_t(side(box.min.y, box.max.y));
+        bytes += samples * (channel.type == Imf::HALF ? 2 : 4);
+    }
+    return bytes;
 }
 
 void check_block(FileStream& file, const fs::path& path, const Imf::Header& header, std::uint64_t index,
@@ -229,10 +231,6 @@ void check_block(FileStream& file, const fs::path& path, const Imf::Header& head
     }
     if (std::uint64_t(stored) > file.size() - offset - head_words * 4) cut_off();
 }
-
-}  // namespace
-
-namespace {
 
 /// Of a block's head: a part number, then a line or a tile's two coordinates and two levels, then the size;
 /// all of 4 bytes.
@@ -325,20 +323,23 @@ FileLayout read_layout(FileStream& file, const fs::path& path, const ReadLimits&
     return layout;
 }
 
+void require_no_missing_block(const fs::path& path, const Imf::Header& header,
+                              std::span<const std::uint64_t> offsets) {
+    const auto missing = std::uint64_t(std::ranges::count(offsets, std::uint64_t(0)));
+    if (missing == 0) return;
+    const auto first = std::uint64_t(std::ranges::find(offsets, std::uint64_t(0)) - offsets.begin());
+    fail(path, fmt::format(
+                   "incomplete: {} of {} blocks are missing, the first is {} (its writer was stopped; write "
+                   "it again)",
+                   missing, offsets.size(), block_label(header, first)));
+}
+
 void check_blocks(FileStream& file, const fs::path& path, const FileLayout& layout, int part) {
     const Imf::Header& header = layout.headers[std::size_t(part)];
     const std::vector<std::uint64_t> offsets =
         layout.found_blocks.empty() ? block_offsets(file, header, layout.block_tables[std::size_t(part)])
                                     : layout.found_blocks[std::size_t(part)];
-    const auto missing = std::uint64_t(std::ranges::count(offsets, std::uint64_t(0)));
-    if (missing > 0) {
-        const auto first = std::uint64_t(std::ranges::find(offsets, std::uint64_t(0)) - offsets.begin());
-        fail(path,
-             fmt::format(
-                 "incomplete: {} of {} blocks are missing, the first is {} (its writer was stopped; write "
-                 "it again)",
-                 missing, offsets.size(), block_label(header, first)));
-    }
+    require_no_missing_block(path, header, offsets);
     const std::size_t words = head_words(layout, header);
     for (std::uint64_t i = 0; i < offsets.size(); ++i) {
         check_block(file, path, header, i, offsets[i], words);

@@ -123,10 +123,9 @@ ExrFile::Impl::Impl(const fs::path& file_path, const ReadLimits& file_limits)
 void ExrFile::Impl::check_type(int part) const {
     const ExrPart& info = parts[std::size_t(part)];
     if (info.type == Imf::SCANLINEIMAGE || info.type == Imf::TILEDIMAGE) return;
-    const bool deep = info.type == Imf::DEEPSCANLINE || info.type == Imf::DEEPTILE;
     exr::fail(path, fmt::format("{} is of type '{}', {}", exr::part_label(parts, part), info.type,
-                                deep ? "deep data is not supported; " + exr_flatten_remedy(path)
-                                     : "which is not supported"));
+                                info.is_deep() ? "deep data is not supported; " + exr_flatten_remedy(path)
+                                               : "which is not supported"));
 }
 
 void ExrFile::Impl::check_channels(int part, std::span<const std::string> names, ComponentType type) const {
@@ -281,6 +280,18 @@ void ExrFile::prefetch(std::span<const ExrRequest> requests) const {
             // The read that asks for it fails in the same way, and says what it wanted.
         }
     }
+}
+
+DeepImage ExrFile::read_deep(int part, std::span<const std::string> channels) const {
+    const ExrPart& info = impl_->parts[std::size_t(part)];
+    if (!info.is_deep())
+        exr::fail(path(), fmt::format("{} is of type '{}', not deep", exr::part_label(impl_->parts, part),
+                                      info.type));
+    impl_->check_channels(part, channels, ComponentType::float32);
+    return exr::translate_errors(path(), ExitCode::capture, "damaged pixel data", [&] {
+        return exr::read_deep({impl_->path, impl_->limits, *impl_->stream, impl_->layout, *impl_->file}, part,
+                              channels);
+    });
 }
 
 Image ExrFile::read_luminance_chroma(int part) const {

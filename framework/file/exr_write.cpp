@@ -6,6 +6,8 @@
 #include <Imath/half.h>
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfChromaticitiesAttribute.h>
+#include <OpenEXR/ImfDeepFrameBuffer.h>
+#include <OpenEXR/ImfDeepScanLineOutputFile.h>
 #include <OpenEXR/ImfFloatAttribute.h>
 #include <OpenEXR/ImfFloatVectorAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -13,6 +15,7 @@
 #include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfMatrixAttribute.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfRationalAttribute.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
@@ -239,6 +242,43 @@ std::vector<HalfOverflow> write_exr(const fs::path& path, std::span<const ExrOut
         }
         stream.commit();
         return planes.overflows();
+    });
+}
+
+void write_deep_exr(const fs::path& path, const DeepImage& image, const ExrWriteOptions& options) {
+    exr::translate_errors(path, ExitCode::output, "cannot be written", [&] {
+        Imf::Header header = make_header(path, {}, options);
+        header.setType(Imf::DEEPSCANLINE);
+        const Imath::Box2i& window = header.dataWindow();
+        const auto width = std::size_t(image.width);
+        const std::ptrdiff_t origin = window.min.x + std::ptrdiff_t(window.min.y) * image.width;
+        std::vector<std::uint32_t> counts;
+        for (std::size_t i = 0; i < image.pixel_count(); ++i)
+            counts.push_back(image.first[i + 1] - image.first[i]);
+        Imf::DeepFrameBuffer frame;
+        frame.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts.data() - origin),
+                                                sizeof(std::uint32_t), sizeof(std::uint32_t) * width));
+        std::vector<std::vector<const char*>> pointers;
+        for (const DeepImage::Channel& channel : image.channels) {
+            check_name(path, "channel", channel.name);
+            const Imf::PixelType type = channel.uints.empty() ? Imf::FLOAT : Imf::UINT;
+            const char* const values = channel.uints.empty()
+                                           ? reinterpret_cast<const char*>(channel.floats.data())
+                                           : reinterpret_cast<const char*>(channel.uints.data());
+            header.channels().insert(channel.name, Imf::Channel(type));
+            std::vector<const char*>& own = pointers.emplace_back();
+            for (std::size_t i = 0; i < counts.size(); ++i)
+                own.push_back(values + sizeof(float) * image.first[i]);
+            frame.insert(channel.name, Imf::DeepSlice(type, reinterpret_cast<char*>(own.data() - origin),
+                                                      sizeof(char*), sizeof(char*) * width, sizeof(float)));
+        }
+        ExrOutputStream stream(path);
+        {
+            Imf::DeepScanLineOutputFile file(stream, header, Imf::globalThreadCount());
+            file.setFrameBuffer(frame);
+            file.writePixels(image.height);
+        }
+        stream.commit();
     });
 }
 

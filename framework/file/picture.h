@@ -1,4 +1,4 @@
-// Image files that an effect samples as they are: no roles, no capture.
+// Image files that an effect samples as they are, without roles or a capture.
 #pragma once
 
 #include <filesystem>
@@ -10,10 +10,10 @@ namespace aftershade {
 /// What a PNG's numbers mean. OpenEXR files are linear, and are read as they are.
 enum class PictureSpace { srgb, data };
 
-/// An OpenEXR or PNG file, told by its first bytes, as RGBA floats. OpenEXR: channels R, G, B and A of the
-/// first part over its data window (a missing colour channel is 0, alpha 1), or its luminance. PNG, 8 or 16
-/// bits: srgb is decoded to linear and premultiplied by alpha, as OpenEXR stores it; data is value / maximum.
-/// Grey becomes three equal channels. Throws Error(ExitCode::capture) that begins with the path.
+/// An OpenEXR or PNG file, recognised by its first bytes, as RGBA floats. OpenEXR: channels R, G, B and A of
+/// the first part over its data window (a missing colour channel is 0, alpha 1), or its luminance. PNG, 8 or
+/// 16 bits: srgb is decoded to linear and premultiplied by alpha, as OpenEXR stores it; data is value /
+/// maximum. Grey becomes three equal channels. Throws Error(ExitCode::capture) that begins with the path.
 Image read_picture(const std::filesystem::path& path, PictureSpace space);
 
 }  // namespace aftershade

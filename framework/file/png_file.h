@@ -22,7 +22,7 @@ std::string encode_png(const std::string& name, const Image& display, const PngT
 /// Error(ExitCode::output).
 void write_png(const std::filesystem::path& path, const Image& display, const PngText& text = {});
 
-/// The text of a keyword; nullopt where the file is no whole PNG or has no such text.
+/// The text of a keyword; nullopt where the file is not a whole PNG or has no such text.
 std::optional<std::string> read_png_text(const std::filesystem::path& path, const std::string& keyword);
 
 /// Reads PNG of 8 or 16 bits into [0, 1] floats, 1 to 4 channels as stored. Throws Error(ExitCode::capture).

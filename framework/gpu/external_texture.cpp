@@ -51,7 +51,7 @@ void check_external_texture(Context& context, const ExternalTexture& texture, in
     const auto fail = [&](const std::string& why) {
         throw Error(ExitCode::usage, fmt::format("{}: texture {} {}", label, texture.name, why));
     };
-    if (texture.name == 0 || !gl.IsTexture(texture.name)) fail("is no texture of the shared context");
+    if (texture.name == 0 || !gl.IsTexture(texture.name)) fail("is not a texture of the shared context");
     GLint kind = 0;
     gl.GetTextureParameteriv(texture.name, GL_TEXTURE_TARGET, &kind);
     if (kind != GL_TEXTURE_2D) fail("is not two-dimensional (GL_TEXTURE_2D)");
@@ -92,7 +92,7 @@ void wait_for_fence(Context& context, void* fence) {
     const GladGLContext& gl = context.gl();
     const auto sync = static_cast<GLsync>(fence);
     if (!gl.IsSync(sync))
-        throw Error(ExitCode::usage, "wait: this is no fence (GLsync) of the shared context");
+        throw Error(ExitCode::usage, "wait: this is not a fence (GLsync) of the shared context");
     gl.WaitSync(sync, 0, GL_TIMEOUT_IGNORED);
     context.check("waiting for a fence");
 }

@@ -81,10 +81,37 @@ bool is_noise(std::string_view line) {
            line.find("compilation terminated") != std::string_view::npos;
 }
 
+/// Mesa lists the overloads of a function that was called wrongly, up to 40, each as an error of its own.
+/// Three show what it takes.
+class OverloadFolder {
+public:
+    /// Whether the message belongs to the last one of `messages`, and now is part of it.
+    bool take(const ShaderMessage& message, std::vector<ShaderMessage>& messages) {
+        if (messages.empty()) return false;
+        ShaderMessage& call = messages.back();
+        if (count_ == 0 && !call.text.ends_with("candidates are:")) return false;
+        if (call.line != message.line || call.column != message.column || !message.text.ends_with(')'))
+            return false;
+        if (++count_ <= kShown) call.text += (count_ == 1 ? " " : "; ") + message.text;
+        return true;
+    }
+
+    /// Call it before another message follows, and at the end.
+    void close(std::vector<ShaderMessage>& messages) {
+        if (count_ > kShown) messages.back().text += fmt::format("; and {} more", count_ - kShown);
+        count_ = 0;
+    }
+
+private:
+    static constexpr int kShown = 3;
+    int count_ = 0;
+};
+
 }  // namespace
 
 std::vector<ShaderMessage> parse_shader_log(const std::string& log) {
     std::vector<ShaderMessage> messages;
+    OverloadFolder overloads;
     std::string_view rest = log;
     while (!rest.empty()) {
         const std::size_t end = std::min(rest.find('\n'), rest.size());
@@ -105,8 +132,11 @@ std::vector<ShaderMessage> parse_shader_log(const std::string& log) {
             continue;
         }
         message.text += scanner.rest();
+        if (overloads.take(message, messages)) continue;
+        overloads.close(messages);
         messages.push_back(std::move(message));
     }
+    overloads.close(messages);
     return messages;
 }
 

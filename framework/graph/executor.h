@@ -63,7 +63,7 @@ public:
     void set_hooks(PassHooks hooks);
 
     /// Runs every pass. With `timed`, waits for each and returns its milliseconds (see gpu::Timer); else
-    /// returns {}. `observer`, if any, sees each target right after its pass; its time is nobody's.
+    /// returns {}. `observer`, if any, sees each target right after its pass; its time counts for no pass.
     /// At the end, each history that was written becomes what the next run reads as its `previous`. `range`:
     /// only these, so that some passes may run several times in a frame; what was written before stays.
     std::vector<PassTime> run(bool timed, const PassObserver& observer = {}, PassRange range = {});
@@ -77,9 +77,9 @@ public:
     History history();
     /// Sets every `previous` to zero: a cut, a gap, the first frame.
     void clear_history();
-    /// Takes the histories over whose name and description are those of `other`, for a graph that was built
-    /// anew between two frames; returns the names of those of this graph that found none and stay as they
-    /// were. `other`, of the same context, is left with this one's in exchange. Copies nothing.
+    /// Takes the histories over whose name and description are those of `other`, for a graph that was rebuilt
+    /// between two frames; returns the names of those of this graph that found none and stay as they were.
+    /// `other`, of the same context, is left with this one's in exchange. Copies nothing.
     std::vector<std::string> take_history_from(Executor& other);
 
 private:

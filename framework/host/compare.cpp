@@ -53,7 +53,7 @@ void check_roles(const CompareOptions& options, OptionCheck& check) {
     known.emplace_back(kIgnore);
     for (const auto& [label, role] : options.roles)
         if (std::find(known.begin(), known.end(), role) == known.end())
-            check.fault("roles", "'" + role + "' is no role; there are " + list_of_names(known, "and") +
+            check.fault("roles", "'" + role + "' is not a role; choose from " + list_of_names(known, "and") +
                                      did_you_mean(role, known));
 }
 
@@ -101,13 +101,19 @@ CompareRules rules_of(const CompareOptions& options) {
     rules.flip.exposures = options.exposures;
     rules.flip.threads = rules.threads = options.threads;
     rules.ssim = options.ssim;
+    rules.ssim_map = options.maps;
     for (const auto& [label, role] : options.roles) rules.roles[label] = find_layer_role(role);
     return rules;
 }
 
-Image flip_map(const LayerComparison& layer) {
+Image public_map(const aftershade::Image& map) {
+    return Access::image(std::make_shared<const aftershade::Image>(map));
+}
+
+void add_maps(const LayerComparison& layer, LayerFigures& figures) {
     const auto& flip = layer.hdr_flip ? layer.hdr_flip : layer.ldr_flip;
-    return flip ? Access::image(std::make_shared<const aftershade::Image>(flip->error)) : Image();
+    if (flip) figures.flip_map = public_map(flip->error);
+    if (!layer.ssim_map.empty()) figures.ssim_map = public_map(layer.ssim_map);
 }
 
 LargestDifference largest_of(const LayerComparison& layer) {
@@ -121,7 +127,7 @@ LargestDifference largest_of(const LayerComparison& layer) {
             from.test};
 }
 
-LayerFigures figures_of(const LayerComparison& layer, Image map) {
+LayerFigures figures_of(const LayerComparison& layer, bool maps) {
     const PixelDifferences& differences = layer.differences;
     LayerFigures figures;
     figures.label = layer.label;
@@ -143,7 +149,7 @@ LayerFigures figures_of(const LayerComparison& layer, Image map) {
     figures.ms_ssim = layer.ms_ssim;
     figures.verdict = Verdict(int(layer.verdict));
     figures.reasons = layer.reasons;
-    figures.flip_map = std::move(map);
+    if (maps) add_maps(layer, figures);
     return figures;
 }
 
@@ -162,7 +168,7 @@ Comparison compare_arrays(const aftershade::Image& reference, const aftershade::
     const auto layer_role = find_layer_role(role);
     if (!layer_role)
         fail_at(ErrorKind::usage, "role",
-                "'" + role + "' is no role; there are " + list_of_names(layer_role_names(), "and") +
+                "'" + role + "' is not a role; choose from " + list_of_names(layer_role_names(), "and") +
                     did_you_mean(role, layer_role_names()));
     if (!options.roles.empty())
         fail_at(ErrorKind::usage, "CompareOptions::roles", "two images are one layer; give its role alone");
@@ -191,7 +197,7 @@ Comparison compare_arrays(const aftershade::Image& reference, const aftershade::
         compare_layer({a, b}, rules, layer);
         comparison.verdict = std::max(comparison.verdict, Verdict(int(layer.verdict)));
         comparison.labels.push_back(label);
-        comparison.layers.push_back(figures_of(layer, options.maps ? flip_map(layer) : Image()));
+        comparison.layers.push_back(figures_of(layer, options.maps));
     };
     const std::vector<std::string> names = {"R", "G", "B", "A"};
     const int channels = reference.channels();
@@ -221,7 +227,7 @@ Comparison compare(const std::filesystem::path& reference, const std::filesystem
         const CompareRules rules = rules_of(options);
         Comparison comparison;
         const auto visit = [&](const LayerComparison& layer, LayerImages&) {
-            comparison.layers.push_back(figures_of(layer, options.maps ? flip_map(layer) : Image()));
+            comparison.layers.push_back(figures_of(layer, options.maps));
         };
         const aftershade::Comparison made = compare_files(reference, test, rules, visit);
         if (!made.unknown_roles.empty())

@@ -29,7 +29,7 @@ EffectInfo info_of(const EffectManifest& manifest) {
     info.folder = manifest.folder.string();
     for (const InputSpec& input : manifest.inputs)
         info.inputs.push_back(
-            {input.name, input.role, input.doc, input.optional, input.history, input.frame});
+            {input.name, input.image_role(), input.doc, input.optional, input.history, input.frame});
     for (const OutputSpec& output : manifest.outputs)
         info.outputs.push_back({output.name, output.role, output.doc});
     for (const ParamSpec& spec : manifest.params) info.params.push_back(host::info_of(spec));
@@ -50,8 +50,8 @@ std::vector<EffectInfo> Host::effects(std::vector<Diagnostic>* faults) const {
     return called(data, [&] {
         EffectRegistry registry = data.registry();
         Diagnostics found;
-        for (const auto& [folder, reason] : registry.unreadable())
-            found.warning({folder.string()}, "cannot be read, and its effects are left out: " + reason);
+        registry.warn_of_unreadable(found);
+        registry.warn_of_hidden(found);
         std::vector<EffectInfo> effects;
         for (const std::string& id : registry.ids())
             if (const EffectManifest* manifest = registry.find(id, found))

@@ -38,7 +38,7 @@ void check_host_options(const HostOptions& options) {
     for (const fs::path& folder : options.plugin_paths)
         check_folder(folder, "HostOptions::plugin_paths", faults);
     if (int(options.backend) < int(Backend::automatic) || int(options.backend) > int(Backend::osmesa))
-        faults.error({"HostOptions::backend"}, fmt::format("{} is no backend", int(options.backend)));
+        faults.error({"HostOptions::backend"}, fmt::format("{} is not a backend", int(options.backend)));
     if (options.share && (!options.share->display || !options.share->context))
         faults.error({"HostOptions::share"}, "display and context may not be null");
     if (options.share && options.backend == Backend::osmesa)

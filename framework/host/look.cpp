@@ -50,6 +50,7 @@ std::shared_ptr<LookCore> load(Host::Data& host, const std::optional<Node>& docu
     }
     stop_at_errors(ErrorKind::document, faults);
     core->warnings = public_diagnostics(faults);
+    core->documents = std::make_shared<const std::vector<fs::path>>(faults.documents());
     return core;
 }
 

@@ -1,6 +1,7 @@
 // A look bound to its effects, and the values that a program set above its own.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -27,6 +28,7 @@ struct LookCore {
     std::vector<std::string> taps;
     std::map<std::string, Node> overrides;  // by "step.param"
     std::vector<Diagnostic> warnings;
+    std::shared_ptr<const std::vector<std::filesystem::path>> documents;  // that were read
     int form = 1;      // another number: the graph must be built again
     int revision = 1;  // another number: some value changed
 

@@ -14,8 +14,8 @@ namespace aftershade::host {
 /// Throws Error(capture).
 [[noreturn]] void refuse_non_finite(const NonFiniteInfo& found);
 
-/// The capture that effects see: mended where the policy says so. Adds what was found. Throws Error(capture)
-/// where the policy is `fail`.
+/// The capture that effects see: repaired where the policy says so. Adds what was found. Throws
+/// Error(capture) where the policy is `fail`.
 std::shared_ptr<const Capture::Data> meet_non_finite(std::shared_ptr<const Capture::Data> capture,
                                                      NonFinite policy, std::vector<NonFiniteInfo>& found);
 

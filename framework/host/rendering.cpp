@@ -257,6 +257,7 @@ void Rendering::finish(const RenderOptions& options, const std::vector<std::stri
     result.renderer = context.info().renderer;
     result.gpu_bytes = renderer_->graph_bytes().first;
     result.is_timed = options.timed;
+    result.documents = look_->documents;
     for (const std::string& role : roles)
         if (!options.targets.contains(role)) result.roles.push_back(role);
     if (result.is_pending) return;

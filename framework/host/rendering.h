@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,7 +20,8 @@ struct Result::Data {
     std::shared_ptr<const aftershade::Capture> capture;  // of a texture's role the image is empty
     std::vector<std::string> roles;                      // of `frame`, or of the capture
     std::vector<NonFiniteInfo> non_finite;
-    std::string renderer;  // GL's
+    std::shared_ptr<const std::vector<std::filesystem::path>> documents;  // of the look
+    std::string renderer;                                                 // GL's
     std::uint64_t gpu_bytes = 0;
     bool is_timed = false;
     bool is_pending = false;
@@ -50,7 +52,7 @@ public:
     /// Throws as Look::render.
     Result::Data render(const FrameTask& task, const RenderOptions& options);
 
-    /// Roles that a render of this look with these options asks for. Throws Error(usage), Error(capture) for
+    /// Roles that a render of this look with these options needs. Throws Error(usage), Error(capture) for
     /// those that are none or that nothing makes.
     std::vector<std::string> asked_roles(const RenderOptions& options,
                                          const std::vector<std::string>& captured) const;

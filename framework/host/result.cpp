@@ -105,6 +105,7 @@ void Result::write(const std::filesystem::path& path, const WriteOptions& option
         sequence.frames = {frame()};
         InputFiles inputs;
         inputs.add(data_->capture->header.path);
+        inputs.add(*data_->documents);
         Diagnostics faults;
         check_outputs(outputs, sequence, inputs, faults);
         stop_at_errors(ErrorKind::usage, faults);

@@ -46,7 +46,7 @@ using CameraMatrix = std::array<double, 16>;
 class Camera {
 public:
     std::optional<double> get(const std::string& name) const;
-    /// `origin` tells where the value is from, for `run --explain`: "capture.json", "attribute focus".
+    /// `origin` names the source of the value, for `run --explain`: "capture.json", "attribute focus".
     void set(const std::string& name, double value, const std::string& origin = "") {
         values_[name] = value;
         origins_[name] = origin;

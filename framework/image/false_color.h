@@ -38,7 +38,7 @@ DisplayColor id_color(std::uint32_t id);
 /// What explains the colours beside the words.
 enum class Legend { none, ramp, wheel };
 
-/// The word for an image that is no role's, such as an effect's texture: one channel is shown as
+/// The word for an image without a role, such as an effect's texture: one channel is shown as
 /// diverging_color where any value is below 0, else as ramp_color from 0 to the largest; two as vectors;
 /// three and four as light.
 inline constexpr std::string_view kDataRole = "data";

@@ -1,4 +1,4 @@
-// Pixels that are no numbers: counted, and replaced where that is asked for.
+// Pixels that are not numbers: counted, and replaced on request.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ struct NonFinitePixels {
     int x = 0;                 ///< of the first, by rows from the top left of the image
     int y = 0;
     std::size_t mended = 0;  ///< of these, pixels that mend_non_finite() replaced
-    std::size_t zeroed = 0;  ///< of the mended ones: no finite neighbour, so 0
+    std::size_t zeroed = 0;  ///< of the repaired ones: no finite neighbour, so 0
 
     std::size_t count() const { return nan + infinite; }
     explicit operator bool() const { return count() > 0; }

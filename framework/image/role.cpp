@@ -1,6 +1,8 @@
 #include "framework/image/role.h"
 
+#include <charconv>
 #include <limits>
+#include <system_error>
 #include <utility>
 
 #include "framework/core/document.h"
@@ -11,6 +13,7 @@ namespace aftershade {
 namespace {
 
 constexpr std::string_view kCoverage = "coverage:";
+constexpr std::string_view kLayer = "layer";
 
 std::vector<std::string> layer(const std::string& name, std::string_view components) {
     std::vector<std::string> channels;
@@ -98,6 +101,14 @@ std::optional<ChannelRole> find_role(std::string_view name) {
                            PixelType::half,
                            "share that objects cover, 0 to 1",
                            RoleKind::coverage};
+    if (const RoleOfLayer of = split_layer_role(name); of.layer >= 0) {
+        std::optional<ChannelRole> role = find_role(of.role);
+        if (!role) return std::nullopt;
+        role->name = name;
+        for (std::string& channel : role->native_channels)
+            channel = std::string(kLayer) + std::to_string(of.layer) + "." + channel;
+        return role;
+    }
     constexpr std::string_view kAov = "aov:";
     if (name.starts_with(kAov) && name.size() > kAov.size()) {
         const std::string aov(name.substr(kAov.size()));
@@ -131,6 +142,25 @@ std::vector<TableKey> objects_of_coverage(std::string_view role) {
         for (const Node& entry : list->items)
             for (TableKey& key : parse_object_keys(entry, "", unused)) objects.push_back(std::move(key));
     return objects;
+}
+
+std::string layer_role(int layer, std::string_view role) {
+    return std::string(kLayer) + std::to_string(layer) + ":" + std::string(role);
+}
+
+RoleOfLayer split_layer_role(std::string_view name) {
+    const std::size_t colon = name.find(':');
+    const RoleOfLayer whole{-1, std::string(name)};
+    if (!name.starts_with(kLayer) || colon == std::string_view::npos) return whole;
+    int layer = -1;
+    const char* const end = name.data() + colon;
+    const auto read = std::from_chars(name.data() + kLayer.size(), end, layer);
+    if (read.ec != std::errc() || read.ptr != end || layer < 0) return whole;
+    return {layer, std::string(name.substr(colon + 1))};
+}
+
+bool is_blended(RoleKind kind) {
+    return kind == RoleKind::light || kind == RoleKind::coverage || kind == RoleKind::other;
 }
 
 RoleKind kind_of_role(std::string_view name) {

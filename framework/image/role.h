@@ -14,7 +14,7 @@
 
 namespace aftershade {
 
-/// What a role's values measure. Whoever treats roles differently asks for their kind, so that a new role
+/// What a role's values measure. Code that treats roles differently tests their kind, so that a new role
 /// needs no change there.
 enum class RoleKind {
     light,      ///< scene-linear colours in the capture's primaries
@@ -63,14 +63,27 @@ std::span<const ChannelRole> channel_roles();
 std::optional<ChannelRole> find_role(std::string_view name);
 std::vector<std::string> role_names();
 
-/// The role of the share of a pixel, 0 to 1, that some objects cover. The program asks captures for it where
-/// a look names the objects of a mask; no document can.
+/// The role of the share of a pixel, 0 to 1, that some objects cover. The program reads it from captures
+/// where a look names the objects of a mask; no document can.
 std::string coverage_role(std::span<const TableKey> objects);
 bool is_coverage_role(std::string_view name);
 /// The objects that coverage_role() was made of.
 std::vector<TableKey> objects_of_coverage(std::string_view role);
 
-/// RoleKind::other for a name that is no role's.
+/// The image of a role in one layer of a capture, 0 in front: "layer1:depth". Manifests name it by "layer".
+std::string layer_role(int layer, std::string_view role);
+struct RoleOfLayer {
+    int layer = -1;  ///< -1: not of a layer, but of the whole picture
+    std::string role;
+};
+/// What a name that layer_role() made stands for; any other name is itself.
+RoleOfLayer split_layer_role(std::string_view name);
+
+/// Whether the values of layers are put over one another, as light is; of others the layer that shows most
+/// counts: depths, vectors and ids have no mean.
+bool is_blended(RoleKind kind);
+
+/// RoleKind::other for a name that is not a role's.
 RoleKind kind_of_role(std::string_view name);
 
 }  // namespace aftershade

@@ -51,8 +51,7 @@ std::vector<ChannelStatistics> statistics_of(std::span<const Value> values, std:
 }
 
 /// Why a channel has no figures by its nature; "" where it has.
-std::string obstacle(const ExrPart& part, const ExrChannel& channel) {
-    if (part.type.starts_with("deep")) return "deep: any number of values a pixel";
+std::string obstacle(const ExrChannel& channel) {
     if (channel.x_sampling == 1 && channel.y_sampling == 1) return "";
     return "subsampled " + std::to_string(channel.x_sampling) + " x " + std::to_string(channel.y_sampling);
 }
@@ -64,13 +63,33 @@ std::string without_path(const std::string& message, const ExrFile& file) {
 
 using Batch = std::vector<InspectedChannel*>;
 
+/// Of every sample.
+std::vector<ChannelStatistics> deep_statistics(const ExrFile& file, int part,
+                                               const std::vector<std::string>& names) {
+    const DeepImage image = file.read_deep(part, names);
+    std::vector<ChannelStatistics> result;
+    for (const std::string& name : names) {
+        const DeepImage::Channel& channel = *image.find(name);
+        const auto of_one = channel.uints.empty() ? statistics_of<float>(channel.floats, 1)
+                                                  : statistics_of<std::uint32_t>(channel.uints, 1);
+        result.push_back(of_one.front());
+    }
+    return result;
+}
+
+std::vector<ChannelStatistics> flat_statistics(const ExrFile& file, int part,
+                                               const std::vector<std::string>& names, bool is_uint) {
+    return channel_statistics(is_uint ? file.read_uints(part, names) : file.read_floats(part, names));
+}
+
 void read_batch(const ExrFile& file, int part, const Batch& batch) {
     std::vector<std::string> names;
     for (const InspectedChannel* inspected : batch) names.push_back(inspected->channel.name);
     try {
         const bool is_uint = batch.front()->channel.type == PixelType::uint32;
-        const Image image = is_uint ? file.read_uints(part, names) : file.read_floats(part, names);
-        const std::vector<ChannelStatistics> statistics = channel_statistics(image);
+        const std::vector<ChannelStatistics> statistics = file.parts()[std::size_t(part)].is_deep()
+                                                              ? deep_statistics(file, part, names)
+                                                              : flat_statistics(file, part, names, is_uint);
         for (std::size_t i = 0; i < batch.size(); ++i) batch[i]->statistics = statistics[i];
     } catch (const Error& error) {
         for (InspectedChannel* inspected : batch) {
@@ -92,7 +111,7 @@ std::vector<InspectedChannel> inspect_channels(const ExrFile& file, int part, co
     const ExrPart& header = file.parts()[std::size_t(part)];
     std::vector<InspectedChannel> channels;
     for (const ExrChannel& channel : header.channels)
-        channels.push_back({channel, std::nullopt, obstacle(header, channel), true});
+        channels.push_back({channel, std::nullopt, obstacle(channel), true});
 
     // Every read decompresses the whole part, so as many channels as may be are read together.
     const std::uint64_t bytes =

@@ -30,8 +30,9 @@ struct InspectedChannel {
         true;  ///< false: the file is damaged, incomplete or above the limits, and `reason` says how
 };
 
-/// Every channel of a part, in the file's order. Deep parts and subsampled channels have a reason instead of
-/// figures. At most three quarters of `limits.max_image_bytes` is read at once, or a single channel.
+/// Every channel of a part, in the file's order; of deep parts the figures are of all samples. Subsampled
+/// channels have a reason instead of figures. At most three quarters of `limits.max_image_bytes` is read at
+/// once, or a single channel.
 std::vector<InspectedChannel> inspect_channels(const ExrFile& file, int part, const ReadLimits& limits);
 
 }  // namespace aftershade

@@ -13,7 +13,7 @@ constexpr int kMinCellWidth_px = 320;  ///< for the label, where the tile is nar
 
 /// A display-referred RGB picture: a title, a labelled tile for each of the capture's images in false colour,
 /// and what the colours of faulty pixels mean. A faulty pixel shows however small its tile is. `unreadable`
-/// tells, by role, why there is a message instead of a picture. Larger images are reduced to a tile, smaller
+/// says, by role, why there is a message instead of a picture. Larger images are reduced to a tile, smaller
 /// ones enlarged by a whole factor; the pixel aspect is kept. The capture must have an image or an unreadable
 /// role.
 Image draw_contact_sheet(const Capture& capture, const std::map<std::string, std::string>& unreadable = {});

@@ -13,9 +13,7 @@ struct Footprint {
         : first(int(std::int64_t(at) * image_px / tile_px)),
           last(std::max(int(std::int64_t(at + 1) * image_px / tile_px), first + 1)) {}
     int middle() const { return (first + last) / 2; }
-    int step() const {
-        return std::max(1, (last - first) / 4);
-    }  // of 4 x 4 samples, the eye asks for no more
+    int step() const { return std::max(1, (last - first) / 4); }  // of 4 x 4 samples, the eye needs no more
 };
 
 }  // namespace aftershade

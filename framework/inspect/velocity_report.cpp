@@ -79,22 +79,18 @@ std::string describe_untestable(const VelocityCheck& check) {
     const int moving_px = std::max(check.moving_px_a, check.moving_px_b);
     if (moving_px == 0 && check.longest_px > 0)
         return fmt::format(
-            "Nothing can be told: no vector is as long as a pixel (the longest is {:.3g} px); take frames in "
-            "which something moves, or set the unit if the pictures do move",
+            "Undecided: no vector is as long as a pixel (the longest is {:.3g} px); use frames in which "
+            "something moves, or set the unit if the pictures do move",
             check.longest_px);
     if (moving_px == 0)
-        return "Nothing can be told: nothing moves, every vector is 0 or missing; take frames in which "
+        return "Undecided: nothing moves; every vector is 0 or missing; use frames in which "
                "something moves";
     if (!check.identity.tested && check.best.tested)
-        return fmt::format(
-            "Nothing can be told: {} is read in frame {}, which has none; take frames that have it",
-            role_name(check.settings), check.settings.is_next() ? "A" : "B");
+        return fmt::format("Undecided: {} is read in frame {}, which has none; use frames that have it",
+                           role_name(check.settings), check.settings.is_next() ? "A" : "B");
     if (check.best.tested)
-        return "Nothing can be told: the two pictures are the same where the vectors say that something "
-               "moves; take two "
-               "different frames";
-    return fmt::format("Nothing can be told: only {} pixels have vectors; take frames in which more moves",
-                       moving_px);
+        return "Undecided: the two pictures are the same where the vectors move; use two different frames";
+    return fmt::format("Undecided: only {} pixels have vectors; use frames in which more moves", moving_px);
 }
 
 std::string describe_no_fit(const VelocityCheck& check) {
@@ -119,7 +115,7 @@ std::string row(const VelocityCheck& check, const char* label, const VelocitySco
 }
 
 std::string scale_or_unknown(const std::optional<double>& scale) {
-    return scale ? fmt::format("{:.3f}", *scale) : "not told";
+    return scale ? fmt::format("{:.3f}", *scale) : "undecided";
 }
 
 }  // namespace
@@ -194,22 +190,22 @@ std::string describe_verdict(const VelocityCheck& check) {
         case VelocityVerdict::undecided:
             if (check.best.score >= check.identity.score + kClearlyMore)
                 return fmt::format(
-                    "Cannot tell: with {} the vectors remove {} of the difference between the frames, with "
+                    "Undecided: with {} the vectors remove {} of the difference between the frames, with "
                     "{} "
-                    "{}, but uniform motion and uncovered background explain that too; take frames in which "
+                    "{}, but uniform motion and uncovered background explain that too; use frames in which "
                     "things turn, bounce or change their speed",
                     settings, own, describe_settings(correct_settings(check.settings, check.best.hypothesis)),
                     percent(check.best.score));
             return fmt::format(
                 "The profile fits ({}: {} of the difference between the frames removed), but these frames do "
-                "not tell {}; take frames in which things turn, bounce or change their speed",
+                "not decide {}; use frames in which things turn, bounce or change their speed",
                 settings, own, untold);
         case VelocityVerdict::wrong:
             return fmt::format(
                 "The profile is wrong: change {}; that removes {} of the difference between the frames, the "
                 "profile's own reading {}{}",
                 describe_change(check.settings, check.suggested), percent(check.best.score), own,
-                untold.empty() ? "" : " (these frames do not tell " + untold + ")");
+                untold.empty() ? "" : " (these frames do not decide " + untold + ")");
         case VelocityVerdict::no_fit: return describe_no_fit(check);
         case VelocityVerdict::untestable: break;
     }

@@ -17,10 +17,10 @@ VelocitySettings correct_settings(const VelocitySettings& settings, const Veloci
 std::string format_velocity_check(const VelocityCheck& check);
 
 /// Whether the scales of the fit are, within its own accuracy, those of the listed hypothesis; where nothing
-/// tells a scale, it is. False for other signs, order or time.
+/// shows a scale, it is. False for other signs, order or time.
 bool scale_is_listed(const VelocityFit& fit, const VelocityHypothesis& hypothesis);
 
-/// With scale 1 for an axis that nothing tells.
+/// With scale 1 for an axis that nothing shows.
 VelocityHypothesis hypothesis_of(const VelocityFit& fit);
 
 /// Adds the settings in which two hypotheses differ to `names`, each once.

@@ -41,7 +41,7 @@ struct VelocityScore {
 struct VelocityFit {
     bool other_time = false;
     bool swapped = false;
-    std::optional<double> scale_x;  ///< negative where the sign is wrong; nullopt: no motion tells it
+    std::optional<double> scale_x;  ///< negative where the sign is wrong; nullopt: no motion shows it
     std::optional<double> scale_y;
     double score = 0;
 };

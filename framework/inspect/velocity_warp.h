@@ -1,5 +1,5 @@
-// How well one frame, warped by motion vectors, becomes another: the measure of velocity_check.cpp. Nobody
-// else includes it.
+// How well one frame, warped by motion vectors, becomes another: the measure of velocity_check.cpp. No other
+// file includes it.
 #pragma once
 
 #include <array>
@@ -50,7 +50,7 @@ struct TimeDispute {
 };
 
 /// One frame's pixels, followed along its vectors into the other frame. Samples are drawn in proportion to
-/// the length of the vectors, as a slow pan of the whole picture tells less than the one object that flies
+/// the length of the vectors, as a slow pan of the whole picture shows less than the one object that flies
 /// through it.
 class WarpTest {
 public:

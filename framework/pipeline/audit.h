@@ -1,4 +1,4 @@
-// Where values that are no numbers come from.
+// Where values that are not numbers come from.
 #pragma once
 
 #include <cstddef>
@@ -28,7 +28,7 @@ struct AuditedImage {
     std::string texture{};
 };
 
-/// Looks at every value; adds a finding if there is one to tell.
+/// Looks at every value; adds a finding if there is one to report.
 void audit_values(const AuditedImage& image, std::vector<AuditFinding>& findings);
 
 /// "bokeh.second: bokeh.color has 12 NaN and 3 infinite values, the first at (10, 4)".

@@ -1,4 +1,4 @@
-// Histories saved while a run goes on, so that a killed run loses few frames.
+// Histories saved during a run, so that a killed run loses few frames.
 #pragma once
 
 #include <cstddef>

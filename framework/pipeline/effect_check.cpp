@@ -6,8 +6,10 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <string_view>
 
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 #include "framework/effect/registry.h"
 #include "framework/image/role.h"
 #include "framework/pipeline/renderer.h"
@@ -43,7 +45,8 @@ Pipeline pipeline_of(const EffectManifest& manifest, const Setting& setting) {
     step.is_foreign = !is_shipped(manifest);
     for (const InputSpec& input : manifest.inputs)
         // A role that the test capture never has: the input is not there.
-        step.inputs[input.name] = {-1, setting.absent.contains(input.name) ? "aov:absent" : input.role};
+        step.inputs[input.name] = {-1,
+                                   setting.absent.contains(input.name) ? "aov:absent" : input.image_role()};
     for (const auto& [name, value] : setting.values) {
         step.values[name] = value;
         step.origins[name] = "the check";
@@ -135,12 +138,20 @@ Capture make_test_capture(int width, int height, int frame) {
     return capture;
 }
 
+/// Layers that the effect reads: the whole picture again, so that every value is one that the role may have.
+void add_layers(const EffectManifest& manifest, Capture& capture) {
+    for (const InputSpec& input : manifest.inputs)
+        if (input.layer >= 0 && capture.images.contains(input.role))
+            capture.images[input.image_role()] = Image(capture.images.at(input.role));
+}
+
 /// What no capture has by itself but the effect cannot do without: small numbers.
-void add_required_aovs(const EffectManifest& manifest, Capture& capture) {
+void add_required_images(const EffectManifest& manifest, Capture& capture) {
     const Image& depth = capture.images.at(kDepthRole);
     for (const InputSpec& input : manifest.inputs) {
         const ChannelRole role = *find_role(input.role);
-        if (role.kind != RoleKind::other || input.optional || capture.images.contains(input.role)) continue;
+        const bool is_missing = role.kind == RoleKind::other || role.kind == RoleKind::display;
+        if (!is_missing || input.optional || capture.images.contains(input.role)) continue;
         Image image(depth.width(), depth.height(), role.channels);
         for (std::size_t i = 0; i < image.floats().size(); ++i) image.floats()[i] = 0.001f * float(i % 7);
         capture.images[input.role] = std::move(image);
@@ -160,7 +171,8 @@ std::string fault_of(gpu::Context& context, const EffectManifest& manifest, cons
     for (const int number : {1, 2}) {
         Capture previous = make_test_capture(64, 36, number - 1), capture = make_test_capture(64, 36, number),
                 next = make_test_capture(64, 36, number + 1);
-        for (Capture* each : {&previous, &capture, &next}) add_required_aovs(manifest, *each);
+        for (Capture* each : {&previous, &capture, &next}) add_required_images(manifest, *each);
+        add_layers(manifest, capture);
         FrameInputs frame;
         frame.capture = &capture;
         frame.previous = &previous;
@@ -176,6 +188,26 @@ std::string fault_of(gpu::Context& context, const EffectManifest& manifest, cons
     return "";
 }
 
+/// A shader's faults are lines that bring their own places; other faults are the manifest's.
+void add_fault(const EffectManifest& manifest, const Setting& setting, const std::string& fault,
+               Diagnostics& diagnostics) {
+    constexpr std::string_view kMark = ": error: ";
+    for (const std::string_view line : split(fault, '\n')) {
+        // The check of the texts may have found the same.
+        const bool is_known = std::ranges::any_of(diagnostics.all(), [&](const Diagnostic& found) {
+            return to_string(found.place) + std::string(kMark) + found.message == line;
+        });
+        if (is_known) continue;
+        const std::size_t at = line.find(kMark);
+        if (at == std::string_view::npos)
+            diagnostics.error({(manifest.folder / "effect.json").string()},
+                              "with " + setting.name + ": " + std::string(line));
+        else
+            diagnostics.error({std::string(line.substr(0, at))},
+                              std::string(line.substr(at + kMark.size())) + " (with " + setting.name + ")");
+    }
+}
+
 }  // namespace
 
 void check_effect(gpu::Context& context, const EffectManifest& manifest,
@@ -184,10 +216,7 @@ void check_effect(gpu::Context& context, const EffectManifest& manifest,
     for (const Setting& setting : settings_of(manifest)) {
         const std::string fault = fault_of(context, manifest, setting, data_folder, natives);
         if (fault.empty() || !told.insert(fault).second) continue;
-        // A shader's fault brings its own place and all its lines.
-        const bool has_place = fault.find(": error: ") != std::string::npos;
-        diagnostics.error({(manifest.folder / "effect.json").string()},
-                          "with " + setting.name + ":" + (has_place ? "\n" : " ") + fault);
+        add_fault(manifest, setting, fault, diagnostics);
     }
 }
 

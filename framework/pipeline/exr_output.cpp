@@ -143,7 +143,7 @@ std::string write_exr_output(const std::filesystem::path& path, const OutputOpti
         if (!image)
             throw Error(ExitCode::capture,
                         capture.header.path.string() + ": the role '" + name +
-                            "', asked for in the output, is in neither the capture nor the look");
+                            "', requested in the output, is in neither the capture nor the look");
         drop_channels(content, find_role(name)->native_channels);
         add_role(content, *find_role(name), *image, options.color_type);
     }

@@ -57,7 +57,7 @@ struct FrameFingerprint {
     static constexpr const char* kBegin = "begin";
 };
 
-/// The frames of one run, worked out as they are asked for: each reads its input files whole, once. [thread-
+/// The frames of one run, worked out on demand: each reads its input files whole, once. [thread-
 /// safe; refers to the sequence, reader and pipeline]
 class FrameFingerprints {
 public:

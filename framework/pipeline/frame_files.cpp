@@ -49,9 +49,14 @@ std::vector<FrameFiles::Input> FrameFiles::inputs(int frame, bool reads_motion) 
     std::vector<Input> inputs;
     const int first = sequence_.file_number(frame);
     for (const int file : all) {
-        inputs.push_back({"main", file - first, sequence_.path_of(file)});
-        for (const auto& [role, pattern] : sequence_.role_files)
-            inputs.push_back({role, file - first, pattern.path(file)});
+        const auto add = [&](const Sequence& sequence, const std::string& prefix) {
+            inputs.push_back({prefix + "main", file - first, sequence.path_of(file)});
+            for (const auto& [role, pattern] : sequence.role_files)
+                inputs.push_back({prefix + role, file - first, pattern.path(file)});
+        };
+        if (sequence_.layers.empty()) add(sequence_, "");
+        for (std::size_t i = 0; i < sequence_.layers.size(); ++i)
+            add(sequence_of_layer(sequence_, i), "layer " + std::to_string(i) + " ");
     }
     return inputs;
 }

@@ -26,7 +26,7 @@ struct GraphTools {
     ProgramCache& programs;
     StepFiles& files;
     bool telemetry = false;          ///< keep the textures of the steps' statistics
-    StatusWriter* status = nullptr;  ///< told which pass is compiled; may be null
+    StatusWriter* status = nullptr;  ///< receives which pass is compiled; may be null
 };
 
 /// Throws Error(ExitCode::effect) where a pass reads, or a step outputs, what no pass has written with these

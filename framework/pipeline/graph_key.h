@@ -23,7 +23,7 @@ struct GraphFrame {
     const std::vector<std::string>& roles;  ///< to be read back
 };
 
-/// One thing that a build may ask of a frame; what a pipeline says without a frame needs no question.
+/// One thing that a build may read of a frame; what a pipeline says without a frame needs no question.
 struct GraphQuestion {
     enum class About {
         width_px,
@@ -58,7 +58,7 @@ private:
     std::vector<std::pair<GraphQuestion, ParamValue>> answers_;
 };
 
-/// The only way in which a build sees a frame: what it asks becomes the graph's key.
+/// The only way in which a build sees a frame: what it reads becomes the graph's key.
 class GraphFrameReader {
 public:
     explicit GraphFrameReader(const GraphFrame& frame) : frame_(frame) {}

@@ -231,7 +231,7 @@ SavedHistory read_history(const fs::path& path) {
     if (failure || !in) throw refuse("this history cannot be read");
     std::string magic, head;
     std::getline(in, magic);
-    if (magic != kMagic) throw refuse("this is no history of --history-out");
+    if (magic != kMagic) throw refuse("this is not a history file of --history-out");
     std::getline(in, head);
     SavedHistory history;
     history.path = path;

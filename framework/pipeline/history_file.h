@@ -1,4 +1,4 @@
-// History between two runs: so that a sequence cut into chunks goes on exactly.
+// History between two runs: so that a sequence cut into chunks continues exactly.
 #pragma once
 
 #include <cstddef>

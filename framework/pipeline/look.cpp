@@ -227,7 +227,8 @@ private:
         const Place& place = reader.place("use");
         const fs::path path = scope.folder / file;
         if (std::find(open_.begin(), open_.end(), canonical(path)) != open_.end()) {
-            diagnostics_.error(place, "'" + file + "' uses itself: " + chain_to(canonical(path)));
+            diagnostics_.error(place, "'" + file + "' uses itself: " + chain_to(canonical(path)) +
+                                          " (remove one of these 'use')");
             return;
         }
         if (is_too_large_ || !may_use_another(file, place)) return;
@@ -271,7 +272,8 @@ void check_names(const Look& look, Diagnostics& diagnostics) {
         const LookStep& step = look.steps[i];
         if (step.name.empty() && step.effect.empty()) continue;  // told of already
         if (step.name == "capture")
-            diagnostics.error(step.place, "a step cannot be named 'capture': wiring means the input by it");
+            diagnostics.error(step.place,
+                              "a step cannot be named 'capture': wiring uses this name for the capture");
         const auto same = [&](const LookStep& other) { return other.name == step.name; };
         const auto first = std::find_if(look.steps.begin(), look.steps.begin() + std::ptrdiff_t(i), same);
         if (first != look.steps.begin() + std::ptrdiff_t(i))

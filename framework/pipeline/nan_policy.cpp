@@ -30,7 +30,7 @@ std::string counts_text(const NonFinitePixels& pixels) {
 }
 
 std::string mended_text(const NonFinitePixels& pixels) {
-    std::string text = "; mended from the finite pixels around";
+    std::string text = "; replaced by the mean of the finite pixels around them";
     if (pixels.zeroed > 0)
         text += ", but " + std::to_string(pixels.zeroed) + " have none within " +
                 std::to_string(kMendRadius_px) + " px and became 0";

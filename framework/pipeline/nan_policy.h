@@ -1,4 +1,4 @@
-// NaN and infinite pixels of captures and outputs: found, told with where they are from, mended or refused.
+// NaN and infinite pixels of captures and outputs: found, reported with their source, repaired or refused.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace aftershade {
 
-/// Notes the non-finite pixels of each role in `capture.non_finite`, by the pixels of the file; mends them
+/// Notes the non-finite pixels of each role in `capture.non_finite`, by the pixels of the file; repairs them
 /// where the policy says so. Positive infinity is sound in roles whose outside is infinite, such as depth.
 void apply_nan_policy(NanPolicy policy, Capture& capture);
 
@@ -22,7 +22,7 @@ struct NonFiniteOutput {
 };
 
 /// The same for the images that the steps made. Of taps only NaN counts: they show what an effect works
-/// with, where an infinity may mean something; they are never mended.
+/// with, where an infinity may mean something; they are never repaired.
 std::vector<NonFiniteOutput> apply_nan_policy(NanPolicy policy, FrameResult& result);
 
 /// One sentence for each: "frame 2: the role 'color' of cap_0002.exr has 12 NaN pixels, the first at (30,

@@ -41,7 +41,7 @@ NativeFrame frame_of(const PipelineStep& step, const FrameInputs& frame, const P
         const InputSource& source = step.inputs.at(input.name);
         const bool present =
             step.may_take(input) && (source.step >= 0 || frame.has_image(source.output, input.frame));
-        native.images.push_back({input.name, input.role, native.width_px, native.height_px,
+        native.images.push_back({input.name, input.image_role(), native.width_px, native.height_px,
                                  find_role(input.role)->channels, present});
     }
     return native;

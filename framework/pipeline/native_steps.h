@@ -29,7 +29,7 @@ public:
     /// step, library and frame.
     void prepare(const Pipeline& pipeline, const FrameInputs& frame, const std::vector<ParamSet>& params,
                  bool history_valid);
-    /// Tells every instance that history was dropped.
+    /// Notifies every instance that history was dropped.
     void reset();
 
     /// nullptr for a step without native code.

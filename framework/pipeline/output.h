@@ -22,7 +22,7 @@ void prepare_output_folders(const OutputOptions& options, const Sequence& sequen
 void check_outputs(const OutputOptions& options, const Sequence& sequence, InputFiles& inputs,
                    Diagnostics& diagnostics);
 
-/// Roles that the options need from the pipeline: those of EXR, and display where a PNG is asked for.
+/// Roles that the options need from the pipeline: those of EXR, and display where a PNG is an output.
 std::vector<std::string> wanted_roles(const OutputOptions& options);
 
 /// The files that write_outputs makes of a frame, in its order.

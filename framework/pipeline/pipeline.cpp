@@ -209,7 +209,7 @@ void require_relations(const PipelineStep& step, const ParamSet& params, const F
     for (const RelationFault& fault : check_relations(step.manifest->params, params))
         throw Error(ExitCode::capture, frame.capture->header.path.string() + ": " +
                                            relation_message(step.name, fault) +
-                                           " (set both in the look, or mend the capture's camera)");
+                                           " (set both in the look, or correct the capture's camera)");
 }
 
 }  // namespace
@@ -231,7 +231,7 @@ std::string explain_params(const Pipeline& pipeline, const FrameInputs& frame) {
         for (const ParamSpec& spec : step.manifest->params) {
             const ResolvedValue resolved = resolve_param(step, spec, frame);
             const std::string unit = spec.unit.empty() ? "" : " " + spec.unit;
-            text += step.name + "." + spec.name + " = " + format_value(resolved.value) + unit + "   [" +
+            text += step.name + "." + spec.name + " = " + format_value(spec, resolved.value) + unit + "   [" +
                     resolved.origin + "]\n";
         }
     return text;

@@ -1,4 +1,4 @@
-// A look bound to its effects: what each step reads, and which values were asked for.
+// A look bound to its effects: what each step reads, and which values were chosen.
 #pragma once
 
 #include <filesystem>
@@ -44,7 +44,7 @@ struct PipelineStep {
 
     /// Whether the input's conditions may hold: with values that differ from frame to frame they may.
     bool may_take(const InputSpec& input) const;
-    /// Every value that the parameter may have, whatever the frame, but for what only the capture knows: the
+    /// Every value that the parameter may have, whatever the frame, but for what only the capture holds: the
     /// user's, by keys all of them, else the manifest's. Paths of files are complete.
     std::vector<ParamValue> known_values(const ParamSpec& spec) const;
 };
@@ -84,7 +84,7 @@ struct FrameInputs {
     int subframe = 0;
     int subframe_count = 1;
     const Capture* centre = nullptr;  ///< of several sub-frames: the one at the middle of the exposure
-    double scale = 1;  ///< of the capture's pixels against those that values in px are meant for
+    double scale = 1;  ///< of the capture's pixels relative to those that values in px refer to
     double fps = 24;
     /// Fills the texture of a capture's image that is not in memory; false where it is. Empty: each is.
     std::function<bool(const std::string& role, int offset, gpu::Texture& texture)> fill{};

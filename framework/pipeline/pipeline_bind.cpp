@@ -129,8 +129,10 @@ private:
         if (look_step.effect.empty()) return std::nullopt;
         if (!effects_.contains(look_step.effect)) {
             const auto ids = effects_.ids();
-            diagnostics_.error(look_step.effect_place,
-                               "no effect '" + look_step.effect + "'" + did_you_mean(look_step.effect, ids));
+            diagnostics_.error(
+                look_step.effect_place,
+                "no effect '" + look_step.effect + "'" +
+                    did_you_mean(look_step.effect, ids, "; --effect-path names a folder of further effects"));
             return std::nullopt;
         }
         PipelineStep step;
@@ -178,12 +180,12 @@ private:
             }
             InputSource source = nearest_source(output.role, index);
             for (const InputSpec& input : step.manifest->inputs)
-                if (input.role == output.role && input.frame == 0 && !input.from_capture)
+                if (input.role == output.role && input.frame == 0 && input.layer < 0 && !input.from_capture)
                     source = step.inputs.at(input.name);
             if (source.step < 0 && kind_of_role(output.role) == RoleKind::display)
                 diagnostics_.error(
                     place,
-                    "step '" + step.name + "' makes display, of which there is none before it to mix with");
+                    "step '" + step.name + "' makes display, but no earlier step has made one to mix with");
             step.before[output.name] = source;
         }
     }
@@ -254,9 +256,9 @@ private:
     void wire(const LookStep& look_step, PipelineStep& step) {
         for (const WiringSpec& wiring : look_step.wiring) wire_input(wiring, step);
         for (const InputSpec& input : step.manifest->inputs) {
-            const bool of_capture = input.frame != 0 || input.from_capture;
-            const InputSource source =
-                of_capture ? InputSource{-1, input.role} : nearest_source(input.role, pipeline_.steps.size());
+            const bool of_capture = input.frame != 0 || input.from_capture || input.layer >= 0;
+            const InputSource source = of_capture ? InputSource{-1, input.image_role()}
+                                                  : nearest_source(input.role, pipeline_.steps.size());
             step.inputs.try_emplace(input.name, source);
             // Who can do without colour does not build on it: it may look at it to the side of the display.
             if (input.role == kColorRole && !input.optional && pipeline_.writes_role(kDisplayRole))

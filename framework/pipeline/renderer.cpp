@@ -306,7 +306,7 @@ void PipelineRenderer::begin_from_saved(const FrameInputs& frame) {
     const std::string file = saved_->path.string();
     if (header.frame != saved_->frame + 1)
         throw Error(ExitCode::usage, file + ": this history is of frame " + std::to_string(saved_->frame) +
-                                         "; it can go on with frame " + std::to_string(saved_->frame + 1) +
+                                         "; it continues with frame " + std::to_string(saved_->frame + 1) +
                                          ", not with " + std::to_string(header.frame));
     if (!(header.data_window == saved_->window))
         throw Error(ExitCode::usage, file + ": this history is of another size: its window is " +

@@ -27,10 +27,10 @@ struct FrameResult {
     std::map<std::string, Image> taps;        ///< by "step.texture"
     std::vector<graph::PassTime> times;       ///< upload, each pass, readback; empty unless timed
     std::vector<AuditFinding> audit;          ///< in the order of the passes; empty unless audited
-    std::optional<Window> region;             ///< the part of the display window that was asked for
+    std::optional<Window> region;             ///< the part of the display window that was requested
     std::vector<std::string> messages;        ///< what native code logged
-    std::optional<FrameTelemetry> telemetry;  ///< where it was asked for
-    std::string history_reset;  ///< why history began anew: "a cut"; "" where it went on or is none
+    std::optional<FrameTelemetry> telemetry;  ///< where it was requested
+    std::string history_reset;  ///< why history restarted: "a cut"; "" where it continued or is none
 };
 
 /// A frame graph for one size and one choice of passes (framework/pipeline/built_graph.h).
@@ -53,7 +53,7 @@ public:
     /// Renders one frame; of sub-frames, give each in turn. Steps up to the last one that accumulates run for
     /// each sub-frame; the others run once, with the last, over `frame.centre`. `roles` are read back where a
     /// step makes them; of sub-frames before the last the result is empty. Frames follow each other in
-    /// `frame.capture->header.frame`; anything else begins history anew. Throws Error(ExitCode::effect).
+    /// `frame.capture->header.frame`; anything else restarts history. Throws Error(ExitCode::effect).
     FrameResult render(const FrameInputs& frame, const std::vector<std::string>& roles, bool timed);
     /// Reads every input and every float texture back after its pass and looks for NaN and infinities. Slow.
     /// Guards loops, too. [before the first frame]
@@ -67,7 +67,7 @@ public:
 
     /// Results of these roles are not read back: result_texture() has them, FrameResult::images has not.
     void keep_on_gpu(std::vector<std::string> roles) { kept_on_gpu_ = std::move(roles); }
-    /// What the last frame made of a role that was asked for; nullptr where no step makes it. Until the next.
+    /// What the last frame made of a role that was requested; nullptr where no step makes it. Until the next.
     const gpu::Texture* result_texture(const std::string& role) const;
     /// Call after a change of the pipeline that the renderer refers to, unless only values changed that
     /// decide over no input, mix or mask. History lives on where it fits.
@@ -121,7 +121,7 @@ private:
     std::optional<Last> last_;             // capture, sub-frames too
     bool is_partial_ = false;              // of the last frame not all sub-frames came
     std::optional<Camera> camera_before_;  // of the last whole frame
-    std::string frame_fault_;              // why this frame began history anew
+    std::string frame_fault_;              // why this frame restarted history
     std::unique_ptr<SavedHistory> saved_;  // loaded and not yet taken up
     bool audit_ = false;
     bool telemetry_ = false;

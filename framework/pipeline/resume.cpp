@@ -52,7 +52,7 @@ void ResumableRun::decide(std::size_t index) {
     else if (!recorded)
         planned.reason =
             fs::exists(expected.front(), unreadable)
-                ? "the journal does not know how " + expected.front().filename().string() + " was made"
+                ? "the journal does not record how " + expected.front().filename().string() + " was made"
                 : "not rendered yet";
     else if (planned.reason = journal_.fault_of_files(*recorded, expected); planned.reason.empty()) {
         const FrameFingerprint now = fingerprints_.of(index);

@@ -29,7 +29,7 @@ struct PlannedFrame {
 
 struct ResumeOptions {
     std::string overwrite;       ///< why every frame is rendered, whatever the journal says; "" to leave out
-    int checkpoint_frames = 10;  ///< the history is saved after so many frames; 0: never
+    int checkpoint_frames = 10;  ///< the history is saved every this many frames; 0: never
     bool needs_last = false;     ///< the last frame must be rendered, though not written: --graph
 };
 

@@ -16,7 +16,7 @@
 
 namespace aftershade {
 
-/// What a run that can go on later does beside each frame. Any may be empty. On the caller's thread unless
+/// What a run that can resume later does beside each frame. Any may be empty. On the caller's thread unless
 /// said otherwise; what they throw ends the run.
 struct RunHooks {
     std::function<void(int frame, PipelineRenderer& renderer)> before_frame;
@@ -30,7 +30,7 @@ struct RunHooks {
     /// time]
     std::function<void(int frame, const std::vector<std::filesystem::path>& files, double seconds)>
         frame_written;
-    /// What the history that RunOptions::history_out names shall say it is of.
+    /// What the history of RunOptions::history_out is labelled with.
     std::function<std::string()> last_fingerprint;
 };
 

@@ -43,9 +43,9 @@ struct FrameOutcome {
 struct RunReport {
     int frames_done = 0;
     std::vector<FrameFailure> failures;
-    std::vector<int> frames_non_finite;  ///< frames with NaN or infinite pixels, mended ones too
+    std::vector<int> frames_non_finite;  ///< frames with NaN or infinite pixels, repaired ones too
     std::vector<int> frames_left;        ///< not begun, after an interrupt or RunOptions::stop_on_error
-    std::optional<int> history_begin;    ///< the last frame that began history anew, where a step has any
+    std::optional<int> history_begin;    ///< the last frame that restarted history, where a step has any
     bool history_saved = false;          ///< RunOptions::history_out was written
     int frames_skipped = 0;              ///< missing, and MissingFrame::skip
     int frames_unwritten = 0;            ///< rendered for what they leave to later frames
@@ -56,7 +56,7 @@ struct RunReport {
     double encode_ms = 0;                ///< encoding and writing, on its thread
     double wall_ms = 0;
     bool interrupted = false;
-    std::vector<FrameTelemetry> telemetry;  ///< of every frame, where it was asked for
+    std::vector<FrameTelemetry> telemetry;  ///< of every frame, where it was requested
     std::string graph_dot;                  ///< of the last frame, in Graphviz's language
     std::uint64_t bytes = 0;                ///< of its textures and buffers
     std::uint64_t bytes_unaliased = 0;      ///< what these would take if none shared memory
@@ -73,7 +73,7 @@ struct RunObserver {
     /// in a file.
     std::function<void(const std::string& message)> non_finite;
     std::function<void(int frame, const std::string& what)> frame_missing;  ///< skipped or held
-    /// Frames but the first that begin history anew, where some step has history.
+    /// Frames but the first that restart history, where some step has history.
     std::function<void(int frame, const std::string& reason)> history_reset;
     std::function<void(int frame, const std::string& line)> native_message;
     /// Of every frame but those that only warm history up; of written ones when their files are in place.

@@ -1,4 +1,4 @@
-// Where a run keeps what it needs to go on later: the folder ".aftershade" beside its outputs.
+// Where a run keeps what it needs to resume later: the folder ".aftershade" beside its outputs.
 #pragma once
 
 #include <filesystem>

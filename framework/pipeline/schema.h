@@ -1,8 +1,8 @@
 // JSON Schema (draft 2020-12) of looks, made from the declarations of the effects that they may use.
 //
 // What an editor completes and marks is what the program takes and refuses, as far as a schema can say it:
-// that names which another document declares (steps, variables) exist, and how two values stand to each
-// other, only the program knows.
+// that names which another document declares (steps, variables) exist, and how two values relate: only the
+// program checks that.
 #pragma once
 
 #include <string>

@@ -132,9 +132,10 @@ struct SourceReader {
 ParamValue fitted(double number, const ParamSpec& spec, const std::string& label, const std::string& origin,
                   const CaptureHeader& header) {
     if (!(number >= spec.min.value_or(number)) || !(number <= spec.max.value_or(number)))
-        throw Error(ExitCode::capture, header.path.string() + ": " + origin + " is " + format_number(number) +
-                                           ", outside the range of " + label +
-                                           " (set the parameter in the look, or mend the capture's camera)");
+        throw Error(ExitCode::capture,
+                    header.path.string() + ": " + origin + " is " + format_number(number) +
+                        ", outside the range of " + label +
+                        " (set the parameter in the look, or correct the capture's camera)");
     return value_of_numbers(spec, {number});
 }
 
@@ -228,7 +229,7 @@ std::optional<ParamValue> camera_value(const ParamSpec& spec, const std::string&
             throw Error(ExitCode::capture,
                         header.path.string() + ": camera." + field + " is '" + name +
                             "', outside the range of " + label +
-                            " (set the parameter in the look, or mend the capture's camera)");
+                            " (set the parameter in the look, or correct the capture's camera)");
         return name;
     }
     auto number = header.camera.get(field);
@@ -247,7 +248,7 @@ ParamValue evaluate(const ValueSource& source, const ParamSpec& spec, const std:
         auto value = camera_value(spec, camera->field, label, capture.header);
         if (!value)
             refuse(label, capture.header,
-                   "the capture does not know camera." + camera->field +
+                   "the capture has no camera." + camera->field +
                        "; give it in the capture.json's \"camera\", or a value in the look");
         return *value;
     }

@@ -21,7 +21,7 @@ struct KeyedValue {
     Interpolation interpolation = Interpolation::linear;
 };
 
-/// {"from": "camera.focus_distance"}: of the capture; it is an error where the capture does not know it.
+/// {"from": "camera.focus_distance"}: of the capture; it is an error where the capture lacks it.
 struct CameraValue {
     std::string field;  ///< "focus_distance", "lens_model"
 };

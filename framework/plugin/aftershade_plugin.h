@@ -16,9 +16,9 @@
  *
  * Versions. Every struct begins with its size as its author's compiler saw it. A new MINOR appends fields to
  * structs and never changes older ones: the host takes libraries of older minors (fields that they lack count
- * as absent) and of newer ones (fields that the host does not know are not looked at). A new MAJOR may change
+ * as absent) and of newer ones (the host ignores fields that it lacks). A new MAJOR may change
  * anything but the first three fields of aftershade_library; the host refuses a library of another major.
- * A plug-in that uses a field newer than 1.0 of a struct that the host filled asks AFTERSHADE_HAS first.
+ * A plug-in that uses a field newer than 1.0 of a struct that the host filled checks AFTERSHADE_HAS first.
  *
  * Threads, in brackets after each function:
  * - [library] one call at a time for one library
@@ -164,7 +164,8 @@ struct aftershade_metadata {
     uint32_t struct_size;
     const void* host_data;
 
-    /* NULL where there is none of that name, which is no fault; valid until `prepare` returns. [prepare] */
+    /* NULL where there is none of that name, which is not a fault; valid until `prepare` returns. [prepare]
+     */
     const char* (*get_text)(const aftershade_metadata* metadata, const char* name);
 };
 
@@ -255,7 +256,7 @@ struct aftershade_instance {
     aftershade_status (*prepare)(const aftershade_instance* instance, const aftershade_frame* frame,
                                  const aftershade_output* output);
 
-    /* The plug-in's struct for an extension that the host asks for, or NULL; may itself be NULL. [instance]
+    /* The plug-in's struct for an extension that the host requests, or NULL; may itself be NULL. [instance]
      */
     const void* (*get_extension)(const aftershade_instance* instance, const char* id);
 
@@ -295,7 +296,7 @@ typedef struct aftershade_library {
     /* index is below factory_count. [library] */
     const aftershade_factory* (*get_factory)(uint32_t index);
 
-    /* The library's struct for an extension that the host asks for, or NULL; may itself be NULL. [library] */
+    /* The library's struct for an extension that the host requests, or NULL; may itself be NULL. [library] */
     const void* (*get_extension)(const char* id);
 
     /* since 1.1; may be NULL. Where to report faults: the host adds it to the messages of failures. */

@@ -74,7 +74,7 @@ struct ScatteringProfile {
     static constexpr std::size_t kMaxGaussians = 8;
 
     // What documents may write: d, mean free paths and widths; both coefficients of a dipole, 1/mm, below
-    // which light would go on for ever; and an artist's strength.
+    // which light would never stop; and an artist's strength.
     static constexpr double kLeastLength_mm = 1e-6, kMostLength_mm = 1e6;
     static constexpr double kLeastAbsorption = 1e-5, kMostAbsorption = 1e3, kMostScattering = 1e4;
     static constexpr double kLeastStrength = 0.001;

@@ -11,7 +11,7 @@ namespace aftershade::scene {
 enum class Interpolation { linear, step, smooth };
 
 /// The frames between two cuts. What moves keeps its motion over a shot's ends: the exposure and the motion
-/// vectors of a shot's first frame know nothing of the shot before it.
+/// vectors of a shot's first frame see nothing of the shot before it.
 struct Shot {
     double first = -1e9;
     double last = 1e9;
@@ -48,14 +48,14 @@ public:
         return from.value + (after->value - from.value) * t;
     }
 
-    /// The same inside `shot`. Outside, the curve goes on as its mirror image through the shot's end, so that
-    /// position and speed are continuous; where the shot is too short for that, and between steps, the end
-    /// holds.
+    /// The same inside `shot`. Outside, the curve continues as its mirror image through the shot's end, so
+    /// that position and speed are continuous; where the shot is too short for that, and between steps, the
+    /// end holds.
     T at(double time, const Shot& shot) const {
         return at(time, shot, [](const T& end, const T& mirrored) { return end + (end - mirrored); });
     }
 
-    /// The same for values above 0, which stay above it: the curve of their logarithm is what goes on.
+    /// The same for values above 0, which stay above it: the curve of their logarithm is what continues.
     T positive_at(double time, const Shot& shot) const {
         return at(time, shot, [](const T& end, const T& mirrored) { return end * (end / mirrored); });
     }

@@ -48,6 +48,14 @@ void write_surface(Capture& capture, int x, int y, const Scene& scene, const Sur
     capture.images.at("object_id").uint_at(x, y, 0) = scene.objects[std::size_t(surface.object)].id;
 }
 
+void write_motion(Capture& capture, int x, int y, const glm::dvec2& velocity_px,
+                  const glm::dvec2& velocity_next_px) {
+    for (int c = 0; c < 2; ++c) {
+        capture.images.at("velocity").at(x, y, c) = float(velocity_px[c]);
+        capture.images.at("velocity_next").at(x, y, c) = float(velocity_next_px[c]);
+    }
+}
+
 void write_background(Capture& capture, int x, int y, const glm::dvec3& radiance) {
     write(capture.images.at("color"), x, y, radiance);
     capture.images.at("color").at(x, y, 3) = 1;

@@ -83,7 +83,7 @@ std::uint64_t bytes_of_job(const Job& job) {
     const bool is_texture = job.texture_object >= 0;
     const std::uint64_t width = std::uint64_t(is_texture ? job.texture_side_px : job.width_px);
     const std::uint64_t height = std::uint64_t(is_texture ? job.texture_side_px : job.height_px);
-    return 2 * width * height * channels * sizeof(float);
+    return 2 * width * height * channels * sizeof(float) * std::uint64_t(job.layers);
 }
 
 bool is_constant(const Light& light) {
@@ -146,15 +146,41 @@ private:
         for (int s = 0; s < job_.subframes; ++s) {
             const double time =
                 job_.subframes == 1 ? frame : exposure_of(scene_.camera, frame).middle(s, job_.subframes);
-            const Clock::time_point start = Clock::now();
-            Capture capture =
-                job_.texture_object >= 0
-                    ? renderer_.render_texture_space(frame, job_.texture_object, job_.texture_side_px)
-                    : renderer_.render_capture(frame, time, jitter_px(frame));
-            report_.render_s += seconds_since(start);
             const int number = frame * job_.subframes + s;
-            write(std::move(capture), fmt::format("gbuffer_{:04}.exr", number), frame, time, {});
+            if (job_.deep) {
+                render_deep(frame, time, number);
+                continue;
+            }
+            const Clock::time_point start = Clock::now();
+            std::vector<Capture> layers;
+            if (job_.texture_object >= 0)
+                layers.push_back(
+                    renderer_.render_texture_space(frame, job_.texture_object, job_.texture_side_px));
+            else layers = renderer_.render_layers(frame, time, jitter_px(frame), job_.layers);
+            report_.render_s += seconds_since(start);
+            for (std::size_t i = 0; i < layers.size(); ++i)
+                write(std::move(layers[i]), fmt::format("{}_{:04}.exr", capture_name(i), number), frame, time,
+                      {});
         }
+    }
+
+    static std::string capture_name(std::size_t layer) {
+        return layer == 0 ? "gbuffer" : "layer" + std::to_string(layer);
+    }
+
+    void render_deep(int frame, double time, int number) {
+        const Clock::time_point start = Clock::now();
+        DeepImage image = renderer_.render_deep(frame, time, jitter_px(frame));
+        report_.render_s += seconds_since(start);
+        CaptureHeader header;
+        header.data_window = header.display_window = {0, 0, job_.width_px - 1, job_.height_px - 1};
+        header.camera = capture_camera(scene_, state_at(scene_, frame, time), job_.width_px, job_.height_px);
+        const CaptureWriteOptions options = complete(header, frame, time, {});
+        const fs::path path = job_.folder / fmt::format("gbuffer_{:04}.exr", number);
+        report_.files.push_back(path);
+        writer_.write([image = std::move(image), header, path, options] {
+            write_deep_capture(path, image, header, options);
+        });
     }
 
     void render_truth(int frame, const Truth& truth) {
@@ -183,14 +209,7 @@ private:
 
     void write(Capture capture, const std::string& name, int frame, double time,
                std::map<std::string, ExrValue> attributes) {
-        CaptureHeader& header = capture.header;
-        header.lights = capture_lights(scene_, state_at(scene_, frame, time));
-        if (job_.jitter) header.camera.jitter_px = jitter_px(frame);
-        attributes["aftershade/time"] = float(time);
-        CaptureWriteOptions options;
-        options.compression = job_.compression;
-        options.fps = scene_.fps;
-        options.attributes = std::move(attributes);
+        const CaptureWriteOptions options = complete(capture.header, frame, time, std::move(attributes));
         const fs::path path = job_.folder / name;
         report_.files.push_back(path);
         writer_.write([this, capture = std::move(capture), path, options] {
@@ -199,9 +218,24 @@ private:
         });
     }
 
+    /// Lights and jitter into the header; and how it is written.
+    CaptureWriteOptions complete(CaptureHeader& header, int frame, double time,
+                                 std::map<std::string, ExrValue> attributes) const {
+        header.lights = capture_lights(scene_, state_at(scene_, frame, time));
+        if (job_.jitter) header.camera.jitter_px = jitter_px(frame);
+        attributes["aftershade/time"] = float(time);
+        CaptureWriteOptions options;
+        options.compression = job_.compression;
+        options.fps = scene_.fps;
+        options.attributes = std::move(attributes);
+        return options;
+    }
+
     void write_document() {
         CaptureDocument document;
-        document.frames = "gbuffer_####.exr";
+        document.frames = capture_name(0) + "_####.exr";
+        for (int layer = 1; layer < job_.layers; ++layer)
+            document.layers_behind.push_back(capture_name(std::size_t(layer)) + "_####.exr");
         document.frame_numbers = rendered_;
         document.fps = scene_.fps;
         document.profile = profile_.id;
@@ -296,6 +330,10 @@ void check_job(const Scene& scene, const Job& job, Diagnostics& diagnostics) {
               "its angle is 0, so that it never opens; write \"shutter\": { \"angle\": 180 } in the scene");
     if (job.texture_object >= 0 && job.subframes > 1) fault("--subframes", "texture space has no sub-frames");
     if (job.texture_object >= 0 && !job.truths.empty()) fault("--truth", "is not there in texture space");
+    const char* const layered = job.deep ? "--deep" : job.layers > 1 ? "--layers" : nullptr;
+    if (layered && job.texture_object >= 0) fault(layered, "is not there in texture space");
+    if (layered && !job.captures) fault(layered, "is of captures, and --truth-only writes none");
+    if (job.deep && job.layers > 1) fault("--layers", "is not for --deep, whose samples have no such number");
     if (job.texture_object >= 0 && job.jitter) fault("--jitter", "is not there in texture space");
     if (job.texture_object >= 0 && !has_texture_space(scene, job.texture_object))
         fault("--object",

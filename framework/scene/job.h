@@ -33,6 +33,8 @@ struct Job {
     int width_px = 480;
     int height_px = 270;
     bool captures = true;     ///< false: truths alone
+    int layers = 1;           ///< of captures: surfaces behind one another, up to kMostLayers
+    bool deep = false;        ///< captures hold deep samples
     int subframes = 1;        ///< of the exposure; files N * frame + s
     bool jitter = false;      ///< of captures and truths, by halton_jitter_px over 16 frames
     int texture_object = -1;  ///< index of the object whose texture space is rendered; -1: the picture

@@ -39,8 +39,8 @@ struct Mesh {
 };
 
 /// One node of a bounding volume hierarchy in depth-first order, without a stack: a ray that misses the box
-/// goes on at `skip`; one that hits it tries the `count` items from `first` (a leaf), or goes on at the next
-/// node (count 0).
+/// continues at `skip`; one that hits it tries the `count` items from `first` (a leaf), or continues at the
+/// next node (count 0).
 struct BvhNode {
     Bounds bounds;
     std::uint32_t skip = 0;  ///< index of the next node that is not below this one; node count at the end

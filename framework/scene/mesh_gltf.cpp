@@ -376,7 +376,8 @@ private:
         const auto indices = indices_of(primitive, place, vertex_count);
         const bool list = primitive.mode == TINYGLTF_MODE_TRIANGLES;
         if (list && indices.size() % 3 != 0)
-            fail(path_, fmt::format("{} has {} indices, which is no multiple of 3", place, indices.size()));
+            fail(path_,
+                 fmt::format("{} has {} indices, which is not a multiple of 3", place, indices.size()));
         const std::size_t count =
             list ? indices.size() / 3 : indices.size() - std::min<std::size_t>(indices.size(), 2);
         if (count > kMaxTriangles - mesh_.triangles.size())

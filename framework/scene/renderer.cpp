@@ -54,9 +54,8 @@ bool SceneRenderer::project(const CameraState& camera, const dvec4& point, dvec2
 
 /// `states` are now, a frame before, a frame after. What nothing hides moves with the camera alone; a point
 /// that one of two cameras has behind it gets 0.
-void SceneRenderer::write_motion(Capture& capture, int x, int y,
-                                 const std::array<const SceneState*, 3>& states, const Surface* surface,
-                                 const dvec3& direction) const {
+SceneRenderer::Motion SceneRenderer::motion_of(const std::array<const SceneState*, 3>& states,
+                                               const Surface* surface, const dvec3& direction) const {
     std::array<dvec2, 3> at{};
     std::array<bool, 3> valid{};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -65,37 +64,45 @@ void SceneRenderer::write_motion(Capture& capture, int x, int y,
                     : dvec4(direction, 0);
         valid[i] = project(states[i]->camera, point, at[i]);
     }
-    const auto write = [&](Image& image, const dvec2& motion_px) {
-        image.at(x, y, 0) = float(motion_px.x);
-        image.at(x, y, 1) = float(motion_px.y);
-    };
-    if (valid[0] && valid[1]) write(capture.images.at("velocity"), at[0] - at[1]);
-    if (valid[0] && valid[2]) write(capture.images.at("velocity_next"), at[2] - at[0]);
+    Motion motion;
+    if (valid[0] && valid[1]) motion.velocity_px = at[0] - at[1];
+    if (valid[0] && valid[2]) motion.velocity_next_px = at[2] - at[0];
+    return motion;
 }
 
 Capture SceneRenderer::render_capture(int frame, double time, std::array<double, 2> jitter_px) const {
+    return std::move(render_layers(frame, time, jitter_px, 1).front());
+}
+
+std::vector<Capture> SceneRenderer::render_layers(int frame, double time, std::array<double, 2> jitter_px,
+                                                  int layers) const {
     const World world(geometry_, state_at(scene_, frame, time));
     const SceneState before = state_at(scene_, frame, time - 1), after = state_at(scene_, frame, time + 1);
     const std::array<const SceneState*, 3> states = {&world.state(), &before, &after};
-    Capture capture = make_capture(frame, width_px_, height_px_, all_roles());
-    capture.header.camera = capture_camera(scene_, world.state(), width_px_, height_px_);
+    std::vector<Capture> captures(std::size_t(layers),
+                                  make_capture(frame, width_px_, height_px_, all_roles()));
+    for (Capture& capture : captures)
+        capture.header.camera = capture_camera(scene_, world.state(), width_px_, height_px_);
     const CameraState& camera = world.state().camera;
     for_each_row(height_px_, threads_, [&](int y) {
         for (int x = 0; x < width_px_; ++x) {
             const dvec2 pixel(x + 0.5 + jitter_px[0], y + 0.5 + jitter_px[1]);
             const Ray ray = camera_ray(camera, pixel, dvec2(0));
-            const auto surface = world.trace(ray, 0, kFar);
-            write_motion(capture, x, y, states, surface ? &*surface : nullptr, ray.direction);
-            if (surface) {
-                capture.images.at("depth").at(x, y, 0) = float(surface->t);
-                write_surface(capture, x, y, scene_, *surface, world.shade(*surface, ray.origin));
-            } else {
-                capture.images.at("depth").at(x, y, 0) = std::numeric_limits<float>::infinity();
-                write_background(capture, x, y, scene_.background);
+            const std::vector<Surface> surfaces = world.trace_through(ray, captures.size());
+            for (std::size_t k = 0; k < captures.size(); ++k) {
+                Capture& capture = captures[k];
+                const Surface* surface = k < surfaces.size() ? &surfaces[k] : nullptr;
+                capture.images.at("depth").at(x, y, 0) = float(surface ? surface->t : kFar);
+                if (k > surfaces.size()) continue;
+                const Motion motion = motion_of(states, surface, ray.direction);
+                write_motion(capture, x, y, motion.velocity_px, motion.velocity_next_px);
+                if (surface)
+                    write_surface(capture, x, y, scene_, *surface, world.shade(*surface, ray.origin));
+                else write_background(capture, x, y, scene_.background);
             }
         }
     });
-    return capture;
+    return captures;
 }
 
 SceneRenderer::SamplePoint SceneRenderer::sample_point(const TruthSettings& truth, int index,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "framework/capture/capture.h"
+#include "framework/file/deep_image.h"
 #include "framework/scene/world.h"
 
 namespace aftershade::scene {
@@ -57,6 +58,17 @@ public:
     Capture render_capture(int frame, double time, std::array<double, 2> jitter_px = {0, 0}) const;
     Capture render_capture(int frame) const { return render_capture(frame, frame); }
 
+    /// The same, and what lies behind: layer n has the n-th surface that each ray meets
+    /// (World::trace_through) and alpha 1, the background behind the last one, and nothing, alpha 0 and depth
+    /// +inf, behind that. The first is render_capture()'s.
+    std::vector<Capture> render_layers(int frame, double time, std::array<double, 2> jitter_px,
+                                       int layers) const;
+    /// Deep samples: all that kDeepRays rays over each pixel's square meet. What they meet of one object at
+    /// nearly one depth is a sample, whose alpha is the share of the rays. Channels: R G B A Z ZBack,
+    /// velocity.XY, velocity_next.XY, normal.XYZ, object_id.I. The background is an opaque sample at +inf.
+    DeepImage render_deep(int frame, double time, std::array<double, 2> jitter_px) const;
+    static constexpr int kDeepRays = 16;
+
     /// RGBA. Of the shutter, sample i of n is the middle of part i of the exposure, or for interleaved
     /// samples one of 16 moments in that part; lens and pixel are multi-jittered. Without `antialias` rays go
     /// through the pixels' centres, moved by `jitter_px`.
@@ -64,7 +76,7 @@ public:
 
     /// Light scattered by each material's profile: the integral of profile times irradiance over the surface
     /// of the object that the pixel shows, divided by that of the profile alone, so that even light stays as
-    /// it is. Points lie on spirals about the pixel's own, where light and shadows are computed anew: on
+    /// it is. Points lie on spirals about the pixel's own, where light and shadows are computed again: on
     /// planes, disks and spheres exactly, elsewhere where a line along the normal meets the object (King et
     /// al. 2013).
     ScatteringTruth render_scattering(int frame, const ScatteringSettings& settings) const;
@@ -78,8 +90,13 @@ private:
     Ray camera_ray(const CameraState& camera, const glm::dvec2& pixel, const glm::dvec2& lens_m) const;
     /// Where the pinhole camera sees a point (w 1) or a direction (w 0), px; false behind it.
     bool project(const CameraState& camera, const glm::dvec4& point, glm::dvec2& pixel) const;
-    void write_motion(Capture& capture, int x, int y, const std::array<const SceneState*, 3>& states,
-                      const Surface* surface, const glm::dvec3& direction) const;
+    /// From the frame before and to the one after, px; 0 where a point is behind a camera.
+    struct Motion {
+        glm::dvec2 velocity_px{0};
+        glm::dvec2 velocity_next_px{0};
+    };
+    Motion motion_of(const std::array<const SceneState*, 3>& states, const Surface* surface,
+                     const glm::dvec3& direction) const;
     std::vector<World> moments_of(int frame, const TruthSettings& settings, int sample) const;
     struct SamplePoint {
         glm::dvec2 offset_px{0};  ///< from the pixel's top left

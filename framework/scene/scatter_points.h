@@ -25,7 +25,7 @@ struct ScatterPoint {
 };
 
 /// About `count` points, for each d of the profile's channels on a spiral of its own: the radii divide
-/// the channel's distribution, its tail most finely, the angles go on by the golden ratio of a turn (Vogel
+/// the channel's distribution, its tail most finely, the angles advance by the golden ratio of a turn (Vogel
 /// 1979), so that no edge meets many points at once. The balance heuristic (Veach and Guibas 1995) brings the
 /// spirals together.
 std::vector<ScatterPoint> make_scatter_points(const Scattering& scattering, int count);

@@ -6,7 +6,7 @@
 namespace aftershade::scene {
 
 /// JSON Schema (draft 2020-12) of a scene.json. That names refer to something, that files exist and how two
-/// values stand to each other only the program knows.
+/// values relate: only the program checks that.
 std::string scene_schema();
 
 /// docs/scene-reference.md: one table for each block of keys.

@@ -34,7 +34,7 @@ struct SceneState {
 /// `time` is in frames and may lie outside the frame: in a shot of its own before and after (Shot).
 SceneState state_at(const Scene& scene, int frame, double time);
 
-/// As a capture's metadata tells it: the lens at `state`, lens model `pinhole` (rays through a thin lens
+/// As a capture's metadata declares it: the lens at `state`, lens model `pinhole` (rays through a thin lens
 /// whose picture lies in the focal plane), both matrices; clip space has z in [0, 1] from 0.01 m to infinity.
 Camera capture_camera(const Scene& scene, const SceneState& state, int width_px, int height_px);
 

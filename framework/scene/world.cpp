@@ -1,6 +1,7 @@
 #include "framework/scene/world.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace aftershade::scene {
@@ -94,6 +95,27 @@ std::optional<Surface> World::trace(const Ray& ray, double low, double high, int
     found.from_behind = glm::dot(found.geometric_normal, ray.direction) > 0;
     if (found.from_behind) found.geometric_normal = -found.geometric_normal;
     if (glm::dot(found.geometric_normal, found.normal) < 0) found.normal = -found.normal;
+    return found;
+}
+
+std::vector<Surface> World::trace_through(const Ray& ray, std::size_t most) const {
+    // Two triangles that share an edge may both be met there.
+    constexpr double kStep = 1 + 1e-7;
+    std::vector<Surface> found;
+    std::vector<int> entered;  // objects, once for each front that has no back yet
+    double low = 0;
+    while (found.size() < most) {
+        const auto surface = trace(ray, low, std::numeric_limits<double>::infinity());
+        if (!surface) break;
+        low = surface->t * kStep;
+        const auto inside = std::find(entered.begin(), entered.end(), surface->object);
+        if (surface->from_behind && inside != entered.end()) {
+            entered.erase(inside);
+            continue;
+        }
+        if (!surface->from_behind) entered.push_back(surface->object);
+        found.push_back(*surface);
+    }
     return found;
 }
 

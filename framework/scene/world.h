@@ -59,6 +59,9 @@ public:
 
     /// The nearest surface with low < t < high; of one object alone where `only` is its index.
     std::optional<Surface> trace(const Ray& ray, double low, double high, int only = -1) const;
+    /// What a ray meets, the nearest first and at most `most`; without the insides of what it has entered, so
+    /// that behind a ball's front comes what stands behind the ball.
+    std::vector<Surface> trace_through(const Ray& ray, std::size_t most) const;
     /// Whether anything stands between two points; with `casts_shadow`, of what casts shadows alone.
     bool is_hidden(const glm::dvec3& from, const glm::dvec3& to, bool casts_shadow) const;
 

@@ -7,8 +7,10 @@ float lens_at_infinity_px() {
                                      LENS_MODEL == LENS_MODEL_THIN);
 }
 
-// Signed CoC radius, px.
-float coc_at(ivec2 p, float at_infinity_px) {
-    float coc = coc_radius_px(texelFetch(depth, p, 0).r, param.focus_distance, at_infinity_px);
+// Signed CoC radius of a depth, px.
+float coc_of(float depth_m, float at_infinity_px) {
+    float coc = coc_radius_px(depth_m, param.focus_distance, at_infinity_px);
     return clamp(coc, -param.max_coc_radius, param.max_coc_radius);
 }
+
+float coc_at(ivec2 p, float at_infinity_px) { return coc_of(texelFetch(depth, p, 0).r, at_infinity_px); }

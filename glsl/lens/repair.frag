@@ -5,9 +5,11 @@
 
 ivec2 inside(ivec2 p) { return clamp(p, ivec2(0), ivec2(color_size.xy) - 1); }
 
+const float kOutshinesTile = 3.0;
+
 // An antialiased pixel at the edge of a small light has the light's colour but may have the background's depth, and would
-// throw a large polygon around the light's own. Where all of a pixel's light came across such an edge, it takes the CoC of
-// the brightest neighbour on the other side. One or the other: a CoC in between is that of no surface.
+// throw a large polygon around the light's own. Where all of a pixel's light came across such an edge, from what outshines the
+// tile, it takes the CoC of the brightest neighbour on the other side. One or the other: a CoC in between is that of no surface.
 float repaired_coc(ivec2 p, float coc, float at_infinity_px) {
     float own_amount = amount(texelFetch(color, p, 0).rgb);
     float darkest = own_amount, brightest = own_amount, other_coc = coc;
@@ -22,7 +24,8 @@ float repaired_coc(ivec2 p, float coc, float at_infinity_px) {
                 other_coc = tap_coc;
             }
         }
-    return own_amount > 1.4 * kHighlight * darkest ? other_coc : coc;
+    float mean_amount = texelFetch(coc_step, p / kRepairTile, 0).g;
+    return own_amount > 1.4 * kHighlight * darkest && brightest > kOutshinesTile * mean_amount ? other_coc : coc;
 }
 
 void main() {

@@ -8,7 +8,7 @@ float coc_inside(ivec2 p) { return texelFetch(coc, clamp(p, ivec2(0), ivec2(coc_
 
 void main() {
     ivec2 corner = kRepairTile * ivec2(gl_FragCoord.xy) - 1;
-    float largest = 0.0;
+    float largest = 0.0, sum = 0.0;
     for (int x = 0; x < kRepairTile + 2; x += kColumns) {
         vec4 above = vec4(0.0);
         for (int y = 0; y < kRepairTile + 2; ++y) {
@@ -19,5 +19,8 @@ void main() {
             above = row;
         }
     }
-    out_coc_step = largest;
+    ivec2 last = ivec2(color_size.xy) - 1;
+    for (int y = 1; y <= kRepairTile; ++y)
+        for (int x = 1; x <= kRepairTile; ++x) sum += max(amount(texelFetch(color, min(corner + ivec2(x, y), last), 0).rgb), 0.0);
+    out_coc_step = vec2(largest, sum / float(kRepairTile * kRepairTile));
 }

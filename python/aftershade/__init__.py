@@ -26,6 +26,7 @@ from ._errors import (
 from ._host import Effect, Host, Param, Port, default_host
 from ._look import Look, Params, Result, Session
 from ._native import library_version
+from ._velocity import VelocityCheck, VelocitySettings, check_velocity
 
 __version__ = library_version()
 
@@ -58,6 +59,9 @@ __all__ = [
     "Sequence",
     "Session",
     "UsageError",
+    "VelocityCheck",
+    "VelocitySettings",
+    "check_velocity",
     "compare",
     "default_host",
     "effects",

@@ -171,7 +171,7 @@ def _of_arrays(images: Mapping[str, ArrayLike]) -> _native.Capture:
         raise ValueError("a capture needs an image, such as {'color': array}")
     first = next(iter(arrays.values()))
     if first.ndim not in (2, 3):
-        raise ValueError(f"an array of the shape {first.shape} is no image: (height, width) or (height, width, channels)")
+        raise ValueError(f"an array of the shape {first.shape} is not an image: (height, width) or (height, width, channels)")
     native = _native.Capture(first.shape[1], first.shape[0])
     for role, pixels in arrays.items():
         native.set_image(role, pixels)

@@ -42,6 +42,7 @@ class Layer:
     verdict: str
     reasons: list[str]
     flip_map: NDArray[np.float32] | None  #: (height, width), from 0 to 1; with maps=True
+    ssim_map: NDArray[np.float32] | None  #: likewise, from -1 to 1; NaN at the border, which no window covers
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,7 @@ def compare(
     :param role: of arrays: color, display, alpha, depth, velocity, id or data
     :param limit: of a pixel's difference; more than `percent` of the pixels and more than `allowed` above it fail
     :param fail_flip, fail_ssim: fails where the mean FLIP is above, or the SSIM below
-    :param maps: fill Layer.flip_map
+    :param maps: fill Layer.flip_map and Layer.ssim_map
     :param roles: of files: how layers are compared, by label
     """
     options = _native.CompareOptions(

@@ -74,6 +74,7 @@ nb::dict layer_to(const api::LayerFigures& layer) {
     result["verdict"] = api::verdict_name(layer.verdict);
     result["reasons"] = layer.reasons;
     result["flip_map"] = layer.flip_map.empty() ? nb::none() : array_from(layer.flip_map);
+    result["ssim_map"] = layer.ssim_map.empty() ? nb::none() : array_from(layer.ssim_map);
     return result;
 }
 

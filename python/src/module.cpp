@@ -11,4 +11,5 @@ NB_MODULE(_native, module) {
     aftershade::python::bind_capture(module);
     aftershade::python::bind_look(module);
     aftershade::python::bind_compare(module);
+    aftershade::python::bind_velocity(module);
 }

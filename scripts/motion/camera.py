@@ -95,8 +95,7 @@ def section(work, images):
         f"sideways by 0.31 m a frame, against the renderer's shutter of 180 degrees ({SAMPLES} moments). A capture has one ray a "
         "pixel, so most of what is left of `camera_checker` is stairs on the floor's lines that time does not smooth.",
         table,
-        "The hall sideways: sharp; `camera_motion_blur` with `occlusion` off, where the wall beside a post does not know that the "
-        "post passes before it; with it; the truth.",
+        "The hall sideways: sharp; `camera_motion_blur` with `occlusion` off, where the wall beside a post ignores that the post passes before it; with it; the truth.",
         "![a camera that goes sideways](images/motion/camera_sideways.jpg)"]) + "\n"
 
 

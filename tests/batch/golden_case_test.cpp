@@ -31,7 +31,7 @@ TEST(GoldenCase, OfAnEffectTellsEveryFaultOfItsDocument) {
         diagnostics));
     const std::string faults = faults_of(diagnostics);
     for (const char* part :
-         {"soft.json:1:", "'a-b' is no range", "'efect'; did you mean 'effect'", "fail_percent",
+         {"soft.json:1:", "'a-b' is not a range", "'efect'; did you mean 'effect'", "fail_percent",
           "'colour' is not a role; did you mean 'color'", "'hard_fail' must be at least", "tgas"})
         EXPECT_NE(faults.find(part), std::string::npos) << part << " in\n" << faults;
     EXPECT_EQ(faults.find("nowhere"), std::string::npos) << "a capture that is absent is skipped";

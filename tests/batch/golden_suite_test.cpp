@@ -48,10 +48,11 @@ TEST_F(Suite, TellsAllFaultsAtOnce) {
         { "name": "b", "look": "golden.json", "steps": [], "capture": "c.json", "frames": "x", "skip": "" },
         { "name": "b", "steps": [ { "effect": "x", "preste": 1 } ], "capture": "c.json", "taps": ["y"] } ],
         "cases_of_effects": "yes" })"));
-    for (const char* part : {"'golden'; did you mean 'goldens'", "no folder", "not 'a.b'", "none.json'",
-                             "one of both", "'x' is no range", "'skip' says why", "a second case named 'b'",
-                             "golden.json:3:", "'preste'; did you mean 'preset'", "'y' is not 'step.texture'",
-                             "'cases_of_effects' must be true or false, not a string"})
+    for (const char* part :
+         {"'golden'; did you mean 'goldens'", "no folder", "not 'a.b'", "none.json'", "one of both",
+          "'x' is not a range", "'skip' says why", "a second case named 'b'",
+          "golden.json:3:", "'preste'; did you mean 'preset'", "'y' is not 'step.texture'",
+          "'cases_of_effects' must be true or false, not a string"})
         EXPECT_NE(faults_.find(part), std::string::npos) << part << " in\n" << faults_;
 }
 

@@ -54,6 +54,16 @@ TEST(FrameRange, RefusesNonsense) {
         EXPECT_FALSE(parse_frame_range(text).has_value()) << text;
 }
 
+TEST(FrameRange, IsRefusedWithALimitOrAnExample) {
+    EXPECT_EQ(frame_range_fault("1-100x2,120"), "");
+    for (const char* nonsense : {"1-", "x", "1-5x0", "1,,2"})
+        EXPECT_EQ(frame_range_fault(nonsense), "not a frame range such as 1-100x2,120") << nonsense;
+    for (const char* long_range : {"1-1000001", "1-1000000000", "1-900000,1000000-1900000"})
+        EXPECT_TRUE(
+            frame_range_fault(long_range).starts_with("too long: a range names at most 1000000 frames"))
+            << long_range;
+}
+
 TEST(FrameRange, HoldsUpToAMillionFrames) {
     EXPECT_EQ(parse_frame_range("1-1000000").value_or(Frames{}).size(), 1000000U);
     EXPECT_FALSE(parse_frame_range("0-1000000").has_value());

@@ -225,13 +225,6 @@ TEST(Beachball, PlacesPartsOfOtherWindowsInTheColorsGrid) {
     EXPECT_EQ(grid.width(), 880);
 }
 
-TEST(DeepFile, IsRefusedByName) {
-    AFTERSHADE_REQUIRE_CAPTURE(folder, "exr-suite");
-    const Sequence sequence = bare_file(*folder / "v2/LowResLeftView/Trunks.exr");
-    const std::string message = capture_error([&] { read_capture(sequence, {"color"}); });
-    EXPECT_NE(message.find("deep data"), std::string::npos) << message;
-}
-
 /// t09 to t12 have no pixel in the display window at all.
 TEST(DisplayWindow, OfEveryExampleLeavesThePixelsInTheirOwn) {
     AFTERSHADE_REQUIRE_CAPTURE(folder, "exr-suite");

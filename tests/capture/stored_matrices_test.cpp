@@ -248,7 +248,7 @@ TEST(StoredMatrices, OfVRayThatDoNotTellWhichRowIsUpAreNotTaken) {
         {{"cameraTransform", std::vector<float>{1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 5, 20, 1}}});
     const StoredMatrices read = read_matrices(part, {});
     EXPECT_FALSE(read.camera_from_world);
-    EXPECT_EQ(read.fault, "cameraTransform does not tell which of its rows is up");
+    EXPECT_EQ(read.fault, "cameraTransform does not show which of its rows is up");
 }
 
 TEST(StoredMatrices, OfVRaysRealFileLookAlongTheRoom) {

@@ -188,7 +188,7 @@ TEST_F(Authoring, NewRefusesBadIdsAndReplacesNothing) {
     EXPECT_EQ(read_text(folder_ / "mine/effect.json"), before);
 }
 
-TEST_F(Authoring, CheckTellsOfEveryKindOfFaultWithItsPlace) {
+TEST_F(Authoring, CheckReportsEveryKindOfFaultWithItsPlace) {
     command({"new", "mine"});
     const std::string shader = read_text(folder_ / "mine/mine.frag"),
                       manifest = read_text(folder_ / "mine/effect.json");
@@ -236,9 +236,10 @@ TEST_F(Authoring, CheckWarnsOfWhatIsSeldomMeant) {
 )");
     const std::string warnings = command({"check", "odd", "--no-gl"}).err;
     for (const char* expected :
-         {"no pass reads the texture 'spare'", "the texture 'near' is made of depth but has the format r16f",
+         {"no pass reads the texture 'spare'",
+          "the texture 'near' is made from depth but has the format r16f",
           "main.frag:5:5: warning: a parameter bounds this loop",
-          "main.frag:6:17: warning: this looks like a gamma", "no shader asks frame.history_valid"})
+          "main.frag:6:17: warning: this looks like a gamma", "no shader reads frame.history_valid"})
         EXPECT_NE(warnings.find(expected), std::string::npos) << expected << "\n" << warnings;
     command({"check", "odd", "--no-gl", "--strict"}, 1);
 }
@@ -249,8 +250,9 @@ TEST_F(Authoring, CheckOfALookFindsItsFaultsAndRefusesWhatItDoesNotKnow) {
     command({"check", "good.json"});
     EXPECT_NE(command({"check", "bad.json"}, 1).err.find("did you mean 'view_transform'?"),
               std::string::npos);
-    EXPECT_NE(command({"check", "nothing"}, 2).err.find("is no folder of an effect, no effect and no look"),
-              std::string::npos);
+    EXPECT_NE(
+        command({"check", "nothing"}, 2).err.find("is not a shipped effect, an effect's folder or a look"),
+        std::string::npos);
 }
 
 TEST_F(Authoring, ListAndDescribeTellWhatThereIs) {

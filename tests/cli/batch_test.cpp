@@ -58,7 +58,7 @@ TEST_F(Batch, AStrayNumberIsNoMillionOfMissingFrames) {
     EXPECT_TRUE(says(result, "20240098 frames of 1-20240101 are missing; .*--frames")) << result.err;
 }
 
-TEST_F(Batch, HistoryBegunInTheMiddleOfAShotIsToldWithItsRemedy) {
+TEST_F(Batch, HistoryBegunInTheMiddleOfAShotIsReportedWithItsRemedy) {
     write_frames(1, 4);
     const std::string warning =
         "aftershade: warning: frame 3: the history of 'trail' restarts here, although frame 2 is there; "

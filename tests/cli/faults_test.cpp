@@ -107,7 +107,7 @@ std::vector<Fault> capture_faults() {
         {"ARoleThatNeitherTheCaptureNorTheLookHas",
          {"view.json", "rgb.exr", "-o", "out.exr", "--output-roles", "velocity"},
          code,
-         {"aftershade: error: rgb\\.exr: the role 'velocity', asked for in the output, .*"},
+         {"aftershade: error: rgb\\.exr: the role 'velocity', requested in the output, .*"},
          [](const Workplace& work) { write_rgb_only(work / "rgb.exr"); }},
         {"APatternThatMatchesNothing",
          {"view.json", "none_####.exr", "-o", "out_####.exr"},
@@ -202,14 +202,16 @@ TEST_P(GlOrEffectFault, IsToldAndLeavesNothingBehind) {
 }
 INSTANTIATE_TEST_SUITE_P(Of, GlOrEffectFault, testing::ValuesIn(gl_and_effect_faults()), fault_name);
 
-TEST(CaptureFaults, ADeepFileIsRefusedByName) {
+TEST(CaptureFaults, ADeepFileThatIsCutOffIsRefused) {
     AFTERSHADE_REQUIRE_CAPTURE(deep, "exr-suite/v2/LowResLeftView/Trunks.exr");
     const Workplace work;
+    write_text(work / "cut.exr", read_text(*deep).substr(0, 400'000));
     const auto before = contents(work.path());
     const CommandResult result =
-        run_aftershade({"run", "view.json", fs::canonical(*deep), "-o", "out.exr"}, work.path());
+        run_aftershade({"run", "view.json", "cut.exr", "-o", "out.exr"}, work.path());
     EXPECT_EQ(result.exit_code, int(ExitCode::capture));
-    EXPECT_TRUE(std::regex_search(result.err, std::regex("aftershade: error: .*Trunks\\.exr: .*deep")))
+    EXPECT_TRUE(
+        std::regex_search(result.err, std::regex("aftershade: error: .*cut\\.exr: cut off or damaged")))
         << result.err;
     EXPECT_EQ(contents(work.path()), before);
 }

@@ -182,8 +182,8 @@ TEST_F(GoldenRun, HoldsAGoldenThatWasCopiedByHandToItsToleranceAlone) {
         }
     const CommandResult told = run();
     EXPECT_EQ(told.exit_code, 0) << "an image without a sidecar is no orphan; " << told.err;
-    EXPECT_NE(told.err.find("note: goldens/lens.color.0001.exr and 2 more goldens: no sidecar tells what "
-                            "made them, so that only the tolerance counts"),
+    EXPECT_NE(told.err.find("note: goldens/lens.color.0001.exr and 2 more goldens: no sidecar records what "
+                            "made them, so only the tolerance counts"),
               std::string::npos)
         << told.err;
     write_frame(1, 30.1f);

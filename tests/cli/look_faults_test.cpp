@@ -52,6 +52,9 @@ std::vector<Fault> look_faults() {
              {"look\\.json:1:20: error: the look has no key 'stepps'; did you mean 'steps'\\?"}),
         steps("AnUnknownEffect", R"({ "effect": "boken" })",
               {"look\\.json:2:13: error: no effect 'boken'; did you mean 'bokeh'\\?"}),
+        steps(
+            "AnEffectOfAnotherFolder", R"({ "effect": "zzyzx" })",
+            {"look\\.json:2:13: error: no effect 'zzyzx'; --effect-path names a folder of further effects"}),
         steps("AStepWithoutEffect", R"({ "params": {} })",
               {"look\\.json:2:1: error: the step has no 'effect'"}),
         steps("AnUnknownParameter", R"({ "effect": "bokeh", "params": { "focus_dist": 2 } })",
@@ -74,7 +77,7 @@ std::vector<Fault> look_faults() {
         steps("AnUnknownKeyOfAStep", R"({ "effect": "bokeh", "parms": {} })",
               {"look\\.json:2:22: error: the step has no key 'parms'; did you mean 'params'\\?"}),
         steps("ADuplicateKey", R"({ "effect": "bokeh", "effect": "bokeh" })",
-              {"look\\.json:2:22: error: the key 'effect' stands twice in one object; first at line 2"}),
+              {"look\\.json:2:22: error: the key 'effect' occurs twice in one object; first at line 2"}),
         steps("TwoStepsOfOneName", R"({ "effect": "bokeh" }, { "effect": "bokeh" })",
               {"look\\.json:2:24: error: a second step named 'bokeh'; give it a 'name' of its own \\(the "
                "first is at look\\.json:.*\\)"}),
@@ -175,6 +178,8 @@ std::vector<Fault> word_faults() {
               "--output-roles color: error: this role is named twice"),
         words("ABadFrameRange", {"--frames", "1..x"},
               "--frames 1\\.\\.x: error: not a frame range such as .*"),
+        words("AFrameRangeThatIsTooLong", {"--frames", "1-1000000000"},
+              "--frames 1-1000000000: error: too long: a range names at most 1000000 frames.*"),
         words("AFrameThatTheCaptureLacks", {"--frames", "7"},
               "--frames 7: error: the capture has no frame 7"),
         words("AMissingEffectFolder", {"--effect-path", "none"}, "--effect-path none: error: no such folder"),
@@ -231,13 +236,13 @@ std::vector<Fault> word_faults() {
 }
 
 class LookFault : public FaultTest {};
-TEST_P(LookFault, IsToldBeforeAnyWorkStarts) {
+TEST_P(LookFault, IsReportedBeforeAnyWorkStarts) {
     check();
 }
 INSTANTIATE_TEST_SUITE_P(Of, LookFault, testing::ValuesIn(look_faults()), fault_name);
 
 class WordFault : public FaultTest {};
-TEST_P(WordFault, IsToldBeforeAnyWorkStarts) {
+TEST_P(WordFault, IsReportedBeforeAnyWorkStarts) {
     check();
 }
 INSTANTIATE_TEST_SUITE_P(Of, WordFault, testing::ValuesIn(word_faults()), fault_name);

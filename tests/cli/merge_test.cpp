@@ -60,7 +60,7 @@ TEST_F(Merge, NamesTheTasksThatHaveNoReportOrABrokenOne) {
     report("0001.json", frame(1, "done"));
     write_text(folder_ / "reports/0002.json", "{ \"aftershade_report\": 1, \"fra");
     const CommandResult result = merge({"reports", "--tasks", "3"}, 1);
-    EXPECT_NE(result.err.find("reports/0002.json: is no report of run --report\n"), std::string::npos)
+    EXPECT_NE(result.err.find("reports/0002.json: is not a report of run --report\n"), std::string::npos)
         << result.err;
     EXPECT_NE(result.err.find("reports/0003.json: no such file"), std::string::npos) << result.err;
     EXPECT_NE(result.err.find("1 of 3 tasks reported"), std::string::npos) << result.err;

@@ -34,7 +34,7 @@ protected:
     Capture clean_;
 };
 
-TEST_F(NonFiniteFrame, IsToldByItsFileRoleCountAndFirstPixelWithTheRemedy) {
+TEST_F(NonFiniteFrame, IsReportedByItsFileRoleCountAndFirstPixelWithTheRemedy) {
     damage_frame_two();
     const CommandResult result = run({"spread.json", "in_####.exr", "-o", "out_####.exr"}, 0);
     expect_told(result,
@@ -62,13 +62,13 @@ TEST_F(NonFiniteFrame, IsLeftOutWithFailAndTheOthersAreWritten) {
     run({"spread.json", "in_0002.exr", "-o", "out.exr", "--on-nan", "fail"}, int(ExitCode::capture));
 }
 
-TEST_F(NonFiniteFrame, IsMendedBeforeABlurSpreadsIt) {
+TEST_F(NonFiniteFrame, IsRepairedBeforeABlurSpreadsIt) {
     damage_frame_two();
     const CommandResult result =
         run({"spread.json", "in_####.exr", "-o", "mended_####.exr", "--on-nan", "mend"}, 0);
     expect_told(result,
                 "frame 2: the role 'color' of in_0002\\.exr has 2 NaN pixels, the first at \\(30, 17\\); "
-                "mended from the finite pixels around\n");
+                "replaced by the mean of the finite pixels around them\n");
     EXPECT_EQ(result.err.find("the output"), std::string::npos) << result.err;
     // All neighbours are alike, so the mean of them is what was there before.
     write_capture(clean_, frame_path(2));
@@ -92,7 +92,7 @@ TEST_F(NonFiniteFrame, OfAnEffectIsPutDownToTheEffect) {
     expect_told(run({"poison.json", "in_0001.exr", "-o", "out.exr"}, 0), made);
     EXPECT_EQ(count_of_nan(color("out.exr")), 1u);
     const CommandResult mended = run({"poison.json", "in_0001.exr", "-o", "out.exr", "--on-nan", "mend"}, 0);
-    expect_told(mended, made + "; mended");
+    expect_told(mended, made + "; replaced");
     EXPECT_EQ(count_of_nan(color("out.exr")), 0u);
     fs::remove(folder_ / "out.exr");
     expect_told(
@@ -116,7 +116,7 @@ TEST_F(NonFiniteFrame, IsToldInAPictureToo) {
     expect_told(result, "warning: frame 2: the role 'color' of in_0002\\.exr has 2 NaN pixels");
 }
 
-TEST_F(NonFiniteFrame, ThatAHalfMakesOfLargeValuesIsToldWithCountAndRemedy) {
+TEST_F(NonFiniteFrame, ThatAHalfMakesOfLargeValuesIsReportedWithCountAndRemedy) {
     Capture bright = clean_;
     bright.images.at("color").at(3, 4, 0) = 1e30f;
     bright.images.at("color").at(5, 4, 0) = -70000;

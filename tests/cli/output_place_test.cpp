@@ -55,7 +55,7 @@ TEST_F(OutputPlace, AFaultInTheWordsMakesNoFolder) {
     EXPECT_FALSE(fs::exists(folder_ / "new"));
 }
 
-TEST_F(OutputPlace, AFullDiskIsToldAndKeepsTheOlderFile) {
+TEST_F(OutputPlace, AFullDiskIsReportedAndKeepsTheOlderFile) {
     const SmallDisk disk(folder_ / "disk");
     if (!disk.mounted()) GTEST_SKIP() << "mounting a small file system needs root";
     for (const Kind& kind : kinds("disk")) write_text(folder_ / kind.file, "older");
@@ -78,7 +78,7 @@ TEST_F(OutputPlace, AReadOnlyDiskIsToldBeforeTheFrames) {
     }
 }
 
-TEST_F(OutputPlace, AFolderWithoutPermissionIsToldBeforeTheFrames) {
+TEST_F(OutputPlace, AFolderWithoutPermissionIsReportedBeforeTheFrames) {
     fs::create_directory(folder_ / "theirs");
     fs::permissions(folder_ / "theirs", fs::perms::owner_read | fs::perms::owner_exec);
     std::vector<std::string> arguments =

@@ -11,9 +11,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class StrangersFiles : public BatchWork {
+class UntrustedFiles : public BatchWork {
 protected:
-    StrangersFiles() {
+    UntrustedFiles() {
         write_frames(1, 1, 16, 9);
         write_text(folder_ / "secret.glsl", "#error this is secret\n");
     }
@@ -24,7 +24,7 @@ protected:
     }
 };
 
-TEST_F(StrangersFiles, OfAnEffectAreReadOnlyFromItsFolder) {
+TEST_F(UntrustedFiles, OfAnEffectAreReadOnlyFromItsFolder) {
     EXPECT_EQ(check_effect("spread").exit_code, 0);
     const std::string text = read_text(folder_ / "effects/spread/main.frag");
     write_text(folder_ / "outside.frag", text);
@@ -42,7 +42,7 @@ TEST_F(StrangersFiles, OfAnEffectAreReadOnlyFromItsFolder) {
     run({"spread.json", "in_0001.exr", "-o", "out.exr", "--allow-path", "."}, 0);
 }
 
-TEST_F(StrangersFiles, ThatAShaderIncludesThroughALinkAreNotShown) {
+TEST_F(UntrustedFiles, ThatAShaderIncludesThroughALinkAreNotShown) {
     const std::string text = read_text(folder_ / "effects/spread/main.frag");
     write_text(folder_ / "effects/spread/main.frag", text.substr(0, text.find("void main")) +
                                                          "#include \"more.glsl\"\n" +
@@ -53,7 +53,7 @@ TEST_F(StrangersFiles, ThatAShaderIncludesThroughALinkAreNotShown) {
     EXPECT_EQ(result.err.find("this is secret"), std::string::npos) << result.err;
 }
 
-TEST_F(StrangersFiles, ThatAManifestNamesAsPicturesLieInItsFolder) {
+TEST_F(UntrustedFiles, ThatAManifestNamesAsPicturesLieInItsFolder) {
     const fs::path manifest = folder_ / "effects/spread/effect.json";
     auto document = nlohmann::ordered_json::parse(read_text(manifest));
     document["params"]["noise"] = {
@@ -66,7 +66,7 @@ TEST_F(StrangersFiles, ThatAManifestNamesAsPicturesLieInItsFolder) {
     EXPECT_NE(result.err.find("noise.exr leads out of the folder"), std::string::npos) << result.err;
 }
 
-TEST_F(StrangersFiles, OfASuiteAreApprovedOnlyInItsFolder) {
+TEST_F(UntrustedFiles, OfASuiteAreApprovedOnlyInItsFolder) {
     fs::create_directory(folder_ / "suite");
     write_text(folder_ / "suite/golden.json", R"({ "aftershade": 1, "goldens": "../..", "cases": [
         { "name": "still", "steps": [], "capture": "../in_0001.exr" } ] })");
@@ -77,7 +77,7 @@ TEST_F(StrangersFiles, OfASuiteAreApprovedOnlyInItsFolder) {
         << result.err;
 }
 
-TEST_F(StrangersFiles, OfAMeshLieInItsFolder) {
+TEST_F(UntrustedFiles, OfAMeshLieInItsFolder) {
     fs::create_directory(folder_ / "meshes");
     write_text(folder_ / "points.bin", std::string(36, '\0'));
     const auto mesh = [](const std::string& uri) {
@@ -102,7 +102,7 @@ TEST_F(StrangersFiles, OfAMeshLieInItsFolder) {
     EXPECT_EQ(run_aftershade(allowed, folder_.path()).err.find("leads out"), std::string::npos);
 }
 
-TEST_F(StrangersFiles, BehindALinkDoNotGetIntoAReportsPage) {
+TEST_F(UntrustedFiles, BehindALinkDoNotGetIntoAReportsPage) {
     fs::create_directories(folder_ / "report/images");
     write_text(folder_ / "secret.txt", "c2VjcmV0");
     write_text(folder_ / "report/images/text.png", "not a picture, c2VjcmV0");
@@ -128,13 +128,13 @@ TEST_F(StrangersFiles, BehindALinkDoNotGetIntoAReportsPage) {
     const std::string page = read_text(folder_ / "report/index.html");
     EXPECT_NE(page.find("images/x.png: is, or lies behind, a symbolic link, which is not followed"),
               std::string::npos);
-    EXPECT_NE(page.find("images/text.png: is no PNG"), std::string::npos);
+    EXPECT_NE(page.find("images/text.png: is not a PNG"), std::string::npos);
     EXPECT_NE(page.find("images/pipe.png: is not a regular file"), std::string::npos);
     for (const char* secret : {"c2VjcmV0", "YzJWamNtVjA"})
         EXPECT_EQ(page.find(secret), std::string::npos) << "plain, and as base64";
 }
 
-TEST_F(StrangersFiles, AreAnyThatTheUsersOwnDocumentsName) {
+TEST_F(UntrustedFiles, AreAnyThatTheUsersOwnDocumentsName) {
     fs::create_directory(folder_ / "shot");
     write_text(folder_ / "shot/capture.json",
                R"({ "aftershade": 1, "profile": "native", "frames": ")" + frame_path(1).string() + "\" }");

@@ -118,7 +118,7 @@ TEST_F(RenderOptions, HistoryGoesFromChunkToChunkBitForBit) {
             << frame;
     const CommandResult refused =
         run({"trail.json", "in_####.exr", "--frames", "2", "--history-in", "h", "-o", "no.exr"}, 2);
-    EXPECT_NE(refused.err.find("this history is of frame 4; it can go on with frame 5, not with 2"),
+    EXPECT_NE(refused.err.find("this history is of frame 4; it continues with frame 5, not with 2"),
               std::string::npos);
     EXPECT_FALSE(fs::exists(folder_ / "no.exr"));
 }

@@ -127,7 +127,7 @@ TEST_F(Resume, SaysWhyFramesAreNotCurrent) {
     EXPECT_EQ(lines_of_text(dry_run("tint"))[5], "frame 6: output out_0006.exr changed");
     fs::remove(folder_ / ".aftershade/journal.jsonl");
     EXPECT_EQ(lines_of_text(dry_run("tint")).front(),
-              "frame 1: the journal does not know how out_0001.exr was made");
+              "frame 1: the journal does not record how out_0001.exr was made");
 }
 
 TEST_F(Resume, ACopyOfTheFolderIsAsCurrentAsTheFolder) {
@@ -257,7 +257,7 @@ TEST_F(Resume, AFrameThatCouldNotBeReadIsTriedAgain) {
     EXPECT_EQ(run("tint").out, "out_0003.exr\n");
 }
 
-TEST_F(Resume, GoesOnAfterAKillWithTheSameBits) {
+TEST_F(Resume, ResumesAfterAKillWithTheSameBits) {
     constexpr int kMany = 60;
     for (int frame = kFrames + 1; frame <= kMany; ++frame)
         write_capture(
@@ -284,7 +284,7 @@ TEST_F(Resume, GoesOnAfterAKillWithTheSameBits) {
     expect_equals_undisturbed_run("trail");
 }
 
-TEST_F(Resume, ASecondRunOverTheSameFramesIsToldWhoHasThem) {
+TEST_F(Resume, ASecondRunOverTheSameFramesNamesWhoHasThem) {
     constexpr int kMany = 300;
     for (int frame = 1; frame <= kMany; ++frame)
         fs::create_hard_link(folder_ / "in_0001.exr",

@@ -11,17 +11,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kWidth = 64, kHeight = 36, kFrames = 4;
+constexpr int kWidth = 64, kHeight = 36, kStreamFrames = 4;
 constexpr std::size_t kValues = std::size_t(kWidth) * kHeight * 3;
 
 class Stream : public BatchWork {
 protected:
-    Stream() { write_frames(1, kFrames); }
+    Stream() { write_frames(1, kStreamFrames); }
     static std::string number(int frame) { return FramePattern("####").path(frame); }
     /// Of the PNGs, 8 bits a channel, one frame behind the other.
     std::string pixels_of_pngs() const {
         std::string bytes;
-        for (int frame = 1; frame <= kFrames; ++frame) {
+        for (int frame = 1; frame <= kStreamFrames; ++frame) {
             const Image picture = read_png(folder_ / ("p_" + number(frame) + ".png"));
             for (int i = 0; i < kWidth * kHeight; ++i)
                 for (int c = 0; c < 3; ++c)
@@ -41,7 +41,7 @@ protected:
 TEST_F(Stream, RawFramesAreThePixelsOfThePngs) {
     const CommandResult result =
         run({"trail.json", "in_####.exr", "-o", "-", "--format", "rgb24", "-o", "p_####.png"}, 0);
-    ASSERT_EQ(result.out.size(), kFrames * kValues);
+    ASSERT_EQ(result.out.size(), kStreamFrames * kValues);
     EXPECT_TRUE(result.out == pixels_of_pngs());
     EXPECT_NE(result.err.find("p_0001.png\n"), std::string::npos) << "paths go where messages go";
     EXPECT_NE(result.err.find("ffmpeg -f rawvideo -pixel_format rgb24 -video_size 64x36 -framerate 24 -i -"),
@@ -54,9 +54,9 @@ TEST_F(Stream, SixteenBitsAreTheEncodedColour) {
     const CommandResult result =
         run({"trail.json", "in_####.exr", "-o", "-", "--format", "rgba64le", "-o", "e_####.exr"}, 0);
     const std::size_t values = kValues / 3 * 4;
-    ASSERT_EQ(result.out.size(), kFrames * values * 2);
+    ASSERT_EQ(result.out.size(), kStreamFrames * values * 2);
     const char* at = result.out.data();
-    for (int frame = 1; frame <= kFrames; ++frame) {
+    for (int frame = 1; frame <= kStreamFrames; ++frame) {
         const Image linear = color("e_" + number(frame) + ".exr");
         for (std::size_t i = 0; i < values; ++i, at += 2) {
             const double x = double(linear.floats()[i]);
@@ -73,7 +73,7 @@ TEST_F(Stream, PngFramesAreTheFilesOneBehindTheOther) {
     const CommandResult result =
         run({"nothing.json", "in_####.exr", "-o", "-", "--format", "png", "-o", "p_####.png"}, 0);
     std::string files;
-    for (int frame = 1; frame <= kFrames; ++frame)
+    for (int frame = 1; frame <= kStreamFrames; ++frame)
         files += read_text(folder_ / ("p_" + number(frame) + ".png"));
     EXPECT_TRUE(result.out == files);
 }
@@ -99,7 +99,7 @@ TEST_F(Stream, AFrameThatFailsEndsItSoThatNoneMovesIntoTheGap) {
     fs::remove(frame_path(3));
     EXPECT_EQ(run({"nothing.json", "in_####.exr", "-o", "-", "--format", "rgb24", "--missing", "hold"}, 0)
                   .out.size(),
-              kFrames * kValues);
+              kStreamFrames * kValues);
 }
 
 TEST_F(Stream, FramesOfTwoSizesAreRefused) {
@@ -150,7 +150,7 @@ TEST_F(Stream, TheVideoThatFfmpegMakesHasThePixelsOfThePngs) {
                                            "rawvideo", "-pix_fmt", "rgb24", "-"},
                                           folder_.path())
                                       .wait();
-    ASSERT_EQ(decoded.out.size(), kFrames * kValues) << decoded.err;
+    ASSERT_EQ(decoded.out.size(), kStreamFrames * kValues) << decoded.err;
     EXPECT_TRUE(decoded.out == pixels_of_pngs());
 }
 

@@ -73,7 +73,7 @@ TEST_F(VerdictAudit, OfASuiteWithEachOfItsInputsSpoiled) {
          [&] { write_text(sidecar(corner()), read_text(sidecar(image("lens.color.0001")))); }, one, 1,
          "corner.color.0001.json: is of another image than corner.color.0001.exr"},
         {"a sidecar that is not JSON", [&] { write_text(sidecar(corner()), "approved by me"); }, one, 4,
-         "corner.color.0001.json: is no sidecar, not even a JSON object"},
+         "corner.color.0001.json: is not a sidecar, not even a JSON object"},
         {"a sidecar alone", [&] { fs::remove(corner()); }, {}, 2, "no case gives this golden"},
         {"an empty look",
          [&] { write_text(folder_ / "lens.json", ""); },
@@ -147,7 +147,7 @@ TEST_F(VerdictAudit, OfAnApprovalWhoseCaptureIsAbsent) {
     EXPECT_EQ(result.exit_code, 4) << result.err;
     EXPECT_NE(result.err.find("FAILED corner: not rendered, its goldens are as they were"), std::string::npos)
         << result.err;
-    EXPECT_NE(result.err.find("(a case that may lack its capture says \"optional\": true)"),
+    EXPECT_NE(result.err.find("(set \"optional\": true in the case if its capture may be missing)"),
               std::string::npos)
         << result.err;
 }

@@ -26,30 +26,31 @@ std::optional<double> ms_ssim(const Image& reference, const Image& test, int thr
     return ssim_figures(reference, test, threads).ms_ssim;
 }
 
-/// Wang et al. 2004, equations 6, 13 to 16, in two dimensions and pixel by pixel.
+/// Wang et al. 2004, equations 6 and 13 to 16, in two dimensions, of the window around one pixel.
+double definition_at(const Image& a, const Image& b, int channel, int cx, int cy) {
+    double weights = 0, ma = 0, mb = 0;
+    const auto each = [&](auto visit) {
+        for (int y = -5; y <= 5; ++y)
+            for (int x = -5; x <= 5; ++x)
+                visit(std::exp(-(x * x + y * y) / 4.5), double(a.at(cx + x, cy + y, channel)),
+                      double(b.at(cx + x, cy + y, channel)));
+    };
+    each([&](double w, double u, double v) { weights += w, ma += w * u, mb += w * v; });
+    ma /= weights, mb /= weights;
+    double va = 0, vb = 0, cov = 0;
+    each([&](double w, double u, double v) {
+        va += w / weights * (u - ma) * (u - ma);
+        vb += w / weights * (v - mb) * (v - mb);
+        cov += w / weights * (u - ma) * (v - mb);
+    });
+    return (2 * ma * mb + 1e-4) * (2 * cov + 9e-4) / ((ma * ma + mb * mb + 1e-4) * (va + vb + 9e-4));
+}
+
 double definition(const Image& a, const Image& b, int channel) {
     double total = 0;
     int count = 0;
-    for (int cy = 5; cy < a.height() - 5; ++cy)
-        for (int cx = 5; cx < a.width() - 5; ++cx, ++count) {
-            double weights = 0, ma = 0, mb = 0;
-            const auto each = [&](auto visit) {
-                for (int y = -5; y <= 5; ++y)
-                    for (int x = -5; x <= 5; ++x)
-                        visit(std::exp(-(x * x + y * y) / 4.5), double(a.at(cx + x, cy + y, channel)),
-                              double(b.at(cx + x, cy + y, channel)));
-            };
-            each([&](double w, double u, double v) { weights += w, ma += w * u, mb += w * v; });
-            ma /= weights, mb /= weights;
-            double va = 0, vb = 0, cov = 0;
-            each([&](double w, double u, double v) {
-                va += w / weights * (u - ma) * (u - ma);
-                vb += w / weights * (v - mb) * (v - mb);
-                cov += w / weights * (u - ma) * (v - mb);
-            });
-            total +=
-                (2 * ma * mb + 1e-4) * (2 * cov + 9e-4) / ((ma * ma + mb * mb + 1e-4) * (va + vb + 9e-4));
-        }
+    for (int y = 5; y < a.height() - 5; ++y)
+        for (int x = 5; x < a.width() - 5; ++x, ++count) total += definition_at(a, b, channel, x, y);
     return total / count;
 }
 
@@ -69,6 +70,25 @@ TEST(Ssim, FollowsItsDefinition) {
     const Image b = picture(
         31, 26, 2, [&](int x, int y, int c) { return 0.7f * a.at(x, y, c) + 0.3f * hashed(x, y, c, 2); });
     EXPECT_NEAR(ssim(a, b), (definition(a, b, 0) + definition(a, b, 1)) / 2, 1e-10);
+}
+
+TEST(Ssim, HasAMapOfItsWindowsWhoseMeanItIs) {
+    const Image a = noise(31, 26, 2, 1), b = noise(31, 26, 2, 2);
+    Image map;
+    const double mean = ssim_figures(a, b, 2, {}, &map).ssim;
+    ASSERT_TRUE(map.width() == 31 && map.height() == 26 && map.channels() == 1);
+    double sum = 0;
+    int count = 0;
+    for (int y = 0; y < 26; ++y)
+        for (int x = 0; x < 31; ++x) {
+            const bool inside = x >= 5 && x < 26 && y >= 5 && y < 21;
+            ASSERT_EQ(std::isnan(map.at(x, y, 0)), !inside) << x << ", " << y;
+            if (!inside) continue;
+            ASSERT_NEAR(map.at(x, y, 0), (definition_at(a, b, 0, x, y) + definition_at(a, b, 1, x, y)) / 2,
+                        1e-6);
+            sum += map.at(x, y, 0), ++count;
+        }
+    EXPECT_NEAR(sum / count, mean, 1e-6);
 }
 
 TEST(Ssim, OfPicturesBelowItsWindowIsDefined) {

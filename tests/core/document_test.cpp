@@ -120,9 +120,9 @@ TEST(Document, KeepsIntegersApartFromNumbers) {
 }
 
 TEST(Document, RefusesAKeyThatStandsTwice) {
-    const Lines twice = {"f:3:3: error: the key 'a' stands twice in one object; first at line 1"};
+    const Lines twice = {"f:3:3: error: the key 'a' occurs twice in one object; first at line 1"};
     EXPECT_EQ(faults("{ \"a\": 1,\n  \"b\": {\"a\": 2},\n  \"a\": 3 }"), twice);
-    const Lines escaped = {"f:1:9: error: the key 'a' stands twice in one object; first at line 1"};
+    const Lines escaped = {"f:1:9: error: the key 'a' occurs twice in one object; first at line 1"};
     EXPECT_EQ(faults(R"({"a":1, "\u0061":2})"), escaped);
 }
 

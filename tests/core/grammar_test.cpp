@@ -220,13 +220,12 @@ TEST(Grammar, ChoosesTheKeysOfAnObjectByItsKind) {
                 "height": {"type": "number", "description": "Upwards.", "default": 1},
                 "name": {"type": "string", "description": "Its own."}},
                 "additionalProperties": false, "required": ["type"]})"));
-    EXPECT_EQ(
-        table_of(shape_block()),
-        "| key | of | type | default | |\n|---|---|---|---|---|\n"
-        "| `type` |  | enum: disk, ball, box | required | What kind it is, and so which keys it has. |\n"
-        "| `name` |  | text |  | Its own. |\n"
-        "| `radius` | disk, ball | float | required | Of the rim. |\n"
-        "| `height` | box | float | 1 | Upwards. |\n");
+    EXPECT_EQ(table_of(shape_block()),
+              "| key | of | type | default | |\n|---|---|---|---|---|\n"
+              "| `type` |  | enum: disk, ball, box | required | Kind, which decides the other keys. |\n"
+              "| `name` |  | text |  | Its own. |\n"
+              "| `radius` | disk, ball | float | required | Of the rim. |\n"
+              "| `height` | box | float | 1 | Upwards. |\n");
 }
 
 TEST(Grammar, HasADefaultKind) {

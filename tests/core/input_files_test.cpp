@@ -56,13 +56,18 @@ TEST(InputFiles, NoteOutputsSoThatTwoAreNotOneFile) {
     EXPECT_EQ(fault_of(inputs, "/dev/null"), "") << "a device takes any number";
 }
 
-TEST(InputFiles, HaveEveryDocumentThatWasRead) {
+TEST(InputFiles, HaveEveryDocumentThatDiagnosticsNoted) {
     const TemporaryFolder folder;
     write_text(folder / "a.json", "{}");
     Diagnostics diagnostics;
     read_document(folder / "a.json", diagnostics);
+    write_text(folder / "b.json", "{");
+    read_document(folder / "b.json", diagnostics);
     InputFiles inputs;
+    inputs.add(diagnostics.documents());
     EXPECT_NE(fault_of(inputs, folder / "a.json"), "");
+    EXPECT_NE(fault_of(inputs, folder / "b.json"), "") << "with a fault";
+    EXPECT_EQ(fault_of(inputs, folder / "c.json"), "");
 }
 
 }  // namespace

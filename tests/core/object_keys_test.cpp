@@ -60,7 +60,7 @@ TEST(ObjectKeys, ThatAreNoneSayWhy) {
     for (const char* piece : {"7-3", "4294967296", "1-4294967296"})
         EXPECT_EQ(read(R"("5,)" + std::string(piece) + '"').faults,
                   Lines{"f:1:1: error: mask: '" + std::string(piece) +
-                        "' is no range of ids; write \"3-7,9\", each from 0 to 4294967295 and rising"});
+                        "' is not a range of ids; write \"3-7,9\", each from 0 to 4294967295 and rising"});
 }
 
 TEST(ObjectKeys, AreFormattedAsADocumentWritesThem) {

@@ -75,8 +75,8 @@ TEST(ParamRelation, IsReadWithItsPlace) {
     const std::string remedy =
         "; write '<', '<=', '>' or '>=' and the name of a parameter: \"> focal_length\"";
     EXPECT_EQ(spec_faults(number("m", "3", R"(["focal_length", "= far", 2])")),
-              (Lines{"doc.json:1:59: error: 'focal_length' is no relation" + remedy,
-                     "doc.json:1:75: error: '= far' is no relation" + remedy,
+              (Lines{"doc.json:1:59: error: 'focal_length' is not a relation" + remedy,
+                     "doc.json:1:75: error: '= far' is not a relation" + remedy,
                      "doc.json:1:84: error: 'requires' holds strings, not an integer"}));
     EXPECT_EQ(spec_faults(R"({"type": "vec2", "default": [0, 0], "requires": ["> a"], "doc": "."})"),
               Lines{"doc.json:1:37: error: parameter 'p' has no key 'requires'; it is a key of type 'float', "

@@ -88,7 +88,7 @@ TEST(Table, TakesOneKeyARow) {
     for (const std::string piece : {"7-3", "a", "1-", "", "-1", "1-2-3", "4294967296", "1 2"})
         EXPECT_EQ(row_faults(R"({"objects": "5,)" + piece + "\"}"),
                   Lines{"doc.json:1:23: error: p.rows[0]: '" + piece +
-                        "' is no range of ids; write \"3-7,9\", each from 0 to 4294967295 and rising"});
+                        "' is not a range of ids; write \"3-7,9\", each from 0 to 4294967295 and rising"});
 }
 
 TEST(Table, RefusesTwoRowsForOneObjectAndNamesBoth) {

@@ -104,9 +104,8 @@ Lines faults_of(const EffectFolder& folder) {
 TEST(InferredUses, SayWhatTheTextNamesWrongly) {
     const EffectFolder folder(manifest_with(R"("shader": "a.frag")"));
     folder.write("a.frag", kHead + "void main() {\n    out_thin = texelFetch(wyde, ivec2(0), 0);\n}\n");
-    EXPECT_EQ(faults_of(folder),
-              Lines{"a.frag:4:27: error: pass 'x': its shader reads 'wyde', which is no input and no "
-                    "texture; did you mean 'wide'?"});
+    EXPECT_EQ(faults_of(folder), Lines{"a.frag:4:27: error: pass 'x': its shader reads 'wyde', which is "
+                                       "neither an input nor a texture; did you mean 'wide'?"});
     folder.write("a.frag", kHead +
                                "#ifdef HAS_MASK\nvec4 a() { return texelFetch(mask, ivec2(0), 0); }\n#endif\n"
                                "void main() { out_thin = vec4(0); }\n");

@@ -106,7 +106,7 @@ TEST(TileLists, SayWhatIsWrong) {
         test::expect_faults(tiled(tiles, pass), messages);
     };
     expect(kMarked, over + "\"market\"}",
-           {"6: pass 'x': runs over 'market', which is no tile list; did you mean 'marked'?",
+           {"6: pass 'x': runs over 'market', which is not a tile list; did you mean 'marked'?",
             "8: no pass runs over the tile list 'marked'"});
     expect(R"("far": {"doc": "."})", over + "\"far\"}",
            {"8: tile list 'far' is 'of' a texture's channel or has a 'predicate', one of the two"});
@@ -157,7 +157,7 @@ TEST(TileLists, LieOnTexturesByTheirScale) {
     EXPECT_EQ(faults("marks"),
               Lines{"the tile list 'far' is on 'marks', which has no 'scale' of the working grid"});
     EXPECT_EQ(faults("half_sise"),
-              Lines{"tile list 'far': dispatches over 'half_sise', which is no texture; did "
+              Lines{"tile list 'far': dispatches over 'half_sise', which is not a texture; did "
                     "you mean 'half_size'?"});
 }
 

@@ -247,13 +247,12 @@ TEST_F(Modules, TellTheirOwnFaultsInTheirOwnLines) {
 }
 
 TEST_F(Modules, NameTheEffectThatLacksWhatTheyRead) {
-    EXPECT_EQ(
-        faults_of_module({{kModulePasses, R"("passes": [{"name": "tone", "shader": "tnoe.frag",
+    EXPECT_EQ(faults_of_module({{kModulePasses, R"("passes": [{"name": "tone", "shader": "tnoe.frag",
                   "reads": ["colour"], "writes": ["tone"], "buffers": {"sums": "atomic"}}])"}}),
-        (Lines{"glsl/tone/module.json:5: error: pass 'tone' of the module 'tone' in 'demo': no file "
-               "'tnoe.frag' in glsl/tone",
-               "glsl/tone/module.json:5: error: pass 'tone' of the module 'tone' in 'demo': reads 'colour', "
-               "which is no input and no texture; did you mean 'color'?"}));
+              (Lines{"glsl/tone/module.json:5: error: pass 'tone' of the module 'tone' in 'demo': no file "
+                     "'tnoe.frag' in glsl/tone",
+                     "glsl/tone/module.json:5: error: pass 'tone' of the module 'tone' in 'demo': reads "
+                     "'colour', which is neither an input nor a texture; did you mean 'color'?"}));
 }
 
 TEST_F(Modules, AreFoundByARegistryOfEffectsFromElsewhere) {

@@ -203,7 +203,7 @@ TEST(ShaderSource, BeginsWithVersionAndPass) {
     folder.write("a.frag", "");
     EXPECT_EQ(Assembly(folder).faults(), begins);
 
-    const std::string once = "error: '#version 450 core' stands once, as the first line of a shader";
+    const std::string once = "error: '#version 450 core' must appear once, as the first line of a shader";
     folder.write("a.frag", "// mine\n#version 450 core\n#include <pass>\n");
     EXPECT_EQ(Assembly(folder).faults(), (Lines{"a.frag:2:1: " + once, begins[0]}));
     folder.write("a.frag", "#version 330\n#include <pass>\n");

@@ -86,7 +86,7 @@ TEST(UsageCheck, NamesTheLineOfWhatIsNotDeclared) {
     effect.folder.write(
         "b.frag",
         kSecond + "void more() { out_colour = vec4(1); vec3 out_way = vec3(0); out_way.x = 1.0; }\n");
-    EXPECT_EQ(effect.faults(), Lines{"b.frag:5:15: error: 'out_colour' is no target of a pass with this "
+    EXPECT_EQ(effect.faults(), Lines{"b.frag:5:15: error: 'out_colour' is not a target of a pass with this "
                                      "shader; did you mean 'out_color'?"});
 }
 

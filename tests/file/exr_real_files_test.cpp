@@ -53,7 +53,7 @@ TEST(ExrFile, ReadsEveryFlatPartOfTheReferenceImages) {
                     if (channel.x_sampling == 1 && channel.y_sampling == 1) names.push_back(channel.name);
                 }
                 if (part.type.starts_with("deep")) {
-                    capture_error([&] { file.read_floats(int(i), names); });
+                    EXPECT_GT(file.read_deep(int(i), names).sample_count(), 0u) << entry.path();
                     continue;
                 }
                 const Image image = file.read_floats(int(i), names);

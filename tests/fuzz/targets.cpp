@@ -94,8 +94,11 @@ void exr(std::string_view bytes) {
         const ExrFile exr_file(file, kSmall);
         for (std::size_t part = 0; part < exr_file.parts().size(); ++part)
             for (const ExrChannel& channel : exr_file.parts()[part].channels)
-                refused_or_read(
-                    [&] { exr_file.read_floats(int(part), std::vector<std::string>{channel.name}); });
+                refused_or_read([&] {
+                    const std::vector<std::string> one{channel.name};
+                    if (exr_file.parts()[part].is_deep()) exr_file.read_deep(int(part), one);
+                    else exr_file.read_floats(int(part), one);
+                });
     });
 }
 
@@ -110,7 +113,9 @@ void capture_file(std::string_view bytes) {
     for (const bool with_matte : {false, true}) {
         if (!with_matte) sequence.cryptomatte.reset();
         else sequence.cryptomatte = CryptomatteChoice{"", {"Cube"}};
-        refused_or_read([&] { CaptureReader(sequence, profiles, kSmall).read(1, role_names()); });
+        std::vector<std::string> roles = role_names();
+        for (const char* role : {kColorRole, kDepthRole, kObjectIdRole}) roles.push_back(layer_role(2, role));
+        refused_or_read([&] { CaptureReader(sequence, profiles, kSmall).read(1, roles); });
     }
 }
 

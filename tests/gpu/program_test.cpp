@@ -96,6 +96,20 @@ TEST(ShaderLog, ReadsTheFormWithTheSeverityFirst) {
     expect_message(messages[1], 3, 0, false, "odd");
 }
 
+TEST(ShaderLog, FoldsTheOverloadsOfACall) {
+    std::string log = "0:3(5): error: no matching function for call to `f(int)'; candidates are:\n";
+    for (const char* type : {"float", "vec2", "vec3", "vec4", "uint"})
+        log += std::string("0:3(5): error:    ") + type + " f(" + type + ")\n";
+    const auto messages = parse_shader_log(log + "0:4(1): error: type mismatch\n" + log);
+    ASSERT_EQ(messages.size(), 3U);
+    const std::string folded =
+        "no matching function for call to `f(int)'; candidates are: float f(float); vec2 f(vec2); vec3 "
+        "f(vec3); and 2 more";
+    expect_message(messages[0], 3, 5, true, folded);
+    expect_message(messages[1], 4, 1, true, "type mismatch");
+    expect_message(messages[2], 3, 5, true, folded);
+}
+
 TEST(ShaderLog, KeepsLinkMessagesAndContinuationLines) {
     const auto messages =
         parse_shader_log("error: unresolved reference to function `f'\n  candidates are: g\n");

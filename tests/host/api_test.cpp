@@ -55,4 +55,27 @@ TEST(HostApi, ArraysGiveTheBitsOfFiles) {
     EXPECT_TRUE(same_bits(look.render(arrays).image("color"), look.render(read).image("color")));
 }
 
+TEST(HostApi, WritesOverNoDocumentOfItsOwnLookAndKnowsNoOtherHosts) {
+    const TemporaryFolder folder;
+    const std::string look = R"({"aftershade": 1, "steps": [{"effect": "vignette"}]})";
+    const auto own = folder.path() / "own.png", others = folder.path() / "others.png";
+    write_file(own, look);
+    write_file(others, look);
+    Host host(osmesa()), other(osmesa());
+    other.load_look(others);
+    const Result result = host.load_look(own).render(small_capture());
+    const WriteOptions color{.roles = {"color"}};
+    try {
+        result.write(own, color);
+        ADD_FAILURE() << "the look was replaced";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage);
+        EXPECT_NE(std::string(error.what()).find("would replace the input"), std::string::npos)
+            << error.what();
+    }
+    EXPECT_EQ(std::filesystem::file_size(own), look.size());
+    result.write(others, color);
+    EXPECT_NE(std::filesystem::file_size(others), look.size());
+}
+
 }  // namespace

@@ -125,7 +125,7 @@ TEST(HostSharedGl, RefusesTexturesThatDoNotFit) {
     const auto expect = [&](const GlTexture& target, const char* part) {
         EXPECT_NE(message(target).find(part), std::string::npos) << message(target);
     };
-    expect({9999, kWidth, kHeight}, "no texture of the shared context");
+    expect({9999, kWidth, kHeight}, "is not a texture of the shared context");
     expect({egl.texture(GL_RGBA32F, 16, 16), 16, 16}, "16 x 16 texels");
     expect({egl.texture(GL_RGBA32F, 16, 16), kWidth, kHeight}, "has 16 x 16 texels");
     expect({egl.texture(GL_RG32F, kWidth, kHeight), kWidth, kHeight}, "has 2 channels");

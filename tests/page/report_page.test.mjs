@@ -577,7 +577,7 @@ test("tells pictures that are gone, and no report", async () => {
   assert.match(await page.locator("#case-lens").innerText(), /Pictures are missing: .*lens\.color\.0001\.test\.exr/);
   await page.context().close();
   writeFileSync(join(mine, "report.json"), '{"cases": []}');
-  assert.match(rebuildPage(mine).err, /report\.json: is no report of a golden suite: .*'document'/);
+  assert.match(rebuildPage(mine).err, /report\.json: is not a report of a golden suite: .*'document'/);
   rmSync(join(mine, "report.json"));
   const failed = rebuildPage(mine);
   assert.equal(failed.code, 4);

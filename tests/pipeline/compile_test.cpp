@@ -165,7 +165,7 @@ TEST_F(Values, OfTheCaptureThatAreOutOfRangeAreRefusedUnlessTheLookGivesOne) {
         EXPECT_STREQ(
             error.what(),
             "in.exr: camera.focus_distance is 500, outside the range of fog.reach (set the parameter in "
-            "the look, or mend the capture's camera)");
+            "the look, or correct the capture's camera)");
     }
     EXPECT_EQ(value(Bound(effects_, look_of(R"({ "effect": "fog", "preset": "thick" })")), "reach",
                     focused_at(500)),

@@ -63,7 +63,7 @@ TEST_F(History, IsWhatTheFrameBeforeLeft) {
     }
 }
 
-TEST_F(History, BeginsAnewAtACutAGapAndAnotherSize) {
+TEST_F(History, RestartsAtACutAGapAndAnotherSize) {
     Bench bench(effects_, look_);
     step(bench, grey(1, 8));
     EXPECT_EQ(step(bench, grey(2, 4)), std::pair(6.0f, std::string()));
@@ -162,7 +162,7 @@ TEST_F(SavedHistories, AreRefusedForAnotherFrameSizeLookOrVersion) {
     {
         Bench bench(effects_, look_);
         EXPECT_NE(refusal(bench, grey(7, 1))
-                      .find("this history is of frame 4; it can go on with frame 5, not "
+                      .find("this history is of frame 4; it continues with frame 5, not "
                             "with 7"),
                   std::string::npos);
     }
@@ -198,7 +198,7 @@ TEST_F(SavedHistories, ThatAreDamagedOrNoneAreRefused) {
     std::string flipped = bytes;
     flipped[bytes.size() - 40] = char(flipped[bytes.size() - 40] ^ 1);
     EXPECT_NE(refused(flipped).find("is damaged"), std::string::npos);
-    EXPECT_NE(refused("EXR").find("no history of --history-out"), std::string::npos);
+    EXPECT_NE(refused("EXR").find("not a history file of --history-out"), std::string::npos);
     EXPECT_EQ(refused(bytes), "") << "the whole file is taken";
 }
 

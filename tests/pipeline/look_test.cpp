@@ -67,7 +67,7 @@ TEST(Look, WarnsOfALookWithoutSteps) {
 
 TEST(Look, RefusesANameThatWiringCannotTellFromTheCapture) {
     EXPECT_EQ(parse(R"({ "aftershade": 1, "steps": [ { "effect": "a", "name": "capture" } ] })").faults,
-              "look:1:31: error: a step cannot be named 'capture': wiring means the input by it\n");
+              "look:1:31: error: a step cannot be named 'capture': wiring uses this name for the capture\n");
 }
 
 TEST(Look, RefusesANameThatASetOrATapCouldNotSpell) {
@@ -118,7 +118,7 @@ TEST(Look, ReadsTheObjectsOfAMask) {
 TEST(Look, SaysWhatIsWrongWithTheObjectsOfAMask) {
     EXPECT_EQ(
         parse_masked(R"([2, "7-3", -1, true])").faults,
-        "look:1:72: error: the mask: '7-3' is no range of ids; write \"3-7,9\", each from 0 to 4294967295 "
+        "look:1:72: error: the mask: '7-3' is not a range of ids; write \"3-7,9\", each from 0 to 4294967295 "
         "and rising\n"
         "look:1:79: error: the mask: -1 is not an object's id, a number from 0 to 4294967295\n"
         "look:1:83: error: the mask: expected an object's id, a range of ids such as \"3-7\" or a name\n");

@@ -136,7 +136,7 @@ TEST_F(Write, NamesARoleThatIsNowhere) {
     } catch (const Error& error) {
         EXPECT_EQ(error.exit_code(), ExitCode::capture);
         EXPECT_STREQ(error.what(),
-                     "synthetic: the role 'velocity', asked for in the output, is in neither the capture nor "
+                     "synthetic: the role 'velocity', requested in the output, is in neither the capture nor "
                      "the look");
     }
     EXPECT_EQ(folder_.file_count(), 0u);

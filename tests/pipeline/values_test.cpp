@@ -84,7 +84,7 @@ TEST_F(ValueForms, DepthThatIsNotThereIsAnErrorOfTheCapture) {
           {R"({ "from": "depth", "object": "77-78" })",
            "shown.reach: objects 77-78 have no pixel with a depth"},
           {R"({ "from": "depth", "object": "77,79" })", "object 77 and object 79 have no pixel with a depth"},
-          {R"({ "from": "camera.far" })", "the capture does not know camera.far"}}) {
+          {R"({ "from": "camera.far" })", "the capture has no camera.far"}}) {
         try {
             reach(value, capture);
             ADD_FAILURE() << value;
@@ -111,7 +111,7 @@ TEST_F(ValueForms, ThatMakeNoSenseAreErrorsWithTheirPlace) {
     EXPECT_NE(faults(R"({ "from": "camera.f_number" })").find("which cannot be converted to m"),
               std::string::npos);
     EXPECT_NE(faults(R"({ "from": "depth" })").find("has one of 'uv' and 'object'"), std::string::npos);
-    EXPECT_NE(faults(R"({ "from": "depth", "object": "7-3" })").find("'7-3' is no range of ids"),
+    EXPECT_NE(faults(R"({ "from": "depth", "object": "7-3" })").find("'7-3' is not a range of ids"),
               std::string::npos);
     EXPECT_NE(faults(R"({ "from": "depth", "uv": [2, 0] })").find("two numbers from 0 to 1"),
               std::string::npos);
@@ -224,7 +224,7 @@ TEST_F(MixAndMask, AMaskHasEveryObjectOfALongList) {
 
 TEST_F(MixAndMask, ThatHaveNothingToWorkOnAreErrors) {
     const auto faults = [&](const std::string& step) { return Bound(effects_, look_of(step)).faults(); };
-    EXPECT_NE(faults(R"({ "effect": "view_transform", "mix": 0.5 })").find("there is none before it"),
+    EXPECT_NE(faults(R"({ "effect": "view_transform", "mix": 0.5 })").find("no earlier step has made one"),
               std::string::npos);
     EXPECT_NE(faults(R"({ "effect": "white", "mix": 2 })").find("white.mix: 2 is above the maximum 1"),
               std::string::npos);

@@ -174,6 +174,27 @@ def test_compare_has_the_figures_of_numpy(host):
     assert layer.rmse == pytest.approx(np.sqrt(np.mean(np.square(b[..., :3].astype(float) - a[..., :3]))), rel=1e-4)
     assert layer.flip_map.shape == (32, 48) and 0 < layer.flip_map.max() <= 1
     assert np.unravel_index(layer.flip_map.argmax(), (32, 48)) == (3, 5)
+    assert layer.ssim_map.shape == (32, 48) and np.isnan(layer.ssim_map[:5]).all() and same.layers[0].ssim_map is None
+    assert np.nanmean(layer.ssim_map) == pytest.approx(layer.ssim, abs=1e-6)
+    assert np.allclose(layer.ssim_map[14:-5, 16:-5], 1, atol=1e-6), "windows without the changed pixel"
+
+
+def test_check_velocity_tells_a_wrong_sign(host):
+    paths = [ROOT / f"scenes/suzanne/gbuffer_000{number}.exr" for number in (3, 4)]
+    (of_files, *_), (of_captures, *_) = (
+        aftershade.check_velocity(*paths, host=host),
+        aftershade.check_velocity(*(aftershade.Capture(path, host=host) for path in paths)),
+    )
+    assert of_files.role == of_captures.role == "velocity" and of_files.score == of_captures.score
+    arrays = []
+    for path in paths:
+        capture = aftershade.Capture(path, host=host)
+        arrays.append({"color": capture["color"], "velocity": -capture["velocity"]})
+    reversed_check = aftershade.check_velocity(*arrays)[0]
+    assert not reversed_check and reversed_check.verdict == "wrong", reversed_check.sentence
+    assert reversed_check.suggested.delta == "prev-cur" and "prev-cur" in reversed_check.sentence
+    with pytest.raises(TypeError, match="two files or two captures"):
+        aftershade.check_velocity(paths[0], arrays[1])
 
 
 def test_notebooks_show_pictures(host):

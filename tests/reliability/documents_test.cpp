@@ -156,7 +156,7 @@ TEST(HostileDocuments, ThatNestDeeplyOrRepeatAKeyHaveOneFault) {
     }
     Diagnostics faults;
     EXPECT_FALSE(parse_document("{\"a\": 1,\n\"b\": 2, \"a\": 3}", "twice.json", faults));
-    EXPECT_TRUE(has_error(faults, "the key 'a' stands twice in one object; first at line 1"))
+    EXPECT_TRUE(has_error(faults, "the key 'a' occurs twice in one object; first at line 1"))
         << text_of(faults);
 }
 

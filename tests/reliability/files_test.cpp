@@ -151,7 +151,7 @@ TEST(Goldens, WithASidecarThatIsNotJsonDoNotPass) {
     const GoldenImage result = judged();
     EXPECT_EQ(result.verdict, Verdict::file_error);
     ASSERT_FALSE(result.reasons.empty());
-    EXPECT_NE(result.reasons.back().find("a.color.0001.json: is no sidecar, not even a JSON object"),
+    EXPECT_NE(result.reasons.back().find("a.color.0001.json: is not a sidecar, not even a JSON object"),
               std::string::npos)
         << result.reasons.back();
 }

@@ -293,17 +293,18 @@ TEST(ScatteringParam, SaysWhatIsWrongWithEachRow) {
 {"name": "a", "profile": {"type": "burley", "d_mm": 0}, "profil": 1},
 {"object": 2, "name": "b", "profile": "skin"}]})",
                      "sss.profile"),
-        (Lines{"doc.json:1:55: error: sss.profile.rows[0]: expected the name of a scattering profile, the "
-               "path of "
-               "its file or an object with 'type', not an integer",
-               "doc.json:1:59: error: sss.profile.rows[1] has no 'profile'",
-               "doc.json:1:71: error: sss.profile.rows[1]: '7-3' is no range of ids; write \"3-7,9\", each "
-               "from 0 "
-               "to 4294967295 and rising",
-               "doc.json:2:53: error: sss.profile.rows[2].d_mm: 0 is below the minimum 1e-06",
-               "doc.json:2:57: error: sss.profile.rows[2] has no key 'profil'; did you mean 'profile'?",
-               "doc.json:3:1: error: sss.profile.rows[3]: a row has one of 'object', 'objects' and 'name', "
-               "not 2"}));
+        (Lines{
+            "doc.json:1:55: error: sss.profile.rows[0]: expected the name of a scattering profile, the "
+            "path of "
+            "its file or an object with 'type', not an integer",
+            "doc.json:1:59: error: sss.profile.rows[1] has no 'profile'",
+            "doc.json:1:71: error: sss.profile.rows[1]: '7-3' is not a range of ids; write \"3-7,9\", each "
+            "from 0 "
+            "to 4294967295 and rising",
+            "doc.json:2:53: error: sss.profile.rows[2].d_mm: 0 is below the minimum 1e-06",
+            "doc.json:2:57: error: sss.profile.rows[2] has no key 'profil'; did you mean 'profile'?",
+            "doc.json:3:1: error: sss.profile.rows[3]: a row has one of 'object', 'objects' and 'name', "
+            "not 2"}));
     EXPECT_EQ(
         value_faults(spec,
                      R"({"default": {"type": "burley", "d_mm": 0}, "rows": [{"object": 2}, 4], "row": []})",

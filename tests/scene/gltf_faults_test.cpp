@@ -96,7 +96,7 @@ TEST(Gltf, RefusesBrokenFilesAndSaysWhatIsWrong) {
                  "values": {"bufferView": 0}})"),
          "accessor 0 is sparse"},
         {with_indices({0, 1, 4}), "index 2 is 4, out of range of its 4 vertices"},
-        {with_indices({0, 1}), "has 2 indices, which is no multiple of 3"},
+        {with_indices({0, 1}), "has 2 indices, which is not a multiple of 3"},
         {with_indices({0, 0, 0}), "has no triangles"},
         {with_positions({0, 0, 0, 1, 0, 0, 0, inf, 0}), "POSITION: value 2 is not finite"},
         {with_positions({0, nan, 0, 1, 0, 0, 0, 1, 0}), "POSITION: value 0 is not finite"},

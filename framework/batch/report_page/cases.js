@@ -111,6 +111,14 @@ function levelWords(does, { limit, percent, hard, allowed, flip, ssim }) {
     .join(", ");
 }
 
+/** The largest share of failing pixels of a layer; of an image that could not be compared, all. */
+function failingPercent(test) {
+  const shares = test.images.flatMap((image) =>
+    image.comparison?.layers.length ? image.comparison.layers.map((layer) => layer.failing?.percent ?? 100) : [100],
+  );
+  return Math.max(0, ...shares);
+}
+
 function approvedWords(image) {
   if (!image.approved) return "none: this image is new";
   const others = image.approved_count > 1 ? ` (nearest of ${image.approved_count})` : "",
@@ -118,7 +126,7 @@ function approvedWords(image) {
   return `${image.approved.file}${others}${made ? `, made by ${made.renderer}, Mesa ${made.mesa ?? "?"}, ${made.cpu}` : ", without a sidecar"}`;
 }
 
-/** Nothing is to be seen. NaN has equal bits, and is no number to approve. */
+/** Nothing is to be seen. NaN has equal bits, but is not a number to approve. */
 const isAsApproved = (image) => image.bits_equal && image.verdict === "same";
 
 function imageSection(image, report, viewers) {

@@ -36,7 +36,7 @@ function wheelColor(x, y) {
   return hueColor(Math.atan2(y, x) / (2 * Math.PI), length > 1 ? 1 / length : 1, Math.sqrt(Math.min(length, 1)));
 }
 
-/** Renderers write ids as floats; hashes of names are floats that are no integers: their bits are the id. */
+/** Renderers write ids as floats; hashes of names are floats that are not integers: their bits are the id. */
 const idOf = (() => {
   const float = new Float32Array(1),
     bits = new Uint32Array(float.buffer);

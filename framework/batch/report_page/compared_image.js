@@ -68,8 +68,8 @@ class ComparedImage {
   /** FLIP is drawn of one layer. */
   flipLayer() {
     return this.layers.find((layer) => {
-      const told = this.comparisonOf(layer);
-      return told?.hdr_flip || told?.ldr_flip;
+      const found = this.comparisonOf(layer);
+      return found?.hdr_flip || found?.ldr_flip;
     });
   }
   hasReference() {
@@ -195,12 +195,12 @@ class ComparedImage {
     context.fillRect(line - ratio, pane.top, 2 * ratio, pane.height);
   }
   drawMarks(context, pane) {
-    const told = this.comparisonOf(this.layer),
-      box = told?.failing?.box;
+    const found = this.comparisonOf(this.layer),
+      box = found?.failing?.box;
     if (!box) return;
     const [x, y] = box.min,
       [right, bottom] = box.max;
     drawFrame(context, this.view, pane, { x, y, width: right - x + 1, height: bottom - y + 1 }, "#ffd23f");
-    if (this.view.zoom >= 6) drawFrame(context, this.view, pane, { ...told.max_error, width: 1, height: 1 }, "#fff");
+    if (this.view.zoom >= 6) drawFrame(context, this.view, pane, { ...found.max_error, width: 1, height: 1 }, "#fff");
   }
 }

@@ -14,7 +14,7 @@ function element(name, attributes = {}, ...children) {
 
 /** Says something to people who see the page and to those who hear it. */
 function tell(words) {
-  const place = document.getElementById("told");
+  const place = document.getElementById("notice");
   place.textContent = words;
   clearTimeout(tell.timer);
   tell.timer = setTimeout(() => (place.textContent = ""), 2500);

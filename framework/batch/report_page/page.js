@@ -164,7 +164,7 @@ class Page {
         ? element(
             "div",
             { class: "orphans" },
-            element("b", {}, "No case gives these goldens; remove them, or mend the case:"),
+            element("b", {}, "No case gives these goldens; remove them, or fix the case:"),
             element(
               "ul",
               {},
@@ -214,7 +214,9 @@ class Page {
     const worst = ["file error", "different size or channels", "failure", "warning", "same"];
     const ordered = [...this.report.cases].sort(
       (a, b) =>
-        KINDS.indexOf(kindOf(a)) - KINDS.indexOf(kindOf(b)) || worst.indexOf(a.verdict) - worst.indexOf(b.verdict),
+        KINDS.indexOf(kindOf(a)) - KINDS.indexOf(kindOf(b)) ||
+        worst.indexOf(a.verdict) - worst.indexOf(b.verdict) ||
+        failingPercent(b) - failingPercent(a),
     );
     this.cards = ordered.map((test) => ({ test, node: safeCaseCard(test, this.report, this.viewers) }));
     this.none = element("p", { class: "quiet", hidden: true }, "No case fits.");

@@ -134,8 +134,8 @@ constexpr const char* kDomainFault = "'domain' holds two numbers that rise, the 
 
 void declare(grammar::Block& declaration, const grammar::Block&) {
     declaration.keys.push_back(grammar::optional(
-        "domain", grammar::list(grammar::number(), {.min = 2, .max = 2, .fault = kDomainFault}), "Of x.",
-        "[0, 1]"));
+        "domain", grammar::list(grammar::number(), {.min = 2, .max = 2, .fault = kDomainFault}),
+        "Range of x.", "[0, 1]"));
 }
 
 void read_declaration(const SpecReader& reader, ParamSpec& spec) {

@@ -13,8 +13,8 @@ namespace file_type {
 void declare(grammar::Block& declaration, const grammar::Block&) {
     declaration.keys.push_back(
         grammar::required("kind", grammar::choice({"image", "lut"}), "A picture, or a table of colours."));
-    declaration.keys.push_back(
-        grammar::optional("space", grammar::choice({"srgb", "data"}), "Of a PNG's values.", "\"srgb\""));
+    declaration.keys.push_back(grammar::optional("space", grammar::choice({"srgb", "data"}),
+                                                 "Encoding of a PNG's values.", "\"srgb\""));
     declaration.rules.push_back(grammar::when({.key = "kind",
                                                .value = "\"lut\"",
                                                .absent = {"space"},

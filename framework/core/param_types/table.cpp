@@ -85,7 +85,7 @@ void declare(grammar::Block& declaration, const grammar::Block& column) {
                       ", and not 'object', 'objects' or 'name', by which a row says for which object it is",
              .min = 1,
              .count_fault = "a table has at least one column"}),
-        "As parameters, of the block types."));
+        "Columns, declared like parameters of the block types."));
 }
 
 void read_declaration(const SpecReader& reader, ParamSpec& spec) {

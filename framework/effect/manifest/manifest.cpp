@@ -8,6 +8,7 @@
 #include "framework/effect/manifest/manifest_grammar.h"
 #include "framework/effect/manifest/manifest_parser.h"
 #include "framework/effect/param_types.h"
+#include "framework/image/role.h"
 
 namespace aftershade {
 
@@ -81,6 +82,10 @@ void ManifestParser::preset(const Member& member) {
             preset.values[value.key] = std::move(*parsed);
     }
     manifest_.presets.push_back(std::move(preset));
+}
+
+std::string InputSpec::image_role() const {
+    return layer < 0 ? role : layer_role(layer, role);
 }
 
 const InputSpec* EffectManifest::find_input(const std::string& name) const {

@@ -30,12 +30,16 @@ struct InputSpec {
     bool optional = false;
     bool history = false;  ///< last frame's image may be read too, as "<name>.prev"; zero where there is none
     int frame = 0;         ///< -1, +1: the capture before or after, which must be optional: shots end
+    int layer = -1;  ///< of a capture with layers, 0 in front, which must be optional; -1: the whole picture
     bool from_capture = false;  ///< the capture's image even where an earlier step makes that role
     /// All must hold, or the input is absent and its image is not read. On parameters alone, of optional
     /// inputs.
     std::vector<WhenSpec> when;
     std::string doc;
     Place place;
+
+    /// What the capture calls the image: the role, or that of the layer.
+    std::string image_role() const;
 };
 
 /// An image that the effect makes. A pass writes it under its name; its texture has the role's channels as
@@ -215,7 +219,7 @@ struct PassSpec {
     std::vector<AccessSpec> buffers;
     std::map<std::string, std::string> defines;
     std::vector<WhenSpec> when;       ///< all must hold
-    std::optional<CountSpec> repeat;  ///< the shader knows its turn as pass.index, 0 .. pass.count - 1
+    std::optional<CountSpec> repeat;  ///< the shader reads its turn as pass.index, 0 .. pass.count - 1
     std::optional<InstanceSpec> instances;
     DispatchSpec dispatch;  ///< compute
     gpu::Blend blend = gpu::Blend::none;
@@ -267,7 +271,7 @@ struct TelemetrySpec {
     std::string name;
     Channel of;
     std::optional<Channel> where;  ///< only texels where this is above 0; a texture of the same size
-    bool squared = false;          ///< a deviation is told as variance
+    bool squared = false;          ///< a deviation is written as variance
     double from = 0;               ///< of the histogram: `bins` of one width; what lies outside goes to the
     double to = 0;                 ///< first and last
     int bins = 0;                  ///< 0: no histogram

@@ -39,8 +39,8 @@ std::optional<int> pass_offset(std::string_view text);
 
 /// What the name of a thing must be: "the id '{}' must be snake_case ...".
 grammar::Form identifier_form(const std::string& thing);
-/// Text that names what stands elsewhere. The schema knows only how it is written; the parser, which knows
-/// what there is, reports every other.
+/// Text that names what stands elsewhere. The schema checks only how it is written; the parser, which has the
+/// declarations, reports every other.
 grammar::Form reference_form(const std::string& pattern, const std::string& type);
 /// A number, or the name of an int parameter.
 grammar::Form count_form(const CountLimits& limits);

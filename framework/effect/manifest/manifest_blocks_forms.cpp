@@ -57,8 +57,7 @@ Block conditions_of_input_block() {
     return {.name = "",
             .others = {{on_param(), condition_on_param()}},
             .unknown_key =
-                "whether an input is there is asked by passes; the conditions of an input are on "
-                "parameters",
+                "only passes test whether an input is present; the conditions of an input are on parameters",
             .type = "[conditions](#conditions) on parameters"};
 }
 

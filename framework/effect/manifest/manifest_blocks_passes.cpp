@@ -82,21 +82,23 @@ Form defines_form() {
 }
 
 Block instances_block() {
-    return {.name = "instances",
-            .doc = "What a draw with a vertex shader draws, and how often.",
-            .keys = {required("of", choice({"quads", "points"}), "A strip of 4 vertices, or 1."),
-                     optional("count", count_form(kInstanceCount),
-                              "In all; with `per`, for each texel of that grid."),
-                     optional("per", per_form(), "The grid by whose texels instances are counted."),
-                     optional("indirect", text({.min_length = 1, .type = "name of a buffer"}),
-                              "Instead: a buffer with `indirect` that counts them.")},
-            .rules = {
-                grammar::at_least_one_of({"count", "per", "indirect"},
-                                         "'instances' have no 'count', 'per' or 'indirect' buffer"),
-                when({.key = "indirect",
-                      .absent = {"count", "per"},
-                      .fault = "'instances' are counted by their 'indirect' buffer or by 'count' and 'per', "
-                               "not both"})}};
+    return {
+        .name = "instances",
+        .doc = "What a draw with a vertex shader draws, and how often.",
+        .keys = {required("of", choice({"quads", "points"}), "A strip of 4 vertices, or a single vertex."),
+                 optional("count", count_form(kInstanceCount),
+                          "Number of instances; with `per`, per texel of that grid."),
+                 optional("per", per_form(), "Count instances per texel of this grid."),
+                 optional(
+                     "indirect", text({.min_length = 1, .type = "name of a buffer"}),
+                     "Alternative to `count` and `per`: a buffer with `indirect` that holds the number.")},
+        .rules = {
+            grammar::at_least_one_of({"count", "per", "indirect"},
+                                     "'instances' have no 'count', 'per' or 'indirect' buffer"),
+            when({.key = "indirect",
+                  .absent = {"count", "per"},
+                  .fault = "'instances' are counted by their 'indirect' buffer or by 'count' and 'per', "
+                           "not both"})}};
 }
 
 Block dispatch_block() {
@@ -105,14 +107,14 @@ Block dispatch_block() {
         "[x, y, z], up to " + std::to_string(kMaxGroups));
     return {
         .name = "dispatch",
-        .doc = "How many work groups a compute pass has.",
+        .doc = "Number of work groups of a compute pass.",
         .keys = {optional("tile", count_form(kGroupTileCount),
-                          "A work group for each tile of so many texels a side."),
+                          "One work group per tile; the tile's side in texels."),
                  optional("over", text({.type = "name of a texture"}),
-                          "The texture that has the texels; without, the working grid."),
-                 optional("groups", groups, "So many."),
+                          "The texture to cover; default: the working grid."),
+                 optional("groups", groups, "A fixed number of work groups."),
                  optional("indirect", text({.min_length = 1, .type = "name of a buffer"}),
-                          "A buffer with `indirect` that counts them.")},
+                          "A buffer with `indirect` that holds the number.")},
         .rules = {grammar::exactly_one_of({"tile", "groups", "indirect"}), grammar::needs("over", "tile")}};
 }
 
@@ -122,32 +124,36 @@ std::vector<Key> shader_keys() {
                               ": llvmpipe silently ends the loops of one invocation after 65535; split the "
                               "work over a repeated pass";
     return {required("shader", file_form("shader"),
-                     "In the effect's folder; of a module's pass, in the module's."),
+                     "A file in the effect's folder, or in the module's folder for a module's pass."),
             optional("reads", reads_form(),
-                     "Left out, or with `\"*\"` among them: [what the shaders name](#what-shaders-name)."),
-            optional("images", accesses_form(), "Level 0 of a texture; atomics need r32ui or r32i."),
-            optional("buffers", accesses_form(), "The same for buffers; `{\"name.prev\": \"read\"}`."),
+                     "Default, also for `\"*\"`: [what the shaders name](#what-shaders-name)."),
+            optional("images", accesses_form(),
+                     "Access to level 0 of a texture as an image; atomics need r32ui or r32i."),
+            optional("buffers", accesses_form(),
+                     "Access to buffers; `{\"name.prev\": \"read\"}` reads the previous frame's."),
             optional("defines", grammar::shown_as(defines_form(), "text or int by name"),
                      "Preprocessor symbols."),
             optional("repeat", count_form(kRepeatCount),
-                     "Times in a row; the shader has `pass.index` and `pass.count`."),
+                     "Run the pass this many times in a row; the shader has `pass.index` and `pass.count`."),
             optional("max_iterations", grammar::with_fault(integer(1, kMaxIterations), bound),
-                     "Upper bound of the loop iterations of one invocation.")};
+                     "Upper bound on the loop iterations of one invocation.")};
 }
 
 Block draw_kind() {
     constexpr const char* kNoInstances = "a 'vertex' shader needs 'instances' to place";
     std::vector<Key> keys = {optional(
         "writes", writes_form(),
-        "Up to 8 outputs and textures of one size; left out, or with `\"*\"`: what the shader names.")};
+        "Up to 8 outputs and textures of one size; default, also for `\"*\"`: what the shader names.")};
     for (Key& key : shader_keys()) keys.push_back(std::move(key));
-    keys.push_back(optional("vertex", file_form("vertex"), "Places instances, or tiles."));
-    keys.push_back(optional("instances", grammar::object(instances_block()), "Instead of the full screen."));
+    keys.push_back(optional("vertex", file_form("vertex"), "Vertex shader that places instances or tiles."));
+    keys.push_back(optional("instances", grammar::object(instances_block()),
+                            "Draw instances instead of the full screen."));
     keys.push_back(optional(
         "over", text({.fault = "'over' names no tile list", .min_length = 1, .type = "name of a tile list"}),
-        "The tile list to which the draw is confined."));
-    keys.push_back(optional("blend", choice({"add", "min", "max"}),
-                            "`add` takes float formats; the target must have been written or cleared."));
+        "Confine the draw to this tile list."));
+    keys.push_back(
+        optional("blend", choice({"add", "min", "max"}),
+                 "`add` needs a float format; an earlier pass must have written or cleared the target."));
     const auto check_vertex = [](const Node& node, const std::string&, Diagnostics& diagnostics) {
         const Node* vertex = node.find("vertex");
         if (vertex && !node.find("instances") && !node.find("over"))
@@ -167,23 +173,23 @@ Block draw_kind() {
 
 Block compute_kind() {
     std::vector<Key> keys = shader_keys();
-    keys.push_back(required("dispatch", grammar::object(dispatch_block()), "How many work groups."));
+    keys.push_back(required("dispatch", grammar::object(dispatch_block()), "Number of work groups."));
     return {.name = "compute", .thing = "the compute pass", .keys = std::move(keys)};
 }
 
 Block clear_kind() {
     return {.name = "clear",
             .thing = "the clear pass",
-            .keys = {required("writes", writes_form(), "What it sets."),
-                     required("value", texel_form(), "To what.")}};
+            .keys = {required("writes", writes_form(), "Textures and buffers to clear."),
+                     required("value", texel_form(), "Value to set.")}};
 }
 
 Block make_pass_block() {
     return {.name = "pass",
             .thing = "the pass",
             .doc = "One draw, compute dispatch or clear.",
-            .keys = {required("name", identifier_form("pass"), "By which messages, taps and times name it."),
-                     when_key("Without them the pass does not run.")},
+            .keys = {required("name", identifier_form("pass"), "Name in messages, taps and times."),
+                     when_key("If they do not hold, the pass does not run.")},
             .selector = "kind",
             .kinds = {draw_kind(), compute_kind(), clear_kind()},
             .default_kind = "draw",
@@ -233,12 +239,12 @@ const Block& read_block() {
         .name = "read",
         .thing = "the read of '{}'",
         .doc = "How a pass samples what it reads.",
-        .keys = {optional("filter", choice(kFilters), "Between texels.", "\"nearest\""),
+        .keys = {optional("filter", choice(kFilters), "Filter between texels.", "\"nearest\""),
                  optional("outside", choice({"clamp", "weight_zero"}),
-                          "Beyond the edges: the edge, or 0, so that a filter's weights sum to less there.",
+                          "Value beyond the edges: the edge texel, or 0, which darkens a filter there.",
                           "\"clamp\""),
-                 optional("level", level_form("level", kMaxLevel), "Shows one level as level 0."),
-                 when_key("Without them there is no sampler.")}};
+                 optional("level", level_form("level", kMaxLevel), "Bind this level as level 0."),
+                 when_key("If they do not hold, there is no sampler.")}};
     return block;
 }
 
@@ -247,9 +253,9 @@ const Block& write_block() {
         .name = "write",
         .thing = "the write of '{}'",
         .doc = "Where in a texture a pass writes.",
-        .keys = {optional("level", level_form("level", kMaxLevel), "Of its mips.", "0"),
-                 optional("layer", level_form("layer", kMaxLayers - 1), "Of its layers.", "0"),
-                 when_key("Without them there is no target.")}};
+        .keys = {optional("level", level_form("level", kMaxLevel), "Level to write.", "0"),
+                 optional("layer", level_form("layer", kMaxLayers - 1), "Layer to write.", "0"),
+                 when_key("If they do not hold, there is no target.")}};
     return block;
 }
 
@@ -263,8 +269,8 @@ const Block& group_block() {
         .name = "group",
         .thing = "the group of passes",
         .doc = "Passes that share conditions. Groups may hold groups.",
-        .keys = {when_key("Of all its passes, before their own.", true),
-                 required("passes", passes_form("the group has no passes"), "In their order.")},
+        .keys = {when_key("Conditions of all its passes, in addition to their own.", true),
+                 required("passes", passes_form("the group has no passes"), "Passes in order.")},
         .definition = "group"};
     return block;
 }

@@ -42,32 +42,30 @@ Block make_texture_block() {
         .name = "texture",
         .thing = "texture '{}'",
         .doc = "An image between passes.",
-        .keys = {required("format", texture_format_form(), "Of a texel."),
-                 required("doc", text(), "One sentence with the unit."),
-                 optional("scale", grid_scale_form(), "Of the working grid's sides, rounded up.", "1"),
-                 optional("tile", count_form(kTileCount),
-                          "Side in px of the tiles for which a texel stands each."),
+        .keys = {required("format", texture_format_form(), "Format of a texel."),
+                 required("doc", text(), "One sentence, with the unit."),
+                 optional("scale", grid_scale_form(), "Size relative to the working grid, rounded up.", "1"),
+                 optional("tile", count_form(kTileCount), "One texel per tile; the tile's side in px."),
                  optional("size",
                           grammar::shown_as(
                               grammar::list(integer(1, kMaxSide),
                                             {.min = 2, .max = 2, .fault = "'size' holds 2 integers"}),
                               "[width, height], up to " + std::to_string(kMaxSide)),
-                          "In texels, whatever the working grid."),
-                 optional("layers", integer(1, kMaxLayers), "With more than one it is an array.", "1"),
-                 optional(
-                     "mips", mips_form(),
-                     "Levels that passes write one by one; `\"auto\"`: the host fills levels 1.. after each "
-                     "pass that writes level 0.",
-                     "1"),
-                 optional(
-                     "clear", texel_form(),
-                     "Set at the beginning of each frame; whole for integers, within what the format holds."),
-                 optional(
-                     "history", boolean(),
-                     "Survives into the next frame, where `name.prev` reads it; zero where there was none "
-                     "(`frame.history_valid`).",
-                     "false"),
-                 when_key("Without them every read and write of it is absent.")},
+                          "Fixed size in texels, independent of the working grid."),
+                 optional("layers", integer(1, kMaxLayers),
+                          "Number of layers; more than one make an array texture.", "1"),
+                 optional("mips", mips_form(),
+                          "Number of levels, which passes write one by one; `\"auto\"`: the host fills "
+                          "levels 1 and up after each pass that writes level 0.",
+                          "1"),
+                 optional("clear", texel_form(),
+                          "Value at the beginning of each frame; whole for integer formats, and within the "
+                          "format's range."),
+                 optional("history", boolean(),
+                          "Keeps the texture for the next frame, where `name.prev` reads it; zero if there "
+                          "was none (`frame.history_valid`).",
+                          "false"),
+                 when_key("If they do not hold, every read and write of it is absent.")},
         .rules = {grammar::at_most_one_of({"scale", "tile", "size"})}};
 }
 
@@ -89,21 +87,19 @@ Block make_buffer_block() {
         .doc = "An array in GPU memory.",
         .keys = {required("element", grammar::choice(buffer_elements()), "Type of an element."),
                  required("doc", text(), "One sentence."),
-                 optional(
-                     "count", count_form(element_count("float")),
-                     "Elements in all, of at most 128 MiB; with `per`, elements per texel of that grid, by "
-                     "default 1."),
-                 optional("per", per_form(), "The grid by whose texels elements are counted."),
-                 optional(
-                     "clear",
-                     grammar::any_of({grammar::number(), grammar::list(grammar::number(), {.min = 1})},
-                                     "'clear' must be a number or an array of numbers"),
-                     "The first words at the beginning of each frame, the rest 0; without, the content is "
-                     "undefined until it is written."),
+                 optional("count", count_form(element_count("float")),
+                          "Number of elements, at most 128 MiB in all; with `per`, elements per texel of "
+                          "that grid (default: 1)."),
+                 optional("per", per_form(), "Count elements per texel of this grid."),
+                 optional("clear",
+                          grammar::any_of({grammar::number(), grammar::list(grammar::number(), {.min = 1})},
+                                          "'clear' must be a number or an array of numbers"),
+                          "The first words at the beginning of each frame; the rest is 0. Without it the "
+                          "content is undefined until a pass writes it."),
                  optional("history", boolean(), "As for textures.", "false"),
                  optional("indirect", boolean(),
                           "Holds the arguments of a draw {vertices, instances, first, base} or a dispatch "
-                          "{x, y, z}: `uint`, `count` fixed and at least 4.",
+                          "{x, y, z}; needs `uint` and a fixed `count` of at least 4.",
                           "false")},
         .rules = {
             grammar::at_least_one_of({"count", "per"}),
@@ -127,24 +123,24 @@ Block make_tile_list_block() {
     return {
         .name = "tiles",
         .thing = "tile list '{}'",
-        .doc = "The tiles of the picture to which draws are confined.",
-        .keys =
-            {required("doc", text(), "One sentence."),
-             optional(
-                 "of", channel_form(),
-                 "Of a texture with a `tile`: the tiles whose texel is above 0 there. Where that texture is "
-                 "absent, so is the list."),
-             optional(
-                 "predicate",
-                 text({.fault = "'predicate' is empty: it names a file", .min_length = 1, .type = "file"}),
-                 "Instead: a file of the effect's folder, without a head, that has `bool far_tiles(ivec2 "
-                 "tile)`, of the list's name. Several lists may share a file."),
-             optional("tile", integer(2, kMaxListedTile), "Of a predicate: a tile's side in texels of `on`."),
-             optional("on", text({.type = "name of a texture"}),
-                      "Of a predicate: a texture with a `scale` whose texels the tiles divide; without, the "
-                      "working grid."),
-             optional("reads", reads_form(), "Of a predicate, as passes have them."),
-             when_key("Without them neither the list nor the passes over it are there.")},
+        .doc = "A list of tiles that confines draws.",
+        .keys = {required("doc", text(), "One sentence."),
+                 optional("of", channel_form(),
+                          "Channel of a texture with a `tile`; lists the tiles whose texel is above 0. If "
+                          "that texture is absent, so is the list."),
+                 optional(
+                     "predicate",
+                     text(
+                         {.fault = "'predicate' is empty: it names a file", .min_length = 1, .type = "file"}),
+                     "Alternative to `of`: a file of the effect's folder, without `#version`, that defines "
+                     "`bool NAME(ivec2 tile)` with the list's name. Several lists may share a file."),
+                 optional("tile", integer(2, kMaxListedTile),
+                          "With a predicate: a tile's side in texels of `on`."),
+                 optional("on", text({.type = "name of a texture"}),
+                          "With a predicate: the tiles divide this texture, which has a `scale`; default: "
+                          "the working grid."),
+                 optional("reads", reads_form(), "With a predicate: its reads, as in passes."),
+                 when_key("If they do not hold, the list and the passes over it are absent.")},
         .rules = {grammar::exactly_one_of({"of", "predicate"},
                                           "{} is 'of' a texture's channel or has a 'predicate', one of the "
                                           "two"),

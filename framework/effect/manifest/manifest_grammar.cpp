@@ -50,6 +50,9 @@ Form version_form() {
 }
 
 Block input_block() {
+    constexpr const char* kLayersEnd =
+        "an input of a layer must be 'optional': a capture may have fewer layers";
+    constexpr int kMostInputLayer = 7;
     constexpr const char* kShotsEnd = "an input of another frame must be 'optional': shots begin and end";
     const Form frame = grammar::shown_as(grammar::any_of({grammar::constant("-1"), grammar::constant("1")},
                                                          "'frame' is -1 or 1: the capture before or after"),
@@ -58,21 +61,28 @@ Block input_block() {
     return {
         .name = "input",
         .thing = "input '{}'",
-        .doc = "An image that the effect takes.",
+        .doc = "An image that the effect reads.",
         .keys =
             {required(
                  "role", role_form(),
                  "`aov:<name>` takes any image of floats that a look wires to it, an earlier step's texture "
-                 "too, in its own size: ask `name_size`."),
-             optional("optional", boolean(), "The shader has `HAS_<NAME>` where the image is there.",
+                 "too, in its own size: read `name_size`."),
+             optional("optional", boolean(),
+                      "The input may be missing; the shader has `HAS_<NAME>` if the image is there.",
                       "false"),
-             optional("history", boolean(), "Last frame's image may be read as `name.prev`.", "false"),
-             optional("frame", frame, "The capture before or after; such an input is `optional`."),
+             optional("history", boolean(), "Passes may read the previous frame's image as `name.prev`.",
+                      "false"),
+             optional("frame", frame,
+                      "Take the previous or the next capture instead; such an input must be `optional`."),
+             optional("layer", grammar::integer(0, kMostInputLayer),
+                      "The image of one layer of the capture, 0 in front; such an input is `optional`: the "
+                      "capture "
+                      "may have fewer. The last layer that a look reads holds all that lies behind it."),
              optional("from", choice({"capture"}),
-                      "The capture's own image even where an earlier step makes that role, unless the look's "
-                      "`in` says otherwise."),
+                      "Take the capture's own image even if an earlier step outputs that role, unless the "
+                      "look's `in` says otherwise."),
              input_when_key(
-                 "Of optional inputs: without them the input is absent and its image is not read."),
+                 "For optional inputs: if they do not hold, the input is absent and its image is not read."),
              optional("doc", text(), "One sentence.")},
         .rules = {
             when({.key = "frame", .required = {"optional"}, .narrowed = {is_optional}, .fault = kShotsEnd}),
@@ -83,6 +93,13 @@ Block input_block() {
                 {.key = "frame",
                  .absent = {"from"},
                  .fault = "an input has 'frame' or 'from', not both: other frames are the capture's anyway"}),
+            when({.key = "layer", .required = {"optional"}, .narrowed = {is_optional}, .fault = kLayersEnd}),
+            when({.key = "layer",
+                  .absent = {"frame", "from"},
+                  .narrowed = {{"history", grammar::constant("false")}},
+                  .fault =
+                      "an input has 'layer' or one of 'history', 'frame' and 'from', not both: layers are "
+                      "those of the capture's own frame"}),
             when({.key = "when",
                   .required = {"optional"},
                   .narrowed = {is_optional},
@@ -92,15 +109,16 @@ Block input_block() {
 Block output_block() {
     return {.name = "output",
             .thing = "output '{}'",
-            .doc = "An image that the effect makes; a pass must write it.",
-            .keys = {required("role", role_form(), "What it is."), optional("doc", text(), "One sentence.")}};
+            .doc = "An image that the effect outputs; a pass must write it.",
+            .keys = {required("role", role_form(), "Role of the image."),
+                     optional("doc", text(), "One sentence.")}};
 }
 
 Block uniform_block() {
     return {.name = "uniform",
             .thing = "native uniform '{}'",
-            .doc = "A value of native code.",
-            .keys = {required("type", choice({"float", "int", "uint", "vec2", "vec3", "vec4"}), "In GLSL."),
+            .doc = "A value that native code sets.",
+            .keys = {required("type", choice({"float", "int", "uint", "vec2", "vec3", "vec4"}), "GLSL type."),
                      required("doc", text(), "One sentence.")}};
 }
 
@@ -111,18 +129,18 @@ Block native_table_block() {
     return {
         .name = "table",
         .thing = "native table '{}'",
-        .doc = "An array of native code.",
+        .doc = "An array that native code fills.",
         .keys = {
-            required("element", choice({"float", "vec2", "vec4", "uint", "uvec2", "uvec4"}), "In GLSL."),
+            required("element", choice({"float", "vec2", "vec4", "uint", "uvec2", "uvec4"}), "GLSL type."),
             required("count",
                      grammar::shown_as(sides, "int, or [int, int], up to " + std::to_string(kMaxTableSide)),
-                     "Most elements of a row, and how many rows."),
+                     "Largest number of elements per row, and of rows."),
             required("doc", text(), "One sentence.")}};
 }
 
 Block native_block() {
     return {.name = "native",
-            .doc = "What the effect's native code fills before each frame.",
+            .doc = "Values that the effect's native code sets before each frame.",
             .keys = {optional("uniforms", grammar::named(grammar::object(uniform_block()), "native uniform"),
                               "`native.<name>` in GLSL."),
                      optional("tables", grammar::named(grammar::object(native_table_block()), "native table"),
@@ -161,13 +179,13 @@ Block statistic_block() {
             "A number of each frame for `--telemetry`. A pass whose textures only telemetry or a tap needs "
             "does not run otherwise.",
         .keys = {
-            required("of", channel_form(),
-                     "Its texels are summed up: count, sum, mean, deviation, extremes."),
+            required("of", channel_form(), "Channel to summarise: count, sum, mean, deviation, extremes."),
             optional("where", channel_form(),
-                     "Only the texels where this is above 0, of a texture of the same size."),
-            optional("squared", boolean(), "Its square: of a deviation the variance.", "false"),
-            optional("bins", bins_form(), "Of a histogram; what lies outside goes to the first and last."),
-            optional("doc", text(), "One sentence with the unit.")}};
+                     "Count only texels where this channel, of a texture of the same size, is above 0."),
+            optional("squared", boolean(), "Square the values: a deviation becomes a variance.", "false"),
+            optional("bins", bins_form(),
+                     "Bins of a histogram; values outside go into the first and the last."),
+            optional("doc", text(), "One sentence, with the unit.")}};
 }
 
 bool any_name(const std::string&) {
@@ -188,66 +206,65 @@ Form uses_form() {
 
 /// What effects and modules both declare.
 std::vector<Key> shared_keys() {
-    return {optional("uses", uses_form(), "`[\"lights\"]`: shaders have the block [`lights`](#shaders)."),
+    return {optional("uses", uses_form(), "`[\"lights\"]` gives shaders the block [`lights`](#shaders)."),
             optional("params",
                      grammar::shown_as(grammar::named(grammar::object(manifest_param_block), "parameter"),
                                        "[parameter](params.md) by name"),
-                     "What users set."),
+                     "Parameters that users set."),
             optional("textures", grammar::named(grammar::object(texture_block), "texture"),
                      "Images between passes."),
             optional("buffers", grammar::named(grammar::object(buffer_block), "buffer"), "Arrays."),
             optional("tiles", grammar::named(grammar::object(tile_list_block), "tile list"),
-                     "Lists of tiles that draws are confined to.")};
+                     "Lists of tiles that confine draws.")};
 }
 
 Block warmup_block() {
-    return {
-        .name = "warmup",
-        .thing = "'warmup'",
-        .doc =
-            "A chunk of a sequence that begins without history renders some frames that it does not write. "
-            "`aftershade check LOOK --warmup CAPTURE` measures both numbers.",
-        .keys = {required("frames", integer(0, kMaxWarmupFrames),
-                          "Frames rendered before the first one that counts."),
-                 required("error", number({.min = 0}),
-                          "Difference from an uncut run that remains then: the 99th percentile over the "
-                          "picture, as a share of its mean.")}};
+    return {.name = "warmup",
+            .thing = "'warmup'",
+            .doc =
+                "Frames that a chunk of a sequence renders first, without writing them, because it starts "
+                "without history. `aftershade check LOOK --warmup CAPTURE` measures both numbers.",
+            .keys = {required("frames", integer(0, kMaxWarmupFrames), "Number of frames to render first."),
+                     required("error", number({.min = 0}),
+                              "Remaining difference from an uncut run: the 99th percentile over the picture, "
+                              "relative to its mean.")}};
 }
 
 Block make_effect_block() {
     // The parser reports a module that does not exist.
     const Form module = reference_form(schema::kSnakeCase, "name");
-    Block block{.name = "effect",
-                .thing = "the manifest",
-                .doc = "The document.",
-                .keys = {required("id", identifier_form("the id"), "The name of its folder."),
-                         required("version", version_form(), "Of the effect."),
-                         required("summary", text(), "One sentence."),
-                         optional("sources", grammar::list(text()), "Papers and pages that it follows."),
-                         optional("accumulates", choice({"subframes"}),
-                                  "The effect runs once for each subframe and emits at the last."),
-                         optional("warmup", grammar::object(warmup_block()),
-                                  "How soon the effect forgets that its history began: [below](#warmup)."),
-                         optional("modules", grammar::list(module, {.unique = true}),
-                                  "Their declarations stand before the effect's own: [below](#modules)."),
-                         required("inputs", grammar::named(grammar::object(input_block()), "input"),
-                                  "Images that it takes."),
-                         required("outputs",
-                                  grammar::map(grammar::object(output_block()),
-                                               {.pattern = grammar::snake_case_pattern(),
-                                                .fault = std::string("output '{}' ") + kMustBeSnakeCase,
-                                                .min = 1,
-                                                .count_fault = "the effect has no outputs"}),
-                                  "Images that it makes.")},
-                .is_document = true};
+    Block block{
+        .name = "effect",
+        .thing = "the manifest",
+        .doc = "The document.",
+        .keys = {required("id", identifier_form("the id"), "The name of its folder."),
+                 required("version", version_form(), "Version of the effect."),
+                 required("summary", text(), "One sentence."),
+                 optional("sources", grammar::list(text()), "Papers and pages that the effect follows."),
+                 optional("accumulates", choice({"subframes"}),
+                          "Run the effect once per sub-frame; the last one outputs the result."),
+                 optional("warmup", grammar::object(warmup_block()),
+                          "How fast the effect recovers from missing history: [below](#warmup)."),
+                 optional("modules", grammar::list(module, {.unique = true}),
+                          "Modules whose declarations come before the effect's own: [below](#modules)."),
+                 required("inputs", grammar::named(grammar::object(input_block()), "input"),
+                          "Images that the effect reads."),
+                 required("outputs",
+                          grammar::map(grammar::object(output_block()),
+                                       {.pattern = grammar::snake_case_pattern(),
+                                        .fault = std::string("output '{}' ") + kMustBeSnakeCase,
+                                        .min = 1,
+                                        .count_fault = "the effect has no outputs"}),
+                          "Images that the effect outputs.")},
+        .is_document = true};
     for (Key& key : shared_keys()) block.keys.push_back(std::move(key));
-    block.keys.push_back(required("passes", passes_form("the effect has no passes"), "In their order."));
+    block.keys.push_back(required("passes", passes_form("the effect has no passes"), "Passes in order."));
     block.keys.push_back(optional("native", grammar::object(native_block()), "Values of native code."));
     block.keys.push_back(optional("telemetry",
                                   grammar::named(grammar::object(statistic_block()), "statistic"),
-                                  "Numbers of each frame."));
+                                  "Statistics of each frame."));
     block.keys.push_back(
-        optional("presets", grammar::map(grammar::object(preset_block())), "Values to choose by one name."));
+        optional("presets", grammar::map(grammar::object(preset_block())), "Named sets of values."));
     return block;
 }
 
@@ -259,7 +276,7 @@ Block make_module_block() {
                          required("summary", text(), "One sentence.")},
                 .is_document = true};
     for (Key& key : shared_keys()) block.keys.push_back(std::move(key));
-    block.keys.push_back(optional("passes", passes_form(), "In their order."));
+    block.keys.push_back(optional("passes", passes_form(), "Passes in order."));
     return block;
 }
 

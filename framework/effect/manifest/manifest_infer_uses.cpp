@@ -89,7 +89,7 @@ private:
                 is_of_param(name) || is_native_table(name))
                 continue;
             const std::string text = label_of(manifest_, *pass_) + ": its shader reads '" + name +
-                                     "', which is no input and no texture" + did_you_mean(name, known);
+                                     "', which is neither an input nor a texture" + did_you_mean(name, known);
             if (told_.insert(to_string(place) + text).second) diagnostics_.error(place, text);
         }
     }

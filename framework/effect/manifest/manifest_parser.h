@@ -1,5 +1,5 @@
 // Reads the sections of effect.json and module.json, which the grammar has checked (manifest_grammar.h), and
-// reports what it does not know: how the parts of a manifest stand to each other. Internal to
+// reports what it does not cover: how the parts of a manifest stand to each other. Internal to
 // framework/effect.
 #pragma once
 

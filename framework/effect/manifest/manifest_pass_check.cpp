@@ -55,7 +55,7 @@ public:
         check_indirect(pass.dispatch.indirect);
         if (pass.instances) check_indirect(pass.instances->indirect);
         if (!pass.dispatch.over.empty() && !manifest_.find_texture(pass.dispatch.over))
-            fault(pass.place, "dispatches over '" + pass.dispatch.over + "', which is no texture" +
+            fault(pass.place, "dispatches over '" + pass.dispatch.over + "', which is not a texture" +
                                   did_you_mean(pass.dispatch.over, textures_));
         check_writes();
         check_counts();
@@ -142,7 +142,7 @@ private:
         const InputSpec* input = manifest_.find_input(read.name);
         const TextureSpec* texture = find_texture_or_null(manifest_, read);
         if (!input && !texture) {
-            fault(read.place, "reads '" + read.name + "', which is no input and no texture" +
+            fault(read.place, "reads '" + read.name + "', which is neither an input nor a texture" +
                                   did_you_mean(read.name, readable_));
             return;
         }
@@ -183,7 +183,7 @@ private:
     void check_image(const AccessSpec& image) {
         const TextureSpec* texture = manifest_.find_texture(image.name);
         if (!texture) {
-            fault(image.place, "has the image '" + image.name + "', which is no texture" +
+            fault(image.place, "has the image '" + image.name + "', which is not a texture" +
                                    did_you_mean(image.name, textures_));
             return;
         }
@@ -266,8 +266,9 @@ private:
         const TextureSpec* texture = manifest_.find_texture(write.name);
         const OutputSpec* output = manifest_.find_output(write.name);
         if (!output && !texture) {
-            fault(write.place, "writes '" + write.name + "', which is no output and no texture" +
-                                   did_you_mean(write.name, writable_));
+            fault(write.place,
+                  "writes '" + write.name + "', which is neither an output nor a texture" +
+                      did_you_mean(write.name, writable_, "; declare it in 'outputs' or 'textures'"));
             return;
         }
         used_.insert(write.name);
@@ -300,7 +301,7 @@ private:
             fault(write.place, "blends into '" + write.name + "', but integers (" + name + ") do not blend");
         else if (pass_->blend == gpu::Blend::add && !name.ends_with('f'))
             fault(write.place,
-                  "adds into '" + write.name + "', but " + name + " stops at 1: take a float format");
+                  "adds into '" + write.name + "', but " + name + " stops at 1; use a float format");
         if (manifest_.find_texture(write.name) && !filled_.contains(write.name))
             fault(write.place, "blends into '" + write.name + "' before any pass has written it");
     }

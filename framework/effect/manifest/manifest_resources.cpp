@@ -77,6 +77,7 @@ void ManifestParser::inputs(const Reader& document) {
         input.optional = reader.boolean("optional");
         input.history = reader.boolean("history");
         input.frame = int(reader.number("frame"));
+        if (reader.has("layer")) input.layer = int(reader.integer("layer"));
         input.from_capture = reader.has("from");
         input.doc = reader.text("doc");
         add_conditions(reader, input.when);

@@ -26,7 +26,7 @@ void check_over(const EffectManifest& manifest, const PassSpec& pass, Diagnostic
     std::vector<std::string> lists;
     for (const TileListSpec& list : manifest.tiles) lists.push_back(list.name);
     if (!manifest.find_tile_list(pass.over))
-        diagnostics.error(pass.place, label + "runs over '" + pass.over + "', which is no tile list" +
+        diagnostics.error(pass.place, label + "runs over '" + pass.over + "', which is not a tile list" +
                                           did_you_mean(pass.over, lists));
     for (const WriteSpec& write : pass.writes)
         if (!has_scale(manifest, write.name) || write.level != 0)

@@ -14,7 +14,7 @@ namespace aftershade {
 /// What a condition on an optional input begins with: "has.velocity".
 inline constexpr std::string_view kHasInput = "has.";
 
-/// Why a condition cannot be asked, or never holds: what it names and the values that it compares with.
+/// Why a condition cannot be tested, or never holds: what it names and the values that it compares with.
 std::vector<std::string> faults_of_condition(const EffectManifest& manifest, const WhenSpec& condition);
 
 /// Whether all of them hold with these values and these inputs.

@@ -70,7 +70,7 @@ struct NativeImage {
     bool present = false;
 };
 
-/// What one call of prepare is told.
+/// What one call of prepare receives.
 struct NativeFrame {
     const std::vector<ParamSpec>* specs = nullptr;  ///< the manifest's; never null
     const ParamSet* params = nullptr;               ///< a value for each of them; never null
@@ -119,8 +119,8 @@ struct NativeResult {
 /// One step's use of a native effect. [one thread at a time; several effects may work at once]
 class NativeEffect {
 public:
-    /// Finds the effect and makes an instance. `status`, which may be null, is told when the plug-in's code
-    /// runs and must outlive the effect. Throws Error(ExitCode::effect) as NativeRegistry::find does, or
+    /// Finds the effect and makes an instance. `status`, which may be null, is notified when the plug-in's
+    /// code runs and must outlive the effect. Throws Error(ExitCode::effect) as NativeRegistry::find does, or
     /// where the plug-in makes no instance.
     NativeEffect(NativeRegistry& registry, NativeDeclaration declaration, std::string step,
                  StatusWriter* status = nullptr);

@@ -53,7 +53,7 @@ auto call_plugin(const std::string& what, Call&& call) {
     } catch (const std::exception& exception) {
         throw Error(ExitCode::effect, what + " threw an exception: " + exception.what());
     } catch (...) {
-        throw Error(ExitCode::effect, what + " threw an exception of a type that is no std::exception");
+        throw Error(ExitCode::effect, what + " threw an exception of a type other than std::exception");
     }
 }
 

@@ -92,7 +92,7 @@ public:
         std::string message;
     };
 
-    /// `status`, which may be null, is told which library is being loaded and must outlive the registry.
+    /// `status`, which may be null, records which library is being loaded and must outlive the registry.
     /// Libraries of the folders run in `process`; without one in this process, where a fault of theirs is a
     /// fault of it.
     explicit NativeRegistry(std::vector<std::filesystem::path> folders,

@@ -1,4 +1,4 @@
-// Native code of strangers in a process of its own, confined by the kernel.
+// Untrusted native code in a process of its own, confined by the kernel.
 #pragma once
 
 #include <chrono>

@@ -12,7 +12,7 @@
 
 namespace aftershade {
 
-/// What a process of native code is asked for; the words of a request begin with one.
+/// What a process of native code is requested to do; the words of a request begin with one.
 enum class NativeRequest { open = 1, create, prepare, reset, destroy };
 
 /// Above any sound message: eight tables of the largest size.
@@ -65,7 +65,7 @@ struct WireFrame {
     NativeFrame frame;
 };
 /// Parameters arrive with their names, types, units and values; of curves and tables only that they are such,
-/// which is all that native code may ask.
+/// which is all that native code may read.
 void put(WireWriter& out, const NativeFrame& frame);
 void take_frame(WireReader& in, WireFrame& frame);
 

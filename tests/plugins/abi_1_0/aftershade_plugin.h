@@ -166,7 +166,8 @@ struct aftershade_metadata {
     uint32_t struct_size;
     const void* host_data;
 
-    /* NULL where there is none of that name, which is no fault; valid until `prepare` returns. [prepare] */
+    /* NULL where there is none of that name, which is not a fault; valid until `prepare` returns. [prepare]
+     */
     const char* (*get_text)(const aftershade_metadata* metadata, const char* name);
 };
 

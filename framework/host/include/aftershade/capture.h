@@ -111,7 +111,7 @@ public:
     /// above 65536 px, or the data window has another size than the images.
     void set_windows(const Window& data, const Window& display);
 
-    /// Size of the frame's pixels against those that values in px are meant for: 0.5 for a frame at half the
+    /// Size of the frame's pixels relative to those that values in px refer to: 0.5 for a frame at half the
     /// size. 1 at first; of a file 1 / CaptureOptions::scale_divisor.
     double scale() const noexcept;
     /// Throws Error(usage) for what is not above 0 and at most 64.

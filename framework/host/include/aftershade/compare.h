@@ -47,11 +47,11 @@ struct CompareOptions {
         stop_exposure{};             ///< of HDR-FLIP, stops, from -100 to 100, in order
     std::optional<int> exposures{};  ///< of HDR-FLIP; from 1 to 1000
     bool ssim = true;                ///< compute SSIM and MS-SSIM
-    bool maps = false;               ///< fill LayerFigures::flip_map
+    bool maps = false;               ///< fill LayerFigures::flip_map and ssim_map
     /// How layers are compared, by their label ("RGB", "Z", "diffuse.RGB"): color, display, alpha, depth,
     /// velocity, id, data, or ignore. A label that neither file has is Error(usage).
     std::vector<std::pair<std::string, std::string>> roles{};
-    int threads = 0;  ///< at most so many, from 0 to 1024; 0: as many as there are cores; changes no figure
+    int threads = 0;  ///< upper limit, from 0 to 1024; 0: as many as there are cores; changes no figure
 };
 
 /// Of the layer's largest difference; places are pixels of the files' data windows.
@@ -81,6 +81,9 @@ struct LayerFigures {
     Verdict verdict = Verdict::same;
     std::vector<std::string> reasons;  ///< of the verdict, in whole sentences
     Image flip_map;  ///< one channel, from 0 to 1: HDR-FLIP where there are both; empty without `maps`
+    /// One channel, from -1 to 1, of the window around each pixel; NaN where the window does not lie inside;
+    /// 1 everywhere for equal bits. Empty without `maps`, and where SSIM is not computed.
+    Image ssim_map;
 };
 
 struct Comparison {

@@ -9,7 +9,7 @@
 //
 // Threads. A Host, its Looks and their Sessions belong to the thread that made the Host; a call from another
 // one is Error(usage). detach() gives them to the thread that calls next. Several threads work at once with a
-// Host each. Captures, Sequences, Images, Results and errors are values and belong to nobody.
+// Host each. Captures, Sequences, Images, Results and errors are values and belong to no Host.
 //
 // Nothing is global: no environment variable, no working directory (but to complete relative paths), no
 // locale and no signal handler is read or changed, and two Hosts in one process share nothing. Two exceptions
@@ -35,6 +35,7 @@
 #include "aftershade/gl.h"
 #include "aftershade/image.h"
 #include "aftershade/look.h"
+#include "aftershade/velocity.h"
 #include "aftershade/version.h"
 
 namespace aftershade::host {

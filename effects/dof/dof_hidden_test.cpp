@@ -1,0 +1,139 @@
+// What dof must do at silhouettes, where one layer does not know what lies behind: against closed forms.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "framework/image/role.h"
+#include "tests/aperture_checks.h"
+
+namespace aftershade::test::dof {
+namespace {
+
+constexpr int kWidth = 96, kHeight = 64;
+constexpr double kRadiusPx = 16, kPi = 3.14159265358979;
+
+/// Stripes along x, so that what a vertical bar hides is what stands beside it.
+float stripe(int y) {
+    return y / 8 % 2 == 0 ? 0.8f : 0.2f;
+}
+
+/// Columns from `left` on lie in front of stripes in focus; each has a light and a depth of its own.
+struct Column {
+    float light;
+    bool is_near;
+    float of_stripes = 0;  ///< share of the light behind that antialiasing mixed in
+};
+
+Capture columns_over_stripes(int left, const std::vector<Column>& columns) {
+    Capture capture =
+        make_capture({.width = kWidth, .height = kHeight, .background_depth_m = kApertureFocusM}, 0);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            const int i = x - left;
+            const bool is_bar = i >= 0 && i < int(columns.size());
+            const Column column = is_bar ? columns[std::size_t(i)] : Column{0, false, 1};
+            for (int c = 0; c < 3; ++c)
+                capture.images["color"].at(x, y, c) =
+                    column.light * (1 - column.of_stripes) + stripe(y) * column.of_stripes;
+            if (column.is_near) capture.images["depth"].at(x, y, 0) = kApertureFocusM / 2;
+        }
+    return capture;
+}
+
+/// Share of a disk's area left of a line at `t` radii from its middle.
+double disk_left_of(double t) {
+    t = std::clamp(t, -1.0, 1.0);
+    return 0.5 + (t * std::sqrt(1 - t * t) + std::asin(t)) / kPi;
+}
+
+/// Opacity at the middle of column `x` of a bar from `left` to `right`, px, through a disk.
+double bar_opacity(int x, double left, double right) {
+    return disk_left_of((right - x - 0.5) / kRadiusPx) - disk_left_of((left - x - 0.5) / kRadiusPx);
+}
+
+Image blurred(const Capture& capture) {
+    return through_aperture("dof", capture, kRadiusPx, R"("blades": 0)");
+}
+
+void expect_bar(const Image& out, double left, double right, double light, double tolerance) {
+    for (int y = 20; y < 44; ++y) {
+        if (y % 8 < 2 || y % 8 > 5) continue;  // patches are smoothed, across the edges of stripes too
+        for (int x = 24; x < 72; ++x) {
+            const double opacity = bar_opacity(x, left, right);
+            EXPECT_NEAR(out.at(x, y, 0), opacity * light + (1 - opacity) * double(stripe(y)), tolerance)
+                << x << " " << y;
+        }
+    }
+}
+
+TEST(DofHidden, AThinWireDissolvesOverWhatItHid) {
+    const Column wire{0.05f, true};
+    expect_bar(blurred(columns_over_stripes(47, {wire, wire})), 47, 49, 0.05, 0.01);
+}
+
+TEST(DofHidden, ABarHasNoStepAlongItsBlurredSide) {
+    const Column bar{0.05f, true};
+    const Image out = blurred(columns_over_stripes(43, std::vector<Column>(10, bar)));
+    expect_bar(out, 43, 53, 0.05, 0.07);  // chords aslant reach the next stripe
+    // The closed form's steepest step from column to column, and half as much again.
+    double steepest = 0;
+    for (int x = 24; x < 72; ++x)
+        steepest = std::max(steepest, std::abs(bar_opacity(x + 1, 43, 53) - bar_opacity(x, 43, 53)));
+    for (int x = 24; x < 72; ++x)
+        EXPECT_LE(std::abs(out.at(x + 1, 20, 0) - out.at(x, 20, 0)), 1.5 * steepest * (0.8 - 0.05)) << x;
+}
+
+/// One edge's mixed column has the bar's depth, the other's that of the stripes, as one sample of depth a
+/// pixel leaves it.
+TEST(DofHidden, AntialiasedEdgesLeaveNoOutline) {
+    const Column bar{0.05f, true}, near_edge{0.05f, true, 0.4f}, far_edge{0.05f, false, 0.6f};
+    const Image out = blurred(columns_over_stripes(45, {far_edge, bar, bar, bar, bar, near_edge}));
+    expect_bar(out, 45.5, 50.6, 0.05, 0.03);
+}
+
+/// The lit side of a wire outshines its dark side, and is darker than what lies behind it.
+TEST(DofHidden, AWireThatIsLitOnOneSideIsNoHighlight) {
+    const Image out = blurred(columns_over_stripes(47, {{0.15f, true}, {0.01f, true}}));
+    expect_bar(out, 47, 49, 0.08, 0.02);
+}
+
+/// What no chord could guess: behind the bar the stripes stand the other way round.
+TEST(DofHidden, TheSecondLayerOfTheCaptureShowsThrough) {
+    Capture capture = columns_over_stripes(43, std::vector<Column>(10, Column{0.05f, true}));
+    Image color(kWidth, kHeight, 4), depth(kWidth, kHeight, 1);
+    std::ranges::fill(depth.floats(), std::numeric_limits<float>::infinity());
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 43; x < 53; ++x) {
+            for (int c = 0; c < 3; ++c) color.at(x, y, c) = 1 - stripe(y);
+            color.at(x, y, 3) = 1;
+            depth.at(x, y, 0) = kApertureFocusM;
+        }
+    capture.images[layer_role(1, "color")] = std::move(color);
+    capture.images[layer_role(1, "depth")] = std::move(depth);
+    const Image out = blurred(capture);
+    for (int y = 20; y < 44; ++y)
+        for (int x = 44; x < 52; ++x) {
+            const double opacity = bar_opacity(x, 43, 53);
+            EXPECT_NEAR(out.at(x, y, 0), opacity * 0.05 + (1 - opacity) * double(1 - stripe(y)), 0.02)
+                << x << " " << y;
+        }
+}
+
+/// A patch is never brighter than what it continues: a light in focus beside a wire stays as large as it is.
+TEST(DofHidden, ALightBesideAWireIsNotContinuedBehindIt) {
+    const Column wire{0.05f, true};
+    Capture capture = columns_over_stripes(47, {wire, wire, wire});
+    for (int y = 30; y < 33; ++y)
+        for (int x = 50; x < 53; ++x)
+            for (int c = 0; c < 3; ++c) capture.images["color"].at(x, y, c) = 40;
+    const Image out = blurred(capture);
+    for (int y = 29; y < 34; ++y)
+        for (int x = 46; x < 50; ++x) EXPECT_LE(out.at(x, y, 0), 1) << x << " " << y;
+}
+
+}  // namespace
+}  // namespace aftershade::test::dof

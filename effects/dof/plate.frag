@@ -1,0 +1,27 @@
+#version 450 core
+#include <pass>
+#include "taps.glsl"
+#include "known.glsl"
+
+// Neighbouring pixels may have taken different chords: the mean of 3 x 3 patches of one surface hides where.
+void main() {
+    ivec2 p = ivec2(gl_FragCoord.xy), last = frame.size - 1;
+    out_plate = texelFetch(patches, p, 0);
+    Light own = unpack_light(out_plate);
+    if (!is_patch(own)) return;
+#ifdef KNOWS_BEHIND
+    if (is_known(p)) return;
+#endif
+    vec4 color = vec4(0.0);
+    float coc = 0.0, sum = 0.0;
+    for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x) {
+            Light tap = unpack_light(texelFetch(patches, clamp(p + ivec2(x, y), ivec2(0), last), 0));
+            if (!is_patch(tap) || abs(tap.coc - own.coc) > 1.0) continue;
+            float weight = 1.0 / float(1 << (abs(x) + abs(y)));
+            color += weight * tap.color;
+            coc += weight * tap.coc;
+            sum += weight;
+        }
+    out_plate = pack_light(Light(color / sum, coc / sum));
+}

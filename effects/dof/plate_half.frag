@@ -1,0 +1,12 @@
+#version 450 core
+#include <pass>
+#include "taps.glsl"
+#include "plate_at.glsl"
+#include "majority.glsl"
+
+void main() {
+    ivec2 p = ivec2(gl_FragCoord.xy);
+    Light texels[4];
+    for (int i = 0; i < 4; ++i) texels[i] = plate_at(min(2 * p + ivec2(i & 1, i >> 1), frame.size - 1));
+    out_plate_half = pack_light(majority(texels, p));
+}

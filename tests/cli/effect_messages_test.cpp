@@ -1,0 +1,108 @@
+// What authors of effects read: check, run and list with faults, hints and warnings.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/capture/capture_files.h"
+#include "tests/cli/command.h"
+#include "tests/synthetic_capture.h"
+
+namespace aftershade::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class EffectMessages : public testing::Test {
+protected:
+    CommandResult command(std::vector<std::string> arguments, int exit_code = 0) {
+        CommandResult result = run_aftershade(arguments, folder_.path());
+        EXPECT_EQ(result.exit_code, exit_code) << result.out << result.err;
+        return result;
+    }
+    void write_frame() {
+        write_capture(make_capture({.width = 16, .height = 8, .background = {0.5f, 0.5f, 0.5f}}),
+                      folder_ / "in_0001.exr");
+    }
+    /// An effect of one pass from `role` to itself; `expression` is what the pass writes.
+    void write_effect(const std::string& id, const std::string& role, const std::string& expression) {
+        const std::string image = R"({")" + role + R"(": {"role": ")" + role + R"(", "doc": "An image."}})";
+        fs::create_directories(folder_ / id);
+        write_text(folder_ / id / "effect.json", R"({"aftershade": 1, "id": ")" + id +
+                                                     R"(", "version": "1.0.0", "summary": "A test.",
+                       "inputs": )" + image + R"(, "outputs": )" +
+                                                     image + R"(,
+                       "params": {"strength": {"type": "float", "default": 1, "min": 0, "max": 1, "doc": "S."}},
+                       "passes": [{"name": "main", "shader": "main.frag"}]})");
+        write_text(folder_ / id / "main.frag",
+                   "#version 450 core\n#include <pass>\nvoid main() { vec4 c = texelFetch(" + role +
+                       ", ivec2(gl_FragCoord.xy), 0); out_" + role + " = " + expression + "; }\n");
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_F(EffectMessages, CheckGivesAnEffectOfDisplayItsPicture) {
+    write_effect("invert", "display", "vec4(1.0 - c.rgb * param.strength, c.a)");
+    EXPECT_EQ(command({"check", "invert", "--backend", "osmesa"}).out, "invert: 0 errors, 0 warnings\n");
+}
+
+TEST_F(EffectMessages, RunOffersTheNameThatWasMeantAsCheckDoes) {
+    write_frame();
+    write_effect("dim", "color", "c * param.strenght");
+    write_text(folder_ / "look.json", R"({"aftershade": 1, "steps": [{"effect": "dim"}]})");
+    const std::string hint =
+        "dim/main.frag:3:86: error: 'param.strenght' is not a parameter of the effect; did you mean "
+        "'strength'?\n";
+    const CommandResult run = command(
+        {"run", "look.json", "in_0001.exr", "--effect-path", ".", "-o", "out.exr", "--backend", "osmesa"}, 5);
+    EXPECT_NE(run.err.find(hint), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("cannot access field"), std::string::npos) << run.err;
+    const CommandResult check = command({"check", "dim", "--backend", "osmesa"}, 1);
+    EXPECT_NE(check.err.find(hint), std::string::npos) << check.err;
+}
+
+TEST_F(EffectMessages, CheckPutsEachFaultOfAShaderOnItsOwnLine) {
+    write_effect("dim", "color", "mixx(c, param.strength) + clamp(1, vec2(0), 2.0)");
+    const CommandResult check = command({"check", "dim", "--backend", "osmesa"}, 1);
+    int faults = 0;
+    for (const std::string& line : lines_of_text(check.err)) {
+        EXPECT_EQ(line.find('?'), std::string::npos) << line;
+        if (line.find("dim/main.frag:3:") != std::string::npos) ++faults;
+    }
+    EXPECT_GE(faults, 2) << check.err;
+    EXPECT_LE(faults, 4) << "the candidates for clamp are one line\n" << check.err;
+}
+
+TEST_F(EffectMessages, WarnOfEffectsThatHideAnother) {
+    for (const char* path : {"a", "b"}) {
+        write_effect(std::string(path) + "/bloom", "color", "c * param.strength");
+        std::string manifest = read_text(folder_ / path / "bloom/effect.json");
+        manifest.replace(manifest.find(std::string(path) + "/bloom"), 7, "bloom");
+        write_text(folder_ / path / "bloom/effect.json", manifest);
+    }
+    const CommandResult list = command({"list", "--effect-path", "a", "--effect-path", "b"});
+    EXPECT_NE(list.err.find("a/bloom: warning: hides the effect 'bloom' of b/bloom (rename one of them)\n"),
+              std::string::npos)
+        << list.err;
+    EXPECT_NE(list.err.find("effects/bloom (rename one of them)\n"), std::string::npos) << "the shipped one\n"
+                                                                                        << list.err;
+    const fs::path shipped = fs::path(AFTERSHADE_SOURCE_DIR) / "effects";
+    EXPECT_EQ(command({"list", "--effect-path", shipped.string()}).err, "") << "the same folder";
+}
+
+TEST_F(EffectMessages, ExplainWritesTablesAsALookDoes) {
+    write_frame();
+    write_text(folder_ / "look.json", R"({"aftershade": 1, "steps": [{"effect": "motion_blur", "params":
+        {"objects": {"rows": [{"object": 7, "scale": 0}]}}}]})");
+    const CommandResult explained =
+        command({"run", "look.json", "in_0001.exr", "-o", "out.exr", "--explain"});
+    EXPECT_NE(
+        explained.out.find(
+            R"(motion_blur.objects = {"default": {"scale": 1}, "rows": [{"object": 7, "scale": 0}]}   [the look])"),
+        std::string::npos)
+        << explained.out;
+}
+
+}  // namespace
+}  // namespace aftershade::test
