@@ -161,7 +161,7 @@ TEST_F(Render, TellsWhatIsWrongWithTheCommand) {
         {{head, "-o", "x", "--truth", "lense"}, "--truth lense: error: is neither scattering nor lens"},
         {{head, "-o", "x", "--truth", "lens+lens"}, "is neither scattering nor lens"},
         {{head, "-o", "x", "--size", "96"}, "a size is WIDTHxHEIGHT"},
-        {{head, "-o", "x", "--frames", "a"}, "is not a range"},
+        {{head, "-o", "x", "--frames", "a"}, "not a frame range such as"},
         {{head, "-o", "x", "--space", "uv"}, "--space uv needs the name of an object: 'skull'"},
         {{head, "-o", "x", "--space", "uv", "--object", "skul"}, "did you mean 'skull'?"},
         {{head, "-o", "x", "--object", "skull"}, "is for --space uv"},
