@@ -160,7 +160,8 @@ std::optional<MissingRole> find_missing_role(const Pipeline& pipeline,
             if (!contains(roles, role) && !is_coverage_role(role))
                 return MissingRole{"a value or the mask of step '" + step.name + "'", role};
     }
-    if (!contains(roles, kColorRole)) return MissingRole{"the output", kColorRole};
+    if (!contains(roles, kColorRole) && !pipeline.writes_role(kDisplayRole))
+        return MissingRole{"the output", kColorRole};
     return std::nullopt;
 }
 
