@@ -101,23 +101,6 @@ TEST(Bokeh, SpreadsANearObjectSoftlyOverWhatIsInFocus) {
     EXPECT_LE(out.at(74, 24, 0), 0.001f);
 }
 
-/// Gathering by the centre's CoC alone leaves a near silhouette as sharp as it was: half its light on one
-/// side of the edge and none on the other. Hammon's filter of the CoC lets it run out.
-TEST(Bokeh, SoftensANearSilhouetteByTheCocFilter) {
-    const Capture capture = near_box();
-    const std::string params =
-        lens(12, 96) + R"(, "weights": "seed", "shape": "square", "highlight_repair": false, "coc_filter": )";
-    const Image sharp = color(capture, params + R"("none")"), soft = color(capture, params + R"("near")");
-    const auto step = [](const Image& image) { return image.at(63, 24, 0) - image.at(64, 24, 0); };
-    EXPECT_EQ(sharp.at(64, 24, 0), 0);
-    EXPECT_GT(step(sharp), 0.4f);
-    EXPECT_LT(step(soft), 0.1f);
-    EXPECT_GT(soft.at(65, 24, 0), 0.2f);
-    EXPECT_GT(soft.at(67, 24, 0), 0.02f);
-    for (int x = 64; x < 80; ++x) EXPECT_LE(soft.at(x, 24, 0), soft.at(x - 1, 24, 0) + 1e-6f) << x;
-    EXPECT_EQ(soft.at(85, 24, 0), 0);
-}
-
 TEST(Bokeh, BlursAlphaWithTheColorThatItCovers) {
     expect_alpha_blurs_with_color("bokeh", 2e-3f);
 }

@@ -32,8 +32,10 @@ public:
 
     void add(const LookStep& look_step) {
         const auto step = bind(look_step);
-        if (step && look_step.enabled) pipeline_.steps.push_back(*step);
-        else absent_[look_step.name] = step ? Absence::disabled : Absence::faulty;
+        if (step && look_step.enabled) {
+            warn_of_order(look_step, *step);
+            pipeline_.steps.push_back(*step);
+        } else absent_[look_step.name] = step ? Absence::disabled : Absence::faulty;
     }
 
     void apply_set(const std::string& text) {
@@ -206,6 +208,18 @@ private:
         if (absent->second == Absence::disabled)
             diagnostics_.error(place, "the step '" + name + "' is disabled; remove its \"enabled\": false");
         return true;
+    }
+
+    void warn_of_order(const LookStep& look_step, const PipelineStep& step) {
+        for (const ModuleSpec& module : step.manifest->modules)
+            for (const PipelineStep& earlier : pipeline_.steps)
+                for (const ModuleSpec& other : earlier.manifest->modules)
+                    if (std::ranges::find(module.before, other.name) != module.before.end())
+                        diagnostics_.warning(look_step.place,
+                                             "step '" + step.name + "' comes after '" + earlier.name +
+                                                 "', but effects of the " + module.name +
+                                                 " belong before those of the " + other.name +
+                                                 ": move it before '" + earlier.name + "'");
     }
 
     void apply_preset(const LookStep& look_step, PipelineStep& step) {

@@ -6,6 +6,7 @@
 ivec2 inside(ivec2 p) { return clamp(p, ivec2(0), ivec2(color_size.xy) - 1); }
 
 const float kOutshinesTile = 3.0;
+const float kLeastShare = 0.02;  // of the light: less of it cannot be seen in a blur
 
 // An antialiased pixel at the edge of a small light has the light's colour but may have the background's depth, and would
 // throw a large polygon around the light's own. Where all of a pixel's light came across such an edge, from what outshines the
@@ -25,7 +26,7 @@ float repaired_coc(ivec2 p, float coc, float at_infinity_px) {
             }
         }
     float mean_amount = texelFetch(coc_step, p / kRepairTile, 0).g;
-    return own_amount > 1.4 * kHighlight * darkest && brightest > kOutshinesTile * mean_amount ? other_coc : coc;
+    return own_amount > max(1.4 * kHighlight * darkest, kLeastShare * brightest) && brightest > kOutshinesTile * mean_amount ? other_coc : coc;
 }
 
 void main() {

@@ -20,7 +20,7 @@ protected:
     Lens() {
         effects_.add(
             "probe",
-            R"("modules": ["lens"], "inputs": { "color": { "role": "color" }, "depth": { "role": "depth" } },
+            R"("modules": ["lens", "near_coc"], "inputs": { "color": { "role": "color" }, "depth": { "role": "depth" } },
                         "outputs": { "color": { "role": "color" } },
                         "passes": [ { "name": "main", "shader": "main.frag", "reads": ["coc"], "writes": ["color"] } ])",
             "void main() { out_color = vec4(texelFetch(coc, ivec2(gl_FragCoord.xy), 0).r); }\n");

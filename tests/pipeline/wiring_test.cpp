@@ -7,6 +7,17 @@
 namespace aftershade::test {
 namespace {
 
+TEST(StepOrder, WarnsOfALensAfterAShutter) {
+    const EffectFolder none;
+    const auto faults = [&](const std::string& steps) { return Bound(none, look_of(steps)).faults(); };
+    EXPECT_EQ(
+        faults(R"({"effect": "motion_blur"}, {"effect": "bloom"}, {"effect": "dof"})"),
+        "look:1:79: warning: step 'dof' comes after 'motion_blur', but effects of the lens belong before "
+        "those of the shutter: move it before 'motion_blur'\n");
+    EXPECT_EQ(faults(R"({"effect": "dof"}, {"effect": "motion_blur"})"), "");
+    EXPECT_EQ(faults(R"({"effect": "motion_blur", "enabled": false}, {"effect": "dof"})"), "");
+}
+
 /// `maker` has a texture of every kind; `show` takes any image to color, `warp` a velocity.
 class Wiring : public testing::Test {
 protected:

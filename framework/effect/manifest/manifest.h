@@ -257,7 +257,8 @@ struct NativeSpec {
 struct ModuleSpec {
     std::string name;
     std::string summary;
-    std::filesystem::path folder;  ///< glsl/<name>, with module.json and its shaders
+    std::filesystem::path folder;       ///< glsl/<name>, with module.json and its shaders
+    std::vector<std::string> before{};  ///< modules whose effects belong after this one's in a look
 };
 
 struct PresetSpec {

@@ -269,12 +269,17 @@ Block make_effect_block() {
 }
 
 Block make_module_block() {
-    Block block{.name = "module",
-                .thing = "the module",
-                .doc = "The document.",
-                .keys = {required("module", identifier_form("the module"), "The name of its folder."),
-                         required("summary", text(), "One sentence.")},
-                .is_document = true};
+    Block block{
+        .name = "module",
+        .thing = "the module",
+        .doc = "The document.",
+        .keys =
+            {required("module", identifier_form("the module"), "The name of its folder."),
+             required("summary", text(), "One sentence."),
+             optional(
+                 "before", grammar::list(reference_form(schema::kSnakeCase, "name"), {.unique = true}),
+                 "Modules whose effects belong after this one's in a look; the other order is a warning.")},
+        .is_document = true};
     for (Key& key : shared_keys()) block.keys.push_back(std::move(key));
     block.keys.push_back(optional("passes", passes_form(), "Passes in order."));
     return block;

@@ -55,6 +55,13 @@ void ManifestParser::module(const Node& item, const fs::path& glsl_folder) {
     grammar::check(module.document, module_block(), diagnostics_);
     const Reader reader(module.document, module_block());
     module.spec.summary = reader.text("summary");
+    if (const Node* before = reader.find("before"))
+        for (const Node& other : before->items) {
+            if (!other.is_string()) continue;
+            if (!fs::is_regular_file(glsl_folder / other.string / kModuleFile))
+                fault(other.place, "no module '" + other.string + "' in " + glsl_folder.string());
+            module.spec.before.push_back(other.string);
+        }
     const Node* name = module.document.find("module");
     if (name && name->is_string() && name->string != module.spec.name)
         fault(name->place,
