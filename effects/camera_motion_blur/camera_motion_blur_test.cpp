@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/compare/metrics.h"
+#include "framework/image/role.h"
 #include "framework/scene/renderer.h"
 #include "tests/camera_pose.h"
 #include "tests/crop.h"
@@ -71,16 +72,24 @@ bool same(const Image& a, const Image& b) {
     return same_in_window(a, b, {0, 0, a.width() - 1, a.height() - 1});
 }
 
-/// PSNR of frame 6 of a scene, sharp and blurred.
-std::pair<double, double> decibels(const scene::Scene& scene, const std::string& params) {
+/// PSNR of frame 6 of a scene, sharp and blurred; of a capture of one or of two layers.
+std::pair<double, double> decibels(const scene::Scene& scene, const std::string& params, int layers = 1) {
     const scene::SceneRenderer renderer(scene, 480, 270, 2);
     scene::TruthSettings settings;
     settings.kinds.shutter = true;
     settings.samples = 64;
     const Image truth = renderer.render_truth(6, settings);
     LookRunner runner(look_of(params), gpu::Backend::osmesa);
-    runner.color(renderer.render_capture(5));
-    const Capture now = renderer.render_capture(6);
+    const auto capture_of = [&](int frame) {
+        Capture capture = renderer.render_capture(frame);
+        if (layers == 1) return capture;
+        Capture behind = std::move(renderer.render_layers(frame, frame, {0, 0}, 2)[1]);
+        for (const char* role : {"color", "depth"})
+            capture.images[layer_role(1, role)] = std::move(behind.images.at(role));
+        return capture;
+    };
+    runner.color(capture_of(5));
+    const Capture now = capture_of(6);
     return {display_psnr_db(truth, now.images.at("color")), display_psnr_db(truth, runner.color(now))};
 }
 
@@ -109,6 +118,15 @@ TEST(CameraMotionBlur, WithOcclusionIsThreeDecibelsBetterWhereNearThingsPassBefo
     const scene::Scene scene = scene::scene_of(kPost);
     const double simple = decibels(scene, R"("occlusion": false)").second;
     EXPECT_GT(decibels(scene, "").second, simple + 3) << simple;
+}
+
+TEST(CameraMotionBlur, ShowsWhatTheSecondLayerHasOfTheUncovered) {
+    std::string fine_checks = kPost;
+    fine_checks.replace(fine_checks.find("[12, 8]"), 7,
+                        "[150, 75]");  // nothing beside the post says what it hides
+    const scene::Scene scene = scene::scene_of(fine_checks);
+    const double known = decibels(scene, "", 2).second;
+    EXPECT_GT(known, decibels(scene, "").second + 0.5) << known;
 }
 
 TEST(CameraMotionBlur, OfADepthAloneIsTheMeanAlongTheCamerasVelocity) {

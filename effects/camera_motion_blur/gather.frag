@@ -25,13 +25,30 @@ Guess guess(Moment moment, Sight sight, float sought, vec2 here) {
     return Guess(better, found, found >= 0.0 && distance(better, at) < kAgree_px);
 }
 
+#if defined(HAS_SECOND) && defined(HAS_SECOND_DEPTH)
+const float kLeastAlpha = 0.5;
+
+// Of the capture's second layer, sought first at a surface beside it; alpha 0 where the layer shows nothing.
+vec4 known_behind(Moment moment, Sight sight, float sought, vec2 here) {
+    ivec2 texel = texel_at(here + offset_at(moment, sight, max(sought, 0.0)));
+    float found = inverse_depth(texelFetch(second_depth, texel, 0).r);
+    texel = texel_at(here + offset_at(moment, sight, max(found, 0.0)));
+    vec4 behind = texelFetch(second, texel, 0);
+    return behind.a > kLeastAlpha ? behind / behind.a : vec4(0.0);
+}
+#endif
+
 // Of what lies at the pixel's own depth and what may come over it, the nearest that agrees. Where neither does, what was hidden
-// comes out: what is known of it is the farther surface beside it.
-ivec2 visible(Moment moment, Sight sight, float own, float nearest, vec2 here) {
+// comes out (`known`, where the capture has it); what is known of it from one layer is the farther surface beside it.
+ivec2 visible(Moment moment, Sight sight, float own, float nearest, vec2 here, out vec4 known) {
+    known = vec4(0.0);
     Guess back = guess(moment, sight, own, here), front = guess(moment, sight, nearest, here);
     if (front.agrees && (!back.agrees || front.found > back.found)) return texel_at(here + front.better);
     ivec2 texel = texel_at(here + back.better);
     if (back.agrees) return texel;
+#if defined(HAS_SECOND) && defined(HAS_SECOND_DEPTH)
+    known = known_behind(moment, sight, back.found, here);
+#endif
     float beyond = texelFetch(surface, texel, 0).r;
     vec2 best = offset_at(moment, sight, max(beyond, 0.0));
     bool sound = beyond >= 0.0 && back.found >= 0.0 && (beyond < back.found || distance(best, back.better) < kAgree_px);
@@ -65,7 +82,13 @@ void main() {
         Moment moment = moment_at(motion, sight, span, t);
         vec2 here = sight.px + across * (fract(0.5 + 0.618034 * float(i)) - 0.5);
 #if OCCLUSION
-        ivec2 texel = visible(moment, sight, own, nearest, here);
+        vec4 known;
+        ivec2 texel = visible(moment, sight, own, nearest, here, known);
+        if (known.a > 0.0) {
+            sum += known;
+            count += 1.0;
+            continue;
+        }
 #else
         ivec2 texel = texel_at(here + offset_at(moment, sight, own));
 #endif

@@ -43,12 +43,23 @@ vec2 beside_at(vec2 point, Motion own, float t) {
     return kInFront * here_m < own.depth_m ? point : here;
 }
 
+#include "known.glsl"
+
 // What lies behind the thing at the point. `beside` is where the pixel comes from that shows what is behind it now.
 #if BACKGROUND == BACKGROUND_NEIGHBOURS
 #include "neighbours.glsl"
 #else
 vec4 uncovered(vec2 point, vec2 beside, Motion own, float t, vec4 color_beside) { return color_beside; }
 #endif
+
+vec4 behind_at(vec2 point, vec2 beside, Motion own, float t, vec4 color_beside) {
+#ifdef KNOWS_BEHIND
+    const float kLeastAlpha = 0.5;
+    vec4 known = known_behind(point, motion_at(beside).path, t);
+    if (known.a > kLeastAlpha) return known / known.a;
+#endif
+    return uncovered(point, beside, own, t, color_beside);
+}
 
 vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
     int taps = tap_count(furthest);
@@ -66,7 +77,8 @@ vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
         vec2 beside = beside_at(point, own, t);
         bool is_found = near.comes || far.comes;
         vec4 seen = light_at(near.comes ? near.from : far.comes ? far.from : beside);
-        sum += is_found ? seen : uncovered(point, beside, own, t, seen);
+        if (!is_found) seen = behind_at(point, beside, own, t, seen);
+        sum += seen;
     }
     return sum / float(taps);
 }

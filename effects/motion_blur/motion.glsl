@@ -42,3 +42,19 @@ Motion unpack_motion(uvec4 texel) {
     vec4 part = vec4(unpackSnorm2x16(texel.x), unpackSnorm2x16(texel.y));
     return Motion(part * path_range_px(), uintBitsToFloat(texel.z), uintBitsToFloat(texel.w));
 }
+
+vec2 finite(vec2 v) { return any(isnan(v)) || any(isinf(v)) ? vec2(0.0) : v; }
+
+// From px per frame since the frame before and to the next; `scale`: a factor of the motion.
+Motion motion_of(vec2 since, vec2 next, float scale, float depth_m) {
+    vec2 span = shutter_span();
+    float exposure = (span.y - span.x) * scale;
+    // Through -since, 0 and next at the times -1, 0 and 1.
+    vec4 path = vec4(0.5 * (since + next) * exposure, 0.5 * (next - since) * exposure * exposure);
+    float way = longest_way_px(path);
+    if (way > param.max_blur) {
+        path *= param.max_blur / way;
+        way = param.max_blur;
+    }
+    return Motion(path, depth_m, way);
+}

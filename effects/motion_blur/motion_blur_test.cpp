@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "framework/image/role.h"
 #include "tests/motion_checks.h"
 #include "tests/real_captures.h"
 #include "tests/synthetic_capture.h"
@@ -240,21 +241,37 @@ TEST(MotionBlur, IsScaledByObject) {
     EXPECT_GT(largest_difference(blur(capture, rows(1)), capture.images.at("color")), 0.4);
 }
 
-TEST(MotionBlur, ShowsWhatNeighboursShowOfTheUncovered) {
-    // A box that covers half of a bright disc's place now, and none of it in the frames beside.
+float disc_light(int x) {
+    return x >= 96 && x < 112 ? 1.0f : 0.1f;
+}
+
+/// A box that covers half of a bright disc's place at frame 1, and none of it in the frames beside.
+Capture box_over_disc(int frame) {
     SyntheticScene scene{.width = 160, .height = 48, .background_depth_m = 5};
     scene.box = SyntheticBox{
         .x = 60, .y = 0, .width = 24, .height = 48, .velocity_x = 32, .depth_m = 2, .color = {0, 0, 0}};
-    const auto frame_at = [&](int number) {
-        Capture capture = make_capture(scene, number);
-        each_pixel(capture.images["color"], [&](int x, int y) {
-            if (capture.images["object_id"].uint_at(x, y, 0) == 0)
-                for (int c = 0; c < 3; ++c)
-                    capture.images["color"].at(x, y, c) = x >= 96 && x < 112 ? 1.0f : 0.1f;
-        });
-        return capture;
-    };
-    const Capture before = frame_at(0), now = frame_at(1), after = frame_at(2);
+    Capture capture = make_capture(scene, frame);
+    each_pixel(capture.images["color"], [&](int x, int y) {
+        if (capture.images["object_id"].uint_at(x, y, 0) == 0)
+            for (int c = 0; c < 3; ++c) capture.images["color"].at(x, y, c) = disc_light(x);
+    });
+    return capture;
+}
+
+/// Mean error at frame 1, against the closed form: the box's left edge moves from 84 to 100 while the shutter
+/// is open, its right one from 108 to 124.
+double error_of_box_over_disc(const Image& blurred) {
+    double sum = 0;
+    for (int x = 80; x < 130; ++x) {
+        const double at = x + 0.5;
+        const double covered = std::clamp((at - 84) / 16, 0.0, 1.0) - std::clamp((at - 108) / 16, 0.0, 1.0);
+        sum += std::abs(blurred.at(x, 24, 0) - double(disc_light(x)) * (1 - covered));
+    }
+    return sum / 50;
+}
+
+TEST(MotionBlur, ShowsWhatNeighboursShowOfTheUncovered) {
+    const Capture before = box_over_disc(0), now = box_over_disc(1), after = box_over_disc(2);
     FrameInputs frame;
     frame.capture = &now;
     frame.previous = &before;
@@ -262,19 +279,26 @@ TEST(MotionBlur, ShowsWhatNeighboursShowOfTheUncovered) {
     const auto error = [&](const char* background) {
         LookRunner runner(look_of_step("motion_blur", fmt::format(R"("background": "{}")", background)),
                           gpu::Backend::osmesa);
-        const Image blurred = runner.run(frame).images.at("color");
-        // The box's left edge moves from 84 to 100 while the shutter is open, its right one from 108 to 124.
-        double sum = 0;
-        for (int x = 80; x < 130; ++x) {
-            const double at = x + 0.5, light = x >= 96 && x < 112 ? 1.0 : 0.1;
-            const double covered =
-                std::clamp((at - 84) / 16, 0.0, 1.0) - std::clamp((at - 108) / 16, 0.0, 1.0);
-            sum += std::abs(blurred.at(x, 24, 0) - light * (1 - covered));
-        }
-        return sum / 50;
+        return error_of_box_over_disc(runner.run(frame).images.at("color"));
     };
     EXPECT_LT(error("neighbours"), 0.02);
     EXPECT_GT(error("estimate"), 2 * error("neighbours"));
+}
+
+TEST(MotionBlur, ShowsWhatTheSecondLayerHasOfTheUncovered) {
+    Capture capture = box_over_disc(1);
+    const double guessed = error_of_box_over_disc(blur(capture));
+    Image color(160, 48, 4), velocity(160, 48, 2);
+    each_pixel(color, [&](int x, int y) {
+        if (capture.images["object_id"].uint_at(x, y, 0) == 0) return;
+        for (int c = 0; c < 3; ++c) color.at(x, y, c) = disc_light(x);
+        color.at(x, y, 3) = 1;
+    });
+    capture.images[layer_role(1, "color")] = std::move(color);
+    capture.images[layer_role(1, "velocity")] = std::move(velocity);
+    const double known = error_of_box_over_disc(blur(capture));
+    EXPECT_LT(known, 0.02);
+    EXPECT_GT(guessed, 2 * known);
 }
 
 // ---- hostile input ----
