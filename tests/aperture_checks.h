@@ -195,16 +195,19 @@ inline Capture near_half_plane() {
 constexpr float kApertureDark = 0.1f;
 
 /// A bright near box from x = 30 to 63 before a dark plane in focus.
-inline Image near_box_over_focus(const std::string& effect) {
+inline Capture near_box_before_focus() {
     const SyntheticBox box{
         .x = 30, .y = -10, .width = 34, .height = 80, .depth_m = kApertureNearM, .color = {1, 1, 1}};
-    const Capture capture = make_capture({.width = 96,
-                                          .height = 48,
-                                          .background = {kApertureDark, kApertureDark, kApertureDark},
-                                          .background_depth_m = kApertureFocusM,
-                                          .box = box},
-                                         0);
-    return through_aperture(effect, capture, 12, R"("blades": 4)");
+    return make_capture({.width = 96,
+                         .height = 48,
+                         .background = {kApertureDark, kApertureDark, kApertureDark},
+                         .background_depth_m = kApertureFocusM,
+                         .box = box},
+                        0);
+}
+
+inline Image near_box_over_focus(const std::string& effect) {
+    return through_aperture(effect, near_box_before_focus(), 12, R"("blades": 4)");
 }
 
 /// A square of circumradius 12 px reaches 8.485 px: the box's edge at x = 64 becomes a straight ramp, of

@@ -123,6 +123,69 @@ TEST(DofHidden, TheSecondLayerOfTheCaptureShowsThrough) {
         }
 }
 
+/// Behind a wire lies a wider one, so that all chords across end on that, and behind both are the stripes.
+/// Compared with rays through every part of the lens.
+TEST(DofHidden, AWireInFrontOfAnotherShowsWhatLiesBehindBoth) {
+    constexpr double front_left = 47, front_right = 49, back_left = 46, back_right = 50;
+    constexpr float front_light = 0.05f, back_light = 0.3f;
+    Capture capture = columns_over_stripes(46, std::vector<Column>(4, Column{front_light, true}));
+    for (int y = 0; y < kHeight; ++y)
+        for (const int x : {46, 49}) {
+            for (int c = 0; c < 3; ++c) capture.images["color"].at(x, y, c) = back_light;
+            capture.images["depth"].at(x, y, 0) = kApertureFocusM / 1.5f;  // half the CoC of the front one
+        }
+    const Image out = blurred(capture);
+    for (int y = 20; y < 44; ++y) {
+        if (y % 8 < 2 || y % 8 > 5) continue;
+        for (int x = 30; x < 66; ++x) {
+            double light = 0, area = 0;
+            for (double v = -0.99; v < 1; v += 0.02)
+                for (double u = -0.995; u < 1; u += 0.01) {
+                    if (u * u + v * v > 1) continue;
+                    const double front_x = x + 0.5 + u * kRadiusPx, back_x = x + 0.5 + u * kRadiusPx / 2;
+                    const bool in_front = front_x > front_left && front_x < front_right;
+                    const bool in_back = back_x > back_left && back_x < back_right;
+                    light += double(in_front ? front_light : in_back ? back_light : stripe(y));
+                    area += 1;
+                }
+            EXPECT_NEAR(out.at(x, y, 0), light / area, 0.08) << x << " " << y;
+        }
+    }
+}
+
+/// Behind the bar the stripes stand the other way round, which no chord could guess and the frame before
+/// shows.
+TEST(DofHidden, WhatTheFrameBeforeShowedShowsThrough) {
+    const std::vector<Column> bar(10, Column{0.05f, true});
+    Capture now = columns_over_stripes(43, bar), before = columns_over_stripes(13, bar);
+    now.header.frame = before.header.frame + 1;
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            now.images["velocity"].at(x, y, 0) = x >= 43 && x < 53 ? 30.0f : 0.0f;
+            for (int c = 0; c < 3 && x >= 43 && x < 53; ++c)
+                before.images["color"].at(x, y, c) = 1 - stripe(y);
+        }
+    const auto error = [&](const std::string& background) {
+        FrameInputs frame;
+        frame.capture = &now;
+        frame.previous = &before;
+        const std::string more = R"("blades": 0, "background": ")" + background + "\"";
+        const Image out = LookRunner(Lens{kRadiusPx, kWidth}.look("dof", more), gpu::Backend::osmesa)
+                              .run(frame)
+                              .images.at("color");
+        double largest = 0;
+        for (int y = 20; y < 44; ++y)
+            for (int x = 44; x < 52; ++x) {
+                const double opacity = bar_opacity(x, 43, 53);
+                const double expected = opacity * 0.05 + (1 - opacity) * double(1 - stripe(y));
+                largest = std::max(largest, std::abs(double(out.at(x, y, 0)) - expected));
+            }
+        return largest;
+    };
+    EXPECT_LT(error("neighbours"), 0.02);
+    EXPECT_GT(error("estimate"), 0.2);
+}
+
 /// A patch is never brighter than what it continues: a light in focus beside a wire stays as large as it is.
 TEST(DofHidden, ALightBesideAWireIsNotContinuedBehindIt) {
     const Column wire{0.05f, true};

@@ -3,6 +3,7 @@
 #include <lens/highlight.glsl>
 #include "taps.glsl"
 #include "known.glsl"
+#include "neighbours.glsl"
 
 // What lies behind a surface near its silhouette, continued from both ends of chords through the pixel. Chords whose ends are
 // alike and close count most: they run along the edges of what is hidden. This is guessed, and shows through a blur only. Where the
@@ -12,11 +13,26 @@ const float kLeastRadiusPx = 2.0;   // of a surface that lets anything through
 const float kOneSurface = 2.0;      // difference of CoC radii of ends on one surface, px
 const float kOutshines = 8.0;       // light of one end that does not continue behind the other
 const float kUnlike = 0.02;         // relative difference of ends that halves a chord's weight
+const float kThinPx = 4.0;  // CoC radius of what may be thinner than its blur, and then shows what is behind it
 
 struct End {
     Light light;
+#ifdef SEES_NEIGHBOURS
+    vec4 path;
+#endif
     float distance_px;  // negative where nothing was found
 };
+
+// A texel of a coarse level may show a surface whose pixels begin `further` on.
+End end_at(Light light, vec2 q, vec2 further, float distance_px) {
+#ifdef SEES_NEIGHBOURS
+    ivec2 last = frame.size - 1, p = ivec2(q);
+    if (abs(tap_light(p, 0).coc - light.coc) > kOneSurface) p = clamp(ivec2(q + further), ivec2(0), last);
+    return End(light, path_at(p), distance_px);
+#else
+    return End(light, distance_px);
+#endif
+}
 
 // Walks away from a pixel to the first surface that lies behind its own. A step in CoC that continues a slope is not a silhouette.
 End walk(vec2 center, Light own, vec2 direction, float reach_px) {
@@ -27,73 +43,129 @@ End walk(vec2 center, Light own, vec2 direction, float reach_px) {
         vec2 q = center + at_px * direction;
         if (any(lessThan(q, vec2(0.0))) || any(greaterThanEqual(q, vec2(frame.size)))) break;
         Light tap = tap_light(ivec2(q) >> level, level);
-        if (tap.coc - (coc + max(slope, 0.0) * stride_px) > kClear && tap.coc > own.coc + kClear) return End(tap, at_px);
+        if (tap.coc - (coc + max(slope, 0.0) * stride_px) > kClear && tap.coc > own.coc + kClear) return end_at(tap, q, stride_px * direction, at_px);
         if (tap.coc > own.coc - kClear) {  // not something in front of both
             slope = clamp((tap.coc - coc) / stride_px, -1.0, 1.0);
             coc = tap.coc;
         }
         at_px += stride_px;
     }
-    return End(own, -1.0);
+    return end_at(own, center, vec2(0.0), -1.0);
 }
 
 struct Chord {
     Light light;   // where it passes the pixel
+#ifdef SEES_NEIGHBOURS
+    vec4 path;
+#endif
     float weight;  // 0 where it has no end
 };
 
-Chord chord_through(vec2 center, Light own, vec2 direction, float reach_px) {
+Chord chord_of(Light light, End a, End b, float part, float weight) {
+#ifdef SEES_NEIGHBOURS
+    return Chord(light, mix(a.path, b.path, part), weight);
+#else
+    return Chord(light, weight);
+#endif
+}
+
+// `is_thin`: only chords whose ends both lie within the reach.
+Chord chord_through(vec2 center, Light own, vec2 direction, float reach_px, bool is_thin) {
     End a = walk(center, own, direction, reach_px), b = walk(center, own, -direction, reach_px);
     bool has_a = a.distance_px > 0.0, has_b = b.distance_px > 0.0;
-    if (!has_a && !has_b) return Chord(own, 0.0);
+    if (!has_a && !has_b) return chord_of(own, a, a, 0.0, 0.0);
+    if (is_thin && (!has_a || !has_b || a.distance_px + b.distance_px > reach_px)) return chord_of(own, a, a, 0.0, 0.0);
     if (!has_a || !has_b || abs(a.light.coc - b.light.coc) > kOneSurface) {
         End end = !has_b || has_a && a.distance_px < b.distance_px ? a : b;
         float length_px = 2.0 * end.distance_px + reach_px;
-        return Chord(end.light, 1.0 / (length_px * length_px));
+        return chord_of(end.light, end, end, 0.0, 1.0 / (length_px * length_px));
     }
     float length_px = a.distance_px + b.distance_px, part = a.distance_px / length_px;
+    float way = part;
     float amount_a = amount(a.light.color.rgb), amount_b = amount(b.light.color.rgb);
     if (amount_a > kOutshines * amount_b) part = 1.0;
     if (amount_b > kOutshines * amount_a) part = 0.0;
     float unlike = amount(abs(a.light.color.rgb - b.light.color.rgb)) / max(amount_a + amount_b, 1e-3);
-    return Chord(Light(mix(a.light.color, b.light.color, part), mix(a.light.coc, b.light.coc, part)),
-                 1.0 / (length_px * length_px * (kUnlike + unlike)));
+    return chord_of(Light(mix(a.light.color, b.light.color, part), mix(a.light.coc, b.light.coc, part)), a, b, way,
+                    1.0 / (length_px * length_px * (kUnlike + unlike)));
 }
 
-void main() {
-    ivec2 p = ivec2(gl_FragCoord.xy);
-    Light own = tap_light(p, 0);
-    out_patches = kNoPatch;
-    float radius_px = abs(own.coc);
-    if (radius_px < kLeastRadiusPx || texelFetch(around, p / kTile, 0).w <= own.coc + kClear) return;
+struct Patch {
+    Chord mean;  // of all chords to one surface
+    bool is_there;
+};
 
-#ifdef KNOWS_BEHIND
-    if (is_known(p)) {
-        out_patches = pack_light(known_behind(p));
-        return;
-    }
-#endif
+// What lies behind `own`, a surface at the pixel.
+Patch patch_behind(vec2 center, Light own, float reach_px, bool is_thin) {
     Chord chords[kChords];
     int best = 0;
     for (int i = 0; i < kChords; ++i) {
         float angle = 3.14159265 * float(i) / float(kChords);
-        chords[i] = chord_through(vec2(p) + 0.5, own, vec2(cos(angle), sin(angle)), radius_px + 1.5);
+        chords[i] = chord_through(center, own, vec2(cos(angle), sin(angle)), reach_px, is_thin);
         if (chords[i].weight > chords[best].weight) best = i;
     }
-    if (chords[best].weight == 0.0) return;
+    if (chords[best].weight == 0.0) return Patch(chords[best], false);
     float darkest = 1e30;
     for (int i = 0; i < kChords; ++i) {
         if (abs(chords[i].light.coc - chords[best].light.coc) > kOneSurface) chords[i].weight = 0.0;
         if (chords[i].weight > 0.0) darkest = min(darkest, max(amount(chords[i].light.color.rgb), 0.0));
     }
-    vec4 color = vec4(0.0);
-    float coc = 0.0, sum = 0.0;
+    Chord mean = chords[best];
+    mean.light = Light(vec4(0.0), 0.0);
+    mean.weight = 0.0;
+#ifdef SEES_NEIGHBOURS
+    mean.path = vec4(0.0);
+#endif
     for (int i = 0; i < kChords; ++i) {
         float outshines = max(amount(chords[i].light.color.rgb) / (kOutshines * darkest + 1e-6), 1.0);
         float weight = chords[i].weight * chords[i].weight / (outshines * outshines * outshines);
-        color += weight * chords[i].light.color;
-        coc += weight * chords[i].light.coc;
-        sum += weight;
+        mean.light.color += weight * chords[i].light.color;
+        mean.light.coc += weight * chords[i].light.coc;
+#ifdef SEES_NEIGHBOURS
+        mean.path += weight * chords[i].path;
+#endif
+        mean.weight += weight;
     }
-    if (sum > 0.0) out_patches = pack_light(Light(color / sum, coc / sum));
+    if (mean.weight == 0.0) return Patch(mean, false);
+    mean.light.color /= mean.weight;
+    mean.light.coc /= mean.weight;
+#ifdef SEES_NEIGHBOURS
+    mean.path /= mean.weight;
+#endif
+    return Patch(mean, true);
+}
+
+void main() {
+    ivec2 p = ivec2(gl_FragCoord.xy);
+    vec2 center = vec2(p) + 0.5;
+    Light own = tap_light(p, 0);
+    out_patches = kNoPatch;
+#ifdef SEES_NEIGHBOURS
+    out_seen = 0.0;
+#endif
+    float radius_px = abs(own.coc);
+    if (radius_px < kLeastRadiusPx || texelFetch(around, p / kTile, 0).w <= own.coc + kClear) return;
+
+    Patch patched = patch_behind(center, own, radius_px + 1.5, false);
+    for (int i = 0; i < 2 && patched.is_there && patched.mean.light.coc < -kThinPx; ++i) {
+        Patch next = patch_behind(center, patched.mean.light, -patched.mean.light.coc, true);
+        if (!next.is_there) break;
+        patched = next;
+    }
+#ifdef KNOWS_BEHIND
+    Known known = known_behind(p, patched.is_there ? patched.mean.light.coc : -1e9);
+    if (known.is_there) {
+        out_patches = pack_light(known.light);
+        return;
+    }
+#endif
+    if (!patched.is_there) return;
+#ifdef SEES_NEIGHBOURS
+    View view = seen_by_neighbours(p, patched.mean.light.coc, patched.mean.path);
+    if (view.off_px < 1.0) {
+        patched.mean.light.color = view.color;
+        out_seen = 1.0;
+    }
+#endif
+    out_patches = pack_light(patched.mean.light);
 }

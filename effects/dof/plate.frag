@@ -10,7 +10,11 @@ void main() {
     Light own = unpack_light(out_plate);
     if (!is_patch(own)) return;
 #ifdef KNOWS_BEHIND
-    if (is_known(p)) return;
+    Known known = known_behind(p, own.coc);
+    if (known.is_there && abs(known.light.coc - own.coc) < 0.1) return;
+#endif
+#ifdef HAS_SEEN
+    if (texelFetch(seen, p, 0).r > 0.5) return;
 #endif
     vec4 color = vec4(0.0);
     float coc = 0.0, sum = 0.0;

@@ -1,4 +1,5 @@
 // What dof_scatter must do, against closed forms and against a renderer's own lens.
+#include "framework/image/role.h"
 #include "tests/aperture_family.h"
 
 namespace aftershade::test::dof_scatter {
@@ -13,6 +14,19 @@ INSTANTIATE_TYPED_TEST_SUITE_P(DofScatter, ApertureOfBlades, Named);
 /// looked at.
 TEST(DofScatter, SpreadsANearObjectSoftlyOverWhatIsInFocus) {
     expect_near_ramp(near_box_over_focus(Named::kEffect), 64, 0.01f);
+}
+
+TEST(DofScatter, ShowsWhatTheSecondLayerHasInsideASilhouette) {
+    Capture capture = near_box_before_focus();
+    Image color(96, 48, 4), depth(96, 48, 1);
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 96; ++x) {
+            depth.at(x, y, 0) = x >= 30 && x < 64 ? kApertureFocusM : kApertureFarM;
+            for (int c = 0; c < 4 && x >= 30 && x < 64; ++c) color.at(x, y, c) = c == 3 ? 1 : kApertureDark;
+        }
+    capture.images[layer_role(1, "color")] = std::move(color);
+    capture.images[layer_role(1, "depth")] = std::move(depth);
+    expect_near_ramp(through_aperture(Named::kEffect, capture, 12, R"("blades": 4)"), 48, 0.01f);
 }
 
 TEST(DofScatter, ShowsAFarPointOnlyWhereNothingInFocusCoversIt) {

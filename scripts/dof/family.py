@@ -49,13 +49,13 @@ def effects():
     return [found[name] for name in FAMILY if name in found]
 
 
-def run_effect(effect, capture, out, params, work):
-    """The effect's picture of one capture file, RGB float32."""
+def run_effect(effect, capture, out, params, work, frame=None):
+    """The effect's picture of one capture file, or of one frame of a sequence, RGB float32."""
     look = pathlib.Path(work) / f"{effect}.json"
     look.write_text(json.dumps({"aftershade": 1, "steps": [{"effect": effect, "params": params}]}))
     paths = [word for folder in effect_folders()[:-1] for word in ("--effect-path", str(folder))]
     command([AFTERSHADE, "run", look, capture, "-o", out, "--pixel-type", "float", "--compression", "none",
-             "--progress", "none", "--backend", "osmesa", *paths])
+             "--progress", "none", "--backend", "osmesa", "--no-journal", *(["--frames", frame] if frame else []), *paths])
     return read_exr(out, ["R", "G", "B"])
 
 

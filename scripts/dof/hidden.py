@@ -15,29 +15,37 @@ SAMPLES = 256
 SMOOTH = 0.03  # a step of the truth's sRGB luminance below this is no edge
 CROPS = {"fence": (0, 60, 240, 135), "leaves": (120, 100, 240, 135)}  # x, y, w, h
 SHOWN = ["dof_layered", "dof"]
-LAYERS = [2]
+FRAME = 4  # the camera of both scenes moves sideways
+MORE = {"2 layers": ["--layers", 2], "4 layers": ["--layers", 4], "deep": ["--deep"]}
+NEIGHBOURS = "one ray a pixel, neighbours"
 
 
 def rendered(name):
-    """(capture, truth) of one ray a pixel, and the same with antialiased colour and one sample of depth a pixel."""
+    """By kind: capture, file of its flat picture, truth. One ray a pixel; the same with antialiased colour and one sample of depth
+    a pixel; with what lies behind; with the frames beside."""
     folder = WORK / name
-    lens, mixed_lens = folder / "truth_lens_0001.exr", folder / "truth_lens_antialias_0001.exr"
-    if not mixed_lens.exists():
-        command([AFTERSHADE, "render", ROOT / "scenes" / name, "-o", folder, "--frames", 1, "--samples", SAMPLES, "--quiet",
+    truth = lambda kind: folder / f"truth_{kind}_{FRAME:04}.exr"
+    flat = lambda path: path / f"gbuffer_{FRAME:04}.exr"
+    if not truth("lens_antialias").exists():
+        command([AFTERSHADE, "render", ROOT / "scenes" / name, "-o", folder, "--frames", FRAME, "--samples", SAMPLES, "--quiet",
                  "--truth", "lens", "--truth", "antialias", "--truth", "lens+antialias"])
     mixed = WORK / f"{name}_antialiased"
     mixed.mkdir(exist_ok=True)
     (mixed / "capture.json").write_text((folder / "capture.json").read_text())
-    with OpenEXR.File(str(folder / "gbuffer_0001.exr"), separate_channels=True) as file:
+    with OpenEXR.File(str(flat(folder)), separate_channels=True) as file:
         channels = {channel: file.channels()[channel].pixels for channel in file.channels()}
-    color = read_exr(folder / "truth_antialias_0001.exr", ["R", "G", "B"])
-    write_exr(mixed / "gbuffer_0001.exr", channels | {c: color[..., i].astype(channels[c].dtype) for i, c in enumerate("RGB")})
-    kinds = {"one ray a pixel": (folder / "capture.json", lens), "antialiased": (mixed / "capture.json", mixed_lens)}
-    for layers in LAYERS:
-        more = WORK / f"{name}_{layers}_layers"
+    color = read_exr(truth("antialias"), ["R", "G", "B"])
+    write_exr(flat(mixed), channels | {c: color[..., i].astype(channels[c].dtype) for i, c in enumerate("RGB")})
+    kinds = {"one ray a pixel": (folder / "capture.json", flat(folder), truth("lens")),
+             "antialiased": (mixed / "capture.json", flat(mixed), truth("lens_antialias"))}
+    for kind, words in ({NEIGHBOURS: []} | MORE).items():
+        more = WORK / f"{name}_{kind.split()[-1] if kind == NEIGHBOURS else kind.replace(' ', '_')}"
+        frames = f"{FRAME - 1}-{FRAME + 1}" if kind == NEIGHBOURS else FRAME
         if not (more / "capture.json").exists():
-            command([AFTERSHADE, "render", ROOT / "scenes" / name, "-o", more, "--frames", 1, "--layers", layers, "--quiet"])
-        kinds[f"{layers} layers"] = (more / "capture.json", lens)
+            command([AFTERSHADE, "render", ROOT / "scenes" / name, "-o", more, "--frames", frames, "--quiet", *words])
+        # Deep samples are averaged over a pixel, as antialiased colour is.
+        kinds[kind] = (more / "capture.json", flat(mixed if kind == "deep" else folder),
+                       truth("lens_antialias" if kind == "deep" else "lens"))
     return kinds
 
 
@@ -55,13 +63,17 @@ def largest_step(picture, truth, band):
 def measured(name, family):
     scene = scenes.load(ROOT / f"scenes/{name}/scene.json")
     rows, pictures = {}, {}
-    for kind, (capture, truth_file) in rendered(name).items():
-        data = WORK / name / "gbuffer_0001.exr" if kind.endswith("layers") else capture.parent / "gbuffer_0001.exr"
+    for kind, (capture, data, truth_file) in rendered(name).items():
         sharp, truth = scenes.picture(data), scenes.picture(truth_file)
         band = near_band(coc_px(read_exr(data, ["Z"]), *scenes.lens_of(scene), sharp.shape[1]))
         shown = {"sharp": sharp}
         for effect in family:
-            shown[effect.id] = run_effect(effect.id, capture, WORK / "out.exr", effect.closest_to_hexagon(), WORK)
+            params = effect.closest_to_hexagon()
+            if kind == NEIGHBOURS and "background" not in effect.params:
+                continue
+            if kind == NEIGHBOURS:
+                params = params | {"background": "neighbours"}
+            shown[effect.id] = run_effect(effect.id, capture, WORK / "out.exr", params, WORK, FRAME)
         true_step = largest_step(truth, truth, band)
         rows[kind] = {label: (psnr_db(truth, p), psnr_db(truth, p, band), largest_step(p, truth, band) / true_step)
                       for label, p in shown.items()}
@@ -87,9 +99,9 @@ def document(results, ids):
         lines = ["| " + " | ".join(head) + " |", "| " + " | ".join(["---"] * len(head)) + " |"]
         for name, kinds in results.items():
             for kind, row in kinds.items():
-                best = pick(row[i][index] for i in ids)
-                cells = [f"{row[i][index]:.{digits}f}" for i in ["sharp", *ids]]
-                cells = [f"**{c}**" if i in ids and row[i][index] == best else c for c, i in zip(cells, ["sharp", *ids])]
+                best = pick(row[i][index] for i in ids if i in row)
+                cell = lambda i: "" if i not in row else f"{row[i][index]:.{digits}f}"
+                cells = [f"**{cell(i)}**" if i in ids and i in row and row[i][index] == best else cell(i) for i in ["sharp", *ids]]
                 lines.append(f"| `{name}`, {kind} | " + " | ".join(cells) + " |")
         parts.append(f"**{title}**\n\n" + "\n".join(lines))
     for name in results:
@@ -101,7 +113,7 @@ def document(results, ids):
 def main():
     for folder in WORK, IMAGES:
         folder.mkdir(parents=True, exist_ok=True)
-    family = [e for e in effects() if e.id not in ("dof_scatter", "bokeh_disk")]
+    family = [e for e in effects() if e.id != "bokeh_disk"]
     results = {name: measured(name, family) for name in CROPS}
     (WORK / "figures.json").write_text(json.dumps(results, indent=1))
     (ROOT / "docs/quality-hidden.md").write_text(document(results, [e.id for e in family]))
