@@ -62,6 +62,59 @@ TEST_F(EffectMessages, RunOffersTheNameThatWasMeantAsCheckDoes) {
     EXPECT_NE(check.err.find(hint), std::string::npos) << check.err;
 }
 
+TEST_F(EffectMessages, NameAWriteThatIsNotDeclaredAndWhatWasMeant) {
+    write_frame();
+    write_effect("dim", "color", "c");
+    write_text(folder_ / "look.json", R"({"aftershade": 1, "steps": [{"effect": "dim"}]})");
+    const std::vector<std::string> run_dim = {"run", "look.json", "in_0001.exr", "--effect-path", ".",
+                                              "-o",  "out.exr",   "--backend",   "osmesa"};
+    const std::string shader = read_text(folder_ / "dim/main.frag");
+    std::string misspelt = shader;
+    misspelt.replace(misspelt.find("out_color"), 9, "out_colour");
+    write_text(folder_ / "dim/main.frag", misspelt);
+    const std::string hint =
+        "'out_colour' is not a target of a pass with this shader; did you mean 'out_color'?";
+    EXPECT_NE(command({"check", "dim", "--backend", "osmesa"}, 1).err.find(hint), std::string::npos);
+    const CommandResult drawn = run_aftershade(run_dim, folder_.path());
+    EXPECT_TRUE(drawn.exit_code == 2 || drawn.exit_code == 5) << drawn.exit_code << drawn.err;
+    EXPECT_NE(drawn.err.find("'out_color'"), std::string::npos) << drawn.err;
+
+    write_text(folder_ / "dim/main.frag", shader);
+    std::string manifest = read_text(folder_ / "dim/effect.json");
+    const std::string pass = R"("shader": "main.frag")";
+    manifest.replace(manifest.find(pass), pass.size(), pass + R"(, "writes": ["colour"])");
+    write_text(folder_ / "dim/effect.json", manifest);
+    const std::string declared =
+        "writes 'colour', which is neither an output nor a texture; did you mean 'color'?";
+    for (const CommandResult& result :
+         {command({"check", "dim", "--backend", "osmesa"}, 1), command(run_dim, 2)})
+        EXPECT_NE(result.err.find(declared), std::string::npos) << result.err;
+}
+
+TEST_F(EffectMessages, NameTheCycleOfStepsAndOfPassesWithTheWayOut) {
+    write_frame();
+    write_text(folder_ / "look.json", R"({"aftershade": 1, "steps": [
+        {"effect": "sharpen", "in": {"color": "vignette.color"}}, {"effect": "vignette"}]})");
+    const CommandResult steps = command({"run", "look.json", "in_0001.exr", "-o", "out.exr"}, 2);
+    EXPECT_NE(steps.err.find("error: no step 'vignette' before 'sharpen'; a step reads outputs of "
+                             "earlier steps only\n"),
+              std::string::npos)
+        << steps.err;
+
+    write_effect("loop", "color", "c");
+    std::string manifest = read_text(folder_ / "loop/effect.json");
+    manifest.replace(manifest.find(R"("passes")"), std::string::npos, R"(
+        "textures": {"a": {"format": "r16f", "doc": "A."}, "b": {"format": "r16f", "doc": "B."}},
+        "passes": [{"name": "one", "shader": "main.frag", "reads": ["b"], "writes": ["a"]},
+                   {"name": "two", "shader": "main.frag", "reads": ["a"], "writes": ["b"]}]})");
+    write_text(folder_ / "loop/effect.json", manifest);
+    const CommandResult passes = command({"check", "loop", "--no-gl"}, 1);
+    EXPECT_NE(passes.err.find("pass 'one': reads 'b' before any pass has written it (write or clear it in an "
+                              "earlier pass; with \"history\": true, 'b.prev' is the previous frame's)"),
+              std::string::npos)
+        << passes.err;
+}
+
 TEST_F(EffectMessages, CheckPutsEachFaultOfAShaderOnItsOwnLine) {
     write_effect("dim", "color", "mixx(c, param.strength) + clamp(1, vec2(0), 2.0)");
     const CommandResult check = command({"check", "dim", "--backend", "osmesa"}, 1);

@@ -127,6 +127,20 @@ inPage("has failures first, the worst at the top, and opens them", async (page) 
   assert.equal(worst[0], "different size or channels");
 });
 
+inPage("has the largest of equal failures first", async (page) => {
+  // one_pixel fails in 1 of 32400 pixels, passing's neighbours in many: report.json decides, not the page.
+  const share = ({ images }) =>
+    Math.max(...images.flatMap(({ comparison }) => comparison?.layers.map((layer) => layer.failing?.percent ?? 100) ?? [100]));
+  const failures = json.cases.filter(({ verdict, images }) => verdict === "failure" && images.length);
+  const shares = new Map(failures.map((test) => [`case-${test.name}`, share(test)]));
+  const shown = (await page.locator(".case").evaluateAll((nodes) => nodes.map((node) => node.id)))
+    .filter((id) => shares.has(id))
+    .map((id) => shares.get(id));
+  assert.ok(new Set(shown).size >= 3, `failures of several sizes: ${shown}`);
+  assert.deepEqual(shown, [...shown].sort((a, b) => b - a));
+  assert.ok(shown.at(-1) < 0.01, "one pixel comes last");
+});
+
 inPage("names renderer, Mesa, CPU and why a case failed", async (page) => {
   const { renderer, mesa, cpu } = json.environment,
     foot = await page.locator("#environment").innerText();
@@ -549,6 +563,23 @@ inPage(
     );
   },
   { viewport: { width: 390, height: 800 } },
+);
+
+inPage(
+  "shows every column of the figures in a window of 1400 px",
+  async (page) => {
+    await openAllCases(page);
+    const cut = await page
+      .locator(".wide")
+      .evaluateAll((nodes) =>
+        nodes
+          .filter((node) => node.scrollWidth > node.clientWidth)
+          .map((node) => `${node.ariaLabel}: ${node.scrollWidth} px in ${node.clientWidth} px`),
+      );
+    assert.deepEqual(cut, []);
+    assert.ok((await page.locator(".wide").count()) > 5);
+  },
+  { viewport: { width: 1400, height: 900 } },
 );
 
 // ---- large and damaged reports ----
