@@ -66,29 +66,29 @@ TEST_F(EffectMessages, NameAWriteThatIsNotDeclaredAndWhatWasMeant) {
     write_frame();
     write_effect("dim", "color", "c");
     write_text(folder_ / "look.json", R"({"aftershade": 1, "steps": [{"effect": "dim"}]})");
-    const std::vector<std::string> run_dim = {"run", "look.json", "in_0001.exr", "--effect-path", ".",
-                                              "-o",  "out.exr",   "--backend",   "osmesa"};
-    const std::string shader = read_text(folder_ / "dim/main.frag");
-    std::string misspelt = shader;
-    misspelt.replace(misspelt.find("out_color"), 9, "out_colour");
-    write_text(folder_ / "dim/main.frag", misspelt);
-    const std::string hint =
-        "'out_colour' is not a target of a pass with this shader; did you mean 'out_color'?";
-    EXPECT_NE(command({"check", "dim", "--backend", "osmesa"}, 1).err.find(hint), std::string::npos);
-    const CommandResult drawn = run_aftershade(run_dim, folder_.path());
-    EXPECT_TRUE(drawn.exit_code == 2 || drawn.exit_code == 5) << drawn.exit_code << drawn.err;
-    EXPECT_NE(drawn.err.find("'out_color'"), std::string::npos) << drawn.err;
-
-    write_text(folder_ / "dim/main.frag", shader);
-    std::string manifest = read_text(folder_ / "dim/effect.json");
-    const std::string pass = R"("shader": "main.frag")";
-    manifest.replace(manifest.find(pass), pass.size(), pass + R"(, "writes": ["colour"])");
-    write_text(folder_ / "dim/effect.json", manifest);
-    const std::string declared =
-        "writes 'colour', which is neither an output nor a texture; did you mean 'color'?";
-    for (const CommandResult& result :
-         {command({"check", "dim", "--backend", "osmesa"}, 1), command(run_dim, 2)})
-        EXPECT_NE(result.err.find(declared), std::string::npos) << result.err;
+    const std::string shader = read_text(folder_ / "dim/main.frag"),
+                      manifest = read_text(folder_ / "dim/effect.json");
+    const auto write = [&](const std::string& target, const std::string& writes) {
+        std::string changed = shader;
+        changed.replace(changed.find("out_color"), 9, target);
+        write_text(folder_ / "dim/main.frag", changed);
+        const std::string pass = R"("shader": "main.frag")";
+        changed = manifest;
+        changed.replace(changed.find(pass), pass.size(), pass + R"(, "writes": [")" + writes + "\"]");
+        write_text(folder_ / "dim/effect.json", changed);
+    };
+    const auto expect_both = [&](const std::string& message, int run_code) {
+        const CommandResult check = command({"check", "dim", "--backend", "osmesa"}, 1);
+        EXPECT_NE(check.err.find(message), std::string::npos) << check.err;
+        const CommandResult run = command(
+            {"run", "look.json", "in_0001.exr", "--effect-path", ".", "-o", "out.exr", "--backend", "osmesa"},
+            run_code);
+        EXPECT_NE(run.err.find(message), std::string::npos) << run.err;
+    };
+    write("out_colour", "color");
+    expect_both("'out_colour' is not a target of a pass with this shader; did you mean 'out_color'?", 5);
+    write("out_color", "colour");
+    expect_both("writes 'colour', which is neither an output nor a texture; did you mean 'color'?", 2);
 }
 
 TEST_F(EffectMessages, NameTheCycleOfStepsAndOfPassesWithTheWayOut) {

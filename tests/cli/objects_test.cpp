@@ -85,25 +85,24 @@ TEST_F(Objects, AreLookedForInTheFramesOfAllWorkers) {
 
 TEST_F(Objects, OfAMaskThatNoFrameHasAreWarnedOf) {
     write_shot();
-    write_look(R"({ "effect": "view_transform", "mask": { "object": [2, 5] } })");
+    write_look(R"({ "effect": "sharpen", "mask": { "object": [2, 5] } })");
     const std::string err = errors();
-    EXPECT_NE(err.find("the mask of step 'view_transform': object 5 has no pixel in any frame"),
-              std::string::npos)
+    EXPECT_NE(err.find("the mask of step 'sharpen': object 5 has no pixel in any frame"), std::string::npos)
         << err;
-    write_look(R"({ "effect": "view_transform", "mask": { "object": "0-2" } })");
+    write_look(R"({ "effect": "sharpen", "mask": { "object": "0-2" } })");
     EXPECT_EQ(warnings(errors()), 0);
 }
 
 TEST_F(Objects, ByNamesThatACryptomatteWithoutManifestLacksAreWarnedOf) {
     write_matte();
-    write_look(R"({ "effect": "view_transform", "mask": { "object": "Cuve" } })");
+    write_look(R"({ "effect": "sharpen", "mask": { "object": "Cuve" } })");
     const std::string err = errors();
-    EXPECT_NE(err.find("the mask of step 'view_transform': 'Cuve' has no pixel in any frame of this run "
+    EXPECT_NE(err.find("the mask of step 'sharpen': 'Cuve' has no pixel in any frame of this run "
                        "(`aftershade inspect CAPTURE --cryptomatte` lists the names and, without a manifest, "
                        "their hashes)"),
               std::string::npos)
         << err;
-    write_look(R"({ "effect": "view_transform", "mask": { "object": "Cube" } })");
+    write_look(R"({ "effect": "sharpen", "mask": { "object": "Cube" } })");
     EXPECT_EQ(warnings(errors()), 0);
 }
 
