@@ -43,7 +43,7 @@ struct FrameOutcome {
 struct RunReport {
     int frames_done = 0;
     std::vector<FrameFailure> failures;
-    std::vector<int> frames_non_finite;  ///< frames with NaN or infinite pixels, repaired ones too
+    std::vector<int> frames_non_finite;          ///< frames with NaN or infinite pixels, repaired ones too
     std::vector<std::string> objects_unmatched;  ///< ObjectMatches::unmatched()
     std::vector<int> frames_left;        ///< not begun, after an interrupt or RunOptions::stop_on_error
     std::optional<int> history_begin;    ///< the last frame that restarted history, where a step has any
