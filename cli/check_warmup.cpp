@@ -9,6 +9,7 @@
 #include "framework/core/data_path.h"
 #include "framework/core/scratch_folder.h"
 #include "framework/core/status.h"
+#include "framework/core/text.h"
 #include "framework/pipeline/look.h"
 #include "framework/pipeline/warmup.h"
 
@@ -31,7 +32,8 @@ ExitCode verdict(const LookWarmup& declared, const std::vector<WarmupError>& mea
     const int needed = warmup_for(measured, declared.error);
     const bool holds = needed >= 0 && needed <= declared.frames;
     fmt::print("declared: {} frames for an error of {:g}; measured: {}\n", declared.frames, declared.error,
-               needed >= 0 ? fmt::format("{} frames suffice", needed)
+               needed >= 0 ? fmt::format("{} {}", counted(std::size_t(needed), "frame"),
+                                         needed == 1 ? "suffices" : "suffice")
                            : "the capture has too few frames to reach it");
     return holds || needed < 0 ? ExitCode::done : ExitCode::partial;
 }

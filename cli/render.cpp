@@ -12,6 +12,7 @@
 #include "framework/capture/deep_layers.h"
 #include "framework/capture/frame_range.h"
 #include "framework/core/input_files.h"
+#include "framework/core/text.h"
 #include "framework/scene/job.h"
 
 namespace aftershade::cli {
@@ -179,8 +180,8 @@ void print_report(const RenderArguments& options, const scene::JobReport& report
         std::cerr << "the profile '" << options.profile << "' has no way to store "
                   << list_of_names(report.roles_left_out, "and") << "\n";
     if (!options.quiet)
-        std::cerr << report.frames << " frames in " << report.total_s << " s, of which rendering "
-                  << report.render_s << " s\n";
+        std::cerr << counted(std::size_t(report.frames), "frame") << " in " << report.total_s
+                  << " s, of which rendering " << report.render_s << " s\n";
 }
 
 ExitCode render(RenderArguments options) {

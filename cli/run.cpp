@@ -41,7 +41,8 @@ std::vector<std::filesystem::path> documents_of(const std::vector<Profile>& prof
 
 void require_first_frame(const Sequence& sequence, const CaptureReader& reader, const Pipeline& pipeline) {
     if (sequence.frames.size() == 1)
-        require_capture_roles(pipeline, reader.read_header(sequence.file_number(sequence.frames.front())));
+        require_capture_roles(pipeline, reader.read_header(sequence.file_number(sequence.frames.front())),
+                              &reader);
 }
 
 ExitCode explain(const Sequence& sequence, const CaptureReader& reader, const Pipeline& pipeline) {
@@ -188,8 +189,7 @@ ExitCode run(const RunArguments& options) {
     }
     prepare_outputs(options, run.outputs, run.sequence);
     if (options.jobs.wants_workers())
-        return run_by_workers(options, run.share.run, run.share.workers, run.bound->pipeline.has_foreign(),
-                              progress, stop);
+        return run_by_workers(options, run.share.run, run.share.workers, run.bound->pipeline, progress, stop);
     if (const auto code = run_in_worker(options.plugins, run.bound->pipeline.has_foreign())) return *code;
     return run_here(options, run, reader, profile_documents, stop);
 }

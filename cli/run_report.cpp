@@ -76,6 +76,12 @@ void print_openjd_progress(std::size_t done, std::size_t count, const std::strin
     std::fflush(stdout);
 }
 
+std::string warning_line(ProgressStyle style, const std::string& message) {
+    const std::string text = "aftershade: warning: " + printable(message);
+    if (style != ProgressStyle::json) return text;
+    return json{{"event", "warning"}, {"message", text}}.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
 std::string rate_text(std::size_t done, std::size_t count, double elapsed_s) {
     return fmt::format("{:.3g} frames/s, {} left", double(done) / elapsed_s,
                        duration_text(elapsed_s / double(done) * double(count - done)));
@@ -97,6 +103,11 @@ void RunReporter::say(const char* event, const std::string& text) {
     if (style_ == ProgressStyle::json) return print_json({{"event", event}, {"message", text}});
     line_.clear();
     fmt::print(stderr, "{}\n", printable_lines(text));
+}
+
+void RunReporter::warn(const std::string& message) {
+    line_.clear();
+    fmt::print(stderr, "{}\n", warning_line(style_, message));
 }
 
 void RunReporter::tell_conventions(const Capture& capture) {
@@ -157,9 +168,7 @@ RunObserver RunReporter::observer() {
     observer.frame_failed = [this](const std::string& message) {
         say("failed", "aftershade: error: " + message);
     };
-    observer.non_finite = [this](const std::string& message) {
-        say("warning", "aftershade: warning: " + printable(message));
-    };
+    observer.non_finite = [this](const std::string& message) { warn(message); };
     observer.frame_missing = [this](int frame, const std::string& what) {
         say("missing", fmt::format("frame {} is missing: {}", frame, what));
     };

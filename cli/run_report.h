@@ -26,6 +26,9 @@ ProgressStyle parse_progress(const std::string& name);
 /// https://github.com/OpenJobDescription/openjd-specifications/wiki/How-Jobs-Are-Run#stdoutstderr-messages
 void print_openjd_progress(std::size_t done, std::size_t count, const std::string& status);
 
+/// "aftershade: warning: ..." or {"event": "warning", "message": ...}
+std::string warning_line(ProgressStyle style, const std::string& message);
+
 /// "12.5 frames/s, 48 s left": of `count` frames that many are done.
 std::string rate_text(std::size_t done, std::size_t count, double elapsed_s);
 
@@ -48,6 +51,8 @@ public:
 
     RunObserver observer();
     void print_summary(const RunReport& report, const std::string& clock);
+    /// Whatever the style.
+    void warn(const std::string& message);
 
 private:
     using Clock = std::chrono::steady_clock;

@@ -59,6 +59,7 @@ public:
             outcomes_.push_back(outcome);
             session_.status.write(frame_event(outcome));
         };
+        observer.object_seen = [this](const ObjectSighting& sighting) { session_.status.write(sighting); };
         return observer;
     }
     void ended(ExitCode code) { code_ = code; }
@@ -98,6 +99,9 @@ ExitCode render(const RunSession& session, const RunOptions& run, const Pipeline
     const gpu::ContextInfo& gl = session.context.info();
     if (session.progress == ProgressStyle::plain || session.progress == ProgressStyle::terminal)
         std::cerr << gpu::backend_name(gl.backend) << ": " << gl.renderer << ", " << gl.version << "\n";
+    // Of several workers each sees only a part of the frames.
+    if (!session.arguments.jobs.is_worker())
+        for (const std::string& warning : report.objects_unmatched) reporter.warn(warning);
     reporter.print_summary(report, gpu::Timer::clock_name(session.context));
     if (session.outputs.stream && !report.failures.empty())
         std::cerr

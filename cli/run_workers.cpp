@@ -15,6 +15,7 @@
 #include "framework/core/atomic_file.h"
 #include "framework/core/cores.h"
 #include "framework/core/text.h"
+#include "framework/pipeline/object_matches.h"
 #include "framework/pipeline/run_lock.h"
 
 namespace aftershade::cli {
@@ -33,8 +34,8 @@ std::vector<int> frames_of(const std::vector<FrameEvent>& events, const std::str
 /// Prints what workers say, each line once, and how far the run is.
 class WorkersReporter {
 public:
-    WorkersReporter(ProgressStyle style, std::size_t frame_count)
-        : style_(style), frame_count_(frame_count) {}
+    WorkersReporter(ProgressStyle style, std::size_t frame_count, const Pipeline& pipeline)
+        : style_(style), frame_count_(frame_count), objects_(pipeline) {}
 
     JobListener listener() {
         JobListener listener;
@@ -50,12 +51,15 @@ public:
             fmt::print(stderr, "{}\n", line);
         };
         listener.on_frame = [this](const FrameEvent& event) { frame(event); };
+        listener.on_object = [this](const ObjectSighting& sighting) { objects_.add(sighting); };
         return listener;
     }
 
     void finish(const JobsReport& report, std::size_t workers, double seconds) {
         line_.clear();
         fmt::print(stderr, "{}", failures_text(report.frames));
+        for (const std::string& warning : objects_.unmatched())
+            fmt::print(stderr, "{}\n", warning_line(style_, warning));
         if (style_ == ProgressStyle::none || style_ == ProgressStyle::json) return;
         const std::size_t done = frames_of(report.frames, "done").size();
         const std::size_t current = frames_of(report.frames, "current").size();
@@ -90,6 +94,7 @@ private:
     std::size_t frame_count_;
     std::size_t ended_ = 0;
     ProgressLine line_;
+    ObjectMatches objects_;
     std::set<std::string, std::less<>> said_;
     Clock::time_point start_ = Clock::now();
 };
@@ -158,8 +163,8 @@ void check_worker_options(const RunArguments& arguments, Diagnostics& diagnostic
     refuse(arguments.resume.dry_run, "--dry-run", "ask without workers");
 }
 
-ExitCode run_by_workers(const RunArguments& arguments, const JobFrames& frames, int workers, bool is_foreign,
-                        ProgressStyle progress, const std::atomic<bool>& stop) {
+ExitCode run_by_workers(const RunArguments& arguments, const JobFrames& frames, int workers,
+                        const Pipeline& pipeline, ProgressStyle progress, const std::atomic<bool>& stop) {
     const auto start = Clock::now();
     JobOptions options;
     options.pieces = plan_jobs(frames, workers);
@@ -173,9 +178,9 @@ ExitCode run_by_workers(const RunArguments& arguments, const JobFrames& frames, 
         options.frame_timeout = std::chrono::duration<double>(arguments.jobs.frame_timeout_s);
     if (arguments.jobs.memory_bytes > 0) options.memory_bytes = arguments.jobs.memory_bytes;
     options.pass_limit = arguments.plugins.pass_limit();
-    if (is_foreign) options.resident_bytes = foreign_memory_bytes() / options.pieces.size();
+    if (pipeline.has_foreign()) options.resident_bytes = foreign_memory_bytes() / options.pieces.size();
     options.stop_on_error = arguments.jobs.stop_on_error;
-    WorkersReporter reporter(progress, frames.count());
+    WorkersReporter reporter(progress, frames.count(), pipeline);
     const JobsReport report = run_jobs(options, reporter.listener(), stop);
     clear_after_workers(arguments, {frames.frames.begin() + frames.lead_frames, frames.frames.end()});
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();

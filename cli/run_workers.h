@@ -7,15 +7,15 @@
 #include "cli/run_report.h"
 #include "framework/batch/job_plan.h"
 #include "framework/core/error.h"
+#include "framework/pipeline/pipeline.h"
 
 namespace aftershade::cli {
 
 /// What workers cannot do together, because it needs all frames in one process.
 void check_worker_options(const RunArguments& arguments, Diagnostics& diagnostics);
 
-/// Renders the frames by `workers` processes, reports progress and how each frame ended. `is_foreign`: the
-/// look has effects that are not shipped.
-ExitCode run_by_workers(const RunArguments& arguments, const JobFrames& frames, int workers, bool is_foreign,
-                        ProgressStyle progress, const std::atomic<bool>& stop);
+/// Renders the frames by `workers` processes, reports progress and how each frame ended.
+ExitCode run_by_workers(const RunArguments& arguments, const JobFrames& frames, int workers,
+                        const Pipeline& pipeline, ProgressStyle progress, const std::atomic<bool>& stop);
 
 }  // namespace aftershade::cli

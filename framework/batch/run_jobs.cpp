@@ -45,6 +45,10 @@ public:
         if (event.outcome == "failed" && options_.stop_on_error) stop_ = true;
         if (listener_.on_frame) listener_.on_frame(event);
     }
+    void object(const ObjectSighting& sighting) {
+        const std::lock_guard lock(mutex_);
+        if (listener_.on_object) listener_.on_object(sighting);
+    }
     void ended(ExitCode code, const std::string& error = "") {
         const std::lock_guard lock(mutex_);
         if (code == ExitCode::done || ends_the_run(worst_)) return;
@@ -154,6 +158,7 @@ private:
             ++ended_;
             board_.frame(event);
         };
+        listener.on_object = [&](const ObjectSighting& sighting) { board_.object(sighting); };
         // A frame's beginning, or the end of its passes; one pass or plug-in after the other is no progress.
         listener.on_status = [&](const WorkStatus& status) {
             if (status.frame && status.plugin.empty() && status.pass.empty()) watchdog.heard();

@@ -37,6 +37,7 @@ struct JobListener {
     std::function<void(std::string_view line)> on_stdout;
     std::function<void(std::string_view line)> on_stderr;
     std::function<void(const FrameEvent& event)> on_frame;
+    std::function<void(const ObjectSighting& sighting)> on_object;
 };
 
 struct JobsReport {

@@ -178,6 +178,10 @@ WorkerResult run_worker(const WorkerCommand& command, const WorkerListener& list
             if (listener.on_frame) listener.on_frame(*event);
             return;
         }
+        if (const auto sighting = parse_sighting(line)) {
+            if (listener.on_object) listener.on_object(*sighting);
+            return;
+        }
         const auto parsed = parse_status(line);
         if (!parsed) return;
         result.status = *parsed;

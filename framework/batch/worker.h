@@ -43,6 +43,7 @@ struct WorkerListener {
     std::function<void(std::string_view line)> on_stderr;
     std::function<void(const WorkStatus& status)> on_status;
     std::function<void(const FrameEvent& event)> on_frame;
+    std::function<void(const ObjectSighting& sighting)> on_object;
 };
 
 enum class WorkerEnd {
@@ -84,6 +85,8 @@ std::string describe_timeout(WorkerResult result, std::chrono::duration<double> 
 std::optional<WorkStatus> parse_status(std::string_view line);
 /// Likewise of a frame's end.
 std::optional<FrameEvent> parse_event(std::string_view line);
+/// Likewise of an object.
+std::optional<ObjectSighting> parse_sighting(std::string_view line);
 /// Likewise of a process's last word.
 std::optional<int> parse_last_word(std::string_view line);
 

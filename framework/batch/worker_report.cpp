@@ -65,6 +65,15 @@ std::optional<FrameEvent> parse_event(std::string_view line) {
     return event;
 }
 
+std::optional<ObjectSighting> parse_sighting(std::string_view line) {
+    const auto json = nlohmann::json::parse(line, nullptr, false);
+    if (!json.is_object() || json.value("event", nlohmann::json()) != "object") return std::nullopt;
+    const auto index = json.find("index"), found = json.find("found");
+    if (index == json.end() || !index->is_number_integer() || found == json.end() || !found->is_boolean())
+        return std::nullopt;
+    return ObjectSighting{index->get<int>(), found->get<bool>()};
+}
+
 std::optional<int> parse_last_word(std::string_view line) {
     const auto json = nlohmann::json::parse(line, nullptr, false);
     if (!json.is_object() || json.value("event", nlohmann::json()) != "end") return std::nullopt;

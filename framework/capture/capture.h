@@ -67,6 +67,12 @@ struct Capture {
     std::map<std::string, NonFinitePixels> non_finite;
 };
 
+/// What else would give a role that a frame lacks.
+struct RoleElsewhere {
+    std::vector<std::string> profiles;  ///< ids
+    std::vector<std::string> layers;
+};
+
 /// One channel as the file stores it.
 struct StoredChannel {
     std::string name;
@@ -93,6 +99,9 @@ public:
     /// without one it is 0 or 1, by object_id. Throws Error(ExitCode::capture) where objects are requested by
     /// names that the file cannot have.
     Capture read(int frame, std::span<const std::string> roles) const;
+
+    /// Other profiles that find the role in the frame's channels, and other layers that have it.
+    RoleElsewhere find_elsewhere(const CaptureHeader& header, const std::string& role) const;
 
     /// The Cryptomattes of a frame, and how much of its pixels the objects of one cover; of a capture with
     /// layers those of the first.

@@ -252,6 +252,30 @@ void CaptureReader::require_names(const OpenFrame& open, const Image& ids,
                                        names.front() + "', but " + instead + " (" + remedy + ")");
 }
 
+RoleElsewhere CaptureReader::find_elsewhere(const CaptureHeader& header, const std::string& role) const {
+    const auto has_role = [&](const Sequence& other) {
+        try {
+            const CaptureHeader found =
+                CaptureReader(other, profiles_, limits_).read_header(header.source_frame);
+            return is_among(found.roles, role) && is_among(found.roles, kColorRole);
+        } catch (const Error&) {
+            return false;
+        }
+    };
+    RoleElsewhere elsewhere;
+    Sequence other = sequence_;
+    for (const Profile& profile : profiles_) {
+        other.profile = profile.id;
+        if (profile.id != header.profile && has_role(other)) elsewhere.profiles.push_back(profile.id);
+    }
+    other = sequence_;
+    for (const std::string& layer : header.layers) {
+        other.layer = layer;
+        if (layer != header.layer && has_role(other)) elsewhere.layers.push_back(layer);
+    }
+    return elsewhere;
+}
+
 std::vector<CryptomatteLayer> CaptureReader::cryptomattes(int frame) const {
     if (const auto front = front_layer())
         return CaptureReader(*front, profiles_, limits_).cryptomattes(frame);

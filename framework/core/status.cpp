@@ -43,6 +43,13 @@ std::string event_line(const FrameEvent& event) {
     return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
+std::string sighting_line(const ObjectSighting& sighting) {
+    return nlohmann::ordered_json{
+               {"event", "object"}, {"index", sighting.index}, {"found", sighting.is_found}}
+               .dump() +
+           "\n";
+}
+
 std::string last_word_line(int exit_code) {
     return nlohmann::ordered_json{{"event", "end"}, {"code", exit_code}}.dump() + "\n";
 }
@@ -85,6 +92,11 @@ void StatusWriter::write(const WorkStatus& status) {
 void StatusWriter::write(const FrameEvent& event) {
     const std::lock_guard lock(mutex_);
     send(event_line(event));
+}
+
+void StatusWriter::write(const ObjectSighting& sighting) {
+    const std::lock_guard lock(mutex_);
+    send(sighting_line(sighting));
 }
 
 void StatusWriter::end(int exit_code) {

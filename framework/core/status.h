@@ -34,9 +34,20 @@ struct FrameEvent {
     bool operator==(const FrameEvent&) const = default;
 };
 
+/// Whether a frame had an object that the look names, for the process that started this one.
+struct ObjectSighting {
+    int index = 0;  ///< of the pipeline's objects, in ObjectMatches
+    bool is_found = false;
+
+    bool operator==(const ObjectSighting&) const = default;
+};
+
 /// One line of JSON with its line end: {"event":"frame","frame":12,"outcome":"done","seconds":0.5}. Never
 /// longer than PIPE_BUF.
 std::string event_line(const FrameEvent& event);
+
+/// One line of JSON with its line end: {"event":"object","index":3,"found":true}.
+std::string sighting_line(const ObjectSighting& sighting);
 
 /// One line of JSON with its line end: {"event":"end","code":0}.
 std::string last_word_line(int exit_code);
@@ -60,6 +71,7 @@ public:
     bool active() const { return descriptor_ >= 0; }
     void write(const WorkStatus& status);
     void write(const FrameEvent& event);
+    void write(const ObjectSighting& sighting);
     /// Last of all: without it an exit code counts for nothing, since any library may call exit().
     void end(int exit_code);
     WorkStatus current() const;

@@ -90,7 +90,8 @@ std::string describe_untestable(const VelocityCheck& check) {
                            role_name(check.settings), check.settings.is_next() ? "A" : "B");
     if (check.best.tested)
         return "Undecided: the two pictures are the same where the vectors move; use two different frames";
-    return fmt::format("Undecided: only {} pixels have vectors; use frames in which more moves", moving_px);
+    return fmt::format("Undecided: only {} with motion vectors; use frames in which more moves",
+                       counted(std::size_t(moving_px), "pixel"));
 }
 
 std::string describe_no_fit(const VelocityCheck& check) {

@@ -49,7 +49,8 @@ FrameLoader::FrameLoader(const Sequence& sequence, const CaptureReader& reader, 
       pipeline_(pipeline),
       run_(run),
       files_(sequence, reader, pipeline),
-      roles_(std::move(roles)) {
+      roles_(std::move(roles)),
+      objects_(pipeline) {
     for (const int offset : {-1, 1}) add_missing(roles_, pipeline.neighbour_roles(offset));
     if (!run.frames.empty() && !is_missing(0))
         for (const int file : files_.numbers(run.frames[0])) request(file);
@@ -71,7 +72,8 @@ Capture FrameLoader::read(int file) const {
     const BusyTime busy(busy_ms_);
     const TraceScope traced(run_.trace, "decode", "file " + std::to_string(file));
     Capture capture = reader_.read(file, roles_);
-    require_capture_roles(pipeline_, capture.header);
+    require_capture_roles(pipeline_, capture.header, &reader_);
+    objects_.look_at(capture);
     apply_nan_policy(run_.on_nan, capture);  // before scaling, which spreads NaN
     if (run_.region) crop_capture(capture, region_with_margin(run_, capture.header.display_window));
     scale_capture(capture, run_.scale_divisor);

@@ -11,6 +11,7 @@
 
 #include "framework/capture/capture.h"
 #include "framework/pipeline/frame_files.h"
+#include "framework/pipeline/object_matches.h"
 #include "framework/pipeline/pipeline.h"
 #include "framework/pipeline/run_options.h"
 
@@ -36,6 +37,8 @@ public:
     /// Of the same shot, where some input wants it and its file is there; nullptr otherwise.
     CapturePointer neighbour(std::size_t index, int offset);
     bool begins_shot(std::size_t index) const;
+    /// What the frames read so far have of the objects that the look names.
+    ObjectMatches& objects() { return objects_; }
     /// What reading and decoding took so far, on all threads together.
     double busy_ms() const { return busy_ms_; }
 
@@ -54,6 +57,7 @@ private:
     std::map<int, std::shared_future<CapturePointer>> reads_;  // by file
     CapturePointer last_;
     mutable std::atomic<double> busy_ms_ = 0;
+    mutable ObjectMatches objects_;
 };
 
 }  // namespace aftershade

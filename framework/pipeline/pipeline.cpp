@@ -4,6 +4,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/param_type.h"
+#include "framework/core/text.h"
 #include "framework/core/units.h"
 #include "framework/image/role.h"
 
@@ -165,17 +166,35 @@ std::optional<MissingRole> find_missing_role(const Pipeline& pipeline,
     return std::nullopt;
 }
 
-void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header) {
+namespace {
+
+/// "--profile blender or vray finds it; --layer 'B' has it; --role depth=FILE reads it from a file of its
+/// own; ..."
+std::string remedies(const std::string& role, const CaptureHeader& header, const CaptureReader* reader) {
+    std::string text;
+    if (reader) {
+        const RoleElsewhere found = reader->find_elsewhere(header, role);
+        if (!found.profiles.empty()) text += "--profile " + joined(found.profiles, " or ") + " finds it; ";
+        if (!found.layers.empty())
+            text += "--layer " + list_of_names(found.layers) +
+                    (found.layers.size() == 1 ? " has it; " : " have it; ");
+    }
+    return text + "--role " + role + "=FILE reads it from a file of its own; \"channels\": {\"" + role +
+           "\": {\"channels\": [...]}} in capture.json names its channels";
+}
+
+}  // namespace
+
+void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header,
+                           const CaptureReader* reader) {
     const auto missing = find_missing_role(pipeline, header.roles);
     if (!missing) return;
-    throw Error(ExitCode::capture,
-                header.path.string() + ": " + missing->who + " needs the role '" + missing->role +
-                    "', which the profile '" + header.profile + "' does not find among the channels " +
-                    list_channels(header.channels) +
-                    (header.layer.empty() ? "" : ", in the layer '" + header.layer + "'") +
-                    " (name its channels in capture.json, as \"channels\": {\"" + missing->role +
-                    "\": {\"channels\": [...]}}, or choose another "
-                    "--profile or --layer)");
+    throw Error(ExitCode::capture, header.path.string() + ": " + missing->who + " needs the role '" +
+                                       missing->role + "', which the profile '" + header.profile +
+                                       "' does not find among the channels " +
+                                       list_channels(header.channels) +
+                                       (header.layer.empty() ? "" : ", in the layer '" + header.layer + "'") +
+                                       " (" + remedies(missing->role, header, reader) + ")");
 }
 
 namespace {

@@ -132,8 +132,10 @@ struct MissingRole {
 std::optional<MissingRole> find_missing_role(const Pipeline& pipeline, const std::vector<std::string>& roles);
 
 /// Throws Error(ExitCode::capture) if the capture lacks a role that a step requires, naming the effect, the
-/// role, and the channels that the file does have.
-void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header);
+/// role, the channels that the file does have, and what would give the role: other profiles and layers, found
+/// by the reader that the header comes from, where it is given.
+void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header,
+                           const CaptureReader* reader = nullptr);
 
 /// Every parameter of the step: the user's value, else the capture's (the manifest's "from"), else the
 /// default; values in px times frame.scale. Throws Error(ExitCode::capture) where the capture's values do not

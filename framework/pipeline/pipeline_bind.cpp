@@ -306,8 +306,10 @@ private:
             const auto found = std::find(names.begin(), names.end(), wiring.source);
             if (found == names.end()) {
                 if (tell_of_absence(wiring.source, wiring.place)) return;
-                diagnostics_.error(wiring.place, "no step '" + wiring.source + "' before '" + step.name +
-                                                     "'" + did_you_mean(wiring.source, names));
+                diagnostics_.error(
+                    wiring.place,
+                    "no step '" + wiring.source + "' before '" + step.name + "'" +
+                        did_you_mean(wiring.source, names, "; a step reads outputs of earlier steps only"));
                 return;
             }
             index = int(found - names.begin());

@@ -175,6 +175,7 @@ public:
         if (report_.history_saved)
             renderer_.save_history(run.history_out,
                                    setup_.hooks.last_fingerprint ? setup_.hooks.last_fingerprint() : "");
+        report_.objects_unmatched = loader_.objects().unmatched();
         std::ranges::sort(report_.frames_non_finite);
         report_.decode_ms = loader_.busy_ms();
         report_.graph_dot = renderer_.graph_dot();
@@ -221,6 +222,8 @@ private:
         if (run.trace) trace_frame(*run.trace, number, begin, frame.result->times);
         report_result(frame.capture->header, *frame.result, !any_rendered_, run, observer_);
         any_rendered_ = true;
+        for (const ObjectSighting& sighting : loader_.objects().take_sightings())
+            if (observer_.object_seen) observer_.object_seen(sighting);
         if (!frame.result->history_reset.empty()) report_.history_begin = number;
         add_times(report_.passes, frame.result->times);
         if (frame.result->telemetry) report_.telemetry.push_back(*frame.result->telemetry);

@@ -43,7 +43,8 @@ struct FrameOutcome {
 struct RunReport {
     int frames_done = 0;
     std::vector<FrameFailure> failures;
-    std::vector<int> frames_non_finite;  ///< frames with NaN or infinite pixels, repaired ones too
+    std::vector<int> frames_non_finite;          ///< frames with NaN or infinite pixels, repaired ones too
+    std::vector<std::string> objects_unmatched;  ///< ObjectMatches::unmatched()
     std::vector<int> frames_left;        ///< not begun, after an interrupt or RunOptions::stop_on_error
     std::optional<int> history_begin;    ///< the last frame that restarted history, where a step has any
     bool history_saved = false;          ///< RunOptions::history_out was written
@@ -76,6 +77,8 @@ struct RunObserver {
     /// Frames but the first that restart history, where some step has history.
     std::function<void(int frame, const std::string& reason)> history_reset;
     std::function<void(int frame, const std::string& line)> native_message;
+    /// An object that the look names was first missed, or found.
+    std::function<void(const ObjectSighting&)> object_seen;
     /// Of every frame but those that only warm history up; of written ones when their files are in place.
     std::function<void(const FrameOutcome&)> frame_finished;
 };

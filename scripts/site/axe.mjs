@@ -27,10 +27,13 @@ const browser = await chromium.launch({ executablePath: process.env.AFTERSHADE_C
 let faults = 0;
 for (const colorScheme of ["light", "dark"]) {
   const page = await browser.newPage({ colorScheme, reducedMotion: "reduce" });
+  page.setDefaultTimeout(300_000); // for machines that are busy
   for (const name of pages) {
-    await page.goto(`http://127.0.0.1:${server.address().port}/${name}`);
+    await page.goto(`http://127.0.0.1:${server.address().port}/${name}`, { waitUntil: "domcontentloaded" });
+    await page.waitForFunction(() => [...document.styleSheets].length > 0);
     await page.evaluate(axe);
-    const { violations } = await page.evaluate(() => axe.run());
+    const { violations } = await page.evaluate(() => axe.run({ resultTypes: ["violations"] }));
+    process.stderr.write(".");
     for (const found of violations) {
       faults += found.nodes.length;
       console.log(`${name} (${colorScheme}): ${found.id}: ${found.help}: ${found.nodes.length} x ${found.nodes[0].html.slice(0, 200)}`);

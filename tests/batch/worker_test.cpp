@@ -160,6 +160,17 @@ TEST(Status, NamesThePassThatIsCompiledOrDrawn) {
     EXPECT_EQ(parse_last_word("{\"event\":\"end\",\"code\":\"5\"}"), std::nullopt);
 }
 
+TEST(Status, HasWhichObjectsOfALookFramesHad) {
+    const ObjectSighting sighting{70000, true};
+    EXPECT_EQ(parse_sighting(sighting_line(sighting)), sighting);
+    EXPECT_EQ(parse_status(sighting_line(sighting)), WorkStatus{})
+        << "an older program reads nothing from it";
+    EXPECT_EQ(parse_event(sighting_line(sighting)), std::nullopt);
+    EXPECT_EQ(parse_sighting(last_word_line(5)), std::nullopt);
+    EXPECT_EQ(parse_sighting(R"({"event":"object","index":"3","found":true})"), std::nullopt);
+    EXPECT_EQ(parse_sighting(R"({"event":"object","index":3,"found":1})"), std::nullopt);
+}
+
 TEST(Status, AnyTextComesBackAndALineFitsOneWrite) {
     const WorkStatus status{"a \"step\"\n", "/x/libfoo.so", "prepare", -3};
     EXPECT_EQ(parse_status(status_line(status)), status);

@@ -211,6 +211,25 @@ TEST_F(LayeredFile, OfAProducerThatNukeWroteAgainIsTheProducers) {
     EXPECT_EQ(header().profile, "arnold");
 }
 
+TEST_F(LayeredFile, NamesTheProfilesAndLayersThatHaveARoleWhichIsMissing) {
+    const auto elsewhere = [&](const std::string& role) { return reader().find_elsewhere(header(), role); };
+    write(below("A", {"Combined.R", "Combined.G", "Combined.B", "Depth.V"}) +
+              below("B", {"Combined.R", "Combined.G", "Combined.B", "Depth.V", "Vector.X", "Vector.Y"}),
+          kBlender);
+    EXPECT_EQ(header().layer, "A");
+    EXPECT_EQ(elsewhere("velocity").layers, Names{"B"});
+    EXPECT_EQ(elsewhere("velocity").profiles, Names{});
+    EXPECT_EQ(elsewhere("normal").layers, Names{});
+    write({"R", "G", "B", "ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B",
+           "ViewLayer.Vector.X", "ViewLayer.Vector.Y"});
+    sequence_.profile = "native";
+    EXPECT_EQ(header().roles, Names{"color"});
+    EXPECT_EQ(elsewhere("velocity").profiles, Names{"blender"});
+    EXPECT_EQ(elsewhere("albedo").profiles, Names{});
+    sequence_.profile = "blender";
+    EXPECT_EQ(header().roles, (Names{"color", "velocity"})) << "what the hint says works";
+}
+
 TEST_F(LayeredFile, TakesThreeChannelsForAColourThatIsOpaque) {
     write({"x.R", "x.G", "x.B", "A"});
     Diagnostics diagnostics;

@@ -62,6 +62,59 @@ TEST_F(EffectMessages, RunOffersTheNameThatWasMeantAsCheckDoes) {
     EXPECT_NE(check.err.find(hint), std::string::npos) << check.err;
 }
 
+TEST_F(EffectMessages, NameAWriteThatIsNotDeclaredAndWhatWasMeant) {
+    write_frame();
+    write_effect("dim", "color", "c");
+    write_text(folder_ / "look.json", R"({"aftershade": 1, "steps": [{"effect": "dim"}]})");
+    const std::string shader = read_text(folder_ / "dim/main.frag"),
+                      manifest = read_text(folder_ / "dim/effect.json");
+    const auto write = [&](const std::string& target, const std::string& writes) {
+        std::string changed = shader;
+        changed.replace(changed.find("out_color"), 9, target);
+        write_text(folder_ / "dim/main.frag", changed);
+        const std::string pass = R"("shader": "main.frag")";
+        changed = manifest;
+        changed.replace(changed.find(pass), pass.size(), pass + R"(, "writes": [")" + writes + "\"]");
+        write_text(folder_ / "dim/effect.json", changed);
+    };
+    const auto expect_both = [&](const std::string& message, int run_code) {
+        const CommandResult check = command({"check", "dim", "--backend", "osmesa"}, 1);
+        EXPECT_NE(check.err.find(message), std::string::npos) << check.err;
+        const CommandResult run = command(
+            {"run", "look.json", "in_0001.exr", "--effect-path", ".", "-o", "out.exr", "--backend", "osmesa"},
+            run_code);
+        EXPECT_NE(run.err.find(message), std::string::npos) << run.err;
+    };
+    write("out_colour", "color");
+    expect_both("'out_colour' is not a target of a pass with this shader; did you mean 'out_color'?", 5);
+    write("out_color", "colour");
+    expect_both("writes 'colour', which is neither an output nor a texture; did you mean 'color'?", 2);
+}
+
+TEST_F(EffectMessages, NameTheCycleOfStepsAndOfPassesWithTheWayOut) {
+    write_frame();
+    write_text(folder_ / "look.json", R"({"aftershade": 1, "steps": [
+        {"effect": "sharpen", "in": {"color": "vignette.color"}}, {"effect": "vignette"}]})");
+    const CommandResult steps = command({"run", "look.json", "in_0001.exr", "-o", "out.exr"}, 2);
+    EXPECT_NE(steps.err.find("error: no step 'vignette' before 'sharpen'; a step reads outputs of "
+                             "earlier steps only\n"),
+              std::string::npos)
+        << steps.err;
+
+    write_effect("loop", "color", "c");
+    std::string manifest = read_text(folder_ / "loop/effect.json");
+    manifest.replace(manifest.find(R"("passes")"), std::string::npos, R"(
+        "textures": {"a": {"format": "r16f", "doc": "A."}, "b": {"format": "r16f", "doc": "B."}},
+        "passes": [{"name": "one", "shader": "main.frag", "reads": ["b"], "writes": ["a"]},
+                   {"name": "two", "shader": "main.frag", "reads": ["a"], "writes": ["b"]}]})");
+    write_text(folder_ / "loop/effect.json", manifest);
+    const CommandResult passes = command({"check", "loop", "--no-gl"}, 1);
+    EXPECT_NE(passes.err.find("pass 'one': reads 'b' before any pass has written it (write or clear it in an "
+                              "earlier pass; with \"history\": true, 'b.prev' is the previous frame's)"),
+              std::string::npos)
+        << passes.err;
+}
+
 TEST_F(EffectMessages, CheckPutsEachFaultOfAShaderOnItsOwnLine) {
     write_effect("dim", "color", "mixx(c, param.strength) + clamp(1, vec2(0), 2.0)");
     const CommandResult check = command({"check", "dim", "--backend", "osmesa"}, 1);

@@ -101,7 +101,8 @@ std::vector<Fault> capture_faults() {
          code,
          {"aftershade: error: rgb\\.exr: step 'bokeh' \\(effect bokeh\\) needs the role 'depth', which the "
           "profile 'native' "
-          "does not find among the channels B, G, R \\(name its channels in capture.json, as .*"},
+          "does not find among the channels B, G, R \\(--role depth=FILE reads it from a file of its own; "
+          ".*"},
          [](const Workplace& work) { write_rgb_only(work / "rgb.exr"); },
          true},
         {"ARoleThatNeitherTheCaptureNorTheLookHas",

@@ -95,9 +95,11 @@ std::vector<Fault> look_faults() {
         steps("WiringFromALaterStep",
               R"({ "effect": "bokeh", "in": { "color": "lens.color" } },
                   { "effect": "bokeh", "name": "lens" })",
-              {"look\\.json:2:39: error: no step 'lens' before 'bokeh'"}),
+              {"look\\.json:2:39: error: no step 'lens' before 'bokeh'; a step reads outputs of earlier "
+               "steps only"}),
         steps("WiringFromItself", R"({ "effect": "bokeh", "in": { "color": "bokeh.color" } })",
-              {"look\\.json:2:39: error: no step 'bokeh' before 'bokeh'"}),
+              {"look\\.json:2:39: error: no step 'bokeh' before 'bokeh'; a step reads outputs of earlier "
+               "steps only"}),
         steps("WiringOfAnUnknownInput", R"({ "effect": "bokeh", "in": { "colour": "capture.color" } })",
               {"look\\.json:2:40: error: bokeh has no input 'colour'; did you mean 'color'\\?"}),
         steps("WiringOfAnotherRole", R"({ "effect": "bokeh", "in": { "depth": "capture.color" } })",

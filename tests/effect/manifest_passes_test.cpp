@@ -286,12 +286,16 @@ TEST(ManifestPasses, FollowTheOrderOfWrites) {
         return test::faults_of_manifest(demo_manifest(sections));
     };
     EXPECT_EQ(faults(compute(R"("buffers": {"sums": "write", "list": "read"})")),
-              Lines{"6: pass 'x': reads 'list' before any pass has written it"});
+              Lines{"6: pass 'x': reads 'list' before any pass has written it (write or clear it in an "
+                    "earlier pass; with "
+                    "\"history\": true, 'list.prev' is the previous frame's)"});
     EXPECT_EQ(faults(R"({"name": "x", "kind": "compute", "shader": "c.comp", "buffers": {"sums": "write"},
         "dispatch": {"indirect": "args"}})"),
               Lines{"6: pass 'x': is counted by the buffer 'args' before any pass has written it"});
     EXPECT_EQ(faults(compute(R"("images": {"small": "read"}, "buffers": {"sums": "write"})")),
-              Lines{"6: pass 'x': reads 'small' before any pass has written it"});
+              Lines{"6: pass 'x': reads 'small' before any pass has written it (write or clear it in an "
+                    "earlier pass; with "
+                    "\"history\": true, 'small.prev' is the previous frame's)"});
     EXPECT_EQ(faults(draw(R"("writes": ["small"], "blend": "add")")),
               Lines{"6: pass 'x': blends into 'small' before any pass has written it"});
     EXPECT_EQ(faults(compute(R"("images": {"ids": "atomic"})")), Lines{}) << "a clear fills it";

@@ -257,11 +257,15 @@ TEST(Manifest, RefusesToReadWhatNoEarlierPassHasWritten) {
     const Lines swapped = faults_of_manifest(demo_manifest({{test::kPasses, R"("passes": [
         {"name": "two", "shader": "b.frag", "reads": ["small"], "writes": ["color"]},
         {"name": "one", "shader": "a.frag", "reads": ["color", "depth"], "writes": ["small"]}])"}}));
-    EXPECT_EQ(swapped, Lines{"6: pass 'two': reads 'small' before any pass has written it"});
+    EXPECT_EQ(swapped, Lines{"6: pass 'two': reads 'small' before any pass has written it (write or clear it "
+                             "in an earlier pass; with "
+                             "\"history\": true, 'small.prev' is the previous frame's)"});
     const Lines itself = faults_of_manifest(demo_manifest({{test::kPasses, R"("passes": [
         {"name": "one", "shader": "a.frag", "reads": ["color", "depth", "small"], "writes": ["small"]},
         {"name": "two", "shader": "b.frag", "reads": ["small"], "writes": ["color"]}])"}}));
-    EXPECT_EQ(itself, Lines{"6: pass 'one': reads 'small' before any pass has written it"});
+    EXPECT_EQ(itself, Lines{"6: pass 'one': reads 'small' before any pass has written it (write or clear it "
+                            "in an earlier pass; with "
+                            "\"history\": true, 'small.prev' is the previous frame's)"});
 }
 
 TEST(Manifest, RefusesToFilterIntegers) {

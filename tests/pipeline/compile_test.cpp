@@ -187,9 +187,8 @@ TEST_F(Compile, NamesEffectRoleAndChannelsOfAMissingRole) {
         EXPECT_STREQ(
             error.what(),
             "in.exr: step 'haze' (effect fog) needs the role 'depth', which the profile 'native' does not "
-            "find among the channels A, B, G, R (name its channels in capture.json, as \"channels\": "
-            "{\"depth\": {\"channels\": "
-            "[...]}}, or choose another --profile or --layer)");
+            "find among the channels A, B, G, R (--role depth=FILE reads it from a file of its own; "
+            "\"channels\": {\"depth\": {\"channels\": [...]}} in capture.json names its channels)");
     }
     EXPECT_NO_THROW(
         require_capture_roles(Bound(effects_, look_of(R"({ "effect": "mist" })")).pipeline(), header));

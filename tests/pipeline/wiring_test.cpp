@@ -160,7 +160,9 @@ TEST_F(Wiring, SuggestsTheNameAndListsOutputsAndTexturesWhereThereIsNone) {
 TEST_F(Wiring, RefusesAStepThatComesLater) {
     const Bound bound(effects_, look_of(R"({ "effect": "show", "in": { "image": "maker.twice" } },
                                            { "effect": "maker" })"));
-    EXPECT_EQ(bound.faults(), "look:1:68: error: no step 'maker' before 'show'\n");
+    EXPECT_EQ(
+        bound.faults(),
+        "look:1:68: error: no step 'maker' before 'show'; a step reads outputs of earlier steps only\n");
 }
 
 TEST_F(Wiring, SaysThatWholeNumbersAreNoFloats) {

@@ -314,3 +314,16 @@ def test_memory_stays_flat(host):
         if number == 20:
             at_20 = resident_kib()
     assert resident_kib() <= at_20 * 1.02
+
+
+def test_the_example_of_the_readme_runs(tmp_path, monkeypatch):
+    example = re.search(r"^```python\n(.*?)^```$", (ROOT / "README.md").read_text(), flags=re.M | re.S)[1]
+    (tmp_path / "portrait.json").write_text((ROOT / "scenes/looks/portrait.json").read_text())
+    (tmp_path / "frame.exr").symlink_to(ROOT / "scenes/suzanne/gbuffer_0003.exr")
+    monkeypatch.chdir(tmp_path)
+    *lines, last = example.rstrip().splitlines()
+    names = {}
+    exec("\n".join([*lines, "result = " + last]), names)
+    assert names["look"]["bokeh.f_number"] == 2
+    assert names["result"].dtype == np.float32 and names["result"].shape == (270, 480, 4)
+    assert np.isfinite(names["result"]).all()

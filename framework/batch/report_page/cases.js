@@ -75,10 +75,13 @@ function metricsTable(image) {
         : `${faulty(layer.reference_non_finite)} \u2192 ${faulty(layer.test_non_finite)}`,
     ];
   });
+  // A metric that no layer has takes no room.
+  const used = heads.map((_, i) => i < 3 || rows.some((row) => row[i] !== "\u2013")),
+    inUse = (cells) => cells.filter((_, i) => used[i]);
   return element(
     "div",
     { class: "wide", tabindex: 0, role: "group", "aria-label": `Figures of ${image.name}` },
-    table(heads, rows, { class: "metrics" }),
+    table(inUse(heads), rows.map(inUse), { class: "metrics" }),
   );
 }
 

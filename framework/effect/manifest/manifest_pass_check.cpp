@@ -131,7 +131,10 @@ private:
         if (previous && !has_history)
             fault(place, "reads '" + name + ".prev', but '" + name + "' has no 'history'");
         if (!previous && !from_outside && !filled_.contains(name))
-            fault(place, "reads '" + name + "' before any pass has written it");
+            fault(place, "reads '" + name +
+                             "' before any pass has written it (write or clear it in an earlier pass; with "
+                             "\"history\": true, '" +
+                             name + ".prev' is the previous frame's)");
     }
 
     void check_read(const ReadSpec& read) {
