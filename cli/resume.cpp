@@ -98,8 +98,7 @@ ExitCode run_resumable(const ResumeArguments& arguments, const ResumeNeeds& need
         code = render(run.planned_run(), run.hooks());
     }
     if (code == ExitCode::done) run.finish();
-    // No frame of this run could be read, but those of earlier runs are there.
-    return code == ExitCode::capture && left > 0 ? ExitCode::partial : code;
+    return code;
 }
 
 }  // namespace aftershade::cli

@@ -66,6 +66,7 @@ public:
     RunReport run(const RunSetup& setup, const RunObserver& observer, const std::atomic<bool>& stop) {
         try {
             RunReport report = run_frames(setup, watched(observer), stop);
+            report.frames_current = int(current_.size());
             ended(report.exit_code());
             return report;
         } catch (const Error& error) {

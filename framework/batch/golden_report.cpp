@@ -92,7 +92,23 @@ Json json_of(const ApprovedImage& approved) {
     return json;
 }
 
+/// A mark, a number of pixels, a mark, ...
+Json json_of(const AreaMap& map) {
+    Json runs = Json::array();
+    for (const AreaMap::Run& run : map.runs) {
+        runs.push_back(run.mark);
+        runs.push_back(run.pixels);
+    }
+    return {{"x", map.window.min_x},
+            {"y", map.window.min_y},
+            {"width", map.window.width()},
+            {"height", map.window.height()},
+            {"runs", std::move(runs)}};
+}
+
 Json json_of(const GoldenImage& image) {
+    Json areas = Json::object();
+    for (const auto& [layer, map] : image.areas) areas[layer] = json_of(map);
     const GoldenPictures& pictures = image.pictures;
     return {{"name", image.name},
             {"output", image.output},
@@ -112,6 +128,7 @@ Json json_of(const GoldenImage& image) {
               {"side_by_side", text_or_null(pictures.side_by_side)},
               {"reference_exr", text_or_null(pictures.reference_exr)},
               {"test_exr", text_or_null(pictures.test_exr)}}},
+            {"areas", std::move(areas)},
             {"comparison", image.comparison ? json_of(*image.comparison, image.rules) : Json(nullptr)}};
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -25,6 +26,18 @@ struct GoldenPictures {
     double difference_scale = 1;  ///< of difference.png: |reference - test| times this
 };
 
+/// Which pixels of a layer the areas of a tolerance hold. [value type]
+struct AreaMap {
+    /// A mark and how many pixels in a row have it, from the window's upper left, row by row: 0 no area, -1
+    /// left out, i the i-th area with limits of its own.
+    struct Run {
+        int mark = 0;
+        std::uint64_t pixels = 0;
+    };
+    Window window;  ///< in px of the files
+    std::vector<Run> runs;
+};
+
 /// One image of a case against the approved image that is nearest to it.
 struct GoldenImage {
     std::string name, output;
@@ -39,6 +52,7 @@ struct GoldenImage {
     std::optional<Comparison> comparison;
     CompareRules rules;  ///< of the comparison; areas by name alone
     GoldenPictures pictures;
+    std::map<std::string, AreaMap> areas;  ///< by layer, where there are pictures
 };
 
 struct GoldenCaseResult {

@@ -1,5 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <optional>
+#include <utility>
 
 #include "framework/batch/golden_run.h"
 #include "framework/compare/difference_picture.h"
@@ -77,6 +80,20 @@ void copy_into(const fs::path& from, const fs::path& to) {
     file.commit();
 }
 
+/// nullopt where there is no area, or where a mask is so speckled that its map would fill the report.
+std::optional<AreaMap> area_map(const Window& window, const PixelAreas& areas) {
+    constexpr std::size_t kMostRuns = 100'000;
+    if (areas.of_pixel.empty()) return std::nullopt;
+    AreaMap map{window, {}};
+    for (const std::uint8_t area : areas.of_pixel) {
+        const int mark = area == PixelAreas::kLeftOut ? -1 : int(area);
+        if (map.runs.empty() || map.runs.back().mark != mark) map.runs.push_back({mark, 0});
+        if (map.runs.size() > kMostRuns) return std::nullopt;
+        ++map.runs.back().pixels;
+    }
+    return map;
+}
+
 /// The names in the result begin with that of the report's folder of pictures.
 void write_pictures(const GoldenCase& test, const CompareRules& rules, const RenderedImage& rendered,
                     ReportPictures& report, GoldenImage& result) {
@@ -98,6 +115,8 @@ void write_pictures(const GoldenCase& test, const CompareRules& rules, const Ren
     ComparisonPictures all({true, pictures.difference_scale}, true, true, true);
     const Comparison comparison = compare_files(reference, rendered.file, rules,
                                                 [&](const LayerComparison& layer, LayerImages& images) {
+                                                    if (auto map = area_map(layer.window, images.areas))
+                                                        result.areas[layer.label] = std::move(*map);
                                                     taker.add(layer, images);
                                                     all.add(layer, images);
                                                 });

@@ -8,12 +8,14 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "framework/batch/page_pixels.h"
 #include "framework/compare/layer_file.h"
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
+#include "framework/core/open_file.h"
 #include "framework/core/path_bounds.h"
 #include "framework/image/false_color.h"
 
@@ -87,8 +89,8 @@ struct StoredLayer {
     PagePixels pixels;
 };
 
-std::vector<StoredLayer> read_layers(const fs::path& path) {
-    const LayerFile file(path);
+std::vector<StoredLayer> read_layers(OpenFile exr) {
+    const LayerFile file(std::move(exr));
     file.prefetch();
     std::vector<StoredLayer> layers;
     for (const LayerInfo& info : file.layers())
@@ -144,32 +146,26 @@ public:
 private:
     /// A report may come from a stranger's job: it must not bring other files of this machine into a page,
     /// neither by a path nor by a link.
-    fs::path file_of(const Json& name) const {
-        const fs::path file = fs::path(name.get<std::string>()).lexically_normal();
+    OpenFile open(const Json& name) const {
+        const auto file = name.get<std::string>();
         std::string fault;
-        if (file.is_absolute() || (!file.empty() && *file.begin() == "..")) fault = "leads out of the report";
-        else is_file_below(report_, file, fault);
-        if (!fault.empty()) throw Error(ExitCode::capture, file.string() + ": " + fault);
-        return report_ / file;
+        if (auto opened = open_file_below(report_, file, fault)) return std::move(*opened);
+        throw Error(ExitCode::capture, file + ": " + fault);
     }
     std::vector<StoredLayer> layers_in(const Json& name) const {
-        return name.is_string() ? read_layers(file_of(name)) : std::vector<StoredLayer>{};
+        return name.is_string() ? read_layers(open(name)) : std::vector<StoredLayer>{};
     }
 
-    std::uint64_t bytes_of(const Json& name) const {
-        std::error_code failure;
-        const auto bytes = name.is_string() ? fs::file_size(file_of(name), failure) : std::uintmax_t(0);
-        return failure ? 0 : bytes;  // is told when it is read
-    }
+    std::uint64_t bytes_of(const Json& name) const { return name.is_string() ? open(name).bytes() : 0; }
 
     Json png(const Json& name) {
         if (!name.is_string()) return nullptr;
         constexpr std::string_view kPngMagic = "\x89PNG\r\n\x1a\n";
-        const fs::path file = file_of(name).lexically_relative(report_);
+        const auto file = name.get<std::string>();
         std::string fault;
         const std::string bytes = read_file_below(report_, file, kMaxPictureBytes, fault);
         if (fault.empty() && !bytes.starts_with(kPngMagic)) fault = "is not a PNG";
-        if (!fault.empty()) throw Error(ExitCode::capture, file.string() + ": " + fault);
+        if (!fault.empty()) throw Error(ExitCode::capture, file + ": " + fault);
         return store_.add(base64(std::as_bytes(std::span(bytes))));
     }
 

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <fstream>
 #include <optional>
+#include <utility>
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
@@ -27,7 +28,7 @@ struct LayerFile::Impl {
     Image whole;                           // of formats without parts
     std::vector<std::string> whole_names;  // its channels
 
-    void open_exr(const ReadLimits& limits);
+    void open_exr(ExrFile file);
     void open_flat(Image image, LayerRole color);
     int part_of(const LayerInfo& layer) const;
     Image from_whole(const std::vector<std::string>& channels) const;
@@ -42,9 +43,9 @@ bool is_subsampled(const ExrPart& part) {
 
 }  // namespace
 
-void LayerFile::Impl::open_exr(const ReadLimits& limits) {
+void LayerFile::Impl::open_exr(ExrFile file) {
     format = "OpenEXR";
-    exr.emplace(path, limits);
+    exr = std::move(file);
     const std::vector<ExrPart>& parts = exr->parts();
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const std::string name = parts.size() > 1 ? parts[i].name : "";
@@ -102,7 +103,7 @@ LayerFile::LayerFile(const fs::path& path, const ReadLimits& limits) : impl_(std
         impl_->format = "Radiance HDR";
         impl_->open_flat(read_hdr(path), LayerRole::color);
     } else if (is_exr_file(path)) {
-        impl_->open_exr(limits);
+        impl_->open_exr(ExrFile(path, limits));
     } else {
         std::error_code error;
         if (!fs::exists(path, error))
@@ -116,6 +117,11 @@ LayerFile::LayerFile(const fs::path& path, const ReadLimits& limits) : impl_(std
         throw Error(ExitCode::capture,
                     path.string() + ": is neither OpenEXR nor PNG nor Radiance HDR, by its first bytes");
     }
+}
+
+LayerFile::LayerFile(OpenFile exr, const ReadLimits& limits) : impl_(std::make_unique<Impl>()) {
+    impl_->path = exr.path();
+    impl_->open_exr(ExrFile(std::move(exr), limits));
 }
 
 LayerFile::~LayerFile() = default;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "framework/compare/layer.h"
+#include "framework/core/open_file.h"
 
 namespace aftershade {
 
@@ -17,6 +18,8 @@ class LayerFile {
 public:
     /// Throws Error(ExitCode::capture) that begins with the path: missing, no such format, deep, damaged.
     explicit LayerFile(const std::filesystem::path& path, const ReadLimits& limits = {});
+    /// Of an OpenEXR file that is open.
+    explicit LayerFile(OpenFile exr, const ReadLimits& limits = {});
     ~LayerFile();
     LayerFile(LayerFile&&) noexcept;
     LayerFile& operator=(LayerFile&&) noexcept;

@@ -3,8 +3,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "framework/core/open_file.h"
 
 namespace aftershade {
 
@@ -14,14 +17,13 @@ namespace aftershade {
 /// ...".
 std::string out_of_bounds(const std::filesystem::path& file, const std::filesystem::path& folder);
 
-/// The bytes of a regular file of at most `max_bytes` that lies in `folder` under the relative path `name`,
-/// and is reached without following a link: for untrusted folders. Else "", and `fault` says
-/// why, as a message ends.
+/// A regular file that lies in `folder` under the relative path `name` and is reached without following a
+/// link: for untrusted folders. Else nullopt, and `fault` says why, as a message ends.
+std::optional<OpenFile> open_file_below(const std::filesystem::path& folder,
+                                        const std::filesystem::path& name, std::string& fault);
+/// The bytes of such a file, of at most `max_bytes`. Else "", and `fault` says why.
 std::string read_file_below(const std::filesystem::path& folder, const std::filesystem::path& name,
                             std::uintmax_t max_bytes, std::string& fault);
-/// Whether that file is there and is reached so; `fault` says why not.
-bool is_file_below(const std::filesystem::path& folder, const std::filesystem::path& name,
-                   std::string& fault);
 
 /// Folders of --allow-path, and of $AFTERSHADE_ALLOW_PATH, separated by colons.
 std::vector<std::filesystem::path> allowed_folders();

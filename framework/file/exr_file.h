@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "framework/core/open_file.h"
 #include "framework/file/deep_image.h"
 #include "framework/image/color_space.h"
 #include "framework/image/image.h"
@@ -93,6 +94,7 @@ bool is_exr_file(const std::filesystem::path& path);
 class ExrFile {
 public:
     explicit ExrFile(const std::filesystem::path& path, const ReadLimits& limits = {});
+    explicit ExrFile(OpenFile file, const ReadLimits& limits = {});
     ~ExrFile();
     ExrFile(ExrFile&&) noexcept;
     ExrFile& operator=(ExrFile&&) noexcept;

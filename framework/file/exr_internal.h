@@ -3,6 +3,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/memory_limit.h"
+#include "framework/core/open_file.h"
 #include "framework/core/text.h"
 #include "framework/file/deep_image.h"
 #include "framework/file/exr_file.h"
@@ -67,11 +68,14 @@ struct FileCloser {
 };
 using FileHandle = std::unique_ptr<std::FILE, FileCloser>;
 
+/// Throws Error(ExitCode::capture) where `path` is missing or unreadable.
+OpenFile open_exr(const std::filesystem::path& path);
+
 /// A regular file as Imf reads it. Keeps its size, so that sizes claimed in it can be checked.
 class FileStream final : public Imf::IStream {
 public:
-    /// Throws Error(ExitCode::capture) where `path` is missing, unreadable, empty or no regular file.
-    explicit FileStream(const std::filesystem::path& path);
+    /// Throws Error(ExitCode::capture) where the file is empty or not a regular one.
+    explicit FileStream(OpenFile file);
 
     bool read(char bytes[], int count) override;
     std::uint64_t tellg() override { return position_; }

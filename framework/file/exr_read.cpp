@@ -17,6 +17,7 @@
 #include <iterator>
 #include <mutex>
 #include <set>
+#include <utility>
 
 namespace aftershade {
 
@@ -86,7 +87,7 @@ struct ExrFile::Impl {
     std::unique_ptr<Imf::MultiPartInputFile> file;
     std::vector<ExrPart> parts;
 
-    Impl(const fs::path& file_path, const ReadLimits& file_limits);
+    Impl(OpenFile opened, const ReadLimits& file_limits);
     /// Unpacked ahead of the reads that will ask for it.
     struct Kept {
         ExrRequest request;
@@ -103,11 +104,11 @@ struct ExrFile::Impl {
     void read_pixels(int part, const Imf::FrameBuffer& frame);
 };
 
-ExrFile::Impl::Impl(const fs::path& file_path, const ReadLimits& file_limits)
-    : path(file_path), limits(file_limits) {
+ExrFile::Impl::Impl(OpenFile opened, const ReadLimits& file_limits)
+    : path(opened.path()), limits(file_limits) {
     bound_library();
     exr::translate_errors(path, ExitCode::capture, "damaged header", [&] {
-        stream = std::make_unique<exr::FileStream>(path);
+        stream = std::make_unique<exr::FileStream>(std::move(opened));
         layout = exr::read_layout(*stream, path, limits);
         const int threads = layout.largest_block_bytes > kThreadedBlockBytes ? 0 : Imf::globalThreadCount();
         // An incomplete part is refused, so the library looks for blocks only where all were found.
@@ -250,8 +251,9 @@ void ExrFile::Impl::prefetch(int part, std::span<const ExrRequest> requests) {
     std::ranges::move(together, std::back_inserter(kept));
 }
 
-ExrFile::ExrFile(const fs::path& path, const ReadLimits& limits)
-    : impl_(std::make_unique<Impl>(path, limits)) {}
+ExrFile::ExrFile(const fs::path& path, const ReadLimits& limits) : ExrFile(exr::open_exr(path), limits) {}
+ExrFile::ExrFile(OpenFile file, const ReadLimits& limits)
+    : impl_(std::make_unique<Impl>(std::move(file), limits)) {}
 ExrFile::~ExrFile() = default;
 ExrFile::ExrFile(ExrFile&&) noexcept = default;
 ExrFile& ExrFile::operator=(ExrFile&&) noexcept = default;

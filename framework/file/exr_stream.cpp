@@ -16,11 +16,18 @@ namespace fs = std::filesystem;
 
 namespace exr {
 
-FileStream::FileStream(const fs::path& path) : Imf::IStream(path.c_str()) {
+OpenFile open_exr(const fs::path& path) {
     // Not blocking: opening a pipe that nobody writes to would wait for ever.
     const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (descriptor < 0) fail(path, fmt::format("cannot be opened: {}", std::strerror(errno)));
+    return OpenFile(path, descriptor);
+}
+
+FileStream::FileStream(OpenFile file) : Imf::IStream(file.path().c_str()) {
+    const fs::path& path = file.path();
+    const int descriptor = file.descriptor();
     file_.reset(fdopen(descriptor, "rb"));
+    if (file_) file.release();
     struct stat status = {};
     if (!file_ || fstat(descriptor, &status) != 0)
         fail(path, fmt::format("cannot be opened: {}", std::strerror(errno)));

@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <istream>
 #include <memory>
+#include <streambuf>
+#include <string>
 
 #include "framework/core/atomic_file.h"
 
@@ -41,6 +45,45 @@ int is_at_end(void* user) {
     return static_cast<Source*>(user)->file.eof() ? 1 : 0;
 }
 
+constexpr const char* kCutOff = "cut off: the file ends before its pixels do";
+
+/// To the first byte of the pixels. A line that begins with NUL ends the header, as stb reads it.
+void skip_header(std::istream& in) {
+    std::string line;
+    while (std::getline(in, line) && !line.empty() && line[0] != '\0') {
+    }
+    std::getline(in, line);  // the size
+}
+
+/// Why the run lengths do not cover the pixels; "" where they do, or where stb finds the fault itself. It
+/// reads 0 where a length is missing, and a run of 0 pixels brings it no nearer to the end of the line.
+std::string fault_of_runs(std::istream& in, int width, int height) {
+    constexpr int kLeastWidth = 8, kLongestDump = 128;  // narrower pictures have no runs
+    if (width < kLeastWidth) return "";
+    std::streambuf& bytes = *in.rdbuf();
+    constexpr int kEnd = std::char_traits<char>::eof();
+    for (int row = 0; row < height; ++row) {
+        std::array<int, 4> head{};
+        for (int& byte : head)
+            if ((byte = bytes.sbumpc()) == kEnd) return kCutOff;
+        if (head[0] != 2 || head[1] != 2 || head[2] >= 128) return "";  // pixels without runs
+        if ((head[2] << 8 | head[3]) != width) return "";
+        for (int channel = 0; channel < 4; ++channel)
+            for (int left = width; left > 0;) {
+                const int length = bytes.sbumpc();
+                if (length == kEnd) return kCutOff;
+                if (length == 0) return "damaged: a run of pixels is 0 px long";
+                const bool repeats = length > kLongestDump;
+                const int pixels = repeats ? length - kLongestDump : length;
+                if (pixels > left) return "";
+                for (int i = 0; i < (repeats ? 1 : pixels); ++i)
+                    if (bytes.sbumpc() == kEnd) return kCutOff;
+                left -= pixels;
+            }
+    }
+    return "";
+}
+
 }  // namespace
 
 bool is_hdr_file(const fs::path& path) {
@@ -62,11 +105,16 @@ Image read_hdr(const fs::path& path) {
     if (const std::string fault = stb::fault_of_size(width, height, 3); !fault.empty()) fail(path, fault);
     source.file.clear();
     source.file.seekg(0);
+    skip_header(source.file);
+    if (const std::string fault = fault_of_runs(source.file, width, height); !fault.empty())
+        fail(path, fault);
+    source.file.clear();
+    source.file.seekg(0);
     source.past_end = false;
     const std::unique_ptr<float, decltype(&stbi_image_free)> pixels(
         stbi_loadf_from_callbacks(&callbacks, &source, &width, &height, &channels, 3), &stbi_image_free);
     if (!pixels) fail(path, fmt::format("damaged: {}", stbi_failure_reason()));
-    if (source.past_end) fail(path, "cut off: the file ends before its pixels do");
+    if (source.past_end) fail(path, kCutOff);
     Image image(width, height, 3);
     std::memcpy(image.floats().data(), pixels.get(), image.floats().size_bytes());
     return image;

@@ -74,7 +74,10 @@ Capture FrameLoader::read(int file) const {
     Capture capture = reader_.read(file, roles_);
     require_capture_roles(pipeline_, capture.header, &reader_);
     objects_.look_at(capture);
-    apply_nan_policy(run_.on_nan, capture);  // before scaling, which spreads NaN
+    {
+        const TraceScope scan(run_.trace, "scan", "file " + std::to_string(file));
+        apply_nan_policy(run_.on_nan, capture);  // before scaling, which spreads NaN
+    }
     if (run_.region) crop_capture(capture, region_with_margin(run_, capture.header.display_window));
     scale_capture(capture, run_.scale_divisor);
     const int subframe = (file % sequence_.subframes + sequence_.subframes) % sequence_.subframes;

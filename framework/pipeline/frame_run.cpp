@@ -6,6 +6,7 @@
 
 #include "framework/capture/capture_window.h"
 #include "framework/core/error.h"
+#include "framework/core/trace.h"
 #include "framework/image/window.h"
 
 namespace aftershade {
@@ -96,6 +97,7 @@ FrameRun::Rendered FrameRun::finished(std::shared_ptr<const Capture> capture, Fr
         result.region = region;
         capture = std::move(part);
     }
+    const TraceScope scan(run_.trace, "scan", "frame " + std::to_string(capture->header.frame));
     auto outputs = apply_nan_policy(run_.on_nan, result);
     return {std::move(capture), std::make_shared<const FrameResult>(std::move(result)), std::move(outputs)};
 }

@@ -50,6 +50,7 @@ struct RunReport {
     bool history_saved = false;          ///< RunOptions::history_out was written
     int frames_skipped = 0;              ///< missing, and MissingFrame::skip
     int frames_unwritten = 0;            ///< rendered for what they leave to later frames
+    int frames_current = 0;              ///< finished by earlier runs; set by whoever leaves them out
     std::vector<PassStatistics> passes;  ///< in the order of the passes
     double read_ms = 0;                  ///< waiting for frames to be read and decoded
     double write_ms = 0;                 ///< waiting for files to be written

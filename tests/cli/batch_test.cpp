@@ -36,6 +36,11 @@ TEST_F(Batch, AMissingFrameOfAPatternIsSkippedOrHeldWhereThatIsAskedFor) {
         run({"nothing.json", "in_####.exr", "-o", "out_####.exr", "--missing", "skip"}, 0);
     EXPECT_EQ(skipped.out, "out_0001.exr\nout_0003.exr\n");
     EXPECT_TRUE(says(skipped, "frame 2 is missing: skipped")) << skipped.err;
+    const std::vector<std::string> again{"nothing.json", "in_####.exr", "-o",       "out_####.exr",
+                                         "--missing",    "skip",        "--report", "report.json"};
+    EXPECT_EQ(run(again, 0).out, "") << "frames 1 and 3 are current, and nothing is left to do";
+    EXPECT_NE(read_text(folder_ / "report.json").find("\"exit_code\": 0"), std::string::npos)
+        << read_text(folder_ / "report.json");
     const CommandResult held =
         run({"nothing.json", "in_####.exr", "-o", "out_####.exr", "--missing", "hold"}, 0);
     EXPECT_EQ(held.out, "out_0002.exr\n") << "frames 1 and 3 are current";

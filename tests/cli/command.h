@@ -4,10 +4,12 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdint>
 #include <map>
 #include <sstream>
 #include <stdexcept>
@@ -27,6 +29,8 @@ struct CommandResult {
     int exit_code = -1;  ///< 128 + signal where one ended the process
     std::string out;
     std::string err;
+    double processor_s = 0;        ///< of the process and those that it waited for
+    std::uint64_t peak_bytes = 0;  ///< of memory, of the one of them that took most
 };
 
 inline std::vector<std::string> lines_of_text(const std::string& text) {
@@ -83,10 +87,15 @@ public:
 
     CommandResult wait() {
         int status = 0;
-        waitpid(process_, &status, 0);
+        rusage used{};
+        wait4(process_, &status, 0, &used);
         process_ = 0;
         const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-        return {code, read_text(output_ / "out"), read_text(output_ / "err")};
+        const auto seconds = [](const timeval& time) {
+            return double(time.tv_sec) + double(time.tv_usec) * 1e-6;
+        };
+        return {code, read_text(output_ / "out"), read_text(output_ / "err"),
+                seconds(used.ru_utime) + seconds(used.ru_stime), std::uint64_t(used.ru_maxrss) * 1024};
     }
 
 private:

@@ -100,6 +100,9 @@ TEST_F(Overwriting, OfWhatOtherVerbsReadIsRefused) {
     for (const char* word : {"-o", "--csv", "--heat-map"})
         expect_refused({"compare", "in_0001.exr", "in_0002.exr", word, "link.exr"}, 64,
                        std::string(word) + " link.exr: error: would replace the input in_0001.exr");
+    expect_refused(
+        {"compare", "in_0001.exr", "in_0002.exr", "--ignore", "mask:mask.png", "--csv", "same.png"}, 64,
+        "--csv same.png: error: would replace the input mask.png");
     fs::copy_file(AFTERSHADE_SOURCE_DIR "/scenes/plane_edge/scene.json", folder_ / "set.json");
     fs::create_directory(folder_ / "set");
     fs::rename(folder_ / "set.json", folder_ / "set/capture.json");

@@ -108,14 +108,21 @@ TEST_F(UntrustedFiles, BehindALinkDoNotGetIntoAReportsPage) {
     write_text(folder_ / "report/images/text.png", "not a picture, c2VjcmV0");
     fs::create_symlink("../../secret.txt", folder_ / "report/images/x.png");
     ASSERT_EQ(mkfifo((folder_ / "report/images/pipe.png").c_str(), 0600), 0);
+    fs::create_symlink(fs::absolute(frame_path(1)), folder_ / "report/images/x.exr");
+    ASSERT_EQ(mkfifo((folder_ / "report/images/pipe.exr").c_str(), 0600), 0);
     nlohmann::ordered_json images = nlohmann::ordered_json::array();
-    for (const char* name : {"x", "text", "pipe"}) {
+    for (const std::string name :
+         {"x.png", "text.png", "pipe.png", "x.exr", "pipe.exr", "../../in_0001.exr"}) {
+        const bool is_exr = name.ends_with(".exr");
         nlohmann::ordered_json pictures;
         for (const char* key :
-             {"reference", "difference", "heat_map", "side_by_side", "reference_exr", "test_exr"})
+             {"reference", "test", "difference", "heat_map", "side_by_side", "reference_exr", "test_exr"})
             pictures[key] = nullptr;
-        pictures["test"] = std::string("images/") + name + ".png";
-        images.push_back({{"name", name}, {"verdict", "same"}, {"bits_equal", true}, {"pictures", pictures}});
+        pictures[is_exr ? "reference_exr" : "test"] = "images/" + name;
+        images.push_back({{"name", name},
+                          {"verdict", is_exr ? "failure" : "same"},
+                          {"bits_equal", !is_exr},
+                          {"pictures", pictures}});
     }
     const nlohmann::ordered_json report = {{"document", ""},
                                            {"environment", nlohmann::ordered_json::object()},
@@ -126,10 +133,13 @@ TEST_F(UntrustedFiles, BehindALinkDoNotGetIntoAReportsPage) {
     const CommandResult result = run_aftershade({"golden", "report", "report"}, folder_.path());
     ASSERT_EQ(result.exit_code, 0) << result.err;
     const std::string page = read_text(folder_ / "report/index.html");
-    EXPECT_NE(page.find("images/x.png: is, or lies behind, a symbolic link, which is not followed"),
-              std::string::npos);
-    EXPECT_NE(page.find("images/text.png: is not a PNG"), std::string::npos);
-    EXPECT_NE(page.find("images/pipe.png: is not a regular file"), std::string::npos);
+    for (const char* line :
+         {"images/x.png: is, or lies behind, a symbolic link, which is not followed",
+          "images/text.png: is not a PNG", "images/pipe.png: is not a regular file",
+          "images/x.exr: is, or lies behind, a symbolic link, which is not followed",
+          "images/pipe.exr: is not a regular file", "images/../../in_0001.exr: leads out of its folder"})
+        EXPECT_NE(page.find(line), std::string::npos) << line;
+    EXPECT_EQ(page.find("<script type=\"text/plain\""), std::string::npos) << "no pixel is in the page";
     for (const char* secret : {"c2VjcmV0", "YzJWamNtVjA"})
         EXPECT_EQ(page.find(secret), std::string::npos) << "plain, and as base64";
 }

@@ -74,6 +74,7 @@ TEST_F(Progress, ATraceHasEachFrameItsFilesAndItsPassesWithoutOverlapInARow) {
     EXPECT_EQ(counts["frames"], 4);
     EXPECT_EQ(counts["decode"], 4);
     EXPECT_EQ(counts["encode"], 4);
+    EXPECT_EQ(counts["scan"], 2 * 4) << "captures and outputs are searched for NaN";
     EXPECT_EQ(counts["passes"], 4 * 4) << "upload, two passes, readback";
     for (auto& [row, times] : rows) {
         std::ranges::sort(times);

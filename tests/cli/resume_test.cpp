@@ -250,8 +250,11 @@ TEST_F(Resume, AFrameThatCouldNotBeReadIsTriedAgain) {
     const std::string sound = read_text(folder_ / "in_0003.exr");
     write_text(folder_ / "in_0003.exr", sound.substr(0, sound.size() / 2));
     run("tint", {}, "out_####.exr", int(ExitCode::partial));
-    const CommandResult again = run("tint", {}, "out_####.exr", int(ExitCode::partial));
+    const CommandResult again =
+        run("tint", {"--report", "report.json"}, "out_####.exr", int(ExitCode::partial));
     EXPECT_EQ(again.out, "");
+    EXPECT_NE(read_text(folder_ / "report.json").find("\"exit_code\": 1"), std::string::npos)
+        << read_text(folder_ / "report.json");
     EXPECT_NE(again.err.find("6 frames: 5 current, 1 to render"), std::string::npos) << again.err;
     write_text(folder_ / "in_0003.exr", sound);
     EXPECT_EQ(run("tint").out, "out_0003.exr\n");

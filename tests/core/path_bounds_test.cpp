@@ -56,7 +56,8 @@ TEST(FilesBelow, AreReadWithoutFollowingAnyLink) {
          {"images/link", "up/secret", "../secret", "pipe", "images", "absent", "/etc/hosts"}) {
         EXPECT_EQ(read_file_below(folder / "report", name, 100, fault), "") << name;
         EXPECT_NE(fault, "") << name;
-        EXPECT_FALSE(is_file_below(folder / "report", name, fault)) << name;
+        EXPECT_FALSE(open_file_below(folder / "report", name, fault)) << name;
+        EXPECT_NE(fault, "") << name;
     }
 }
 

@@ -2,8 +2,11 @@
 #include <OpenEXR/ImfRgbaFile.h>
 
 #include <algorithm>
+#include <optional>
 #include <span>
+#include <utility>
 
+#include "framework/core/path_bounds.h"
 #include "tests/file/image_files.h"
 
 namespace aftershade::test {
@@ -47,6 +50,23 @@ TEST(ReplacedExr, OfLuminanceAndChromaIsRefusedWhereItsBytesBecameAnotherPicture
     write_text(folder / "f.exr", read_text(folder / "wide.exr"));
     EXPECT_NE(capture_error([&] { file.read_luminance_chroma(0); }).find("was changed while it was read"),
               std::string::npos);
+}
+
+TEST(ReplacedExr, OfAReportIsTheFileThatWasCheckedEvenIfALinkTakesItsPlace) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "report");
+    write_rgb(folder / "report/f.exr", 4, 4);
+    write_rgb(folder / "secret.exr", 512, 4);
+    std::string fault;
+    std::optional<OpenFile> opened = open_file_below(folder / "report", "f.exr", fault);
+    ASSERT_TRUE(opened) << fault;
+    fs::remove(folder / "report/f.exr");
+    fs::create_symlink("../secret.exr", folder / "report/f.exr");
+    const ExrFile file(std::move(*opened));
+    const std::vector<std::string> channels{"R"};
+    EXPECT_EQ(file.path(), folder / "report/f.exr");
+    EXPECT_TRUE(std::ranges::equal(file.read_floats(0, channels).floats(), pattern_image(4, 4, 1).floats()));
+    EXPECT_FALSE(open_file_below(folder / "report", "f.exr", fault));
 }
 
 TEST(ReplacedExr, IsReadAsItWasOpened) {

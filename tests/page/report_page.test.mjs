@@ -438,6 +438,24 @@ inPage("says what is left out, what is forgiven, and who approved when", async (
   assert.ok(text.includes(`${approver}, ${sidecar.approved}`), text);
 });
 
+inPage("draws the areas of a tolerance where they lie", async (page) => {
+  const viewer = await viewerOf(page, "areas");
+  assert.equal(caseOf("areas").verdict, "failure");
+  await lookAtWorst(viewer, "Reference"); // 16 px of the canvas for each, (31, 17) in the middle
+  const box = await viewer.locator("canvas").boundingBox();
+  const place = (x, y) => [box.width / 2 + 16 * (x - 31), box.height / 2 + 16 * (y - 17)];
+  const places = [place(22, 18), place(42, 18), place(43, 18), place(44, 18), place(36, 18)];
+  const shown = await colorsAt(viewer, places);
+  await viewer.getByLabel("Show areas").uncheck();
+  const plain = await colorsAt(viewer, places);
+  assert.ok(shown[0][2] > plain[0][2] && shown[0][0] < plain[0][0] + 64, `tinted blue: ${plain[0]}, ${shown[0]}`);
+  const brighter = [1, 2, 3].map((i) => Math.sign(shown[i][0] - plain[i][0]));
+  assert.ok(brighter.includes(1) && brighter.includes(-1), `hatched: ${shown.slice(1, 4)}`);
+  assert.deepEqual(shown[4], plain[4], "outside of the areas");
+  await page.keyboard.press("m");
+  assert.deepEqual(await colorsAt(viewer, places), shown);
+});
+
 // ---- approving ----
 
 inPage("copies by key what approves the case that has the focus", async (page) => {
@@ -610,7 +628,7 @@ test("tells pictures that are gone, and no report", async () => {
   writeFileSync(join(mine, "report.json"), JSON.stringify(foreign));
   assert.equal(rebuildPage(mine).code, 0);
   const page = await openPage(browser, join(mine, "index.html"));
-  assert.match(await page.locator("#case-one_pixel").innerText(), /suite\/in\.exr: leads out of the report/);
+  assert.match(await page.locator("#case-one_pixel").innerText(), /suite\/in\.exr: leads out of its folder/);
   assert.match(await page.locator("#case-lens").innerText(), /Pictures are missing: .*lens\.color\.0001\.test\.exr/);
   await page.context().close();
   writeFileSync(join(mine, "report.json"), '{"cases": []}');

@@ -66,6 +66,17 @@ function casesOf(changed) {
       { change: 0.5 },
       { tolerance: { fail: 0.004, forgive_shift: 2, ignore: [{ rectangle: [30, 16, 4, 5] }] } },
     ),
+    cardCase(
+      "areas",
+      { change: 0.5 },
+      {
+        tolerance: {
+          fail: 0.004,
+          ignore: [{ rectangle: [40, 16, 6, 6] }],
+          areas: [{ rectangle: [20, 16, 6, 6], fail: 0.1 }],
+        },
+      },
+    ),
     cardCase("poisoned", { poison: true }),
     cardCase("inside_tolerance", { change: 0.03125 }, { tolerance: { fail: 0.1 } }),
     cardCase("warned", { change: 0.25 }, { tolerance: { fail: 1, warn: 0.01 } }),

@@ -98,6 +98,24 @@ TEST(HostilePictures, WhosePixelsUnpackToMoreThanTheirSizeTakesAreRefused) {
     EXPECT_EQ(read_png(folder / "sound.png").width(), 64);
 }
 
+TEST(HostilePictures, OfRadianceWhoseRunsEndEarlyAreRefused) {
+    const TemporaryFolder folder;
+    const std::string line("\x02\x02\x00\x10\x90\x80\x90\x80\x90\x80\x90\x80", 12);  // 4 runs of 16 px
+    const std::string head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 16\n";
+    const std::string sound = head + line + line + line + line;
+    write_text(folder / "a.hdr", sound);
+    EXPECT_EQ(read_hdr(folder / "a.hdr").at(15, 3, 0), 0.5f);
+    for (std::size_t bytes = head.size(); bytes < sound.size(); ++bytes) {
+        write_text(folder / "a.hdr", sound.substr(0, bytes));
+        EXPECT_NE(refusal([&] { read_hdr(folder / "a.hdr"); }).find("cut off"), std::string::npos) << bytes;
+    }
+    std::string empty_run = sound;
+    empty_run[head.size() + 4] = 0;
+    write_text(folder / "a.hdr", empty_run);
+    EXPECT_NE(refusal([&] { read_hdr(folder / "a.hdr"); }).find("a run of pixels is 0 px long"),
+              std::string::npos);
+}
+
 TEST(Render, OfAPictureThatFillsTheMemoryIsRefusedWithTheRemedy) {
     scene::Scene scene;
     scene::Job job;

@@ -221,6 +221,29 @@ function canvasOf(width, height, colorAt) {
   return canvas;
 }
 
+/** What a tolerance's areas hold: pixels that are left out are hatched, those with limits of their own tinted and edged. */
+function areaPictureOf({ x, y, width, height, runs }) {
+  const marks = new Int16Array(width * height);
+  for (let i = 0, at = 0; i < runs.length; i += 2) {
+    marks.fill(runs[i], at, at + runs[i + 1]);
+    at += runs[i + 1];
+  }
+  const canvas = document.createElement("canvas");
+  [canvas.width, canvas.height] = [width, height];
+  const context = canvas.getContext("2d"),
+    picture = context.createImageData(width, height);
+  const isEdge = (i) =>
+    [i % width ? i - 1 : -1, (i + 1) % width ? i + 1 : -1, i - width, i + width].some((near) => marks[near] !== marks[i]);
+  for (let i = 0; i < marks.length; ++i) {
+    if (!marks[i]) continue;
+    const dark = ((i % width) + Math.floor(i / width)) % 4 < 2;
+    const color = marks[i] > 0 ? [64, 160, 255, isEdge(i) ? 230 : 64] : dark ? [0, 0, 0, 150] : [255, 255, 255, 90];
+    picture.data.set(color, 4 * i);
+  }
+  context.putImageData(picture, 0, 0);
+  return { source: canvas, x, y, width, height };
+}
+
 /** A picture of an image, at its place in the file. */
 function pictureOf(layer, image, coloring, stops, palette) {
   const gain = 2 ** stops,

@@ -46,7 +46,7 @@ class ComparedImage {
     this.mode = this.hasReference() ? (innerWidth < 800 ? "test" : "all") : "test";
     this.swapped = this.hovered = false;
     this.wipe = 0.5;
-    this.marks = true;
+    this.marks = this.areas = true;
     this.scaleStops = Math.log2(image.pictures.difference_scale || 1);
     [this.leastScale, this.mostScale] = [
       Math.min(0, Math.floor(this.scaleStops)),
@@ -149,6 +149,13 @@ class ComparedImage {
     values.pictures[kind] = { setting, picture };
     return picture;
   }
+  /** Of the areas of the layer; null where it has none. */
+  areaPicture() {
+    const areas = this.layer && this.image.areas?.[this.layer.label];
+    if (!areas) return null;
+    const values = this.values.get(this.layer);
+    return (values.areas ??= areaPictureOf(areas));
+  }
   panes() {
     const { width, height } = this.canvas,
       kinds = this.mode === "all" ? ["reference", "test", "difference"] : [this.mode];
@@ -176,6 +183,7 @@ class ComparedImage {
       within(context, pane, () => {
         if (kind === "wipe") this.drawWipe(context, pane, ratio);
         else drawPicture(context, this.view, pane, this.picture(kind));
+        if (this.areas) drawPicture(context, this.view, pane, this.areaPicture());
         if (this.marks) this.drawMarks(context, pane);
         if (kind !== "wipe") drawLabel(context, pane, MODES[kind].label, ratio);
       });

@@ -16,6 +16,7 @@ const KEYS = [
   ["+ \u2212 0 1", "zoom in, out, whole picture, 1:1"],
   ["x", "to the largest difference"],
   ["b", "frame around failing pixels"],
+  ["m", "areas that are left out or have limits of their own"],
   ["arrows, drag", "move the picture (click it first)"],
   ["Ctrl + wheel", "zoom; the wheel alone once the picture was clicked"],
 ];

@@ -132,6 +132,14 @@ class Viewer extends ComparedImage {
         this.draw();
       },
     });
+    this.areaBox = element("input", {
+      type: "checkbox",
+      checked: true,
+      onchange: () => {
+        this.areas = this.areaBox.checked;
+        this.draw();
+      },
+    });
     this.readout = element("div", { class: "readout", role: "status" });
     this.layerMenu = element(
       "select",
@@ -166,6 +174,14 @@ class Viewer extends ComparedImage {
       ),
       this.layer && this.image.comparison
         ? element("label", { title: "A frame around all pixels that fail (b)" }, this.markBox, "Frame failing pixels")
+        : null,
+      this.layer && Object.keys(this.image.areas ?? {}).length
+        ? element(
+            "label",
+            { title: "Hatched: left out. Blue: held to limits of its own. (m)" },
+            this.areaBox,
+            "Show areas",
+          )
         : null,
     );
     this.listen();
@@ -315,6 +331,10 @@ class Viewer extends ComparedImage {
       x: () => this.showWorst(),
       b: () => {
         this.markBox.checked = this.marks = !this.marks;
+        this.draw();
+      },
+      m: () => {
+        this.areaBox.checked = this.areas = !this.areas;
         this.draw();
       },
     };
