@@ -232,17 +232,26 @@ std::string part_label(const std::vector<ExrPart>& parts, int part) {
     return fmt::format("part {} '{}'", part, parts[std::size_t(part)].name);
 }
 
-bool is_memory_text(std::string_view text) {
-    return text.find("bad_alloc") != std::string_view::npos ||
-           text.find("Failed to allocate memory") != std::string_view::npos;
-}
+namespace {
 
-std::string library_reason(const std::exception& error) {
-    std::string reason = error.what();
+std::string reason_of(std::string reason) {
     const std::size_t name_end = reason.rfind("\". ");
     if (name_end != std::string::npos) reason.erase(0, name_end + 3);
     while (!reason.empty() && (reason.back() == '.' || reason.back() == ' ')) reason.pop_back();
     return reason.empty() ? "unknown reason" : reason;
+}
+
+}  // namespace
+
+// Names in files and paths are in the library's messages, too, and may say anything.
+bool is_memory_text(std::string_view text) {
+    const std::string reason = reason_of(std::string(text));
+    return reason == "std::bad_alloc" || reason.ends_with(" std::bad_alloc") ||
+           reason.starts_with("Failed to allocate memory");
+}
+
+std::string library_reason(const std::exception& error) {
+    return reason_of(error.what());
 }
 
 }  // namespace exr
