@@ -1,7 +1,7 @@
 # Sourced by scripts/check-bare-debian and scripts/check-ci-recipes: a Debian 12 that has nothing, made by debootstrap and
 # reaching the package mirror as this machine does. Needs root, debootstrap and about 3 GB.
 #
-#   fresh_root FOLDER       makes FOLDER/root anew out of FOLDER/pristine, which is kept; sets $root
+#   fresh_root FOLDER       makes FOLDER/root from a fresh copy of FOLDER/pristine, which is kept; sets $root
 #   leave_root              unmounts what fresh_root mounted; for the trap EXIT
 #   in_root COMMAND...      runs it there
 fresh_root() {

@@ -1,11 +1,11 @@
 // Which layers there are and what a pixel is in each. Layers are numbered from near to far. Their anchors are even in CoC
 // from the nearest pixel's to the farthest's, kStep apart or, where there are too few, more; one is the focus plane.
 const int kLayers = 24;  // as effect.json declares
-const int kTile = 32;    // px; sums along a row start anew so often
+const int kTile = 32;    // px; sums along a row restart so often
 const int kRangeTile = 64;  // px a side of the tiles of range_tile
 const int kOccupied = 16;  // px a side of the tiles of `occupied`
 
-// Whether the sums along a row start anew at a column. The last one stands alone: it is taken many times.
+// Whether the sums along a row restart at a column. The last one stands alone: it is taken many times.
 bool starts_run(int column, int width) { return column % kTile == 0 || column == width - 1; }
 
 struct Layers {

@@ -6,7 +6,7 @@ layout(local_size_x = 1, local_size_y = 32) in;
 
 shared uint any_share[kTile / kOccupied][kTile / kOccupied];
 
-// One invocation sums one row of a tile: with sums that start anew every 32 px and keep what rounding takes (Kahan), 32-bit
+// One invocation sums one row of a tile: with sums that restart every 32 px and keep what rounding takes (Kahan), 32-bit
 // floats keep a uniform image uniform.
 void main() {
     Layers layers = make_layers(texelFetch(range, ivec2(0), 0).rg);

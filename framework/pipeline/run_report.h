@@ -10,6 +10,7 @@
 
 #include "framework/capture/capture.h"
 #include "framework/core/error.h"
+#include "framework/core/status.h"
 #include "framework/pipeline/audit.h"
 #include "framework/pipeline/telemetry.h"
 

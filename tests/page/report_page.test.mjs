@@ -1,4 +1,4 @@
-// The page of a golden suite's report, as its users have it. The suite is made anew by the program (suite.mjs).
+// The page of a golden suite's report, as its users have it. The program makes the suite first (suite.mjs).
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import {

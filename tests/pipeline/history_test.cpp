@@ -38,7 +38,7 @@ protected:
         return make_capture(scene, frame);
     }
 
-    /// The first channel, and why history began anew.
+    /// The first channel, and why history restarted.
     static std::pair<float, std::string> step(Bench& bench, const Capture& capture, bool cut = false) {
         FrameInputs frame;
         frame.capture = &capture;
