@@ -1,10 +1,14 @@
-// How many of the capture's layers are spread: the picture and what lies behind it.
-#if defined(HAS_FOURTH) && defined(HAS_FOURTH_DEPTH)
-const uint kLayers = 4u;
-#elif defined(HAS_THIRD) && defined(HAS_THIRD_DEPTH)
-const uint kLayers = 3u;
-#elif defined(HAS_SECOND) && defined(HAS_SECOND_DEPTH)
-const uint kLayers = 2u;
-#else
-const uint kLayers = 1u;
+// How many layers of the capture are spread: the picture and those behind it.
+uint layer_count() {
+    uint count = 1u;
+#ifdef HAS_SECOND
+    count += uint(textureSize(second, 0).x > 0);
 #endif
+#ifdef HAS_THIRD
+    count += uint(textureSize(third, 0).x > 0);
+#endif
+#ifdef HAS_FOURTH
+    count += uint(textureSize(fourth, 0).x > 0);
+#endif
+    return count;
+}

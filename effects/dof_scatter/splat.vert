@@ -2,7 +2,6 @@
 #include <pass>
 #include <lens/lens.glsl>
 #include "slices.glsl"
-#include "layers.glsl"
 
 flat out vec4 light;
 flat out vec3 middle_radius;  // px, signed
