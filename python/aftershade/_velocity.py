@@ -30,7 +30,7 @@ class VelocitySettings:
 
 @dataclass(frozen=True)
 class VelocityCheck:
-    """What two frames tell of one role of motion. True where they confirm the claim."""
+    """The check of one motion role over two frames. True if they confirm the claim."""
 
     role: str  #: velocity or velocity_next
     verdict: str  #: "confirmed", "undecided", "wrong", "no_fit" or "untestable"
