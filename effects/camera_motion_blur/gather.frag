@@ -1,6 +1,7 @@
 #version 450 core
 #include <pass>
 #include <shutter/random_phase.glsl>
+#include <behind.glsl>
 #include "path.glsl"
 
 // Within which a guess and the better one that it led to are one place, px.
@@ -26,15 +27,12 @@ Guess guess(Moment moment, Sight sight, float sought, vec2 here) {
 }
 
 #if defined(HAS_SECOND) && defined(HAS_SECOND_DEPTH)
-const float kLeastAlpha = 0.5;
-
 // Of the capture's second layer, sought first at a surface beside it; alpha 0 where the layer shows nothing.
 vec4 known_behind(Moment moment, Sight sight, float sought, vec2 here) {
     ivec2 texel = texel_at(here + offset_at(moment, sight, max(sought, 0.0)));
     float found = inverse_depth(texelFetch(second_depth, texel, 0).r);
     texel = texel_at(here + offset_at(moment, sight, max(found, 0.0)));
-    vec4 behind = texelFetch(second, texel, 0);
-    return behind.a > kLeastAlpha ? behind / behind.a : vec4(0.0);
+    return covering(texelFetch(second, texel, 0));
 }
 #endif
 

@@ -1,10 +1,10 @@
+#include <behind.glsl>
 #include <lens/lens.glsl>
 
 // What the capture's layers have behind a pixel.
 #if defined(HAS_SECOND) && defined(HAS_SECOND_DEPTH)
 #define KNOWS_BEHIND
 
-const float kLeastAlpha = 0.5;
 const float kOneLayerPx = 2.0;  // difference of CoC radii on one surface
 
 struct Known {
@@ -13,9 +13,8 @@ struct Known {
 };
 
 Known known_of(vec4 behind, float depth_m, float least_coc_px) {
-    if (behind.a <= kLeastAlpha) return Known(Light(vec4(0.0), 0.0), false);
-    Light light = Light(behind / behind.a, coc_of(depth_m, lens_at_infinity_px()));
-    return Known(light, light.coc > least_coc_px - kOneLayerPx);
+    Light light = Light(covering(behind), coc_of(depth_m, lens_at_infinity_px()));
+    return Known(light, light.color.a > 0.0 && light.coc > least_coc_px - kOneLayerPx);
 }
 
 // The first layer that does not lie clearly in front of least_coc_px.

@@ -1,5 +1,6 @@
 #version 450 core
 #include <pass>
+#include <behind.glsl>
 #include <lens/lens.glsl>
 #include "slices.glsl"
 
@@ -24,8 +25,6 @@ Texel texel_of(int layer, ivec2 p) {
     return Texel(vec4(0.0), 0.0);
 }
 
-const float kLeastAlpha = 0.5;
-
 // Pixels beyond the edges are the nearest ones of the picture.
 void main() {
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // outside: no fragments
@@ -41,7 +40,8 @@ void main() {
     vec4 color_here = texelFetch(color, texel, 0);
     if (layer > 0) {
         Texel behind = texel_of(layer, texel);
-        if (behind.light.a <= kLeastAlpha) return;
+        color_here = covering(behind.light);
+        if (color_here.a == 0.0) return;
         float at_infinity_px = lens_at_infinity_px(), front = radius;
         radius = coc_of(behind.depth_m, at_infinity_px);
         int slice = slice_of(largest_px, radius);
@@ -49,7 +49,6 @@ void main() {
             if (k > 0) front = coc_of(texel_of(k, texel).depth_m, at_infinity_px);
             if (slice_of(largest_px, front) == slice) return;  // stays hidden: within a slice, light is averaged
         }
-        color_here = behind.light / behind.light.a;
     }
     if (slice_of(largest_px, radius) != pass.index) return;
 

@@ -54,9 +54,8 @@ vec4 uncovered(vec2 point, vec2 beside, Motion own, float t, vec4 color_beside) 
 
 vec4 behind_at(vec2 point, vec2 beside, Motion own, float t, vec4 color_beside) {
 #ifdef KNOWS_BEHIND
-    const float kLeastAlpha = 0.5;
     vec4 known = known_behind(point, motion_at(beside).path, t);
-    if (known.a > kLeastAlpha) return known / known.a;
+    if (known.a > 0.0) return known;
 #endif
     return uncovered(point, beside, own, t, color_beside);
 }
