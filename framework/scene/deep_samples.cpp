@@ -19,14 +19,13 @@ namespace {
 constexpr std::size_t kMostSurfaces = 64;  ///< of one ray
 /// What a sample may span, as a ratio of depths; parts of an object that lie further apart become several.
 constexpr double kSpan = 1.25;
-constexpr double kFar = std::numeric_limits<double>::infinity();
 
 /// What one ray meets, or several of one object.
 struct Hit {
     int object = -1;     ///< -1: the background
     int occurrence = 0;  ///< how often the ray has met the object before: such hits do not lie side by side
-    double front_m = kFar;
-    double back_m = kFar;
+    double front_m = std::numeric_limits<double>::infinity();
+    double back_m = std::numeric_limits<double>::infinity();
     dvec3 color{0};  ///< the sum over the rays
     int rays = 1;
     dvec3 normal{0};
@@ -111,7 +110,7 @@ DeepImage SceneRenderer::render_deep(int frame, double time, std::array<double, 
                                 motion.velocity_next_px});
             }
             const Motion motion = motion_of(states, nullptr, ray.direction);
-            hits.push_back({-1, 0, kFar, kFar, scene_.background, 1, dvec3(0), 0, motion.velocity_px,
+            hits.push_back({-1, 0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), scene_.background, 1, dvec3(0), 0, motion.velocity_px,
                             motion.velocity_next_px});
         }
         merge(hits);

@@ -39,7 +39,7 @@ Field make(ParamType type, std::string name, std::string unit, ParamValue value,
     return field;
 }
 
-Field number(std::string name, std::string unit, double value, double min, double max, std::string doc) {
+Field plain_number(std::string name, std::string unit, double value, double min, double max, std::string doc) {
     Field field = make(ParamType::float_, std::move(name), std::move(unit), value, std::move(doc));
     field.spec.min = min;
     field.spec.max = max;
@@ -138,7 +138,7 @@ Block shared(Block block) {
 }
 
 Field radius() {
-    return required(number("radius", "m", 1, 1e-6, kFar_m, "Radius."));
+    return required(plain_number("radius", "m", 1, 1e-6, kFar_m, "Radius."));
 }
 
 Field albedo() {
@@ -153,17 +153,17 @@ Block camera_block() {
          .keys = {
              animated(place("position", {0, 0, 5}, "The lens.")),
              animated(place("target", {0, 0, 0}, "The point in the middle of the picture.")),
-             animated(number("roll", "deg", 0, -36000, 36000, "Turns the picture's content anticlockwise.")),
-             animated(number("focal_length", "mm", 50, 0.1, 10000,
+             animated(plain_number("roll", "deg", 0, -36000, 36000, "Turns the picture's content anticlockwise.")),
+             animated(plain_number("focal_length", "mm", 50, 0.1, 10000,
                              "With the sensor's width it gives the angle of view.")),
-             number("sensor_width", "mm", 36, 0.1, 1000, "Sensor, as wide as the picture."),
-             animated(number("focus_distance", "m", 5, 0.01, kFar_m,
+             plain_number("sensor_width", "mm", 36, 0.1, 1000, "Sensor, as wide as the picture."),
+             animated(plain_number("focus_distance", "m", 5, 0.01, kFar_m,
                              "Along the view axis to the plane in focus.")),
-             number("f_number", "", 2.8, 0.05, 1000, "Focal length over the aperture's diameter."),
+             plain_number("f_number", "", 2.8, 0.05, 1000, "Focal length over the aperture's diameter."),
              never(integer("blades", 0, 0, 32,
                            "Corners of the aperture; 0 is a disk, 1 and 2 are not polygons."),
                    {1, 2}),
-             number("rotation", "deg", 0, -36000, 36000,
+             plain_number("rotation", "deg", 0, -36000, 36000,
                     "Of the aperture; 0 puts the middle of a straight edge at +x, positive turns +x "
                     "towards +y (down).")}});
 }
@@ -172,7 +172,7 @@ Block shutter_block() {
     return shared({.name = "shutter",
                    .thing = "the shutter",
                    .doc = "When light is let in, for the truth of motion blur and for sub-frames.",
-                   .keys = {number("angle", "deg", 180, 0, 360, "360 is the whole frame."),
+                   .keys = {plain_number("angle", "deg", 180, 0, 360, "360 is the whole frame."),
                             choice("phase", {"center", "start", "end"},
                                    "Which part of the exposure is the frame's own time.")}});
 }
@@ -196,8 +196,8 @@ Block material_block() {
          .thing = "the material '{}'",
          .doc = "Lambert's diffuse reflection and a GGX highlight.",
          .keys = {or_block(albedo(), checker_block()),
-                  number("roughness", "", 0.5, 0.03, 1, "The highlight's; GGX alpha is its square."),
-                  number("specular", "", 0.04, 0, 1,
+                  plain_number("roughness", "", 0.5, 0.03, 1, "The highlight's; GGX alpha is its square."),
+                  plain_number("specular", "", 0.04, 0, 1,
                          "Reflectance at normal incidence, by Schlick; 0 for no highlight."),
                   color("emission", 0, 1e9, "Radiance that it gives off."),
                   grammar::optional("scattering_profile", grammar::scattering_profile(),
@@ -208,10 +208,10 @@ Block wave_block() {
     return shared({.name = "wave",
                    .thing = "the wave",
                    .doc = "amplitude * cos(2 pi (x, y) . cycles + phase), metres.",
-                   .keys = {required(number("amplitude", "m", 0, -kFar_m, kFar_m, "Height of the crest.")),
+                   .keys = {required(plain_number("amplitude", "m", 0, -kFar_m, kFar_m, "Height of the crest.")),
                             required(vector(ParamType::vec2, "cycles", "", {1, 0}, -1e6, 1e6,
                                             "Waves in a metre along x and y.")),
-                            number("phase", "deg", 0, -1e6, 1e6, "At the origin.")}});
+                            plain_number("phase", "deg", 0, -1e6, 1e6, "At the origin.")}});
 }
 
 Block height_field_block() {
@@ -268,7 +268,7 @@ std::vector<Block> shapes() {
                  vector(ParamType::vec3, "size", "m", {1, 1, 1}, 1e-6, kFar_m, "Along x, y and z.")))}},
             {.name = "cylinder",
              .doc = "Along y about its origin, with its caps.",
-             .keys = {radius(), required(number("height", "m", 1, 1e-6, kFar_m, "Along y."))}},
+             .keys = {radius(), required(plain_number("height", "m", 1, 1e-6, kFar_m, "Along y."))}},
             {.name = "mesh",
              .doc = "Triangles of the scene's \"meshes\".",
              .keys = {grammar::required("mesh", name_of("mesh"), "Which.")}}};
@@ -307,13 +307,13 @@ Block pattern_block() {
                                   "edge: dark below the offset; cosine: 1 + amplitude * cos.")),
                   with_length(vector(ParamType::vec3, "axis", "", {1, 0, 0}, -1, 1,
                                      "World; need not have unit length.")),
-                  number("offset", "m", 0, -kFar_m, kFar_m, "edge: lit from here on; cosine: a crest."),
-                  number("period", "m", 1, 1e-9, kFar_m, "cosine: from crest to crest."),
-                  number("amplitude", "", 1, 0, 1, "cosine.")}});
+                  plain_number("offset", "m", 0, -kFar_m, kFar_m, "edge: lit from here on; cosine: a crest."),
+                  plain_number("period", "m", 1, 1e-9, kFar_m, "cosine: from crest to crest."),
+                  plain_number("amplitude", "", 1, 0, 1, "cosine.")}});
 }
 
 std::vector<Block> light_types() {
-    const auto intensity = [](const char* doc) { return animated(number("intensity", "", 1, 0, 1e12, doc)); };
+    const auto intensity = [](const char* doc) { return animated(plain_number("intensity", "", 1, 0, 1e12, doc)); };
     const auto position = [](const char* doc) {
         return animated(required(place("position", {0, 5, 0}, doc)));
     };
@@ -360,7 +360,7 @@ Block make_scene_block() {
     return {.name = "scene",
             .thing = "the scene",
             .doc = "The document.",
-            .keys = {number("fps", "", 24, 0.001, 1000, "Frames a second."),
+            .keys = {plain_number("fps", "", 24, 0.001, 1000, "Frames a second."),
                      whole(vector(ParamType::vec2, "size", "", {480, 270}, 1, 16384, "Of the picture, px.")),
                      color("background", 0, 1e9, "Radiance where nothing is hit."),
                      color("ambient", 0, 1e9, "Radiance from all sides, without shadows."),
