@@ -19,6 +19,13 @@ TEST(Diagnostics, PrintsLikeACompiler) {
     EXPECT_EQ(diagnostics.error_count(), 2);
 }
 
+TEST(Diagnostics, ShowTheBeginningOfAPlaceLongerThanAnyPath) {
+    Diagnostics diagnostics;
+    diagnostics.error({"--frames " + std::string(99'991, '1')}, "too long");
+    EXPECT_EQ(test::lines_of(diagnostics),
+              Lines{"--frames " + std::string(111, '1') + "... (100000 bytes): error: too long"});
+}
+
 TEST(Diagnostics, AreNoErrorsWhereThereAreOnlyWarnings) {
     Diagnostics diagnostics;
     diagnostics.warning({"a"}, "b");
