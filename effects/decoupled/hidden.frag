@@ -1,0 +1,105 @@
+#version 450 core
+#include <pass>
+#include "surfel.glsl"
+
+// What lies behind a surface near its silhouette, where lens or shutter may show it: continued from both ends of chords through the
+// pixel. Chords whose ends are alike and close count most: they run along the edges of what is hidden.
+const int kChords = 12;
+const float kClearPx = 1.0;        // what lies further behind is another surface
+const float kPxPerOctave = 8.0;    // of depth, where lens and shutter do not separate surfaces
+const float kOneSurfacePx = 2.0;   // of both ends
+const float kUnlike = 0.02;        // relative difference of ends that halves a chord's weight
+const float kOutshines = 8.0;      // light of one end that does not continue behind the other
+
+float amount(vec3 rgb) { return rgb.r + rgb.g + rgb.b; }
+
+// How far behind a pixel lies: by its CoC, and by its depth where everything is in focus.
+float order_at(ivec2 p) {
+    float depth_m = texelFetch(depth, p, 0).r;
+    return texelFetch(coc, p, 0).r + kPxPerOctave * (depth_m > 0.0 ? min(log2(depth_m), 14.0) : 14.0);
+}
+
+struct End {
+    ivec2 at;
+    float distance_px;  // negative: there is none
+};
+
+// Walks away from a pixel to the first surface that lies behind its own. A step that continues a slope is not a silhouette.
+End walk(ivec2 p, float own, vec2 direction, float furthest_px) {
+    float order = own, slope = 0.0, at_px = 1.0;
+    while (at_px <= furthest_px) {
+        float stride_px = at_px < 16.0 ? 1.0 : at_px < 32.0 ? 2.0 : 4.0;
+        ivec2 q = ivec2(floor(vec2(p) + at_px * direction + 0.5));
+        if (any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, frame.size))) break;
+        float tap = order_at(q);
+        if (tap - (order + max(slope, 0.0) * stride_px) > kClearPx && tap > own + kClearPx) return End(q, at_px);
+        if (tap > own - kClearPx) {  // not something in front of both
+            slope = clamp((tap - order) / stride_px, -1.0, 1.0);
+            order = tap;
+        }
+        at_px += stride_px;
+    }
+    return End(p, -1.0);
+}
+
+struct Chord {
+    vec4 light, path;
+    float depth_m, order, weight;
+};
+
+Chord from_end(End end, float weight) {
+    return Chord(texelFetch(light, end.at, 0), path_at(end.at), texelFetch(depth, end.at, 0).r, order_at(end.at), weight);
+}
+
+Chord chord_through(ivec2 p, float own, vec2 direction, float furthest_px) {
+    End a = walk(p, own, direction, furthest_px), b = walk(p, own, -direction, furthest_px);
+    bool has_a = a.distance_px > 0.0, has_b = b.distance_px > 0.0;
+    if (!has_a && !has_b) return Chord(vec4(0.0), vec4(0.0), 0.0, 0.0, 0.0);
+    Chord of_a = from_end(a, 1.0), of_b = from_end(b, 1.0);
+    if (!has_a || !has_b || abs(of_a.order - of_b.order) > kOneSurfacePx) {
+        bool takes_a = !has_b || has_a && a.distance_px < b.distance_px;
+        float length_px = 2.0 * (takes_a ? a.distance_px : b.distance_px) + furthest_px;
+        Chord one = takes_a ? of_a : of_b;
+        one.weight = 1.0 / (length_px * length_px);
+        return one;
+    }
+    float length_px = a.distance_px + b.distance_px, part = a.distance_px / length_px, way = part;
+    float amount_a = amount(of_a.light.rgb), amount_b = amount(of_b.light.rgb);
+    if (amount_a > kOutshines * amount_b) part = 1.0;
+    if (amount_b > kOutshines * amount_a) part = 0.0;
+    float unlike = amount(abs(of_a.light.rgb - of_b.light.rgb)) / max(amount_a + amount_b, 1e-3);
+    float depth_m = way < 0.5 ? of_a.depth_m : of_b.depth_m;
+    if (!isinf(of_a.depth_m) && !isinf(of_b.depth_m)) depth_m = mix(of_a.depth_m, of_b.depth_m, way);
+    return Chord(mix(of_a.light, of_b.light, part), mix(of_a.path, of_b.path, way), depth_m, mix(of_a.order, of_b.order, way),
+                 1.0 / (length_px * length_px * (kUnlike + unlike)));
+}
+
+void main() {
+    ivec2 p = ivec2(gl_FragCoord.xy);
+    out_hidden = vec4(0.0);
+    out_hidden_at = uvec4(0u);
+    float around_px = texelFetch(reach, p / 16, 0).r;
+    if (around_px < 0.5) return;
+    float own = order_at(p), furthest_px = min(reach_px(texelFetch(coc, p, 0).r, path_at(p)) + around_px, 96.0) + 1.5;
+    Chord chords[kChords];
+    int best = 0;
+    for (int i = 0; i < kChords; ++i) {
+        float angle = 3.14159265 * float(i) / float(kChords);
+        chords[i] = chord_through(p, own, vec2(cos(angle), sin(angle)), furthest_px);
+        if (chords[i].weight > chords[best].weight) best = i;
+    }
+    if (chords[best].weight == 0.0) return;
+    vec4 light_sum = vec4(0.0), path_sum = vec4(0.0);
+    float weights = 0.0, nearness = 0.0;
+    for (int i = 0; i < kChords; ++i) {
+        if (chords[i].weight == 0.0 || abs(chords[i].order - chords[best].order) > kOneSurfacePx) continue;
+        float weight = chords[i].weight * chords[i].weight;
+        light_sum += weight * chords[i].light;
+        path_sum += weight * chords[i].path;
+        nearness += weight / chords[i].depth_m;
+        weights += weight;
+    }
+    path_sum /= weights;
+    out_hidden = light_sum / weights;
+    out_hidden_at = uvec4(packHalf2x16(path_sum.xy), packHalf2x16(path_sum.zw), floatBitsToUint(weights / nearness), 1u);
+}
