@@ -1,28 +1,35 @@
 #version 450 core
 #include <pass>
+#include "order.glsl"
 #include "surfel.glsl"
 
 // What lies behind a surface near its silhouette, where lens or shutter may show it: continued from both ends of chords through the
 // pixel. Chords whose ends are alike and close count most: they run along the edges of what is hidden.
 const int kChords = 12;
-const float kClearPx = 1.0;        // what lies further behind is another surface
-const float kPxPerOctave = 8.0;    // of depth, where lens and shutter do not separate surfaces
 const float kOneSurfacePx = 2.0;   // of both ends
 const float kUnlike = 0.02;        // relative difference of ends that halves a chord's weight
 const float kOutshines = 8.0;      // light of one end that does not continue behind the other
 
 float amount(vec3 rgb) { return rgb.r + rgb.g + rgb.b; }
 
-// How far behind a pixel lies: by its CoC, and by its depth where everything is in focus.
-float order_at(ivec2 p) {
-    float depth_m = texelFetch(depth, p, 0).r;
-    return texelFetch(coc, p, 0).r + kPxPerOctave * (depth_m > 0.0 ? min(log2(depth_m), 14.0) : 14.0);
-}
-
 struct End {
     ivec2 at;
     float distance_px;  // negative: there is none
 };
+
+// At the rim of what curves away, a surface ends some px further on.
+ivec2 past_rim(ivec2 q, vec2 direction) {
+    float order = order_at(q);
+    for (int i = 1; i <= 3; ++i) {
+        ivec2 further = ivec2(floor(vec2(q) + float(i) * direction + 0.5));
+        if (any(lessThan(further, ivec2(0))) || any(greaterThanEqual(further, frame.size))) return q;
+        float next = order_at(further);
+        if (next > order + kClearPx) {
+            return further;
+        }
+    }
+    return q;
+}
 
 // Walks away from a pixel to the first surface that lies behind its own. A step that continues a slope is not a silhouette.
 End walk(ivec2 p, float own, vec2 direction, float furthest_px) {
@@ -32,7 +39,7 @@ End walk(ivec2 p, float own, vec2 direction, float furthest_px) {
         ivec2 q = ivec2(floor(vec2(p) + at_px * direction + 0.5));
         if (any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, frame.size))) break;
         float tap = order_at(q);
-        if (tap - (order + max(slope, 0.0) * stride_px) > kClearPx && tap > own + kClearPx) return End(q, at_px);
+        if (tap - (order + max(slope, 0.0) * stride_px) > kClearPx && tap > own + kClearPx) return End(past_rim(q, direction), at_px);
         if (tap > own - kClearPx) {  // not something in front of both
             slope = clamp((tap - order) / stride_px, -1.0, 1.0);
             order = tap;

@@ -34,5 +34,5 @@ void main() {
         if (covers > 0.0 && is_seen(p, sample_near(point, moves ? i : kTimes), level)) part += covers;
     }
     part /= float(times) * max(aperture.area * radius_px * radius_px, 1.0);
-    out_highlights = vec4(part * (texelFetch(color, source, 0).rgb - texelFetch(light, source, 0).rgb), 0.0);
+    out_highlights = vec4(part * texelFetch(highlight, source, 0).rgb, 0.0);
 }

@@ -1,6 +1,8 @@
 #version 450 core
 #include <pass>
+#include <hash.glsl>
 #include "key.glsl"
+#include "mixed.glsl"
 #include "surfel.glsl"
 #include "layers.glsl"
 
@@ -31,30 +33,54 @@ Stretch stretch_at(int layer, ivec2 p, Surfel own, float at_infinity_px) {
     return result;
 }
 
-void splat(ivec2 p, int layer, uint extra, Surfel surfel, Stretch stretch) {
+// The samples that a surface of a share of the pixel gets: others for each pixel, evenly spread.
+struct Cover {
+    float share, first;
+};
+
+const Cover kAll = Cover(2.0, 0.0);
+
+bool is_covered(Cover cover, int s) { return fract(cover.first + float(s) * 0.6180339887) < cover.share; }
+
+// The shading sample of the pixel `from`, at `p`.
+void splat(ivec2 p, ivec2 from, int layer, uint extra, Surfel surfel, Stretch stretch, Cover cover) {
     uint level = level_of(surfel.depth_m, texelFetch(range, ivec2(0), 0).rg) | extra;
     for (int s = BAND * kBandSamples; s < min(param.samples, (BAND + 1) * kBandSamples); ++s) {
+        if (!is_covered(cover, s)) continue;
         vec3 point = texelFetch(points, ivec2(s, 0), 0).xyz;
         vec2 to = vec2(p) + surfel.coc_px * point.xy + way_px(surfel.path, point.z);
         vec2 half_px = kHalf + 0.5 * max(stretch.by_coc * point.xy + stretch.by_path * point.z, vec2(0.0));
-        ivec2 first = max(ivec2(ceil(to - half_px)), max(p - kFurthestPx, ivec2(0)));
-        ivec2 last = min(min(ivec2(floor(to + half_px)), first + kMostPx - 1), min(p + kFurthestPx, frame.size - 1));
+        ivec2 first = max(ivec2(ceil(to - half_px)), max(from - kFurthestPx, ivec2(0)));
+        ivec2 last = min(min(ivec2(floor(to + half_px)), first + kMostPx - 1), min(from + kFurthestPx, frame.size - 1));
         for (int y = first.y; y <= last.y; ++y)
             for (int x = first.x; x <= last.x; ++x)
-                imageAtomicMin(keys, ivec3(x, y, s - BAND * kBandSamples), key_of(level, layer, ivec2(x, y) - p));
+                imageAtomicMin(keys, ivec3(x, y, s - BAND * kBandSamples), key_of(level, layer, ivec2(x, y) - from));
     }
 }
 
 void splat_layer(ivec2 p, int layer, float at_infinity_px) {
     Surfel surfel = surfel_at(layer, p, at_infinity_px);
-    if (surfel.is_there) splat(p, layer, 0u, surfel, stretch_at(layer, p, surfel, at_infinity_px));
+    if (surfel.is_there) splat(p, p, layer, 0u, surfel, stretch_at(layer, p, surfel, at_infinity_px), kAll);
+}
+
+// A pixel of two surfaces is a shading sample of both: the nearer one gets the visibility samples of its share.
+void splat_picture(ivec2 p, float at_infinity_px) {
+    Surfel own = surfel_at(0, p, at_infinity_px);
+    Stretch stretch = stretch_at(0, p, own, at_infinity_px);
+    Mixture mixture = unpack_mixture(texelFetch(mixed, p, 0).r);
+    float first = unit_float(pcg3d16(uvec3(p, 1u)).x << 16u);
+    ivec2 other = p + mixture.across;
+    Surfel across = surfel_at(0, other, at_infinity_px);
+    bool is_behind = across.depth_m < own.depth_m;
+    splat(p, p, 0, 0u, own, stretch, mixture.share == 0.0 || is_behind ? kAll : Cover(1.0 - mixture.share, first));
+    if (mixture.share > 0.0) splat(p, other, 0, 0u, across, Stretch(vec2(0.0), vec2(0.0)), is_behind ? Cover(mixture.share, first) : kAll);
 }
 
 void main() {
     ivec2 p = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(p, frame.size)) || param.samples <= BAND * kBandSamples) return;
     float at_infinity_px = lens_at_infinity_px();
-    splat_layer(p, 0, at_infinity_px);
+    splat_picture(p, at_infinity_px);
 #ifdef HAS_LAYER_1
     splat_layer(p, 1, at_infinity_px);
 #endif
@@ -69,7 +95,7 @@ void main() {
     if (at.w != 0u) {
         float depth_m = uintBitsToFloat(at.z);
         vec4 path = vec4(unpackHalf2x16(at.x), unpackHalf2x16(at.y));
-        splat(p, 1, kEstimate >> 20u, Surfel(depth_m, coc_of(depth_m, at_infinity_px), path, true), Stretch(vec2(0.0), vec2(0.0)));
+        splat(p, p, 1, kEstimate >> 20u, Surfel(depth_m, coc_of(depth_m, at_infinity_px), path, true), Stretch(vec2(0.0), vec2(0.0)), kAll);
     }
 #endif
 }
