@@ -1,4 +1,7 @@
 // A surfel of a layer of the capture, 0 in front.
+#if defined(HAS_FRONT) && defined(HAS_FRONT_DEPTH) && defined(HAS_SECOND)
+#define HAS_LAYER_0
+#endif
 #if defined(HAS_SECOND) && defined(HAS_SECOND_DEPTH)
 #define HAS_LAYER_1
 #endif
@@ -11,7 +14,7 @@
 
 Surfel surfel_behind(float alpha, float depth_m, vec2 since, float at_infinity_px) {
     since = finite(since);
-    return Surfel(depth_m, coc_of(depth_m, at_infinity_px), path_of(since, since), alpha > 0.5);
+    return Surfel(depth_m, coc_of(depth_m, at_infinity_px), path_of(since, since), alpha);
 }
 
 Surfel surfel_at(int layer, ivec2 p, float at_infinity_px) {
@@ -40,5 +43,14 @@ Surfel surfel_at(int layer, ivec2 p, float at_infinity_px) {
         return surfel_behind(texelFetch(fourth, p, 0).a, texelFetch(fourth_depth, p, 0).r, since, at_infinity_px);
     }
 #endif
-    return Surfel(texelFetch(depth, p, 0).r, texelFetch(coc, p, 0).r, path_at(p), layer == 0);
+#ifdef HAS_LAYER_0
+    float share = texelFetch(front, p, 0).a;
+    if (share < kWhole) {
+#ifdef HAS_FRONT_VELOCITY
+        since = texelFetch(front_velocity, p, 0).xy;
+#endif
+        return surfel_behind(share, texelFetch(front_depth, p, 0).r, since, at_infinity_px);
+    }
+#endif
+    return Surfel(texelFetch(depth, p, 0).r, texelFetch(coc, p, 0).r, path_at(p), 1.0);
 }

@@ -3,6 +3,9 @@
 #include "key.glsl"
 #include "surfel.glsl"
 
+// Of a layer's pixel, as a surface that covers it.
+vec4 covering(vec4 texel) { return texel / max(texel.a, kNothing); }
+
 vec4 light_of(ivec2 p, int layer) {
 #ifdef HAS_HIDDEN
     if (layer == 1) return texelFetch(hidden, p, 0);
@@ -15,6 +18,10 @@ vec4 light_of(ivec2 p, int layer) {
 #endif
 #ifdef HAS_FOURTH
     if (layer == 3) return covering(texelFetch(fourth, p, 0));
+#endif
+#if defined(HAS_FRONT) && defined(HAS_SECOND)
+    vec4 nearest = texelFetch(front, p, 0);
+    if (nearest.a < kWhole) return covering(nearest);
 #endif
     return texelFetch(light, p, 0);
 }

@@ -60,27 +60,35 @@ void splat(ivec2 p, ivec2 from, int layer, uint extra, Surfel surfel, Stretch st
 
 void splat_layer(ivec2 p, int layer, float at_infinity_px) {
     Surfel surfel = surfel_at(layer, p, at_infinity_px);
-    if (surfel.is_there) splat(p, p, layer, 0u, surfel, stretch_at(layer, p, surfel, at_infinity_px), kAll);
+    if (surfel.share < kNothing) return;
+    Cover cover = surfel.share > kWhole ? kAll : Cover(surfel.share, unit_float(pcg3d16(uvec3(p, layer)).x << 16u));
+    splat(p, p, layer, 0u, surfel, stretch_at(layer, p, surfel, at_infinity_px), cover);
 }
 
+#ifndef HAS_SECOND
 // A pixel of two surfaces is a shading sample of both: the nearer one gets the visibility samples of its share.
 void splat_picture(ivec2 p, float at_infinity_px) {
     Surfel own = surfel_at(0, p, at_infinity_px);
     Stretch stretch = stretch_at(0, p, own, at_infinity_px);
     Mixture mixture = unpack_mixture(texelFetch(mixed, p, 0).r);
-    float first = unit_float(pcg3d16(uvec3(p, 1u)).x << 16u);
+    float first = unit_float(pcg3d16(uvec3(p, 0u)).x << 16u);
     ivec2 other = p + mixture.across;
     Surfel across = surfel_at(0, other, at_infinity_px);
     bool is_behind = across.depth_m < own.depth_m;
     splat(p, p, 0, 0u, own, stretch, mixture.share == 0.0 || is_behind ? kAll : Cover(1.0 - mixture.share, first));
     if (mixture.share > 0.0) splat(p, other, 0, 0u, across, Stretch(vec2(0.0), vec2(0.0)), is_behind ? Cover(mixture.share, first) : kAll);
 }
+#endif
 
 void main() {
     ivec2 p = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(p, frame.size)) || param.samples <= BAND * kBandSamples) return;
     float at_infinity_px = lens_at_infinity_px();
+#ifdef HAS_SECOND
+    splat_layer(p, 0, at_infinity_px);
+#else
     splat_picture(p, at_infinity_px);
+#endif
 #ifdef HAS_LAYER_1
     splat_layer(p, 1, at_infinity_px);
 #endif
@@ -95,7 +103,7 @@ void main() {
     if (at.w != 0u) {
         float depth_m = uintBitsToFloat(at.z);
         vec4 path = vec4(unpackHalf2x16(at.x), unpackHalf2x16(at.y));
-        splat(p, p, 1, kEstimate >> 20u, Surfel(depth_m, coc_of(depth_m, at_infinity_px), path, true), Stretch(vec2(0.0), vec2(0.0)), kAll);
+        splat(p, p, 1, kEstimate >> 20u, Surfel(depth_m, coc_of(depth_m, at_infinity_px), path, 1.0), Stretch(vec2(0.0), vec2(0.0)), kAll);
     }
 #endif
 }

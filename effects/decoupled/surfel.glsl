@@ -1,13 +1,14 @@
 // Shading samples: the pixels of the picture, of the layers behind it, and of an estimate where the capture has none.
-#include <behind.glsl>
 #include <lens/lens.glsl>
 #include "path.glsl"
+
+const float kWhole = 0.98, kNothing = 0.02;  // of a pixel
 
 struct Surfel {
     float depth_m;
     float coc_px;
     vec4 path;
-    bool is_there;
+    float share;  // of its pixel, in what lies no nearer
 };
 
 vec4 path_at(ivec2 p) {
