@@ -6,6 +6,8 @@
 // What lies behind a surface near its silhouette, where lens or shutter may show it: continued from both ends of chords through the
 // pixel. Chords whose ends are alike and close count most: they run along the edges of what is hidden.
 const int kChords = 12;
+const float kFurthestPx = 96.0;
+const float kThinPx = 4.0;         // CoC radius of what may be thinner than its blur
 const float kOneSurfacePx = 2.0;   // of both ends
 const float kUnlike = 0.02;        // relative difference of ends that halves a chord's weight
 const float kOutshines = 8.0;      // light of one end that does not continue behind the other
@@ -54,14 +56,18 @@ struct Chord {
     float depth_m, order, weight;
 };
 
+const Chord kNoChord = Chord(vec4(0.0), vec4(0.0), 0.0, 0.0, 0.0);
+
 Chord from_end(End end, float weight) {
     return Chord(texelFetch(light, end.at, 0), path_at(end.at), texelFetch(depth, end.at, 0).r, order_at(end.at), weight);
 }
 
-Chord chord_through(ivec2 p, float own, vec2 direction, float furthest_px) {
+// `is_thin`: only chords whose ends both lie within reach of each other.
+Chord chord_through(ivec2 p, float own, vec2 direction, float furthest_px, bool is_thin) {
     End a = walk(p, own, direction, furthest_px), b = walk(p, own, -direction, furthest_px);
     bool has_a = a.distance_px > 0.0, has_b = b.distance_px > 0.0;
-    if (!has_a && !has_b) return Chord(vec4(0.0), vec4(0.0), 0.0, 0.0, 0.0);
+    bool is_short = has_a && has_b && a.distance_px + b.distance_px <= furthest_px;
+    if (!has_a && !has_b || is_thin && !is_short) return kNoChord;
     Chord of_a = from_end(a, 1.0), of_b = from_end(b, 1.0);
     if (!has_a || !has_b || abs(of_a.order - of_b.order) > kOneSurfacePx) {
         bool takes_a = !has_b || has_a && a.distance_px < b.distance_px;
@@ -81,32 +87,52 @@ Chord chord_through(ivec2 p, float own, vec2 direction, float furthest_px) {
                  1.0 / (length_px * length_px * (kUnlike + unlike)));
 }
 
+// What lies behind a surface at the pixel: the mean of all chords to one surface; weight 0 where there is none.
+Chord behind(ivec2 p, float own, float furthest_px, bool is_thin) {
+    Chord chords[kChords];
+    int best = 0;
+    for (int i = 0; i < kChords; ++i) {
+        float angle = 3.14159265 * float(i) / float(kChords);
+        chords[i] = chord_through(p, own, vec2(cos(angle), sin(angle)), furthest_px, is_thin);
+        if (chords[i].weight > chords[best].weight) best = i;
+    }
+    Chord mean = kNoChord;
+    if (chords[best].weight == 0.0) return mean;
+    float nearness = 0.0;
+    for (int i = 0; i < kChords; ++i) {
+        if (chords[i].weight == 0.0 || abs(chords[i].order - chords[best].order) > kOneSurfacePx) continue;
+        float weight = chords[i].weight * chords[i].weight;
+        mean.light += weight * chords[i].light;
+        mean.path += weight * chords[i].path;
+        mean.order += weight * chords[i].order;
+        nearness += weight / chords[i].depth_m;
+        mean.weight += weight;
+    }
+    mean.light /= mean.weight;
+    mean.path /= mean.weight;
+    mean.order /= mean.weight;
+    mean.depth_m = mean.weight / nearness;
+    return mean;
+}
+
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     out_hidden = vec4(0.0);
     out_hidden_at = uvec4(0u);
     float around_px = texelFetch(reach, p / 16, 0).r;
     if (around_px < 0.5) return;
-    float own = order_at(p), furthest_px = min(reach_px(texelFetch(coc, p, 0).r, path_at(p)) + around_px, 96.0) + 1.5;
-    Chord chords[kChords];
-    int best = 0;
-    for (int i = 0; i < kChords; ++i) {
-        float angle = 3.14159265 * float(i) / float(kChords);
-        chords[i] = chord_through(p, own, vec2(cos(angle), sin(angle)), furthest_px);
-        if (chords[i].weight > chords[best].weight) best = i;
+    float furthest_px = min(reach_px(texelFetch(coc, p, 0).r, path_at(p)) + around_px, kFurthestPx) + 1.5;
+    Chord found = behind(p, order_at(p), furthest_px, false);
+    if (found.weight == 0.0) return;
+    // What is thinner than its blur shows what is behind it in turn.
+    float at_infinity_px = lens_at_infinity_px();
+    for (int i = 0; i < 2; ++i) {
+        float coc_px = coc_of(found.depth_m, at_infinity_px);
+        if (coc_px > -kThinPx) break;
+        Chord further = behind(p, found.order, -coc_px, true);
+        if (further.weight == 0.0) break;
+        found = further;
     }
-    if (chords[best].weight == 0.0) return;
-    vec4 light_sum = vec4(0.0), path_sum = vec4(0.0);
-    float weights = 0.0, nearness = 0.0;
-    for (int i = 0; i < kChords; ++i) {
-        if (chords[i].weight == 0.0 || abs(chords[i].order - chords[best].order) > kOneSurfacePx) continue;
-        float weight = chords[i].weight * chords[i].weight;
-        light_sum += weight * chords[i].light;
-        path_sum += weight * chords[i].path;
-        nearness += weight / chords[i].depth_m;
-        weights += weight;
-    }
-    path_sum /= weights;
-    out_hidden = light_sum / weights;
-    out_hidden_at = uvec4(packHalf2x16(path_sum.xy), packHalf2x16(path_sum.zw), floatBitsToUint(weights / nearness), 1u);
+    out_hidden = found.light;
+    out_hidden_at = uvec4(packHalf2x16(found.path.xy), packHalf2x16(found.path.zw), floatBitsToUint(found.depth_m), 1u);
 }
