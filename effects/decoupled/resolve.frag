@@ -35,7 +35,8 @@ void main() {
     if (param.samples <= BAND * kBandSamples) discard;
     ivec2 p = ivec2(gl_FragCoord.xy);
     float coc_px = texelFetch(coc, p, 0).r;
-    vec4 path = path_at(p), sum = vec4(0.0);
+    // Differences from the pixel's own light: where there are none, it stays as it is to the bit.
+    vec4 path = path_at(p), own = texelFetch(color, p, 0), sum = vec4(0.0);
     vec2 missing = vec2(0.0);
     for (int s = BAND * kBandSamples; s < min(param.samples, (BAND + 1) * kBandSamples); ++s) {
         ivec3 at = ivec3(p, s - BAND * kBandSamples);
@@ -43,12 +44,12 @@ void main() {
         if (key == kEmpty) {
             vec3 point = texelFetch(points, ivec2(s, 0), 0).xyz;
             vec2 from = vec2(p) - coc_px * point.xy - way_px(path, point.z);
-            sum += beyond(from);
+            sum += beyond(from) - own;
             if (is_inside(from)) missing.y += 1.0;
             continue;
         }
         imageStore(keys, at, uvec4(kEmpty));
-        sum += light_of(p - way_in(key), layer_in(key));
+        sum += light_of(p - way_in(key), layer_in(key)) - own;
         if (key >= kEstimate) missing.x += 1.0;
     }
     out_sum = sum;
