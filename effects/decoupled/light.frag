@@ -3,6 +3,7 @@
 #include <aperture.glsl>
 #include "mixed.glsl"
 #include "order.glsl"
+#include "surfel.glsl"
 
 // A highlight outshines its surroundings this many times, and its light, spread over its CoC, still adds this fraction of them.
 const float kOutshines = 4.0, kVisible = 0.005;
@@ -29,11 +30,13 @@ const float kOffLine = 0.03;   // squared distance from the line between both co
 // What antialiasing brought in from across a silhouette would move with the wrong surface. Gives the pixel's light without it.
 Mixture mixture_at(ivec2 p, inout vec3 own) {
     Mixture found = Mixture(0.0, ivec2(0));
+    bool is_sharp = reach_px(texelFetch(coc, p, 0).r, path_at(p)) < 1.0;
     float order = order_at(p), most = kLeastShare;
     vec3 result = own;
     for (int i = 0; i < 9; ++i) {
         ivec2 to = ivec2(i % 3, i / 3) - 1;
         float across = order_at(inside(p + to));
+        if (is_sharp && across > order) continue;  // antialiased in its place
         if (abs(across - order) <= kClearPx || abs(order_at(inside(p - 2 * to)) - order) > kClearPx) continue;
         bool is_thick = abs(order_at(inside(p + 2 * to)) - across) <= kClearPx;
         vec3 self = color_inside(p - 2 * to), change = self - color_inside(p - 3 * to);
