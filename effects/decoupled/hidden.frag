@@ -5,6 +5,7 @@
 
 // What lies behind a surface near its silhouette, where lens or shutter may show it: continued from both ends of chords through the
 // pixel. Chords whose ends are alike and close count most: they run along the edges of what is hidden.
+const int kTile = 16;
 const int kChords = 12;
 const float kFurthestPx = 96.0;
 const float kThinPx = 4.0;         // CoC radius of what may be thinner than its blur
@@ -12,6 +13,7 @@ const float kOneSurfacePx = 2.0;   // of both ends
 const float kUnlike = 0.02;        // relative difference of ends that halves a chord's weight
 const float kOutshines = 8.0;      // light of one end that does not continue behind the other
 
+float order_at(ivec2 p) { return texelFetch(order, p, 0).r; }
 float amount(vec3 rgb) { return rgb.r + rgb.g + rgb.b; }
 
 struct End {
@@ -21,30 +23,27 @@ struct End {
 
 // At the rim of what curves away, a surface ends some px further on.
 ivec2 past_rim(ivec2 q, vec2 direction) {
-    float order = order_at(q);
+    float edge = order_at(q);
     for (int i = 1; i <= 3; ++i) {
         ivec2 further = ivec2(floor(vec2(q) + float(i) * direction + 0.5));
         if (any(lessThan(further, ivec2(0))) || any(greaterThanEqual(further, frame.size))) return q;
-        float next = order_at(further);
-        if (next > order + kClearPx) {
-            return further;
-        }
+        if (order_at(further) > edge + kClearPx) return further;
     }
     return q;
 }
 
 // Walks away from a pixel to the first surface that lies behind its own. A step that continues a slope is not a silhouette.
 End walk(ivec2 p, float own, vec2 direction, float furthest_px) {
-    float order = own, slope = 0.0, at_px = 1.0;
+    float last = own, slope = 0.0, at_px = 1.0;
     while (at_px <= furthest_px) {
         float stride_px = at_px < 16.0 ? 1.0 : at_px < 32.0 ? 2.0 : 4.0;
         ivec2 q = ivec2(floor(vec2(p) + at_px * direction + 0.5));
         if (any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, frame.size))) break;
         float tap = order_at(q);
-        if (tap - (order + max(slope, 0.0) * stride_px) > kClearPx && tap > own + kClearPx) return End(past_rim(q, direction), at_px);
+        if (tap - (last + max(slope, 0.0) * stride_px) > kClearPx && tap > own + kClearPx) return End(past_rim(q, direction), at_px);
         if (tap > own - kClearPx) {  // not something in front of both
-            slope = clamp((tap - order) / stride_px, -1.0, 1.0);
-            order = tap;
+            slope = clamp((tap - last) / stride_px, -1.0, 1.0);
+            last = tap;
         }
         at_px += stride_px;
     }
@@ -119,8 +118,7 @@ void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     out_hidden = vec4(0.0);
     out_hidden_at = uvec4(0u);
-    float around_px = texelFetch(reach, p / 16, 0).r;
-    if (around_px < 0.5) return;
+    float around_px = texelFetch(reach, p / kTile, 0).r;
     float furthest_px = min(reach_px(texelFetch(coc, p, 0).r, path_at(p)) + around_px, kFurthestPx) + 1.5;
     Chord found = behind(p, order_at(p), furthest_px, false);
     if (found.weight == 0.0) return;

@@ -21,6 +21,7 @@ float highlight_share(float amount, vec2 around_amount, float radius_px) {
 
 ivec2 inside(ivec2 p) { return clamp(p, ivec2(0), frame.size - 1); }
 vec3 color_inside(ivec2 p) { return texelFetch(color, inside(p), 0).rgb; }
+float order_inside(ivec2 p) { return texelFetch(order, inside(p), 0).r; }
 float amount(vec3 rgb) { return rgb.r + rgb.g + rgb.b; }
 
 const float kLeastShare = 0.1, kMostShare = 0.7;
@@ -31,14 +32,14 @@ const float kOffLine = 0.03;   // squared distance from the line between both co
 Mixture mixture_at(ivec2 p, inout vec3 own) {
     Mixture found = Mixture(0.0, ivec2(0));
     bool is_sharp = reach_px(texelFetch(coc, p, 0).r, path_at(p)) < 1.0;
-    float order = order_at(p), most = kLeastShare;
+    float own_order = texelFetch(order, p, 0).r, most = kLeastShare;
     vec3 result = own;
     for (int i = 0; i < 9; ++i) {
         ivec2 to = ivec2(i % 3, i / 3) - 1;
-        float across = order_at(inside(p + to));
-        if (is_sharp && across > order) continue;  // antialiased in its place
-        if (abs(across - order) <= kClearPx || abs(order_at(inside(p - 2 * to)) - order) > kClearPx) continue;
-        bool is_thick = abs(order_at(inside(p + 2 * to)) - across) <= kClearPx;
+        float across = order_inside(p + to);
+        if (is_sharp && across > own_order) continue;  // antialiased in its place
+        if (abs(across - own_order) <= kClearPx || abs(order_inside(p - 2 * to) - own_order) > kClearPx) continue;
+        bool is_thick = abs(order_inside(p + 2 * to) - across) <= kClearPx;
         vec3 self = color_inside(p - 2 * to), change = self - color_inside(p - 3 * to);
         vec3 difference = color_inside(is_thick ? p + 2 * to : p + to) - self;
         float length_2 = dot(difference, difference);

@@ -53,8 +53,10 @@ def save(name, tiles, scale=1):
 
 def on_suzanne():
     folder = CAPTURES / "suzanne"
-    capture = folder / f"large/gbuffer_{FRAME:04}.exr"
-    sharp = read_exr(capture, [f"ViewLayer.Combined.{c}" for c in RGB])
+    capture = WORK / "suzanne.json"
+    capture.write_text(json.dumps({"aftershade": 1, "frames": str((folder / "large/gbuffer_####.exr").resolve()), "range": "3-5", "fps": 24,
+                                   "profile": "blender"}))
+    sharp = read_exr(folder / f"large/gbuffer_{FRAME:04}.exr", [f"ViewLayer.Combined.{c}" for c in RGB])
     lens, shutter = read_exr(folder / "truth/dof_0004.exr", RGB), read_exr(folder / "truth/motion_0004.exr", RGB)
     changed = changed_pixels(sharp, shutter)
     rows, shown = [], []
@@ -62,7 +64,7 @@ def on_suzanne():
     steps |= {f"`decoupled`, {count} samples": ([decoupled(samples=count, shutter_angle=0, **LENS)], [decoupled(samples=count, **NO_LENS)])
               for count in COUNTS}
     for label, step in steps.items():
-        (by_lens, told), (by_shutter, _) = [through(s, capture) for s in step] if step else [(sharp, {}), (sharp, {})]
+        (by_lens, told), (by_shutter, _) = [through(s, capture, f"{FRAME - 1}-{FRAME}") for s in step] if step else [(sharp, {}), (sharp, {})]
         ms = f"{sum(told['passes_ms'].values()):.0f}" if step else ""
         rows.append([label, *(f"{v:.2f}" for v in (psnr_db(lens, by_lens), psnr_db(shutter, by_shutter), psnr_db(shutter, by_shutter, changed))), ms])
         print(*rows[-1], flush=True)
