@@ -2,6 +2,7 @@
 #include <pass>
 #include "order.glsl"
 #include "surfel.glsl"
+#include "layers.glsl"
 
 // What lies behind a surface near its silhouette, where lens or shutter may show it: continued from both ends of chords through the
 // pixel. Chords whose ends are alike and close count most: they run along the edges of what is hidden.
@@ -114,16 +115,28 @@ Chord behind(ivec2 p, float own, float furthest_px, bool is_thin) {
     return mean;
 }
 
+// How far behind lies the last surface that the capture has of a pixel.
+float last_order(ivec2 p, float at_infinity_px) {
+    float last = order_at(p);
+#ifdef HAS_LAYER_1
+    for (int layer = 1; layer <= 2; ++layer) {
+        Surfel surfel = surfel_at(layer, p, at_infinity_px);
+        if (surfel.share > 0.5) last = max(last, surfel.coc_px + kPxPerOctave * min(log2(surfel.depth_m), kInfinityOctaves));
+    }
+#endif
+    return last;
+}
+
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     out_hidden = vec4(0.0);
     out_hidden_at = uvec4(0u);
     float around_px = texelFetch(reach, p / kTile, 0).r;
     float furthest_px = min(reach_px(texelFetch(coc, p, 0).r, path_at(p)) + around_px, kFurthestPx) + 1.5;
-    Chord found = behind(p, order_at(p), furthest_px, false);
+    float at_infinity_px = lens_at_infinity_px();
+    Chord found = behind(p, last_order(p, at_infinity_px), furthest_px, false);
     if (found.weight == 0.0) return;
     // What is thinner than its blur shows what is behind it in turn.
-    float at_infinity_px = lens_at_infinity_px();
     for (int i = 0; i < 2; ++i) {
         float coc_px = coc_of(found.depth_m, at_infinity_px);
         if (coc_px > -kThinPx) break;

@@ -7,6 +7,12 @@
 
 flat in ivec2 source;
 
+// The sample of the first band that is nearest to a point of the lens at a time, 0 to kTimes.
+int sample_near(vec2 point, int time) {
+    ivec2 cell = clamp(ivec2(floor((0.5 * point + 0.5) * float(kCells))), ivec2(0), ivec2(kCells - 1));
+    return int(texelFetch(cells, cell + ivec2(0, kCells * time), 0).r);
+}
+
 // Whether nothing in front hides what the sample sees here.
 bool is_seen(ivec2 p, int s, uint level) {
     uint key = imageLoad(keys, ivec3(p, s)).r;

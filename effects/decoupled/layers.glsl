@@ -45,12 +45,12 @@ Surfel surfel_at(int layer, ivec2 p, float at_infinity_px) {
 #endif
 #ifdef HAS_LAYER_0
     float share = texelFetch(front, p, 0).a;
-    if (share < kWhole) {
+    if (share >= kNothing && share < kWhole) {
 #ifdef HAS_FRONT_VELOCITY
         since = texelFetch(front_velocity, p, 0).xy;
 #endif
         return surfel_behind(share, texelFetch(front_depth, p, 0).r, since, at_infinity_px);
     }
 #endif
-    return Surfel(texelFetch(depth, p, 0).r, texelFetch(coc, p, 0).r, path_at(p), 1.0);
+    return Surfel(texelFetch(depth, p, 0).r, texelFetch(coc, p, 0).r, path_at(p), layer == 0 ? 1.0 : 0.0);
 }

@@ -36,6 +36,7 @@ Mixture mixture_at(ivec2 p, inout vec3 own) {
     vec3 result = own;
     for (int i = 0; i < 9; ++i) {
         ivec2 to = ivec2(i % 3, i / 3) - 1;
+        if (inside(p + to) != p + to) continue;
         float across = order_inside(p + to);
         if (is_sharp && across > own_order) continue;  // antialiased in its place
         if (abs(across - own_order) <= kClearPx || abs(order_inside(p - 2 * to) - own_order) > kClearPx) continue;

@@ -7,9 +7,6 @@
 vec4 covering(vec4 texel) { return texel / max(texel.a, kNothing); }
 
 vec4 light_of(ivec2 p, int layer) {
-#ifdef HAS_HIDDEN
-    if (layer == 1) return texelFetch(hidden, p, 0);
-#endif
 #ifdef HAS_SECOND
     if (layer == 1) return covering(texelFetch(second, p, 0));
 #endif
@@ -21,7 +18,7 @@ vec4 light_of(ivec2 p, int layer) {
 #endif
 #if defined(HAS_FRONT) && defined(HAS_SECOND)
     vec4 nearest = texelFetch(front, p, 0);
-    if (nearest.a < kWhole) return covering(nearest);
+    if (nearest.a >= kNothing && nearest.a < kWhole) return covering(nearest);
 #endif
     return texelFetch(light, p, 0);
 }
@@ -49,8 +46,14 @@ void main() {
             continue;
         }
         imageStore(keys, at, uvec4(kEmpty));
+#ifdef HAS_HIDDEN
+        if (key >= kEstimate) {
+            sum += texelFetch(hidden, p - way_in(key), 0) - own;
+            missing.x += 1.0;
+            continue;
+        }
+#endif
         sum += light_of(p - way_in(key), layer_in(key)) - own;
-        if (key >= kEstimate) missing.x += 1.0;
     }
     out_sum = sum;
     out_gaps = missing;
