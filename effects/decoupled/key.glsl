@@ -1,8 +1,9 @@
-// What a visibility sample keeps of the nearest shading sample, so that the smallest number is the nearest: an estimate comes after
-// all that was captured, then depth, then the layer and the way from the shading sample to the pixel.
+// What a visibility sample keeps of the nearest shading sample, so that the smallest number is the nearest: depth comes first, then
+// the layer and the way from the shading sample to the pixel. Of a picture alone, estimates come after all that was captured.
 const uint kEmpty = 0xffffffffu;
 const uint kEstimate = 0x80000000u;
 const float kLevels = 2046.0;
+const int kEstimatedLayer = 3;  // where the capture has no fourth layer
 const int kFurthestPx = 255;
 const int kBandSamples = 64;
 

@@ -47,7 +47,7 @@ void main() {
         }
         imageStore(keys, at, uvec4(kEmpty));
 #ifdef HAS_HIDDEN
-        if (key >= kEstimate) {
+        if (layer_in(key) == kEstimatedLayer) {
             sum += texelFetch(hidden, p - way_in(key), 0) - own;
             missing.x += 1.0;
             continue;

@@ -10,6 +10,13 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 const float kHalf = 0.51;          // of a pixel; more than half, against gaps by rounding
 const float kOneSurfacePx = 1.0;   // per px: neighbours that lens or shutter move further apart are of two surfaces
+// Of a picture alone, an estimate fills what no captured pixel reaches. With layers, what is captured may lie far behind a hole.
+#ifdef HAS_SECOND
+const uint kEstimateAfter = 0u;
+#else
+const uint kEstimateAfter = kEstimate >> 20u;
+#endif
+const uint kEstimateBehind = 40u;  // levels of depth: a captured surface of about its depth comes first
 const int kMostPx = 3;             // that one shading sample covers along a row or a column
 
 // By how much lens (per unit of its point) and shutter (per exposure) move neighbours in a row and a column apart, px.
@@ -43,8 +50,11 @@ const Cover kAll = Cover(2.0, 0.0);
 bool is_covered(Cover cover, int s) { return fract(cover.first + float(s) * 0.6180339887) < cover.share; }
 
 // The shading sample of the pixel `from`, at `p`.
-void splat(ivec2 p, ivec2 from, int layer, uint extra, Surfel surfel, Stretch stretch, Cover cover) {
-    uint level = level_of(surfel.depth_m, texelFetch(range, ivec2(0), 0).rg) | extra;
+void splat(ivec2 p, ivec2 from, int layer, Surfel surfel, Stretch stretch, Cover cover) {
+    uint level = level_of(surfel.depth_m, texelFetch(range, ivec2(0), 0).rg);
+#ifdef HAS_HIDDEN_AT
+    if (layer == kEstimatedLayer) level = min(level + kEstimateBehind, 2047u) | kEstimateAfter;
+#endif
     for (int s = BAND * kBandSamples; s < min(param.samples, (BAND + 1) * kBandSamples); ++s) {
         if (!is_covered(cover, s)) continue;
         vec3 point = texelFetch(points, ivec2(s, 0), 0).xyz;
@@ -62,7 +72,7 @@ void splat_layer(ivec2 p, int layer, float at_infinity_px) {
     Surfel surfel = surfel_at(layer, p, at_infinity_px);
     if (surfel.share < kNothing) return;
     Cover cover = surfel.share > kWhole ? kAll : Cover(surfel.share, unit_float(pcg3d16(uvec3(p, layer)).x << 16u));
-    splat(p, p, layer, 0u, surfel, stretch_at(layer, p, surfel, at_infinity_px), cover);
+    splat(p, p, layer, surfel, stretch_at(layer, p, surfel, at_infinity_px), cover);
 }
 
 #ifndef HAS_SECOND
@@ -75,8 +85,8 @@ void splat_picture(ivec2 p, float at_infinity_px) {
     ivec2 other = p + mixture.across;
     Surfel across = surfel_at(0, other, at_infinity_px);
     bool is_behind = across.depth_m < own.depth_m;
-    splat(p, p, 0, 0u, own, stretch, mixture.share == 0.0 || is_behind ? kAll : Cover(1.0 - mixture.share, first));
-    if (mixture.share > 0.0) splat(p, other, 0, 0u, across, Stretch(vec2(0.0), vec2(0.0)), is_behind ? Cover(mixture.share, first) : kAll);
+    splat(p, p, 0, own, stretch, mixture.share == 0.0 || is_behind ? kAll : Cover(1.0 - mixture.share, first));
+    if (mixture.share > 0.0) splat(p, other, 0, across, Stretch(vec2(0.0), vec2(0.0)), is_behind ? Cover(mixture.share, first) : kAll);
 }
 #endif
 
@@ -103,7 +113,7 @@ void main() {
     if (at.w != 0u) {
         float depth_m = uintBitsToFloat(at.z);
         vec4 path = vec4(unpackHalf2x16(at.x), unpackHalf2x16(at.y));
-        splat(p, p, 1, kEstimate >> 20u, Surfel(depth_m, coc_of(depth_m, at_infinity_px), path, 1.0), Stretch(vec2(0.0), vec2(0.0)), kAll);
+        splat(p, p, kEstimatedLayer, Surfel(depth_m, coc_of(depth_m, at_infinity_px), path, 1.0), Stretch(vec2(0.0), vec2(0.0)), kAll);
     }
 #endif
 }
