@@ -1,5 +1,5 @@
 // A row for each parameter, made from its declaration in the effect's manifest.
-import { element, freshId, iconButton, options } from "./elements.js";
+import { element, icon, freshId, iconButton, options } from "./elements.js";
 import { field, numberControl } from "./number.js";
 import * as values from "./values.js";
 
@@ -20,7 +20,8 @@ function vectorControl({ label, parameter, describedBy, commit }) {
   const isColor = parameter.type === "color",
     names = isColor ? ["red", "green", "blue"] : ["x", "y", "z", "w"].slice(0, Number(parameter.type.slice(3)));
   let entry = { effective: parameter.default };
-  const now = () => [...(Array.isArray(entry.value) ? entry.value : entry.effective)];
+  const list = (value) => (Array.isArray(value) && value.length === names.length ? value : parameter.default);
+  const now = () => [...list(entry.value ?? entry.effective)];
   const fields = names.map((name, i) =>
     field({
       label: `${label}, ${name}`,
@@ -30,11 +31,12 @@ function vectorControl({ label, parameter, describedBy, commit }) {
       commit: (value) => commit(now().map((old, at) => (at === i ? value : old))),
       onArrow: (sign, times) => {
         const [low, high] = parameter.ui ?? [0, 1];
-        const number = Number((entry.effective[i] + (sign * times * (high - low)) / 100).toPrecision(6));
+        const number = Number((values.numberOf(list(entry.effective)[i]) + (sign * times * (high - low)) / 100).toPrecision(6));
         if (!values.outOfRange(number, parameter)) {
-          entry = { ...entry, effective: entry.effective.map((old, at) => (at === i ? number : old)) };
+          const all = now().map((old, at) => (at === i ? number : old));
+          entry = { ...entry, effective: list(entry.effective).map((old, at) => (at === i ? number : old)), value: all };
           fields[i].show(values.short(number));
-          commit(now().map((old, at) => (at === i ? number : old)), `keys ${label} ${name}`);
+          commit(all, `keys ${label} ${name}`);
         }
       },
     }),
@@ -46,8 +48,9 @@ function vectorControl({ label, parameter, describedBy, commit }) {
     nodes: [element("span", { class: "wide vector" }, swatch || null, ...fields.map(({ node }) => node))],
     update(next) {
       entry = next;
-      next.effective.forEach((number, i) => fields[i].show(values.short(number)));
-      if (swatch) swatch.value = values.swatchOf(next.effective);
+      const numbers = list(next.effective).map(values.numberOf);
+      numbers.forEach((number, i) => fields[i].show(values.short(number)));
+      if (swatch) swatch.value = values.swatchOf(numbers);
     },
   };
 }
@@ -125,8 +128,7 @@ export function parameterRow({ id, parameter, commit, pick }) {
         { tag: word, words } = values.sourceOf(entry.from);
       node.classList.toggle("set", isSet);
       reset.hidden = !isSet;
-      tag.textContent = isSet && kind !== "expression" ? "" : word;
-      tag.hidden = isSet;
+      tag.replaceChildren(...(word && !isSet ? [icon(word)] : []));
       tag.title = words;
       hint.textContent = `${parameter.doc} (${rangeWords(parameter)}) Now ${words}.`;
     },

@@ -17,6 +17,10 @@ const ICONS = {
   theme: "M8 2a6 6 0 1 0 0 12zM8 2a6 6 0 0 1 0 12",
   up: "m4 10 4-4 4 4",
   down: "m4 6 4 4 4-4",
+  capture: "M2 5h3l1-1.5h4L11 5h3v8H2zM8 6.5a2.2 2.2 0 1 0 0 4.4 2.2 2.2 0 0 0 0-4.4",
+  preset: "M3 4.5h10M3 8h7M3 11.5h4",
+  keys: "m8 3 4.5 5L8 13 3.5 8z",
+  variable: "m4.5 5 7 6m0-6-7 6",
   copy: "M5.5 5.5v-3h8v8h-3m-8-5h8v8h-8z",
 };
 

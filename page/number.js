@@ -1,6 +1,6 @@
 // A number: a slider over its slider range, and a field that takes any value within its limits.
 import { element } from "./elements.js";
-import { literal, quantity, scaleOf, short, typedNumber } from "./values.js";
+import { literal, numberOf, quantity, scaleOf, short, typedNumber } from "./values.js";
 
 const PLACES = 1000; // of a slider
 
@@ -106,7 +106,7 @@ export function numberControl({ label, parameter, describedBy, commit }) {
   });
 
   const nudge = (by) => {
-    const now = Number(entry.effective);
+    const now = numberOf(entry.effective ?? parameter.default);
     let next = scale.value(Math.min(Math.max(scale.place(now) + by / 100, 0), 1));
     if (parameter.type === "int" && next === now) next = now + Math.sign(by);
     next = Math.min(Math.max(next, parameter.min ?? -Infinity), parameter.max ?? Infinity);
@@ -132,7 +132,7 @@ export function numberControl({ label, parameter, describedBy, commit }) {
     nodes: [slider, typed.node, unit],
     update(next) {
       entry = next;
-      const number = Number(next.effective);
+      const number = numberOf(next.effective);
       if (!isDragged) {
         paint(number);
         typed.show(short(number, 6));

@@ -77,12 +77,13 @@ tablist.addEventListener("keydown", (event) => {
   other.click();
   other.focus();
 });
-const help = element("p", { class: "explain", "aria-hidden": "true" });
+const EXPLAIN = "Point at a value to read what it does, its limits and where it comes from.";
+const help = element("p", { class: "explain", "aria-hidden": "true" }, EXPLAIN);
 at("look").append(tablist, faults.node, list.node, text.node, help);
 showPanel("steps");
 // What the row under the pointer or with the focus is for.
 for (const name of ["focusin", "pointerover"])
-  at("look").addEventListener(name, ({ target }) => (help.textContent = target.closest(".row")?.querySelector(".hint")?.textContent ?? ""));
+  at("look").addEventListener(name, ({ target }) => (help.textContent = target.closest(".row")?.querySelector(".hint")?.textContent ?? EXPLAIN));
 
 // ---- the bar ----
 

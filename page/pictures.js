@@ -36,8 +36,11 @@ export class Pictures extends EventTarget {
         retries = 0;
       } catch (error) {
         if (error.name === "AbortError") continue;
-        if (error.status === 409 && !this.#wish && retries++ < 3) this.dispatchEvent(new Event("outdated"));
-        else if (error.status !== 409) this.dispatchEvent(new CustomEvent("fail", { detail: error }));
+        // Superseded: by the newer wish, or else by another page, which ends soon.
+        if (error.status === 409 && !this.#wish && retries++ < 3) {
+          await new Promise((resolve) => setTimeout(resolve, 200));
+          this.#wish ??= wish;
+        } else if (!this.#wish) this.dispatchEvent(new CustomEvent("fail", { detail: error }));
       }
     }
     this.#isRunning = false;

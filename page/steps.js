@@ -6,12 +6,15 @@ import { milliseconds } from "./values.js";
 
 const MIX = { type: "float", min: 0, max: 1, ui: [0, 1], default: 1, doc: "Blend from the image before the step to its result." };
 
+/** A step that includes another look has no effect, but its file. */
+export const nameOf = (step) => step.name || step.effect || (step.use ? `use ${step.use}` : `step ${step.index + 1}`);
+
 class StepCard {
   constructor(list, step, key) {
     this.list = list;
     this.key = key;
     this.index = step.index;
-    this.effect = list.store.effects.get(step.effect);
+    this.effect = list.store.effects.get(step.effect); // undefined for "use" and for effects that are not found
     this.rows = new Map();
     this.build(step);
   }
@@ -40,7 +43,7 @@ class StepCard {
     this.body = element("div", { class: "body", id: body, hidden: true });
     this.node = element(
       "li",
-      { class: "step", "data-step": step.name || step.effect },
+      { class: "step", "data-step": nameOf(step) },
       element(
         "div",
         { class: "head" },
@@ -105,9 +108,9 @@ class StepCard {
   update(step, count) {
     this.step = step;
     this.index = step.index;
-    const name = step.name || step.effect;
+    const name = nameOf(step);
     this.title.textContent = name;
-    this.id.textContent = name === step.effect ? "" : step.effect;
+    this.id.textContent = name === step.effect ? "" : (step.effect ?? "");
     this.opener.title = this.effect?.summary ?? "";
     this.node.dataset.step = name;
     this.node.setAttribute("aria-label", name);
@@ -122,13 +125,13 @@ class StepCard {
   updateBody() {
     const { step } = this;
     if (!step) return;
-    this.name.show(step.name || step.effect);
+    this.name.show(step.name || step.effect || "");
     options(
       this.preset,
       [["", "none"], ...Object.keys(this.effect?.presets ?? {}).map((name) => [name, name])],
       step.preset ?? "",
     );
-    this.mix.update({ effective: typeof step.mix === "number" ? step.mix : 1, value: step.mix });
+    this.mix.update({ effective: step.mix ?? 1, value: step.mix ?? undefined });
     for (const [id, row] of this.rows) row.update(step.params[id] ?? { effective: this.effect.params[id].default, from: "default" });
   }
 
@@ -194,7 +197,7 @@ export class StepList {
       counts = new Map(),
       isFirst = this.cards.length === 0 && !this.hasShown;
     const keys = steps.map((step) => {
-      const name = `${step.effect} ${step.name || step.effect}`,
+      const name = `${step.effect ?? ""} ${nameOf(step)}`,
         count = counts.get(name) ?? 0;
       counts.set(name, count + 1);
       return `${name} ${count}`;
@@ -226,7 +229,7 @@ export class StepList {
   /** Milliseconds of each step, by name. */
   showCosts(times) {
     for (const card of this.cards) {
-      const name = card.step.name || card.step.effect,
+      const name = nameOf(card.step),
         own = times.passes.filter(({ step }) => step === name);
       card.cost.textContent = own.length ? milliseconds(own.reduce((sum, { ms }) => sum + ms, 0)) : "";
       card.cost.title = own.length ? "Time of its passes in the last full picture" : "";

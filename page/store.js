@@ -17,6 +17,10 @@ export class Store extends EventTarget {
     this.#take(state);
   }
 
+  /** Warnings are no faults: the picture is drawn with them. */
+  get hasFaults() {
+    return this.state.faults.some(({ severity }) => severity !== "warning");
+  }
   get isSaved() {
     return this.state.revision === this.state.saved_revision;
   }

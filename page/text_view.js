@@ -85,23 +85,30 @@ export class Faults {
     this.goTo = goTo;
     this.node = element("div", { class: "faults", role: "alert", hidden: true });
   }
+  words(faults) {
+    const errors = faults.filter(({ severity }) => severity !== "warning").length,
+      warnings = faults.length - errors;
+    const counted = (count, word) => (count ? [`${count} ${word}${count === 1 ? "" : "s"}`] : []);
+    return [...counted(errors, "fault"), ...counted(warnings, "warning")].join(", ") + (errors ? ": the picture is the last good one" : "");
+  }
   update() {
     const { faults } = this.store.state;
+    this.node.classList.toggle("only-warnings", !this.store.hasFaults);
     this.node.hidden = faults.length === 0;
     const signature = JSON.stringify(faults);
     if (signature === this.signature) return;
     this.signature = signature;
     this.node.replaceChildren(
-      element("p", { class: "count" }, `${faults.length} ${faults.length === 1 ? "fault" : "faults"}: the picture is the last good one`),
+      element("p", { class: "count" }, this.words(faults)),
       element(
         "ul",
         {},
-        faults.map(({ line, column, where, message }) =>
+        faults.map(({ line, column, message }) =>
           element(
             "li",
             {},
             button(
-              [element("span", { class: "place" }, line ? `${line}:${column ?? 1}` : "look"), element("span", {}, where ? `${where}: ${message}` : message)],
+              [element("span", { class: "place" }, line ? `${line}:${column || 1}` : "look"), element("span", {}, message)],
               () => this.goTo(line || 1, column || 1),
             ),
           ),

@@ -48,6 +48,9 @@ export function outOfRange(number, { min, max, unit = "" }) {
 export const isExpression = (value) =>
   value !== null && typeof value === "object" && !Array.isArray(value) && ("keys" in value || "var" in value || "from" in value);
 
+/** The number of a value, also of one with a unit; NaN of any other. */
+export const numberOf = (value) => (typeof value === "string" ? (quantity(value)?.number ?? NaN) : typeof value === "number" ? value : NaN);
+
 export const asText = (value) => (typeof value === "string" ? value : JSON.stringify(value) ?? "");
 
 /** Text of a field that takes any value: JSON if it is JSON, else the text itself. */
@@ -100,10 +103,10 @@ export const lightOf = (swatch) =>
   [1, 3, 5].map((at) => Number(decode(parseInt(swatch.slice(at, at + 2), 16) / 255).toPrecision(4)));
 
 const WORDS = { look: "set in the look", preset: "from the preset", default: "the effect's default", key: "from keys over frames", variable: "from a variable" };
-/** Where a value came from: {tag: a word beside the control, words: a sentence}. */
+/** Where a value came from: {tag: its sign beside the control, words: a phrase}. */
 export function sourceOf(from = "default") {
   if (from.startsWith("capture")) return { tag: "capture", words: `from the capture: ${from.replace(/^capture:?\s*/, "")}` };
-  const tag = { preset: "preset", key: "keys", variable: "var" }[from] ?? "";
+  const tag = { preset: "preset", key: "keys", variable: "variable" }[from] ?? "";
   return { tag, words: WORDS[from] ?? from };
 }
 

@@ -4,10 +4,10 @@ import { PictureCanvas } from "./canvas.js";
 import { button, element, icon, iconButton, notify } from "./elements.js";
 import { field } from "./number.js";
 import { Pictures } from "./pictures.js";
+import { nameOf } from "./steps.js";
 import { quantity, short } from "./values.js";
 
-const PAN = 64, // device pixels of a key
-  FPS = 24;
+const PAN = 64; // device pixels of a key
 
 export class Viewer extends EventTarget {
   view = "final";
@@ -103,7 +103,7 @@ export class Viewer extends EventTarget {
     this.frameCount.textContent = `of ${capture.frames[0]} to ${capture.frames.at(-1)}`;
     const taps = steps.flatMap((step) => {
       const { outputs = {}, textures = {} } = this.store.effects.get(step.effect) ?? {},
-        name = step.name || step.effect;
+        name = nameOf(step);
       return [...new Set([...Object.keys(outputs), ...Object.keys(textures)])].map((image) => `tap:${name}.${image}`);
     });
     const roles = capture.roles.map(({ name }) => `role:${name}`);
@@ -135,10 +135,7 @@ export class Viewer extends EventTarget {
     this.exposureSlider.style.setProperty("--fill", `${(100 * (this.exposure + 8)) / 16}%`);
     this.frameField.show(String(this.frame));
     this.placeWipe();
-    if (this.store.state.faults.length) {
-      this.setBadge(this.picture.first ? "last good picture: the look has faults" : "the look has faults");
-      return;
-    }
+    if (this.store.hasFaults) this.setBadge("last good picture: the look has faults");
     const { revision } = this.store.state;
     this.pictures.want({ revision, frame: this.frame, view: this.view, other: this.other, exposure: this.exposure });
   }
@@ -201,7 +198,7 @@ export class Viewer extends EventTarget {
       const begun = performance.now();
       this.stepFrame(1);
       await this.pictures.settled();
-      await new Promise((resolve) => setTimeout(resolve, Math.max(10, 1000 / FPS - (performance.now() - begun))));
+      await new Promise((resolve) => setTimeout(resolve, Math.max(10, 1000 / (this.store.state.capture.fps || 24) - (performance.now() - begun))));
     }
   }
 
@@ -237,14 +234,13 @@ export class Viewer extends EventTarget {
     const { pictures } = this;
     pictures.addEventListener("busy", () => (this.busy.hidden = false));
     pictures.addEventListener("idle", () => (this.busy.hidden = true));
-    pictures.addEventListener("outdated", () => this.store.refresh());
     pictures.addEventListener("fail", ({ detail }) => this.setBadge(detail.message));
     pictures.addEventListener("picture", ({ detail }) => {
       if (detail.name === "second" && this.other !== detail.wish.other) return;
       this.picture[detail.name] = { bitmap: detail.bitmap, isCoarse: detail.isCoarse };
       this.picture.draw();
       if (detail.name === "first") {
-        this.setBadge(detail.isCoarse ? "1/4" : "", false);
+        if (!this.store.hasFaults) this.setBadge(detail.isCoarse ? "1/4" : "", false);
         this.canvas.dataset.revision = detail.wish.revision;
         this.canvas.dataset.scale = detail.isCoarse ? 4 : 1;
         this.dispatchEvent(new CustomEvent("picture", { detail }));
