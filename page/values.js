@@ -2,6 +2,7 @@
 
 /** At most `digits` significant digits, without trailing zeros. */
 export function short(number, digits = 4) {
+  if (number === null || number === undefined) return "–";
   if (typeof number !== "number") return String(number);
   if (!Number.isFinite(number)) return Number.isNaN(number) ? "NaN" : number < 0 ? "-inf" : "inf";
   if (number === 0) return "0";
