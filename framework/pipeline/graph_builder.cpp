@@ -98,7 +98,7 @@ std::unique_ptr<BuiltGraph> GraphBuilder::build() {
     for (NativeTableBinding& binding : native_tables_) bindings.emplace_back(std::move(binding));
     for (BlockBinding& binding : blocks_) bindings.emplace_back(std::move(binding));
     built_->key = frame_.key();
-    built_->executor = 
+    built_->executor =
         std::make_unique<graph::Executor>(tools_.context, std::move(graph_), !tools_.keeps_steps);
     return std::move(built_);
 }

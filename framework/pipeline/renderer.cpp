@@ -256,8 +256,8 @@ FrameResult PipelineRenderer::render_again(const FrameInputs& frame, const std::
 
     const int first = first_changed_step(before, mixes_drawn_);
     const bool is_same = first == int(pipeline_.steps.size());
-    const int first_pass = is_same ? built_->executor->graph().pass_count()
-                                   : built_->first_pass_of_step[std::size_t(first)];
+    const int first_pass =
+        is_same ? built_->executor->graph().pass_count() : built_->first_pass_of_step[std::size_t(first)];
     // Until it is drawn, nothing stands for these values.
     mixes_drawn_.clear();
     FrameResult result;

@@ -38,7 +38,7 @@ Connections::Connections(int port, const Limits& limits) : limits_(limits) {
     address.sin_port = htons(std::uint16_t(port));
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     if (::bind(listener_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
-        ::listen(listener_, 128) != 0)
+        ::listen(listener_, 1024) != 0)
         throw system_error(port, "cannot listen");
     socklen_t size = sizeof address;
     ::getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size);

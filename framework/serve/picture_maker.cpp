@@ -12,9 +12,9 @@
 #include "framework/core/error.h"
 #include "framework/effect/pass_program.h"
 #include "framework/effect/program_store.h"
-#include "framework/file/png_file.h"
 #include "framework/image/role.h"
 #include "framework/pipeline/nan_policy.h"
+#include "framework/serve/quick_png.h"
 #include "framework/serve/view_picture.h"
 
 namespace aftershade::serve {
@@ -189,7 +189,7 @@ MadePicture PictureMaker::make(const PictureRequest& request) {
         shown = picture(scaled, request);
     }
     MadePicture made;
-    made.png = encode_png("the picture", shown);
+    made.png = quick_png(shown);
     nlohmann::ordered_json times;
     times["passes"] = nlohmann::ordered_json::array();
     for (const graph::PassTime& time : scaled.result.times) {

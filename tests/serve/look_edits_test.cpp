@@ -154,11 +154,12 @@ private:
     std::mt19937 random_;
 };
 
-/// An empty list of values says what none says.
-Json without_empty(Json document) {
-    for (Json& step : document["steps"])
+/// An empty list of values says what none says, and where one comes back it may stand behind other keys.
+nlohmann::json content_of(const Json& document) {
+    nlohmann::json content = document;
+    for (auto& step : content["steps"])
         if (step.contains("params") && step["params"].empty()) step.erase("params");
-    return document;
+    return content;
 }
 
 TEST(LookModel, HoldsTwoHundredRandomEditsAndUndoesThemToTheFirstByte) {
@@ -177,7 +178,7 @@ TEST(LookModel, HoldsTwoHundredRandomEditsAndUndoesThemToTheFirstByte) {
             ASSERT_NO_THROW(model.edit(before["revision"], Json::array({edit}))) << edit;
             if (model.state({})["revision"] != before["revision"]) ++changes;
             const std::string text = model.text();
-            ASSERT_EQ(without_empty(read(text)), without_empty(document))
+            ASSERT_EQ(content_of(read(text)), content_of(document))
                 << "seed " << seed << ", edit " << i << " " << edit << "\n"
                 << before["text"] << "\n"
                 << text;

@@ -159,7 +159,8 @@ TEST_F(Serve, AnswersItsPageAndEndsWithTheCodeOfAnInterrupt) {
     const Json probe = get("/api/probe?frame=1&x=5&y=7").json();
     EXPECT_EQ(probe["result"].size(), 4u);
     std::uint64_t pixels = 0;
-    for (const Json& count : get("/api/histogram?frame=1").json()["r"]) pixels += count.get<std::uint64_t>();
+    const Json histogram = get("/api/histogram?frame=1").json();
+    for (const Json& count : histogram["r"]) pixels += count.get<std::uint64_t>();
     EXPECT_EQ(pixels, 64u * 36u);
     EXPECT_NE(get("/api/command").json()["command"].get<std::string>().find("aftershade run "),
               std::string::npos);
