@@ -15,7 +15,10 @@ async function request(path, options = {}) {
     response = await fetch(path, { ...options, headers: { "X-Aftershade-Token": token, ...options.headers } });
   } catch (error) {
     if (error.name === "AbortError") throw error;
-    throw new ApiError(0, "the program does not answer: start `aftershade serve` again and open the address that it prints");
+    throw new ApiError(
+      0,
+      "the program does not answer: start `aftershade serve` again and open the address that it prints",
+    );
   }
   if (response.ok) return response;
   let message = `${response.status} ${response.statusText}`;
@@ -40,6 +43,9 @@ export const post = async (path, body = {}) =>
 export async function picture(values, signal) {
   const response = await request(query("/api/picture", values), { signal });
   const times = JSON.parse(response.headers.get("X-Aftershade-Times") ?? "null");
-  const bitmap = await createImageBitmap(await response.blob(), { premultiplyAlpha: "none", colorSpaceConversion: "none" });
+  const bitmap = await createImageBitmap(await response.blob(), {
+    premultiplyAlpha: "none",
+    colorSpaceConversion: "none",
+  });
   return { bitmap, times };
 }

@@ -88,7 +88,10 @@ export class PictureCanvas extends EventTarget {
   /** Pixel of the picture under a pointer event; null beside the picture. */
   pixelAt(event) {
     const box = this.canvas.getBoundingClientRect(),
-      place = this.placeOf([(event.clientX - box.left) * devicePixelRatio, (event.clientY - box.top) * devicePixelRatio]),
+      place = this.placeOf([
+        (event.clientX - box.left) * devicePixelRatio,
+        (event.clientY - box.top) * devicePixelRatio,
+      ]),
       pixel = place.map(Math.floor);
     return pixel[0] >= 0 && pixel[1] >= 0 && pixel[0] < this.size[0] && pixel[1] < this.size[1] ? pixel : null;
   }

@@ -6,7 +6,10 @@ import * as values from "./values.js";
 function boolControl({ label, describedBy, commit }) {
   const box = element("input", { type: "checkbox", "aria-label": label, "aria-describedby": describedBy });
   box.addEventListener("change", () => commit(box.checked));
-  return { nodes: [element("span", { class: "wide" }, box)], update: ({ effective }) => (box.checked = effective === true) };
+  return {
+    nodes: [element("span", { class: "wide" }, box)],
+    update: ({ effective }) => (box.checked = effective === true),
+  };
 }
 
 function enumControl({ label, parameter, describedBy, commit }) {
@@ -31,10 +34,16 @@ function vectorControl({ label, parameter, describedBy, commit }) {
       commit: (value) => commit(now().map((old, at) => (at === i ? value : old))),
       onArrow: (sign, times) => {
         const [low, high] = parameter.ui ?? [0, 1];
-        const number = Number((values.numberOf(list(entry.effective)[i]) + (sign * times * (high - low)) / 100).toPrecision(6));
+        const number = Number(
+          (values.numberOf(list(entry.effective)[i]) + (sign * times * (high - low)) / 100).toPrecision(6),
+        );
         if (!values.outOfRange(number, parameter)) {
           const all = now().map((old, at) => (at === i ? number : old));
-          entry = { ...entry, effective: list(entry.effective).map((old, at) => (at === i ? number : old)), value: all };
+          entry = {
+            ...entry,
+            effective: list(entry.effective).map((old, at) => (at === i ? number : old)),
+            value: all,
+          };
           fields[i].show(values.short(number));
           commit(all, `keys ${label} ${name}`);
         }
@@ -80,7 +89,9 @@ function controlFor(context) {
 }
 
 function rangeWords({ type, ui, min, max, unit = "", default: fallback }) {
-  const parts = [`default ${values.asText(fallback) || "none"}${unit && typeof fallback === "number" ? ` ${unit}` : ""}`];
+  const parts = [
+    `default ${values.asText(fallback) || "none"}${unit && typeof fallback === "number" ? ` ${unit}` : ""}`,
+  ];
   if (min !== undefined) parts.push(`limits ${values.short(min, 7)} to ${values.short(max, 7)}${unit && ` ${unit}`}`);
   if (ui && values.isNumeric(type)) parts.push(`slider ${values.short(ui[0])} to ${values.short(ui[1])}`);
   return parts.join("; ");
@@ -98,11 +109,20 @@ export function parameterRow({ id, parameter, commit, pick }) {
     error = element("p", { class: "refusal", role: "alert" }),
     reset = iconButton("reset", `Reset ${label}`, () => commit(null), { class: "icon-button reset" });
   const picker =
-    pick && iconButton("pick", `Pick ${label} in the picture`, () => pick(picker), { class: "icon-button picker", "aria-pressed": "false" });
+    pick &&
+    iconButton("pick", `Pick ${label} in the picture`, () => pick(picker), {
+      class: "icon-button picker",
+      "aria-pressed": "false",
+    });
   const node = element(
     "div",
     { class: "row", "data-param": id },
-    element("span", { class: "label", title: parameter.doc }, element("span", { class: "words" }, label), picker || null),
+    element(
+      "span",
+      { class: "label", title: parameter.doc },
+      element("span", { class: "words" }, label),
+      picker || null,
+    ),
     holder,
     element("span", { class: "source" }, tag, reset),
     error,
@@ -134,4 +154,3 @@ export function parameterRow({ id, parameter, commit, pick }) {
     },
   };
 }
-

@@ -14,7 +14,11 @@ export class Probe {
     this.node = panel(
       "Pixel",
       this.place,
-      element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Values of the pixel" }, element("table", {}, element("caption", { class: "unseen" }, "Values under the probe"), this.body)),
+      element(
+        "div",
+        { class: "scroll", tabindex: 0, role: "region", "aria-label": "Values of the pixel" },
+        element("table", {}, element("caption", { class: "unseen" }, "Values under the probe"), this.body),
+      ),
     );
     this.hint = element("p", { class: "empty" }, "Point at the picture, or move the probe with the arrow keys.");
     this.node.append(this.hint);
@@ -83,7 +87,10 @@ export class Histogram {
     this.range.textContent = `${short(min, 3)} to ${short(max, 3)}`;
     const peak = (bins) => short(min + ((bins.indexOf(Math.max(...bins)) + 0.5) / bins.length) * (max - min), 2);
     const [r, g, b] = CHANNELS.map(([name]) => peak(this.data[name]));
-    this.canvas.setAttribute("aria-label", `Histogram from ${short(min, 3)} to ${short(max, 3)}; most pixels: red ${r}, green ${g}, blue ${b}`);
+    this.canvas.setAttribute(
+      "aria-label",
+      `Histogram from ${short(min, 3)} to ${short(max, 3)}; most pixels: red ${r}, green ${g}, blue ${b}`,
+    );
     this.draw();
   }
 
@@ -110,7 +117,9 @@ export class Histogram {
       const bins = this.data[name];
       context.beginPath();
       context.moveTo(0, height);
-      bins.forEach((count, i) => context.lineTo(((i + 0.5) / bins.length) * width, height * (1 - Math.min(Math.sqrt(count / top), 1))));
+      bins.forEach((count, i) =>
+        context.lineTo(((i + 0.5) / bins.length) * width, height * (1 - Math.min(Math.sqrt(count / top), 1))),
+      );
       context.lineTo(width, height);
       context.fillStyle = isDark ? `${color}b0` : `${color}80`;
       context.fill();
@@ -120,29 +129,48 @@ export class Histogram {
 }
 
 export class Costs {
+  known = new Map();
+
   constructor() {
     this.total = element("span", { class: "aside" });
     this.chips = element("div", { class: "chips" });
     this.bars = element("ol", { class: "bars", "aria-label": "Time by pass" });
     this.hint = element("p", { class: "slow" });
-    this.node = panel("Cost", this.total, this.chips, this.hint, element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Times" }, this.bars));
+    this.node = panel(
+      "Cost",
+      this.total,
+      this.chips,
+      this.hint,
+      element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Times" }, this.bars),
+    );
   }
 
-  show(times, isCoarse) {
+  /** `steps`: names of the steps that the look has. */
+  show(times, isCoarse, steps) {
     if (!times) return;
     const { passes, total_ms, steps_drawn, steps_cached, memory_bytes, non_finite } = times;
     this.total.textContent = `${milliseconds(total_ms)}${isCoarse ? " at 1/4" : ""}`;
     const chip = (words, kind = "", title = null) => element("span", { class: `chip ${kind}`, title }, words);
-    const steps = (count) => `${count} ${count === 1 ? "step" : "steps"}`;
+    const counted = (count) => `${count} ${count === 1 ? "step" : "steps"}`;
     this.chips.replaceChildren(
-      chip(non_finite ? `${non_finite} NaN or infinite` : "no NaN", non_finite ? "bad" : "good", "Values of the final picture that are NaN or infinite"),
-      chip(`${steps(steps_drawn)} drawn`),
-      chip(`${steps(steps_cached)} cached`, "", "Steps before the change, whose pictures were kept"),
+      chip(
+        non_finite ? `${non_finite} NaN or infinite` : "no NaN",
+        non_finite ? "bad" : "good",
+        "Values of the final picture that are NaN or infinite",
+      ),
+      chip(`${counted(steps_drawn)} drawn`),
+      chip(`${counted(steps_cached)} cached`, "", "Steps before the change, whose pictures were kept"),
       chip(megabytes(memory_bytes), "", "Memory of textures and buffers"),
     );
-    const sorted = [...passes].sort((a, b) => b.ms - a.ms),
+    if (isCoarse) return;
+    // Passes of cached steps keep the time of their last drawing.
+    for (const { step, name, ms } of passes) this.known.set(`${step}.${name}`, { step, name, ms });
+    for (const [key, { step }] of this.known) if (step && !steps.has(step)) this.known.delete(key);
+    const drawn = new Set(passes.map(({ step, name }) => `${step}.${name}`));
+    const sorted = [...this.known.values()].sort((a, b) => b.ms - a.ms),
       most = sorted[0]?.ms || 1;
-    const share = total_ms > 0 ? most / total_ms : 0;
+    const sum = sorted.reduce((all, { ms }) => all + ms, 0),
+      share = sum > 0 ? most / sum : 0;
     this.hint.hidden = !(sorted.length > 2 && share > 0.5);
     if (!this.hint.hidden)
       this.hint.textContent = `${sorted[0].step}.${sorted[0].name} takes ${Math.round(share * 100)} % of the time.`;
@@ -150,7 +178,15 @@ export class Costs {
       ...sorted.map(({ step, name, ms }) => {
         const bar = element("span", { class: "bar" });
         bar.style.setProperty("--share", `${(100 * ms) / most}%`);
-        return element("li", {}, element("span", { class: "pass" }, element("span", { class: "of" }, `${step}.`), name), bar, element("span", { class: "ms" }, milliseconds(ms)));
+        return element(
+          "li",
+          drawn.has(`${step}.${name}`)
+            ? {}
+            : { class: "cached", title: "Cached; the time is that of its last drawing" },
+          element("span", { class: "pass" }, element("span", { class: "of" }, step ? `${step}.` : ""), name),
+          bar,
+          element("span", { class: "ms" }, milliseconds(ms)),
+        );
       }),
     );
   }

@@ -69,9 +69,13 @@ export function button(words, onclick, more = {}) {
 }
 
 export function options(select, entries, chosen) {
-  const same = select.options.length === entries.length && entries.every(([value], i) => select.options[i].value === value);
+  const same =
+    select.options.length === entries.length && entries.every(([value], i) => select.options[i].value === value);
   if (!same) select.replaceChildren(...entries.map(([value, words]) => element("option", { value }, words)));
-  else entries.forEach(([, words], i) => select.options[i].textContent !== words && (select.options[i].textContent = words));
+  else
+    entries.forEach(
+      ([, words], i) => select.options[i].textContent !== words && (select.options[i].textContent = words),
+    );
   select.value = chosen;
 }
 

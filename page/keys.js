@@ -18,7 +18,12 @@ export class Shortcuts {
     return element(
       "dialog",
       { class: "help", "aria-label": "Shortcuts" },
-      element("div", { class: "help-head" }, element("h2", {}, "Shortcuts"), button("Close", () => this.dialog.close())),
+      element(
+        "div",
+        { class: "help-head" },
+        element("h2", {}, "Shortcuts"),
+        button("Close", () => this.dialog.close()),
+      ),
       element(
         "div",
         { class: "groups", tabindex: 0, role: "region", "aria-label": "List of shortcuts" },
@@ -32,7 +37,18 @@ export class Shortcuts {
               {},
               this.actions
                 .filter((action) => action.group === group)
-                .map(({ keys, words }) => element("div", {}, element("dt", {}, keys.map((key) => element("kbd", {}, key))), element("dd", {}, words))),
+                .map(({ keys, words }) =>
+                  element(
+                    "div",
+                    {},
+                    element(
+                      "dt",
+                      {},
+                      keys.map((key) => element("kbd", {}, key)),
+                    ),
+                    element("dd", {}, words),
+                  ),
+                ),
             ),
           ),
         ),
@@ -47,11 +63,20 @@ export class Shortcuts {
   onKey(event) {
     if (document.querySelector("dialog[open]")) return;
     const inText = isText(event.target);
-    const name = [event.ctrlKey || event.metaKey ? "Ctrl" : "", event.shiftKey && event.key.length > 1 ? "Shift" : "", event.key === " " ? "Space" : event.key]
+    const name = [
+      event.ctrlKey || event.metaKey ? "Ctrl" : "",
+      event.shiftKey && event.key.length > 1 ? "Shift" : "",
+      event.key === " " ? "Space" : event.key,
+    ]
       .filter(Boolean)
       .join("+");
-    const upper = event.shiftKey && /^[a-z]$/i.test(event.key) ? name.replace(/[a-z]$/i, (key) => `Shift+${key.toUpperCase()}`) : name;
-    const action = this.actions.find(({ keys, run }) => run && keys.some((key) => key.toLowerCase() === upper.toLowerCase()));
+    const upper =
+      event.shiftKey && /^[a-z]$/i.test(event.key)
+        ? name.replace(/[a-z]$/i, (key) => `Shift+${key.toUpperCase()}`)
+        : name;
+    const action = this.actions.find(
+      ({ keys, run }) => run && keys.some((key) => key.toLowerCase() === upper.toLowerCase()),
+    );
     if (!action) return;
     const isUndo = action.inText === "edited";
     if (inText && !action.inText) return;

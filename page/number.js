@@ -67,8 +67,7 @@ export function numberControl({ label, parameter, describedBy, commit }) {
   const scale = scaleOf(parameter);
   let entry = { effective: parameter.default };
   let gesture = 0;
-  const send = (number, isDrag) =>
-    commit(literal(number, parameter, entry.value), isDrag ? `drag ${gesture}` : null);
+  const send = (number, isDrag) => commit(literal(number, parameter, entry.value), isDrag ? `drag ${gesture}` : null);
 
   const slider = element("input", {
     type: "range",

@@ -3,7 +3,7 @@ import { get, token } from "./api.js";
 import { Costs, Histogram, Probe } from "./dock.js";
 import { button, element, icon, iconButton, notify } from "./elements.js";
 import { Shortcuts } from "./keys.js";
-import { StepList } from "./steps.js";
+import { nameOf, StepList } from "./steps.js";
 import { Store } from "./store.js";
 import { AddDialog, Faults, TextView } from "./text_view.js";
 import { short } from "./values.js";
@@ -34,7 +34,8 @@ function pickFor(parameter, commit) {
   return (node) =>
     viewer.pick(node, ({ roles }) => {
       const value = roles.find(({ name }) => name === role)?.values[0];
-      if (value === undefined || !Number.isFinite(value)) return notify(`The capture has no ${role} at this pixel`, true);
+      if (value === undefined || !Number.isFinite(value))
+        return notify(`The capture has no ${role} at this pixel`, true);
       if (role === "object_id") return commit([value]);
       commit(Number(short(value)));
     });
@@ -54,7 +55,12 @@ const faults = new Faults(store, (line, column) => {
 
 const panels = { steps: list.node, text: text.node };
 const tabs = Object.keys(panels).map((name) =>
-  button(name === "steps" ? "Steps" : "Text", () => showPanel(name), { role: "tab", id: `tab-${name}`, "aria-controls": `panel-${name}`, title: "Steps or text (T)" }),
+  button(name === "steps" ? "Steps" : "Text", () => showPanel(name), {
+    role: "tab",
+    id: `tab-${name}`,
+    "aria-controls": `panel-${name}`,
+    title: "Steps or text (T)",
+  }),
 );
 for (const [name, node] of Object.entries(panels)) {
   node.id = `panel-${name}`;
@@ -83,7 +89,10 @@ at("look").append(tablist, faults.node, list.node, text.node, help);
 showPanel("steps");
 // What the row under the pointer or with the focus is for.
 for (const name of ["focusin", "pointerover"])
-  at("look").addEventListener(name, ({ target }) => (help.textContent = target.closest(".row")?.querySelector(".hint")?.textContent ?? EXPLAIN));
+  at("look").addEventListener(
+    name,
+    ({ target }) => (help.textContent = target.closest(".row")?.querySelector(".hint")?.textContent ?? EXPLAIN),
+  );
 
 // ---- the bar ----
 
@@ -130,7 +139,10 @@ at("bar").append(
   element("span", { class: "space" }),
   undoButton,
   redoButton,
-  button([icon("copy"), "Command"], copyCommand, { title: "Copy the command that draws these pictures (Ctrl+Shift+C)", class: "command" }),
+  button([icon("copy"), "Command"], copyCommand, {
+    title: "Copy the command that draws these pictures (Ctrl+Shift+C)",
+    class: "command",
+  }),
   themeButton,
   button("?", () => shortcuts.open(), { class: "icon-button", title: "Shortcuts (?)", "aria-label": "Shortcuts" }),
   saveButton,
@@ -169,7 +181,12 @@ const shortcuts = new Shortcuts([
   { group: "Compare", keys: ["V"], words: "Next view", run: () => viewer.nextView(1) },
   { group: "Compare", keys: ["Shift+V"], words: "Previous view", run: () => viewer.nextView(-1) },
   { group: "Compare", keys: ["W"], words: "Wipe against before, on and off", run: beforeOnOff },
-  { group: "Compare", keys: ["B"], words: "While held: the picture to compare with", run: () => viewer.other && viewer.swap(true) },
+  {
+    group: "Compare",
+    keys: ["B"],
+    words: "While held: the picture to compare with",
+    run: () => viewer.other && viewer.swap(true),
+  },
   { group: "Compare", keys: ["K"], words: "Keep this picture to compare with", run: () => viewer.keep() },
   { group: "Frames", keys: ["Space"], words: "Play or pause", run: () => viewer.play() },
   { group: "Frames", keys: [","], words: "Previous frame", run: () => viewer.stepFrame(-1) },
@@ -202,9 +219,9 @@ store.addEventListener("change", () => {
 });
 store.addEventListener("fail", ({ detail }) => notify(detail.message, true));
 viewer.addEventListener("picture", ({ detail }) => {
-  costs.show(detail.times, detail.isCoarse);
+  costs.show(detail.times, detail.isCoarse, new Set(list.cards.map(({ step }) => nameOf(step))));
   if (detail.isCoarse) return;
-  if (detail.times && detail.wish.view === "final") list.showCosts(detail.times);
+  list.showCosts([...costs.known.values()]);
   if (viewer.isPlaying) return;
   histogram.load(viewer.frame);
   probe.again(viewer.frame);

@@ -60,7 +60,12 @@ export class Pictures extends EventTarget {
     const show = (name, { bitmap, times }, isCoarse, ms) =>
       this.dispatchEvent(new CustomEvent("picture", { detail: { name, bitmap, times, isCoarse, wish, ms } }));
     const views = [["first", wish.view]];
-    const otherKey = JSON.stringify([wish.other, wish.frame, wish.exposure, wish.other.startsWith("role:") || wish.revision]);
+    const otherKey = JSON.stringify([
+      wish.other,
+      wish.frame,
+      wish.exposure,
+      wish.other.startsWith("role:") || wish.revision,
+    ]);
     if (wish.other && wish.other !== "kept" && otherKey !== this.#other.key) views.push(["second", wish.other]);
 
     if (this.#fullMs > QUICK_MS)

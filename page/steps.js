@@ -4,7 +4,14 @@ import { field, numberControl } from "./number.js";
 import { parameterRow } from "./controls.js";
 import { milliseconds } from "./values.js";
 
-const MIX = { type: "float", min: 0, max: 1, ui: [0, 1], default: 1, doc: "Blend from the image before the step to its result." };
+const MIX = {
+  type: "float",
+  min: 0,
+  max: 1,
+  ui: [0, 1],
+  default: 1,
+  doc: "Blend from the image before the step to its result.",
+};
 
 /** A step that includes another look has no effect, but its file. */
 export const nameOf = (step) => step.name || step.effect || (step.use ? `use ${step.use}` : `step ${step.index + 1}`);
@@ -32,7 +39,13 @@ class StepCard {
     this.cost = element("span", { class: "cost" });
     this.opener = element(
       "button",
-      { type: "button", class: "opener", "aria-expanded": "false", "aria-controls": body, onclick: () => this.toggle() },
+      {
+        type: "button",
+        class: "opener",
+        "aria-expanded": "false",
+        "aria-controls": body,
+        onclick: () => this.toggle(),
+      },
       icon("caret"),
       this.title,
       this.id,
@@ -77,7 +90,13 @@ class StepCard {
       commit: (value, gesture) => this.edit({ op: "mix", value }, gesture),
     });
     const line = (label, ...nodes) =>
-      element("div", { class: "row" }, element("span", { class: "label" }, label), element("div", { class: "controls" }, nodes), element("span", { class: "source" }));
+      element(
+        "div",
+        { class: "row" },
+        element("span", { class: "label" }, label),
+        element("div", { class: "controls" }, nodes),
+        element("span", { class: "source" }),
+      );
     const hasPresets = Object.keys(this.effect?.presets ?? {}).length > 0;
     this.body.replaceChildren(
       ...(this.effect ? [element("p", { class: "summary" }, this.effect.summary)] : []),
@@ -132,7 +151,8 @@ class StepCard {
       step.preset ?? "",
     );
     this.mix.update({ effective: step.mix ?? 1, value: step.mix ?? undefined });
-    for (const [id, row] of this.rows) row.update(step.params[id] ?? { effective: this.effect.params[id].default, from: "default" });
+    for (const [id, row] of this.rows)
+      row.update(step.params[id] ?? { effective: this.effect.params[id].default, from: "default" });
   }
 
   onKey(event) {
@@ -188,7 +208,13 @@ export class StepList {
     this.opened = new Set();
     this.list = element("ol", { class: "steps", id: "steps", "aria-label": "Steps" });
     this.empty = element("p", { class: "empty" }, "No steps. The picture is the capture's colour.");
-    this.node = element("div", { class: "scroll" }, this.list, this.empty, button([icon("plus"), "Add a step"], add, { class: "add", title: "Add a step (A)" }));
+    this.node = element(
+      "div",
+      { class: "scroll" },
+      this.list,
+      this.empty,
+      button([icon("plus"), "Add a step"], add, { class: "add", title: "Add a step (A)" }),
+    );
   }
 
   update() {
@@ -227,10 +253,10 @@ export class StepList {
   }
 
   /** Milliseconds of each step, by name. */
-  showCosts(times) {
+  showCosts(passes) {
     for (const card of this.cards) {
       const name = nameOf(card.step),
-        own = times.passes.filter(({ step }) => step === name);
+        own = passes.filter(({ step }) => step === name);
       card.cost.textContent = own.length ? milliseconds(own.reduce((sum, { ms }) => sum + ms, 0)) : "";
       card.cost.title = own.length ? "Time of its passes in the last full picture" : "";
     }

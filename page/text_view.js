@@ -25,8 +25,17 @@ export class TextView {
     this.area.addEventListener("keydown", (event) => {
       if (event.key === "Enter" && event.ctrlKey) this.send();
     });
-    const help = element("p", { class: "hint shown", id: "text-help" }, "Taken over half a second after the last key. Tab leaves the text.");
-    this.node = element("div", { class: "text-view" }, element("div", { class: "editor" }, this.numbers, this.area), help);
+    const help = element(
+      "p",
+      { class: "hint shown", id: "text-help" },
+      "Taken over half a second after the last key. Tab leaves the text.",
+    );
+    this.node = element(
+      "div",
+      { class: "text-view" },
+      element("div", { class: "editor" }, this.numbers, this.area),
+      help,
+    );
     this.sent = null;
   }
 
@@ -63,7 +72,9 @@ export class TextView {
     if (signature === this.signature) return;
     this.signature = signature;
     this.numbers.replaceChildren(
-      ...Array.from({ length: count }, (_, i) => element("div", { class: faulty.has(i + 1) ? "faulty" : null }, String(i + 1))),
+      ...Array.from({ length: count }, (_, i) =>
+        element("div", { class: faulty.has(i + 1) ? "faulty" : null }, String(i + 1)),
+      ),
     );
     this.numbers.scrollTop = this.area.scrollTop;
   }
@@ -89,7 +100,10 @@ export class Faults {
     const errors = faults.filter(({ severity }) => severity !== "warning").length,
       warnings = faults.length - errors;
     const counted = (count, word) => (count ? [`${count} ${word}${count === 1 ? "" : "s"}`] : []);
-    return [...counted(errors, "fault"), ...counted(warnings, "warning")].join(", ") + (errors ? ": the picture is the last good one" : "");
+    return (
+      [...counted(errors, "fault"), ...counted(warnings, "warning")].join(", ") +
+      (errors ? ": the picture is the last good one" : "")
+    );
   }
   update() {
     const { faults } = this.store.state;
@@ -108,7 +122,10 @@ export class Faults {
             "li",
             {},
             button(
-              [element("span", { class: "place" }, line ? `${line}:${column || 1}` : "look"), element("span", {}, message)],
+              [
+                element("span", { class: "place" }, line ? `${line}:${column || 1}` : "look"),
+                element("span", {}, message),
+              ],
               () => this.goTo(line || 1, column || 1),
             ),
           ),
@@ -135,7 +152,13 @@ export class AddDialog {
     });
     this.list = element("ul", { id: "found", role: "listbox", "aria-label": "Effects" });
     this.none = element("p", { class: "empty", hidden: true }, "No effect matches.");
-    this.node = element("dialog", { class: "add-dialog", "aria-label": "Add a step" }, element("div", { class: "search" }, icon("plus"), this.search), this.list, this.none);
+    this.node = element(
+      "dialog",
+      { class: "add-dialog", "aria-label": "Add a step" },
+      element("div", { class: "search" }, icon("plus"), this.search),
+      this.list,
+      this.none,
+    );
     document.body.append(this.node);
     this.search.addEventListener("input", () => this.filter());
     this.search.addEventListener("keydown", (event) => this.onKey(event));
@@ -157,7 +180,11 @@ export class AddDialog {
       const id = effect.id.replaceAll("_", " "),
         text = `${effect.id} ${id} ${effect.summary}`.toLowerCase();
       if (!words.every((word) => text.includes(word))) return -1;
-      return words.every((word) => id.includes(word) || effect.id.includes(word)) ? (id.startsWith(words[0] ?? "") ? 2 : 1) : 0;
+      return words.every((word) => id.includes(word) || effect.id.includes(word))
+        ? id.startsWith(words[0] ?? "")
+          ? 2
+          : 1
+        : 0;
     };
     const found = [...this.store.effects.values()]
       .map((effect) => ({ effect, order: rank(effect) }))
@@ -167,7 +194,13 @@ export class AddDialog {
       ...found.map(({ effect }, i) =>
         element(
           "li",
-          { role: "option", id: `found-${i}`, "aria-selected": "false", "data-effect": effect.id, onclick: () => this.take(effect.id) },
+          {
+            role: "option",
+            id: `found-${i}`,
+            "aria-selected": "false",
+            "data-effect": effect.id,
+            onclick: () => this.take(effect.id),
+          },
           element("span", { class: "name" }, effect.id),
           element("span", { class: "summary" }, effect.summary),
         ),
@@ -198,6 +231,10 @@ export class AddDialog {
   async take(effect) {
     if (!effect) return;
     this.node.close();
-    this.node.dispatchEvent(new CustomEvent("added", { detail: { at: this.at, done: this.store.edit([{ op: "add", at: this.at, effect }]) } }));
+    this.node.dispatchEvent(
+      new CustomEvent("added", {
+        detail: { at: this.at, done: this.store.edit([{ op: "add", at: this.at, effect }]) },
+      }),
+    );
   }
 }

@@ -7,7 +7,7 @@ export function short(number, digits = 4) {
   if (!Number.isFinite(number)) return Number.isNaN(number) ? "NaN" : number < 0 ? "-inf" : "inf";
   if (number === 0) return "0";
   const text = Number(number.toPrecision(digits));
-  return Math.abs(text) >= 1e7 || Math.abs(text) < 1e-5 ? text.toExponential() : String(text);
+  return Math.abs(text) >= 1e7 || Math.abs(text) < 1e-4 ? text.toExponential() : String(text);
 }
 
 export const isNumeric = (type) => type === "float" || type === "int" || type === "angle";
@@ -32,7 +32,10 @@ export function literal(number, parameter, old) {
 /** {value} of what a person typed for a number, or {error}. A unit other than the declared one is left to the program. */
 export function typedNumber(text, parameter, old) {
   const found = quantity(text.replace(",", "."));
-  if (!found) return { error: `${text || "nothing"} is not a number${parameter.unit ? `; examples: 2.5, 2.5 ${parameter.unit}` : ""}` };
+  if (!found)
+    return {
+      error: `${text || "nothing"} is not a number${parameter.unit ? `; examples: 2.5, 2.5 ${parameter.unit}` : ""}`,
+    };
   if (found.unit && found.unit !== parameter.unit) return { value: `${found.number} ${found.unit}` };
   const range = outOfRange(found.number, parameter);
   if (range) return { error: range };
@@ -47,12 +50,16 @@ export function outOfRange(number, { min, max, unit = "" }) {
 
 /** Keys, variables and sources: {"keys": ...}, {"var": ...}, {"from": ...}. */
 export const isExpression = (value) =>
-  value !== null && typeof value === "object" && !Array.isArray(value) && ("keys" in value || "var" in value || "from" in value);
+  value !== null &&
+  typeof value === "object" &&
+  !Array.isArray(value) &&
+  ("keys" in value || "var" in value || "from" in value);
 
 /** The number of a value, also of one with a unit; NaN of any other. */
-export const numberOf = (value) => (typeof value === "string" ? (quantity(value)?.number ?? NaN) : typeof value === "number" ? value : NaN);
+export const numberOf = (value) =>
+  typeof value === "string" ? (quantity(value)?.number ?? NaN) : typeof value === "number" ? value : NaN;
 
-export const asText = (value) => (typeof value === "string" ? value : JSON.stringify(value) ?? "");
+export const asText = (value) => (typeof value === "string" ? value : (JSON.stringify(value) ?? ""));
 
 /** Text of a field that takes any value: JSON if it is JSON, else the text itself. */
 export function fromText(text) {
@@ -79,7 +86,8 @@ export const objectsFrom = (text) =>
 export function scaleOf(parameter) {
   const [low, high] = parameter.ui ?? [parameter.min ?? 0, parameter.max ?? 1],
     isLog = low > 0 && high / low >= 20;
-  const place = (value) => (isLog ? Math.log(Math.max(value, low) / low) / Math.log(high / low) : (value - low) / (high - low));
+  const place = (value) =>
+    isLog ? Math.log(Math.max(value, low) / low) / Math.log(high / low) : (value - low) / (high - low);
   const exact = (at) => (isLog ? low * (high / low) ** at : low + (high - low) * at);
   const span = high - low;
   const value = (at) => {
@@ -103,10 +111,17 @@ export const swatchOf = ([r, g, b]) => `#${hex(r)}${hex(g)}${hex(b)}`;
 export const lightOf = (swatch) =>
   [1, 3, 5].map((at) => Number(decode(parseInt(swatch.slice(at, at + 2), 16) / 255).toPrecision(4)));
 
-const WORDS = { look: "set in the look", preset: "from the preset", default: "the effect's default", key: "from keys over frames", variable: "from a variable" };
+const WORDS = {
+  look: "set in the look",
+  preset: "from the preset",
+  default: "the effect's default",
+  key: "from keys over frames",
+  variable: "from a variable",
+};
 /** Where a value came from: {tag: its sign beside the control, words: a phrase}. */
 export function sourceOf(from = "default") {
-  if (from.startsWith("capture")) return { tag: "capture", words: `from the capture: ${from.replace(/^capture:?\s*/, "")}` };
+  if (from.startsWith("capture"))
+    return { tag: "capture", words: `from the capture: ${from.replace(/^capture:?\s*/, "")}` };
   const tag = { preset: "preset", key: "keys", variable: "variable" }[from] ?? "";
   return { tag, words: WORDS[from] ?? from };
 }

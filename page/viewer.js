@@ -6,8 +6,7 @@ import { field } from "./number.js";
 import { Pictures } from "./pictures.js";
 import { nameOf } from "./steps.js";
 import { quantity, short } from "./values.js";
-
-const PAN = 64; // device pixels of a key
+import { listenToPointer } from "./viewer_input.js";
 
 export class Viewer extends EventTarget {
   view = "final";
@@ -23,15 +22,26 @@ export class Viewer extends EventTarget {
     this.picture = new PictureCanvas(this.canvas);
     this.picture.addEventListener("zoom", () => this.showZoom());
     this.listen();
-    this.onPointer();
+    listenToPointer(this);
   }
 
   build(node) {
     this.viewSelect = element("select", { "aria-label": "View", title: "View (V: next, Shift+V: previous)" });
     this.viewSelect.addEventListener("change", () => this.setView(this.viewSelect.value));
-    this.otherSelect = element("select", { "aria-label": "Compare with", title: "Compare with (W: before on and off)" });
+    this.otherSelect = element("select", {
+      "aria-label": "Compare with",
+      title: "Compare with (W: before on and off)",
+    });
     this.otherSelect.addEventListener("change", () => this.setOther(this.otherSelect.value));
-    this.exposureSlider = element("input", { type: "range", min: -8, max: 8, step: 0.25, value: 0, "aria-label": "Viewer exposure", title: "Exposure of the viewer alone ([ and ])" });
+    this.exposureSlider = element("input", {
+      type: "range",
+      min: -8,
+      max: 8,
+      step: 0.25,
+      value: 0,
+      "aria-label": "Viewer exposure",
+      title: "Exposure of the viewer alone ([ and ])",
+    });
     this.exposureSlider.addEventListener("input", () => this.setExposure(Number(this.exposureSlider.value)));
     this.exposureField = field({
       label: "Viewer exposure, EV",
@@ -44,15 +54,32 @@ export class Viewer extends EventTarget {
     this.zoomWords = element("output", { class: "zoom", "aria-label": "Zoom" }, "");
     this.badge = element("span", { class: "badge", hidden: true });
     this.busy = element("span", { class: "busy", hidden: true }, "drawing");
-    const tool = (label, ...nodes) => element("div", { class: "tool" }, element("span", { class: "label" }, label), nodes);
+    const tool = (label, ...nodes) =>
+      element("div", { class: "tool" }, element("span", { class: "label" }, label), nodes);
     const tools = element(
       "div",
       { class: "tools" },
       tool("view", this.viewSelect),
-      tool("compare", this.otherSelect, button("Keep", () => this.keep(), { title: "Keep this picture to compare with (K)" })),
-      tool("exposure", this.exposureSlider, this.exposureField.node, element("span", { class: "unit" }, "EV"), iconButton("reset", "Reset viewer exposure", () => this.setExposure(0))),
+      tool(
+        "compare",
+        this.otherSelect,
+        button("Keep", () => this.keep(), { title: "Keep this picture to compare with (K)" }),
+      ),
+      tool(
+        "exposure",
+        this.exposureSlider,
+        this.exposureField.node,
+        element("span", { class: "unit" }, "EV"),
+        iconButton("reset", "Reset viewer exposure", () => this.setExposure(0)),
+      ),
       element("span", { class: "space" }),
-      element("div", { class: "tool" }, button("Fit", () => this.picture.fit(), { title: "Fit (0)" }), button("1:1", () => this.picture.zoomTo(1), { title: "A pixel as a pixel (1)" }), this.zoomWords),
+      element(
+        "div",
+        { class: "tool" },
+        button("Fit", () => this.picture.fit(), { title: "Fit (0)" }),
+        button("1:1", () => this.picture.zoomTo(1), { title: "A pixel as a pixel (1)" }),
+        this.zoomWords,
+      ),
     );
     this.canvas = element("canvas", {
       tabindex: 0,
@@ -60,10 +87,31 @@ export class Viewer extends EventTarget {
       "aria-roledescription": "picture",
       "aria-label": "Picture. Arrows move the probe, Ctrl and arrows pan, plus and minus zoom",
     });
-    this.wipe = element("div", { class: "wipe", role: "slider", tabindex: 0, "aria-label": "Wipe", "aria-valuemin": 0, "aria-valuemax": 100, "aria-valuenow": 50, hidden: true }, element("span", { class: "knob" }));
+    this.wipe = element(
+      "div",
+      {
+        class: "wipe",
+        role: "slider",
+        tabindex: 0,
+        "aria-label": "Wipe",
+        "aria-valuemin": 0,
+        "aria-valuemax": 100,
+        "aria-valuenow": 50,
+        hidden: true,
+      },
+      element("span", { class: "knob" }),
+    );
     this.leftName = element("span", { class: "side left", hidden: true });
     this.rightName = element("span", { class: "side right", hidden: true });
-    this.stage = element("div", { class: "stage" }, this.canvas, this.wipe, this.leftName, this.rightName, element("div", { class: "flags" }, this.badge, this.busy));
+    this.stage = element(
+      "div",
+      { class: "stage" },
+      this.canvas,
+      this.wipe,
+      this.leftName,
+      this.rightName,
+      element("div", { class: "flags" }, this.badge, this.busy),
+    );
 
     this.frameSlider = element("input", { type: "range", min: 0, step: 1, "aria-label": "Frame" });
     this.frameSlider.addEventListener("input", () => this.setFrame(this.frames[this.frameSlider.value]));
@@ -107,14 +155,27 @@ export class Viewer extends EventTarget {
       return [...new Set([...Object.keys(outputs), ...Object.keys(textures)])].map((image) => `tap:${name}.${image}`);
     });
     const roles = capture.roles.map(({ name }) => `role:${name}`);
-    const groups = [["Picture", ["final", "before"]], ["Roles of the capture", roles], ["Taps", taps]];
+    const groups = [
+      ["Picture", ["final", "before"]],
+      ["Roles of the capture", roles],
+      ["Taps", taps],
+    ];
     const signature = JSON.stringify(groups);
     if (signature !== this.signature) {
       this.signature = signature;
       this.views = groups.flatMap(([, names]) => names);
-      const group = ([label, names]) => element("optgroup", { label }, names.map((name) => element("option", { value: name }, this.words(name))));
+      const group = ([label, names]) =>
+        element(
+          "optgroup",
+          { label },
+          names.map((name) => element("option", { value: name }, this.words(name))),
+        );
       this.viewSelect.replaceChildren(...groups.filter(([, names]) => names.length).map(group));
-      this.otherSelect.replaceChildren(element("option", { value: "" }, "nothing"), element("option", { value: "kept" }, "kept picture"), ...groups.filter(([, names]) => names.length).map(group));
+      this.otherSelect.replaceChildren(
+        element("option", { value: "" }, "nothing"),
+        element("option", { value: "kept" }, "kept picture"),
+        ...groups.filter(([, names]) => names.length).map(group),
+      );
       if (!this.views.includes(this.view)) this.view = "final";
       if (this.other !== "kept" && !this.views.includes(this.other)) this.other = "";
     }
@@ -198,7 +259,9 @@ export class Viewer extends EventTarget {
       const begun = performance.now();
       this.stepFrame(1);
       await this.pictures.settled();
-      await new Promise((resolve) => setTimeout(resolve, Math.max(10, 1000 / (this.store.state.capture.fps || 24) - (performance.now() - begun))));
+      await new Promise((resolve) =>
+        setTimeout(resolve, Math.max(10, 1000 / (this.store.state.capture.fps || 24) - (performance.now() - begun))),
+      );
     }
   }
 
@@ -275,75 +338,5 @@ export class Viewer extends EventTarget {
     this.picture.probe = pixel;
     this.picture.draw();
     this.dispatchEvent(new CustomEvent("probe", { detail: pixel }));
-  }
-
-  onPointer() {
-    const { canvas, picture, wipe } = this;
-    let from = null;
-    canvas.addEventListener("pointerdown", (event) => {
-      from = { x: event.clientX, y: event.clientY, moved: false };
-      canvas.setPointerCapture(event.pointerId);
-    });
-    canvas.addEventListener("pointermove", (event) => {
-      if (from) {
-        const [dx, dy] = [event.clientX - from.x, event.clientY - from.y];
-        if (from.moved || Math.hypot(dx, dy) > 3) {
-          picture.pan(dx * devicePixelRatio, dy * devicePixelRatio);
-          this.placeWipe();
-          from = { x: event.clientX, y: event.clientY, moved: true };
-        }
-      } else {
-        const pixel = picture.pixelAt(event);
-        if (pixel) this.setProbe(pixel);
-      }
-    });
-    canvas.addEventListener("pointerup", (event) => {
-      const pixel = picture.pixelAt(event);
-      if (from && !from.moved && pixel) {
-        this.setProbe(pixel);
-        if (this.picking) this.finishPick(pixel);
-      }
-      from = null;
-    });
-    canvas.addEventListener("pointercancel", () => (from = null));
-    canvas.addEventListener("dblclick", () => picture.fit());
-    canvas.addEventListener(
-      "wheel",
-      (event) => {
-        event.preventDefault();
-        const box = canvas.getBoundingClientRect();
-        picture.zoomBy(event.deltaY < 0 ? 1 : -1, [(event.clientX - box.left) * devicePixelRatio, (event.clientY - box.top) * devicePixelRatio]);
-      },
-      { passive: false },
-    );
-    canvas.addEventListener("keydown", (event) => this.onKey(event));
-    wipe.addEventListener("pointerdown", (event) => wipe.setPointerCapture(event.pointerId));
-    wipe.addEventListener("pointermove", (event) => {
-      if (!wipe.hasPointerCapture(event.pointerId)) return;
-      const x = (event.clientX - canvas.getBoundingClientRect().left) * devicePixelRatio;
-      this.setWipe((x - picture.corner[0]) / (picture.size[0] * picture.zoom));
-    });
-    wipe.addEventListener("keydown", (event) => {
-      const by = { ArrowLeft: -0.02, ArrowDown: -0.02, ArrowRight: 0.02, ArrowUp: 0.02, PageDown: -0.1, PageUp: 0.1, Home: -1, End: 1 }[event.key];
-      if (!by) return;
-      event.preventDefault();
-      this.setWipe(picture.wipe + by);
-    });
-  }
-
-  onKey(event) {
-    const arrow = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
-    if (event.key === "Enter" && this.picking && this.picture.probe) this.finishPick(this.picture.probe);
-    else if (event.key === "Escape" && this.picking) this.pick(this.picking.node);
-    else if (arrow && event.ctrlKey) {
-      this.picture.pan(-arrow[0] * PAN, -arrow[1] * PAN);
-      this.placeWipe();
-    } else if (arrow && !event.altKey) {
-      const by = event.shiftKey ? 10 : 1,
-        now = this.picture.probe ?? this.picture.size.map((side) => Math.floor(side / 2));
-      this.setProbe(now.map((place, i) => Math.min(Math.max(place + by * arrow[i], 0), this.picture.size[i] - 1)));
-    } else return;
-    event.preventDefault();
-    event.stopPropagation();
   }
 }

@@ -27,9 +27,15 @@ const LOOK = `// Comments and spaces are the author's.
 const described = (id) => JSON.parse(spawnSync(program, ["describe", id, "--json"], { encoding: "utf8" }).stdout);
 const withoutComments = (text) => JSON.parse(text.replace(/("(?:[^"\\]|\\.)*")|\/\/.*$/gm, (_, kept) => kept ?? ""));
 
-let browser, count = 0;
-before(async () => (browser = await openBrowser()));
+let browser,
+  shared,
+  count = 0;
+before(async () => {
+  browser = await openBrowser();
+  shared = await serve();
+});
 after(async () => {
+  await shared?.end();
   await browser?.close();
   rmSync(folder, { recursive: true, force: true });
 });
@@ -59,7 +65,12 @@ async function serve(text = LOOK, ...words) {
 }
 
 async function open(address, options = {}) {
-  const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, reducedMotion: "reduce", ...options });
+  const context = await browser.newContext({
+    viewport: { width: 1440, height: 900 },
+    reducedMotion: "reduce",
+    ...options,
+  });
+  context.setDefaultTimeout(120_000); // for machines that are busy
   const page = await context.newPage();
   page.faults = [];
   page.requests = [];
@@ -90,10 +101,28 @@ async function opened(page, name) {
 }
 const row = (card, id) => card.locator(`[data-param="${id}"]`);
 
-/** A test with a server and a page of its own, which must not complain. */
-function inPage(name, work, { text, words = [], ...options } = {}) {
-  test(name, { timeout: 240_000 }, async () => {
-    const server = await serve(text, ...words);
+/** The server that most tests share, with LOOK as it was. */
+async function fresh() {
+  const { origin, hash } = new URL(shared.address);
+  const call = async (path, body) => {
+    const headers = { "X-Aftershade-Token": hash.slice("#token=".length) };
+    const response = await fetch(
+      origin + path,
+      body ? { method: "POST", headers, body: JSON.stringify(body) } : { headers },
+    );
+    assert.equal(response.status, 200, path);
+    return response.json();
+  };
+  const { revision } = await call("/api/state");
+  await call("/api/edit", { revision, edits: [{ op: "text", value: LOOK }] });
+  await call("/api/save", {});
+  return { ...shared, end: () => {} };
+}
+
+/** A test with a page of its own, which must not complain; with `words` or `own`, the server is its own, too. */
+function inPage(name, work, { own = false, words = [], ...options } = {}) {
+  test(name, { timeout: 400_000 }, async () => {
+    const server = own || words.length ? await serve(LOOK, ...words) : await fresh();
     let page;
     try {
       page = await open(server.address, options);
@@ -113,11 +142,19 @@ const noRow = { timeout: 240_000 };
 inPage("requests nothing but from the program that serves it", async (page, { address }) => {
   const { origin } = new URL(address);
   assert.ok(page.requests.length > 10);
-  assert.deepEqual(page.requests.filter((url) => new URL(url).origin !== origin), []);
+  assert.deepEqual(
+    page.requests.filter((url) => new URL(url).origin !== origin),
+    [],
+  );
 });
 
 inPage("shows each step with the look's values, their units and their sources", async (page) => {
-  assert.deepEqual(await page.locator(".step .name").allInnerTexts(), ["bokeh", "color_grade", "vignette", "view_transform"]);
+  assert.deepEqual(await page.locator(".step .name").allInnerTexts(), [
+    "bokeh",
+    "color_grade",
+    "vignette",
+    "view_transform",
+  ]);
   assert.equal(await page.getByLabel("Enable bokeh").isChecked(), false);
   assert.equal(await page.getByLabel("Enable vignette").isChecked(), true);
   const bokeh = await opened(page, "bokeh"),
@@ -127,7 +164,9 @@ inPage("shows each step with the look's values, their units and their sources", 
   assert.match(await focus.locator(".hint").textContent(), /set in the look/);
   assert.match(await row(bokeh, "squeeze").locator(".hint").textContent(), /default/);
   const grade = await opened(page, "color_grade");
-  const slope = await row(grade, "slope").getByRole("textbox").evaluateAll((fields) => fields.slice(-3).map(({ value }) => value));
+  const slope = await row(grade, "slope")
+    .getByRole("textbox")
+    .evaluateAll((fields) => fields.slice(-3).map(({ value }) => value));
   assert.deepEqual(slope, ["1", "0.9", "0.8"]);
 });
 
@@ -151,7 +190,11 @@ inPage("makes a control for every parameter of every effect from its declaration
         hint: node.querySelector(".hint").textContent,
       })),
     );
-    assert.deepEqual(rows.map((one) => one.id), Object.keys(params), id);
+    assert.deepEqual(
+      rows.map((one) => one.id),
+      Object.keys(params),
+      id,
+    );
     for (const one of rows) {
       const { type, unit, values, doc } = params[one.id],
         place = `${id}.${one.id}`;
@@ -178,7 +221,10 @@ inPage("moves a slider by keys within its range, and changes that value alone", 
   assert.notEqual(look.steps[2].params.amount, fallback);
   assert.equal(typeof look.steps[2].params.amount, "number");
   const kept = (await textOf(page)).split("\n").filter((line) => !line.includes("vignette"));
-  assert.deepEqual(kept, before.split("\n").filter((line) => !line.includes("vignette")));
+  assert.deepEqual(
+    kept,
+    before.split("\n").filter((line) => !line.includes("vignette")),
+  );
 });
 
 inPage("takes a typed value beyond the slider, and refuses one beyond the limits with both limits", async (page) => {
@@ -244,13 +290,18 @@ inPage("resets a value by taking its key out of the look", async (page) => {
   await exposure.getByRole("button", { name: "Reset exposure" }).click();
   const look = await changed(page, before);
   assert.deepEqual(look.steps[1].params, { slope: [1, 0.9, 0.8] });
-  assert.equal(await exposure.getByRole("textbox").inputValue(), String(described("color_grade").params.exposure.default));
+  assert.equal(
+    await exposure.getByRole("textbox").inputValue(),
+    String(described("color_grade").params.exposure.default),
+  );
   assert.equal(await exposure.getByRole("button", { name: "Reset exposure" }).isVisible(), false);
 });
 
 inPage("shows that a preset gives a value", async (page) => {
   const { presets } = described("color_grade"),
-    [name, values] = Object.entries(presets).find(([, values]) => Object.keys(values).some((id) => !["exposure", "slope"].includes(id)));
+    [name, values] = Object.entries(presets).find(([, values]) =>
+      Object.keys(values).some((id) => !["exposure", "slope"].includes(id)),
+    );
   const id = Object.keys(values).find((id) => !["exposure", "slope"].includes(id));
   const before = await textOf(page),
     card = await opened(page, "color_grade");
@@ -291,7 +342,10 @@ inPage("adds a step that is found by a word of its summary", async (page) => {
   await page.getByLabel("Search effects by name and summary").fill("scatters pyramid");
   await page.keyboard.press("Enter");
   const look = await changed(page, before);
-  assert.deepEqual(look.steps.map(({ effect }) => effect), ["bokeh", "color_grade", "vignette", "bloom", "view_transform"]);
+  assert.deepEqual(
+    look.steps.map(({ effect }) => effect),
+    ["bokeh", "color_grade", "vignette", "bloom", "view_transform"],
+  );
   await page.waitForFunction(() => document.activeElement.closest(".step")?.dataset.step === "bloom");
 });
 
@@ -312,7 +366,10 @@ inPage("moves steps by keys and by the pointer", async (page) => {
   await page.mouse.move(grip.x + 8, first.y + 3, { steps: 4 });
   await page.mouse.up();
   await page.waitForFunction(() => document.querySelector(".step .name").textContent === "color_grade");
-  assert.deepEqual((await lookOf(page)).steps.map(({ effect }) => effect), ["color_grade", "bokeh", "vignette", "view_transform"]);
+  assert.deepEqual(
+    (await lookOf(page)).steps.map(({ effect }) => effect),
+    ["color_grade", "bokeh", "vignette", "view_transform"],
+  );
 });
 
 inPage("names, blends, disables and removes a step", async (page) => {
@@ -367,7 +424,10 @@ inPage(
 );
 
 inPage("lists the faults of the text at their lines while the last good picture stays", async (page) => {
-  const colors = () => page.locator(".stage canvas").evaluate((canvas) => [...canvas.getContext("2d").getImageData(canvas.width / 2, canvas.height / 2, 1, 1).data]);
+  const colors = () =>
+    page
+      .locator(".stage canvas")
+      .evaluate((canvas) => [...canvas.getContext("2d").getImageData(canvas.width / 2, canvas.height / 2, 1, 1).data]);
   const good = await colors();
   await page.keyboard.press("t");
   const area = page.getByLabel("The look as JSON");
@@ -398,14 +458,23 @@ inPage("takes names and messages as text", async (page) => {
 
 const middle = (page, dx = 0, dy = 0) =>
   page.locator(".stage canvas").evaluate(
-    (canvas, [dx, dy]) => [...canvas.getContext("2d").getImageData(canvas.width / 2 + dx, canvas.height / 2 + dy, 1, 1).data.slice(0, 3)],
+    (canvas, [dx, dy]) => [
+      ...canvas
+        .getContext("2d")
+        .getImageData(canvas.width / 2 + dx, canvas.height / 2 + dy, 1, 1)
+        .data.slice(0, 3),
+    ],
     [dx, dy],
   );
-const frame = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+const frame = (page) =>
+  page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
 /** The PNG that `run` writes of the look's first frame. */
 function runPicture(look) {
   const out = join(folder, `run_${++count}.png`);
-  const result = spawnSync(program, ["run", look, capture, "-o", out, "--frames", "1"], { encoding: "utf8", env: environment });
+  const result = spawnSync(program, ["run", look, capture, "-o", out, "--frames", "1"], {
+    encoding: "utf8",
+    env: environment,
+  });
   assert.equal(result.status, 0, result.stderr);
   return out;
 }
@@ -450,10 +519,14 @@ inPage("keeps pixels when it zooms, fits again, and pans", async (page) => {
   const row = await page.locator(".stage canvas").evaluate((canvas) => {
     const { corner } = window.aftershade.viewer.picture,
       data = canvas.getContext("2d").getImageData(0, Math.round(canvas.height / 2), canvas.width, 1).data;
-    return { left: corner[0], colors: Array.from({ length: canvas.width }, (_, x) => data.slice(4 * x, 4 * x + 3).join()) };
+    return {
+      left: corner[0],
+      colors: Array.from({ length: canvas.width }, (_, x) => data.slice(4 * x, 4 * x + 3).join()),
+    };
   });
   for (let x = 0; x < row.colors.length - 8; ++x)
-    if ((x - row.left) % 8 !== 7 && x + 1 < row.colors.length) assert.equal(row.colors[x], row.colors[x + 1], `column ${x}`);
+    if ((x - row.left) % 8 !== 7 && x + 1 < row.colors.length)
+      assert.equal(row.colors[x], row.colors[x + 1], `column ${x}`);
   assert.ok(new Set(row.colors).size > 8);
   const before = await page.evaluate(() => window.aftershade.viewer.picture.corner[0]);
   await page.keyboard.press("Control+ArrowRight");
@@ -513,7 +586,10 @@ inPage("compares with a kept picture of another setting", async (page) => {
 });
 
 inPage("shows every role and every output of a step", async (page) => {
-  const views = await page.getByLabel("View", { exact: true }).locator("option").evaluateAll((nodes) => nodes.map(({ value }) => value));
+  const views = await page
+    .getByLabel("View", { exact: true })
+    .locator("option")
+    .evaluateAll((nodes) => nodes.map(({ value }) => value));
   for (const role of ["color", "depth", "velocity", "object_id"]) assert.ok(views.includes(`role:${role}`), role);
   const seen = new Set();
   for (const view of ["final", "before", "role:depth", "role:velocity", "role:object_id", "tap:color_grade.color"]) {
@@ -533,14 +609,23 @@ inPage("shows every role's value and unit under the pointer, and by the arrow ke
   await page.mouse.move(box.x + box.width / 2 + 1, box.y + box.height / 2 - 2);
   await page.waitForFunction(() => document.querySelector(".panel tbody tr"));
   const rows = () =>
-    page.locator(".panel tbody tr").evaluateAll((nodes) => Object.fromEntries(nodes.map((node) => [node.cells[0].textContent, [...node.cells].slice(1).map((cell) => cell.textContent)])));
+    page
+      .locator(".panel tbody tr")
+      .evaluateAll((nodes) =>
+        Object.fromEntries(
+          nodes.map((node) => [node.cells[0].textContent, [...node.cells].slice(1).map((cell) => cell.textContent)]),
+        ),
+      );
   const found = await rows();
   for (const role of ["final", "color", "depth", "velocity", "object_id"]) assert.ok(found[role], role);
   assert.equal(found.depth.at(-1), "m");
   assert.equal(found.velocity.at(-1), "px");
   assert.equal(await page.locator(".panel .aside").first().innerText(), "120, 67");
   const depth = Number(found.depth[0]);
-  assert.ok([...stored.matchAll(/[-\d.e+]+/g)].some(([text]) => Math.abs(Number(text) - depth) < 2e-3 * Math.abs(depth)), `${depth} in ${stored}`);
+  assert.ok(
+    [...stored.matchAll(/[-\d.e+]+/g)].some(([text]) => Math.abs(Number(text) - depth) < 2e-3 * Math.abs(depth)),
+    `${depth} in ${stored}`,
+  );
   await canvas.focus();
   await page.keyboard.press("ArrowRight");
   await page.keyboard.press("Shift+ArrowDown");
@@ -554,12 +639,18 @@ inPage("sets the focus distance by a click in the picture", async (page) => {
   const box = await page.locator(".stage canvas").boundingBox();
   await page.mouse.click(box.x + box.width / 2 + 1, box.y + box.height / 2 - 2);
   const look = await changed(page, before);
-  const depth = await page.evaluate(() => [...document.querySelectorAll(".panel tbody tr")].find((node) => node.cells[0].textContent === "depth")?.cells[1].textContent);
+  const depth = await page.evaluate(
+    () =>
+      [...document.querySelectorAll(".panel tbody tr")].find((node) => node.cells[0].textContent === "depth")?.cells[1]
+        .textContent,
+  );
   assert.equal(parseFloat(look.steps[0].params.focus_distance), Number(depth));
 });
 
 inPage("plots the histogram of the final picture", async (page) => {
-  await page.waitForFunction(() => /most pixels/.test(document.querySelector(".plot canvas").getAttribute("aria-label")));
+  await page.waitForFunction(() =>
+    /most pixels/.test(document.querySelector(".plot canvas").getAttribute("aria-label")),
+  );
   const painted = await page.locator(".plot canvas").evaluate((canvas) => {
     const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
     return data.filter((value, i) => i % 4 === 3 && value > 100).length;
@@ -578,7 +669,11 @@ inPage("steps through the frames and plays them", async (page) => {
   await number.press("Enter");
   assert.equal(await number.getAttribute("aria-invalid"), "true");
   await number.press("Escape");
-  await page.evaluate(() => (window.frames_seen = new Set()) && window.aftershade.viewer.addEventListener("frame", () => window.frames_seen.add(window.aftershade.viewer.frame)));
+  await page.evaluate(
+    () =>
+      (window.frames_seen = new Set()) &&
+      window.aftershade.viewer.addEventListener("frame", () => window.frames_seen.add(window.aftershade.viewer.frame)),
+  );
   await page.getByRole("button", { name: "Play" }).click();
   await page.waitForFunction(() => window.frames_seen.size === 2);
   await page.getByRole("button", { name: "Pause" }).click();
@@ -588,9 +683,18 @@ inPage("steps through the frames and plays them", async (page) => {
 
 inPage("shows the time of each pass, memory, cached steps and the search for NaN", async (page) => {
   const passes = await page.locator(".bars .pass").allInnerTexts();
-  for (const pass of ["color_grade", "vignette", "view_transform"]) assert.ok(passes.some((name) => name.startsWith(`${pass}.`)), `${pass} in ${passes}`);
-  const times = await page.locator(".bars .ms").evaluateAll((nodes) => nodes.map((node) => parseFloat(node.textContent)));
-  assert.deepEqual(times, [...times].sort((a, b) => b - a));
+  for (const pass of ["color_grade", "vignette", "view_transform"])
+    assert.ok(
+      passes.some((name) => name.startsWith(`${pass}.`)),
+      `${pass} in ${passes}`,
+    );
+  const times = await page
+    .locator(".bars .ms")
+    .evaluateAll((nodes) => nodes.map((node) => parseFloat(node.textContent)));
+  assert.deepEqual(
+    times,
+    [...times].sort((a, b) => b - a),
+  );
   const chips = await page.locator(".chips").innerText();
   assert.match(chips, /no NaN/);
   assert.match(chips, /\d steps? drawn/);
@@ -622,7 +726,20 @@ inPage("can be used by the keyboard alone, with the focus in sight", async (page
     seen.add(found.label);
   }
   assert.deepEqual(hidden, []);
-  for (const label of ["Undo", "Save", "View", "Compare with", "Viewer exposure", "Frame", "Enable bokeh", "focus distance", "mix", "Preset", "Move down", "Remove"])
+  for (const label of [
+    "Undo",
+    "Save",
+    "View",
+    "Compare with",
+    "Viewer exposure",
+    "Frame",
+    "Enable bokeh",
+    "focus distance",
+    "mix",
+    "Preset",
+    "Move down",
+    "Remove",
+  ])
     if (!["Undo", "Save"].includes(label)) assert.ok(seen.has(label), `${label} in ${[...seen]}`);
   // A step is added, moved, opened, changed and saved.
   await page.keyboard.press("s");
@@ -635,7 +752,8 @@ inPage("can be used by the keyboard alone, with the focus in sight", async (page
   const before = await textOf(page);
   for (let i = 0; i < 20; ++i) {
     await page.keyboard.press("Tab");
-    if (await page.evaluate(() => document.activeElement.matches("[data-step=sharpen] [data-param] input[type=range]"))) break;
+    if (await page.evaluate(() => document.activeElement.matches("[data-step=sharpen] [data-param] input[type=range]")))
+      break;
   }
   await page.keyboard.press("ArrowRight");
   await changed(page, before);
@@ -648,23 +766,37 @@ inPage("can be used by the keyboard alone, with the focus in sight", async (page
 
 inPage("lists its shortcuts by ?, and docs/page.md lists the same", async (page) => {
   await page.keyboard.press("?");
-  const rows = await page.locator(".help dl > div").evaluateAll((nodes) => nodes.map((node) => [[...node.querySelectorAll("kbd")].map((key) => key.textContent), node.querySelector("dd").textContent]));
+  const rows = await page
+    .locator(".help dl > div")
+    .evaluateAll((nodes) =>
+      nodes.map((node) => [
+        [...node.querySelectorAll("kbd")].map((key) => key.textContent),
+        node.querySelector("dd").textContent,
+      ]),
+    );
   assert.ok(rows.length > 25);
   const docs = readFileSync(join(root, "docs/page.md"), "utf8");
-  for (const [keys, words] of rows) assert.ok(docs.includes(`| ${keys.map((key) => `\`${key}\``).join(" ")} | ${words} |`), `${keys}: ${words}`);
+  for (const [keys, words] of rows)
+    assert.ok(docs.includes(`| ${keys.map((key) => `\`${key}\``).join(" ")} | ${words} |`), `${keys}: ${words}`);
   await page.keyboard.press("Escape");
   assert.equal(await page.locator("dialog[open]").count(), 0);
 });
 
 for (const colorScheme of ["dark", "light"])
-  for (const [width, height] of [[1440, 900], [390, 844]])
+  for (const [width, height] of [
+    [1440, 900],
+    [390, 844],
+  ])
     inPage(
       `gives axe-core nothing to find, ${colorScheme}, ${width} px`,
       async (page) => {
         await page.evaluate(readFileSync(axeSource, "utf8"));
         const check = async (place) => {
           const { violations } = await page.evaluate(() => window.axe.run({ resultTypes: ["violations"] }));
-          assert.deepEqual(violations.map(({ id, nodes }) => `${place}: ${id}: ${nodes.length} x ${nodes[0].html.slice(0, 160)}`), []);
+          assert.deepEqual(
+            violations.map(({ id, nodes }) => `${place}: ${id}: ${nodes.length} x ${nodes[0].html.slice(0, 160)}`),
+            [],
+          );
         };
         await check("steps");
         await page.keyboard.press("w");
@@ -675,24 +807,44 @@ for (const colorScheme of ["dark", "light"])
         await check("shortcuts");
         await page.keyboard.press("Escape");
         await page.keyboard.press("t");
-        await page.evaluate((value) => window.aftershade.store.edit([{ op: "text", value }]), LOOK.replace('"vignette"', '"vignete"'));
+        await page.evaluate(
+          (value) => window.aftershade.store.edit([{ op: "text", value }]),
+          LOOK.replace('"vignette"', '"vignete"'),
+        );
         await check("faults");
       },
       { viewport: { width, height }, colorScheme },
     );
 
-for (const [width, height] of [[390, 844], [768, 1024], [1024, 768], [1440, 900], [3840, 2160]])
+for (const [width, height] of [
+  [390, 844],
+  [768, 1024],
+  [1024, 768],
+  [1440, 900],
+  [3840, 2160],
+])
   inPage(
     `fits ${width} px without sideways scrolling, and its controls do not cover each other`,
     async (page) => {
       const { scroll, overlaps } = await page.evaluate(() => {
-        const boxes = [...document.querySelectorAll("#bar button, .tools button, .tools select, .tools input, .frames > *, .head > *, .row input, .row select")]
+        const boxes = [
+          ...document.querySelectorAll(
+            "#bar button, .tools button, .tools select, .tools input, .frames > *, .head > *, .row input, .row select",
+          ),
+        ]
           .filter((node) => node.checkVisibility())
           .map((node) => [node, node.getBoundingClientRect()]);
         const overlaps = [];
         for (const [a, one] of boxes)
           for (const [b, two] of boxes)
-            if (a !== b && a.parentElement === b.parentElement && one.left < two.right - 1 && two.left < one.right - 1 && one.top < two.bottom - 1 && two.top < one.bottom - 1)
+            if (
+              a !== b &&
+              a.parentElement === b.parentElement &&
+              one.left < two.right - 1 &&
+              two.left < one.right - 1 &&
+              one.top < two.bottom - 1 &&
+              two.top < one.bottom - 1
+            )
               overlaps.push(`${a.outerHTML.slice(0, 80)} ${b.outerHTML.slice(0, 80)}`);
         return { scroll: document.documentElement.scrollWidth - innerWidth, overlaps };
       });
@@ -745,50 +897,77 @@ function randomEdit(next, steps, effects) {
   const pick = (list) => list[Math.floor(next() * list.length)],
     step = Math.floor(next() * steps.length),
     kind = steps.length < 2 ? "add" : next() < 0.7 ? "set" : pick(["add", "remove", "move", "enable", "mix"]);
-  if (kind === "add") return { op: "add", at: Math.floor(next() * steps.length), effect: pick(["sharpen", "vignette", "bloom", "film_grain"].filter((id) => steps.every(({ effect }) => effect !== id)).concat("sanitize").slice(0, 4)) };
+  if (kind === "add")
+    return {
+      op: "add",
+      at: Math.floor(next() * steps.length),
+      effect: pick(
+        ["sharpen", "vignette", "bloom", "film_grain"]
+          .filter((id) => steps.every(({ effect }) => effect !== id))
+          .concat("sanitize")
+          .slice(0, 4),
+      ),
+    };
   if (kind === "remove") return steps.length > 4 ? { op: "remove", step } : { op: "enable", step, value: false };
   if (kind === "move") return { op: "move", step, to: Math.floor(next() * steps.length) };
   if (kind === "enable") return { op: "enable", step, value: next() < 0.5 };
   if (kind === "mix") return { op: "mix", step, value: Math.round(next() * 100) / 100 };
   const { params } = effects.get(steps[step].effect),
-    [param, declared] = pick(Object.entries(params).filter(([, { type }]) => ["float", "int", "bool", "enum", "angle"].includes(type))) ?? [];
+    [param, declared] =
+      pick(Object.entries(params).filter(([, { type }]) => ["float", "int", "bool", "enum", "angle"].includes(type))) ??
+      [];
   if (!param) return { op: "enable", step, value: true };
   if (next() < 0.15) return { op: "set", step, param, value: null };
   const [low, high] = declared.ui ?? [0, 1],
     number = low + next() * (high - low);
-  const value = { bool: () => next() < 0.5, enum: () => pick(declared.values), int: () => Math.round(number) }[declared.type]?.() ?? Number(number.toPrecision(4));
+  const value =
+    { bool: () => next() < 0.5, enum: () => pick(declared.values), int: () => Math.round(number) }[declared.type]?.() ??
+    Number(number.toPrecision(4));
   return { op: "set", step, param, value };
 }
 
-inPage("keeps text, state and picture together over 200 random edits, and undoes them all to the byte", async (page, { look }) => {
-  const next = random(28),
-    ids = ["bokeh", "color_grade", "vignette", "view_transform", "sharpen", "bloom", "film_grain", "sanitize"],
-    effects = new Map(ids.map((id) => [id, described(id)]));
-  let taken = 0;
-  for (let i = 0; i < 200; ++i) {
-    const { steps } = await state(page),
-      edit = randomEdit(next, steps, effects);
-    if (edit.op === "add" && steps.some(({ effect }) => effect === edit.effect)) Object.assign(edit, { op: "enable", step: 0, value: true });
-    taken += (await page.evaluate((edit) => window.aftershade.store.edit([edit]), edit)) ? 1 : 0;
-    const now = await state(page),
-      written = withoutComments(now.text);
-    assert.deepEqual(now.steps.map(({ effect }) => effect), written.steps.map(({ effect }) => effect), JSON.stringify(edit));
-    for (const [at, one] of written.steps.entries())
-      for (const [id, value] of Object.entries(one.params ?? {})) assert.deepEqual(now.steps[at].params[id].value, value, `${at}.${id}`);
-    assert.deepEqual(await page.locator(".step .name").allInnerTexts(), written.steps.map(({ name, effect }) => name ?? effect));
-  }
-  assert.equal(taken, 200);
-  assert.equal(await page.evaluate(() => window.aftershade.store.save()), true);
-  assert.equal(readFileSync(look, "utf8"), await textOf(page));
-  if (!(await page.evaluate(() => window.aftershade.store.hasFaults))) {
-    await page.keyboard.press("1");
-    await drawn(page);
-    await frame(page);
-    assert.equal((await compareWithPng(page.locator(".stage"), runPicture(look))).difference, 0);
-  }
-  await page.evaluate(async () => {
-    const { store } = window.aftershade;
-    while (store.state.can_undo) if (!(await store.undo())) break;
-  });
-  assert.equal(await textOf(page), LOOK);
-});
+inPage(
+  "keeps text, state and picture together over 200 random edits, and undoes them all to the byte",
+  async (page, { look }) => {
+    const next = random(28),
+      ids = ["bokeh", "color_grade", "vignette", "view_transform", "sharpen", "bloom", "film_grain", "sanitize"],
+      effects = new Map(ids.map((id) => [id, described(id)]));
+    let taken = 0;
+    for (let i = 0; i < 200; ++i) {
+      const { steps } = await state(page),
+        edit = randomEdit(next, steps, effects);
+      if (edit.op === "add" && steps.some(({ effect }) => effect === edit.effect))
+        Object.assign(edit, { op: "enable", step: 0, value: true });
+      taken += (await page.evaluate((edit) => window.aftershade.store.edit([edit]), edit)) ? 1 : 0;
+      const now = await state(page),
+        written = withoutComments(now.text);
+      assert.deepEqual(
+        now.steps.map(({ effect }) => effect),
+        written.steps.map(({ effect }) => effect),
+        JSON.stringify(edit),
+      );
+      for (const [at, one] of written.steps.entries())
+        for (const [id, value] of Object.entries(one.params ?? {}))
+          assert.deepEqual(now.steps[at].params[id].value, value, `${at}.${id}`);
+      assert.deepEqual(
+        await page.locator(".step .name").allInnerTexts(),
+        written.steps.map(({ name, effect }) => name ?? effect),
+      );
+    }
+    assert.equal(taken, 200);
+    assert.equal(await page.evaluate(() => window.aftershade.store.save()), true);
+    assert.equal(readFileSync(look, "utf8"), await textOf(page));
+    if (!(await page.evaluate(() => window.aftershade.store.hasFaults))) {
+      await page.keyboard.press("1");
+      await drawn(page);
+      await frame(page);
+      assert.equal((await compareWithPng(page.locator(".stage"), runPicture(look))).difference, 0);
+    }
+    await page.evaluate(async () => {
+      const { store } = window.aftershade;
+      while (store.state.can_undo) if (!(await store.undo())) break;
+    });
+    assert.equal(await textOf(page), LOOK);
+  },
+  { own: true },
+);
