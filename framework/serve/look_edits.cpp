@@ -1,6 +1,9 @@
 #include "framework/serve/look_edits.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -16,6 +19,9 @@ namespace aftershade::serve {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// Keys of a step whose value an edit of that name sets.
+constexpr std::array<std::string_view, 5> kStepKeys = {"name", "mix", "preset", "mask", "in"};
 
 [[noreturn]] void refuse(const std::string& message) {
     throw Error(ExitCode::usage, "the edit cannot be made: " + message);
@@ -251,7 +257,7 @@ std::string edited(const std::string& text, const Json& edit) {
         const bool is_on = value_of(edit).get<bool>();
         // "enabled": true says nothing that its absence does not.
         if (!is_on || step.find("enabled")) set_member(result, step, "enabled", is_on);
-    } else if (op == "name" || op == "mix" || op == "preset" || op == "mask" || op == "in")
+    } else if (std::ranges::find(kStepKeys, op) != kStepKeys.end())
         set_member(result, step, op, value_of(edit));
     else refuse("'" + op + "' is not an edit");
     return result;

@@ -26,7 +26,7 @@ Response answer_of(const RenderThread::Work& work, PictureMaker& maker) {
 
 }  // namespace
 
-RenderThread::RenderThread(MakeMaker make) {
+RenderThread::RenderThread(MakeMaker make, const std::atomic<bool>& stop) : stop_(stop) {
     std::promise<void> ready;
     std::future<void> is_ready = ready.get_future();
     thread_ = std::thread([this, make = std::move(make), &ready] { loop(make, ready); });
@@ -63,8 +63,13 @@ void RenderThread::loop(const MakeMaker& make, std::promise<void>& ready) {
 
 std::unique_ptr<RenderThread::Task> RenderThread::next() {
     std::unique_lock lock(mutex_);
-    waiting_.wait(lock, [&] { return ends_ || !tasks_.empty(); });
-    if (ends_) return nullptr;
+    for (;;) {
+        waiting_.wait(lock, [&] { return ends_ || !tasks_.empty(); });
+        if (ends_) return nullptr;
+        if (!stop_) break;
+        for (const auto& task : tasks_) task->answer.set_value(superseded());
+        tasks_.clear();
+    }
     std::unique_ptr<Task> task = std::move(tasks_.front());
     tasks_.pop_front();
     return task;

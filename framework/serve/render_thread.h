@@ -1,6 +1,7 @@
 // Work for the one thread that owns the GL context, the newest request for a picture before older ones.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
@@ -29,8 +30,8 @@ public:
     using MakeMaker = std::function<std::unique_ptr<PictureMaker>()>;
     using Work = std::function<Response(PictureMaker&)>;
 
-    /// Waits for the context. Throws what `make` throws.
-    explicit RenderThread(MakeMaker make);
+    /// Waits for the context. Throws what `make` throws. Once `stop` is set, no work begins any more.
+    RenderThread(MakeMaker make, const std::atomic<bool>& stop);
     ~RenderThread();
     RenderThread(const RenderThread&) = delete;
     RenderThread& operator=(const RenderThread&) = delete;
@@ -49,6 +50,7 @@ private:
     void drop_older(const PictureKey& key);
     std::unique_ptr<Task> next();
 
+    const std::atomic<bool>& stop_;
     std::mutex mutex_;  // of what follows
     std::condition_variable waiting_;
     std::list<std::unique_ptr<Task>> tasks_;

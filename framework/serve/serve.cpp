@@ -28,10 +28,11 @@ void serve(const ServeOptions& options, EffectRegistry& effects, const std::atom
     const std::string described = describe_effects(effects);
     LookModel look(std::filesystem::absolute(options.look), effects, options.read_only);
     Connections connections(options.port, {});
-    RenderThread pictures([&] {
+    const auto make = [&] {
         return std::make_unique<PictureMaker>(options.sequence, options.profiles, options.limits,
                                               options.backend, options.data_folder);
-    });
+    };
+    RenderThread pictures(make, stop);
     PageServer server({look, pictures, options.sequence, header, options.capture, described});
     const std::string token = random_token();
     if (options.ready)

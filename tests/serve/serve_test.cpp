@@ -1,10 +1,7 @@
 // The program itself over real sockets: what it answers to its page, and to those that are not its page.
-#include <arpa/inet.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-
 #include <chrono>
 #include <csignal>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,71 +11,13 @@
 
 #include "framework/capture/capture_writer.h"
 #include "tests/cli/command.h"
+#include "tests/serve/client.h"
 #include "tests/synthetic_capture.h"
 
 namespace aftershade::test {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using namespace std::chrono_literals;
-
-/// A connection that says what the test wants it to say.
-class Client {
-public:
-    explicit Client(int port) : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
-        const timeval patience{60, 0};
-        ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-        sockaddr_in address{};
-        address.sin_family = AF_INET;
-        address.sin_port = htons(std::uint16_t(port));
-        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-        is_open_ = ::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-    }
-    Client(const Client&) = delete;
-    Client& operator=(const Client&) = delete;
-    ~Client() { ::close(socket_); }
-
-    bool is_open() const { return is_open_; }
-    bool send(const std::string& bytes) const {
-        std::size_t sent = 0;
-        while (sent < bytes.size()) {
-            const ssize_t count = ::send(socket_, &bytes[sent], bytes.size() - sent, MSG_NOSIGNAL);
-            if (count <= 0) return false;
-            sent += std::size_t(count);
-        }
-        return true;
-    }
-    std::string receive() const {
-        std::string bytes;
-        char buffer[65536];
-        for (ssize_t got; (got = ::recv(socket_, buffer, sizeof buffer, 0)) > 0;)
-            bytes.append(buffer, std::size_t(got));
-        return bytes;
-    }
-
-private:
-    int socket_;
-    bool is_open_ = false;
-};
-
-struct Answer {
-    int status = 0;
-    std::string head;
-    std::string body;
-    Json json() const { return Json::parse(body); }
-    std::string header(const std::string& name) const {
-        const std::size_t at = head.find("\r\n" + name + ": ");
-        if (at == std::string::npos) return "";
-        const std::size_t begin = at + name.size() + 4;
-        return head.substr(begin, head.find("\r\n", begin) - begin);
-    }
-};
-
-Answer parsed(const std::string& bytes) {
-    if (!bytes.starts_with("HTTP/1.1 ")) return {};
-    const std::size_t end = bytes.find("\r\n\r\n");
-    return {std::stoi(bytes.substr(9, 3)), bytes.substr(0, end + 2), bytes.substr(end + 4)};
-}
 
 const std::string kLook = R"({ "aftershade": 1,
   // by eye
@@ -198,6 +137,25 @@ TEST_F(Serve, SavesTheLookAloneAndKeepsItsComments) {
     ASSERT_EQ(post("/api/save").status, 200);
     EXPECT_EQ(contents(folder_.path()), before);
     EXPECT_EQ(post("/api/edit", R"({"revision": 1, "edits": []})").status, 409);
+}
+
+TEST_F(Serve, DrawsTheNewestOfManyRequestsAndLetsTheOlderOnesGo) {
+    start();
+    std::vector<std::unique_ptr<Client>> clients;
+    constexpr int kRequests = 24;
+    for (int i = 0; i < kRequests; ++i) {
+        clients.push_back(std::make_unique<Client>(port_));
+        clients.back()->send(head("GET /api/picture?frame=1&exposure=" + std::to_string(i)) + "\r\n");
+    }
+    int drawn = 0, dropped = 0;
+    for (const auto& client : clients) {
+        const Answer answer = parsed(client->receive());
+        if (answer.status == 200) ++drawn;
+        else if (answer.status == 409 && answer.json()["error"] == "superseded") ++dropped;
+    }
+    EXPECT_GE(drawn, 2) << "the first, which had begun, and the newest";
+    EXPECT_GE(dropped, 1);
+    EXPECT_EQ(drawn + dropped, kRequests);
 }
 
 TEST_F(Serve, WritesNothingWithReadOnly) {
