@@ -92,7 +92,10 @@ function rangeWords({ type, ui, min, max, unit = "", default: fallback }) {
   const parts = [
     `default ${values.asText(fallback) || "none"}${unit && typeof fallback === "number" ? ` ${unit}` : ""}`,
   ];
-  if (min !== undefined) parts.push(`limits ${values.short(min, 7)} to ${values.short(max, 7)}${unit && ` ${unit}`}`);
+  const end = (number) => `${values.short(number, 7)}${unit && ` ${unit}`}`;
+  if (min !== undefined && max !== undefined) parts.push(`limits ${values.short(min, 7)} to ${end(max)}`);
+  else if (min !== undefined) parts.push(`at least ${end(min)}`);
+  else if (max !== undefined) parts.push(`at most ${end(max)}`);
   if (ui && values.isNumeric(type)) parts.push(`slider ${values.short(ui[0])} to ${values.short(ui[1])}`);
   return parts.join("; ");
 }

@@ -135,12 +135,14 @@ export class Costs {
     this.total = element("span", { class: "aside" });
     this.chips = element("div", { class: "chips" });
     this.bars = element("ol", { class: "bars", "aria-label": "Time by pass" });
-    this.hint = element("p", { class: "slow" });
+    this.hint = element("p", { class: "slow", hidden: true });
+    this.none = element("p", { class: "empty", hidden: true }, "All steps were cached. Times come with the next change.");
     this.node = panel(
       "Cost",
       this.total,
       this.chips,
       this.hint,
+      this.none,
       element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Times" }, this.bars),
     );
   }
@@ -174,6 +176,7 @@ export class Costs {
     this.hint.hidden = !(sorted.length > 2 && share > 0.5);
     if (!this.hint.hidden)
       this.hint.textContent = `${sorted[0].step}.${sorted[0].name} takes ${Math.round(share * 100)} % of the time.`;
+    this.none.hidden = sorted.length > 0;
     this.bars.replaceChildren(
       ...sorted.map(({ step, name, ms }) => {
         const bar = element("span", { class: "bar" });

@@ -70,7 +70,7 @@ async function open(address, options = {}) {
     reducedMotion: "reduce",
     ...options,
   });
-  context.setDefaultTimeout(120_000); // for machines that are busy
+  context.setDefaultTimeout(60_000); // for machines that are busy
   const page = await context.newPage();
   page.faults = [];
   page.requests = [];
@@ -177,7 +177,8 @@ inPage("makes a control for every parameter of every effect from its declaration
   await page.evaluate((value) => window.aftershade.store.edit([{ op: "text", value }]), text);
   for (const id of ids) {
     const { params } = described(id),
-      card = await opened(page, id);
+      card = step(page, id);
+    await card.locator(".opener").evaluate((node) => node.click());
     const rows = await card.locator("[data-param]").evaluateAll((nodes) =>
       nodes.map((node) => ({
         id: node.dataset.param,
@@ -207,19 +208,19 @@ inPage("makes a control for every parameter of every effect from its declaration
       assert.deepEqual(one.choices, values ?? [], place);
       assert.equal(one.fields, { bool: 0, enum: 0, color: 3, vec2: 2, vec3: 3, vec4: 4 }[type] ?? 1, place);
     }
-    await card.locator(".opener").click();
+    await card.locator(".opener").evaluate((node) => node.click());
   }
 });
 
 inPage("moves a slider by keys within its range, and changes that value alone", async (page) => {
   const before = await textOf(page),
-    slider = row(await opened(page, "vignette"), "amount").getByRole("slider");
+    slider = row(await opened(page, "vignette"), "natural").getByRole("slider");
   await slider.focus();
   await slider.press("ArrowLeft");
   const look = await changed(page, before);
-  const { default: fallback } = described("vignette").params.amount;
-  assert.notEqual(look.steps[2].params.amount, fallback);
-  assert.equal(typeof look.steps[2].params.amount, "number");
+  const { default: fallback } = described("vignette").params.natural;
+  assert.notEqual(look.steps[2].params.natural, fallback);
+  assert.equal(typeof look.steps[2].params.natural, "number");
   const kept = (await textOf(page)).split("\n").filter((line) => !line.includes("vignette"));
   assert.deepEqual(
     kept,
@@ -311,7 +312,7 @@ inPage("shows that a preset gives a value", async (page) => {
 });
 
 inPage("undoes a whole drag of a slider in one step, and redoes it", async (page) => {
-  const slider = row(await opened(page, "vignette"), "amount").getByRole("slider"),
+  const slider = row(await opened(page, "vignette"), "natural").getByRole("slider"),
     box = await slider.boundingBox();
   const at = async (share) => page.mouse.move(box.x + box.width * share, box.y + box.height / 2);
   await at(0.5);
