@@ -35,7 +35,9 @@ function vectorControl({ label, parameter, describedBy, commit }) {
       onArrow: (sign, times) => {
         const [low, high] = parameter.ui ?? [0, 1];
         const number = Number(
-          (values.numberOf(list(entry.effective)[i]) + (sign * times * (high - low)) / 100).toPrecision(6),
+          (values.numberOf(list(entry.effective)[i], parameter.unit) + (sign * times * (high - low)) / 100).toPrecision(
+            6,
+          ),
         );
         if (!values.outOfRange(number, parameter)) {
           const all = now().map((old, at) => (at === i ? number : old));
@@ -57,7 +59,7 @@ function vectorControl({ label, parameter, describedBy, commit }) {
     nodes: [element("span", { class: "wide vector" }, swatch || null, ...fields.map(({ node }) => node))],
     update(next) {
       entry = next;
-      const numbers = list(next.effective).map(values.numberOf);
+      const numbers = list(next.effective).map((one) => values.numberOf(one, parameter.unit));
       numbers.forEach((number, i) => fields[i].show(values.short(number)));
       if (swatch) swatch.value = values.swatchOf(numbers);
     },

@@ -136,7 +136,11 @@ export class Costs {
     this.chips = element("div", { class: "chips" });
     this.bars = element("ol", { class: "bars", "aria-label": "Time by pass" });
     this.hint = element("p", { class: "slow", hidden: true });
-    this.none = element("p", { class: "empty", hidden: true }, "All steps were cached. Times come with the next change.");
+    this.none = element(
+      "p",
+      { class: "empty", hidden: true },
+      "All steps were cached. Times come with the next change.",
+    );
     this.node = panel(
       "Cost",
       this.total,

@@ -105,7 +105,7 @@ export function numberControl({ label, parameter, describedBy, commit }) {
   });
 
   const nudge = (by) => {
-    const now = numberOf(entry.effective ?? parameter.default);
+    const now = numberOf(entry.effective ?? parameter.default, parameter.unit);
     let next = scale.value(Math.min(Math.max(scale.place(now) + by / 100, 0), 1));
     if (parameter.type === "int" && next === now) next = now + Math.sign(by);
     next = Math.min(Math.max(next, parameter.min ?? -Infinity), parameter.max ?? Infinity);
@@ -131,7 +131,7 @@ export function numberControl({ label, parameter, describedBy, commit }) {
     nodes: [slider, typed.node, unit],
     update(next) {
       entry = next;
-      const number = numberOf(next.effective);
+      const number = numberOf(next.effective, parameter.unit);
       if (!isDragged) {
         paint(number);
         typed.show(short(number, 6));

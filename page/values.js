@@ -55,9 +55,20 @@ export const isExpression = (value) =>
   !Array.isArray(value) &&
   ("keys" in value || "var" in value || "from" in value);
 
-/** The number of a value, also of one with a unit; NaN of any other. */
-export const numberOf = (value) =>
-  typeof value === "string" ? (quantity(value)?.number ?? NaN) : typeof value === "number" ? value : NaN;
+/** How many of the first unit of its kind one of a unit is. */
+const UNITS = [
+  { m: 1, um: 1e-6, mm: 1e-3, cm: 0.01, km: 1000, in: 0.0254, ft: 0.3048 },
+  { deg: 1, rad: 180 / Math.PI, turn: 360 },
+  { s: 1, ms: 1e-3 },
+];
+/** The number of a value in the parameter's unit, also of one with a unit of its own; NaN of any other. */
+export function numberOf(value, unit = "") {
+  if (typeof value === "number") return value;
+  const found = typeof value === "string" ? quantity(value) : null;
+  if (!found) return NaN;
+  const kind = UNITS.find((units) => found.unit in units && unit in units);
+  return kind ? Number(((found.number * kind[found.unit]) / kind[unit]).toPrecision(12)) : found.number;
+}
 
 export const asText = (value) => (typeof value === "string" ? value : (JSON.stringify(value) ?? ""));
 
