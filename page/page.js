@@ -218,13 +218,18 @@ store.addEventListener("change", () => {
   viewer.update();
 });
 store.addEventListener("fail", ({ detail }) => notify(detail.message, true));
+let measuring;
 viewer.addEventListener("picture", ({ detail }) => {
   costs.show(detail.times, detail.isCoarse, new Set(list.cards.map(({ step }) => nameOf(step))));
   if (detail.isCoarse) return;
   list.showCosts([...costs.known.values()]);
   if (viewer.isPlaying) return;
-  histogram.load(viewer.frame);
-  probe.again(viewer.frame);
+  // After a pause: the next picture of a drag does not wait for them.
+  clearTimeout(measuring);
+  measuring = setTimeout(() => {
+    histogram.load(viewer.frame);
+    probe.again(viewer.frame);
+  }, 150);
 });
 viewer.addEventListener("probe", ({ detail }) => probe.show(detail, viewer.frame));
 addEventListener("focus", () => store.state && store.isSaved && store.refresh());

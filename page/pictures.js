@@ -1,4 +1,4 @@
-// Asks for pictures: a coarse one first, then the full one. The newest wish wins.
+// Requests pictures: a coarse one first, then the full one. The newest wish wins.
 import { picture } from "./api.js";
 
 const COARSE = 4, // fraction of the size of the first picture: 1/4
@@ -15,7 +15,7 @@ export class Pictures extends EventTarget {
   /** wish: {revision, frame, view, other, exposure}; `other` is a view to compare with, or "". */
   want(wish) {
     this.#wish = wish;
-    this.#stopping?.abort(); // a full picture that nobody wants any more
+    this.#stopping?.abort(); // a full picture that is no longer wanted
     if (!this.#isRunning) this.#run();
   }
 
@@ -89,7 +89,7 @@ export class Pictures extends EventTarget {
     }
   }
 
-  /** The picture to compare with is gone; the next wish asks for it again. */
+  /** The picture to compare with is gone; the next wish requests it again. */
   forgetOther() {
     this.#other.key = "";
   }
