@@ -16,6 +16,7 @@ using Verb = std::function<ExitCode()>;
 /// One line a verb, in the order of `aftershade --help`; add_<name> is in cli/<name>.cpp.
 #define AFTERSHADE_VERBS(VERB)                                                                       \
     VERB(run, "Run a look over a capture and write the result")                                      \
+    VERB(serve, "Open a look over a capture in the browser: sliders, steps and pictures")            \
     VERB(submit, "Write the files of a farm job that runs a look over a capture")                    \
     VERB(merge, "Merge the reports of a farm's tasks into one, and list the frames that failed")     \
     VERB(inspect, "Show a capture's parts, channels, statistics, roles and camera")                  \

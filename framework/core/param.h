@@ -193,6 +193,7 @@ public:
     void set(const std::string& name, ParamValue value) { values_[name] = std::move(value); }
     const ParamValue& get(const std::string& name) const { return values_.at(name); }
     bool has(const std::string& name) const { return values_.contains(name); }
+    bool operator==(const ParamSet&) const = default;
 
 private:
     std::map<std::string, ParamValue> values_;

@@ -33,8 +33,8 @@ Memory* in_slot(std::vector<Memory>& slots, const std::vector<int>& slot_of, int
 
 }  // namespace
 
-Executor::Executor(gpu::Context& context, FrameGraph graph)
-    : context_(context), graph_(std::move(graph)), compiled_(graph_.compile()), timer_(context) {
+Executor::Executor(gpu::Context& context, FrameGraph graph, bool shares_memory)
+    : context_(context), graph_(std::move(graph)), compiled_(graph_.compile(shares_memory)), timer_(context) {
     for (const int index : compiled_.passes) {
         const Pass& pass = graph_.pass(index);
         if (pass.kind != PassKind::clear && !pass.program)

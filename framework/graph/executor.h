@@ -33,8 +33,9 @@ struct PassRange {
 class Executor {
 public:
     /// Allocates every texture and buffer; histories begin as zero. Throws Error(ExitCode::effect) when GL
-    /// has no memory for them, GraphError if a pass that is not culled lacks its program.
-    Executor(gpu::Context& context, FrameGraph graph);
+    /// has no memory for them, GraphError if a pass that is not culled lacks its program. Without
+    /// `shares_memory` the last passes may run again over what the others made (run(), `range`).
+    Executor(gpu::Context& context, FrameGraph graph, bool shares_memory = true);
     Executor(const Executor&) = delete;
     Executor& operator=(const Executor&) = delete;
 

@@ -176,8 +176,9 @@ public:
     void keep(BufferHandle handle);
 
     /// Culls passes that nothing kept depends on. A history is written only where a pass that is not culled
-    /// reads what it was in the frame before.
-    CompiledGraph compile() const;
+    /// reads what it was in the frame before. Without `shares_memory` every texture and buffer that is needed
+    /// has memory of its own, which holds what it held until a pass writes it again.
+    CompiledGraph compile(bool shares_memory = true) const;
 
     struct Texture {
         std::string name;

@@ -54,7 +54,8 @@ struct Lifetime {
 
 class Compiler {
 public:
-    explicit Compiler(const FrameGraph& graph) : graph_(graph), buffers_(graph.textures().size()) {
+    Compiler(const FrameGraph& graph, bool shares_memory)
+        : graph_(graph), shares_memory_(shares_memory), buffers_(graph.textures().size()) {
         for (const FrameGraph::Texture& t : graph.textures())
             resources_.push_back({t.kept, t.imported, t.options.clear.has_value(), t.previous_of, t.version});
         for (const FrameGraph::Buffer& b : graph.buffers())
@@ -138,7 +139,7 @@ private:
             std::optional<Lifetime>& life = lifetimes_[i];
             if (resources_[i].kept) life = {life ? life->first : end, end};
             first_use_.push_back(life ? life->first : -1);
-            if (life && resources_[i].alone) life = {-1, end};
+            if (life && (resources_[i].alone || !shares_memory_)) life = {-1, end};
         }
     }
 
@@ -172,6 +173,7 @@ private:
     }
 
     const FrameGraph& graph_;
+    bool shares_memory_;
     std::size_t buffers_;  // where they begin among the resources
     std::vector<Resource> resources_;
     std::vector<PassUses> uses_;
@@ -184,8 +186,8 @@ private:
 
 }  // namespace
 
-CompiledGraph FrameGraph::compile() const {
-    return Compiler(*this).run();
+CompiledGraph FrameGraph::compile(bool shares_memory) const {
+    return Compiler(*this, shares_memory).run();
 }
 
 }  // namespace aftershade::graph

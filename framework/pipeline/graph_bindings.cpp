@@ -49,6 +49,7 @@ public:
     Giver(const GraphFeed& feed, graph::Executor& executor) : feed_(feed), executor_(executor) {}
 
     void operator()(const CaptureBinding& binding) const {
+        if (feed_.same_captures) return;
         gpu::Texture* texture = executor_.texture(binding.texture);
         const FrameInputs& inputs = feed_.frame.inputs;
         if (!texture || (inputs.fill && inputs.fill(binding.role, binding.offset, *texture))) return;

@@ -67,7 +67,8 @@ struct GraphFeed {
     GraphFrame frame;
     FrameBefore before;
     StepFiles& files;
-    int first_pass = 0;  ///< blocks of passes before it stay as they are
+    int first_pass = 0;          ///< blocks of passes before it stay as they are
+    bool same_captures = false;  ///< their images are in place already
 };
 
 /// Puts the frame's content into what is bound; textures and buffers of files, curves and tables only where

@@ -83,6 +83,7 @@ GraphBuilder::GraphBuilder(const GraphTools& tools, const GraphFrame& frame)
 std::unique_ptr<BuiltGraph> GraphBuilder::build() {
     const int accumulating = pipeline_.last_accumulating_step();
     for (int i = 0; i < int(pipeline_.steps.size()); ++i) {
+        built_->first_pass_of_step.push_back(graph_.pass_count());
         add_step(i);
         if (i == accumulating) built_->first_single_pass = graph_.pass_count();
     }
@@ -97,7 +98,8 @@ std::unique_ptr<BuiltGraph> GraphBuilder::build() {
     for (NativeTableBinding& binding : native_tables_) bindings.emplace_back(std::move(binding));
     for (BlockBinding& binding : blocks_) bindings.emplace_back(std::move(binding));
     built_->key = frame_.key();
-    built_->executor = std::make_unique<graph::Executor>(tools_.context, std::move(graph_));
+    built_->executor =
+        std::make_unique<graph::Executor>(tools_.context, std::move(graph_), !tools_.keeps_steps);
     return std::move(built_);
 }
 

@@ -27,6 +27,7 @@ struct GraphTools {
     StepFiles& files;
     bool telemetry = false;          ///< keep the textures of the steps' statistics
     StatusWriter* status = nullptr;  ///< receives which pass is compiled; may be null
+    bool keeps_steps = false;        ///< each texture has memory of its own
 };
 
 /// Throws Error(ExitCode::effect) where a pass reads, or a step outputs, what no pass has written with these

@@ -199,17 +199,14 @@ void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header
 
 namespace {
 
-struct ResolvedValue {
-    ParamValue value;
-    std::string origin;
-};
-
 std::string described(const ValueSource& source) {
     if (std::holds_alternative<KeyedValue>(source)) return ", by keys";
     if (const auto* camera = std::get_if<CameraValue>(&source)) return ", from camera." + camera->field;
     if (std::holds_alternative<DepthValue>(source)) return ", from depth";
     return "";
 }
+
+}  // namespace
 
 ResolvedValue resolve_param(const PipelineStep& step, const ParamSpec& spec, const FrameInputs& frame) {
     const std::string label = step.name + "." + spec.name;
@@ -223,6 +220,8 @@ ResolvedValue resolve_param(const PipelineStep& step, const ParamSpec& spec, con
     }
     return {with_file(spec, spec.default_value, step.manifest->folder), "the manifest"};
 }
+
+namespace {
 
 /// A relation that the capture's or keyed values break; those of the look alone were checked before.
 void require_relations(const PipelineStep& step, const ParamSet& params, const FrameInputs& frame) {

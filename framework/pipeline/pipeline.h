@@ -137,6 +137,14 @@ std::optional<MissingRole> find_missing_role(const Pipeline& pipeline, const std
 void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header,
                            const CaptureReader* reader = nullptr);
 
+/// A parameter of a step for one frame, in the declared unit, and where it is from: "the look, by keys".
+struct ResolvedValue {
+    ParamValue value;
+    std::string origin;
+};
+/// As resolve_params(), of one parameter, at full scale.
+ResolvedValue resolve_param(const PipelineStep& step, const ParamSpec& spec, const FrameInputs& frame);
+
 /// Every parameter of the step: the user's value, else the capture's (the manifest's "from"), else the
 /// default; values in px times frame.scale. Throws Error(ExitCode::capture) where the capture's values do not
 /// fit.

@@ -105,7 +105,7 @@ void PipelineRenderer::prepare(const FrameInputs& frame, const std::vector<std::
     // The old textures go before the new ones come, unless what they hold lives on.
     std::unique_ptr<BuiltGraph> old = std::move(built_);
     if (!pipeline_.has_history()) old.reset();
-    built_ = build_graph({context_, *programs_, files_, telemetry_, status_}, graph_frame);
+    built_ = build_graph({context_, *programs_, files_, telemetry_, status_, keeps_steps_}, graph_frame);
     ++graphs_built_;
     set_hooks();
     if (old) built_->executor->take_history_from(*old->executor);
@@ -178,6 +178,7 @@ void PipelineRenderer::run_passes(bool timed, graph::PassRange range, FrameResul
 FrameResult PipelineRenderer::render(const FrameInputs& frame, const std::vector<std::string>& roles,
                                      bool timed) {
     const bool is_first = frame.subframe == 0;
+    mixes_drawn_.clear();
     if (saved_) begin_from_saved(frame);
     if (is_first) frame_fault_ = history_fault(frame);
     prepare(frame, roles);
@@ -220,6 +221,56 @@ FrameResult PipelineRenderer::render(const FrameInputs& frame, const std::vector
         result.telemetry = read_telemetry(header.frame);
         result.telemetry->passes = result.times;
     }
+    steps_drawn_ = int(pipeline_.steps.size());
+    mixes_drawn_ = mixes();
+    return result;
+}
+
+std::vector<std::string> PipelineRenderer::mixes() const {
+    std::vector<std::string> mixes;
+    for (const PipelineStep& step : pipeline_.steps) mixes.push_back(format_source(step.mix));
+    return mixes;
+}
+
+int PipelineRenderer::first_changed_step(const std::vector<ParamSet>& before,
+                                         const std::vector<std::string>& mixes_before) const {
+    const std::vector<std::string> now = mixes();
+    const std::size_t count = std::min({before.size(), params_.size(), now.size(), mixes_before.size()});
+    std::size_t step = 0;
+    while (step < count && before[step] == params_[step] && now[step] == mixes_before[step]) ++step;
+    return int(step);
+}
+
+FrameResult PipelineRenderer::render_again(const FrameInputs& frame, const std::vector<std::string>& roles,
+                                           bool timed) {
+    const bool may_keep = keeps_steps_ && built_ && !is_stale_ && !saved_ && !audit_ &&
+                          !pipeline_.has_history() && frame.subframe_count == 1 &&
+                          params_.size() == pipeline_.steps.size() && !mixes_drawn_.empty();
+    if (!may_keep) return render(frame, roles, timed);
+    const std::vector<ParamSet> before = params_;
+    resolve(frame);
+    natives_.reset();
+    natives_.prepare(pipeline_, frame, params_, false);
+    const GraphFrame graph_frame{pipeline_, frame, params_, natives_, roles};
+    if (!built_->key.holds(graph_frame)) return render(frame, roles, timed);
+
+    const int first = first_changed_step(before, mixes_drawn_);
+    const bool is_same = first == int(pipeline_.steps.size());
+    const int first_pass =
+        is_same ? built_->executor->graph().pass_count() : built_->first_pass_of_step[std::size_t(first)];
+    // Until it is drawn, nothing stands for these values.
+    mixes_drawn_.clear();
+    FrameResult result;
+    result.messages = natives_.take_messages();
+    gpu::Timer timer(context_);
+    timer.start();
+    built_->feed({graph_frame, {false, std::nullopt}, files_, first_pass, true});
+    const double upload_ms = timer.stop_ms();
+    run_passes(timed, {first_pass, -1}, result);
+    read_results(roles, timed, result);
+    if (timed) result.times.insert(result.times.begin(), {"upload", upload_ms});
+    steps_drawn_ = int(pipeline_.steps.size()) - first;
+    mixes_drawn_ = mixes();
     return result;
 }
 

@@ -55,6 +55,14 @@ public:
     /// step makes them; of sub-frames before the last the result is empty. Frames follow each other in
     /// `frame.capture->header.frame`; anything else restarts history. Throws Error(ExitCode::effect).
     FrameResult render(const FrameInputs& frame, const std::vector<std::string>& roles, bool timed);
+    /// The last call's frame once more, of which nothing changed but what the pipeline's values give: steps
+    /// before the first that differs are not drawn again, if keep_steps() was called and no step has a
+    /// history. The captures must be the same objects with the same pixels.
+    FrameResult render_again(const FrameInputs& frame, const std::vector<std::string>& roles, bool timed);
+    /// Gives each texture memory of its own, so that it lives until the next frame. [before the first frame]
+    void keep_steps() { keeps_steps_ = true; }
+    /// Of the last frame: how many of the pipeline's steps were drawn.
+    int steps_drawn() const { return steps_drawn_; }
     /// Reads every input and every float texture back after its pass and looks for NaN and infinities. Slow.
     /// Guards loops, too. [before the first frame]
     void set_audit(bool audit);
@@ -96,6 +104,8 @@ private:
         Camera camera;
     };
     void resolve(const FrameInputs& frame);
+    int first_changed_step(const std::vector<ParamSet>& before, const std::vector<std::string>& mixes) const;
+    std::vector<std::string> mixes() const;
     void prepare(const FrameInputs& frame, const std::vector<std::string>& roles);
     std::string history_fault(const FrameInputs& frame) const;
     double feed(const FrameInputs& frame, const std::vector<std::string>& roles, const FrameBefore& before,
@@ -127,6 +137,9 @@ private:
     bool telemetry_ = false;
     std::vector<std::string> kept_on_gpu_;
     bool is_stale_ = false;
+    bool keeps_steps_ = false;
+    int steps_drawn_ = 0;
+    std::vector<std::string> mixes_drawn_;  // by step, as a document would write them
 };
 
 }  // namespace aftershade

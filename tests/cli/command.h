@@ -85,6 +85,9 @@ public:
         return false;
     }
 
+    /// What it has printed to stdout so far.
+    std::string printed() const { return read_text(output_ / "out"); }
+
     CommandResult wait() {
         int status = 0;
         rusage used{};

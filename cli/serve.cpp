@@ -1,0 +1,91 @@
+#include "framework/serve/serve.h"
+
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "cli/capture_options.h"
+#include "cli/effect_options.h"
+#include "cli/gl_options.h"
+#include "cli/interrupt.h"
+#include "cli/verbs.h"
+#include "framework/core/data_path.h"
+#include "framework/core/error.h"
+
+extern char** environ;
+
+namespace aftershade::cli {
+
+namespace {
+
+struct ServeArguments {
+    std::string look;
+    CaptureOptions capture;
+    std::string backend;
+    int port = 0;
+    bool opens = false;
+    bool read_only = false;
+};
+
+/// By the desktop's own command; where there is none, the address that was printed does.
+void open_browser(const std::string& address) {
+    std::string command = "xdg-open", copy = address;
+    char* words[] = {command.data(), copy.data(), nullptr};
+    pid_t id = 0;
+    if (posix_spawnp(&id, "xdg-open", nullptr, nullptr, words, environ) != 0) {
+        std::cerr << "--open: there is no xdg-open here; open the address above\n";
+        return;
+    }
+    std::thread([id] { waitpid(id, nullptr, 0); }).detach();
+}
+
+ExitCode serve(const ServeArguments& arguments) {
+    const std::atomic<bool>& stop = watch_for_interrupt();
+    const gpu::Backend backend = chosen_backend(arguments.backend);
+    Diagnostics diagnostics;
+    EffectRegistry effects = find_effects({}, diagnostics);
+    const std::vector<Profile> profiles = load_profiles(arguments.capture.profile_paths, diagnostics);
+    const auto sequence = find_sequence(arguments.capture, profiles, diagnostics);
+    stop_at_errors(diagnostics);
+    diagnostics.print(std::cerr);
+    serve::ServeOptions options;
+    options.look = arguments.look;
+    options.capture = arguments.capture.capture;
+    options.sequence = *sequence;
+    options.profiles = profiles;
+    options.limits = arguments.capture.limits;
+    options.backend = backend;
+    options.data_folder = data_path();
+    options.port = arguments.port;
+    options.read_only = arguments.read_only;
+    options.ready = [&](const std::string& address) {
+        std::cout << address << std::endl;
+        std::cerr << "the page is at the address above, for this machine alone; interrupt to end\n";
+        if (arguments.opens) open_browser(address);
+    };
+    serve::serve(options, effects, stop);
+    return ExitCode::interrupted;
+}
+
+}  // namespace
+
+Verb add_serve(CLI::App& app) {
+    auto arguments = std::make_shared<ServeArguments>();
+    app.add_option("look", arguments->look, "The look that the page shows and saves")->required();
+    add_capture_argument(app, arguments->capture);
+    app.add_option("--port", arguments->port, "Port of 127.0.0.1; 0 takes a free one")
+        ->check(CLI::Range(0, 65535))
+        ->capture_default_str();
+    app.add_flag("--open", arguments->opens, "Open the page in the desktop's browser");
+    app.add_flag("--read-only", arguments->read_only, "Never write the look");
+    add_capture_options(app, arguments->capture, "Frames to show, such as 1-24 (default: the capture's)");
+    add_backend_option(app, arguments->backend);
+    return [arguments] { return serve(*arguments); };
+}
+
+}  // namespace aftershade::cli

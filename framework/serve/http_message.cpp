@@ -1,0 +1,191 @@
+#include "framework/serve/http_message.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+
+#include <nlohmann/json.hpp>
+
+namespace aftershade::serve {
+
+namespace {
+
+std::string lowered(std::string_view text) {
+    std::string result(text);
+    std::ranges::transform(result, result.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return result;
+}
+
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+    while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+    return text;
+}
+
+std::optional<int> hex_digit(char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+    return std::nullopt;
+}
+
+/// nullopt where a '%' is not followed by two digits.
+std::optional<std::string> decoded(std::string_view text) {
+    std::string result;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '+') result += ' ';
+        else if (text[i] != '%') result += text[i];
+        else {
+            if (i + 2 >= text.size()) return std::nullopt;
+            const auto high = hex_digit(text[i + 1]), low = hex_digit(text[i + 2]);
+            if (!high || !low) return std::nullopt;
+            result += char(*high * 16 + *low);
+            i += 2;
+        }
+    }
+    return result;
+}
+
+bool read_query(std::string_view text, std::map<std::string, std::string>& query) {
+    while (!text.empty()) {
+        const std::string_view item = text.substr(0, text.find('&'));
+        text.remove_prefix(std::min(text.size(), item.size() + 1));
+        const std::size_t equals = std::min(item.find('='), item.size());
+        const auto name = decoded(item.substr(0, equals));
+        const auto value = decoded(item.substr(std::min(item.size(), equals + 1)));
+        if (!name || !value || !query.emplace(*name, *value).second) return false;
+    }
+    return true;
+}
+
+bool is_token(std::string_view text) {
+    constexpr std::string_view kOthers = "!#$%&'*+-.^_`|~";
+    return !text.empty() && std::ranges::all_of(text, [&](unsigned char c) {
+        return std::isalnum(c) || kOthers.find(char(c)) != std::string_view::npos;
+    });
+}
+
+/// The lines after the first, up to the empty one. nullopt for one that is not "name: value", and for a name
+/// that stands twice: what reads the other one would read another request.
+std::optional<std::map<std::string, std::string>> read_headers(std::string_view head) {
+    std::map<std::string, std::string> headers;
+    while (!head.empty()) {
+        const std::string_view line = head.substr(0, head.find("\r\n"));
+        head.remove_prefix(std::min(head.size(), line.size() + 2));
+        const std::size_t colon = line.find(':');
+        if (colon == std::string_view::npos || !is_token(line.substr(0, colon))) return std::nullopt;
+        const std::string_view value = trimmed(line.substr(colon + 1));
+        if (std::ranges::any_of(value, [](unsigned char c) { return c < ' ' && c != '\t'; }))
+            return std::nullopt;
+        if (!headers.emplace(lowered(line.substr(0, colon)), value).second) return std::nullopt;
+    }
+    return headers;
+}
+
+std::optional<std::size_t> length_of(const std::map<std::string, std::string>& headers) {
+    const auto found = headers.find("content-length");
+    if (found == headers.end()) return 0;
+    const std::string& text = found->second;
+    std::size_t length = 0;
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), length);
+    if (failure == std::errc::result_out_of_range) return std::string_view::npos;
+    if (failure != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return length;
+}
+
+const char* reason(int status) {
+    switch (status) {
+        case 200: return "OK";
+        case 400: return "Bad Request";
+        case 401: return "Unauthorized";
+        case 403: return "Forbidden";
+        case 404: return "Not Found";
+        case 405: return "Method Not Allowed";
+        case 408: return "Request Timeout";
+        case 409: return "Conflict";
+        case 411: return "Length Required";
+        case 413: return "Content Too Large";
+        case 421: return "Misdirected Request";
+        case 431: return "Request Header Fields Too Large";
+        case 503: return "Service Unavailable";
+        default: return "Internal Server Error";
+    }
+}
+
+}  // namespace
+
+const std::string& Request::header(const std::string& name) const {
+    static const std::string none;
+    const auto found = headers.find(name);
+    return found == headers.end() ? none : found->second;
+}
+
+std::string Request::parameter(const std::string& name, const std::string& otherwise) const {
+    const auto found = query.find(name);
+    return found == query.end() ? otherwise : found->second;
+}
+
+Response error_response(int status, const std::string& message) {
+    const nlohmann::json json = {{"error", message}};
+    constexpr auto kReplace = nlohmann::json::error_handler_t::replace;
+    return {status, "application/json", json.dump(-1, ' ', false, kReplace)};
+}
+
+std::string response_bytes(const Response& response) {
+    std::string bytes =
+        "HTTP/1.1 " + std::to_string(response.status) + " " + reason(response.status) +
+        "\r\nContent-Type: " + response.type + "\r\nContent-Length: " + std::to_string(response.body.size()) +
+        "\r\nConnection: close"
+        "\r\nCache-Control: no-store"
+        "\r\nX-Content-Type-Options: nosniff"
+        "\r\nX-Frame-Options: DENY"
+        "\r\nReferrer-Policy: no-referrer"
+        "\r\nCross-Origin-Resource-Policy: same-origin"
+        "\r\nCross-Origin-Opener-Policy: same-origin"
+        "\r\nContent-Security-Policy: default-src 'none'; script-src 'self'; style-src 'self'; "
+        "img-src 'self' blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; "
+        "frame-ancestors 'none'";
+    for (const auto& [name, value] : response.headers) bytes += "\r\n" + name + ": " + value;
+    return bytes + "\r\n\r\n" + response.body;
+}
+
+Framing framing_of(std::string_view bytes) {
+    const std::size_t end = bytes.find("\r\n\r\n");
+    if (end == std::string_view::npos || end > kMaxHeadBytes) {
+        if (bytes.size() <= kMaxHeadBytes) return {};
+        return {false, error_response(431, "the request's head is longer than 16 KiB")};
+    }
+    const std::size_t line = bytes.find("\r\n");
+    const auto headers = read_headers(line == end ? "" : bytes.substr(line + 2, end - line - 2));
+    if (!headers) return {false, error_response(400, "the request's headers are not HTTP/1.1")};
+    if (headers->contains("transfer-encoding"))
+        return {false, error_response(411, "a body needs its Content-Length")};
+    const auto length = length_of(*headers);
+    if (!length) return {false, error_response(400, "Content-Length is not a number")};
+    if (*length > kMaxBodyBytes) return {false, error_response(413, "the body is longer than 1 MiB")};
+    return {bytes.size() >= end + 4 + *length};
+}
+
+std::optional<Request> parse_request(std::string_view bytes) {
+    const std::size_t end = bytes.find("\r\n\r\n"), line_end = bytes.find("\r\n");
+    if (end == std::string_view::npos) return std::nullopt;
+    const std::string_view line = bytes.substr(0, line_end);
+    const std::size_t first = line.find(' '), second = line.rfind(' ');
+    if (first == std::string_view::npos || second <= first || line.substr(second + 1) != "HTTP/1.1")
+        return std::nullopt;
+    Request request;
+    request.method = line.substr(0, first);
+    const std::string_view target = line.substr(first + 1, second - first - 1);
+    if (!is_token(request.method) || !target.starts_with('/')) return std::nullopt;
+    const std::size_t question = std::min(target.find('?'), target.size());
+    request.path = target.substr(0, question);
+    if (question < target.size() && !read_query(target.substr(question + 1), request.query))
+        return std::nullopt;
+    auto headers = read_headers(line_end == end ? "" : bytes.substr(line_end + 2, end - line_end - 2));
+    if (!headers) return std::nullopt;
+    request.headers = std::move(*headers);
+    request.body = bytes.substr(end + 4, length_of(request.headers).value_or(0));
+    return request;
+}
+
+}  // namespace aftershade::serve

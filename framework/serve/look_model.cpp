@@ -1,0 +1,135 @@
+#include "framework/serve/look_model.h"
+
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "framework/core/atomic_file.h"
+#include "framework/core/error.h"
+#include "framework/serve/look_edits.h"
+#include "framework/serve/look_state.h"
+
+namespace aftershade::serve {
+
+namespace {
+
+/// Enough for a day's work; of a text of 1 MiB it would be 256 MiB, so its bytes are bounded too.
+constexpr std::size_t kMaxTexts = 4096, kMaxTextBytes = std::size_t(32) << 20;
+
+std::size_t bytes_of(const std::vector<std::string>& texts) {
+    std::size_t bytes = 0;
+    for (const std::string& text : texts) bytes += text.size();
+    return bytes;
+}
+
+}  // namespace
+
+LookModel::LookModel(std::filesystem::path path, EffectRegistry& effects, bool read_only)
+    : path_(std::move(path)), effects_(effects), read_only_(read_only) {
+    std::string text = read_text_file(path_, ExitCode::usage);
+    if (text.size() > kMaxDocumentBytes)
+        throw Error(ExitCode::usage, path_.string() + ": is longer than 1 MiB, the most that a look may be");
+    saved_text_ = text;
+    texts_.push_back(std::move(text));
+    bind();
+}
+
+void LookModel::bind() {
+    faults_ = {};
+    auto bound = std::make_shared<BoundText>();
+    const auto node = parse_document(texts_[at_], path_.string(), faults_);
+    auto look = node ? parse_look(*node, faults_) : std::nullopt;
+    if (!look) return;
+    bound->look = std::move(*look);
+    bound->pipeline = bind_pipeline(bound->look, effects_, {}, faults_);
+    bound->revision = revision_;
+    if (!faults_.has_errors()) bound_ = std::move(bound);
+}
+
+std::shared_ptr<const BoundText> LookModel::bound() const {
+    const std::lock_guard lock(mutex_);
+    return bound_;
+}
+
+std::string LookModel::text() const {
+    const std::lock_guard lock(mutex_);
+    return texts_[at_];
+}
+
+void LookModel::change(std::string text) {
+    texts_.resize(at_ + 1);
+    texts_.push_back(std::move(text));
+    ++at_;
+    while (texts_.size() > 2 && (texts_.size() > kMaxTexts || bytes_of(texts_) > kMaxTextBytes)) {
+        texts_.erase(texts_.begin());
+        --at_;
+    }
+    ++revision_;
+    bind();
+}
+
+void LookModel::edit(std::uint64_t revision, const nlohmann::ordered_json& edits) {
+    if (!edits.is_array()) throw Refusal{400, "'edits' is a list"};
+    const std::lock_guard lock(mutex_);
+    if (revision != revision_)
+        throw Refusal{409, "the edit is for revision " + std::to_string(revision) + ", the look is at " +
+                               std::to_string(revision_)};
+    std::string text = texts_[at_];
+    for (const auto& edit : edits) {
+        try {
+            text = edited(text, edit);
+        } catch (const Error& error) {
+            throw Refusal{400, error.what()};
+        }
+        if (text.size() > kMaxDocumentBytes)
+            throw Refusal{413, "the look would be longer than 1 MiB, the most that a look may be"};
+    }
+    if (text != texts_[at_]) change(std::move(text));
+}
+
+void LookModel::undo() {
+    const std::lock_guard lock(mutex_);
+    if (at_ == 0) throw Refusal{409, "there is nothing to undo"};
+    --at_;
+    ++revision_;
+    bind();
+}
+
+void LookModel::redo() {
+    const std::lock_guard lock(mutex_);
+    if (at_ + 1 == texts_.size()) throw Refusal{409, "there is nothing to redo"};
+    ++at_;
+    ++revision_;
+    bind();
+}
+
+void LookModel::save() {
+    const std::lock_guard lock(mutex_);
+    if (read_only_) throw Refusal{403, "the look is not written: the program runs with --read-only"};
+    std::error_code failure;
+    const std::string on_disk = read_text_file(path_, failure);
+    if (!failure && on_disk != saved_text_)
+        throw Refusal{409, path_.string() + " was changed by another program; nothing was written"};
+    write_text_file(path_, texts_[at_]);
+    saved_text_ = texts_[at_];
+    saved_revision_ = revision_;
+}
+
+nlohmann::ordered_json LookModel::state(const CaptureHeader& header) const {
+    const std::lock_guard lock(mutex_);
+    nlohmann::ordered_json state;
+    state["look"] = {{"path", path_.string()}, {"name", path_.filename().string()}};
+    state["capture"] = nullptr;
+    state["read_only"] = read_only_;
+    state["revision"] = revision_;
+    state["saved_revision"] = texts_[at_] == saved_text_ ? revision_ : saved_revision_;
+    state["can_undo"] = at_ > 0;
+    state["can_redo"] = at_ + 1 < texts_.size();
+    state["text"] = texts_[at_];
+    state["faults"] = faults_json(faults_);
+    const bool is_bound = bound_ && bound_->revision == revision_;
+    state["steps"] = steps_json(texts_[at_], is_bound ? bound_.get() : nullptr, effects_, header);
+    return state;
+}
+
+}  // namespace aftershade::serve

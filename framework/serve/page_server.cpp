@@ -1,0 +1,189 @@
+#include "framework/serve/page_server.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "framework/core/error.h"
+#include "framework/effect/describe.h"
+#include "framework/image/role.h"
+#include "framework/serve/view_picture.h"
+
+namespace aftershade::serve {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Response json_response(const Json& json) {
+    constexpr auto kReplace = Json::error_handler_t::replace;
+    return {200, "application/json", json.dump(-1, ' ', false, kReplace)};
+}
+
+template <typename Number>
+Number number_of(const Request& request, const std::string& name, Number otherwise) {
+    const std::string text = request.parameter(name);
+    if (text.empty()) return otherwise;
+    Number number{};
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (failure != std::errc() || end != text.data() + text.size())
+        throw Refusal{400, "'" + name + "' is '" + text + "', which is not a number"};
+    return number;
+}
+
+Json capture_json(const Sequence& sequence, const CaptureHeader& header, const std::string& path) {
+    Json roles = Json::array();
+    for (const std::string& name : header.roles) {
+        const auto contract = find_role(split_layer_role(name).role);
+        const auto stored = header.role_channels.find(name);
+        roles.push_back({{"name", name},
+                         {"unit", unit_of_role(name)},
+                         {"meaning", contract ? contract->meaning : ""},
+                         {"channels", stored == header.role_channels.end()
+                                          ? std::size_t(contract ? contract->channels : 0)
+                                          : stored->second.size()}});
+    }
+    return {{"path", path},
+            {"frames", sequence.frames},
+            {"fps", sequence.fps},
+            {"width", header.display_window.width()},
+            {"height", header.display_window.height()},
+            {"roles", roles}};
+}
+
+/// A word of a shell's command line.
+std::string quoted(const std::string& word) {
+    constexpr std::string_view kPlain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=:,+@%#";
+    if (!word.empty() && word.front() != '#' && word.find_first_not_of(kPlain) == std::string::npos)
+        return word;
+    std::string text = "'";
+    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return text + "'";
+}
+
+}  // namespace
+
+std::string describe_effects(EffectRegistry& effects) {
+    Json list = Json::array();
+    for (const std::string& id : effects.ids()) {
+        Diagnostics faults;
+        const EffectManifest* manifest = effects.find(id, faults);
+        if (manifest && !faults.has_errors()) list.push_back(Json::parse(describe_json(*manifest)));
+    }
+    return list.dump();
+}
+
+Response PageServer::state() const {
+    Json state = setup_.look.state(setup_.header);
+    state["capture"] = capture_json(setup_.sequence, setup_.header, setup_.capture);
+    return json_response(state);
+}
+
+Response PageServer::change(const Request& request) {
+    if (request.path == "/api/undo") setup_.look.undo();
+    else if (request.path == "/api/redo") setup_.look.redo();
+    else if (request.path == "/api/save") setup_.look.save();
+    else {
+        constexpr int kDeepest = 80;
+        int depth = 0;
+        const auto shallow = [&](int level, Json::parse_event_t, Json&) {
+            depth = std::max(depth, level);
+            return level <= kDeepest;
+        };
+        const Json body = Json::parse(request.body, shallow, false);
+        if (!body.is_object() || depth > kDeepest || !body.contains("revision") ||
+            !body["revision"].is_number_unsigned() || !body.contains("edits"))
+            throw Refusal{400, "the body is {\"revision\": NUMBER, \"edits\": [...]}"};
+        setup_.look.edit(body["revision"].get<std::uint64_t>(), body["edits"]);
+    }
+    return state();
+}
+
+PictureRequest PageServer::request_of(const Request& request) const {
+    PictureRequest wanted;
+    wanted.look = setup_.look.bound();
+    if (!wanted.look) throw Refusal{409, "the look has faults, and there was none without before it"};
+    wanted.frame = number_of(request, "frame", setup_.sequence.frames.front());
+    if (std::ranges::find(setup_.sequence.frames, wanted.frame) == setup_.sequence.frames.end())
+        throw Refusal{404, "the capture has no frame " + std::to_string(wanted.frame)};
+    wanted.scale = number_of(request, "scale", 1);
+    if (wanted.scale != 1 && wanted.scale != 2 && wanted.scale != 4)
+        throw Refusal{400, "'scale' is 1, 2 or 4"};
+    wanted.view = request.parameter("view", "final");
+    wanted.exposure_ev = number_of(request, "exposure", 0.0);
+    if (!(std::abs(wanted.exposure_ev) <= 32)) throw Refusal{400, "'exposure' is from -32 to 32 stops"};
+    return wanted;
+}
+
+Response PageServer::picture(const Request& request) {
+    const PictureRequest wanted = request_of(request);
+    if (request.parameter("format", "png") != "png") throw Refusal{400, "'format' is png"};
+    return setup_.pictures.run({wanted.view, wanted.scale, wanted.look->revision}, [&](PictureMaker& maker) {
+        MadePicture made = maker.make(wanted);
+        return Response{200,
+                        "image/png",
+                        std::move(made.png),
+                        {{"X-Aftershade-Times", made.times},
+                         {"X-Aftershade-Revision", std::to_string(wanted.look->revision)}}};
+    });
+}
+
+Response PageServer::probe(const Request& request) {
+    const PictureRequest wanted = request_of(request);
+    const int x = number_of(request, "x", -1), y = number_of(request, "y", -1);
+    if (x < 0 || y < 0 || x >= setup_.header.display_window.width() ||
+        y >= setup_.header.display_window.height())
+        throw Refusal{400, "'x' and 'y' are a pixel of the picture"};
+    return setup_.pictures.run({},
+                               [&](PictureMaker& maker) { return json_response(maker.probe(wanted, x, y)); });
+}
+
+Response PageServer::histogram(const Request& request) {
+    const PictureRequest wanted = request_of(request);
+    return setup_.pictures.run({},
+                               [&](PictureMaker& maker) { return json_response(maker.histogram(wanted)); });
+}
+
+Response PageServer::command() const {
+    const auto& frames = setup_.sequence.frames;
+    const char* output = frames.size() == 1 ? "out.png" : "out_####.png";
+    return json_response({{"command", "aftershade run " + quoted(setup_.look.path().string()) + " " +
+                                          quoted(setup_.capture) + " -o " + output}});
+}
+
+Response PageServer::answer(const Request& request) {
+    using Answer = std::function<Response()>;
+    const std::map<std::string, std::pair<std::string, Answer>> answers = {
+        {"/api/state", {"GET", [&] { return state(); }}},
+        {"/api/effects",
+         {"GET",
+          [&] {
+              return Response{200, "application/json", setup_.effects};
+          }}},
+        {"/api/picture", {"GET", [&] { return picture(request); }}},
+        {"/api/probe", {"GET", [&] { return probe(request); }}},
+        {"/api/histogram", {"GET", [&] { return histogram(request); }}},
+        {"/api/command", {"GET", [&] { return command(); }}},
+        {"/api/edit", {"POST", [&] { return change(request); }}},
+        {"/api/undo", {"POST", [&] { return change(request); }}},
+        {"/api/redo", {"POST", [&] { return change(request); }}},
+        {"/api/save", {"POST", [&] { return change(request); }}}};
+    const auto found = answers.find(request.path);
+    if (found == answers.end()) return error_response(404, "there is nothing at this address");
+    if (request.method != found->second.first)
+        return error_response(405, "this address takes " + found->second.first);
+    try {
+        return found->second.second();
+    } catch (const Refusal& refusal) {
+        return error_response(refusal.status, refusal.message);
+    } catch (const Error& error) {
+        return error_response(500, error.what());
+    }
+}
+
+}  // namespace aftershade::serve

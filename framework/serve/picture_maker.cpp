@@ -1,0 +1,242 @@
+#include "framework/serve/picture_maker.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "framework/capture/capture_window.h"
+#include "framework/core/error.h"
+#include "framework/effect/pass_program.h"
+#include "framework/effect/program_store.h"
+#include "framework/image/role.h"
+#include "framework/pipeline/nan_policy.h"
+#include "framework/serve/quick_png.h"
+#include "framework/serve/view_picture.h"
+
+namespace aftershade::serve {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// Everything of a pipeline that decides which passes and textures there are, but for values that a graph's
+/// key holds itself.
+std::string form_of(const Pipeline& pipeline) {
+    std::string form;
+    for (const PipelineStep& step : pipeline.steps) {
+        form += fmt::format("{}={}@{};", step.name, step.manifest->id, fmt::ptr(step.manifest));
+        for (const auto& [input, source] : step.inputs)
+            form += fmt::format("{}<{}.{},", input, source.step, source.output);
+        for (const InputSpec& input : step.manifest->inputs) form += step.may_take(input) ? '1' : '0';
+        for (const auto& [output, source] : step.before)
+            form += fmt::format("{}~{}.{},", output, source.step, source.output);
+        if (step.mask) {
+            form +=
+                fmt::format("mask {} {} {} ", step.mask->role, step.mask->file.string(), step.mask->invert);
+            if (!step.mask->objects.empty()) form += coverage_role(step.mask->objects);
+        }
+        form += '\n';
+    }
+    for (const Tap& tap : pipeline.taps) form += tap.text() + " ";
+    return form;
+}
+
+bool makes(const Pipeline& pipeline, const std::string& role) {
+    return pipeline.writes_role(role);
+}
+
+std::string joined_roles(const std::vector<std::string>& roles) {
+    std::string text;
+    for (const std::string& role : roles) text += role + "\n";
+    return text;
+}
+
+}  // namespace
+
+PictureMaker::PictureMaker(Sequence sequence, std::vector<Profile> profiles, ReadLimits limits,
+                           gpu::Backend backend, std::filesystem::path data_folder)
+    : sequence_(std::move(sequence)),
+      reader_(sequence_, std::move(profiles), limits),
+      context_(backend),
+      programs_(
+          std::make_shared<ProgramCache>(context_, data_folder / "glsl", ProgramStore::from_environment())) {}
+
+PictureMaker::~PictureMaker() = default;
+
+void PictureMaker::adopt(Scaled& scaled, const PictureRequest& request) {
+    Pipeline pipeline = request.look->pipeline;
+    if (request.view.starts_with("tap:")) pipeline.taps = {tap_of(request.view, pipeline)};
+    std::string form = form_of(pipeline);
+    if (!scaled.pipeline) scaled.pipeline = std::make_unique<Pipeline>();
+    const bool has_changed = form != scaled.form;
+    *scaled.pipeline = std::move(pipeline);
+    scaled.form = std::move(form);
+    if (!scaled.renderer) {
+        scaled.renderer = std::make_unique<PipelineRenderer>(context_, *scaled.pipeline, programs_);
+        scaled.renderer->keep_steps();
+    } else if (has_changed) {
+        scaled.renderer->pipeline_changed();
+    }
+}
+
+/// Whether the captures are those of the last call.
+bool PictureMaker::load(Scaled& scaled, const PictureRequest& request) {
+    const Pipeline& pipeline = *scaled.pipeline;
+    std::vector<std::string> reads = pipeline.capture_roles();
+    std::string key = joined_roles(reads) + "objects\n" + joined_roles(pipeline.object_names()) + "before\n" +
+                      joined_roles(pipeline.neighbour_roles(-1)) + "after\n" +
+                      joined_roles(pipeline.neighbour_roles(1)) +
+                      std::to_string(pipeline.last_accumulating_step() >= 0);
+    if (scaled.loaded && scaled.loaded->frame == request.frame && scaled.loaded->key == key) return true;
+    // Readers of other scales may not meet a change of what they read by.
+    if (sequence_.object_names != pipeline.object_names()) {
+        for (auto& [scale, other] : scaled_) other.loaded.reset();
+        sequence_.object_names = pipeline.object_names();
+    }
+    scaled.loaded.reset();
+    auto loaded = std::make_unique<Loaded>();
+    loaded->frame = request.frame;
+    loaded->key = std::move(key);
+    loaded->run.frames = {request.frame};
+    loaded->run.scale_divisor = request.scale;
+    loaded->loader =
+        std::make_unique<FrameLoader>(sequence_, reader_, pipeline, loaded->run, std::move(reads));
+    loaded->previous = loaded->loader->neighbour(0, -1);
+    loaded->next = loaded->loader->neighbour(0, 1);
+    for (int i = 0; i < loaded->loader->subframe_count(); ++i)
+        loaded->captures.push_back(loaded->loader->take(0, i));
+    require_capture_roles(pipeline, loaded->captures.front()->header, &reader_);
+    scaled.loaded = std::move(loaded);
+    return false;
+}
+
+FrameResult PictureMaker::draw_frame(Scaled& scaled, const std::vector<std::string>& roles, bool is_same) {
+    const Loaded& loaded = *scaled.loaded;
+    FrameInputs inputs;
+    inputs.subframe_count = int(loaded.captures.size());
+    inputs.scale = 1.0 / loaded.run.scale_divisor;
+    inputs.fps = sequence_.fps;
+    inputs.begins_shot = true;  // as `run --frames` begins with this frame
+    inputs.previous = loaded.previous.get();
+    inputs.next = loaded.next.get();
+    FrameResult result;
+    std::vector<graph::PassTime> times;
+    for (int i = 0; i < inputs.subframe_count; ++i) {
+        inputs.subframe = i;
+        inputs.capture = loaded.captures[std::size_t(i)].get();
+        inputs.centre = loaded.captures[std::size_t(std::min(i, inputs.subframe_count / 2))].get();
+        result = is_same ? scaled.renderer->render_again(inputs, roles, true)
+                         : scaled.renderer->render(inputs, roles, true);
+        times.insert(times.end(), result.times.begin(), result.times.end());
+    }
+    result.times = std::move(times);
+    return result;
+}
+
+PictureMaker::Scaled& PictureMaker::draw(const PictureRequest& request) {
+    const auto start = Clock::now();
+    context_.make_current();
+    Scaled& scaled = scaled_[request.scale];
+    std::vector<std::string> roles = {makes(request.look->pipeline, kDisplayRole) ? kDisplayRole
+                                                                                  : kColorRole};
+    if (request.view.starts_with("role:") && makes(request.look->pipeline, request.view.substr(5)))
+        roles.push_back(request.view.substr(5));
+    const std::string form_before = scaled.form;
+    adopt(scaled, request);
+    const bool is_same = load(scaled, request);
+    const std::string asked = joined_roles(roles);
+    drawn_ = 0;
+    const bool is_here = is_same && scaled.is_current && scaled.revision == request.look->revision &&
+                         scaled.roles_asked == asked && scaled.form == form_before;
+    if (!is_here) {
+        scaled.is_current = false;
+        scaled.result = draw_frame(scaled, roles, is_same);
+        drawn_ = scaled.renderer->steps_drawn();
+        scaled.is_current = true;
+        scaled.revision = request.look->revision;
+        scaled.roles_asked = asked;
+    } else {
+        scaled.result.times.clear();
+    }
+    scaled.total_ms = ms_since(start);
+    return scaled;
+}
+
+Image PictureMaker::picture(const Scaled& scaled, const PictureRequest& request) const {
+    const Loaded& loaded = *scaled.loaded;
+    return view_picture(
+        {request.view, request.exposure_ev, scaled.result, *loaded.captures[loaded.captures.size() / 2]});
+}
+
+MadePicture PictureMaker::make(const PictureRequest& request) {
+    const auto start = Clock::now();
+    Scaled& scaled = draw(request);
+    Image shown;
+    const bool is_stored_role =
+        request.view.starts_with("role:") && !scaled.result.images.contains(request.view.substr(5));
+    if (is_stored_role) {
+        const Capture& whole = whole_capture(request.frame);
+        shown = view_picture({request.view, request.exposure_ev, scaled.result, whole});
+    } else {
+        shown = picture(scaled, request);
+    }
+    MadePicture made;
+    made.png = quick_png(shown);
+    nlohmann::ordered_json times;
+    times["passes"] = nlohmann::ordered_json::array();
+    for (const graph::PassTime& time : scaled.result.times) {
+        const std::size_t dot = time.pass.find('.');
+        const std::string step = dot == std::string::npos ? "" : time.pass.substr(0, dot);
+        const std::string name = dot == std::string::npos ? time.pass : time.pass.substr(dot + 1);
+        times["passes"].push_back({{"step", step}, {"name", name}, {"ms", time.milliseconds}});
+    }
+    times["draw_ms"] = scaled.total_ms;
+    times["total_ms"] = ms_since(start);
+    times["steps_drawn"] = drawn_;
+    times["steps_cached"] = int(scaled.pipeline->steps.size()) - drawn_;
+    times["memory_bytes"] = scaled.renderer->graph_bytes().first;
+    std::uint64_t non_finite = 0;
+    for (const NonFiniteOutput& output : apply_nan_policy(NanPolicy::warn, scaled.result))
+        non_finite += output.pixels.count();
+    times["non_finite"] = non_finite;
+    made.times = times.dump();
+    return made;
+}
+
+const Capture& PictureMaker::whole_capture(int frame) {
+    if (!whole_ || whole_frame_ != frame) {
+        whole_.reset();
+        const int number = sequence_.file_number(frame, sequence_.subframes / 2);
+        const CaptureHeader header = reader_.read_header(number);
+        whole_ = std::make_unique<Capture>(reader_.read(number, header.roles));
+        whole_frame_ = frame;
+    }
+    return *whole_;
+}
+
+nlohmann::ordered_json PictureMaker::probe(const PictureRequest& request, int x, int y) {
+    const Capture& whole = whole_capture(request.frame);
+    nlohmann::ordered_json json = probe_json(whole, x, y);
+    PictureRequest full = request;
+    full.scale = 1;
+    full.view = "final";
+    Scaled& scaled = draw(full);
+    json["result"] = result_at(scaled.result, scaled.loaded->captures.front()->header, x, y);
+    return json;
+}
+
+nlohmann::ordered_json PictureMaker::histogram(const PictureRequest& request) {
+    PictureRequest full = request;
+    full.view = "final";
+    return histogram_json(picture(draw(full), full));
+}
+
+}  // namespace aftershade::serve

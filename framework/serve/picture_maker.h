@@ -1,0 +1,91 @@
+// Pictures of a look over a capture's frames, made on one GL context: a later call draws only what changed.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "framework/capture/capture.h"
+#include "framework/capture/sequence.h"
+#include "framework/gpu/context.h"
+#include "framework/pipeline/frame_loader.h"
+#include "framework/pipeline/renderer.h"
+#include "framework/serve/look_model.h"
+
+namespace aftershade::serve {
+
+struct PictureRequest {
+    std::shared_ptr<const BoundText> look;
+    int frame = 0;
+    int scale = 1;               ///< the picture has 1/scale of the pixels of each side
+    std::string view = "final";  ///< or before, tap:STEP.TEXTURE, role:NAME
+    double exposure_ev = 0;
+};
+
+struct MadePicture {
+    std::string png;
+    std::string times;  ///< JSON, one line
+};
+
+/// [the context's thread]
+class PictureMaker {
+public:
+    /// Copies the sequence. Throws Error(ExitCode::gl) without a context.
+    PictureMaker(Sequence sequence, std::vector<Profile> profiles, ReadLimits limits, gpu::Backend backend,
+                 std::filesystem::path data_folder);
+    ~PictureMaker();
+
+    /// Throws Error as `run` does.
+    MadePicture make(const PictureRequest& request);
+    /// Every role's value at a pixel of the whole picture, and the result's.
+    nlohmann::ordered_json probe(const PictureRequest& request, int x, int y);
+    /// Of the final picture: how many pixels have each of 256 values.
+    nlohmann::ordered_json histogram(const PictureRequest& request);
+
+private:
+    /// The captures of one frame.
+    struct Loaded {
+        int frame = 0;
+        std::string key;
+        RunOptions run;
+        std::unique_ptr<FrameLoader> loader;
+        std::vector<std::shared_ptr<const Capture>> captures;  // the sub-frames
+        std::shared_ptr<const Capture> previous, next;
+    };
+    /// What is kept for one scale.
+    struct Scaled {
+        std::unique_ptr<Pipeline> pipeline;
+        std::string form;
+        std::string roles_asked;
+        std::unique_ptr<PipelineRenderer> renderer;
+        std::unique_ptr<Loaded> loaded;
+        bool is_current = false;  // `result` is of what follows
+        std::uint64_t revision = 0;
+        FrameResult result;
+        double total_ms = 0;
+    };
+
+    Scaled& draw(const PictureRequest& request);
+    void adopt(Scaled& scaled, const PictureRequest& request);
+    bool load(Scaled& scaled, const PictureRequest& request);
+    FrameResult draw_frame(Scaled& scaled, const std::vector<std::string>& roles, bool is_same);
+    Image picture(const Scaled& scaled, const PictureRequest& request) const;
+    const Capture& whole_capture(int frame);
+
+    Sequence sequence_;
+    CaptureReader reader_;
+    gpu::Context context_;
+    std::shared_ptr<ProgramCache> programs_;
+    std::map<int, Scaled> scaled_;    // by scale
+    std::unique_ptr<Capture> whole_;  // with every role, for probes
+    int whole_frame_ = 0;
+    int drawn_ = 0;  // steps, by the last draw(); 0 where everything was there
+};
+
+}  // namespace aftershade::serve

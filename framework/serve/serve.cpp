@@ -1,0 +1,52 @@
+#include "framework/serve/serve.h"
+
+#include <memory>
+
+#include "framework/capture/capture.h"
+#include "framework/serve/connections.h"
+#include "framework/serve/guards.h"
+#include "framework/serve/look_model.h"
+#include "framework/serve/page_files.h"
+#include "framework/serve/page_server.h"
+#include "framework/serve/picture_maker.h"
+#include "framework/serve/render_thread.h"
+
+namespace aftershade::serve {
+
+namespace {
+
+CaptureHeader first_header(const ServeOptions& options) {
+    const CaptureReader reader(options.sequence, options.profiles, options.limits);
+    return reader.read_header(options.sequence.file_number(options.sequence.frames.front()));
+}
+
+}  // namespace
+
+void serve(const ServeOptions& options, EffectRegistry& effects, const std::atomic<bool>& stop) {
+    const auto files = read_page_files(options.data_folder / "page");
+    const CaptureHeader header = first_header(options);
+    const std::string described = describe_effects(effects);
+    LookModel look(std::filesystem::absolute(options.look), effects, options.read_only);
+    Connections connections(options.port, {});
+    const auto make = [&] {
+        return std::make_unique<PictureMaker>(options.sequence, options.profiles, options.limits,
+                                              options.backend, options.data_folder);
+    };
+    RenderThread pictures(make, stop);
+    PageServer server({look, pictures, options.sequence, header, options.capture, described});
+    const std::string token = random_token();
+    if (options.ready)
+        options.ready("http://127.0.0.1:" + std::to_string(connections.port()) + "/#token=" + token);
+    connections.run(
+        [&](const Request& request) {
+            if (auto refused = refusal(request, connections.port(), token)) return *refused;
+            if (request.path.starts_with("/api/")) return server.answer(request);
+            const auto file = files.find(request.path);
+            if (file == files.end()) return error_response(404, "there is nothing at this address");
+            if (request.method != "GET") return error_response(405, "this address takes GET");
+            return file->second;
+        },
+        stop);
+}
+
+}  // namespace aftershade::serve

@@ -1,0 +1,35 @@
+// A look over a capture on a page of this machine's browser: `aftershade serve`.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "framework/capture/profile.h"
+#include "framework/capture/sequence.h"
+#include "framework/effect/registry.h"
+#include "framework/file/exr_file.h"
+#include "framework/gpu/context.h"
+
+namespace aftershade::serve {
+
+struct ServeOptions {
+    std::filesystem::path look;
+    std::string capture;  ///< as the user named it
+    Sequence sequence;
+    std::vector<Profile> profiles;
+    ReadLimits limits{};
+    gpu::Backend backend = gpu::Backend::automatic;
+    std::filesystem::path data_folder;
+    int port = 0;  ///< 0: a free one
+    bool read_only = false;
+    std::function<void(const std::string& address)> ready;  ///< once it answers
+};
+
+/// Until `stop`. Throws Error: usage for the look and the port, capture for the first frame, gl for the
+/// context.
+void serve(const ServeOptions& options, EffectRegistry& effects, const std::atomic<bool>& stop);
+
+}  // namespace aftershade::serve

@@ -1,0 +1,41 @@
+// What a page shows of a frame: the result, what was before it, a tap or a role in false colour; and its
+// numbers.
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "framework/capture/capture.h"
+#include "framework/image/image.h"
+#include "framework/pipeline/pipeline.h"
+#include "framework/pipeline/renderer.h"
+
+namespace aftershade::serve {
+
+/// [refers to what the caller keeps]
+struct View {
+    const std::string& name;  ///< final, before, tap:STEP.TEXTURE, role:NAME
+    double exposure_ev = 0;
+    const FrameResult& result;
+    const Capture& capture;
+};
+
+/// Display-referred values over the display window. Throws Error(ExitCode::usage) for what is not there.
+Image view_picture(const View& view);
+
+/// The tap of "tap:STEP.TEXTURE". Throws Error(ExitCode::usage) where the pipeline has none such.
+Tap tap_of(const std::string& view, const Pipeline& pipeline);
+
+/// "m", "px"; "" for pure numbers.
+std::string unit_of_role(const std::string& role);
+
+/// {"x", "y", "roles": [{"name", "unit", "values"}]} at a pixel of the display window; without values outside
+/// of the data window.
+nlohmann::ordered_json probe_json(const Capture& capture, int x, int y);
+/// [r, g, b, a] of what the steps made, or null where they made nothing there.
+nlohmann::ordered_json result_at(const FrameResult& result, const CaptureHeader& header, int x, int y);
+
+nlohmann::ordered_json histogram_json(const Image& picture);
+
+}  // namespace aftershade::serve

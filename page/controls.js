@@ -1,0 +1,161 @@
+// A row for each parameter, made from its declaration in the effect's manifest.
+import { element, icon, freshId, iconButton, options } from "./elements.js";
+import { field, numberControl } from "./number.js";
+import * as values from "./values.js";
+
+function boolControl({ label, describedBy, commit }) {
+  const box = element("input", { type: "checkbox", "aria-label": label, "aria-describedby": describedBy });
+  box.addEventListener("change", () => commit(box.checked));
+  return {
+    nodes: [element("span", { class: "wide" }, box)],
+    update: ({ effective }) => (box.checked = effective === true),
+  };
+}
+
+function enumControl({ label, parameter, describedBy, commit }) {
+  const select = element("select", { class: "wide", "aria-label": label, "aria-describedby": describedBy });
+  select.addEventListener("change", () => commit(select.value));
+  const names = parameter.values.map((name) => [name, name]);
+  return { nodes: [select], update: ({ effective }) => options(select, names, effective) };
+}
+
+function vectorControl({ label, parameter, describedBy, commit }) {
+  const isColor = parameter.type === "color",
+    names = isColor ? ["red", "green", "blue"] : ["x", "y", "z", "w"].slice(0, Number(parameter.type.slice(3)));
+  let entry = { effective: parameter.default };
+  const list = (value) => (Array.isArray(value) && value.length === names.length ? value : parameter.default);
+  const now = () => [...list(entry.value ?? entry.effective)];
+  const fields = names.map((name, i) =>
+    field({
+      label: `${label}, ${name}`,
+      describedBy,
+      inputmode: "decimal",
+      parse: (text) => values.typedNumber(text, parameter, now()[i]),
+      commit: (value) => commit(now().map((old, at) => (at === i ? value : old))),
+      onArrow: (sign, times) => {
+        const [low, high] = parameter.ui ?? [0, 1];
+        const number = Number(
+          (values.numberOf(list(entry.effective)[i], parameter.unit) + (sign * times * (high - low)) / 100).toPrecision(
+            6,
+          ),
+        );
+        if (!values.outOfRange(number, parameter)) {
+          const all = now().map((old, at) => (at === i ? number : old));
+          entry = {
+            ...entry,
+            effective: list(entry.effective).map((old, at) => (at === i ? number : old)),
+            value: all,
+          };
+          fields[i].show(values.short(number));
+          commit(all, `keys ${label} ${name}`);
+        }
+      },
+    }),
+  );
+  const swatch =
+    isColor && element("input", { type: "color", "aria-label": `${label}, swatch`, "aria-describedby": describedBy });
+  if (swatch) swatch.addEventListener("input", () => commit(values.lightOf(swatch.value), `swatch ${label}`));
+  return {
+    nodes: [element("span", { class: "wide vector" }, swatch || null, ...fields.map(({ node }) => node))],
+    update(next) {
+      entry = next;
+      const numbers = list(next.effective).map((one) => values.numberOf(one, parameter.unit));
+      numbers.forEach((number, i) => fields[i].show(values.short(number)));
+      if (swatch) swatch.value = values.swatchOf(numbers);
+    },
+  };
+}
+
+function textControl({ label, describedBy, commit }, toText, parse) {
+  const { node, show } = field({ label, describedBy, className: "field wide text", parse, commit });
+  return { nodes: [node], update: (entry) => show(toText(entry.value ?? entry.effective ?? "")) };
+}
+const anyValue = (text) => {
+  try {
+    return { value: values.fromText(text) };
+  } catch (error) {
+    return { error: error.message };
+  }
+};
+
+function controlFor(context) {
+  const { parameter } = context;
+  if (values.isNumeric(parameter.type)) return numberControl(context);
+  if (values.isVector(parameter.type)) return vectorControl(context);
+  if (parameter.type === "bool") return boolControl(context);
+  if (parameter.type === "enum") return enumControl(context);
+  if (parameter.type === "objects")
+    return textControl(context, values.objectsText, (text) => ({ value: values.objectsFrom(text) }));
+  if (parameter.type === "file") return textControl(context, values.asText, (text) => ({ value: text.trim() }));
+  return textControl(context, values.asText, anyValue);
+}
+
+function rangeWords({ type, ui, min, max, unit = "", default: fallback }) {
+  const parts = [
+    `default ${values.asText(fallback) || "none"}${unit && typeof fallback === "number" ? ` ${unit}` : ""}`,
+  ];
+  const end = (number) => `${values.short(number, 7)}${unit && ` ${unit}`}`;
+  if (min !== undefined && max !== undefined) parts.push(`limits ${values.short(min, 7)} to ${end(max)}`);
+  else if (min !== undefined) parts.push(`at least ${end(min)}`);
+  else if (max !== undefined) parts.push(`at most ${end(max)}`);
+  if (ui && values.isNumeric(type)) parts.push(`slider ${values.short(ui[0])} to ${values.short(ui[1])}`);
+  return parts.join("; ");
+}
+
+/**
+ * {node, update(entry)} of a parameter. `commit(value, gesture)` sets it, null takes the key out of the look; `pick`, if
+ * given, has the next click in the picture set it.
+ */
+export function parameterRow({ id, parameter, commit, pick }) {
+  const describedBy = freshId("doc"),
+    label = id.replaceAll("_", " "),
+    holder = element("div", { class: "controls" }),
+    tag = element("span", { class: "tag" }),
+    error = element("p", { class: "refusal", role: "alert" }),
+    reset = iconButton("reset", `Reset ${label}`, () => commit(null), { class: "icon-button reset" });
+  const picker =
+    pick &&
+    iconButton("pick", `Pick ${label} in the picture`, () => pick(picker), {
+      class: "icon-button picker",
+      "aria-pressed": "false",
+    });
+  const node = element(
+    "div",
+    { class: "row", "data-param": id },
+    element(
+      "span",
+      { class: "label", title: parameter.doc },
+      element("span", { class: "words" }, label),
+      picker || null,
+    ),
+    holder,
+    element("span", { class: "source" }, tag, reset),
+    error,
+    element("p", { class: "hint", id: describedBy }),
+  );
+  const hint = node.lastChild;
+  node.addEventListener("refused", ({ detail }) => (error.textContent = detail ?? ""));
+
+  let control = null,
+    kind = null;
+  return {
+    node,
+    update(entry) {
+      const wanted = values.isExpression(entry.value) ? "expression" : parameter.type;
+      if (wanted !== kind) {
+        kind = wanted;
+        const context = { label, parameter, describedBy, commit };
+        control = kind === "expression" ? textControl(context, values.asText, anyValue) : controlFor(context);
+        holder.replaceChildren(...control.nodes);
+      }
+      control.update(entry);
+      const isSet = entry.value !== undefined,
+        { tag: word, words } = values.sourceOf(entry.from);
+      node.classList.toggle("set", isSet);
+      reset.hidden = !isSet;
+      tag.replaceChildren(...(word && !isSet ? [icon(word)] : []));
+      tag.title = words;
+      hint.textContent = `${parameter.doc} (${rangeWords(parameter)}) Now ${words}.`;
+    },
+  };
+}

@@ -1,0 +1,246 @@
+// The authoring page: a look made by eye. The program that serves it holds the look and draws the pictures.
+import { get, token } from "./api.js";
+import { Costs, Histogram, Probe } from "./dock.js";
+import { button, element, icon, iconButton, notify } from "./elements.js";
+import { Shortcuts } from "./keys.js";
+import { nameOf, StepList } from "./steps.js";
+import { Store } from "./store.js";
+import { AddDialog, Faults, TextView } from "./text_view.js";
+import { short } from "./values.js";
+import { Viewer } from "./viewer.js";
+
+const store = new Store();
+const at = (id) => document.getElementById(id);
+
+// ---- parts ----
+
+const viewer = new Viewer(store, at("viewer"));
+const probe = new Probe(),
+  histogram = new Histogram(),
+  costs = new Costs();
+at("dock").append(probe.node, histogram.node, costs.node);
+
+const dialog = new AddDialog(store);
+const openAdd = () => {
+  const { steps } = store.state;
+  // What comes after a view transform has no scene colour to work on.
+  dialog.open(steps.at(-1)?.effect === "view_transform" ? steps.length - 1 : steps.length);
+};
+
+/** A parameter that the picture can give: the focus distance from the depth, objects from the ids. */
+function pickFor(parameter, commit) {
+  const role = parameter.from === "camera.focus_distance" ? "depth" : parameter.type === "objects" ? "object_id" : null;
+  if (!role) return null;
+  return (node) =>
+    viewer.pick(node, ({ roles }) => {
+      const value = roles.find(({ name }) => name === role)?.values[0];
+      if (value === undefined || !Number.isFinite(value))
+        return notify(`The capture has no ${role} at this pixel`, true);
+      if (role === "object_id") return commit([value]);
+      commit(Number(short(value)));
+    });
+}
+const list = new StepList(store, { add: openAdd, pickFor });
+dialog.node.addEventListener("added", async ({ detail }) => {
+  if (!(await detail.done)) return;
+  list.cards[detail.at]?.toggle(true);
+  list.focus(detail.at);
+  notify(`${list.cards[detail.at]?.title.textContent} added as step ${detail.at + 1}`);
+});
+const text = new TextView(store);
+const faults = new Faults(store, (line, column) => {
+  showPanel("text");
+  text.goTo(line, column);
+});
+
+const panels = { steps: list.node, text: text.node };
+const tabs = Object.keys(panels).map((name) =>
+  button(name === "steps" ? "Steps" : "Text", () => showPanel(name), {
+    role: "tab",
+    id: `tab-${name}`,
+    "aria-controls": `panel-${name}`,
+    title: "Steps or text (T)",
+  }),
+);
+for (const [name, node] of Object.entries(panels)) {
+  node.id = `panel-${name}`;
+  node.setAttribute("role", "tabpanel");
+  node.setAttribute("aria-labelledby", `tab-${name}`);
+}
+function showPanel(name) {
+  for (const [one, node] of Object.entries(panels)) node.hidden = one !== name;
+  tabs.forEach((tab) => {
+    const isShown = tab.id === `tab-${name}`;
+    tab.setAttribute("aria-selected", String(isShown));
+    tab.tabIndex = isShown ? 0 : -1;
+  });
+  if (name === "text" && store.state) text.update();
+}
+const tablist = element("div", { class: "tabs", role: "tablist", "aria-label": "Look as" }, tabs);
+tablist.addEventListener("keydown", (event) => {
+  if (event.key !== "ArrowLeft" && event.key !== "ArrowRight") return;
+  const other = tabs.find((tab) => tab.tabIndex === -1);
+  other.click();
+  other.focus();
+});
+const EXPLAIN = "Point at a value to read what it does, its limits and where it comes from.";
+const help = element("p", { class: "explain", "aria-hidden": "true" }, EXPLAIN);
+at("look").append(tablist, faults.node, list.node, text.node, help);
+showPanel("steps");
+// What the row under the pointer or with the focus is for.
+for (const name of ["focusin", "pointerover"])
+  at("look").addEventListener(
+    name,
+    ({ target }) => (help.textContent = target.closest(".row")?.querySelector(".hint")?.textContent ?? EXPLAIN),
+  );
+
+// ---- the bar ----
+
+const THEMES = ["system", "dark", "light"];
+function setTheme(theme) {
+  if (theme === "system") delete document.documentElement.dataset.theme;
+  else document.documentElement.dataset.theme = theme;
+  try {
+    localStorage.setItem("aftershade.theme", theme);
+  } catch {
+    // Private windows may refuse; the theme then lasts as long as the page.
+  }
+  themeButton.title = `Colours: ${theme} (Shift+D)`;
+  themeButton.setAttribute("aria-label", `Colours: ${theme}`);
+  histogram.draw();
+}
+function nextTheme() {
+  const now = document.documentElement.dataset.theme ?? "system";
+  setTheme(THEMES[(THEMES.indexOf(now) + 1) % THEMES.length]);
+}
+async function copyCommand() {
+  try {
+    const { command } = await get("/api/command");
+    await navigator.clipboard.writeText(command);
+    notify(`Copied: ${command}`);
+  } catch (error) {
+    notify(error.message, true);
+  }
+}
+async function save() {
+  if (store.state.read_only) return notify("The program was started with --read-only", true);
+  if (await store.save()) notify(`Saved ${store.state.look.name}`);
+}
+const undoButton = iconButton("undo", "Undo", () => store.undo(), { shortcut: "Ctrl+Z" }),
+  redoButton = iconButton("redo", "Redo", () => store.redo(), { shortcut: "Ctrl+Shift+Z" }),
+  saveButton = button([icon("save"), "Save"], save, { title: "Save (Ctrl+S)", class: "save" }),
+  themeButton = iconButton("theme", "Colours", nextTheme),
+  lookName = element("span", { class: "file" }),
+  mark = element("span", { class: "mark" }),
+  captureName = element("span", { class: "capture" });
+at("bar").append(
+  element("h1", {}, "Aftershade"),
+  element("span", { class: "names" }, lookName, mark, captureName),
+  element("span", { class: "space" }),
+  undoButton,
+  redoButton,
+  button([icon("copy"), "Command"], copyCommand, {
+    title: "Copy the command that draws these pictures (Ctrl+Shift+C)",
+    class: "command",
+  }),
+  themeButton,
+  button("?", () => shortcuts.open(), { class: "icon-button", title: "Shortcuts (?)", "aria-label": "Shortcuts" }),
+  saveButton,
+);
+
+// ---- shortcuts ----
+
+const beforeOnOff = () => viewer.setOther(viewer.other ? "" : "before");
+const shortcuts = new Shortcuts([
+  { group: "Look", keys: ["Ctrl+S"], words: "Save", run: save, inText: true },
+  { group: "Look", keys: ["Ctrl+Z"], words: "Undo", run: () => store.undo(), inText: "edited" },
+  { group: "Look", keys: ["Ctrl+Shift+Z", "Ctrl+Y"], words: "Redo", run: () => store.redo(), inText: "edited" },
+  { group: "Look", keys: ["T"], words: "Steps or text", run: () => showPanel(text.node.hidden ? "text" : "steps") },
+  { group: "Look", keys: ["Ctrl+Shift+C"], words: "Copy the command", run: copyCommand, inText: true },
+  { group: "Steps", keys: ["A"], words: "Add a step", run: openAdd },
+  { group: "Steps", keys: ["S"], words: "To the steps", run: () => (showPanel("steps"), list.focus(0)) },
+  { group: "Steps", keys: ["↑", "↓"], words: "To the step above or below" },
+  { group: "Steps", keys: ["Enter"], words: "Open or close the step" },
+  { group: "Steps", keys: ["Alt+↑", "Alt+↓"], words: "Move the step" },
+  { group: "Steps", keys: ["E"], words: "Enable or disable the step" },
+  { group: "Steps", keys: ["Delete"], words: "Remove the step" },
+  { group: "Values", keys: ["←", "→"], words: "Slider: a hundredth of its range" },
+  { group: "Values", keys: ["Page Up", "Page Down"], words: "Slider: a tenth" },
+  { group: "Values", keys: ["↑", "↓"], words: "Number field: a hundredth; with Shift a tenth" },
+  { group: "Values", keys: ["Enter"], words: "Take over what is typed, with a unit if you like: 85 mm" },
+  { group: "Values", keys: ["Escape"], words: "Take back what is typed" },
+  { group: "Picture", keys: ["P"], words: "To the picture", run: () => viewer.canvas.focus() },
+  { group: "Picture", keys: ["↑", "↓", "←", "→"], words: "Move the probe by 1 px; with Shift 10 px" },
+  { group: "Picture", keys: ["Ctrl+arrows"], words: "Pan" },
+  { group: "Picture", keys: ["+", "="], words: "Zoom in", run: () => viewer.picture.zoomBy(1) },
+  { group: "Picture", keys: ["-"], words: "Zoom out", run: () => viewer.picture.zoomBy(-1) },
+  { group: "Picture", keys: ["0"], words: "Fit", run: () => viewer.picture.fit() },
+  { group: "Picture", keys: ["1"], words: "A pixel as a pixel", run: () => viewer.picture.zoomTo(1) },
+  { group: "Picture", keys: ["]"], words: "Brighter by 1/2 EV", run: () => viewer.setExposure(viewer.exposure + 0.5) },
+  { group: "Picture", keys: ["["], words: "Darker by 1/2 EV", run: () => viewer.setExposure(viewer.exposure - 0.5) },
+  { group: "Compare", keys: ["V"], words: "Next view", run: () => viewer.nextView(1) },
+  { group: "Compare", keys: ["Shift+V"], words: "Previous view", run: () => viewer.nextView(-1) },
+  { group: "Compare", keys: ["W"], words: "Wipe against before, on and off", run: beforeOnOff },
+  {
+    group: "Compare",
+    keys: ["B"],
+    words: "While held: the picture to compare with",
+    run: () => viewer.other && viewer.swap(true),
+  },
+  { group: "Compare", keys: ["K"], words: "Keep this picture to compare with", run: () => viewer.keep() },
+  { group: "Frames", keys: ["Space"], words: "Play or pause", run: () => viewer.play() },
+  { group: "Frames", keys: [","], words: "Previous frame", run: () => viewer.stepFrame(-1) },
+  { group: "Frames", keys: ["."], words: "Next frame", run: () => viewer.stepFrame(1) },
+  { group: "Page", keys: ["?"], words: "This list", run: () => shortcuts.open() },
+  { group: "Page", keys: ["Shift+D"], words: "Colours: system, dark, light", run: nextTheme },
+]);
+shortcuts.onKeyUp("b", () => viewer.swap(false));
+addEventListener("beforeunload", (event) => store.state && !store.isSaved && event.preventDefault());
+
+// ---- what changes ----
+
+store.addEventListener("change", () => {
+  const { look, capture, can_undo, can_redo, read_only } = store.state,
+    isChanged = !store.isSaved;
+  lookName.textContent = look.name;
+  lookName.title = look.path;
+  captureName.textContent = `${capture.width} × ${capture.height}`;
+  captureName.title = capture.path;
+  mark.textContent = read_only ? "read-only" : isChanged ? "unsaved" : "";
+  mark.classList.toggle("changed", isChanged);
+  document.title = `${isChanged ? "• " : ""}${look.name} – Aftershade`;
+  undoButton.disabled = !can_undo;
+  redoButton.disabled = !can_redo;
+  saveButton.disabled = read_only || !isChanged;
+  faults.update();
+  list.update();
+  if (!text.node.hidden) text.update();
+  viewer.update();
+});
+store.addEventListener("fail", ({ detail }) => notify(detail.message, true));
+let measuring;
+viewer.addEventListener("picture", ({ detail }) => {
+  costs.show(detail.times, detail.isCoarse, new Set(list.cards.map(({ step }) => nameOf(step))));
+  if (detail.isCoarse) return;
+  list.showCosts([...costs.known.values()]);
+  if (viewer.isPlaying) return;
+  // After a pause: the next picture of a drag does not wait for them.
+  clearTimeout(measuring);
+  measuring = setTimeout(() => {
+    histogram.load(viewer.frame);
+    probe.again(viewer.frame);
+  }, 150);
+});
+viewer.addEventListener("probe", ({ detail }) => probe.show(detail, viewer.frame));
+addEventListener("focus", () => store.state && store.isSaved && store.refresh());
+
+try {
+  setTheme(localStorage.getItem("aftershade.theme") ?? "system");
+} catch {
+  setTheme("system");
+}
+if (!token) notify("The address has no token: open the one that `aftershade serve` printed", true);
+else store.load().catch((error) => notify(error.message, true));
+
+/** For scripts in the browser's console, and for tests. */
+window.aftershade = { store, viewer, settled: () => viewer.pictures.settled() };

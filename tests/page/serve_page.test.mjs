@@ -1,0 +1,1018 @@
+// The authoring page of `aftershade serve`, as its users have it: the program serves a look in a folder of its own.
+import assert from "node:assert/strict";
+import { spawn, spawnSync } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join, resolve } from "node:path";
+import { after, before, test } from "node:test";
+
+import { axeSource, openBrowser } from "./browser.mjs";
+import { program } from "./suite.mjs";
+
+const root = resolve(import.meta.dirname, "../.."),
+  capture = join(root, "scenes/starter/capture.json"), // 240 x 135 px
+  folder = mkdtempSync(join(tmpdir(), "aftershade-serve-")),
+  environment = { ...process.env, AFTERSHADE_BACKEND: "osmesa" };
+const LOOK = `// Comments and spaces are the author's.
+{
+  "aftershade": 1,
+  "steps": [
+    { "effect": "bokeh", "enabled": false, "params": { "focus_distance": "6.4 m" } },
+    { "effect": "color_grade", "params": { "exposure":  0.3, "slope": [1, 0.9, 0.8] } }, // warm
+    { "effect": "vignette" },
+    { "effect": "view_transform", "params": { "transform": "agx" } }
+  ]
+}
+`;
+const described = (id) => JSON.parse(spawnSync(program, ["describe", id, "--json"], { encoding: "utf8" }).stdout);
+const withoutComments = (text) => JSON.parse(text.replace(/("(?:[^"\\]|\\.)*")|\/\/.*$/gm, (_, kept) => kept ?? ""));
+
+let browser,
+  shared,
+  count = 0;
+before(async () => {
+  browser = await openBrowser();
+  shared = await serve();
+});
+after(async () => {
+  await shared?.end();
+  await browser?.close();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+async function serve(text = LOOK, ...words) {
+  const look = join(folder, `look_${++count}.json`);
+  writeFileSync(look, text);
+  const child = spawn(program, ["serve", look, capture, "--port", "0", ...words], { env: environment });
+  let errors = "";
+  child.stderr.on("data", (data) => (errors += data));
+  const address = await new Promise((ready, fail) => {
+    let out = "";
+    child.stdout.on("data", (data) => {
+      out += data;
+      const found = /http:\S+/.exec(out);
+      if (found) ready(found[0]);
+    });
+    child.on("exit", (code) => fail(new Error(`serve ended with ${code}: ${errors}`)));
+  });
+  const end = () =>
+    new Promise((done) => {
+      if (child.exitCode !== null) return done();
+      child.on("exit", done);
+      child.kill("SIGINT");
+    });
+  return { look, address, end };
+}
+
+async function open(address, options = {}) {
+  const context = await browser.newContext({
+    viewport: { width: 1440, height: 900 },
+    reducedMotion: "reduce",
+    ...options,
+  });
+  context.setDefaultTimeout(Number(process.env.AFTERSHADE_PAGE_TIMEOUT ?? 60_000)); // for machines that are busy
+  const page = await context.newPage();
+  page.faults = [];
+  page.requests = [];
+  page.on("pageerror", (error) => page.faults.push(error.message));
+  page.on("console", (message) => message.type() === "error" && page.faults.push(message.text()));
+  page.on("request", (request) => page.requests.push(request.url()));
+  await page.goto(address);
+  return page;
+}
+const drawn = async (page) => {
+  await page.waitForFunction(() => window.aftershade.store.state && "scale" in window.aftershade.viewer.canvas.dataset);
+  await page.evaluate(() => window.aftershade.settled());
+};
+const state = (page) => page.evaluate(() => window.aftershade.store.state);
+const textOf = async (page) => (await state(page)).text;
+const lookOf = async (page) => withoutComments(await textOf(page));
+/** The state's text when it is another than `old`. */
+async function changed(page, old) {
+  await page.waitForFunction((before) => window.aftershade.store.state.text !== before, old);
+  return lookOf(page);
+}
+const step = (page, name) => page.locator(`.step[data-step="${name}"]`);
+async function opened(page, name) {
+  const card = step(page, name),
+    opener = card.locator(".opener");
+  if ((await opener.getAttribute("aria-expanded")) === "false") await opener.click();
+  return card;
+}
+const row = (card, id) => card.locator(`[data-param="${id}"]`);
+
+/** The server that most tests share, with LOOK as it was. */
+async function fresh() {
+  const { origin, hash } = new URL(shared.address);
+  const call = async (path, body) => {
+    const headers = { "X-Aftershade-Token": hash.slice("#token=".length) };
+    const response = await fetch(
+      origin + path,
+      body ? { method: "POST", headers, body: JSON.stringify(body) } : { headers },
+    );
+    assert.equal(response.status, 200, path);
+    return response.json();
+  };
+  const { revision } = await call("/api/state");
+  await call("/api/edit", { revision, edits: [{ op: "text", value: LOOK }] });
+  await call("/api/save", {});
+  return { ...shared, end: () => {} };
+}
+
+/** A test with a page of its own, which must not complain; with `words` or `own`, the server is its own, too. */
+function inPage(name, work, { own = false, words = [], ...options } = {}) {
+  test(name, { timeout: 400_000 }, async () => {
+    const server = own || words.length ? await serve(LOOK, ...words) : await fresh();
+    let page;
+    try {
+      page = await open(server.address, options);
+      await drawn(page);
+      await work(page, server);
+      assert.deepEqual(page.faults, []);
+    } finally {
+      await page?.context().close();
+      await server.end();
+    }
+  });
+}
+const noRow = { timeout: 240_000 };
+
+// ---- the look ----
+
+inPage("requests nothing but from the program that serves it", async (page, { address }) => {
+  const { origin } = new URL(address);
+  assert.ok(page.requests.length > 10);
+  assert.deepEqual(
+    page.requests.filter((url) => new URL(url).origin !== origin),
+    [],
+  );
+});
+
+inPage("shows each step with the look's values, their units and their sources", async (page) => {
+  assert.deepEqual(await page.locator(".step .name").allInnerTexts(), [
+    "bokeh",
+    "color_grade",
+    "vignette",
+    "view_transform",
+  ]);
+  assert.equal(await page.getByLabel("Enable bokeh").isChecked(), false);
+  assert.equal(await page.getByLabel("Enable vignette").isChecked(), true);
+  const bokeh = await opened(page, "bokeh"),
+    focus = row(bokeh, "focus_distance");
+  assert.equal(await focus.getByRole("textbox").inputValue(), "6.4");
+  assert.equal(await focus.getByRole("slider").getAttribute("aria-valuetext"), "6.4 m");
+  assert.match(await focus.locator(".hint").textContent(), /set in the look/);
+  assert.match(await row(bokeh, "squeeze").locator(".hint").textContent(), /default/);
+  const grade = await opened(page, "color_grade");
+  const slope = await row(grade, "slope")
+    .getByRole("textbox")
+    .evaluateAll((fields) => fields.slice(-3).map(({ value }) => value));
+  assert.deepEqual(slope, ["1", "0.9", "0.8"]);
+});
+
+inPage("makes a control for every parameter of every effect from its declaration", async (page) => {
+  const list = JSON.parse(spawnSync(program, ["list", "--json"], { encoding: "utf8" }).stdout);
+  const ids = list.map(({ id }) => id);
+  const text = JSON.stringify({ aftershade: 1, steps: ids.map((effect) => ({ effect, enabled: false })) });
+  await page.evaluate((value) => window.aftershade.store.edit([{ op: "text", value }]), text);
+  for (const id of ids) {
+    const { params } = described(id),
+      card = step(page, id);
+    await card.locator(".opener").evaluate((node) => node.click());
+    const rows = await card.locator("[data-param]").evaluateAll((nodes) =>
+      nodes.map((node) => ({
+        id: node.dataset.param,
+        slider: node.querySelector("input[type=range]") !== null,
+        box: node.querySelector("input[type=checkbox]") !== null,
+        choices: [...node.querySelectorAll("option")].map(({ value }) => value),
+        swatch: node.querySelector("input[type=color]") !== null,
+        fields: node.querySelectorAll("input[type=text]").length,
+        unit: node.querySelector(".unit")?.textContent,
+        hint: node.querySelector(".hint").textContent,
+      })),
+    );
+    assert.deepEqual(
+      rows.map((one) => one.id),
+      Object.keys(params),
+      id,
+    );
+    for (const one of rows) {
+      const { type, unit, values, doc } = params[one.id],
+        place = `${id}.${one.id}`;
+      assert.ok(one.hint.startsWith(doc), place);
+      const isNumber = ["float", "int", "angle"].includes(type);
+      assert.equal(one.slider, isNumber, place);
+      if (isNumber) assert.equal(one.unit, unit ?? "", place);
+      assert.equal(one.box, type === "bool", place);
+      assert.equal(one.swatch, type === "color", place);
+      assert.deepEqual(one.choices, values ?? [], place);
+      assert.equal(one.fields, { bool: 0, enum: 0, color: 3, vec2: 2, vec3: 3, vec4: 4 }[type] ?? 1, place);
+    }
+    await card.locator(".opener").evaluate((node) => node.click());
+  }
+});
+
+inPage("moves a slider by keys within its range, and changes that value alone", async (page) => {
+  const before = await textOf(page),
+    slider = row(await opened(page, "vignette"), "natural").getByRole("slider");
+  await slider.focus();
+  await slider.press("ArrowLeft");
+  const look = await changed(page, before);
+  const { default: fallback } = described("vignette").params.natural;
+  assert.notEqual(look.steps[2].params.natural, fallback);
+  assert.equal(typeof look.steps[2].params.natural, "number");
+  const kept = (await textOf(page)).split("\n").filter((line) => !line.includes("vignette"));
+  assert.deepEqual(
+    kept,
+    before.split("\n").filter((line) => !line.includes("vignette")),
+  );
+});
+
+inPage("takes a typed value beyond the slider, and refuses one beyond the limits with both limits", async (page) => {
+  const { ui, min, max } = described("color_grade").params.exposure;
+  assert.ok(max > ui[1]);
+  const exposure = row(await opened(page, "color_grade"), "exposure"),
+    field = exposure.getByRole("textbox");
+  const before = await textOf(page);
+  await field.fill(String(ui[1] + 0.5));
+  await field.press("Enter");
+  assert.equal((await changed(page, before)).steps[1].params.exposure, ui[1] + 0.5);
+  const now = await textOf(page);
+  await field.fill(String(max + 1));
+  await field.press("Enter");
+  assert.match(await exposure.getByRole("alert").innerText(), new RegExp(`${min} to ${max}`));
+  assert.equal(await field.getAttribute("aria-invalid"), "true");
+  assert.equal(await textOf(page), now);
+  await field.press("Escape");
+  assert.equal(await field.inputValue(), String(ui[1] + 0.5));
+  assert.equal(await exposure.locator(".refusal").textContent(), "");
+});
+
+inPage("takes units: as typed, and as the look writes them", async (page) => {
+  const focus = row(await opened(page, "bokeh"), "focus_distance"),
+    field = focus.getByRole("textbox");
+  let before = await textOf(page);
+  await field.fill("5");
+  await field.press("Enter");
+  assert.equal((await changed(page, before)).steps[0].params.focus_distance, "5 m");
+  before = await textOf(page);
+  await field.fill("240 cm");
+  await field.press("Enter");
+  assert.equal((await changed(page, before)).steps[0].params.focus_distance, "240 cm");
+  assert.equal(await focus.getByRole("slider").getAttribute("aria-valuetext"), "2.4 m");
+});
+
+inPage("sets choices, switches, colours and lists", async (page) => {
+  const bokeh = await opened(page, "bokeh");
+  let before = await textOf(page);
+  await row(bokeh, "shape").getByRole("combobox").selectOption("octagon");
+  assert.equal((await changed(page, before)).steps[0].params.shape, "octagon");
+  before = await textOf(page);
+  await row(bokeh, "highlight_repair").getByRole("checkbox").uncheck();
+  assert.equal((await changed(page, before)).steps[0].params.highlight_repair, false);
+  before = await textOf(page);
+  const green = row(await opened(page, "color_grade"), "slope").getByLabel("slope, green");
+  await green.fill("0.5");
+  await green.press("Enter");
+  assert.deepEqual((await changed(page, before)).steps[1].params.slope, [1, 0.5, 0.8]);
+  before = await textOf(page);
+  await page.evaluate(() =>
+    window.aftershade.store.edit([
+      { op: "add", at: 0, effect: "sss_burley" },
+      { op: "enable", step: 0, value: false },
+    ]),
+  );
+  await changed(page, before);
+  before = await textOf(page);
+  const objects = row(await opened(page, "sss_burley"), "object_ids").getByRole("textbox");
+  await objects.fill("2, 4-7");
+  await objects.press("Enter");
+  assert.deepEqual((await changed(page, before)).steps[0].params.object_ids, [2, "4-7"]);
+});
+
+inPage("resets a value by taking its key out of the look", async (page) => {
+  const before = await textOf(page),
+    exposure = row(await opened(page, "color_grade"), "exposure");
+  await exposure.getByRole("button", { name: "Reset exposure" }).click();
+  const look = await changed(page, before);
+  assert.deepEqual(look.steps[1].params, { slope: [1, 0.9, 0.8] });
+  assert.equal(
+    await exposure.getByRole("textbox").inputValue(),
+    String(described("color_grade").params.exposure.default),
+  );
+  assert.equal(await exposure.getByRole("button", { name: "Reset exposure" }).isVisible(), false);
+});
+
+inPage("shows that a preset gives a value", async (page) => {
+  const { presets } = described("color_grade"),
+    [name, values] = Object.entries(presets).find(([, values]) =>
+      Object.keys(values).some((id) => !["exposure", "slope"].includes(id)),
+    );
+  const id = Object.keys(values).find((id) => !["exposure", "slope"].includes(id));
+  const before = await textOf(page),
+    card = await opened(page, "color_grade");
+  await card.getByLabel("Preset").selectOption(name);
+  assert.equal((await changed(page, before)).steps[1].preset, name);
+  assert.match(await row(card, id).locator(".hint").textContent(), /from the preset/);
+});
+
+inPage("undoes a whole drag of a slider in one step, and redoes it", async (page) => {
+  const slider = row(await opened(page, "vignette"), "natural").getByRole("slider"),
+    { revision } = await state(page);
+  await slider.scrollIntoViewIfNeeded();
+  const box = await slider.boundingBox();
+  const at = async (share) => page.mouse.move(box.x + box.width * share, box.y + box.height / 2);
+  await at(0.5);
+  await page.mouse.down();
+  for (const share of [0.45, 0.4, 0.35, 0.3, 0.25, 0.2]) {
+    await at(share);
+    await page.waitForTimeout(60);
+  }
+  await page.mouse.up();
+  await drawn(page);
+  const dragged = await textOf(page);
+  assert.notEqual(dragged, LOOK);
+  assert.ok((await state(page)).revision > revision + 1, "the picture followed the drag");
+  await page.keyboard.press("Control+z");
+  await page.waitForFunction((text) => window.aftershade.store.state.text === text, LOOK);
+  await page.keyboard.press("Control+Shift+z");
+  await page.waitForFunction((text) => window.aftershade.store.state.text === text, dragged);
+});
+
+inPage("adds a step that is found by a word of its summary", async (page) => {
+  const before = await textOf(page);
+  await page.keyboard.press("a");
+  await page.keyboard.type("grain");
+  const found = await page.locator("#found li").evaluateAll((nodes) => nodes.map((node) => node.dataset.effect));
+  assert.equal(found[0], "film_grain");
+  await page.getByLabel("Search effects by name and summary").fill("fireflies zzz");
+  assert.equal(await page.getByText("No effect matches.").isVisible(), true);
+  await page.getByLabel("Search effects by name and summary").fill("scatters pyramid");
+  await page.keyboard.press("Enter");
+  const look = await changed(page, before);
+  assert.deepEqual(
+    look.steps.map(({ effect }) => effect),
+    ["bokeh", "color_grade", "vignette", "bloom", "view_transform"],
+  );
+  await page.waitForFunction(() => document.activeElement.closest(".step")?.dataset.step === "bloom");
+});
+
+inPage("moves steps by keys and by the pointer", async (page) => {
+  const names = () => page.locator(".step .name").allInnerTexts();
+  await page.keyboard.press("s");
+  await page.keyboard.press("ArrowDown");
+  await page.keyboard.press("Alt+ArrowDown");
+  await page.waitForFunction(() => document.querySelectorAll(".step .name")[1].textContent === "vignette");
+  assert.deepEqual(await names(), ["bokeh", "vignette", "color_grade", "view_transform"]);
+  await page.waitForFunction(() => document.activeElement.closest(".step")?.dataset.step === "color_grade");
+  await step(page, "bokeh").locator(".opener").click(); // closes it, so that all heads are in sight
+  const grip = await step(page, "color_grade").locator(".grip").boundingBox(),
+    first = await step(page, "bokeh").boundingBox();
+  await page.mouse.move(grip.x + 8, grip.y + 8);
+  await page.mouse.down();
+  await page.mouse.move(grip.x + 8, first.y + 20, { steps: 4 });
+  await page.mouse.move(grip.x + 8, first.y + 3, { steps: 4 });
+  await page.mouse.up();
+  await page.waitForFunction(() => document.querySelector(".step .name").textContent === "color_grade");
+  assert.deepEqual(
+    (await lookOf(page)).steps.map(({ effect }) => effect),
+    ["color_grade", "bokeh", "vignette", "view_transform"],
+  );
+});
+
+inPage("names, blends, disables and removes a step", async (page) => {
+  let before = await textOf(page);
+  const card = await opened(page, "vignette"),
+    name = card.getByLabel("Name");
+  await name.fill("edges");
+  await name.press("Enter");
+  assert.equal((await changed(page, before)).steps[2].name, "edges");
+  before = await textOf(page);
+  const mix = step(page, "edges").getByRole("textbox", { name: "mix" });
+  await mix.fill("0.25");
+  await mix.press("Enter");
+  assert.equal((await changed(page, before)).steps[2].mix, 0.25);
+  before = await textOf(page);
+  await step(page, "edges").locator(".opener").focus();
+  await page.keyboard.press("e");
+  assert.equal((await changed(page, before)).steps[2].enabled, false);
+  before = await textOf(page);
+  await page.keyboard.press("Delete");
+  assert.equal((await changed(page, before)).steps.length, 3);
+});
+
+// ---- saving ----
+
+inPage("writes the file on Ctrl+S alone, and leaves its other lines alone", async (page, { look }) => {
+  const mark = page.locator(".mark");
+  assert.equal(await mark.innerText(), "");
+  const before = await textOf(page);
+  const field = row(await opened(page, "color_grade"), "exposure").getByRole("textbox");
+  await field.fill("0.75");
+  await field.press("Enter");
+  await changed(page, before);
+  assert.equal(await mark.innerText(), "unsaved");
+  assert.equal(readFileSync(look, "utf8"), LOOK);
+  await page.keyboard.press("Control+s");
+  await page.waitForFunction(() => window.aftershade.store.isSaved);
+  assert.equal(readFileSync(look, "utf8"), LOOK.replace("0.3,", "0.75,"));
+  assert.equal(await mark.innerText(), "");
+});
+
+inPage(
+  "cannot save what is served with --read-only",
+  async (page, { look }) => {
+    assert.equal(await page.getByRole("button", { name: "Save" }).isDisabled(), true);
+    assert.equal(await page.locator(".mark").innerText(), "read-only");
+    await page.keyboard.press("Control+s");
+    assert.match(await page.locator("#notice").innerText(), /--read-only/);
+    assert.equal(readFileSync(look, "utf8"), LOOK);
+  },
+  { words: ["--read-only"] },
+);
+
+inPage("lists the faults of the text at their lines while the last good picture stays", async (page) => {
+  const colors = () =>
+    page
+      .locator(".stage canvas")
+      .evaluate((canvas) => [...canvas.getContext("2d").getImageData(canvas.width / 2, canvas.height / 2, 1, 1).data]);
+  const good = await colors();
+  await page.keyboard.press("t");
+  const area = page.getByLabel("The look as JSON");
+  assert.equal(await area.inputValue(), LOOK);
+  await area.fill(LOOK.replace('"vignette"', '"vignete"').replace('"agx"', '"<img src=x>"'));
+  await page.waitForFunction(() => window.aftershade.store.hasFaults);
+  const faults = page.locator(".faults li");
+  assert.match(await faults.first().innerText(), /^7:\d+[^]*vignete/);
+  assert.match(await page.locator(".badge").innerText(), /last good picture/);
+  assert.equal(await page.locator(".numbers .faulty").first().innerText(), "7");
+  assert.deepEqual(await colors(), good);
+  await faults.first().getByRole("button").click();
+  const line = await area.evaluate((node) => node.value.slice(0, node.selectionStart).split("\n").length);
+  assert.equal(line, 7);
+  await area.fill(LOOK);
+  await page.waitForFunction(() => window.aftershade.store.state.faults.length === 0);
+  assert.equal(await page.locator(".faults").isVisible(), false);
+});
+
+inPage("takes names and messages as text", async (page) => {
+  const text = LOOK.replace('"effect": "vignette"', '"effect": "vignette", "name": "<img src=x onerror=alert(1)>"');
+  await page.evaluate((value) => window.aftershade.store.edit([{ op: "text", value }]), text);
+  await page.waitForFunction(() => document.querySelectorAll(".step .name")[2].textContent.includes("<img"));
+  assert.equal(await page.locator("#look img").count(), 0);
+});
+
+// ---- the picture ----
+
+const middle = (page, dx = 0, dy = 0) =>
+  page.locator(".stage canvas").evaluate(
+    (canvas, [dx, dy]) => [
+      ...canvas
+        .getContext("2d")
+        .getImageData(canvas.width / 2 + dx, canvas.height / 2 + dy, 1, 1)
+        .data.slice(0, 3),
+    ],
+    [dx, dy],
+  );
+const frame = (page) =>
+  page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+/** A PNG file against the middle of the canvas, where its picture lies at 1:1; the page's policy takes no data: address. */
+const compareWithPng = (page, file) =>
+  page.locator(".stage canvas").evaluate(async (canvas, text) => {
+    const bytes = Uint8Array.from(atob(text), (character) => character.charCodeAt(0)),
+      bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" })),
+      { width, height } = bitmap,
+      other = new OffscreenCanvas(width, height).getContext("2d");
+    other.drawImage(bitmap, 0, 0);
+    const expected = other.getImageData(0, 0, width, height).data,
+      [left, top] = window.aftershade.viewer.picture.corner,
+      found = canvas.getContext("2d").getImageData(left, top, width, height).data;
+    const largest = (list) => list.reduce((most, value) => Math.max(most, value), 0);
+    return {
+      width,
+      height,
+      difference: largest(found.map((value, i) => Math.abs(value - expected[i]))),
+      brightest: largest(found.filter((_, i) => i % 4 < 3)),
+    };
+  }, readFileSync(file).toString("base64"));
+/** The PNG that `run` writes of the look's first frame. */
+function runPicture(look) {
+  const out = join(folder, `run_${++count}.png`);
+  const result = spawnSync(program, ["run", look, capture, "-o", out, "--frames", "1"], {
+    encoding: "utf8",
+    env: environment,
+  });
+  assert.equal(result.status, 0, result.stderr);
+  return out;
+}
+
+inPage("shows the very pixels that `run` writes", async (page, { look }) => {
+  await page.keyboard.press("1");
+  await frame(page);
+  const { width, height, difference, brightest } = await compareWithPng(page, runPicture(look));
+  assert.deepEqual([width, height], [240, 135]);
+  assert.ok(brightest > 100);
+  assert.equal(difference, 0);
+});
+
+inPage(
+  "shows a coarse picture first, then the full one, and of a burst of edits the newest",
+  async (page) => {
+    const scales = page.requests
+      .filter((url) => url.includes("/api/picture"))
+      .map((url) => new URL(url).searchParams.get("scale"));
+    assert.deepEqual(scales.slice(0, 2), ["4", "1"]);
+    await page.evaluate(() => {
+      window.seen = [];
+      window.aftershade.viewer.pictures.addEventListener("picture", ({ detail }) =>
+        window.seen.push([detail.isCoarse, detail.bitmap.width, detail.wish.revision]),
+      );
+    });
+    await page.evaluate(async () => {
+      const { store } = window.aftershade;
+      await store.edit([{ op: "add", at: 1, effect: "bokeh_gather" }]);
+      for (let i = 0; i < 30; ++i) await store.edit([{ op: "set", step: 1, param: "f_number", value: 0.2 + i / 100 }]);
+    });
+    await drawn(page);
+    const seen = await page.evaluate(() => window.seen),
+      { revision } = await state(page);
+    assert.deepEqual(seen.at(-1), [false, 240, revision]);
+    const coarse = seen.filter(([isCoarse]) => isCoarse);
+    for (const [, width] of coarse) assert.equal(width, 60);
+    assert.ok(seen.length - coarse.length < 31, "older full pictures were given up");
+    for (let i = 1; i < seen.length; ++i) assert.ok(seen[i][2] >= seen[i - 1][2], "no older picture after a newer one");
+  },
+  { own: true },
+);
+
+inPage("keeps pixels when it zooms, fits again, and pans", async (page) => {
+  await page.locator(".stage canvas").focus();
+  await page.keyboard.press("1");
+  for (let i = 0; i < 6; ++i) await page.keyboard.press("+");
+  assert.equal(await page.locator(".zoom").innerText(), "800 %");
+  await frame(page);
+  const row = await page.locator(".stage canvas").evaluate((canvas) => {
+    const { corner } = window.aftershade.viewer.picture,
+      data = canvas.getContext("2d").getImageData(0, Math.round(canvas.height / 2), canvas.width, 1).data;
+    return {
+      left: corner[0],
+      colors: Array.from({ length: canvas.width }, (_, x) => data.slice(4 * x, 4 * x + 3).join()),
+    };
+  });
+  for (let x = 0; x < row.colors.length - 8; ++x)
+    if ((x - row.left) % 8 !== 7 && x + 1 < row.colors.length)
+      assert.equal(row.colors[x], row.colors[x + 1], `column ${x}`);
+  assert.ok(new Set(row.colors).size > 8);
+  const before = await page.evaluate(() => window.aftershade.viewer.picture.corner[0]);
+  await page.keyboard.press("Control+ArrowRight");
+  assert.ok((await page.evaluate(() => window.aftershade.viewer.picture.corner[0])) < before);
+  await page.keyboard.press("0");
+  const { zoom, canvas } = await page.evaluate(() => {
+    const { zoom, canvas } = window.aftershade.viewer.picture;
+    return { zoom, canvas: [canvas.width, canvas.height] };
+  });
+  assert.equal(zoom, Math.min(canvas[0] / 240, canvas[1] / 135));
+});
+
+inPage("makes the picture brighter by the viewer's exposure, and leaves the look alone", async (page) => {
+  const before = await middle(page);
+  await page.keyboard.press("]");
+  await page.keyboard.press("]");
+  await drawn(page);
+  await frame(page);
+  const after = await middle(page);
+  assert.ok(after[1] > before[1], `${before} -> ${after}`);
+  assert.equal(await page.getByLabel("Viewer exposure, EV").inputValue(), "1");
+  assert.equal(await textOf(page), LOOK);
+});
+
+inPage("wipes between the result and what was before", async (page) => {
+  const [left, right] = [await middle(page, -60), await middle(page, 60)];
+  await page.keyboard.press("w");
+  await drawn(page);
+  await frame(page);
+  assert.deepEqual(await middle(page, -60), left);
+  const other = await middle(page, 60);
+  assert.notDeepEqual(other, right);
+  const wipe = page.getByRole("slider", { name: "Wipe" });
+  await wipe.focus();
+  await wipe.press("End");
+  await frame(page);
+  assert.deepEqual(await middle(page, 60), right);
+  await page.keyboard.down("b");
+  await frame(page);
+  assert.deepEqual(await middle(page, 60), other);
+  await page.keyboard.up("b");
+  await frame(page);
+  assert.deepEqual(await middle(page, 60), right);
+});
+
+inPage("compares with a kept picture of another setting", async (page) => {
+  await page.keyboard.press("k");
+  const kept = await middle(page, 60);
+  await page.evaluate(() => window.aftershade.store.edit([{ op: "set", step: 1, param: "exposure", value: 2 }]));
+  await drawn(page);
+  await frame(page);
+  assert.deepEqual(await middle(page, 60), kept);
+  assert.ok((await middle(page, -60))[1] > 0);
+  await page.keyboard.press("w");
+  await frame(page);
+  assert.notDeepEqual(await middle(page, 60), kept);
+});
+
+inPage("shows every role and every output of a step", async (page) => {
+  const views = await page
+    .getByLabel("View", { exact: true })
+    .locator("option")
+    .evaluateAll((nodes) => nodes.map(({ value }) => value));
+  for (const role of ["color", "depth", "velocity", "object_id"]) assert.ok(views.includes(`role:${role}`), role);
+  const seen = new Set();
+  for (const view of ["final", "before", "role:depth", "role:velocity", "role:object_id", "tap:color_grade.color"]) {
+    await page.getByLabel("View", { exact: true }).selectOption(view);
+    await drawn(page);
+    await frame(page);
+    assert.equal(await page.locator(".badge.error").count(), 0, view);
+    seen.add(String([await middle(page, -100, 40), await middle(page, 0), await middle(page, 120, 90)]));
+  }
+  assert.ok(seen.size >= 5, `${seen.size} different pictures`);
+});
+
+inPage("shows every role's value and unit under the pointer, and by the arrow keys", async (page) => {
+  const stored = spawnSync(program, ["inspect", capture, "--pixel", "120,67"], { encoding: "utf8" }).stdout;
+  const canvas = page.locator(".stage canvas"),
+    box = await canvas.boundingBox();
+  await page.mouse.move(box.x + box.width / 2 + 1, box.y + box.height / 2 - 2);
+  await page.waitForFunction(() => document.querySelector(".panel tbody tr"));
+  const rows = () =>
+    page
+      .locator(".panel tbody tr")
+      .evaluateAll((nodes) =>
+        Object.fromEntries(
+          nodes.map((node) => [node.cells[0].textContent, [...node.cells].slice(1).map((cell) => cell.textContent)]),
+        ),
+      );
+  const found = await rows();
+  for (const role of ["final", "color", "depth", "velocity", "object_id"]) assert.ok(found[role], role);
+  assert.equal(found.depth.at(-1), "m");
+  assert.equal(found.velocity.at(-1), "px");
+  assert.equal(await page.locator(".panel .aside").first().innerText(), "120, 67");
+  const depth = Number(found.depth[0]);
+  assert.ok(
+    [...stored.matchAll(/[-\d.e+]+/g)].some(([text]) => Math.abs(Number(text) - depth) < 2e-3 * Math.abs(depth)),
+    `${depth} in ${stored}`,
+  );
+  await canvas.focus();
+  await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("Shift+ArrowDown");
+  await page.waitForFunction(() => document.querySelector(".panel .aside").textContent === "121, 77");
+});
+
+inPage("sets the focus distance by a click in the picture", async (page) => {
+  const before = await textOf(page);
+  const focus = row(await opened(page, "bokeh"), "focus_distance");
+  await focus.getByRole("button", { name: /^Pick/ }).click();
+  const box = await page.locator(".stage canvas").boundingBox();
+  await page.mouse.click(box.x + box.width / 2 + 1, box.y + box.height / 2 - 2);
+  const look = await changed(page, before);
+  const depth = await page.evaluate(
+    () =>
+      [...document.querySelectorAll(".panel tbody tr")].find((node) => node.cells[0].textContent === "depth")?.cells[1]
+        .textContent,
+  );
+  assert.equal(parseFloat(look.steps[0].params.focus_distance), Number(depth));
+});
+
+inPage("plots the histogram of the final picture", async (page) => {
+  await page.waitForFunction(() =>
+    /most pixels/.test(document.querySelector(".plot canvas").getAttribute("aria-label")),
+  );
+  const painted = await page.locator(".plot canvas").evaluate((canvas) => {
+    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    return data.filter((value, i) => i % 4 === 3 && value > 100).length;
+  });
+  assert.ok(painted > 200, `${painted} px`);
+});
+
+inPage("steps through the frames and plays them", async (page) => {
+  const number = page.getByLabel("Frame number");
+  assert.equal(await number.inputValue(), "1");
+  const sum = () =>
+    page.locator(".stage canvas").evaluate((canvas) =>
+      canvas
+        .getContext("2d")
+        .getImageData(0, 0, canvas.width, canvas.height)
+        .data.reduce((all, one) => all + one, 0),
+    );
+  const first = await sum();
+  await page.keyboard.press(".");
+  await drawn(page);
+  assert.equal(await number.inputValue(), "2");
+  await frame(page);
+  assert.notEqual(await sum(), first);
+  await number.fill("9");
+  await number.press("Enter");
+  assert.equal(await number.getAttribute("aria-invalid"), "true");
+  await number.press("Escape");
+  await page.evaluate(
+    () =>
+      (window.frames_seen = new Set()) &&
+      window.aftershade.viewer.addEventListener("frame", () => window.frames_seen.add(window.aftershade.viewer.frame)),
+  );
+  await page.getByRole("button", { name: "Play" }).click();
+  await page.waitForFunction(() => window.frames_seen.size === 2);
+  await page.getByRole("button", { name: "Pause" }).click();
+  await drawn(page);
+});
+
+inPage(
+  "shows the time of each pass, memory, cached steps and the search for NaN",
+  async (page) => {
+    const passes = await page.locator(".bars .pass").allInnerTexts();
+    for (const pass of ["color_grade", "vignette", "view_transform"])
+      assert.ok(
+        passes.some((name) => name.startsWith(`${pass}.`)),
+        `${pass} in ${passes}`,
+      );
+    const times = await page
+      .locator(".bars .ms")
+      .evaluateAll((nodes) => nodes.map((node) => parseFloat(node.textContent)));
+    assert.deepEqual(
+      times,
+      [...times].sort((a, b) => b - a),
+    );
+    const chips = await page.locator(".chips").innerText();
+    assert.match(chips, /no NaN/);
+    assert.match(chips, /\d steps? drawn/);
+    assert.match(chips, /\d steps? cached/);
+    assert.match(chips, /[1-9][\d.]* MiB|0\.[\d]+ MiB/);
+    await page.evaluate(() => window.aftershade.store.edit([{ op: "set", step: 3, param: "exposure", value: 1 }]));
+    await drawn(page);
+    assert.match(await page.locator(".chips").innerText(), /[1-9]\d* steps? cached/);
+  },
+  { own: true },
+);
+
+// ---- everybody ----
+
+inPage("can be used by the keyboard alone, with the focus in sight", async (page, { look }) => {
+  const seen = new Set();
+  const hidden = [];
+  for (let i = 0; i < 90; ++i) {
+    await page.keyboard.press("Tab");
+    const found = await page.evaluate(() => {
+      const node = document.activeElement,
+        style = getComputedStyle(node);
+      return {
+        label: node.getAttribute("aria-label") ?? node.textContent.slice(0, 30),
+        isShown: style.outlineStyle !== "none" && parseFloat(style.outlineWidth) >= 2,
+        isBody: node === document.body,
+      };
+    });
+    if (found.isBody) continue;
+    if (!found.isShown) hidden.push(found.label);
+    seen.add(found.label);
+  }
+  assert.deepEqual(hidden, []);
+  const wanted = [
+    "View",
+    "Compare with",
+    "Viewer exposure",
+    "Frame",
+    "Enable bokeh",
+    "focus distance",
+    "mix",
+    "Preset",
+    "Move down",
+    "Remove",
+  ];
+  for (const label of wanted) assert.ok(seen.has(label), `${label} in ${[...seen]}`);
+  // A step is added, moved, opened, changed and saved.
+  await page.keyboard.press("s");
+  await page.keyboard.press("a");
+  await page.keyboard.type("sharpen");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => document.activeElement.closest(".step")?.dataset.step === "sharpen");
+  await page.keyboard.press("Alt+ArrowUp");
+  await page.waitForFunction(() => document.querySelectorAll(".step .name")[2].textContent === "sharpen");
+  const before = await textOf(page);
+  for (let i = 0; i < 20; ++i) {
+    await page.keyboard.press("Tab");
+    if (await page.evaluate(() => document.activeElement.matches("[data-step=sharpen] [data-param] input[type=range]")))
+      break;
+  }
+  await page.keyboard.press("ArrowRight");
+  await changed(page, before);
+  await page.keyboard.press("Control+s");
+  await page.waitForFunction(() => window.aftershade.store.isSaved);
+  const saved = withoutComments(readFileSync(look, "utf8"));
+  assert.equal(saved.steps[2].effect, "sharpen");
+  assert.equal(Object.keys(saved.steps[2].params).length, 1);
+});
+
+inPage("lists its shortcuts by ?, and docs/page.md lists the same", async (page) => {
+  await page.keyboard.press("?");
+  const rows = await page
+    .locator(".help dl > div")
+    .evaluateAll((nodes) =>
+      nodes.map((node) => [
+        [...node.querySelectorAll("kbd")].map((key) => key.textContent),
+        node.querySelector("dd").textContent,
+      ]),
+    );
+  assert.ok(rows.length > 25);
+  const docs = readFileSync(join(root, "docs/page.md"), "utf8");
+  for (const [keys, words] of rows)
+    assert.ok(docs.includes(`| ${keys.map((key) => `\`${key}\``).join(" ")} | ${words} |`), `${keys}: ${words}`);
+  await page.keyboard.press("Escape");
+  assert.equal(await page.locator("dialog[open]").count(), 0);
+});
+
+for (const colorScheme of ["dark", "light"])
+  for (const [width, height] of [
+    [1440, 900],
+    [390, 844],
+  ])
+    inPage(
+      `gives axe-core nothing to find, ${colorScheme}, ${width} px`,
+      async (page) => {
+        await page.evaluate(readFileSync(axeSource, "utf8"));
+        const check = async (place) => {
+          const { violations } = await page.evaluate(() => window.axe.run({ resultTypes: ["violations"] }));
+          assert.deepEqual(
+            violations.map(({ id, nodes }) => `${place}: ${id}: ${nodes.length} x ${nodes[0].html.slice(0, 160)}`),
+            [],
+          );
+        };
+        await check("steps");
+        await page.keyboard.press("w");
+        await page.keyboard.press("a");
+        await check("add");
+        await page.keyboard.press("Escape");
+        await page.keyboard.press("?");
+        await check("shortcuts");
+        await page.keyboard.press("Escape");
+        await page.keyboard.press("t");
+        await page.evaluate(
+          (value) => window.aftershade.store.edit([{ op: "text", value }]),
+          LOOK.replace('"vignette"', '"vignete"'),
+        );
+        await check("faults");
+      },
+      { viewport: { width, height }, colorScheme },
+    );
+
+for (const [width, height] of [
+  [390, 844],
+  [768, 1024],
+  [1024, 768],
+  [1440, 900],
+  [3840, 2160],
+])
+  inPage(
+    `fits ${width} px without sideways scrolling, and its controls do not cover each other`,
+    async (page) => {
+      const { scroll, overlaps } = await page.evaluate(() => {
+        const boxes = [
+          ...document.querySelectorAll(
+            "#bar button, .tools button, .tools select, .tools input, .frames > *, .head > *, .row input, .row select",
+          ),
+        ]
+          .filter((node) => node.checkVisibility())
+          .map((node) => [node, node.getBoundingClientRect()]);
+        const overlaps = [];
+        for (const [a, one] of boxes)
+          for (const [b, two] of boxes)
+            if (
+              a !== b &&
+              a.parentElement === b.parentElement &&
+              one.left < two.right - 1 &&
+              two.left < one.right - 1 &&
+              one.top < two.bottom - 1 &&
+              two.top < one.bottom - 1
+            )
+              overlaps.push(`${a.outerHTML.slice(0, 80)} ${b.outerHTML.slice(0, 80)}`);
+        return { scroll: document.documentElement.scrollWidth - innerWidth, overlaps };
+      });
+      assert.ok(scroll <= 0, `${scroll} px too wide`);
+      assert.deepEqual(overlaps, []);
+    },
+    { viewport: { width, height } },
+  );
+
+inPage(
+  "is dark or light as the system is, and by its switch",
+  async (page) => {
+    const paper = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+    const dark = await paper();
+    await page.keyboard.press("Shift+D"); // dark
+    assert.equal(await paper(), dark);
+    await page.keyboard.press("Shift+D"); // light
+    const light = await paper();
+    assert.notEqual(light, dark);
+    await page.emulateMedia({ colorScheme: "light" });
+    await page.keyboard.press("Shift+D"); // system
+    assert.equal(await paper(), light);
+  },
+  { colorScheme: "dark" },
+);
+
+test("explains an address without its token", noRow, async () => {
+  const server = await serve();
+  try {
+    const page = await open(server.address.replace(/#.*/, ""));
+    await page.waitForFunction(() => document.getElementById("notice").textContent.includes("no token"));
+    await page.context().close();
+  } finally {
+    await server.end();
+  }
+});
+
+// ---- 200 random edits ----
+
+/** Numbers from 0 to 1 by a seed (mulberry32). */
+function random(seed) {
+  return () => {
+    seed = (seed + 0x6d2b79f5) | 0;
+    let t = Math.imul(seed ^ (seed >>> 15), 1 | seed);
+    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
+    return ((t ^ (t >>> 14)) >>> 0) / 2 ** 32;
+  };
+}
+function randomEdit(next, steps, effects) {
+  const pick = (list) => list[Math.floor(next() * list.length)],
+    step = Math.floor(next() * steps.length),
+    kind = steps.length < 2 ? "add" : next() < 0.7 ? "set" : pick(["add", "remove", "move", "enable", "mix"]);
+  if (kind === "add")
+    return {
+      op: "add",
+      at: Math.floor(next() * steps.length),
+      effect: pick(
+        ["sharpen", "vignette", "bloom", "film_grain"]
+          .filter((id) => steps.every(({ effect }) => effect !== id))
+          .concat("sanitize")
+          .slice(0, 4),
+      ),
+    };
+  if (kind === "remove") return steps.length > 4 ? { op: "remove", step } : { op: "enable", step, value: false };
+  if (kind === "move") return { op: "move", step, to: Math.floor(next() * steps.length) };
+  if (kind === "enable") return { op: "enable", step, value: next() < 0.5 };
+  if (kind === "mix") return { op: "mix", step, value: Math.round(next() * 100) / 100 };
+  const { params } = effects.get(steps[step].effect),
+    [param, declared] =
+      pick(Object.entries(params).filter(([, { type }]) => ["float", "int", "bool", "enum", "angle"].includes(type))) ??
+      [];
+  if (!param) return { op: "enable", step, value: true };
+  if (next() < 0.15) return { op: "set", step, param, value: null };
+  const [low, high] = declared.ui ?? [0, 1],
+    number = low + next() * (high - low);
+  const value =
+    { bool: () => next() < 0.5, enum: () => pick(declared.values), int: () => Math.round(number) }[declared.type]?.() ??
+    Number(number.toPrecision(4));
+  return { op: "set", step, param, value };
+}
+
+inPage(
+  "keeps text, state and picture together over 200 random edits, and undoes them all to the byte",
+  async (page, { look }) => {
+    const next = random(28),
+      ids = ["bokeh", "color_grade", "vignette", "view_transform", "sharpen", "bloom", "film_grain", "sanitize"],
+      effects = new Map(ids.map((id) => [id, described(id)]));
+    let taken = 0;
+    for (let i = 0; i < 200; ++i) {
+      const { steps } = await state(page),
+        edit = randomEdit(next, steps, effects);
+      if (edit.op === "add" && steps.some(({ effect }) => effect === edit.effect))
+        Object.assign(edit, { op: "enable", step: 0, value: true });
+      taken += (await page.evaluate((edit) => window.aftershade.store.edit([edit]), edit)) ? 1 : 0;
+      const now = await state(page),
+        written = withoutComments(now.text);
+      assert.deepEqual(
+        now.steps.map(({ effect }) => effect),
+        written.steps.map(({ effect }) => effect),
+        JSON.stringify(edit),
+      );
+      for (const [at, one] of written.steps.entries())
+        for (const [id, value] of Object.entries(one.params ?? {}))
+          assert.deepEqual(now.steps[at].params[id].value, value, `${at}.${id}`);
+      assert.deepEqual(
+        await page.locator(".step .name").allInnerTexts(),
+        written.steps.map(({ name, effect }) => name ?? effect),
+      );
+    }
+    assert.equal(taken, 200);
+    assert.equal(await page.evaluate(() => window.aftershade.store.save()), true);
+    assert.equal(readFileSync(look, "utf8"), await textOf(page));
+    if (!(await page.evaluate(() => window.aftershade.store.hasFaults))) {
+      await page.keyboard.press("1");
+      await drawn(page);
+      await frame(page);
+      assert.equal((await compareWithPng(page, runPicture(look))).difference, 0);
+    }
+    await page.evaluate(async () => {
+      const { store } = window.aftershade;
+      while (store.state.can_undo) if (!(await store.undo())) break;
+    });
+    assert.equal(await textOf(page), LOOK);
+  },
+  { own: true },
+);

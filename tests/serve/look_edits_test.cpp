@@ -1,0 +1,233 @@
+#include "framework/serve/look_edits.h"
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "framework/core/atomic_file.h"
+#include "framework/core/error.h"
+#include "framework/effect/registry.h"
+#include "framework/serve/look_model.h"
+#include "tests/temporary_folder.h"
+
+namespace aftershade::serve {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using test::TemporaryFolder;
+
+const std::string kLook = R"(// made by hand
+{ "aftershade": 1,
+  /* the lens first */
+  "steps": [
+    { "effect": "dof",   // as the camera focuses
+      "params": { "f_number": 2.80,   // wide open
+                  "focus_distance": "3 m" } },
+    // then to a screen
+    { "effect": "view_transform", "params": {"exposure":0.5} }
+  ]
+}
+)";
+
+Json read(const std::string& text) {
+    return Json::parse(text, nullptr, true, true);
+}
+
+TEST(LookEdits, ChangeTheBytesOfTheValueAlone) {
+    const std::string text = edited(kLook, {{"op", "set"}, {"step", 0}, {"param", "f_number"}, {"value", 4}});
+    std::string expected = kLook;
+    expected.replace(expected.find("2.80"), 4, "4");
+    EXPECT_EQ(text, expected);
+}
+
+TEST(LookEdits, LeaveAnEqualValueInItsAuthorsSpelling) {
+    EXPECT_EQ(edited(kLook, {{"op", "set"}, {"step", 0}, {"param", "f_number"}, {"value", 2.8}}), kLook);
+}
+
+TEST(LookEdits, PutANewKeyBehindTheLastOneInItsOwnForm) {
+    const std::string text =
+        edited(kLook, {{"op", "set"}, {"step", 0}, {"param", "quality"}, {"value", "high"}});
+    EXPECT_NE(text.find("\"focus_distance\": \"3 m\",\n                  \"quality\": \"high\" } },"),
+              std::string::npos)
+        << text;
+    EXPECT_NE(edited(kLook, {{"op", "set"}, {"step", 1}, {"param", "curve"}, {"value", "aces"}})
+                  .find("{\"exposure\":0.5, \"curve\": \"aces\"}"),
+              std::string::npos);
+}
+
+TEST(LookEdits, TakeAKeyOutWithItsLineAndItsComment) {
+    const std::string text =
+        edited(kLook, {{"op", "set"}, {"step", 0}, {"param", "focus_distance"}, {"value", nullptr}});
+    EXPECT_EQ(read(text)["steps"][0]["params"], (Json{{"f_number", 2.8}}));
+    EXPECT_NE(text.find("// wide open"), std::string::npos) << text;
+}
+
+TEST(LookEdits, KeepEveryCommentWhenStepsChangePlaces) {
+    const std::string text = edited(kLook, {{"op", "move"}, {"step", 0}, {"to", 1}});
+    EXPECT_EQ(read(text)["steps"][0]["effect"], "view_transform");
+    for (const char* comment : {"// made by hand", "/* the lens first */", "// as the camera focuses",
+                                "// wide open", "// then to a screen"})
+        EXPECT_NE(text.find(comment), std::string::npos) << comment;
+    EXPECT_EQ(edited(text, {{"op", "move"}, {"step", 0}, {"to", 1}}), kLook);
+}
+
+TEST(LookEdits, RefuseWhatIsNoEdit) {
+    for (const Json& edit :
+         {Json{{"op", "set"}, {"step", 2}, {"param", "a"}, {"value", 1}}, Json{{"op", "erase"}, {"step", 0}},
+          Json{{"op", "move"}, {"step", 0}, {"to", -1}}, Json{{"op", "set"}, {"step", 0}, {"value", 1}},
+          Json(7)})
+        EXPECT_THROW(edited(kLook, edit), Error) << edit;
+}
+
+/// Makes edits, and makes the same change to a document that has no text.
+class RandomEdits {
+public:
+    explicit RandomEdits(unsigned seed) : random_(seed) {}
+
+    Json next(Json& document) {
+        Json& steps = document["steps"];
+        const int count = int(steps.size());
+        const int kind = count < 2 ? 6 : pick(9);
+        const int step = count > 0 ? pick(count) : 0;
+        if (kind == 6 && count < 12) return add(steps);
+        if (kind == 7 && count > 2) return remove(steps, step);
+        if (kind == 8) return move(steps, step, pick(count));
+        if (kind == 5) return enable(steps[std::size_t(step)], step);
+        if (kind == 4) return mix(steps[std::size_t(step)], step);
+        return set(steps[std::size_t(step)], step);
+    }
+
+private:
+    int pick(int count) { return int(random_() % unsigned(count)); }
+
+    Json add(Json& steps) {
+        const int at = pick(int(steps.size()) + 1);
+        Json step = {{"effect", "view_transform"}};
+        const auto has = [&](const std::string& name) {
+            for (const Json& one : steps)
+                if (one.value("name", one["effect"].get<std::string>()) == name) return true;
+            return false;
+        };
+        if (has("view_transform"))
+            for (int n = 2; !step.contains("name"); ++n)
+                if (const std::string name = "view_transform_" + std::to_string(n); !has(name))
+                    step["name"] = name;
+        steps.insert(steps.begin() + at, step);
+        return {{"op", "add"}, {"at", at}, {"effect", "view_transform"}};
+    }
+    Json remove(Json& steps, int step) {
+        steps.erase(std::size_t(step));
+        return {{"op", "remove"}, {"step", step}};
+    }
+    Json move(Json& steps, int from, int to) {
+        const Json step = steps[std::size_t(from)];
+        steps.erase(std::size_t(from));
+        steps.insert(steps.begin() + to, step);
+        return {{"op", "move"}, {"step", from}, {"to", to}};
+    }
+    Json enable(Json& step, int index) {
+        const bool is_on = pick(2) == 0;
+        if (!is_on || step.contains("enabled")) step["enabled"] = is_on;
+        return {{"op", "enable"}, {"step", index}, {"value", is_on}};
+    }
+    Json mix(Json& step, int index) {
+        const Json value = pick(3) == 0 ? Json() : Json(pick(101) / 100.0);
+        if (value.is_null()) step.erase("mix");
+        else step["mix"] = value;
+        return {{"op", "mix"}, {"step", index}, {"value", value}};
+    }
+    Json set(Json& step, int index) {
+        const bool is_lens = step["effect"] == "dof";
+        const std::string name = is_lens ? (pick(2) == 0 ? "f_number" : "focus_distance") : "exposure";
+        const Json value = pick(4) == 0 ? Json() : Json(0.5 + pick(800) / 100.0);
+        if (!value.is_null()) step["params"][name] = value;
+        else if (step.contains("params")) step["params"].erase(name);
+        return {{"op", "set"}, {"step", index}, {"param", name}, {"value", value}};
+    }
+
+    std::mt19937 random_;
+};
+
+/// An empty list of values says what none says, and where one comes back it may stand behind other keys.
+nlohmann::json content_of(const Json& document) {
+    nlohmann::json content = document;
+    for (auto& step : content["steps"])
+        if (step.contains("params") && step["params"].empty()) step.erase("params");
+    return content;
+}
+
+TEST(LookModel, HoldsTwoHundredRandomEditsAndUndoesThemToTheFirstByte) {
+    for (const unsigned seed : {1u, 2u, 3u}) {
+        const TemporaryFolder folder;
+        const std::filesystem::path path = folder / "look.json";
+        write_text_file(path, kLook);
+        EffectRegistry effects({std::filesystem::path(AFTERSHADE_SOURCE_DIR) / "effects"});
+        LookModel model(path, effects, false);
+        Json document = read(kLook);
+        RandomEdits edits(seed);
+        int changes = 0;
+        for (int i = 0; i < 200; ++i) {
+            const Json before = model.state({});
+            const Json edit = edits.next(document);
+            ASSERT_NO_THROW(model.edit(before["revision"], Json::array({edit}))) << edit;
+            if (model.state({})["revision"] != before["revision"]) ++changes;
+            const std::string text = model.text();
+            ASSERT_EQ(content_of(read(text)), content_of(document))
+                << "seed " << seed << ", edit " << i << " " << edit << "\n"
+                << before["text"] << "\n"
+                << text;
+            ASSERT_EQ(model.state({})["text"], text);
+        }
+        EXPECT_GT(changes, 100);
+        model.save();
+        EXPECT_EQ(read_text_file(path, ExitCode::usage), model.text());
+        for (int i = 0; i < changes; ++i) model.undo();
+        EXPECT_EQ(model.text(), kLook);
+        EXPECT_THROW(model.undo(), Refusal);
+        for (int i = 0; i < changes; ++i) model.redo();
+        EXPECT_EQ(read_text_file(path, ExitCode::usage), model.text());
+    }
+}
+
+TEST(LookModel, NeverWritesWhereItOnlyReadsNorOverAnotherProgramsChange) {
+    const TemporaryFolder folder;
+    const std::filesystem::path path = folder / "look.json";
+    write_text_file(path, kLook);
+    EffectRegistry effects({std::filesystem::path(AFTERSHADE_SOURCE_DIR) / "effects"});
+    const Json edits = Json::parse(R"([{"op": "set", "step": 0, "param": "f_number", "value": 4}])");
+    LookModel reader(path, effects, true);
+    reader.edit(1, edits);
+    EXPECT_THROW(reader.save(), Refusal);
+    LookModel writer(path, effects, false);
+    writer.edit(1, edits);
+    EXPECT_THROW(writer.edit(1, edits), Refusal) << "the revision is old";
+    write_text_file(path, "{}");
+    EXPECT_THROW(writer.save(), Refusal);
+    EXPECT_EQ(read_text_file(path, ExitCode::usage), "{}");
+}
+
+TEST(LookModel, KeepsTheLastLookWithoutFaultsAndSaysWhereTheFaultIs) {
+    const TemporaryFolder folder;
+    const std::filesystem::path path = folder / "look.json";
+    write_text_file(path, kLook);
+    EffectRegistry effects({std::filesystem::path(AFTERSHADE_SOURCE_DIR) / "effects"});
+    LookModel model(path, effects, false);
+    const auto good = model.bound();
+    ASSERT_TRUE(good);
+    model.edit(1, Json::parse(R"([{"op": "text", "value": "{\n  \"aftershade\": 1,\n  \"steps\": [ }"}])"));
+    const Json faults = model.state({})["faults"];
+    ASSERT_EQ(faults.size(), 1u);
+    EXPECT_EQ(faults[0]["line"], 3);
+    EXPECT_EQ(model.bound(), good);
+    model.undo();
+    EXPECT_TRUE(model.state({})["faults"].empty());
+}
+
+}  // namespace
+}  // namespace aftershade::serve
