@@ -41,7 +41,8 @@ export class Probe {
     this.isBusy = false;
   }
   again(frame) {
-    if (this.last) this.show(this.last.pixel, frame);
+    const wanted = this.next ?? this.last; // a pixel that waits its turn is newer than the last one
+    if (wanted) this.show(wanted.pixel, frame);
   }
 
   fill({ x, y, roles, result }) {

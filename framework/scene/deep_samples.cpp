@@ -110,8 +110,9 @@ DeepImage SceneRenderer::render_deep(int frame, double time, std::array<double, 
                                 motion.velocity_next_px});
             }
             const Motion motion = motion_of(states, nullptr, ray.direction);
-            hits.push_back({-1, 0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), scene_.background, 1, dvec3(0), 0, motion.velocity_px,
-                            motion.velocity_next_px});
+            hits.push_back({-1, 0, std::numeric_limits<double>::infinity(),
+                            std::numeric_limits<double>::infinity(), scene_.background, 1, dvec3(0), 0,
+                            motion.velocity_px, motion.velocity_next_px});
         }
         merge(hits);
         return hits;

@@ -39,7 +39,8 @@ Field make(ParamType type, std::string name, std::string unit, ParamValue value,
     return field;
 }
 
-Field plain_number(std::string name, std::string unit, double value, double min, double max, std::string doc) {
+Field plain_number(std::string name, std::string unit, double value, double min, double max,
+                   std::string doc) {
     Field field = make(ParamType::float_, std::move(name), std::move(unit), value, std::move(doc));
     field.spec.min = min;
     field.spec.max = max;
@@ -153,19 +154,20 @@ Block camera_block() {
          .keys = {
              animated(place("position", {0, 0, 5}, "The lens.")),
              animated(place("target", {0, 0, 0}, "The point in the middle of the picture.")),
-             animated(plain_number("roll", "deg", 0, -36000, 36000, "Turns the picture's content anticlockwise.")),
+             animated(
+                 plain_number("roll", "deg", 0, -36000, 36000, "Turns the picture's content anticlockwise.")),
              animated(plain_number("focal_length", "mm", 50, 0.1, 10000,
-                             "With the sensor's width it gives the angle of view.")),
+                                   "With the sensor's width it gives the angle of view.")),
              plain_number("sensor_width", "mm", 36, 0.1, 1000, "Sensor, as wide as the picture."),
              animated(plain_number("focus_distance", "m", 5, 0.01, kFar_m,
-                             "Along the view axis to the plane in focus.")),
+                                   "Along the view axis to the plane in focus.")),
              plain_number("f_number", "", 2.8, 0.05, 1000, "Focal length over the aperture's diameter."),
              never(integer("blades", 0, 0, 32,
                            "Corners of the aperture; 0 is a disk, 1 and 2 are not polygons."),
                    {1, 2}),
              plain_number("rotation", "deg", 0, -36000, 36000,
-                    "Of the aperture; 0 puts the middle of a straight edge at +x, positive turns +x "
-                    "towards +y (down).")}});
+                          "Of the aperture; 0 puts the middle of a straight edge at +x, positive turns +x "
+                          "towards +y (down).")}});
 }
 
 Block shutter_block() {
@@ -198,20 +200,21 @@ Block material_block() {
          .keys = {or_block(albedo(), checker_block()),
                   plain_number("roughness", "", 0.5, 0.03, 1, "The highlight's; GGX alpha is its square."),
                   plain_number("specular", "", 0.04, 0, 1,
-                         "Reflectance at normal incidence, by Schlick; 0 for no highlight."),
+                               "Reflectance at normal incidence, by Schlick; 0 for no highlight."),
                   color("emission", 0, 1e9, "Radiance that it gives off."),
                   grammar::optional("scattering_profile", grammar::scattering_profile(),
                                     "Light goes in and comes out nearby.")}});
 }
 
 Block wave_block() {
-    return shared({.name = "wave",
-                   .thing = "the wave",
-                   .doc = "amplitude * cos(2 pi (x, y) . cycles + phase), metres.",
-                   .keys = {required(plain_number("amplitude", "m", 0, -kFar_m, kFar_m, "Height of the crest.")),
-                            required(vector(ParamType::vec2, "cycles", "", {1, 0}, -1e6, 1e6,
-                                            "Waves in a metre along x and y.")),
-                            plain_number("phase", "deg", 0, -1e6, 1e6, "At the origin.")}});
+    return shared(
+        {.name = "wave",
+         .thing = "the wave",
+         .doc = "amplitude * cos(2 pi (x, y) . cycles + phase), metres.",
+         .keys = {required(plain_number("amplitude", "m", 0, -kFar_m, kFar_m, "Height of the crest.")),
+                  required(vector(ParamType::vec2, "cycles", "", {1, 0}, -1e6, 1e6,
+                                  "Waves in a metre along x and y.")),
+                  plain_number("phase", "deg", 0, -1e6, 1e6, "At the origin.")}});
 }
 
 Block height_field_block() {
@@ -313,7 +316,9 @@ Block pattern_block() {
 }
 
 std::vector<Block> light_types() {
-    const auto intensity = [](const char* doc) { return animated(plain_number("intensity", "", 1, 0, 1e12, doc)); };
+    const auto intensity = [](const char* doc) {
+        return animated(plain_number("intensity", "", 1, 0, 1e12, doc));
+    };
     const auto position = [](const char* doc) {
         return animated(required(place("position", {0, 5, 0}, doc)));
     };
