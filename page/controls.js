@@ -1,5 +1,7 @@
 // A row for each parameter, made from its declaration in the effect's manifest.
+import { curveControl } from "./curve.js";
 import { element, icon, freshId, iconButton, options } from "./elements.js";
+import { canBeKeyed, isKeyed, keysOf, numbersAt, numbersOf, withKeys } from "./keyed.js";
 import { field, numberControl } from "./number.js";
 import * as values from "./values.js";
 
@@ -104,9 +106,9 @@ function rangeWords({ type, ui, min, max, unit = "", default: fallback }) {
 
 /**
  * {node, update(entry)} of a parameter. `commit(value, gesture)` sets it, null takes the key out of the look; `pick`, if
- * given, has the next click in the picture set it.
+ * given, has the next click in the picture set it. `time` is the scrubber, for keys.
  */
-export function parameterRow({ id, parameter, commit, pick }) {
+export function parameterRow({ id, parameter, commit, pick, time }) {
   const describedBy = freshId("doc"),
     label = id.replaceAll("_", " "),
     holder = element("div", { class: "controls" }),
@@ -119,9 +121,11 @@ export function parameterRow({ id, parameter, commit, pick }) {
       class: "icon-button picker",
       "aria-pressed": "false",
     });
+  const key =
+    canBeKeyed(parameter) && iconButton("keys", `Key ${label}`, () => toggleKey(), { class: "icon-button key" });
   const node = element(
     "div",
-    { class: "row", "data-param": id },
+    { class: "row" },
     element(
       "span",
       { class: "label", title: parameter.doc },
@@ -129,6 +133,7 @@ export function parameterRow({ id, parameter, commit, pick }) {
       picker || null,
     ),
     holder,
+    element("span", { class: "key-place" }, key || null),
     element("span", { class: "source" }, tag, reset),
     error,
     element("p", { class: "hint", id: describedBy }),
@@ -137,18 +142,51 @@ export function parameterRow({ id, parameter, commit, pick }) {
   node.addEventListener("refused", ({ detail }) => (error.textContent = detail ?? ""));
 
   let control = null,
-    kind = null;
+    kind = null,
+    entry = {};
+  const hasKeyNow = () => isKeyed(entry.value) && String(time.frame) in entry.value.keys;
+  /** Adds a key at the scrubber's frame, or takes that frame's key out; the last one leaves its value. */
+  function toggleKey() {
+    const { frame } = time,
+      { value } = entry;
+    if (!isKeyed(value)) {
+      const now = value === undefined || values.isExpression(value) ? entry.effective : value;
+      return commit({ keys: { [frame]: now } });
+    }
+    const rest = keysOf(value).filter(([at]) => at !== frame);
+    if (rest.length < keysOf(value).length) return commit(rest.length ? withKeys(value, rest) : value.keys[frame]);
+    const style = rest[0][1],
+      numbers = numbersAt(value, frame, parameter).map((number) => Number(number.toPrecision(6)));
+    const now = Array.isArray(style) ? numbers : values.literal(numbers[0], parameter, style);
+    commit(withKeys(value, [...rest, [frame, now]]));
+  }
+  function showFrame() {
+    control?.showFrame?.();
+    if (!key) return;
+    const isKey = hasKeyNow();
+    key.setAttribute("aria-pressed", String(isKey));
+    key.classList.toggle("animated", isKeyed(entry.value));
+    key.title = isKey ? `Remove the key at frame ${time.frame}` : `Key this value at frame ${time.frame}`;
+  }
+  const kindOf = ({ value }) => {
+    if (isKeyed(value) && canBeKeyed(parameter) && numbersOf(keysOf(value)[0][1]).every(Number.isFinite)) return "keys";
+    return values.isExpression(value) ? "expression" : parameter.type;
+  };
+  const makers = { keys: curveControl, expression: (context) => textControl(context, values.asText, anyValue) };
   return {
     node,
-    update(entry) {
-      const wanted = values.isExpression(entry.value) ? "expression" : parameter.type;
+    showFrame,
+    update(next) {
+      entry = next;
+      const wanted = kindOf(entry);
       if (wanted !== kind) {
         kind = wanted;
-        const context = { label, parameter, describedBy, commit };
-        control = kind === "expression" ? textControl(context, values.asText, anyValue) : controlFor(context);
+        control = (makers[kind] ?? controlFor)({ label, parameter, describedBy, commit, time });
         holder.replaceChildren(...control.nodes);
+        node.classList.toggle("tall", Boolean(control.isTall));
       }
       control.update(entry);
+      showFrame();
       const isSet = entry.value !== undefined,
         { tag: word, words } = values.sourceOf(entry.from);
       node.classList.toggle("set", isSet);

@@ -40,7 +40,8 @@ function pickFor(parameter, commit) {
       commit(Number(short(value)));
     });
 }
-const list = new StepList(store, { add: openAdd, pickFor });
+const list = new StepList(store, { add: openAdd, pickFor, time: viewer });
+viewer.addEventListener("frame", () => list.showFrame());
 dialog.node.addEventListener("added", async ({ detail }) => {
   if (!(await detail.done)) return;
   list.cards[detail.at]?.toggle(true);
@@ -169,6 +170,10 @@ const shortcuts = new Shortcuts([
   { group: "Values", keys: ["↑", "↓"], words: "Number field: a hundredth; with Shift a tenth" },
   { group: "Values", keys: ["Enter"], words: "Take over what is typed, with a unit if you like: 85 mm" },
   { group: "Values", keys: ["Escape"], words: "Take back what is typed" },
+  { group: "Curves", keys: ["←", "→"], words: "Key: a frame earlier or later; with Shift 10" },
+  { group: "Curves", keys: ["↑", "↓"], words: "Key: a hundredth of the slider's range; with Shift a tenth" },
+  { group: "Curves", keys: ["Enter"], words: "Scrubber to the key's frame" },
+  { group: "Curves", keys: ["Delete"], words: "Remove the key" },
   { group: "Picture", keys: ["P"], words: "To the picture", run: () => viewer.canvas.focus() },
   { group: "Picture", keys: ["↑", "↓", "←", "→"], words: "Move the probe by 1 px; with Shift 10 px" },
   { group: "Picture", keys: ["Ctrl+arrows"], words: "Pan" },
@@ -213,9 +218,9 @@ store.addEventListener("change", () => {
   redoButton.disabled = !can_redo;
   saveButton.disabled = read_only || !isChanged;
   faults.update();
+  viewer.update(); // first: it has the frame that the steps show
   list.update();
   if (!text.node.hidden) text.update();
-  viewer.update();
 });
 store.addEventListener("fail", ({ detail }) => notify(detail.message, true));
 let measuring;

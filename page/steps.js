@@ -1,6 +1,6 @@
 // The look as a list of steps: order, names, presets and, opened, the parameters of each.
 import { button, element, freshId, icon, iconButton, notify, options } from "./elements.js";
-import { field, numberControl } from "./number.js";
+import { field } from "./number.js";
 import { parameterRow } from "./controls.js";
 import { milliseconds } from "./values.js";
 
@@ -84,10 +84,12 @@ class StepCard {
     });
     this.preset = element("select", { class: "wide", "aria-label": "Preset" });
     this.preset.addEventListener("change", () => this.edit({ op: "preset", value: this.preset.value || null }));
-    this.mix = numberControl({
-      label: "mix",
+    const { time } = this.list;
+    this.mix = parameterRow({
+      id: "mix",
       parameter: MIX,
       commit: (value, gesture) => this.edit({ op: "mix", value }, gesture),
+      time,
     });
     const line = (label, ...nodes) =>
       element(
@@ -95,6 +97,7 @@ class StepCard {
         { class: "row" },
         element("span", { class: "label" }, label),
         element("div", { class: "controls" }, nodes),
+        element("span", { class: "key-place" }),
         element("span", { class: "source" }),
       );
     const hasPresets = Object.keys(this.effect?.presets ?? {}).length > 0;
@@ -102,7 +105,7 @@ class StepCard {
       ...(this.effect ? [element("p", { class: "summary" }, this.effect.summary)] : []),
       line("name", this.name.node),
       ...(hasPresets ? [line("preset", this.preset)] : []),
-      line("mix", ...this.mix.nodes),
+      this.mix.node,
     );
     for (const [id, parameter] of Object.entries(this.effect?.params ?? {})) {
       const row = parameterRow({
@@ -110,7 +113,9 @@ class StepCard {
         parameter,
         commit: (value, gesture) => this.edit({ op: "set", param: id, value }, gesture && `${id} ${gesture}`),
         pick: this.list.pickFor(parameter, (value) => this.edit({ op: "set", param: id, value })),
+        time,
       });
+      row.node.dataset.param = id;
       this.rows.set(id, row);
       this.body.append(row.node);
     }
@@ -150,9 +155,21 @@ class StepCard {
       [["", "none"], ...Object.keys(this.effect?.presets ?? {}).map((name) => [name, name])],
       step.preset ?? "",
     );
-    this.mix.update({ effective: step.mix ?? 1, value: step.mix ?? undefined });
+    const isSet = step.mix !== null && step.mix !== undefined;
+    this.mix.update({
+      effective: typeof step.mix === "number" ? step.mix : 1,
+      value: isSet ? step.mix : undefined,
+      from: isSet ? "look" : "default",
+    });
     for (const [id, row] of this.rows)
       row.update(step.params[id] ?? { effective: this.effect.params[id].default, from: "default" });
+  }
+
+  /** The scrubber is at another frame: of keys over frames, other values count. */
+  showFrame() {
+    if (this.body.hidden) return;
+    this.mix.showFrame();
+    for (const row of this.rows.values()) row.showFrame();
   }
 
   onKey(event) {
@@ -201,9 +218,11 @@ class StepCard {
 }
 
 export class StepList {
-  constructor(store, { add, pickFor }) {
+  /** `time`: {frame, frames, setFrame(frame)} of the scrubber. */
+  constructor(store, { add, pickFor, time }) {
     this.store = store;
     this.pickFor = pickFor;
+    this.time = time;
     this.cards = [];
     this.opened = new Set();
     this.list = element("ol", { class: "steps", id: "steps", "aria-label": "Steps" });
@@ -250,6 +269,10 @@ export class StepList {
     this.empty.hidden = this.cards.length > 0;
     if (isFirst && this.cards.length) this.cards[0].toggle(true);
     this.hasShown = true;
+  }
+
+  showFrame() {
+    for (const card of this.cards) card.showFrame();
   }
 
   /** Milliseconds of each step, by name. */

@@ -2,6 +2,7 @@
 import { get } from "./api.js";
 import { PictureCanvas } from "./canvas.js";
 import { button, element, icon, iconButton, notify } from "./elements.js";
+import { keyedFrames } from "./keyed.js";
 import { field } from "./number.js";
 import { Pictures } from "./pictures.js";
 import { nameOf } from "./steps.js";
@@ -115,6 +116,7 @@ export class Viewer extends EventTarget {
 
     this.frameSlider = element("input", { type: "range", min: 0, step: 1, "aria-label": "Frame" });
     this.frameSlider.addEventListener("input", () => this.setFrame(this.frames[this.frameSlider.value]));
+    this.marks = element("div", { class: "marks", "aria-hidden": "true" });
     this.frameField = field({
       label: "Frame number",
       inputmode: "numeric",
@@ -129,7 +131,7 @@ export class Viewer extends EventTarget {
       iconButton("previous", "Previous frame", () => this.stepFrame(-1), { shortcut: "," }),
       this.playButton,
       iconButton("next", "Next frame", () => this.stepFrame(1), { shortcut: "." }),
-      this.frameSlider,
+      element("div", { class: "scrub" }, this.marks, this.frameSlider),
       this.frameField.node,
       this.frameCount,
     );
@@ -149,6 +151,8 @@ export class Viewer extends EventTarget {
     this.frameSlider.max = Math.max(0, capture.frames.length - 1);
     this.frameSlider.disabled = capture.frames.length < 2;
     this.frameCount.textContent = `of ${capture.frames[0]} to ${capture.frames.at(-1)}`;
+    this.keyed = keyedFrames(steps);
+    this.markKeys();
     const taps = steps.flatMap((step) => {
       const { outputs = {}, textures = {} } = this.store.effects.get(step.effect) ?? {},
         name = nameOf(step);
@@ -182,6 +186,14 @@ export class Viewer extends EventTarget {
     this.refresh();
   }
 
+  /** Marks the frames with keys at their places of the scrubber. */
+  markKeys() {
+    const wanted = this.frames.flatMap((frame, i) => (this.keyed.has(frame) ? [i / Math.max(1, this.frames.length - 1)] : []));
+    while (this.marks.children.length > wanted.length) this.marks.lastChild.remove();
+    while (this.marks.children.length < wanted.length) this.marks.append(element("span"));
+    wanted.forEach((share, i) => (this.marks.children[i].style.left = `${100 * share}%`));
+  }
+
   words = (view) => ({ final: "final", before: "before (no steps)" })[view] ?? view.replace(/^\w+:/, "");
 
   refresh() {
@@ -191,7 +203,7 @@ export class Viewer extends EventTarget {
     this.exposureField.show(this.exposure.toFixed(2).replace(/\.?0+$/, ""));
     const at = this.frames.indexOf(this.frame);
     this.frameSlider.value = at;
-    this.frameSlider.setAttribute("aria-valuetext", `frame ${this.frame}`);
+    this.frameSlider.setAttribute("aria-valuetext", `frame ${this.frame}${this.keyed.has(this.frame) ? ", keyed" : ""}`);
     this.frameSlider.style.setProperty("--fill", `${(100 * at) / Math.max(1, this.frames.length - 1)}%`);
     this.exposureSlider.style.setProperty("--fill", `${(100 * (this.exposure + 8)) / 16}%`);
     this.frameField.show(String(this.frame));
