@@ -49,3 +49,6 @@ export async function picture(values, signal) {
   });
   return { bitmap, times };
 }
+
+/** The PNG itself. */
+export const pictureBlob = async (values) => (await request(query("/api/picture", values))).blob();

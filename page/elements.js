@@ -21,6 +21,7 @@ const ICONS = {
   preset: "M3 4.5h10M3 8h7M3 11.5h4",
   keys: "m8 3 4.5 5L8 13 3.5 8z",
   variable: "m4.5 5 7 6m0-6-7 6",
+  export: "M8 2.5v7.5m-3-3 3 3 3-3M2.5 11v2.5h11V11",
   copy: "M5.5 5.5v-3h8v8h-3m-8-5h8v8h-8z",
 };
 

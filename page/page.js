@@ -2,12 +2,14 @@
 import { get, token } from "./api.js";
 import { Costs, Histogram, Probe } from "./dock.js";
 import { button, element, icon, iconButton, notify } from "./elements.js";
+import { ExportDialog } from "./export.js";
 import { Shortcuts } from "./keys.js";
 import { nameOf, StepList } from "./steps.js";
 import { Store } from "./store.js";
 import { AddDialog, Faults, TextView } from "./text_view.js";
 import { short } from "./values.js";
 import { Viewer } from "./viewer.js";
+import { Waveform } from "./waveform.js";
 
 const store = new Store();
 const at = (id) => document.getElementById(id);
@@ -17,8 +19,9 @@ const at = (id) => document.getElementById(id);
 const viewer = new Viewer(store, at("viewer"));
 const probe = new Probe(),
   histogram = new Histogram(),
+  waveform = new Waveform(),
   costs = new Costs();
-at("dock").append(probe.node, histogram.node, costs.node);
+at("dock").append(probe.node, histogram.node, waveform.node, costs.node);
 
 const dialog = new AddDialog(store);
 const openAdd = () => {
@@ -40,6 +43,7 @@ function pickFor(parameter, commit) {
       commit(Number(short(value)));
     });
 }
+const exporting = new ExportDialog(store, viewer);
 const list = new StepList(store, { add: openAdd, pickFor, time: viewer });
 viewer.addEventListener("frame", () => list.showFrame());
 dialog.node.addEventListener("added", async ({ detail }) => {
@@ -109,6 +113,7 @@ function setTheme(theme) {
   themeButton.title = `Colours: ${theme} (Shift+D)`;
   themeButton.setAttribute("aria-label", `Colours: ${theme}`);
   histogram.draw();
+  waveform.draw();
 }
 function nextTheme() {
   const now = document.documentElement.dataset.theme ?? "system";
@@ -144,6 +149,7 @@ at("bar").append(
     title: "Copy the command that draws these pictures (Ctrl+Shift+C)",
     class: "command",
   }),
+  button([icon("export"), "Export"], () => exporting.open(), { title: "Export (X)", class: "export-button" }),
   themeButton,
   button("?", () => shortcuts.open(), { class: "icon-button", title: "Shortcuts (?)", "aria-label": "Shortcuts" }),
   saveButton,
@@ -157,6 +163,7 @@ const shortcuts = new Shortcuts([
   { group: "Look", keys: ["Ctrl+Z"], words: "Undo", run: () => store.undo(), inText: "edited" },
   { group: "Look", keys: ["Ctrl+Shift+Z", "Ctrl+Y"], words: "Redo", run: () => store.redo(), inText: "edited" },
   { group: "Look", keys: ["T"], words: "Steps or text", run: () => showPanel(text.node.hidden ? "text" : "steps") },
+  { group: "Look", keys: ["X"], words: "Export a still, a contact sheet or the look", run: () => exporting.open() },
   { group: "Look", keys: ["Ctrl+Shift+C"], words: "Copy the command", run: copyCommand, inText: true },
   { group: "Steps", keys: ["A"], words: "Add a step", run: openAdd },
   { group: "Steps", keys: ["S"], words: "To the steps", run: () => (showPanel("steps"), list.focus(0)) },
@@ -233,6 +240,12 @@ viewer.addEventListener("picture", ({ detail }) => {
   clearTimeout(measuring);
   measuring = setTimeout(() => {
     histogram.load(viewer.frame);
+    const isFinal = viewer.view === "final" && viewer.exposure === 0;
+    waveform.load({
+      revision: store.state.revision,
+      frame: viewer.frame,
+      shown: isFinal ? detail.bitmap : null,
+    });
     probe.again(viewer.frame);
   }, 150);
 });
