@@ -4,6 +4,7 @@ import { element, icon, freshId, iconButton, options } from "./elements.js";
 import { canBeKeyed, isKeyed, keysOf, numbersAt, numbersOf, withKeys } from "./keyed.js";
 import { field, numberControl } from "./number.js";
 import * as values from "./values.js";
+import { variableControl } from "./variables.js";
 
 function boolControl({ label, describedBy, commit }) {
   const box = element("input", { type: "checkbox", "aria-label": label, "aria-describedby": describedBy });
@@ -106,9 +107,10 @@ function rangeWords({ type, ui, min, max, unit = "", default: fallback }) {
 
 /**
  * {node, update(entry)} of a parameter. `commit(value, gesture)` sets it, null takes the key out of the look; `pick`, if
- * given, has the next click in the picture set it. `time` is the scrubber, for keys.
+ * given, has the next click in the picture set it. `time` is the scrubber, for keys;
+ * `variables`: {names(), value(name)} of the look.
  */
-export function parameterRow({ id, parameter, commit, pick, time }) {
+export function parameterRow({ id, parameter, commit, pick, time, variables }) {
   const describedBy = freshId("doc"),
     label = id.replaceAll("_", " "),
     holder = element("div", { class: "controls" }),
@@ -150,7 +152,10 @@ export function parameterRow({ id, parameter, commit, pick, time }) {
     const { frame } = time,
       { value } = entry;
     if (!isKeyed(value)) {
-      const now = value === undefined || values.isExpression(value) ? entry.effective : value;
+      const { effective } = entry,
+        // Of a step that is disabled the program gives an expression as it is written.
+        found = values.isExpression(effective) ? variables.value(effective.var) : effective,
+        now = value === undefined || values.isExpression(value) ? (found ?? parameter.default) : value;
       return commit({ keys: { [frame]: now } });
     }
     const rest = keysOf(value).filter(([at]) => at !== frame);
@@ -170,9 +175,14 @@ export function parameterRow({ id, parameter, commit, pick, time }) {
   }
   const kindOf = ({ value }) => {
     if (isKeyed(value) && canBeKeyed(parameter) && numbersOf(keysOf(value)[0][1]).every(Number.isFinite)) return "keys";
+    if (typeof value?.var === "string") return "variable";
     return values.isExpression(value) ? "expression" : parameter.type;
   };
-  const makers = { keys: curveControl, expression: (context) => textControl(context, values.asText, anyValue) };
+  const makers = {
+    keys: curveControl,
+    variable: (context) => variableControl({ ...context, unit: parameter.unit }),
+    expression: (context) => textControl(context, values.asText, anyValue),
+  };
   return {
     node,
     showFrame,
@@ -181,7 +191,7 @@ export function parameterRow({ id, parameter, commit, pick, time }) {
       const wanted = kindOf(entry);
       if (wanted !== kind) {
         kind = wanted;
-        control = (makers[kind] ?? controlFor)({ label, parameter, describedBy, commit, time });
+        control = (makers[kind] ?? controlFor)({ label, parameter, describedBy, commit, time, variables });
         holder.replaceChildren(...control.nodes);
         node.classList.toggle("tall", Boolean(control.isTall));
       }

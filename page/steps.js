@@ -2,6 +2,8 @@
 import { button, element, freshId, icon, iconButton, notify, options } from "./elements.js";
 import { field } from "./number.js";
 import { parameterRow } from "./controls.js";
+import { maskRow } from "./mask.js";
+import { variableNames, variableValue, Variables } from "./variables.js";
 import { milliseconds } from "./values.js";
 
 const MIX = {
@@ -84,12 +86,19 @@ class StepCard {
     });
     this.preset = element("select", { class: "wide", "aria-label": "Preset" });
     this.preset.addEventListener("change", () => this.edit({ op: "preset", value: this.preset.value || null }));
-    const { time } = this.list;
+    const { time } = this.list,
+      text = () => this.list.store.state.text,
+      variables = { names: () => variableNames(text()), value: (name) => variableValue(text(), name) };
     this.mix = parameterRow({
       id: "mix",
       parameter: MIX,
       commit: (value, gesture) => this.edit({ op: "mix", value }, gesture),
       time,
+      variables,
+    });
+    this.mask = maskRow({
+      commit: (value) => this.edit({ op: "mask", value }),
+      pick: (node, take) => this.list.pickFor({ type: "objects" }, ([id]) => take(id))(node),
     });
     const line = (label, ...nodes) =>
       element(
@@ -106,6 +115,7 @@ class StepCard {
       line("name", this.name.node),
       ...(hasPresets ? [line("preset", this.preset)] : []),
       this.mix.node,
+      this.mask.node,
     );
     for (const [id, parameter] of Object.entries(this.effect?.params ?? {})) {
       const row = parameterRow({
@@ -114,6 +124,7 @@ class StepCard {
         commit: (value, gesture) => this.edit({ op: "set", param: id, value }, gesture && `${id} ${gesture}`),
         pick: this.list.pickFor(parameter, (value) => this.edit({ op: "set", param: id, value })),
         time,
+        variables,
       });
       row.node.dataset.param = id;
       this.rows.set(id, row);
@@ -155,12 +166,16 @@ class StepCard {
       [["", "none"], ...Object.keys(this.effect?.presets ?? {}).map((name) => [name, name])],
       step.preset ?? "",
     );
-    const isSet = step.mix !== null && step.mix !== undefined;
+    const { state } = this.list.store,
+      isSet = step.mix !== null && step.mix !== undefined,
+      isVariable = typeof step.mix?.var === "string",
+      number = isVariable ? variableValue(state.text, step.mix.var) : step.mix;
     this.mix.update({
-      effective: typeof step.mix === "number" ? step.mix : 1,
+      effective: typeof number === "number" ? number : MIX.default,
       value: isSet ? step.mix : undefined,
-      from: isSet ? "look" : "default",
+      from: isVariable ? "variable" : isSet ? "look" : "default",
     });
+    this.mask.update(step.mask, state.capture.roles);
     for (const [id, row] of this.rows)
       row.update(step.params[id] ?? { effective: this.effect.params[id].default, from: "default" });
   }
@@ -226,10 +241,12 @@ export class StepList {
     this.cards = [];
     this.opened = new Set();
     this.list = element("ol", { class: "steps", id: "steps", "aria-label": "Steps" });
+    this.variables = new Variables(store);
     this.empty = element("p", { class: "empty" }, "No steps. The picture is the capture's colour.");
     this.node = element(
       "div",
       { class: "scroll" },
+      this.variables.node,
       this.list,
       this.empty,
       button([icon("plus"), "Add a step"], add, { class: "add", title: "Add a step (A)" }),
@@ -237,6 +254,7 @@ export class StepList {
   }
 
   update() {
+    this.variables.update();
     const { steps } = this.store.state,
       left = new Map(this.cards.map((card) => [card.key, card])),
       counts = new Map(),

@@ -992,6 +992,82 @@ inPage("drags a key by the pointer in one step of undo, also a channel of a colo
   await page.waitForFunction((text) => window.aftershade.store.state.text === text, before);
 });
 
+// ---- variables and masks ----
+
+inPage("edits variables in their place in the text, and unbinds a parameter from one", async (page) => {
+  const bound = LOOK.replace('"steps"', '"vars": { "far": "6 m", // of the ball\n    "warm": 0.3, "half": 0.5 },\n  "steps"')
+    .replace('"6.4 m"', '{ "var": "far" }')
+    .replace('"exposure":  0.3', '"exposure": { "var": "warm" }')
+    .replace('"effect": "vignette"', '"effect": "vignette", "mix": { "var": "half" }');
+  await lookAfter(page, () =>
+    page.evaluate((value) => window.aftershade.store.edit([{ op: "text", value }]), bound),
+  );
+  const card = await opened(page, "bokeh"),
+    focus = row(card, "focus_distance"),
+    far = page.getByLabel("Variable far", { exact: true });
+  assert.equal(await far.inputValue(), "6 m");
+  assert.equal(await focus.getByLabel("Variable of focus distance").inputValue(), "far");
+  await far.fill("650 cm");
+  await lookAfter(page, () => far.press("Enter"));
+  assert.equal(await far.evaluate((node) => node === document.activeElement), true);
+  assert.equal(await textOf(page), bound.replace('"6 m"', '"650 cm"'));
+  assert.equal(await focus.locator(".now-value").innerText(), "650 cm");
+  await lookAfter(page, () => page.getByLabel("Enable bokeh").check());
+  assert.equal(await focus.locator(".now-value").innerText(), "6.5 m");
+  await far.fill("{ no");
+  await far.press("Enter");
+  assert.equal(await far.getAttribute("aria-invalid"), "true");
+  await far.press("Escape");
+  let look = await lookAfter(page, () => focus.getByLabel("Variable of focus distance").selectOption("warm"));
+  assert.deepEqual(look.steps[0].params.focus_distance, { var: "warm" });
+  look = await lookAfter(page, () => focus.getByRole("button", { name: "Unbind focus distance" }).click());
+  assert.equal(look.steps[0].params.focus_distance, 0.3);
+  assert.equal(await focus.getByRole("slider").count(), 1);
+  const vignette = await opened(page, "vignette");
+  look = await lookAfter(page, () => vignette.getByRole("button", { name: "Unbind mix" }).click());
+  assert.equal(look.steps[2].mix, 0.5);
+});
+
+inPage("masks a step by a role, by objects, also picked, or by a file, and draws what `run` draws", async (page, { look }) => {
+  const card = await opened(page, "color_grade"),
+    by = card.getByLabel("Mask by");
+  const mask = async (act) => (await lookAfter(page, act)).steps[1].mask;
+  const roles = (await state(page)).capture.roles.filter(({ channels }) => channels === 1).map(({ name }) => name);
+  const first = await mask(() => by.selectOption("role"));
+  assert.deepEqual(first, { role: roles[0] });
+  await by.selectOption("object");
+  const field = card.getByLabel("Mask's objects");
+  await field.fill("2, 4-7");
+  assert.deepEqual(await mask(() => field.press("Enter")), { object: [2, "4-7"] });
+  assert.deepEqual(await mask(() => card.getByLabel("Invert the mask").check()), { object: [2, "4-7"], invert: true });
+  await card.getByRole("button", { name: "Pick the mask's object in the picture" }).click();
+  const picked = await mask(async () => {
+    await page.keyboard.press("ArrowRight");
+    await page.keyboard.press("Enter");
+  });
+  assert.equal(typeof picked.object, "number");
+  assert.equal(picked.invert, true);
+  await drawn(page);
+  await page.keyboard.press("Control+s");
+  await page.waitForFunction(() => window.aftershade.store.isSaved);
+  await page.locator(".stage canvas").focus();
+  await page.keyboard.press("1");
+  await page.evaluate(() => {
+    window.aftershade.viewer.picture.probe = null;
+    window.aftershade.viewer.picture.draw();
+  });
+  await frame(page);
+  assert.equal((await compareWithPng(page, runPicture(look))).difference, 0);
+  assert.deepEqual(await mask(() => card.getByLabel("Invert the mask").uncheck()), { object: picked.object });
+  assert.equal(await mask(() => by.selectOption("")), undefined);
+  await by.selectOption("file");
+  const file = card.getByLabel("Mask's file");
+  await file.fill("hole.png");
+  assert.deepEqual(await mask(() => file.press("Enter")), { file: "hole.png" });
+  await page.waitForFunction(() => window.aftershade.store.hasFaults);
+  assert.match(await page.locator(".faults").innerText(), /hole\.png/);
+});
+
 // ---- everybody ----
 
 inPage("can be used by the keyboard alone, with the focus in sight", async (page, { look }) => {
@@ -1084,9 +1160,16 @@ for (const colorScheme of ["dark", "light"])
           );
         };
         await check("steps");
+        await page.evaluate(() => document.querySelectorAll(".opener")[1].click());
+        await page.evaluate(
+          (value) => window.aftershade.store.edit([{ op: "text", value }]),
+          LOOK.replace('"steps"', '"vars": { "push": 0.5 }, "steps"'),
+        );
         await page.evaluate(() =>
           window.aftershade.store.edit([
             { op: "set", step: 0, param: "focus_distance", value: { keys: { 1: "2 m", 2: "6 m" } } },
+            { op: "mask", step: 0, value: { object: 2, invert: true } },
+            { op: "set", step: 1, param: "exposure", value: { var: "push" } },
           ]),
         );
         await page.locator(".knot").first().waitFor();
