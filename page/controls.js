@@ -3,6 +3,8 @@ import { curveControl } from "./curve.js";
 import { element, icon, freshId, iconButton, options } from "./elements.js";
 import { canBeKeyed, isKeyed, keysOf, numbersAt, numbersOf, withKeys } from "./keyed.js";
 import { field, numberControl } from "./number.js";
+import { tableControl } from "./objects_table.js";
+import { profileControl } from "./profile.js";
 import * as values from "./values.js";
 import { variableControl } from "./variables.js";
 
@@ -90,6 +92,8 @@ function controlFor(context) {
   if (parameter.type === "objects")
     return textControl(context, values.objectsText, (text) => ({ value: values.objectsFrom(text) }));
   if (parameter.type === "file") return textControl(context, values.asText, (text) => ({ value: text.trim() }));
+  if (parameter.type === "table") return tableControl(context);
+  if (parameter.type === "scattering_profile") return profileControl(context);
   return textControl(context, values.asText, anyValue);
 }
 
@@ -108,9 +112,9 @@ function rangeWords({ type, ui, min, max, unit = "", default: fallback }) {
 /**
  * {node, update(entry)} of a parameter. `commit(value, gesture)` sets it, null takes the key out of the look; `pick`, if
  * given, has the next click in the picture set it. `time` is the scrubber, for keys;
- * `variables`: {names(), value(name)} of the look.
+ * `variables`: {names(), value(name)} of the look. `pickObject(node, take)` gives the id of the next click in the picture.
  */
-export function parameterRow({ id, parameter, commit, pick, time, variables }) {
+export function parameterRow({ id, parameter, commit, pick, time, variables, pickObject }) {
   const describedBy = freshId("doc"),
     label = id.replaceAll("_", " "),
     holder = element("div", { class: "controls" }),
@@ -191,7 +195,7 @@ export function parameterRow({ id, parameter, commit, pick, time, variables }) {
       const wanted = kindOf(entry);
       if (wanted !== kind) {
         kind = wanted;
-        control = (makers[kind] ?? controlFor)({ label, parameter, describedBy, commit, time, variables });
+        control = (makers[kind] ?? controlFor)({ label, parameter, describedBy, commit, time, variables, pickObject });
         holder.replaceChildren(...control.nodes);
         node.classList.toggle("tall", Boolean(control.isTall));
       }

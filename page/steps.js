@@ -96,10 +96,8 @@ class StepCard {
       time,
       variables,
     });
-    this.mask = maskRow({
-      commit: (value) => this.edit({ op: "mask", value }),
-      pick: (node, take) => this.list.pickFor({ type: "objects" }, ([id]) => take(id))(node),
-    });
+    const pickObject = (node, take) => this.list.pickFor({ type: "objects" }, ([id]) => take(id))(node);
+    this.mask = maskRow({ commit: (value) => this.edit({ op: "mask", value }), pick: pickObject });
     const line = (label, ...nodes) =>
       element(
         "div",
@@ -125,6 +123,7 @@ class StepCard {
         pick: this.list.pickFor(parameter, (value) => this.edit({ op: "set", param: id, value })),
         time,
         variables,
+        pickObject,
       });
       row.node.dataset.param = id;
       this.rows.set(id, row);

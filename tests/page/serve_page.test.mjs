@@ -197,12 +197,26 @@ inPage("makes a control for every parameter of every effect from its declaration
       id,
     );
     for (const one of rows) {
-      const { type, unit, values, doc } = params[one.id],
+      const { type, unit, values, doc, columns } = params[one.id],
         place = `${id}.${one.id}`;
       assert.ok(one.hint.startsWith(doc), place);
       const isNumber = ["float", "int", "angle"].includes(type);
       assert.equal(one.slider, isNumber, place);
       if (isNumber) assert.equal(one.unit, unit ?? "", place);
+      if (type === "table") {
+        // The line of the others, and the field that adds a line.
+        const types = Object.values(columns).map((column) => column.type);
+        assert.equal(one.box, types.includes("bool"), place);
+        assert.equal(one.fields, 1 + types.filter((kind) => kind !== "bool" && kind !== "enum").length, place);
+        continue;
+      }
+      if (type === "scattering_profile") {
+        const shipped = JSON.parse(
+          spawnSync(program, ["list", "--scattering-profiles", "--json"], { encoding: "utf8" }).stdout,
+        ).map(({ name }) => name);
+        assert.deepEqual(one.choices, [...shipped, "burley", "gaussians", "dipole", "artist", "file", ...shipped], place);
+        continue;
+      }
       assert.equal(one.box, type === "bool", place);
       assert.equal(one.swatch, type === "color", place);
       assert.deepEqual(one.choices, values ?? [], place);
@@ -1068,6 +1082,99 @@ inPage("masks a step by a role, by objects, also picked, or by a file, and draws
   assert.match(await page.locator(".faults").innerText(), /hole\.png/);
 });
 
+// ---- tables and profiles ----
+
+inPage("edits a table by object line by line", async (page) => {
+  await lookAfter(page, () =>
+    page.evaluate(() =>
+      window.aftershade.store.edit([
+        { op: "add", at: 0, effect: "motion_blur" },
+        { op: "enable", step: 0, value: false }, // the capture has no names of objects
+      ]),
+    ),
+  );
+  const table = row(await opened(page, "motion_blur"), "objects"),
+    field = (name) => table.getByLabel(`objects, ${name}`, { exact: true });
+  const set = async (name, text) => {
+    await field(name).fill(text);
+    return (await lookAfter(page, () => field(name).press("Enter"))).steps[0].params?.objects;
+  };
+  assert.equal(await field("others, scale").inputValue(), "1");
+  assert.deepEqual(await set("object to add", "2"), { rows: [{ object: 2 }] });
+  assert.equal(await field("object to add").inputValue(), "");
+  assert.deepEqual(await set("line 1, scale", "0.5"), { rows: [{ object: 2, scale: 0.5 }] });
+  assert.deepEqual(await set("object to add", "30-70, 90"), { rows: [{ object: 2, scale: 0.5 }, { objects: "30-70,90" }] });
+  assert.deepEqual(await set("objects of line 1", "Wheel"), {
+    rows: [{ name: "Wheel", scale: 0.5 }, { objects: "30-70,90" }],
+  });
+  assert.deepEqual((await set("others, scale", "2")).default, { scale: 2 });
+  assert.equal(await field("line 2, scale").inputValue(), "2");
+  await field("line 2, scale").fill("9");
+  await field("line 2, scale").press("Enter");
+  assert.match(await table.getByRole("alert").innerText(), /0 to 4/);
+  await field("line 2, scale").press("Escape");
+  const removed = await lookAfter(page, () => table.getByRole("button", { name: "Remove line 1 of objects" }).click());
+  assert.deepEqual(removed.steps[0].params.objects, { default: { scale: 2 }, rows: [{ objects: "30-70,90" }] });
+  const picked = await lookAfter(page, async () => {
+    await table.getByRole("button", { name: "Pick an object for objects" }).click();
+    await page.keyboard.press("ArrowRight");
+    await page.keyboard.press("Enter");
+  });
+  assert.equal(typeof picked.steps[0].params.objects.rows[1].object, "number");
+  assert.deepEqual((await state(page)).faults.filter(({ severity }) => severity === "error"), []);
+});
+
+inPage("chooses a scattering profile, sets its numbers, and gives objects their own", async (page) => {
+  await lookAfter(page, () =>
+    page.evaluate(() =>
+      window.aftershade.store.edit([
+        { op: "add", at: 0, effect: "sss_gaussian" },
+        { op: "enable", step: 0, value: false },
+      ]),
+    ),
+  );
+  const profile = row(await opened(page, "sss_gaussian"), "scattering_profile"),
+    choice = profile.getByLabel("Profile of scattering profile"),
+    field = (name) => profile.getByLabel(`scattering profile, ${name}`, { exact: true });
+  const value = async (act) => {
+    const look = await lookAfter(page, act);
+    assert.equal(await page.evaluate(() => window.aftershade.store.hasFaults), false, JSON.stringify(look.steps[0]));
+    return look.steps[0].params.scattering_profile;
+  };
+  const set = (name, text) =>
+    value(async () => {
+      await field(name).fill(text);
+      await field(name).press("Enter");
+    });
+  assert.equal(await choice.inputValue(), "skin");
+  assert.equal(await value(() => choice.selectOption("marble")), "marble");
+  for (const type of ["burley", "gaussians", "dipole", "artist"])
+    assert.equal((await value(() => choice.selectOption(type))).type, type);
+  assert.deepEqual(await set("strength, green", "0.5"), { type: "artist", width_mm: 1, strength: [0.48, 0.5, 0.28] });
+  await field("strength, green").fill("2");
+  await field("strength, green").press("Enter");
+  assert.match(await profile.getByRole("alert").innerText(), /0.001 to 1/);
+  await field("strength, green").press("Escape");
+  assert.deepEqual(await set("width mm", "2.5"), { type: "artist", width_mm: 2.5, strength: [0.48, 0.5, 0.28] });
+  assert.equal(await value(() => choice.selectOption("cream")), "cream");
+  assert.deepEqual(await set("object to add", "3-7"), { default: "cream", rows: [{ objects: "3-7", profile: "skin" }] });
+  assert.deepEqual(await set("line 1, profile", "marble"), {
+    default: "cream",
+    rows: [{ objects: "3-7", profile: "marble" }],
+  });
+  assert.deepEqual((await value(() => choice.selectOption("potato"))).default, "potato");
+  const removed = await value(() => profile.getByRole("button", { name: /Remove line 1/ }).click());
+  assert.equal(removed, "potato");
+  // A file has no effect before its path is typed.
+  const before = await textOf(page);
+  await choice.selectOption("file");
+  assert.equal(await textOf(page), before);
+  await field("file").fill("none.json");
+  await lookAfter(page, () => field("file").press("Enter"));
+  await page.waitForFunction(() => window.aftershade.store.hasFaults);
+  assert.match(await page.locator(".faults").innerText(), /none\.json/);
+});
+
 // ---- everybody ----
 
 inPage("can be used by the keyboard alone, with the focus in sight", async (page, { look }) => {
@@ -1174,6 +1281,25 @@ for (const colorScheme of ["dark", "light"])
         );
         await page.locator(".knot").first().waitFor();
         await check("curve");
+        for (const [i, effect] of ["motion_blur", "sss_gaussian"].entries()) {
+          await page.evaluate(
+            ([at, id]) =>
+              window.aftershade.store.edit([
+                { op: "add", at, effect: id },
+                { op: "enable", step: at, value: false },
+              ]),
+            [i, effect],
+          );
+          const card = await opened(page, effect);
+          await card.locator(".objects-table").waitFor();
+        }
+        await page.evaluate(() =>
+          window.aftershade.store.edit([
+            { op: "set", step: 0, param: "objects", value: { rows: [{ object: 2, scale: 0 }] } },
+            { op: "set", step: 1, param: "scattering_profile", value: { type: "artist" } },
+          ]),
+        );
+        await check("table");
         await page.keyboard.press("w");
         await page.keyboard.press("a");
         await check("add");
