@@ -49,7 +49,12 @@ export function curveControl({ label, parameter, describedBy, commit, time }) {
       element("span", { class: `end ${name}`, "aria-hidden": "true" }),
     ),
     knots = element("div", { class: "knots" });
-  const plot = element("div", { class: "curve-plot", role: "group", "aria-label": `Curve of ${label}` }, picture, knots);
+  const plot = element(
+    "div",
+    { class: "curve-plot", role: "group", "aria-label": `Curve of ${label}` },
+    picture,
+    knots,
+  );
   const choice = element("select", { "aria-label": `Interpolation of ${label}`, title: "Between two keys" });
   options(
     choice,

@@ -54,5 +54,4 @@ export function readText(text) {
 }
 
 /** The text with another value at a node. */
-export const replaced = (text, { begin, end }, value) =>
-  text.slice(0, begin) + JSON.stringify(value) + text.slice(end);
+export const replaced = (text, { begin, end }, value) => text.slice(0, begin) + JSON.stringify(value) + text.slice(end);

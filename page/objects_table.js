@@ -57,7 +57,12 @@ export function objectsTable({ label, columns, hasOthers, onRows, onOthers, pick
   const others =
     hasOthers &&
     names.map((name) =>
-      cell({ label: `${label}, others, ${name}`, column: columns[name], commit: (value) => onOthers(name, value), listId }),
+      cell({
+        label: `${label}, others, ${name}`,
+        column: columns[name],
+        commit: (value) => onOthers(name, value),
+        listId,
+      }),
     );
   const add = field({
     label: `${label}, object to add`,

@@ -153,8 +153,7 @@ export function profileControl({ label, describedBy, commit, pickObject }) {
     label,
     columns: { profile: { type: "profile", begin: "skin", default: "skin" } },
     hasOthers: false,
-    onRows: (rows) =>
-      commit(rows.length ? { ...(isByObject() ? value : { default: value }), rows } : profile()),
+    onRows: (rows) => commit(rows.length ? { ...(isByObject() ? value : { default: value }), rows } : profile()),
     pickObject,
     listId,
   });

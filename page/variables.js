@@ -46,9 +46,7 @@ export class Variables {
       if (this.list.children[i] !== row.node) this.list.insertBefore(row.node, this.list.children[i] ?? null);
       row.show(asText(value));
       const users = steps.flatMap((step) =>
-        Object.entries(step.params).flatMap(([id, entry]) =>
-          entry.value?.var === name ? [`${step.name}.${id}`] : [],
-        ),
+        Object.entries(step.params).flatMap(([id, entry]) => (entry.value?.var === name ? [`${step.name}.${id}`] : [])),
       );
       row.hint.textContent = users.length ? `Value of ${users.join(", ")}.` : "No parameter takes this variable.";
       row.count.textContent = users.length;

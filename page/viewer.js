@@ -188,7 +188,9 @@ export class Viewer extends EventTarget {
 
   /** Marks the frames with keys at their places of the scrubber. */
   markKeys() {
-    const wanted = this.frames.flatMap((frame, i) => (this.keyed.has(frame) ? [i / Math.max(1, this.frames.length - 1)] : []));
+    const wanted = this.frames.flatMap((frame, i) =>
+      this.keyed.has(frame) ? [i / Math.max(1, this.frames.length - 1)] : [],
+    );
     while (this.marks.children.length > wanted.length) this.marks.lastChild.remove();
     while (this.marks.children.length < wanted.length) this.marks.append(element("span"));
     wanted.forEach((share, i) => (this.marks.children[i].style.left = `${100 * share}%`));
@@ -203,7 +205,10 @@ export class Viewer extends EventTarget {
     this.exposureField.show(this.exposure.toFixed(2).replace(/\.?0+$/, ""));
     const at = this.frames.indexOf(this.frame);
     this.frameSlider.value = at;
-    this.frameSlider.setAttribute("aria-valuetext", `frame ${this.frame}${this.keyed.has(this.frame) ? ", keyed" : ""}`);
+    this.frameSlider.setAttribute(
+      "aria-valuetext",
+      `frame ${this.frame}${this.keyed.has(this.frame) ? ", keyed" : ""}`,
+    );
     this.frameSlider.style.setProperty("--fill", `${(100 * at) / Math.max(1, this.frames.length - 1)}%`);
     this.exposureSlider.style.setProperty("--fill", `${(100 * (this.exposure + 8)) / 16}%`);
     this.frameField.show(String(this.frame));

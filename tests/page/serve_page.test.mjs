@@ -214,7 +214,11 @@ inPage("makes a control for every parameter of every effect from its declaration
         const shipped = JSON.parse(
           spawnSync(program, ["list", "--scattering-profiles", "--json"], { encoding: "utf8" }).stdout,
         ).map(({ name }) => name);
-        assert.deepEqual(one.choices, [...shipped, "burley", "gaussians", "dipole", "artist", "file", ...shipped], place);
+        assert.deepEqual(
+          one.choices,
+          [...shipped, "burley", "gaussians", "dipole", "artist", "file", ...shipped],
+          place,
+        );
         continue;
       }
       assert.equal(one.box, type === "bool", place);
@@ -700,10 +704,13 @@ inPage("plots the histogram of the final picture", async (page) => {
   await page.waitForFunction(() =>
     /most pixels/.test(document.querySelector(".plot canvas").getAttribute("aria-label")),
   );
-  const painted = await page.locator(".plot canvas").first().evaluate((canvas) => {
-    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
-    return data.filter((value, i) => i % 4 === 3 && value > 100).length;
-  });
+  const painted = await page
+    .locator(".plot canvas")
+    .first()
+    .evaluate((canvas) => {
+      const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+      return data.filter((value, i) => i % 4 === 3 && value > 100).length;
+    });
   assert.ok(painted > 200, `${painted} px`);
 });
 
@@ -926,12 +933,14 @@ for (const [interpolation, expected] of [
   inPage(`shows the value between two keys that the program takes, ${interpolation}`, async (page) => {
     const exposure = row(await opened(page, "color_grade"), "exposure");
     await lookAfter(page, () =>
-      page.evaluate(
-        (value) => window.aftershade.store.edit([{ op: "set", step: 1, param: "exposure", value }]),
-        { keys: { 0: 0, 3: 1 }, interpolation: interpolation === "step" ? "smooth" : "step" },
-      ),
+      page.evaluate((value) => window.aftershade.store.edit([{ op: "set", step: 1, param: "exposure", value }]), {
+        keys: { 0: 0, 3: 1 },
+        interpolation: interpolation === "step" ? "smooth" : "step",
+      }),
     );
-    const look = await lookAfter(page, () => exposure.getByLabel("Interpolation of exposure").selectOption(interpolation));
+    const look = await lookAfter(page, () =>
+      exposure.getByLabel("Interpolation of exposure").selectOption(interpolation),
+    );
     assert.equal(look.steps[1].params.exposure.interpolation, interpolation);
     const shown = Number(await exposure.getByRole("textbox").inputValue());
     assert.ok(Math.abs(shown - expected) < 1e-5, String(shown));
@@ -951,7 +960,12 @@ inPage("moves and removes keys by the keyboard, with the focus kept", async (pag
   await lookAfter(page, () =>
     page.evaluate(() =>
       window.aftershade.store.edit([
-        { op: "set", step: 0, param: "focus_distance", value: { keys: { 1: "2 m", 5: "6 m" }, interpolation: "smooth" } },
+        {
+          op: "set",
+          step: 0,
+          param: "focus_distance",
+          value: { keys: { 1: "2 m", 5: "6 m" }, interpolation: "smooth" },
+        },
       ]),
     ),
   );
@@ -966,7 +980,9 @@ inPage("moves and removes keys by the keyboard, with the focus kept", async (pag
   assert.ok(raised > 6, raised);
   // Keys do not pass each other.
   for (let i = 0; i < 2; ++i) await page.keyboard.press("Shift+ArrowLeft");
-  await page.waitForFunction(() => "2" in (window.aftershade.store.state.steps[0].params.focus_distance.value.keys ?? {}));
+  await page.waitForFunction(
+    () => "2" in (window.aftershade.store.state.steps[0].params.focus_distance.value.keys ?? {}),
+  );
   assert.deepEqual(Object.keys((await lookOf(page)).steps[0].params.focus_distance.keys), ["1", "2"]);
   look = await lookAfter(page, () => page.keyboard.press("Delete"));
   assert.deepEqual(look.steps[0].params.focus_distance.keys, { 1: "2 m" });
@@ -1009,13 +1025,14 @@ inPage("drags a key by the pointer in one step of undo, also a channel of a colo
 // ---- variables and masks ----
 
 inPage("edits variables in their place in the text, and unbinds a parameter from one", async (page) => {
-  const bound = LOOK.replace('"steps"', '"vars": { "far": "6 m", // of the ball\n    "warm": 0.3, "half": 0.5 },\n  "steps"')
+  const bound = LOOK.replace(
+    '"steps"',
+    '"vars": { "far": "6 m", // of the ball\n    "warm": 0.3, "half": 0.5 },\n  "steps"',
+  )
     .replace('"6.4 m"', '{ "var": "far" }')
     .replace('"exposure":  0.3', '"exposure": { "var": "warm" }')
     .replace('"effect": "vignette"', '"effect": "vignette", "mix": { "var": "half" }');
-  await lookAfter(page, () =>
-    page.evaluate((value) => window.aftershade.store.edit([{ op: "text", value }]), bound),
-  );
+  await lookAfter(page, () => page.evaluate((value) => window.aftershade.store.edit([{ op: "text", value }]), bound));
   const card = await opened(page, "bokeh"),
     focus = row(card, "focus_distance"),
     far = page.getByLabel("Variable far", { exact: true });
@@ -1042,45 +1059,51 @@ inPage("edits variables in their place in the text, and unbinds a parameter from
   assert.equal(look.steps[2].mix, 0.5);
 });
 
-inPage("masks a step by a role, by objects, also picked, or by a file, and draws what `run` draws", async (page, { look }) => {
-  const card = await opened(page, "color_grade"),
-    by = card.getByLabel("Mask by");
-  const mask = async (act) => (await lookAfter(page, act)).steps[1].mask;
-  const roles = (await state(page)).capture.roles.filter(({ channels }) => channels === 1).map(({ name }) => name);
-  const first = await mask(() => by.selectOption("role"));
-  assert.deepEqual(first, { role: roles[0] });
-  await by.selectOption("object");
-  const field = card.getByLabel("Mask's objects");
-  await field.fill("2, 4-7");
-  assert.deepEqual(await mask(() => field.press("Enter")), { object: [2, "4-7"] });
-  assert.deepEqual(await mask(() => card.getByLabel("Invert the mask").check()), { object: [2, "4-7"], invert: true });
-  await card.getByRole("button", { name: "Pick the mask's object in the picture" }).click();
-  const picked = await mask(async () => {
-    await page.keyboard.press("ArrowRight");
-    await page.keyboard.press("Enter");
-  });
-  assert.equal(typeof picked.object, "number");
-  assert.equal(picked.invert, true);
-  await drawn(page);
-  await page.keyboard.press("Control+s");
-  await page.waitForFunction(() => window.aftershade.store.isSaved);
-  await page.locator(".stage canvas").focus();
-  await page.keyboard.press("1");
-  await page.evaluate(() => {
-    window.aftershade.viewer.picture.probe = null;
-    window.aftershade.viewer.picture.draw();
-  });
-  await frame(page);
-  assert.equal((await compareWithPng(page, runPicture(look))).difference, 0);
-  assert.deepEqual(await mask(() => card.getByLabel("Invert the mask").uncheck()), { object: picked.object });
-  assert.equal(await mask(() => by.selectOption("")), undefined);
-  await by.selectOption("file");
-  const file = card.getByLabel("Mask's file");
-  await file.fill("hole.png");
-  assert.deepEqual(await mask(() => file.press("Enter")), { file: "hole.png" });
-  await page.waitForFunction(() => window.aftershade.store.hasFaults);
-  assert.match(await page.locator(".faults").innerText(), /hole\.png/);
-});
+inPage(
+  "masks a step by a role, by objects, also picked, or by a file, and draws what `run` draws",
+  async (page, { look }) => {
+    const card = await opened(page, "color_grade"),
+      by = card.getByLabel("Mask by");
+    const mask = async (act) => (await lookAfter(page, act)).steps[1].mask;
+    const roles = (await state(page)).capture.roles.filter(({ channels }) => channels === 1).map(({ name }) => name);
+    const first = await mask(() => by.selectOption("role"));
+    assert.deepEqual(first, { role: roles[0] });
+    await by.selectOption("object");
+    const field = card.getByLabel("Mask's objects");
+    await field.fill("2, 4-7");
+    assert.deepEqual(await mask(() => field.press("Enter")), { object: [2, "4-7"] });
+    assert.deepEqual(await mask(() => card.getByLabel("Invert the mask").check()), {
+      object: [2, "4-7"],
+      invert: true,
+    });
+    await card.getByRole("button", { name: "Pick the mask's object in the picture" }).click();
+    const picked = await mask(async () => {
+      await page.keyboard.press("ArrowRight");
+      await page.keyboard.press("Enter");
+    });
+    assert.equal(typeof picked.object, "number");
+    assert.equal(picked.invert, true);
+    await drawn(page);
+    await page.keyboard.press("Control+s");
+    await page.waitForFunction(() => window.aftershade.store.isSaved);
+    await page.locator(".stage canvas").focus();
+    await page.keyboard.press("1");
+    await page.evaluate(() => {
+      window.aftershade.viewer.picture.probe = null;
+      window.aftershade.viewer.picture.draw();
+    });
+    await frame(page);
+    assert.equal((await compareWithPng(page, runPicture(look))).difference, 0);
+    assert.deepEqual(await mask(() => card.getByLabel("Invert the mask").uncheck()), { object: picked.object });
+    assert.equal(await mask(() => by.selectOption("")), undefined);
+    await by.selectOption("file");
+    const file = card.getByLabel("Mask's file");
+    await file.fill("hole.png");
+    assert.deepEqual(await mask(() => file.press("Enter")), { file: "hole.png" });
+    await page.waitForFunction(() => window.aftershade.store.hasFaults);
+    assert.match(await page.locator(".faults").innerText(), /hole\.png/);
+  },
+);
 
 // ---- tables and profiles ----
 
@@ -1103,7 +1126,9 @@ inPage("edits a table by object line by line", async (page) => {
   assert.deepEqual(await set("object to add", "2"), { rows: [{ object: 2 }] });
   assert.equal(await field("object to add").inputValue(), "");
   assert.deepEqual(await set("line 1, scale", "0.5"), { rows: [{ object: 2, scale: 0.5 }] });
-  assert.deepEqual(await set("object to add", "30-70, 90"), { rows: [{ object: 2, scale: 0.5 }, { objects: "30-70,90" }] });
+  assert.deepEqual(await set("object to add", "30-70, 90"), {
+    rows: [{ object: 2, scale: 0.5 }, { objects: "30-70,90" }],
+  });
   assert.deepEqual(await set("objects of line 1", "Wheel"), {
     rows: [{ name: "Wheel", scale: 0.5 }, { objects: "30-70,90" }],
   });
@@ -1121,7 +1146,10 @@ inPage("edits a table by object line by line", async (page) => {
     await page.keyboard.press("Enter");
   });
   assert.equal(typeof picked.steps[0].params.objects.rows[1].object, "number");
-  assert.deepEqual((await state(page)).faults.filter(({ severity }) => severity === "error"), []);
+  assert.deepEqual(
+    (await state(page)).faults.filter(({ severity }) => severity === "error"),
+    [],
+  );
 });
 
 inPage("chooses a scattering profile, sets its numbers, and gives objects their own", async (page) => {
@@ -1157,7 +1185,10 @@ inPage("chooses a scattering profile, sets its numbers, and gives objects their 
   await field("strength, green").press("Escape");
   assert.deepEqual(await set("width mm", "2.5"), { type: "artist", width_mm: 2.5, strength: [0.48, 0.5, 0.28] });
   assert.equal(await value(() => choice.selectOption("cream")), "cream");
-  assert.deepEqual(await set("object to add", "3-7"), { default: "cream", rows: [{ objects: "3-7", profile: "skin" }] });
+  assert.deepEqual(await set("object to add", "3-7"), {
+    default: "cream",
+    rows: [{ objects: "3-7", profile: "skin" }],
+  });
   assert.deepEqual(await set("line 1, profile", "marble"), {
     default: "cream",
     rows: [{ objects: "3-7", profile: "marble" }],
