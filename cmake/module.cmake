@@ -31,7 +31,7 @@ if(AFTERSHADE_FUZZ)
   add_compile_options(-fsanitize=fuzzer-no-link)
 endif()
 
-# Where no loop over pixels is: what is compiled in two thirds of the time.
+# For code without loops over pixels: it compiles in two thirds of the time.
 set(AFTERSHADE_PLAIN_OPTIMISATION $<$<CONFIG:Release>:-O1>)
 
 # GCC keeps the level of optimisation that a precompiled header was made with for every function that the header

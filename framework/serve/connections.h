@@ -19,9 +19,10 @@
 
 namespace aftershade::serve {
 
-/// One thread reads and writes all sockets without ever waiting for one of them, so that a peer that is slow,
-/// or that has a thousand connections, delays no other. Only a request that is there as a whole goes to
-/// one of a few workers.
+/// cpp-httplib, the library of this size in Debian, gives each connection a thread until its request is
+/// there, so that as many slow peers as it has threads stop it. One thread reads and writes all sockets
+/// without ever waiting for one of them, so that a peer that is slow, or that has a thousand connections,
+/// delays no other. Only a request that is there as a whole goes to one of a few workers.
 class Connections {
 public:
     struct Limits {

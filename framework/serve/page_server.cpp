@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 #include "framework/effect/describe.h"
 #include "framework/image/role.h"
 #include "framework/serve/view_picture.h"
@@ -53,17 +54,6 @@ Json capture_json(const Sequence& sequence, const CaptureHeader& header, const s
             {"width", header.display_window.width()},
             {"height", header.display_window.height()},
             {"roles", roles}};
-}
-
-/// A word of a shell's command line.
-std::string quoted(const std::string& word) {
-    constexpr std::string_view kPlain =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=:,+@%#";
-    if (!word.empty() && word.front() != '#' && word.find_first_not_of(kPlain) == std::string::npos)
-        return word;
-    std::string text = "'";
-    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return text + "'";
 }
 
 }  // namespace
@@ -152,8 +142,8 @@ Response PageServer::histogram(const Request& request) {
 Response PageServer::command() const {
     const auto& frames = setup_.sequence.frames;
     const char* output = frames.size() == 1 ? "out.png" : "out_####.png";
-    return json_response({{"command", "aftershade run " + quoted(setup_.look.path().string()) + " " +
-                                          quoted(setup_.capture) + " -o " + output}});
+    return json_response({{"command", shell_line({"aftershade", "run", setup_.look.path().string(),
+                                                  setup_.capture, "-o", output})}});
 }
 
 Response PageServer::answer(const Request& request) {

@@ -50,7 +50,7 @@ TEST(LookEdits, LeaveAnEqualValueInItsAuthorsSpelling) {
     EXPECT_EQ(edited(kLook, {{"op", "set"}, {"step", 0}, {"param", "f_number"}, {"value", 2.8}}), kLook);
 }
 
-TEST(LookEdits, PutANewKeyBehindTheLastOneInItsOwnForm) {
+TEST(LookEdits, PutANewKeyAfterTheLastOneInItsOwnForm) {
     const std::string text =
         edited(kLook, {{"op", "set"}, {"step", 0}, {"param", "quality"}, {"value", "high"}});
     EXPECT_NE(text.find("\"focus_distance\": \"3 m\",\n                  \"quality\": \"high\" } },"),

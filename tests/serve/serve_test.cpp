@@ -1,4 +1,5 @@
 // The program itself over real sockets: what it answers to its page, and to those that are not its page.
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <memory>
@@ -10,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/capture/capture_writer.h"
+#include "framework/file/png_file.h"
 #include "tests/cli/command.h"
 #include "tests/serve/client.h"
 #include "tests/synthetic_capture.h"
@@ -61,13 +63,12 @@ protected:
         return ask(head("POST " + path, "Content-Length: " + std::to_string(body.size()) + "\r\n") + "\r\n" +
                    body);
     }
-    Answer set(double exposure) const {
+    Answer set(double value, int step = 1, const char* param = "exposure") const {
         const Json state = get("/api/state").json();
-        return post(
-            "/api/edit",
-            Json{{"revision", state["revision"]},
-                 {"edits", {{{"op", "set"}, {"step", 1}, {"param", "exposure"}, {"value", exposure}}}}}
-                .dump());
+        return post("/api/edit",
+                    Json{{"revision", state["revision"]},
+                         {"edits", {{{"op", "set"}, {"step", step}, {"param", param}, {"value", value}}}}}
+                        .dump());
     }
     Json times(const std::string& query = "") const {
         return Json::parse(get("/api/picture?frame=1" + query).header("X-Aftershade-Times"));
@@ -110,18 +111,28 @@ TEST_F(Serve, DrawsTheStepsFromTheChangedOneOnAndTheSameBits) {
     start();
     EXPECT_EQ(times()["steps_drawn"], 2);
     EXPECT_EQ(times()["steps_drawn"], 0) << "nothing changed";
-    ASSERT_EQ(set(1.25).status, 200);
-    const Json after = times();
-    EXPECT_EQ(after["steps_drawn"], 1);
-    EXPECT_EQ(after["steps_cached"], 1);
-    const std::string cached = get("/api/picture?frame=1").body;
-    ASSERT_EQ(post("/api/save").status, 200);
-    const CommandResult run =
-        run_aftershade({"run", "look.json", "in_0001.exr", "-o", "out.png"}, folder_.path());
-    ASSERT_EQ(run.exit_code, 0) << run.err;
-    write_text(folder_ / "cached.png", cached);
-    const CommandResult same = run_aftershade({"compare", "out.png", "cached.png"}, folder_.path());
-    EXPECT_EQ(same.exit_code, 0) << same.out << same.err;
+    struct Change {
+        int step;
+        const char* param;
+        double value;
+    };
+    for (const Change& change :
+         {Change{1, "exposure", 1.25}, Change{0, "strength", 0.8}, Change{1, "exposure", -0.5},
+          Change{0, "strength", 0.1}, Change{1, "exposure", 0.5}}) {
+        ASSERT_EQ(set(change.value, change.step, change.param).status, 200);
+        const Json after = times();
+        EXPECT_EQ(after["steps_drawn"], 2 - change.step);
+        EXPECT_EQ(after["steps_cached"], change.step);
+        write_text(folder_ / "cached.png", get("/api/picture?frame=1").body);
+        ASSERT_EQ(post("/api/save").status, 200);
+        const CommandResult run =
+            run_aftershade({"run", "look.json", "in_0001.exr", "-o", "out.png"}, folder_.path());
+        ASSERT_EQ(run.exit_code, 0) << run.err;
+        const Image shown = read_png(folder_ / "cached.png"), written = read_png(folder_ / "out.png");
+        ASSERT_EQ(shown.width(), written.width());
+        EXPECT_TRUE(std::ranges::equal(shown.floats(), written.floats()))
+            << change.param << " " << change.value;
+    }
 }
 
 TEST_F(Serve, SavesTheLookAloneAndKeepsItsComments) {
