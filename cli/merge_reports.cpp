@@ -13,7 +13,7 @@ namespace aftershade::cli {
 
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 constexpr std::uintmax_t kMostReportBytes = std::uintmax_t(1) << 30;
 
@@ -67,9 +67,9 @@ MergedReport merge_reports(const std::vector<std::filesystem::path>& files) {
 }
 
 std::string merged_report_json(const MergedReport& report) {
-    auto json = nlohmann::ordered_json::parse(report_json(report.batch));
+    Json json = Json::parse(report_json(report.batch));
     json["tasks"] = report.tasks;
-    json["missing_reports"] = nlohmann::ordered_json::array();
+    json["missing_reports"] = Json::array();
     for (const MissingReport& missing : report.missing)
         json["missing_reports"].push_back({{"file", missing.file}, {"why", missing.why}});
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

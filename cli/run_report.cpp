@@ -17,12 +17,12 @@ namespace aftershade::cli {
 
 namespace {
 
-using json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
 constexpr double kMsPerSecond = 1000;
 
-void print_json(const json& line) {
-    fmt::print(stderr, "{}\n", line.dump(-1, ' ', false, json::error_handler_t::replace));
+void print_json(const Json& line) {
+    fmt::print(stderr, "{}\n", line.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 /// Where the time of a run went: what a stage worked, and how long the frames waited for it.
@@ -79,7 +79,7 @@ void print_openjd_progress(std::size_t done, std::size_t count, const std::strin
 std::string warning_line(ProgressStyle style, const std::string& message) {
     const std::string text = "aftershade: warning: " + printable(message);
     if (style != ProgressStyle::json) return text;
-    return json{{"event", "warning"}, {"message", text}}.dump(-1, ' ', false, json::error_handler_t::replace);
+    return Json{{"event", "warning"}, {"message", text}}.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string rate_text(std::size_t done, std::size_t count, double elapsed_s) {
@@ -133,7 +133,7 @@ void RunReporter::show_progress(int frame) {
     const int done = started_ - 1;
     const double left_s = done > 0 ? elapsed_s / done * (frame_count_ - done) : 0;
     if (style_ == ProgressStyle::json) {
-        json line = {{"event", "frame"},
+        Json line = {{"event", "frame"},
                      {"frame", frame},
                      {"number", started_},
                      {"of", frame_count_},
@@ -208,7 +208,7 @@ void RunReporter::print_tables(const RunReport& report, const std::string& clock
 }
 
 void RunReporter::print_json_summary(const RunReport& report) const {
-    json stages = json::object();
+    Json stages = Json::object();
     for (const Stage& stage : stages_of(report))
         stages[stage.name] = {{"busy_s", stage.busy_ms / kMsPerSecond},
                               {"waited_s", stage.waited_ms / kMsPerSecond}};

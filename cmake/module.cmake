@@ -1,8 +1,8 @@
-# aftershade_module(NAME LINKS ... PRIVATE_LINKS ... [OPTIMISED])
+# aftershade_module(NAME LINKS ... PRIVATE_LINKS ... OPTIMISED SOURCES...)
 #
 # One target per folder of framework/, of every .cpp file in it. LINKS names what the module's headers use; everything
-# else is private, so that an include against the direction of CONTRIBUTING.md fails to compile or link. OPTIMISED is
-# for modules whose loops over pixels decide a run's time; the others compile in two thirds of the time at -O1.
+# else is private, so that an include against the direction of CONTRIBUTING.md fails to compile or link. OPTIMISED names
+# the sources whose loops over pixels decide a run's time; the others compile in two thirds of the time at -O1.
 option(AFTERSHADE_UNITY "Compile several sources at once: a third of a full build's time, slower after small changes" ON)
 
 add_library(aftershade_options INTERFACE)
@@ -54,13 +54,17 @@ function(aftershade_fast_build target batch level)
 endfunction()
 
 function(aftershade_module name)
-  cmake_parse_arguments(ARG "OPTIMISED" "" "LINKS;PRIVATE_LINKS" ${ARGN})
-  file(GLOB_RECURSE SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
-  add_library(aftershade_${name} STATIC ${SOURCES})
-  target_link_libraries(aftershade_${name} PUBLIC ${ARG_LINKS} PRIVATE aftershade_options ${ARG_PRIVATE_LINKS})
-  set(level plain)
+  cmake_parse_arguments(ARG "" "" "LINKS;PRIVATE_LINKS;OPTIMISED" ${ARGN})
+  file(GLOB_RECURSE SOURCES CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp)
+  set(links PUBLIC ${ARG_LINKS} PRIVATE aftershade_options ${ARG_PRIVATE_LINKS})
   if(ARG_OPTIMISED)
-    set(level optimised)
+    list(REMOVE_ITEM SOURCES ${ARG_OPTIMISED})
+    add_library(aftershade_${name}_optimised OBJECT ${ARG_OPTIMISED})
+    target_link_libraries(aftershade_${name}_optimised ${links})
+    aftershade_fast_build(aftershade_${name}_optimised 64 optimised)
+    list(APPEND SOURCES $<TARGET_OBJECTS:aftershade_${name}_optimised>)
   endif()
-  aftershade_fast_build(aftershade_${name} 16 ${level})
+  add_library(aftershade_${name} STATIC ${SOURCES})
+  target_link_libraries(aftershade_${name} ${links})
+  aftershade_fast_build(aftershade_${name} 64 plain)
 endfunction()

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "framework/compare/flip_band.h"
+#include "framework/compare/row_filter.h"
 #include "framework/core/parallel.h"
 
 namespace aftershade {
@@ -16,8 +17,7 @@ namespace aftershade {
 namespace {
 
 constexpr std::array<std::string_view, 3> kToneMapperNames = {"aces", "reinhard", "hable"};
-// High enough that the rows filtered twice, at the borders of bands, are few; low enough to share work.
-constexpr int kBandHeight_px = 64;
+using rows::kBandHeight_px;
 
 struct Root {
     float a, b, c;

@@ -12,6 +12,10 @@ constexpr int padded(int width) {
     return (width + kLanes - 1) / kLanes * kLanes;
 }
 
+/// Rows that a thread filters together: high enough that the rows filtered twice, at the borders of bands, are few;
+/// low enough to share work.
+inline constexpr int kBandHeight_px = 64;
+
 /// out[x] = sum of weights[i] * in[x + i], for x below padded(width). `in` begins weights.size() / 2 values
 /// left of the row.
 void convolve(const float* in, std::span<const float> weights, float* out, int width);

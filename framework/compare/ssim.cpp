@@ -16,7 +16,7 @@ namespace aftershade {
 namespace {
 
 constexpr int kRadius_px = kSsimWindow_px / 2;
-constexpr int kBandHeight_px = 64;
+using rows::kBandHeight_px;
 constexpr std::array<double, kMsSsimScales> kScaleWeights = {0.0448, 0.2856, 0.3001, 0.2363, 0.1333};
 
 using Window11 = std::array<double, kSsimWindow_px>;

@@ -30,7 +30,7 @@ bool take_directive(std::string_view& line, std::string_view word) {
     return true;
 }
 
-bool is_version(std::string_view line) {
+bool is_version_directive(std::string_view line) {
     const auto is_part = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
     return take_directive(line, "version") && (line.empty() || !is_part(static_cast<unsigned char>(line[0])));
 }
@@ -107,7 +107,7 @@ private:
     void add_source_line(const std::string& line, const Place& place) {
         if (const auto include = parse_include(line)) {
             add_include(include->is_shared, include->name, place);
-        } else if (is_version(line)) {
+        } else if (is_version_directive(line)) {
             if (source_.lines.empty() && line == "#version 450 core") has_version_ = true;
             else
                 diagnostics_.error(place,

@@ -13,18 +13,18 @@
 
 namespace aftershade {
 
-using schema::json;
+using Json = schema::json;
 
 namespace {
 
 /// {"var": "name"} may stand for every part of a value.
-json or_variable(json form) {
+Json or_variable(Json form) {
     return schema::any_of({std::move(form), schema::variable()});
 }
 
 /// {"keys": {"1": 2.0, "24": 5.6}}
-json keyed(const json& literal) {
-    json keys = {{"type", "object"},
+Json keyed(const Json& literal) {
+    Json keys = {{"type", "object"},
                  {"patternProperties", {{"^-?[0-9]+$", literal}}},
                  {"additionalProperties", false},
                  {"minProperties", 1}};
@@ -34,8 +34,8 @@ json keyed(const json& literal) {
 }
 
 /// Values of the capture that a parameter may take.
-std::vector<json> captured(const ParamSpec& spec) {
-    std::vector<json> forms;
+std::vector<Json> captured(const ParamSpec& spec) {
+    std::vector<Json> forms;
     std::vector<std::string> fields;
     if (spec.type->is_choice) fields = camera_sources(spec.type);
     if (is_scalar_type(spec.type))
@@ -44,9 +44,9 @@ std::vector<json> captured(const ParamSpec& spec) {
     if (!fields.empty())
         forms.push_back(schema::object({{"from", or_variable(schema::one_of(fields))}}, {"from"}));
     if (!is_scalar_type(spec.type) || !convert_unit(1, "m", spec.unit)) return forms;
-    const json depth = or_variable({{"const", "depth"}});
-    const json side = or_variable({{"type", "number"}, {"minimum", 0}, {"maximum", 1}});
-    const json point = or_variable(schema::array_of(side, 2, 2));
+    const Json depth = or_variable({{"const", "depth"}});
+    const Json side = or_variable({{"type", "number"}, {"minimum", 0}, {"maximum", 1}});
+    const Json point = or_variable(schema::array_of(side, 2, 2));
     forms.push_back(schema::object({{"from", depth}, {"uv", point}}, {"from", "uv"}));
     forms.push_back(
         schema::object({{"from", depth}, {"object", or_variable(schema::object_key())}}, {"from", "object"}));
@@ -54,15 +54,15 @@ std::vector<json> captured(const ParamSpec& spec) {
 }
 
 /// A value in any form.
-json value_of(const ParamSpec& spec) {
-    const json literal = schema::literal(spec, schema::Variables::yes);
-    json forms = {literal};
+Json value_of(const ParamSpec& spec) {
+    const Json literal = schema::literal(spec, schema::Variables::yes);
+    Json forms = {literal};
     if (spec.bind != ParamBind::define) forms.push_back(keyed(literal));
-    for (json& form : captured(spec)) forms.push_back(std::move(form));
+    for (Json& form : captured(spec)) forms.push_back(std::move(form));
     return {{"anyOf", std::move(forms)}};
 }
 
-grammar::Form form_of(const json& schema) {
+grammar::Form form_of(const Json& schema) {
     return grammar::custom({.type = "", .schema = schema.dump()});
 }
 

@@ -9,15 +9,15 @@ namespace aftershade {
 
 namespace {
 
-using json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
 std::size_t bin_of(const TelemetrySpec& spec, double value) {
     const double place = (value - spec.from) / (spec.to - spec.from) * spec.bins;
     return std::size_t(std::clamp(std::floor(place), 0.0, double(spec.bins - 1)));
 }
 
-json statistic_json(const Statistic& statistic) {
-    json result{{"count", statistic.count},         {"sum", statistic.sum}, {"mean", statistic.mean},
+Json statistic_json(const Statistic& statistic) {
+    Json result{{"count", statistic.count},         {"sum", statistic.sum}, {"mean", statistic.mean},
                 {"deviation", statistic.deviation}, {"min", statistic.min}, {"max", statistic.max}};
     if (statistic.non_finite > 0) result["non_finite"] = statistic.non_finite;
     if (!statistic.histogram.empty())
@@ -58,18 +58,18 @@ Statistic statistic_of(const TelemetrySpec& spec, const Image& of, const Image* 
 }
 
 std::string telemetry_json(const FrameTelemetry& telemetry) {
-    json result{{"aftershade", 1}, {"frame", telemetry.frame}, {"steps", json::object()}};
+    Json result{{"aftershade", 1}, {"frame", telemetry.frame}, {"steps", Json::object()}};
     for (const auto& [step, statistics] : telemetry.steps)
         for (const auto& [name, statistic] : statistics)
             result["steps"][step][name] = statistic_json(statistic);
-    json& memory = result["memory"];
-    memory["textures"] = json::object();
+    Json& memory = result["memory"];
+    memory["textures"] = Json::object();
     for (const auto& [format, used] : telemetry.textures)
         memory["textures"][format] = {{"count", used.textures}, {"bytes", used.bytes}};
     memory["buffer_bytes"] = telemetry.buffer_bytes;
     memory["bytes"] = telemetry.bytes;
     memory["bytes_unaliased"] = telemetry.bytes_unaliased;
-    json& passes = result["passes_ms"] = json::object();
+    Json& passes = result["passes_ms"] = Json::object();
     for (const graph::PassTime& time : telemetry.passes)
         passes[time.pass] = passes.value(time.pass, 0.0) + time.milliseconds;
     return result.dump(2) + "\n";
