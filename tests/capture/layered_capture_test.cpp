@@ -2,18 +2,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "framework/image/role.h"
 #include "tests/capture/capture_files.h"
 #include "tests/capture/part_files.h"
+#include "tests/not_finite.h"
 
 namespace aftershade::test {
 namespace {
 
 namespace fs = std::filesystem;
 using Names = std::vector<std::string>;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 class LayeredCapture : public testing::Test {
 protected:

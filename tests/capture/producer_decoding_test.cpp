@@ -1,7 +1,6 @@
 // The decodings of producers of whom no real file is here, against their documented formulas, and the way
 // back.
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -9,11 +8,11 @@
 #include "framework/capture/decode.h"
 #include "framework/image/role.h"
 #include "tests/file/image_files.h"
+#include "tests/not_finite.h"
 
 namespace aftershade::test {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 const Window kFullHd{0, 0, 1919, 1079};
 
 const Profile& profile(const std::string& id) {
