@@ -9,9 +9,11 @@ shared uint sums[kTile];
 void main() {
     ivec2 tile = ivec2(gl_WorkGroupID.xy), p = kTile * tile + ivec2(0, gl_LocalInvocationID.x);
     uint count = 0u;
-    if (p.y < frame.size.y)
-        for (int i = 0; i < kTile; ++i)
-            if (p.x + i < frame.size.x && texelFetch(is_highlight, p + ivec2(i, 0), 0).r > 0.5) ++count;
+    vec2 coc_px = texelFetch(tile_coc, tile, 0).rg;
+    bool may_shine = p.y < frame.size.y && max(-coc_px.x, coc_px.y) >= kLeastHighlightRadiusPx;
+    int columns = may_shine ? min(kTile, frame.size.x - p.x) : 0;
+    for (int i = 0; i < columns; ++i)
+        if (texelFetch(is_highlight, p + ivec2(i, 0), 0).r > 0.5) ++count;
     sums[gl_LocalInvocationID.x] = count;
     barrier();
     if (gl_LocalInvocationID.x != 0u) return;

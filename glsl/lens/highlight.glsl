@@ -7,3 +7,6 @@ const float kHighlight = 4.0;
 const float kOneSurfacePx = 1.0;
 // Side in px of the tiles of coc_step, as module.json declares it.
 const int kRepairTile = 16;
+// Whether a tile may hold the edge of a surface, by the largest difference of CoC radius in coc_step. Two steps lead to a
+// diagonal neighbour.
+bool is_repaired(float step_px) { return step_px > 0.5 * kOneSurfacePx; }

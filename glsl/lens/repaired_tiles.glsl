@@ -1,4 +1,3 @@
 #include "highlight.glsl"
 
-// Two steps lead to a diagonal neighbour.
-bool repaired_tiles(ivec2 tile) { return texelFetch(coc_step, tile, 0).r > 0.5 * kOneSurfacePx; }
+bool repaired_tiles(ivec2 tile) { return is_repaired(texelFetch(coc_step, tile, 0).r); }

@@ -19,8 +19,10 @@ void main() {
             above = row;
         }
     }
+    out_coc_step = vec2(largest, 0.0);
+    if (!is_repaired(largest)) return;
     ivec2 last = ivec2(color_size.xy) - 1;
     for (int y = 1; y <= kRepairTile; ++y)
         for (int x = 1; x <= kRepairTile; ++x) sum += max(amount(texelFetch(color, min(corner + ivec2(x, y), last), 0).rgb), 0.0);
-    out_coc_step = vec2(largest, sum / float(kRepairTile * kRepairTile));
+    out_coc_step.g = sum / float(kRepairTile * kRepairTile);
 }
