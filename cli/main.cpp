@@ -4,8 +4,10 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -86,6 +88,17 @@ std::string unknown_command(const CLI::App& app, int argc, char** argv) {
     return "";
 }
 
+/// A folder for all that GL compiles: Mesa keeps LLVM's code in one of its own, unless that has been chosen
+/// too.
+void use_one_cache_folder() {
+    const char* folder = std::getenv("AFTERSHADE_CACHE");
+    if (!folder || !*folder || std::string_view(folder) == "off") return;
+    std::error_code failure;
+    std::filesystem::create_directories(folder, failure);
+    constexpr int kKeepAnExistingOne = 0;
+    setenv("MESA_SHADER_CACHE_DIR", std::filesystem::absolute(folder, failure).c_str(), kKeepAnExistingOne);
+}
+
 bool stdout_is_whole() {
     std::cout.flush();
     return std::fflush(stdout) == 0 && std::cout && std::ferror(stdout) == 0;
@@ -102,6 +115,7 @@ int main(int argc, char** argv) {
         return aftershade::serve_native_code(aftershade::kNativeDescriptor);
     // A file above the shell's limit is then an output that cannot be written, not the end of the process.
     std::signal(SIGXFSZ, SIG_IGN);
+    use_one_cache_folder();
     CLI::App app{"Run chains of GLSL effects over G-buffer captures, without a display.", "aftershade"};
     app.formatter(std::make_shared<aftershade::cli::HelpFormatter>());
     app.set_version_flag("--version", std::string("aftershade " AFTERSHADE_VERSION));

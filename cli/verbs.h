@@ -27,6 +27,7 @@ using Verb = std::function<ExitCode()>;
     VERB(describe, "Show an effect's inputs, outputs and parameters, or a scattering profile")       \
     VERB(new, "Create the folder of a new effect that runs as it is")                                \
     VERB(check, "Check the documents, shaders and values of an effect or a look; exits 1 on faults") \
+    VERB(warm, "Compile a look's shaders into the caches, so that the first frame need not wait")    \
     VERB(schema, "Print the JSON Schema of a kind of document, for editors")                         \
     VERB(docs, "Write the pages of effects from their manifests, and the scene reference")           \
     VERB(doctor, "Show which GL backends work on this machine, and why the others do not")           \

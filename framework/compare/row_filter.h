@@ -12,8 +12,8 @@ constexpr int padded(int width) {
     return (width + kLanes - 1) / kLanes * kLanes;
 }
 
-/// Rows that a thread filters together: high enough that the rows filtered twice, at the borders of bands, are few;
-/// low enough to share work.
+/// Rows that a thread filters together: high enough that the rows filtered twice, at the borders of bands,
+/// are few; low enough to share work.
 inline constexpr int kBandHeight_px = 64;
 
 /// out[x] = sum of weights[i] * in[x + i], for x below padded(width). `in` begins weights.size() / 2 values

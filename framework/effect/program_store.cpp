@@ -1,10 +1,12 @@
 #include "framework/effect/program_store.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <system_error>
+#include <vector>
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
@@ -16,6 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr const char* kExtension = ".program";
 constexpr std::string_view kMagic = "aftershade program 1\n";
 /// More than any program of ours; what is larger is no program.
 constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t(64) << 20;
@@ -75,7 +78,7 @@ ProgramStore ProgramStore::from_environment() {
 }
 
 fs::path ProgramStore::file_of(const std::string& key) const {
-    return folder_ / (fnv1a_hex(key) + ".program");
+    return folder_ / (fnv1a_hex(key) + kExtension);
 }
 
 std::optional<gpu::ProgramBinary> ProgramStore::load(const std::string& key) const {
@@ -98,6 +101,34 @@ std::optional<gpu::ProgramBinary> ProgramStore::load(const std::string& key) con
     return binary;
 }
 
+void ProgramStore::make_room() const {
+    struct Kept {
+        fs::file_time_type written;
+        std::uintmax_t bytes;
+        fs::path path;
+    };
+    std::vector<Kept> programs;
+    std::uintmax_t sum = 0;
+    std::error_code failure;
+    for (fs::directory_iterator entry(folder_, failure), end; !failure && entry != end;
+         entry.increment(failure)) {
+        if (entry->path().extension() != kExtension) continue;
+        std::error_code gone;  // another process makes room too
+        const Kept kept{entry->last_write_time(gone), entry->file_size(gone), entry->path()};
+        if (gone) continue;
+        sum += kept.bytes;
+        programs.push_back(kept);
+    }
+    if (sum <= max_bytes_) return;
+    std::sort(programs.begin(), programs.end(),
+              [](const Kept& a, const Kept& b) { return a.written < b.written; });
+    for (const Kept& kept : programs) {
+        if (sum <= max_bytes_) return;
+        fs::remove(kept.path, failure);
+        sum -= kept.bytes;
+    }
+}
+
 void ProgramStore::save(const std::string& key, const gpu::ProgramBinary& binary) const {
     if (!is_on()) return;
     std::error_code failure;
@@ -109,6 +140,7 @@ void ProgramStore::save(const std::string& key, const gpu::ProgramBinary& binary
         out.write(text.data(), static_cast<std::streamsize>(text.size()));
         out.close();
         if (out) file.commit();
+        make_room();
     } catch (const Error&) {
         // A full disk or a folder of somebody else's costs time only: the program is compiled again.
     }

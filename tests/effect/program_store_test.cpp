@@ -1,6 +1,8 @@
 #include "framework/effect/program_store.h"
 
+#include <chrono>
 #include <cstdlib>
+#include <string>
 #include <thread>
 
 #include "tests/documents.h"
@@ -46,6 +48,23 @@ TEST(ProgramStore, TakesAKeyOfTheSameHashForAMiss) {
     EXPECT_EQ(text_of(store.load("two")), "nothing");
     store.save("two", binary_of("second"));
     EXPECT_EQ(text_of(store.load("two")), "second/7");
+}
+
+TEST(ProgramStore, DropsTheOldestProgramsBeyondItsLimit) {
+    const test::TemporaryFolder folder;
+    const ProgramStore store(folder.path(), 3000);
+    const auto now = fs::file_time_type::clock::now();
+    for (int i = 0; i < 5; ++i) {
+        const std::string key = "key " + std::to_string(i);
+        store.save(key, binary_of(std::string(900, 'x')));
+        fs::last_write_time(store.file_of(key), now - std::chrono::seconds(100 - i));
+    }
+    test::write_text(folder / "notes.txt", std::string(5000, 'n'));
+    store.save("last", binary_of("small"));
+    for (const char* gone : {"key 0", "key 1"}) EXPECT_EQ(text_of(store.load(gone)), "nothing") << gone;
+    for (const char* kept : {"key 3", "key 4", "last"})
+        EXPECT_NE(text_of(store.load(kept)), "nothing") << kept;
+    EXPECT_TRUE(fs::exists(folder / "notes.txt")) << "not a program";
 }
 
 TEST(ProgramStore, TrustsNoFileThatIsShortOrChanged) {

@@ -1,0 +1,94 @@
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/capture_options.h"
+#include "cli/effect_options.h"
+#include "cli/gl_options.h"
+#include "cli/plugin_options.h"
+#include "cli/verbs.h"
+#include "framework/core/data_path.h"
+#include "framework/core/scratch_folder.h"
+#include "framework/core/status.h"
+#include "framework/effect/program_store.h"
+#include "framework/pipeline/look.h"
+#include "framework/pipeline/run.h"
+
+namespace aftershade::cli {
+
+namespace {
+
+struct WarmOptions {
+    std::string look;
+    CaptureOptions capture;
+    std::vector<std::string> effect_paths;
+    PluginOptions plugins;
+    std::string backend;
+};
+
+/// Seconds to render the frames in a context of its own, written where nobody looks.
+double render_s(gpu::Backend backend, const Pipeline& pipeline, const Sequence& sequence, const CaptureReader& reader,
+                const RunOptions& run) {
+    const ScratchFolder scratch;
+    OutputOptions outputs;
+    outputs.patterns = {(scratch.path() / "frame_####.exr").string()};
+    const std::atomic<bool> stop = false;
+    const auto begin = std::chrono::steady_clock::now();
+    gpu::Context context(backend);
+    const RunReport report = run_frames({context, pipeline, sequence, reader, run, outputs, data_path()}, {}, stop);
+    if (!report.failures.empty()) throw Error(ExitCode::capture, report.failures.front().message);
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+ExitCode warm(const WarmOptions& options) {
+    Diagnostics diagnostics;
+    const gpu::Backend backend = chosen_backend(options.backend);
+    EffectRegistry effects = find_effects(options.effect_paths, diagnostics);
+    const auto look = read_look(options.look, diagnostics);
+    const Pipeline pipeline = look ? bind_pipeline(*look, effects, {}, diagnostics) : Pipeline{};
+    std::vector<Profile> profiles = load_profiles(options.capture.profile_paths, diagnostics);
+    const auto sequence = find_sequence(options.capture, profiles, diagnostics);
+    const ProgramStore store = ProgramStore::from_environment();
+    if (!store.is_on())
+        diagnostics.error({"AFTERSHADE_CACHE"}, "the cache is off; set the variable to a folder, or leave it unset");
+    stop_at_errors(diagnostics);
+    diagnostics.print(std::cerr);
+    if (const auto code = run_in_worker(options.plugins, pipeline.has_foreign())) return *code;
+
+    const CaptureReader reader(*sequence, std::move(profiles), options.capture.limits);
+    StatusWriter status;
+    NativeRegistry natives = native_registry(options.plugins, &status);
+    RunOptions run;
+    // The second frame of a look with history reads textures that the first one does not have.
+    const std::size_t count = pipeline.has_history() ? 2 : 1;
+    run.frames.assign(sequence->frames.begin(),
+                      sequence->frames.begin() + std::ptrdiff_t(std::min(count, sequence->frames.size())));
+    run.natives = {&natives, &status};
+    const double first_s = render_s(backend, pipeline, *sequence, reader, run);
+    const double then_s = render_s(backend, pipeline, *sequence, reader, run);
+    fmt::print("{}: {:.2f} s at first, {:.2f} s from now on\nprograms are in {}\n", options.look, first_s, then_s,
+               store.folder().string());
+    return ExitCode::done;
+}
+
+}  // namespace
+
+Verb add_warm(CLI::App& app) {
+    auto options = std::make_shared<WarmOptions>();
+    app.add_option("look", options->look, "The look")->type_name("LOOK")->required();
+    add_capture_argument(app, options->capture);
+    add_capture_options(app, options->capture, "The frame whose roles and size decide the programs (default: the first)");
+    add_effect_path_option(app, options->effect_paths);
+    add_plugin_options(app, options->plugins);
+    add_backend_option(app, options->backend);
+    return [options] { return warm(*options); };
+}
+
+}  // namespace aftershade::cli

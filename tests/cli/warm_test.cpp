@@ -1,0 +1,60 @@
+// `aftershade warm`: caches that a later run finds.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include "tests/cli/command.h"
+
+namespace aftershade::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kWarmLook = AFTERSHADE_SOURCE_DIR "/scenes/looks/portrait.json";
+const std::string kWarmCapture = AFTERSHADE_SOURCE_DIR "/scenes/suzanne/capture.json";
+
+std::set<fs::path> files_below(const fs::path& folder) {
+    std::set<fs::path> files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        if (entry.is_regular_file()) files.insert(entry.path());
+    return files;
+}
+
+class Warm : public ::testing::Test {
+protected:
+    CommandResult run(const std::vector<std::string>& words, const std::string& cache) {
+        std::vector<std::string> all{AFTERSHADE_EXECUTABLE};
+        all.insert(all.end(), words.begin(), words.end());
+        return Command(all, folder_.path(), {{"AFTERSHADE_CACHE", cache}}).wait();
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_F(Warm, LeavesNothingForALaterRunToCompile) {
+    const fs::path cache = folder_ / "cache";
+    const CommandResult warmed = run({"warm", kWarmLook, kWarmCapture, "--frames", "4", "--backend", "osmesa"}, cache.string());
+    ASSERT_EQ(warmed.exit_code, 0) << warmed.err;
+    EXPECT_NE(warmed.out.find(cache.string()), std::string::npos) << warmed.out;
+    const std::set<fs::path> after_warm = files_below(cache);
+    EXPECT_TRUE(fs::is_directory(cache / "mesa_shader_cache")) << "Mesa's code lies in the same folder";
+    const CommandResult ran = run({"run", kWarmLook, kWarmCapture, "--frames", "4", "--backend", "osmesa", "-o", "o_####.exr"},
+                                  cache.string());
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    EXPECT_EQ(files_below(cache), after_warm) << "the run compiled something that warm had not";
+}
+
+TEST_F(Warm, FailsWhereTheCacheIsOffOrTheLookIsFaulty) {
+    const CommandResult off = run({"warm", kWarmLook, kWarmCapture}, "off");
+    EXPECT_EQ(off.exit_code, 2);
+    EXPECT_NE(off.err.find("the cache is off"), std::string::npos) << off.err;
+    write_text(folder_ / "look.json", R"({ "aftershade": 1, "steps": [{ "effect": "blom" }] })");
+    const CommandResult faulty = run({"warm", "look.json", kWarmCapture}, (folder_ / "cache").string());
+    EXPECT_EQ(faulty.exit_code, 2);
+    EXPECT_NE(faulty.err.find("blom"), std::string::npos) << faulty.err;
+    EXPECT_FALSE(fs::exists(folder_ / "cache/mesa_shader_cache")) << "nothing was compiled";
+}
+
+}  // namespace
+}  // namespace aftershade::test
