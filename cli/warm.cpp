@@ -34,15 +34,17 @@ struct WarmOptions {
 };
 
 /// Seconds to render the frames in a context of its own, written where nobody looks.
-double render_s(gpu::Backend backend, const Pipeline& pipeline, const Sequence& sequence, const CaptureReader& reader,
-                const RunOptions& run) {
+double render_s(gpu::Backend backend, const Pipeline& pipeline, const Sequence& sequence,
+                const CaptureReader& reader, const RunOptions& run) {
     const ScratchFolder scratch;
     OutputOptions outputs;
-    outputs.patterns = {(scratch.path() / "frame_####.exr").string()};
+    outputs.patterns = {(scratch.path() / "frame_####.exr").string(),
+                        (scratch.path() / "frame_####.png").string()};
     const std::atomic<bool> stop = false;
     const auto begin = std::chrono::steady_clock::now();
     gpu::Context context(backend);
-    const RunReport report = run_frames({context, pipeline, sequence, reader, run, outputs, data_path()}, {}, stop);
+    const RunReport report =
+        run_frames({context, pipeline, sequence, reader, run, outputs, data_path()}, {}, stop);
     if (!report.failures.empty()) throw Error(ExitCode::capture, report.failures.front().message);
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
@@ -57,7 +59,8 @@ ExitCode warm(const WarmOptions& options) {
     const auto sequence = find_sequence(options.capture, profiles, diagnostics);
     const ProgramStore store = ProgramStore::from_environment();
     if (!store.is_on())
-        diagnostics.error({"AFTERSHADE_CACHE"}, "the cache is off; set the variable to a folder, or leave it unset");
+        diagnostics.error({"AFTERSHADE_CACHE"},
+                          "the cache is off; set the variable to a folder, or leave it unset");
     stop_at_errors(diagnostics);
     diagnostics.print(std::cerr);
     if (const auto code = run_in_worker(options.plugins, pipeline.has_foreign())) return *code;
@@ -73,8 +76,8 @@ ExitCode warm(const WarmOptions& options) {
     run.natives = {&natives, &status};
     const double first_s = render_s(backend, pipeline, *sequence, reader, run);
     const double then_s = render_s(backend, pipeline, *sequence, reader, run);
-    fmt::print("{}: {:.2f} s at first, {:.2f} s from now on\nprograms are in {}\n", options.look, first_s, then_s,
-               store.folder().string());
+    fmt::print("{}: {:.2f} s at first, {:.2f} s from now on\nprograms are in {}\n", options.look, first_s,
+               then_s, store.folder().string());
     return ExitCode::done;
 }
 
@@ -84,7 +87,8 @@ Verb add_warm(CLI::App& app) {
     auto options = std::make_shared<WarmOptions>();
     app.add_option("look", options->look, "The look")->type_name("LOOK")->required();
     add_capture_argument(app, options->capture);
-    add_capture_options(app, options->capture, "The frame whose roles and size decide the programs (default: the first)");
+    add_capture_options(app, options->capture,
+                        "The frame whose roles and size decide the programs (default: the first)");
     add_effect_path_option(app, options->effect_paths);
     add_plugin_options(app, options->plugins);
     add_backend_option(app, options->backend);

@@ -34,12 +34,14 @@ protected:
 
 TEST_F(Warm, LeavesNothingForALaterRunToCompile) {
     const fs::path cache = folder_ / "cache";
-    const CommandResult warmed = run({"warm", kWarmLook, kWarmCapture, "--frames", "4", "--backend", "osmesa"}, cache.string());
+    const CommandResult warmed =
+        run({"warm", kWarmLook, kWarmCapture, "--frames", "4", "--backend", "osmesa"}, cache.string());
     ASSERT_EQ(warmed.exit_code, 0) << warmed.err;
     EXPECT_NE(warmed.out.find(cache.string()), std::string::npos) << warmed.out;
     const std::set<fs::path> after_warm = files_below(cache);
     EXPECT_TRUE(fs::is_directory(cache / "mesa_shader_cache")) << "Mesa's code lies in the same folder";
-    const CommandResult ran = run({"run", kWarmLook, kWarmCapture, "--frames", "4", "--backend", "osmesa", "-o", "o_####.exr"},
+    const CommandResult ran = run({"run", kWarmLook, kWarmCapture, "--frames", "4", "--backend", "osmesa",
+                                   "-o", "o_####.exr", "-o", "o_####.png"},
                                   cache.string());
     ASSERT_EQ(ran.exit_code, 0) << ran.err;
     EXPECT_EQ(files_below(cache), after_warm) << "the run compiled something that warm had not";
