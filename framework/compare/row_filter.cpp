@@ -156,8 +156,9 @@ AFTERSHADE_INLINE void divide_body(const ConstPlanes& in, float scale, const Pla
 }  // namespace
 
 // Each loop once for any machine of the architecture, and once for AVX2, whose registers are twice as wide;
-// the loader chooses. Address sanitizers do not bear choices at load time.
-#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_ADDRESS__)
+// the loader chooses. Sanitizers of addresses and threads do not bear choices at load time.
+#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
 #define AFTERSHADE_WIDE __attribute__((target_clones("avx2", "default")))
 #else
 #define AFTERSHADE_WIDE
