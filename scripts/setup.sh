@@ -9,7 +9,7 @@ build_packages=(
     cmake ninja-build g++ ccache
     python3 python3-glad        # the GL loader is generated when configuring
     libopenexr-dev libimath-dev libglm-dev libstb-dev libfmt-dev nlohmann-json3-dev libcli11-dev libmurmurhash-dev
-    libtinygltf-dev libxxhash-dev zlib1g-dev
+    libtinygltf-dev libxxhash-dev zlib1g-dev libdeflate-dev
 )
 # Opened at run time, so nothing pulls them in; without libgl1-mesa-dri EGL finds no driver.
 gl_packages=(libegl1 libgl1-mesa-dri libosmesa6)

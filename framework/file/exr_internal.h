@@ -10,6 +10,7 @@
 
 #include <Imath/ImathBox.h>
 #include <OpenEXR/ImfCompression.h>
+#include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
@@ -128,6 +129,16 @@ FileLayout read_layout(FileStream& file, const std::filesystem::path& path, cons
 /// compressed, all of them: the library reads a short block as what its buffer held before. Throws
 /// Error(ExitCode::capture).
 void check_blocks(FileStream& file, const std::filesystem::path& path, const FileLayout& layout, int part);
+
+/// Where the blocks of a part (of level 0 where tiled) begin.
+std::vector<std::uint64_t> part_offsets(FileStream& file, const FileLayout& layout, int part);
+
+/// Fills the slices of `frame` from a part of scan lines that is stored as none, zips or zip, on this many of
+/// the library's threads. Returns false where the part is of another kind or anything about it is not as it
+/// should be: the slices may then hold anything, and the library reads it, or says what is wrong. Comes after
+/// check_blocks.
+bool read_scan_lines(FileStream& file, const FileLayout& layout, int part, const Imf::FrameBuffer& frame,
+                     int threads);
 
 /// An open file and what is known of it, for reading a deep part. [refers to the reader's]
 struct DeepSource {

@@ -334,11 +334,16 @@ void require_no_missing_block(const fs::path& path, const Imf::Header& header,
                    missing, offsets.size(), block_label(header, first)));
 }
 
+std::vector<std::uint64_t> part_offsets(FileStream& file, const FileLayout& layout, int part) {
+    const auto index = std::size_t(part);
+    return layout.found_blocks.empty()
+               ? block_offsets(file, layout.headers[index], layout.block_tables[index])
+               : layout.found_blocks[index];
+}
+
 void check_blocks(FileStream& file, const fs::path& path, const FileLayout& layout, int part) {
     const Imf::Header& header = layout.headers[std::size_t(part)];
-    const std::vector<std::uint64_t> offsets =
-        layout.found_blocks.empty() ? block_offsets(file, header, layout.block_tables[std::size_t(part)])
-                                    : layout.found_blocks[std::size_t(part)];
+    const std::vector<std::uint64_t> offsets = part_offsets(file, layout, part);
     require_no_missing_block(path, header, offsets);
     const std::size_t words = head_words(layout, header);
     for (std::uint64_t i = 0; i < offsets.size(); ++i) {

@@ -95,6 +95,10 @@ struct ExrFile::Impl {
     };
     std::vector<Kept> kept;
 
+    /// The library's, or none where a block is so large that one at a time is enough.
+    int threads() const {
+        return layout.largest_block_bytes > kThreadedBlockBytes ? 0 : Imf::globalThreadCount();
+    }
     Image read(const ExrRequest& request);
     void prefetch(int part, std::span<const ExrRequest> requests);
     Image add_slices(Imf::FrameBuffer& frame, const ExrRequest& request) const;
@@ -110,9 +114,8 @@ ExrFile::Impl::Impl(OpenFile opened, const ReadLimits& file_limits)
     exr::translate_errors(path, ExitCode::capture, "damaged header", [&] {
         stream = std::make_unique<exr::FileStream>(std::move(opened));
         layout = exr::read_layout(*stream, path, limits);
-        const int threads = layout.largest_block_bytes > kThreadedBlockBytes ? 0 : Imf::globalThreadCount();
         // An incomplete part is refused, so the library looks for blocks only where all were found.
-        file = std::make_unique<Imf::MultiPartInputFile>(*stream, threads, !layout.found_blocks.empty());
+        file = std::make_unique<Imf::MultiPartInputFile>(*stream, threads(), !layout.found_blocks.empty());
         if (std::size_t(file->parts()) != layout.headers.size()) exr::fail(path, kChanged);
         for (int i = 0; i < file->parts(); ++i) {
             require_same_pixels(path, layout.headers[std::size_t(i)], file->header(i));
@@ -169,6 +172,7 @@ void ExrFile::Impl::check_bytes(int part, std::size_t count) const {
 }
 
 void ExrFile::Impl::read_pixels(int part, const Imf::FrameBuffer& frame) {
+    if (exr::read_scan_lines(*stream, layout, part, frame, threads())) return;
     // Decoding buffers and positions, which the library would keep until the file is closed, also after an
     // error.
     struct CacheFlush {
