@@ -24,4 +24,21 @@ private:
     std::unique_ptr<State> state_;
 };
 
+/// Packs one stream after another. [one thread at a time]
+class Deflater {
+public:
+    /// From 1, the fastest, to 9. Throws std::bad_alloc.
+    explicit Deflater(int level);
+    ~Deflater();
+    Deflater(const Deflater&) = delete;
+    Deflater& operator=(const Deflater&) = delete;
+
+    /// The bytes of `packed` that the stream of `raw` takes; 0 where it does not fit.
+    std::size_t pack(std::span<const char> raw, std::span<char> packed);
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
 }  // namespace aftershade

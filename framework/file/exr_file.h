@@ -139,7 +139,7 @@ struct ExrWriteOptions {
     Window data_window;  ///< the images' size
     Window display_window;
     float pixel_aspect = 1;
-    std::string compression = "zip";
+    std::string compression = "zip";  ///< a name of exr_compression_names(), or with a level: "zip:1"
     /// Every attribute but windows, pixel aspect, channels, compression, type, name, line order, tiles,
     /// preview.
     std::optional<ExrMetadata> carry_over;
@@ -168,6 +168,9 @@ void write_deep_exr(const std::filesystem::path& path, const DeepImage& image,
 /// What ExrWriteOptions::compression may be: what the OpenEXR of this build has, from "none" and "rle" to
 /// "dwab"; from 3.4 on also "htj2k256" and "htj2k32", from 3.5 on "lj2k" and "zstd".
 const std::vector<std::string>& exr_compression_names();
+
+/// The level of "zip:1" or "zips:9", from 1, the fastest, to 9; none where the text names none.
+std::optional<int> exr_compression_level(std::string_view text);
 
 /// Whether a compression may change values: b44, b44a, dwaa, dwab, lj2k, and pxr24, which shortens floats.
 bool is_lossy_compression(std::string_view name);

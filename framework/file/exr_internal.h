@@ -22,6 +22,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <new>
 #include <span>
@@ -139,6 +140,19 @@ std::vector<std::uint64_t> part_offsets(FileStream& file, const FileLayout& layo
 /// check_blocks.
 bool read_scan_lines(FileStream& file, const FileLayout& layout, int part, const Imf::FrameBuffer& frame,
                      int threads);
+
+/// Whether read_scan_lines and write_scan_lines take it: none, zips and zip.
+bool is_scan_line_method(Imf::Compression method);
+
+/// Writes a file of one part of scan lines as the library does, but for how deflate packs. The images have
+/// the data window's size. Returns what halfs could not hold; throws what `stream` does.
+std::vector<HalfOverflow> write_scan_lines(Imf::OStream& stream, const Imf::Header& header,
+                                           std::span<const ExrOutputChannel> channels);
+std::uint64_t scan_line_blocks(const Imf::Header& header);
+
+/// Runs `work`, which shares the jobs out among its calls and does not throw, on up to this many of the
+/// library's threads; below two on the caller's.
+void run_on_threads(int threads, std::size_t jobs, const std::function<void()>& work);
 
 /// An open file and what is known of it, for reading a deep part. [refers to the reader's]
 struct DeepSource {

@@ -183,6 +183,10 @@ std::string block_label(const Imf::Header& header, std::uint64_t index) {
     return fmt::format("the tile at ({}, {})", box.min.x, box.min.y);
 }
 
+std::uint64_t scan_line_blocks(const Imf::Header& header) {
+    return block_count(header);
+}
+
 std::vector<std::uint64_t> block_offsets(FileStream& file, const Imf::Header& header, std::uint64_t table) {
     std::uint64_t count = 0;
     if (is_tiled_part(header)) {

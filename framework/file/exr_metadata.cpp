@@ -119,6 +119,15 @@ std::string exr_flatten_remedy(const std::filesystem::path& path) {
     return "flatten it: oiiotool " + shell_line({path.string()}) + " --flatten -o OUT.exr";
 }
 
+std::optional<int> exr_compression_level(std::string_view text) {
+    for (const std::string_view method : {"zip:", "zips:"}) {
+        if (!text.starts_with(method) || text.size() != method.size() + 1) continue;
+        const int level = text.back() - '0';
+        if (level >= 1 && level <= 9) return level;
+    }
+    return {};
+}
+
 bool is_lossy_compression(std::string_view name) {
     const auto* found = std::ranges::find(exr::kCompressions, name, &exr::CompressionMethod::name);
     return found != exr::kCompressions.end() && found->is_lossy;

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstring>
+#include <functional>
 
 namespace aftershade::exr {
 
@@ -46,10 +47,7 @@ struct ScanLines {
 };
 
 bool is_plain(const Imf::Header& header) {
-    const Imf::Compression method = header.compression();
-    if (header.type() != Imf::SCANLINEIMAGE ||
-        (method != Imf::NO_COMPRESSION && method != Imf::ZIPS_COMPRESSION && method != Imf::ZIP_COMPRESSION))
-        return false;
+    if (header.type() != Imf::SCANLINEIMAGE || !is_scan_line_method(header.compression())) return false;
     for (auto i = header.channels().begin(); i != header.channels().end(); ++i)
         if (i.channel().xSampling != 1 || i.channel().ySampling != 1) return false;
     return true;
@@ -189,16 +187,24 @@ struct BlockQueue {
     }
 };
 
-class BlockTask final : public IlmThread::Task {
+class SharedTask final : public IlmThread::Task {
 public:
-    BlockTask(IlmThread::TaskGroup* group, BlockQueue& queue) : IlmThread::Task(group), queue_(queue) {}
-    void execute() override { queue_.work(); }
+    SharedTask(IlmThread::TaskGroup* group, const std::function<void()>& work)
+        : IlmThread::Task(group), work_(work) {}
+    void execute() override { work_(); }
 
 private:
-    BlockQueue& queue_;
+    const std::function<void()>& work_;
 };
 
 }  // namespace
+
+void run_on_threads(int threads, std::size_t jobs, const std::function<void()>& work) {
+    if (threads < 2 || jobs < 2) return work();
+    IlmThread::TaskGroup group;  // whose end is that of its tasks
+    for (std::size_t i = 0; i < std::min(std::size_t(threads), jobs); ++i)
+        IlmThread::ThreadPool::addGlobalTask(new SharedTask(&group, work));
+}
 
 bool read_scan_lines(FileStream& file, const FileLayout& layout, int part, const Imf::FrameBuffer& frame,
                      int threads) {
@@ -212,13 +218,7 @@ bool read_scan_lines(FileStream& file, const FileLayout& layout, int part, const
                     .pieces = {}};
     if (!choose_channels(lines, frame)) return false;
     BlockQueue queue{.file = file, .lines = lines};
-    if (threads < 2) {
-        queue.work();
-    } else {
-        IlmThread::TaskGroup group;
-        for (std::size_t i = 0; i < std::min(std::size_t(threads), lines.offsets.size()); ++i)
-            IlmThread::ThreadPool::addGlobalTask(new BlockTask(&group, queue));
-    }
+    run_on_threads(threads, lines.offsets.size(), [&] { queue.work(); });
     return !queue.has_fault;
 }
 

@@ -92,7 +92,14 @@ std::unique_ptr<Imf::Attribute> to_attribute(const std::string& name, const ExrV
     return to_attribute(name, std::get<std::vector<float>>(value));
 }
 
-Imf::Compression find_compression(const fs::path& path, const std::string& name) {
+/// The method of "zip" or "zip:1".
+Imf::Compression find_compression(const fs::path& path, const std::string& text) {
+    const std::string name = text.substr(0, text.find(':'));
+    if (name != text && !exr_compression_level(text))
+        refuse(path,
+               fmt::format("compression '{}' has no such level; zip and zips have 1 (fastest) to 9, as in "
+                           "zip:1",
+                           text));
     const std::vector<std::string>& known = exr_compression_names();
     const auto found = std::ranges::find(known, name);
     if (found != known.end()) return Imf::Compression(found - known.begin());
@@ -109,6 +116,7 @@ Imf::Header make_header(const fs::path& path, std::span<const ExrOutputChannel> 
     Imf::Header header(exr::to_box(options.display_window), exr::to_box(options.data_window),
                        options.pixel_aspect);
     header.compression() = find_compression(path, options.compression);
+    if (const auto level = exr_compression_level(options.compression)) header.zipCompressionLevel() = *level;
     if (options.carry_over && options.carry_over->impl) {
         const Imf::Header& source = options.carry_over->impl->header;
         for (auto i = source.begin(); i != source.end(); ++i) {
@@ -230,11 +238,18 @@ std::vector<HalfOverflow> write_exr(const fs::path& path, std::span<const ExrOut
     for ([[maybe_unused]] const ExrOutputChannel& channel : channels) {
         assert(channel.image && channel.image->width() == options.data_window.width() &&
                channel.image->height() == options.data_window.height());
+        assert(channel.component >= 0 && channel.component < channel.image->channels());
+        assert((channel.image->type() == ComponentType::uint32) == (channel.type == PixelType::uint32));
     }
     return exr::translate_errors(path, ExitCode::output, "cannot be written", [&] {
         const Imf::Header header = make_header(path, channels, options);
-        const Planes planes(channels, header.dataWindow());
         ExrOutputStream stream(path);
+        if (exr::is_scan_line_method(header.compression())) {
+            std::vector<HalfOverflow> overflows = exr::write_scan_lines(stream, header, channels);
+            stream.commit();
+            return overflows;
+        }
+        const Planes planes(channels, header.dataWindow());
         {
             Imf::OutputFile file(stream, header, Imf::globalThreadCount());
             file.setFrameBuffer(planes.frame());

@@ -69,6 +69,21 @@ inline unsigned char last_of_differences(std::span<const char> bytes, unsigned c
     return static_cast<unsigned char>(sum);
 }
 
+/// Bytes at even places of `bytes`, then those at odd ones.
+inline void split_halves(std::span<const char> bytes, char* to) {
+    const std::size_t half = bytes.size() / 2;
+    for (std::size_t i = 0; i < half; ++i) {
+        to[i] = bytes[2 * i];
+        to[half + i] = bytes[2 * i + 1];
+    }
+}
+
+/// Each byte less the one before it, plus 128; the first as it is. `to` lies elsewhere.
+inline void make_differences(std::span<const char> bytes, char* to) {
+    to[0] = bytes[0];
+    for (std::size_t i = 1; i < bytes.size(); ++i) to[i] = char(bytes[i] - bytes[i - 1] + 128);
+}
+
 /// Puts `count` bytes of each half together again.
 inline void interleave_halves(const char* even, const char* odd, std::size_t count, char* to) {
     std::size_t i = 0;

@@ -151,8 +151,11 @@ void check_outputs(const OutputOptions& options, const Sequence& sequence, Input
                 !inputs.check_output({"--tap " + tap}, path_of_tap(options, tap, frame), diagnostics))
                 break;
     const auto& known = exr_compression_names();
-    if (std::find(known.begin(), known.end(), options.compression) == known.end())
-        diagnostics.error({"--compression " + options.compression}, "must be one of " + list_of_names(known));
+    if (std::find(known.begin(), known.end(), options.compression) == known.end() &&
+        !exr_compression_level(options.compression))
+        diagnostics.error(
+            {"--compression " + options.compression},
+            "must be one of " + list_of_names(known) + ", or zip or zips with a level, as zip:1");
     std::set<std::string> roles;
     for (const std::string& role : options.roles) {
         const Place place{"--output-roles " + role};

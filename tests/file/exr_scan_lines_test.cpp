@@ -186,5 +186,73 @@ TEST(ExrScanLines, ThatAreCutOffAreRefused) {
     }
 }
 
+/// The library's reader gives back what we write, and the bytes before the blocks are the library's own.
+TEST(ExrScanLines, ThatWeWriteAreReadBackByTheLibrary) {
+    const TemporaryFolder folder;
+    const fs::path ours = folder / "a.exr", theirs = folder / "b.exr";
+    const std::vector<Imath::Box2i> boxes = {{{0, 0}, {0, 0}}, {{-3, 5}, {-3, 37}}, {{-40, -9}, {90, 30}}};
+    for (const int threads : {0, 3})
+        for (const Imath::Box2i& box : boxes)
+            for (const bool is_noise : {false, true})
+                for (const auto& [name, method] :
+                     std::map<std::string, Imf::Compression>{{"none", Imf::NO_COMPRESSION},
+                                                             {"zips", Imf::ZIPS_COMPRESSION},
+                                                             {"zip", Imf::ZIP_COMPRESSION},
+                                                             {"zip:1", Imf::ZIP_COMPRESSION},
+                                                             {"zips:9", Imf::ZIPS_COMPRESSION}}) {
+                    SCOPED_TRACE(testing::Message() << name << ", noise " << is_noise << ", " << box.max);
+                    set_exr_threads(threads);
+                    const Planes planes = make_planes(box, is_noise);
+                    write_planes(theirs, planes, box, method);
+                    const Planes expected = library_floats(theirs, planes, box).value();
+                    const ExrFile source(theirs);
+                    const std::vector<std::string> floats = {"B", "G", "Z", "n.x"};
+                    const Image image = source.read_floats(0, floats);
+                    const Image ids = source.read_uints(0, std::vector<std::string>{"a.id"});
+                    const std::vector<ExrOutputChannel> channels = {{"a.id", PixelType::uint32, &ids, 0},
+                                                                    {"n.x", PixelType::half, &image, 3},
+                                                                    {"B", PixelType::half, &image, 0},
+                                                                    {"Z", PixelType::float32, &image, 2},
+                                                                    {"G", PixelType::float32, &image, 1}};
+                    ExrWriteOptions options;
+                    options.data_window =
+                        options.display_window = {box.min.x, box.min.y, box.max.x, box.max.y};
+                    options.compression = name;
+                    write_exr(ours, channels, options);
+                    const std::optional<Planes> read = library_floats(ours, planes, box);
+                    ASSERT_TRUE(read);
+                    for (const auto& [channel, plane] : *read)
+                        EXPECT_EQ(plane.values, expected.at(channel).values) << channel;
+                    if (method != Imf::NO_COMPRESSION) continue;
+                    EXPECT_EQ(test::read_text(ours), test::read_text(theirs)) << "nothing was packed";
+                }
+    set_exr_threads(0);
+}
+
+TEST(ExrScanLines, ArePackedAtTheLevelThatTheTextNames) {
+    EXPECT_EQ(exr_compression_level("zip:1"), 1);
+    EXPECT_EQ(exr_compression_level("zips:9"), 9);
+    for (const char* text : {"zip", "zip:", "zip:0", "zip:10", "piz:1", "zip:x", "zips:-1"})
+        EXPECT_FALSE(exr_compression_level(text)) << text;
+    const TemporaryFolder folder;
+    const Image image = test::pattern_image(200, 100, 1);
+    const std::vector<ExrOutputChannel> channels = {{"Z", PixelType::float32, &image, 0}};
+    ExrWriteOptions options;
+    options.data_window = options.display_window = {0, 0, 199, 99};
+    std::map<std::string, std::uintmax_t> sizes;
+    for (const char* text : {"zip:1", "zip", "zip:9"}) {
+        options.compression = text;
+        write_exr(folder / "a.exr", channels, options);
+        EXPECT_EQ(ExrFile(folder / "a.exr").parts()[0].compression, "zip");
+        sizes[text] = fs::file_size(folder / "a.exr");
+    }
+    EXPECT_LT(sizes["zip:9"], sizes["zip:1"]);
+    EXPECT_LE(sizes["zip"], sizes["zip:1"]);
+    options.compression = "zip:0";
+    const std::string error =
+        test::error_of(ExitCode::output, [&] { write_exr(folder / "a.exr", channels, options); });
+    EXPECT_NE(error.find("1 (fastest) to 9"), std::string::npos) << error;
+}
+
 }  // namespace
 }  // namespace aftershade
