@@ -27,6 +27,7 @@ struct ServeArguments {
     std::string look;
     CaptureOptions capture;
     std::string backend;
+    std::vector<std::string> effect_paths;
     int port = 0;
     bool opens = false;
     bool read_only = false;
@@ -48,7 +49,7 @@ ExitCode serve(const ServeArguments& arguments) {
     const std::atomic<bool>& stop = watch_for_interrupt();
     const gpu::Backend backend = chosen_backend(arguments.backend);
     Diagnostics diagnostics;
-    EffectRegistry effects = find_effects({}, diagnostics);
+    find_effects(arguments.effect_paths, diagnostics);  // for its faults and warnings
     const std::vector<Profile> profiles = load_profiles(arguments.capture.profile_paths, diagnostics);
     const auto sequence = find_sequence(arguments.capture, profiles, diagnostics);
     stop_at_errors(diagnostics);
@@ -61,6 +62,7 @@ ExitCode serve(const ServeArguments& arguments) {
     options.limits = arguments.capture.limits;
     options.backend = backend;
     options.data_folder = data_path();
+    options.effect_folders.assign(arguments.effect_paths.begin(), arguments.effect_paths.end());
     options.port = arguments.port;
     options.read_only = arguments.read_only;
     options.ready = [&](const std::string& address) {
@@ -68,7 +70,7 @@ ExitCode serve(const ServeArguments& arguments) {
         std::cerr << "the page is at the address above, for this machine alone; interrupt to end\n";
         if (arguments.opens) open_browser(address);
     };
-    serve::serve(options, effects, stop);
+    serve::serve(options, stop);
     return ExitCode::interrupted;
 }
 
@@ -82,8 +84,9 @@ Verb add_serve(CLI::App& app) {
         ->check(CLI::Range(0, 65535))
         ->capture_default_str();
     app.add_flag("--open", arguments->opens, "Open the page in the desktop's browser");
-    app.add_flag("--read-only", arguments->read_only, "Never write the look");
+    app.add_flag("--read-only", arguments->read_only, "Never write the look or a shader");
     add_capture_options(app, arguments->capture, "Frames to show, such as 1-24 (default: the capture's)");
+    add_effect_path_option(app, arguments->effect_paths);
     add_backend_option(app, arguments->backend);
     return [arguments] { return serve(*arguments); };
 }

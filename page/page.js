@@ -4,6 +4,7 @@ import { Costs, Histogram, Probe } from "./dock.js";
 import { button, element, icon, iconButton, notify } from "./elements.js";
 import { ExportDialog } from "./export.js";
 import { Shortcuts } from "./keys.js";
+import { ShaderView } from "./shader_view.js";
 import { nameOf, StepList } from "./steps.js";
 import { Store } from "./store.js";
 import { AddDialog, Faults, TextView } from "./text_view.js";
@@ -58,13 +59,17 @@ const faults = new Faults(store, (line, column) => {
   text.goTo(line, column);
 });
 
-const panels = { steps: list.node, text: text.node };
+const shaders = new ShaderView(store);
+viewer.addEventListener("fail", ({ detail }) => shaders.setFault(detail.message));
+
+const panels = { steps: list.node, text: text.node, shaders: shaders.node },
+  panelNames = { steps: "Steps", text: "Text", shaders: "Shaders" };
 const tabs = Object.keys(panels).map((name) =>
-  button(name === "steps" ? "Steps" : "Text", () => showPanel(name), {
+  button(panelNames[name], () => showPanel(name), {
     role: "tab",
     id: `tab-${name}`,
     "aria-controls": `panel-${name}`,
-    title: "Steps or text (T)",
+    title: "Steps, text or shaders (T)",
   }),
 );
 for (const [name, node] of Object.entries(panels)) {
@@ -80,17 +85,19 @@ function showPanel(name) {
     tab.tabIndex = isShown ? 0 : -1;
   });
   if (name === "text" && store.state) text.update();
+  if (name === "shaders" && store.state) shaders.update();
 }
 const tablist = element("div", { class: "tabs", role: "tablist", "aria-label": "Look as" }, tabs);
 tablist.addEventListener("keydown", (event) => {
   if (event.key !== "ArrowLeft" && event.key !== "ArrowRight") return;
-  const other = tabs.find((tab) => tab.tabIndex === -1);
+  const by = event.key === "ArrowLeft" ? -1 : 1,
+    other = tabs.at((tabs.indexOf(event.target) + by) % tabs.length);
   other.click();
   other.focus();
 });
 const EXPLAIN = "Point at a value to read what it does, its limits and where it comes from.";
 const help = element("p", { class: "explain", "aria-hidden": "true" }, EXPLAIN);
-at("look").append(tablist, faults.node, list.node, text.node, help);
+at("look").append(tablist, faults.node, list.node, text.node, shaders.node, help);
 showPanel("steps");
 // What the row under the pointer or with the focus is for.
 for (const name of ["focusin", "pointerover"])
@@ -128,7 +135,12 @@ async function copyCommand() {
     notify(error.message, true);
   }
 }
+function nextPanel() {
+  const names = Object.keys(panels);
+  showPanel(names[(names.findIndex((name) => !panels[name].hidden) + 1) % names.length]);
+}
 async function save() {
+  if (shaders.node.contains(document.activeElement)) return shaders.save();
   if (store.state.read_only) return notify("The program was started with --read-only", true);
   if (await store.save()) notify(`Saved ${store.state.look.name}`);
 }
@@ -159,10 +171,10 @@ at("bar").append(
 
 const beforeOnOff = () => viewer.setOther(viewer.other ? "" : "before");
 const shortcuts = new Shortcuts([
-  { group: "Look", keys: ["Ctrl+S"], words: "Save", run: save, inText: true },
+  { group: "Look", keys: ["Ctrl+S"], words: "Save; in a shader's text: the shader", run: save, inText: true },
   { group: "Look", keys: ["Ctrl+Z"], words: "Undo", run: () => store.undo(), inText: "edited" },
   { group: "Look", keys: ["Ctrl+Shift+Z", "Ctrl+Y"], words: "Redo", run: () => store.redo(), inText: "edited" },
-  { group: "Look", keys: ["T"], words: "Steps or text", run: () => showPanel(text.node.hidden ? "text" : "steps") },
+  { group: "Look", keys: ["T"], words: "Steps, text or shaders", run: nextPanel },
   { group: "Look", keys: ["X"], words: "Export a still, a contact sheet or the look", run: () => exporting.open() },
   { group: "Look", keys: ["Ctrl+Shift+C"], words: "Copy the command", run: copyCommand, inText: true },
   { group: "Steps", keys: ["A"], words: "Add a step", run: openAdd },
@@ -207,7 +219,7 @@ const shortcuts = new Shortcuts([
   { group: "Page", keys: ["Shift+D"], words: "Colours: system, dark, light", run: nextTheme },
 ]);
 shortcuts.onKeyUp("b", () => viewer.swap(false));
-addEventListener("beforeunload", (event) => store.state && !store.isSaved && event.preventDefault());
+addEventListener("beforeunload", (event) => store.state && (!store.isSaved || shaders.isEdited) && event.preventDefault());
 
 // ---- what changes ----
 
@@ -228,11 +240,13 @@ store.addEventListener("change", () => {
   viewer.update(); // first: it has the frame that the steps show
   list.update();
   if (!text.node.hidden) text.update();
+  if (!shaders.node.hidden) shaders.update();
 });
 store.addEventListener("fail", ({ detail }) => notify(detail.message, true));
 let measuring;
 viewer.addEventListener("picture", ({ detail }) => {
   costs.show(detail.times, detail.isCoarse, new Set(list.cards.map(({ step }) => nameOf(step))));
+  shaders.setFault("");
   if (detail.isCoarse) return;
   list.showCosts([...costs.known.values()]);
   if (viewer.isPlaying) return;
@@ -251,6 +265,13 @@ viewer.addEventListener("picture", ({ detail }) => {
 });
 viewer.addEventListener("probe", ({ detail }) => probe.show(detail, viewer.frame));
 addEventListener("focus", () => store.state && store.isSaved && store.refresh());
+
+// As `run --watch`, for effects that are edited in another program.
+const FOLLOW_MS = 500;
+setInterval(
+  () => store.state?.capture && store.state.effect_folders.length && !document.hidden && store.followEffects(),
+  FOLLOW_MS,
+);
 
 try {
   setTheme(localStorage.getItem("aftershade.theme") ?? "system");

@@ -255,7 +255,12 @@ export class StepList {
   update() {
     this.variables.update();
     const { steps } = this.store.state,
-      left = new Map(this.cards.map((card) => [card.key, card])),
+      // An effect that was declared anew has other parameters. Each reading of the effects makes new objects.
+      isCurrent = ({ effect, step }) => {
+        const now = this.store.effects.get(step.effect);
+        return effect === now || JSON.stringify(effect) === JSON.stringify(now);
+      },
+      left = new Map(this.cards.filter(isCurrent).map((card) => [card.key, card])),
       counts = new Map(),
       isFirst = this.cards.length === 0 && !this.hasShown;
     const keys = steps.map((step) => {

@@ -12,9 +12,7 @@ export class Store extends EventTarget {
   #gesture = null;
 
   async load() {
-    const [state, effects] = await Promise.all([get("/api/state"), get("/api/effects")]);
-    this.effects = new Map(effects.map((effect) => [effect.id, effect]));
-    this.#take(state);
+    await this.#takeWithEffects(await get("/api/state"));
   }
 
   /** Warnings are no faults: the picture is drawn with them. */
@@ -23,6 +21,14 @@ export class Store extends EventTarget {
   }
   get isSaved() {
     return this.state.revision === this.state.saved_revision;
+  }
+
+  async #takeWithEffects(state) {
+    if (state.effects_revision !== this.state?.effects_revision) {
+      const effects = await get("/api/effects");
+      this.effects = new Map(effects.map((effect) => [effect.id, effect]));
+    }
+    this.#take(state);
   }
 
   #take(state) {
@@ -126,6 +132,33 @@ export class Store extends EventTarget {
     });
   }
 
+  /** shader: {effect, file, before, text}; `before` is what the file is thought to hold. */
+  saveShader(shader) {
+    return this.#inTurn(async () => {
+      try {
+        await this.#takeWithEffects(await post("/api/shader", shader));
+        return true;
+      } catch (error) {
+        this.#fail(error);
+        return false;
+      }
+    });
+  }
+
+  /** Reads the effects again where another program has changed their files. */
+  followEffects() {
+    return this.#inTurn(async () => {
+      try {
+        const { effects_revision } = await get("/api/changes");
+        if (effects_revision !== this.state.effects_revision) await this.#takeWithEffects(await get("/api/state"));
+        return true;
+      } catch (error) {
+        this.#fail(error);
+        return false;
+      }
+    });
+  }
+
   /** Reads the state again; another page may have changed it. */
   async refresh() {
     try {
@@ -134,7 +167,7 @@ export class Store extends EventTarget {
         this.#done = [];
         this.#undone = [];
       }
-      this.#take(state);
+      await this.#takeWithEffects(state);
     } catch (error) {
       this.#fail(error);
     }

@@ -3,25 +3,71 @@ import { button, element, icon } from "./elements.js";
 
 const PAUSE_MS = 500; // after the last key, before the text is sent
 
-export class TextView {
-  constructor(store) {
-    this.store = store;
+/** Lines of text with their numbers; those with faults are marked. */
+export class CodeArea {
+  #signature = null;
+
+  constructor({ label, describedBy }) {
     this.numbers = element("div", { class: "numbers", "aria-hidden": "true" });
     this.area = element("textarea", {
       class: "text",
       spellcheck: "false",
       autocomplete: "off",
       wrap: "off",
-      "aria-label": "The look as JSON",
-      "aria-describedby": "text-help",
+      "aria-label": label,
+      "aria-describedby": describedBy,
     });
+    this.area.addEventListener("scroll", () => (this.numbers.scrollTop = this.area.scrollTop));
+    this.node = element("div", { class: "editor" }, this.numbers, this.area);
+  }
+
+  get value() {
+    return this.area.value;
+  }
+  set value(text) {
+    if (text === this.area.value) return;
+    const { selectionStart, scrollTop } = this.area;
+    this.area.value = text;
+    this.area.setSelectionRange(selectionStart, selectionStart);
+    this.area.scrollTop = scrollTop;
+  }
+
+  /** `faulty`: lines, from 1. */
+  number(faulty) {
+    const count = this.area.value.split("\n").length,
+      marked = new Set(faulty),
+      signature = `${count} ${[...marked]}`;
+    if (signature === this.#signature) return;
+    this.#signature = signature;
+    this.numbers.replaceChildren(
+      ...Array.from({ length: count }, (_, i) =>
+        element("div", { class: marked.has(i + 1) ? "faulty" : null }, String(i + 1)),
+      ),
+    );
+    this.numbers.scrollTop = this.area.scrollTop;
+  }
+
+  goTo(line, column = 1) {
+    const lines = this.area.value.split("\n"),
+      at = lines.slice(0, line - 1).reduce((sum, one) => sum + one.length + 1, 0);
+    this.area.focus();
+    this.area.setSelectionRange(at + column - 1, at + (lines[line - 1]?.length ?? 0));
+    const height = this.area.scrollHeight / lines.length;
+    this.area.scrollTop = Math.max(0, (line - 4) * height);
+  }
+}
+
+export class TextView {
+  constructor(store) {
+    this.store = store;
+    this.code = new CodeArea({ label: "The look as JSON", describedBy: "text-help" });
+    this.area = this.code.area;
     this.area.addEventListener("input", () => {
       this.number();
       clearTimeout(this.timer);
       this.timer = setTimeout(() => this.send(), PAUSE_MS);
     });
     this.area.addEventListener("change", () => this.send());
-    this.area.addEventListener("scroll", () => (this.numbers.scrollTop = this.area.scrollTop));
     this.area.addEventListener("keydown", (event) => {
       if (event.key === "Enter" && event.ctrlKey) this.send();
     });
@@ -30,12 +76,7 @@ export class TextView {
       { class: "hint shown", id: "text-help" },
       "Taken over half a second after the last key. Tab leaves the text.",
     );
-    this.node = element(
-      "div",
-      { class: "text-view" },
-      element("div", { class: "editor" }, this.numbers, this.area),
-      help,
-    );
+    this.node = element("div", { class: "text-view" }, this.code.node, help);
     this.sent = null;
   }
 
@@ -55,39 +96,35 @@ export class TextView {
   update() {
     const { text, read_only } = this.store.state;
     this.area.readOnly = read_only;
-    if (this.area.value !== text && !(this.isEdited && this.area.value !== this.sent)) {
-      const { selectionStart, scrollTop } = this.area;
-      this.area.value = text;
-      this.area.setSelectionRange(selectionStart, selectionStart);
-      this.area.scrollTop = scrollTop;
-    }
+    if (!(this.isEdited && this.area.value !== this.sent)) this.code.value = text;
     if (this.area.value === text) this.shown = text;
     this.number();
   }
 
   number() {
-    const count = this.area.value.split("\n").length,
-      faulty = new Set(this.store.state.faults.map(({ line }) => line)),
-      signature = `${count} ${[...faulty]}`;
-    if (signature === this.signature) return;
-    this.signature = signature;
-    this.numbers.replaceChildren(
-      ...Array.from({ length: count }, (_, i) =>
-        element("div", { class: faulty.has(i + 1) ? "faulty" : null }, String(i + 1)),
-      ),
-    );
-    this.numbers.scrollTop = this.area.scrollTop;
+    this.code.number(this.store.state.faults.map(({ line }) => line));
   }
 
-  goTo(line, column = 1) {
-    const lines = this.area.value.split("\n"),
-      at = lines.slice(0, line - 1).reduce((sum, one) => sum + one.length + 1, 0);
-    this.area.focus();
-    this.area.setSelectionRange(at + column - 1, at + (lines[line - 1]?.length ?? 0));
-    const height = this.area.scrollHeight / lines.length;
-    this.area.scrollTop = Math.max(0, (line - 4) * height);
+  goTo(line, column) {
+    this.code.goTo(line, column);
   }
 }
+
+/** faults: [{place, message}]; a press gives the fault to `goTo`. */
+export const faultList = (faults, goTo) =>
+  element(
+    "ul",
+    {},
+    faults.map((fault) =>
+      element(
+        "li",
+        {},
+        button([element("span", { class: "place" }, fault.place), element("span", {}, fault.message)], () =>
+          goTo(fault),
+        ),
+      ),
+    ),
+  );
 
 /** The faults of the look; a press goes to the line. */
 export class Faults {
@@ -114,22 +151,9 @@ export class Faults {
     this.signature = signature;
     this.node.replaceChildren(
       element("p", { class: "count" }, this.words(faults)),
-      element(
-        "ul",
-        {},
-        faults.map(({ line, column, message }) =>
-          element(
-            "li",
-            {},
-            button(
-              [
-                element("span", { class: "place" }, line ? `${line}:${column || 1}` : "look"),
-                element("span", {}, message),
-              ],
-              () => this.goTo(line || 1, column || 1),
-            ),
-          ),
-        ),
+      faultList(
+        faults.map((fault) => ({ ...fault, place: fault.line ? `${fault.line}:${fault.column || 1}` : "look" })),
+        ({ line, column }) => this.goTo(line || 1, column || 1),
       ),
     );
   }

@@ -314,7 +314,10 @@ export class Viewer extends EventTarget {
     const { pictures } = this;
     pictures.addEventListener("busy", () => (this.busy.hidden = false));
     pictures.addEventListener("idle", () => (this.busy.hidden = true));
-    pictures.addEventListener("fail", ({ detail }) => this.setBadge(detail.message));
+    pictures.addEventListener("fail", ({ detail }) => {
+      this.setBadge(detail.message);
+      this.dispatchEvent(new CustomEvent("fail", { detail }));
+    });
     pictures.addEventListener("picture", ({ detail }) => {
       if (detail.name === "second" && this.other !== detail.wish.other) return;
       this.picture[detail.name] = { bitmap: detail.bitmap, isCoarse: detail.isCoarse };

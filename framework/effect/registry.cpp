@@ -44,6 +44,11 @@ void EffectRegistry::warn_of_hidden(Diagnostics& diagnostics) const {
     }
 }
 
+const fs::path* EffectRegistry::folder(const std::string& id) const {
+    const auto found = folders_.find(id);
+    return found == folders_.end() ? nullptr : &found->second;
+}
+
 std::vector<std::string> EffectRegistry::ids() const {
     std::vector<std::string> ids;
     for (const auto& [id, folder] : folders_) ids.push_back(id);
@@ -63,9 +68,13 @@ const EffectManifest* EffectRegistry::find(const std::string& id, Diagnostics& d
 }
 
 bool is_shipped(const EffectManifest& manifest) {
+    return is_shipped(manifest.folder);
+}
+
+bool is_shipped(const fs::path& effect_folder) {
     std::error_code failure;
     const fs::path shipped = fs::weakly_canonical(data_path() / "effects", failure);
-    return !failure && fs::weakly_canonical(manifest.folder, failure).parent_path() == shipped && !failure;
+    return !failure && fs::weakly_canonical(effect_folder, failure).parent_path() == shipped && !failure;
 }
 
 }  // namespace aftershade

@@ -24,6 +24,8 @@ public:
     /// Ids of all effects, sorted. The first folder wins where two have an effect of one id.
     std::vector<std::string> ids() const;
     bool contains(const std::string& id) const { return folders_.contains(id); }
+    /// Of the effect; nullptr where there is none.
+    const std::filesystem::path* folder(const std::string& id) const;
     /// A warning for each folder that could not be read; what it holds is left out.
     void warn_of_unreadable(Diagnostics& diagnostics) const;
     /// A warning for each effect that has the id of one in a later folder, which it hides.
@@ -42,5 +44,6 @@ private:
 /// Whether the effect is one of those that come with the program; all others are untrusted. Throws as
 /// data_path() does.
 bool is_shipped(const EffectManifest& manifest);
+bool is_shipped(const std::filesystem::path& effect_folder);
 
 }  // namespace aftershade

@@ -6,6 +6,7 @@
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
+#include "framework/effect/describe.h"
 #include "framework/serve/look_edits.h"
 #include "framework/serve/look_state.h"
 
@@ -24,8 +25,11 @@ std::size_t bytes_of(const std::vector<std::string>& texts) {
 
 }  // namespace
 
-LookModel::LookModel(std::filesystem::path path, EffectRegistry& effects, bool read_only)
-    : path_(std::move(path)), effects_(effects), read_only_(read_only) {
+LookModel::LookModel(std::filesystem::path path, FindEffects find_effects, bool read_only)
+    : path_(std::move(path)),
+      find_effects_(std::move(find_effects)),
+      read_only_(read_only),
+      effects_(find_effects_()) {
     std::string text = read_text_file(path_, ExitCode::usage);
     if (text.size() > kMaxDocumentBytes)
         throw Error(ExitCode::usage, path_.string() + ": is longer than 1 MiB, the most that a look may be");
@@ -40,8 +44,10 @@ void LookModel::bind() {
     const auto node = parse_document(texts_[at_], path_.string(), faults_);
     auto look = node ? parse_look(*node, faults_) : std::nullopt;
     if (!look) return;
+    bound->effects = effects_;
+    bound->effects_revision = effects_revision_;
     bound->look = std::move(*look);
-    bound->pipeline = bind_pipeline(bound->look, effects_, {}, faults_);
+    bound->pipeline = bind_pipeline(bound->look, *effects_, {}, faults_);
     bound->revision = revision_;
     if (!faults_.has_errors()) bound_ = std::move(bound);
 }
@@ -115,6 +121,37 @@ void LookModel::save() {
     saved_revision_ = revision_;
 }
 
+void LookModel::reload_effects() {
+    std::shared_ptr<EffectRegistry> effects = find_effects_();
+    const std::lock_guard lock(mutex_);
+    effects_ = std::move(effects);
+    ++effects_revision_;
+    ++revision_;
+    bind();
+}
+
+std::uint64_t LookModel::effects_revision() const {
+    const std::lock_guard lock(mutex_);
+    return effects_revision_;
+}
+
+std::string LookModel::effects_json() const {
+    const std::lock_guard lock(mutex_);
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const std::string& id : effects_->ids()) {
+        Diagnostics faults;
+        const EffectManifest* manifest = effects_->find(id, faults);
+        if (manifest && !faults.has_errors())
+            list.push_back(nlohmann::ordered_json::parse(describe_json(*manifest)));
+    }
+    return list.dump();
+}
+
+EffectFiles LookModel::files_of(const std::string& effect) const {
+    const std::lock_guard lock(mutex_);
+    return effect_files(*effects_, effect, read_only_);
+}
+
 nlohmann::ordered_json LookModel::state(const CaptureHeader& header) const {
     const std::lock_guard lock(mutex_);
     nlohmann::ordered_json state;
@@ -122,13 +159,14 @@ nlohmann::ordered_json LookModel::state(const CaptureHeader& header) const {
     state["capture"] = nullptr;
     state["read_only"] = read_only_;
     state["revision"] = revision_;
+    state["effects_revision"] = effects_revision_;
     state["saved_revision"] = texts_[at_] == saved_text_ ? revision_ : saved_revision_;
     state["can_undo"] = at_ > 0;
     state["can_redo"] = at_ + 1 < texts_.size();
     state["text"] = texts_[at_];
     state["faults"] = faults_json(faults_);
     const bool is_bound = bound_ && bound_->revision == revision_;
-    state["steps"] = steps_json(texts_[at_], is_bound ? bound_.get() : nullptr, effects_, header);
+    state["steps"] = steps_json(texts_[at_], is_bound ? bound_.get() : nullptr, *effects_, header);
     return state;
 }
 

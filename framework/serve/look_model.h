@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -15,27 +16,27 @@
 #include "framework/effect/registry.h"
 #include "framework/pipeline/look.h"
 #include "framework/pipeline/pipeline.h"
+#include "framework/serve/effect_files.h"
+#include "framework/serve/refusal.h"
 
 namespace aftershade::serve {
 
 /// A text without faults, bound to its effects.
 struct BoundText {
+    std::shared_ptr<EffectRegistry> effects;  ///< owns the manifests of `pipeline`
     Look look;
     Pipeline pipeline;
     std::uint64_t revision = 0;
-};
-
-/// An edit, an undo or a save that cannot be: 409 where the page is behind, else 400.
-struct Refusal {
-    int status = 400;
-    std::string message;
+    std::uint64_t effects_revision = 0;
 };
 
 /// [any thread]
 class LookModel {
 public:
-    /// Reads the file. `effects` must outlive this. Throws Error(ExitCode::usage) where it cannot be read.
-    LookModel(std::filesystem::path path, EffectRegistry& effects, bool read_only);
+    using FindEffects = std::function<std::shared_ptr<EffectRegistry>()>;
+
+    /// Reads the file. Throws Error(ExitCode::usage) where it cannot be read.
+    LookModel(std::filesystem::path path, FindEffects find_effects, bool read_only);
 
     const std::filesystem::path& path() const { return path_; }
     /// Of the last text that had no faults; nullptr before there was one.
@@ -48,6 +49,15 @@ public:
     /// Writes the file, whole or not at all. Throws Error(ExitCode::output) too.
     void save();
 
+    /// Reads all effects again: what is bound from now on is bound to those.
+    void reload_effects();
+    /// Counts reload_effects().
+    std::uint64_t effects_revision() const;
+    /// JSON: what `describe --json` gives for each effect without faults.
+    std::string effects_json() const;
+    /// Throws Refusal 404 where there is no such effect.
+    EffectFiles files_of(const std::string& effect) const;
+
     /// What the page shows of the look; values are those of the frame `header` stands for.
     nlohmann::ordered_json state(const CaptureHeader& header) const;
     std::string text() const;
@@ -57,10 +67,12 @@ private:
     void change(std::string text);
 
     std::filesystem::path path_;
-    EffectRegistry& effects_;
+    FindEffects find_effects_;
     bool read_only_;
 
     mutable std::mutex mutex_;  // of what follows
+    std::shared_ptr<EffectRegistry> effects_;
+    std::uint64_t effects_revision_ = 1;
     std::vector<std::string> texts_;
     std::size_t at_ = 0;  // of texts_
     std::string saved_text_;

@@ -10,7 +10,6 @@
 
 #include "framework/core/error.h"
 #include "framework/core/text.h"
-#include "framework/effect/describe.h"
 #include "framework/image/role.h"
 #include "framework/serve/view_picture.h"
 
@@ -36,6 +35,18 @@ Number number_of(const Request& request, const std::string& name, Number otherwi
     return number;
 }
 
+/// Null for a text that is not JSON, or is nested deeper than anything that a page sends.
+Json shallow_json(const std::string& text) {
+    constexpr int kDeepest = 80;
+    int depth = 0;
+    const auto shallow = [&](int level, Json::parse_event_t, Json&) {
+        depth = std::max(depth, level);
+        return level <= kDeepest;
+    };
+    Json json = Json::parse(text, shallow, false);
+    return depth > kDeepest || json.is_discarded() ? Json() : json;
+}
+
 Json capture_json(const Sequence& sequence, const CaptureHeader& header, const std::string& path) {
     Json roles = Json::array();
     for (const std::string& name : header.roles) {
@@ -58,18 +69,10 @@ Json capture_json(const Sequence& sequence, const CaptureHeader& header, const s
 
 }  // namespace
 
-std::string describe_effects(EffectRegistry& effects) {
-    Json list = Json::array();
-    for (const std::string& id : effects.ids()) {
-        Diagnostics faults;
-        const EffectManifest* manifest = effects.find(id, faults);
-        if (manifest && !faults.has_errors()) list.push_back(Json::parse(describe_json(*manifest)));
-    }
-    return list.dump();
-}
-
 Response PageServer::state() const {
     Json state = setup_.look.state(setup_.header);
+    state["effect_folders"] = Json::array();
+    for (const auto& folder : setup_.effect_folders) state["effect_folders"].push_back(folder.string());
     state["capture"] = capture_json(setup_.sequence, setup_.header, setup_.capture);
     return json_response(state);
 }
@@ -79,15 +82,9 @@ Response PageServer::change(const Request& request) {
     else if (request.path == "/api/redo") setup_.look.redo();
     else if (request.path == "/api/save") setup_.look.save();
     else {
-        constexpr int kDeepest = 80;
-        int depth = 0;
-        const auto shallow = [&](int level, Json::parse_event_t, Json&) {
-            depth = std::max(depth, level);
-            return level <= kDeepest;
-        };
-        const Json body = Json::parse(request.body, shallow, false);
-        if (!body.is_object() || depth > kDeepest || !body.contains("revision") ||
-            !body["revision"].is_number_unsigned() || !body.contains("edits"))
+        const Json body = shallow_json(request.body);
+        if (!body.is_object() || !body.contains("revision") || !body["revision"].is_number_unsigned() ||
+            !body.contains("edits"))
             throw Refusal{400, "the body is {\"revision\": NUMBER, \"edits\": [...]}"};
         setup_.look.edit(body["revision"].get<std::uint64_t>(), body["edits"]);
     }
@@ -146,6 +143,40 @@ Response PageServer::command() const {
                                                   setup_.capture, "-o", output})}});
 }
 
+/// Has the effects read again where their files are not those that were read.
+void PageServer::follow_effects() {
+    const std::lock_guard lock(mutex_);
+    std::string stamp = stamp_of_folders(setup_.effect_folders);
+    if (stamp == stamp_) return;
+    stamp_ = std::move(stamp);
+    setup_.look.reload_effects();
+}
+
+Response PageServer::changes() {
+    follow_effects();
+    return json_response({{"effects_revision", setup_.look.effects_revision()}});
+}
+
+Response PageServer::shaders(const Request& request) const {
+    const EffectFiles files = setup_.look.files_of(request.parameter("effect"));
+    Json json = {{"folder", files.folder.string()}, {"why_not", files.why_not}, {"files", Json::object()}};
+    for (const std::string& name : files.names()) json["files"][name] = files.read(name);
+    return json_response(json);
+}
+
+Response PageServer::save_shader(const Request& request) {
+    const Json body = shallow_json(request.body);
+    for (const char* key : {"effect", "file", "before", "text"})
+        if (!body.is_object() || !body.contains(key) || !body[key].is_string())
+            throw Refusal{400,
+                          "the body is {\"effect\", \"file\", \"before\", \"text\"}, each of them a text"};
+    setup_.look.files_of(body["effect"].get<std::string>())
+        .write(body["file"].get<std::string>(), body["before"].get<std::string>(),
+               body["text"].get<std::string>());
+    follow_effects();
+    return state();
+}
+
 Response PageServer::answer(const Request& request) {
     using Answer = std::function<Response()>;
     const std::map<std::string, std::pair<std::string, Answer>> answers = {
@@ -153,12 +184,15 @@ Response PageServer::answer(const Request& request) {
         {"/api/effects",
          {"GET",
           [&] {
-              return Response{200, "application/json", setup_.effects};
+              return Response{200, "application/json", setup_.look.effects_json()};
           }}},
         {"/api/picture", {"GET", [&] { return picture(request); }}},
         {"/api/probe", {"GET", [&] { return probe(request); }}},
         {"/api/histogram", {"GET", [&] { return histogram(request); }}},
         {"/api/command", {"GET", [&] { return command(); }}},
+        {"/api/changes", {"GET", [&] { return changes(); }}},
+        {"/api/shaders", {"GET", [&] { return shaders(request); }}},
+        {"/api/shader", {"POST", [&] { return save_shader(request); }}},
         {"/api/edit", {"POST", [&] { return change(request); }}},
         {"/api/undo", {"POST", [&] { return change(request); }}},
         {"/api/redo", {"POST", [&] { return change(request); }}},

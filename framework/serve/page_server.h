@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,15 +24,16 @@ struct PageSetup {
     LookModel& look;
     RenderThread& pictures;
     const Sequence& sequence;
-    const CaptureHeader& header;  ///< of the first frame
-    std::string capture;          ///< as the user named it
-    std::string effects;          ///< JSON: what `describe --json` gives for each
+    const CaptureHeader& header;                        ///< of the first frame
+    std::string capture;                                ///< as the user named it
+    std::vector<std::filesystem::path> effect_folders;  ///< those that the user named
 };
 
 /// [any thread]
 class PageServer {
 public:
-    explicit PageServer(PageSetup setup) : setup_(std::move(setup)) {}
+    explicit PageServer(PageSetup setup)
+        : setup_(std::move(setup)), stamp_(stamp_of_folders(setup_.effect_folders)) {}
 
     /// Of a request that the guards let through, to an address below /api/.
     Response answer(const Request& request);
@@ -43,12 +45,15 @@ private:
     Response probe(const Request& request);
     Response histogram(const Request& request);
     Response command() const;
+    Response changes();
+    Response shaders(const Request& request) const;
+    Response save_shader(const Request& request);
+    void follow_effects();
     PictureRequest request_of(const Request& request) const;
 
     PageSetup setup_;
+    std::mutex mutex_;   // of what follows
+    std::string stamp_;  // of the effects as they were last read
 };
-
-/// All effects as JSON; one with faults is left out.
-std::string describe_effects(EffectRegistry& effects);
 
 }  // namespace aftershade::serve

@@ -74,7 +74,7 @@ PictureMaker::~PictureMaker() = default;
 void PictureMaker::adopt(Scaled& scaled, const PictureRequest& request) {
     Pipeline pipeline = request.look->pipeline;
     if (request.view.starts_with("tap:")) pipeline.taps = {tap_of(request.view, pipeline)};
-    std::string form = form_of(pipeline);
+    std::string form = fmt::format("{}\n", request.look->effects_revision) + form_of(pipeline);
     if (!scaled.pipeline) scaled.pipeline = std::make_unique<Pipeline>();
     const bool has_changed = form != scaled.form;
     *scaled.pipeline = std::move(pipeline);
@@ -85,6 +85,7 @@ void PictureMaker::adopt(Scaled& scaled, const PictureRequest& request) {
     } else if (has_changed) {
         scaled.renderer->pipeline_changed();
     }
+    scaled.look = request.look;
 }
 
 /// Whether the captures are those of the last call.
@@ -145,6 +146,7 @@ PictureMaker::Scaled& PictureMaker::draw(const PictureRequest& request) {
     const auto start = Clock::now();
     context_.make_current();
     Scaled& scaled = scaled_[request.scale];
+    const std::shared_ptr<const BoundText> before = scaled.look;  // until the renderer has let go of it
     std::vector<std::string> roles = {makes(request.look->pipeline, kDisplayRole) ? kDisplayRole
                                                                                   : kColorRole};
     if (request.view.starts_with("role:") && makes(request.look->pipeline, request.view.substr(5)))

@@ -61,6 +61,7 @@ private:
     /// What is kept for one scale.
     struct Scaled {
         std::unique_ptr<Pipeline> pipeline;
+        std::shared_ptr<const BoundText> look;  // owns the manifests that the renderer refers to
         std::string form;
         std::string roles_asked;
         std::unique_ptr<PipelineRenderer> renderer;

@@ -14,11 +14,16 @@ Response superseded() {
     return error_response(409, "superseded");
 }
 
+/// Of what the look, its effects and its capture hold, and not of this machine.
+bool is_of_documents(ExitCode code) {
+    return code == ExitCode::usage || code == ExitCode::capture || code == ExitCode::effect;
+}
+
 Response answer_of(const RenderThread::Work& work, PictureMaker& maker) {
     try {
         return work(maker);
     } catch (const Error& error) {
-        return error_response(error.exit_code() == ExitCode::usage ? 400 : 500, error.what());
+        return error_response(is_of_documents(error.exit_code()) ? 400 : 500, error.what());
     } catch (const std::exception& error) {
         return error_response(500, error.what());
     }

@@ -22,18 +22,20 @@ CaptureHeader first_header(const ServeOptions& options) {
 
 }  // namespace
 
-void serve(const ServeOptions& options, EffectRegistry& effects, const std::atomic<bool>& stop) {
+void serve(const ServeOptions& options, const std::atomic<bool>& stop) {
     const auto files = read_page_files(options.data_folder / "page");
     const CaptureHeader header = first_header(options);
-    const std::string described = describe_effects(effects);
-    LookModel look(std::filesystem::absolute(options.look), effects, options.read_only);
+    std::vector<std::filesystem::path> folders = options.effect_folders;
+    folders.push_back(options.data_folder / "effects");
+    const auto find_effects = [&] { return std::make_shared<EffectRegistry>(folders); };
+    LookModel look(std::filesystem::absolute(options.look), find_effects, options.read_only);
     Connections connections(options.port, {});
     const auto make = [&] {
         return std::make_unique<PictureMaker>(options.sequence, options.profiles, options.limits,
                                               options.backend, options.data_folder);
     };
     RenderThread pictures(make, stop);
-    PageServer server({look, pictures, options.sequence, header, options.capture, described});
+    PageServer server({look, pictures, options.sequence, header, options.capture, options.effect_folders});
     const std::string token = random_token();
     if (options.ready)
         options.ready("http://127.0.0.1:" + std::to_string(connections.port()) + "/#token=" + token);

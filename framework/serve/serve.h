@@ -9,7 +9,6 @@
 
 #include "framework/capture/profile.h"
 #include "framework/capture/sequence.h"
-#include "framework/effect/registry.h"
 #include "framework/file/exr_file.h"
 #include "framework/gpu/context.h"
 
@@ -23,13 +22,14 @@ struct ServeOptions {
     ReadLimits limits{};
     gpu::Backend backend = gpu::Backend::automatic;
     std::filesystem::path data_folder;
-    int port = 0;  ///< 0: a free one
+    std::vector<std::filesystem::path> effect_folders;  ///< searched before the shipped one
+    int port = 0;                                       ///< 0: a free one
     bool read_only = false;
     std::function<void(const std::string& address)> ready;  ///< once it answers
 };
 
 /// Until `stop`. Throws Error: usage for the look and the port, capture for the first frame, gl for the
 /// context.
-void serve(const ServeOptions& options, EffectRegistry& effects, const std::atomic<bool>& stop);
+void serve(const ServeOptions& options, const std::atomic<bool>& stop);
 
 }  // namespace aftershade::serve

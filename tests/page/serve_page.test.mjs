@@ -1,7 +1,7 @@
 // The authoring page of `aftershade serve`, as its users have it: the program serves a look in a folder of its own.
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { basename, join, resolve } from "node:path";
 import { after, before, test } from "node:test";
@@ -1347,6 +1347,11 @@ for (const colorScheme of ["dark", "light"])
           LOOK.replace('"vignette"', '"vignete"'),
         );
         await check("faults");
+        await page.evaluate((value) => window.aftershade.store.edit([{ op: "text", value }]), LOOK);
+        await page.keyboard.press("Escape");
+        await page.getByRole("tab", { name: "Shaders" }).click();
+        await page.waitForFunction(() => document.querySelector("#panel-shaders textarea").value.length > 0);
+        await check("shaders");
       },
       { viewport: { width, height }, colorScheme },
     );
@@ -1415,6 +1420,153 @@ test("explains an address without its token", noRow, async () => {
   } finally {
     await server.end();
   }
+});
+
+// ---- shaders ----
+
+const TINT = {
+  aftershade: 1,
+  id: "tint",
+  version: "1.0.0",
+  summary: "Multiplies the colour.",
+  inputs: { color: { role: "color", doc: "Any." } },
+  outputs: { color: { role: "color", doc: "The same, tinted." } },
+  params: { amount: { type: "float", default: 1, min: 0, max: 4, ui: [0, 2], doc: "Factor." } },
+  passes: [{ name: "tint", shader: "tint.frag", reads: ["color"], writes: ["color"] }],
+};
+const tintShader = (expression) => `#version 450 core
+#include <pass>
+
+void main() {
+    vec4 light = texelFetch(color, ivec2(gl_FragCoord.xy), 0);
+    out_color = ${expression};
+}
+`;
+/** A page on a look with an effect of the user's own; `files` is its folder. */
+function withTint(name, work, options = {}) {
+  const effects = mkdtempSync(join(folder, "effects-")),
+    files = join(effects, "tint");
+  mkdirSync(files);
+  const reset = () => {
+    writeFileSync(join(files, "effect.json"), JSON.stringify(TINT));
+    writeFileSync(join(files, "tint.frag"), tintShader("light * param.amount"));
+  };
+  reset();
+  const text = LOOK.replace('{ "effect": "vignette" }', '{ "effect": "tint" }, { "effect": "vignette" }');
+  inPage(
+    name,
+    async (page, server) => {
+      await page.evaluate((value) => window.aftershade.store.edit([{ op: "text", value }]), text);
+      await page.evaluate(() => window.aftershade.settled());
+      await work(page, { ...server, files, text, shader: join(files, "tint.frag") });
+    },
+    { words: ["--effect-path", effects, ...(options.words ?? [])], ...without(options, "words") },
+  );
+}
+const without = (all, key) => Object.fromEntries(Object.entries(all).filter(([name]) => name !== key));
+const centre = (page) =>
+  page.locator(".stage canvas").evaluate((canvas) => {
+    const { data } = canvas.getContext("2d").getImageData(canvas.width / 2, canvas.height / 2, 1, 1);
+    return [...data].slice(0, 3);
+  });
+async function openShader(page) {
+  await page.getByRole("tab", { name: "Shaders" }).click();
+  await page.getByLabel("Effect", { exact: true }).selectOption("tint");
+  const area = page.getByLabel("The shader as GLSL");
+  await page.waitForFunction(() => document.querySelector("#panel-shaders textarea").value.includes("out_color"));
+  return area;
+}
+
+withTint("writes a shader by Ctrl+S and shows the picture that `run` then draws", async (page, { shader, files, look }) => {
+  const area = await openShader(page),
+    before = await centre(page);
+  await area.fill(tintShader("light * vec4(0.0, 2.0, 0.0, 1.0)"));
+  assert.match(readFileSync(shader, "utf8"), /param\.amount/, "nothing is written before it is saved");
+  await area.press("Control+s");
+  await page.waitForFunction(() => document.getElementById("notice").textContent.includes("Saved tint.frag"));
+  assert.equal(readFileSync(shader, "utf8"), await area.inputValue());
+  await page.evaluate(() => window.aftershade.settled());
+  const after = await centre(page);
+  assert.ok(after[0] < before[0] && after[1] > after[0], `${before} ${after}`);
+  await page.getByRole("tab", { name: "Steps" }).click();
+  await page.locator("body").press("Control+s");
+  await page.waitForFunction(() => window.aftershade.store.isSaved);
+  const png = join(folder, "tinted.png");
+  spawnSync(program, ["run", look, capture, "--frames", "1", "--effect-path", join(files, ".."), "-o", png], {
+    env: environment,
+  });
+  const [shown, run] = await page.evaluate(
+    async (bytes) => {
+      const pixels = async (blob) => {
+        const bitmap = await createImageBitmap(blob),
+          canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
+        canvas.getContext("2d").drawImage(bitmap, 0, 0);
+        return [...canvas.getContext("2d").getImageData(0, 0, bitmap.width, bitmap.height).data].join();
+      };
+      const { pictureBlob } = await import("./api.js"),
+        own = await pictureBlob({ frame: 1, scale: 1, view: "final", exposure: 0 });
+      return [await pixels(own), await pixels(new Blob([new Uint8Array(bytes)]))];
+    },
+    [...readFileSync(png)],
+  );
+  assert.ok(shown === run, "the pixels differ");
+});
+
+withTint("shows GLSL's faults at their file and line, and keeps the last good picture", async (page) => {
+  const area = await openShader(page),
+    good = await centre(page);
+  await area.fill(tintShader("lihgt"));
+  await area.press("Control+s");
+  const fault = page.locator(".shader-faults li");
+  await fault.first().waitFor();
+  assert.match(await fault.first().innerText(), /tint\.frag:6[^]*lihgt/);
+  assert.equal(await page.locator("#panel-shaders .faulty").first().innerText(), "6");
+  assert.deepEqual(await centre(page), good);
+  await fault.first().getByRole("button").click();
+  assert.equal(await area.evaluate((node) => node.value.slice(0, node.selectionStart).split("\n").length), 6);
+  page.faults.length = 0; // Chromium lists the refused pictures
+  await area.fill(tintShader("light * param.amount"));
+  await area.press("Control+s");
+  await page.waitForFunction(() => document.querySelector(".shader-faults").hidden);
+  assert.equal(await page.locator("#panel-shaders .faulty").count(), 0);
+  assert.deepEqual(await centre(page), good);
+});
+
+withTint("follows an effect that another program edits, with the typed text kept", async (page, { shader, files }) => {
+  const area = await openShader(page),
+    before = await centre(page);
+  await area.fill(`${tintShader("light")}// typed`);
+  writeFileSync(shader, tintShader("light * vec4(2.0, 0.0, 0.0, 1.0)"));
+  await page.waitForFunction(() => window.aftershade.store.state.effects_revision > 1);
+  await page.evaluate(() => window.aftershade.settled());
+  const after = await centre(page);
+  assert.ok(after[1] < before[1] && after[0] > after[1], `${before} ${after}`);
+  assert.match(await area.inputValue(), /typed/);
+  await area.press("Control+s");
+  await page.waitForFunction(() => document.getElementById("notice").textContent.includes("another program"));
+  assert.match(readFileSync(shader, "utf8"), /vec4\(2\.0/);
+  page.faults.length = 0; // Chromium lists the refused request
+  await page.getByRole("button", { name: "Revert" }).click();
+  assert.match(await area.inputValue(), /vec4\(2\.0/);
+  const { params, ...rest } = TINT;
+  writeFileSync(
+    join(files, "effect.json"),
+    JSON.stringify({ ...rest, params: { ...params, other: { ...params.amount, doc: "A new one." } } }),
+  );
+  await page.waitForFunction(() => "other" in window.aftershade.store.effects.get("tint").params);
+  await page.getByRole("tab", { name: "Steps" }).click();
+  assert.equal(await row(await opened(page, "tint"), "other").count(), 1);
+});
+
+inPage("shows shipped shaders, and says why they cannot be written", async (page) => {
+  await page.keyboard.press("t");
+  await page.keyboard.press("t");
+  await page.getByLabel("Effect", { exact: true }).selectOption("vignette");
+  const area = page.getByLabel("The shader as GLSL");
+  await page.waitForFunction(() => document.querySelector("#panel-shaders textarea").value.includes("void main"));
+  assert.equal(await area.evaluate((node) => node.readOnly), true);
+  assert.match(await page.locator("#shader-help").innerText(), /comes with Aftershade[^]*--effect-path/);
+  assert.equal(await page.getByRole("button", { name: "Save shader" }).isDisabled(), true);
 });
 
 // ---- 200 random edits ----

@@ -162,13 +162,17 @@ nlohmann::json content_of(const Json& document) {
     return content;
 }
 
+std::shared_ptr<EffectRegistry> shipped_effects() {
+    return std::make_shared<EffectRegistry>(
+        std::vector<std::filesystem::path>{std::filesystem::path(AFTERSHADE_SOURCE_DIR) / "effects"});
+}
+
 TEST(LookModel, HoldsTwoHundredRandomEditsAndUndoesThemToTheFirstByte) {
     for (const unsigned seed : {1u, 2u, 3u}) {
         const TemporaryFolder folder;
         const std::filesystem::path path = folder / "look.json";
         write_text_file(path, kLook);
-        EffectRegistry effects({std::filesystem::path(AFTERSHADE_SOURCE_DIR) / "effects"});
-        LookModel model(path, effects, false);
+        LookModel model(path, shipped_effects, false);
         Json document = read(kLook);
         RandomEdits edits(seed);
         int changes = 0;
@@ -199,12 +203,11 @@ TEST(LookModel, NeverWritesWhereItOnlyReadsNorOverAnotherProgramsChange) {
     const TemporaryFolder folder;
     const std::filesystem::path path = folder / "look.json";
     write_text_file(path, kLook);
-    EffectRegistry effects({std::filesystem::path(AFTERSHADE_SOURCE_DIR) / "effects"});
     const Json edits = Json::parse(R"([{"op": "set", "step": 0, "param": "f_number", "value": 4}])");
-    LookModel reader(path, effects, true);
+    LookModel reader(path, shipped_effects, true);
     reader.edit(1, edits);
     EXPECT_THROW(reader.save(), Refusal);
-    LookModel writer(path, effects, false);
+    LookModel writer(path, shipped_effects, false);
     writer.edit(1, edits);
     EXPECT_THROW(writer.edit(1, edits), Refusal) << "the revision is old";
     write_text_file(path, "{}");
@@ -216,8 +219,7 @@ TEST(LookModel, KeepsTheLastLookWithoutFaultsAndSaysWhereTheFaultIs) {
     const TemporaryFolder folder;
     const std::filesystem::path path = folder / "look.json";
     write_text_file(path, kLook);
-    EffectRegistry effects({std::filesystem::path(AFTERSHADE_SOURCE_DIR) / "effects"});
-    LookModel model(path, effects, false);
+    LookModel model(path, shipped_effects, false);
     const auto good = model.bound();
     ASSERT_TRUE(good);
     model.edit(1, Json::parse(R"([{"op": "text", "value": "{\n  \"aftershade\": 1,\n  \"steps\": [ }"}])"));

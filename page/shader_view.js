@@ -1,0 +1,152 @@
+// The shaders of the effects of the look's steps, beside the picture: written on save, with GLSL's faults at their lines.
+import { get } from "./api.js";
+import { button, element, notify, options } from "./elements.js";
+import { CodeArea, faultList } from "./text_view.js";
+
+/** "effects/tint/tint.frag:6:17: error: 'parm' undeclared   [pass tint, llvmpipe ...]" */
+const FAULT = /^(.+?):(\d+)(?::(\d+))?: (?:error|warning): (.*)$/;
+
+/** [{path, line, column, message}] of the program's message; a message without a line has none. */
+export const shaderFaults = (message) =>
+  message.split("\n").flatMap((one) => {
+    const found = FAULT.exec(one.trim());
+    return found
+      ? [{ path: found[1], line: Number(found[2]), column: Number(found[3] ?? 1) || 1, message: found[4] }]
+      : [];
+  });
+
+export class ShaderView {
+  /** What is on disk, by effect: {folder, why_not, files: {name: text}}. */
+  #disk = new Map();
+  /** What is typed and not saved, by effect and file: {text, before}; `before` is the file it was typed over. */
+  #drafts = new Map();
+  #faults = [];
+
+  constructor(store) {
+    this.store = store;
+    this.effectSelect = element("select", { "aria-label": "Effect" });
+    this.effectSelect.addEventListener("change", () => this.show(this.effectSelect.value));
+    this.fileSelect = element("select", { "aria-label": "File" });
+    this.fileSelect.addEventListener("change", () => this.show(this.effect, this.fileSelect.value));
+    this.saveButton = button("Save shader", () => this.save(), { title: "Save the shader (Ctrl+S in its text)" });
+    this.revertButton = button("Revert", () => this.revert(), { title: "Show the shader as it is on disk again" });
+    this.note = element("p", { class: "hint shown", id: "shader-help" });
+    this.list = element("div", { class: "shader-faults", role: "alert", hidden: true });
+    this.code = new CodeArea({ label: "The shader as GLSL", describedBy: "shader-help" });
+    this.code.area.addEventListener("input", () => {
+      const isAsOnDisk = this.code.value === this.stored;
+      if (isAsOnDisk) this.#drafts.delete(this.key);
+      else
+        this.#drafts.set(this.key, {
+          text: this.code.value,
+          before: this.#drafts.get(this.key)?.before ?? this.stored,
+        });
+      this.mark();
+    });
+    this.node = element(
+      "div",
+      { class: "text-view" },
+      element("div", { class: "shader-head" }, this.effectSelect, this.fileSelect, this.revertButton, this.saveButton),
+      this.list,
+      this.code.node,
+      this.note,
+    );
+  }
+
+  get key() {
+    return `${this.effect}/${this.file}`;
+  }
+  get stored() {
+    return this.#disk.get(this.effect)?.files[this.file];
+  }
+  get isEdited() {
+    return this.#drafts.size > 0;
+  }
+
+  /** The look has changed, or the effects on disk. */
+  async update() {
+    const { steps, effects_revision } = this.store.state;
+    if (effects_revision !== this.revision) this.#disk.clear();
+    this.revision = effects_revision;
+    const effects = [...new Set(steps.map(({ effect }) => effect))].filter((id) => this.store.effects.has(id));
+    options(
+      this.effectSelect,
+      effects.map((id) => [id, id]),
+      this.effect,
+    );
+    this.effectSelect.disabled = effects.length === 0;
+    if (!effects.includes(this.effect)) this.effect = effects[0];
+    await this.show(this.effect, this.file);
+  }
+
+  async show(effect, file) {
+    this.effect = effect;
+    this.effectSelect.value = effect;
+    try {
+      if (effect && !this.#disk.has(effect)) this.#disk.set(effect, await get("/api/shaders", { effect }));
+    } catch (error) {
+      return notify(error.message, true);
+    }
+    if (effect !== this.effect) return; // another was chosen meanwhile
+    const { files = {}, why_not = "The look has no step with an effect." } = this.#disk.get(effect) ?? {},
+      names = Object.keys(files);
+    this.file = names.includes(file) ? file : names[0];
+    options(
+      this.fileSelect,
+      names.map((name) => [name, name]),
+      this.file,
+    );
+    this.fileSelect.disabled = names.length === 0;
+    this.code.area.readOnly = why_not !== "" || !this.file;
+    this.note.textContent = why_not || "Ctrl+S writes the file and draws the picture with it. Tab leaves the text.";
+    this.code.value = this.#drafts.get(this.key)?.text ?? this.stored ?? "";
+    this.mark();
+  }
+
+  mark() {
+    const isEdited = this.#drafts.has(this.key);
+    this.saveButton.disabled = this.revertButton.disabled = !isEdited;
+    const own = ({ path }) => path.endsWith(`${this.effect}/${this.file}`);
+    this.code.number(this.#faults.filter(own).map(({ line }) => line));
+  }
+
+  async save() {
+    if (!this.#drafts.has(this.key)) return;
+    const { effect, file, key } = this,
+      { text, before } = this.#drafts.get(key);
+    if (!(await this.store.saveShader({ effect, file, before, text }))) return;
+    // What was typed since then stays a draft.
+    const draft = this.#drafts.get(key);
+    if (draft?.text === text) this.#drafts.delete(key);
+    else if (draft) draft.before = text;
+    notify(`Saved ${file}`);
+    this.mark();
+  }
+
+  revert() {
+    this.#drafts.delete(this.key);
+    this.code.value = this.stored ?? "";
+    this.mark();
+    this.code.area.focus();
+  }
+
+  /** `message`: of a picture that could not be drawn; "" once one could. */
+  setFault(message) {
+    this.#faults = shaderFaults(message);
+    this.list.hidden = this.#faults.length === 0;
+    this.list.replaceChildren(
+      element("p", { class: "count" }, "The picture is the last good one"),
+      faultList(
+        this.#faults.map((fault) => ({ ...fault, place: `${fault.path.split("/").at(-1)}:${fault.line}` })),
+        (fault) => this.goTo(fault),
+      ),
+    );
+    this.mark();
+  }
+
+  async goTo({ path, line, column }) {
+    const [effect, file] = path.split("/").slice(-2);
+    if (this.effect !== effect || this.file !== file) await this.show(effect, file);
+    if (this.effect === effect && this.file === file) this.code.goTo(line, column);
+  }
+}
