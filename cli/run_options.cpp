@@ -108,8 +108,9 @@ void add_output_options(CLI::App& app, RunArguments& options) {
     app.add_option("--crop", options.crop, "EXR: keep the data window, or crop to the display window")
         ->check(CLI::IsMember({"data", "display"}))
         ->capture_default_str();
-    app.add_option("--compression", options.compression,
-                   "EXR: none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa or dwab; zip:1 packs fastest, zip:9 most")
+    app.add_option(
+           "--compression", options.compression,
+           "EXR: none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa or dwab; zip:1 packs fastest, zip:9 most")
         ->capture_default_str();
 }
 

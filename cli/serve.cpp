@@ -13,6 +13,7 @@
 #include "cli/effect_options.h"
 #include "cli/gl_options.h"
 #include "cli/interrupt.h"
+#include "cli/plugin_options.h"
 #include "cli/verbs.h"
 #include "framework/core/data_path.h"
 #include "framework/core/error.h"
@@ -46,6 +47,7 @@ void open_browser(const std::string& address) {
 }
 
 ExitCode serve(const ServeArguments& arguments) {
+    if (const auto code = run_in_worker({}, !arguments.effect_paths.empty())) return *code;
     const std::atomic<bool>& stop = watch_for_interrupt();
     const gpu::Backend backend = chosen_backend(arguments.backend);
     Diagnostics diagnostics;

@@ -57,7 +57,8 @@ EffectFiles effect_files(const EffectRegistry& effects, const std::string& id, b
     std::error_code failure;
     if (read_only) files.why_not = "shaders are not written: the program runs with --read-only";
     else if (is_shipped(*folder))
-        files.why_not = "'" + id + "' comes with Aftershade and is not written; copy its folder, rename the effect "
+        files.why_not = "'" + id +
+                        "' comes with Aftershade and is not written; copy its folder, rename the effect "
                         "and serve with --effect-path";
     else if (fs::is_symlink(*folder, failure))
         files.why_not = folder->string() + " is a link, and what it leads to is not written";

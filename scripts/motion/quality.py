@@ -16,7 +16,7 @@ TEXTS = ROOT / "scripts/motion"
 RGB = ["R", "G", "B"]
 METHODS = ["bowles_2012", "jimenez_2014", "guertin_2014", "mcguire_2012"]
 SCENES = {"moving_box": "one box before a wall at rest", "wheel": "30 degrees a frame", "camera_checker": "only the camera moves",
-          "bats": "336 things of about 2 px each"}
+          "bats": "336 things of about 2 px each", "toys": "a blade, a ball that rolls and spins, and lights at rest"}
 FRAME, SAMPLES = 7, 256
 CROPS = {"ball": (90, 200, 220, 200), "cube": (640, 170, 270, 160)}  # x, y, w, h
 

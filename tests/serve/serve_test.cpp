@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 
 #include "framework/capture/capture_writer.h"
 #include "framework/file/png_file.h"
+#include "framework/image/role.h"
 #include "tests/cli/command.h"
 #include "tests/serve/client.h"
 #include "tests/synthetic_capture.h"
@@ -35,7 +37,9 @@ protected:
         SyntheticScene scene{
             .width = 64, .height = 36, .background = {0.1f, 0.2f, 0.4f}, .background_depth_m = 8};
         scene.box = SyntheticBox{4, 6, 16, 12, 5, 2};
-        write_capture(make_capture(scene, 1), folder_ / "in_0001.exr");
+        Capture capture = make_capture(scene, 1);
+        if (has_nan_) capture.images.at(kColorRole).at(3, 2, 1) = std::numeric_limits<float>::quiet_NaN();
+        write_capture(capture, folder_ / "in_0001.exr");
         write_text(folder_ / "look.json", kLook);
         write_text(folder_ / "secret.txt", "secret");
         std::vector<std::string> words{"serve", "look.json", "in_0001.exr", "--backend", "osmesa"};
@@ -80,6 +84,7 @@ protected:
 
     TemporaryFolder folder_;
     std::optional<Command> command_;
+    bool has_nan_ = false;
     int port_ = 0;
     std::string token_;
 };
@@ -283,6 +288,23 @@ TEST_F(ServeShaders, WritesNoShaderWithReadOnly) {
     start_with_tint({"--read-only"});
     EXPECT_EQ(save(tint_shader("light"), "mine").status, 403);
     EXPECT_EQ(shader_on_disk(), tint_shader("light"));
+}
+
+TEST_F(Serve, CountsTheNanOfTheFinalPicture) {
+    has_nan_ = true;
+    start();
+    const Json state = get("/api/state").json();
+    const Json edit = {{"op", "text"},
+                       {"value", R"({ "aftershade": 1, "steps": [{ "effect": "vignette" }] })"}};
+    ASSERT_EQ(post("/api/edit", Json{{"revision", state["revision"]}, {"edits", {edit}}}.dump()).status, 200);
+    EXPECT_EQ(times()["non_finite"], 1);
+}
+
+TEST_F(ServeShaders, EndsWithItsSecondProcessAtAnInterrupt) {
+    start_with_tint();
+    EXPECT_EQ(get("/api/picture?frame=1").status, 200);
+    EXPECT_EQ(ended_by(SIGINT), 130);
+    EXPECT_FALSE(Client(port_).is_open());
 }
 
 TEST_F(Serve, WritesNothingWithReadOnly) {
