@@ -2,6 +2,9 @@
 
 export const token = new URLSearchParams(location.hash.slice(1)).get("token") ?? "";
 
+/** The status of a picture that was not drawn, because a newer one was requested. */
+export const SUPERSEDED = 204;
+
 export class ApiError extends Error {
   constructor(status, message) {
     super(message);
@@ -20,6 +23,7 @@ async function request(path, options = {}) {
       "the program does not answer: start `aftershade serve` again and open the address that it prints",
     );
   }
+  if (response.status === SUPERSEDED) throw new ApiError(SUPERSEDED, "a newer request for a picture took its place");
   if (response.ok) return response;
   let message = `${response.status} ${response.statusText}`;
   try {

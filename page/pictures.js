@@ -1,5 +1,5 @@
 // Requests pictures: a coarse one first, then the full one. The newest wish wins.
-import { picture } from "./api.js";
+import { SUPERSEDED, picture } from "./api.js";
 
 const COARSE = 4, // fraction of the size of the first picture: 1/4
   QUICK_MS = 90; // a full picture that arrives this soon needs no coarse one before it
@@ -37,7 +37,7 @@ export class Pictures extends EventTarget {
       } catch (error) {
         if (error.name === "AbortError") continue;
         // Superseded: by the newer wish, or else by another page, which ends soon.
-        if (error.status === 409 && !this.#wish && retries++ < 3) {
+        if (error.status === SUPERSEDED && !this.#wish && retries++ < 3) {
           await new Promise((resolve) => setTimeout(resolve, 200));
           this.#wish ??= wish;
         } else if (!this.#wish) this.dispatchEvent(new CustomEvent("fail", { detail: error }));

@@ -96,6 +96,7 @@ std::optional<std::size_t> length_of(const std::map<std::string, std::string>& h
 const char* reason(int status) {
     switch (status) {
         case 200: return "OK";
+        case 204: return "No Content";
         case 400: return "Bad Request";
         case 401: return "Unauthorized";
         case 403: return "Forbidden";
@@ -132,9 +133,11 @@ Response error_response(int status, const std::string& message) {
 }
 
 std::string response_bytes(const Response& response) {
-    std::string bytes =
-        "HTTP/1.1 " + std::to_string(response.status) + " " + reason(response.status) +
-        "\r\nContent-Type: " + response.type + "\r\nContent-Length: " + std::to_string(response.body.size()) +
+    std::string bytes = "HTTP/1.1 " + std::to_string(response.status) + " " + reason(response.status);
+    if (response.status != 204)  // which has neither (RFC 9110, 8.6)
+        bytes += "\r\nContent-Type: " + response.type +
+                 "\r\nContent-Length: " + std::to_string(response.body.size());
+    bytes +=
         "\r\nConnection: close"
         "\r\nCache-Control: no-store"
         "\r\nX-Content-Type-Options: nosniff"

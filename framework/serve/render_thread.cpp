@@ -10,8 +10,10 @@ namespace aftershade::serve {
 
 namespace {
 
+/// Not an error: it is what the newest of many requests is meant to do, and browsers log each error that they
+/// get.
 Response superseded() {
-    return error_response(409, "superseded");
+    return {204, "", ""};
 }
 
 /// Of what the look, its effects and its capture hold, and not of this machine.

@@ -36,7 +36,7 @@ public:
     RenderThread(const RenderThread&) = delete;
     RenderThread& operator=(const RenderThread&) = delete;
 
-    /// Waits for the answer. A picture of the same view that has not begun is answered with 409 where it is
+    /// Waits for the answer. A picture of the same view that has not begun is answered with 204 where it is
     /// of the same scale or of an older revision; so is every request after the end.
     Response run(const PictureKey& key, Work work);
 
