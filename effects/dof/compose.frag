@@ -37,6 +37,17 @@ Coarse take_half_size(ivec2 p, float coc) {
 // Where a thin thing is lost at half size, its pixels are gathered one by one.
 const float kLeastLikeness = 0.6;
 
+// Whether a blur that is too narrow for half size may reach a pixel of this tile.
+bool has_narrow_blurs(ivec2 tile) {
+    ivec2 last = ivec2(tile_coc_size.xy) - 1;
+    for (int y = max(tile.y - 1, 0); y <= min(tile.y + 1, last.y); ++y)
+        for (int x = max(tile.x - 1, 0); x <= min(tile.x + 1, last.x); ++x) {
+            vec2 range_px = texelFetch(tile_coc, ivec2(x, y), 0).rg;
+            if (range_px.x < kFullSizePx && range_px.y > -kFullSizePx) return true;
+        }
+    return false;
+}
+
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
 #ifdef SILHOUETTES
@@ -68,7 +79,9 @@ void main() {
         int level = level_for(reach_px, around_coc);
         over = gather_front(center / float(1 << level), own.coc, visible_coc, reach_px, level, kAll);
     } else if (is_reached_far) {
-        over = both(gather_front(center, own.coc, visible_coc, kFullSizePx, 0, kNarrow), coarse.over);
+        // Software GL skips a loop without turns, not a branch.
+        float narrow_reach_px = has_narrow_blurs(p / kTile) ? kFullSizePx : kNoReach;
+        over = both(gather_front(center, own.coc, visible_coc, narrow_reach_px, 0, kNarrow), coarse.over);
     }
     out_color = over.color + surface.color * (1.0 - over.opacity);
     bool is_hidden = visible_coc < own.coc - kClear;

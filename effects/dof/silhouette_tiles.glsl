@@ -1,3 +1,3 @@
-#include "blurred.glsl"
+#include "plated.glsl"
 
-bool silhouette_tiles(ivec2 tile) { return is_blurred(tile) && has_silhouettes(tile); }
+bool silhouette_tiles(ivec2 tile) { return is_blurred(tile) && is_plated(tile); }

@@ -24,15 +24,31 @@ bool is_declared_at(const std::vector<Token>& tokens, std::size_t i, const Place
     return !ends_directive || tokens[i].place.line == before.line;
 }
 
+/// Parameters of the macro that "#define NAME(a, b) ..." at the "#" at `i` declares.
+std::set<std::string> macro_parameters_at(const std::vector<Token>& tokens, std::size_t i) {
+    std::set<std::string> names;
+    if (i + 3 >= tokens.size() || tokens[i + 1].text != "define" || tokens[i + 3].text != "(") return names;
+    for (i += 4; i < tokens.size() && tokens[i].text != ")"; ++i)
+        if (tokens[i].is_word()) names.insert(tokens[i].text);
+    return names;
+}
+
+bool is_on_line_of(const Token& token, const Place& place) {
+    return token.place.line == place.line && token.place.file == place.file;
+}
+
 }  // namespace
 
 ShaderUses::ShaderUses(const std::vector<Token>& tokens) {
-    std::set<std::string> own_outputs, own_samplers;
+    std::set<std::string> own_outputs, own_samplers, macro_parameters;
     int branches = 0;  // of #if, around the token
     Place directive;   // the last before the token
     for (std::size_t i = 0; i < tokens.size(); ++i) {
         const Token& token = tokens[i];
-        if (token.text == "#") directive = token.place;
+        if (token.text == "#") {
+            directive = token.place;
+            macro_parameters = macro_parameters_at(tokens, i);
+        }
         if (!token.is_word()) continue;
         words.insert(token.text);
         if (i > 0 && tokens[i - 1].text == "#")
@@ -47,7 +63,8 @@ ShaderUses::ShaderUses(const std::vector<Token>& tokens) {
                 lights = token.place;
         }
         if (i + 2 < tokens.size() && is_sampling(token.text) && tokens[i + 1].text == "(" &&
-            tokens[i + 2].is_word()) {
+            tokens[i + 2].is_word() &&
+            !(is_on_line_of(token, directive) && macro_parameters.contains(tokens[i + 2].text))) {
             samplers.emplace(tokens[i + 2].text, tokens[i + 2].place);
             if (branches == 0) plain_samplers.emplace(tokens[i + 2].text, tokens[i + 2].place);
         }

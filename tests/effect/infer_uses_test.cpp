@@ -119,6 +119,15 @@ TEST(InferredUses, SayWhatTheTextNamesWrongly) {
     EXPECT_TRUE(lines[0].starts_with("a.frag:3:1: error: cannot read ")) << lines[0];
 }
 
+TEST(InferredUses, LeaveOutTheParametersOfMacros) {
+    const EffectFolder folder(manifest_with(R"("shader": "a.frag")"));
+    folder.write("a.frag",
+                 kHead +
+                     "#define TAP(s, p) texelFetch(s, p, 0)\n#define SUM(p) (texelFetch(wide, p, 0) * 2.0)\n"
+                     "void main() { out_thin = SUM(ivec2(0)); }\n");
+    EXPECT_EQ(flow_of(folder), "wide -> thin");
+}
+
 TEST(InferredUses, SayThatTheTextWritesNothing) {
     const EffectFolder folder(manifest_with(R"("shader": "a.frag")"));
     folder.write("a.frag", kHead + "void main() { out_thinn = vec4(0); }\n");
