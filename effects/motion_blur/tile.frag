@@ -1,21 +1,35 @@
 #version 450 core
 #include <pass>
-#include "motion.glsl"
+#include "motion_here.glsl"
 
-void main() {
-    ivec2 last = ivec2(motion_size.xy) - 1, corner = kTile * ivec2(gl_FragCoord.xy);
-    Motion m = unpack_motion(texelFetch(motion, min(corner, last), 0));
-    vec4 furthest = m.path, low = m.path, high = m.path;
-    float way = m.way_px;
+// Software GL skips a loop without turns, not a branch: a tile at rest costs its fetches alone.
+bool is_at_rest(ivec2 corner, ivec2 last) {
+    vec2 most = vec2(0.0);
     for (int y = 0; y < kTile; ++y)
         for (int x = 0; x < kTile; ++x) {
-            m = unpack_motion(texelFetch(motion, min(corner + ivec2(x, y), last), 0));
+            ivec2 p = min(corner + ivec2(x, y), last);
+            most = max(most, abs(finite(texelFetch(velocity, p, 0).xy)));
+#if defined(HAS_VELOCITY_NEXT) && CURVE
+            most = max(most, abs(finite(texelFetch(velocity_next, p, 0).xy)));
+#endif
+        }
+    return most == vec2(0.0);
+}
+
+void main() {
+    ivec2 last = frame.size - 1, corner = kTile * ivec2(gl_FragCoord.xy);
+    int side = is_at_rest(corner, last) ? 0 : kTile;
+    vec4 furthest = vec4(0.0), low = vec4(1e30), high = vec4(-1e30);
+    float way = -1.0;
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) {
+            Motion m = unpack_motion(motion_here(min(corner + ivec2(x, y), last)));
             low = min(low, m.path);
             high = max(high, m.path);
             furthest = m.way_px > way ? m.path : furthest;
             way = max(way, m.way_px);
         }
     out_tile_path = furthest;
-    out_tile_low = low;
-    out_tile_high = high;
+    out_tile_low = side > 0 ? low : vec4(0.0);
+    out_tile_high = side > 0 ? high : vec4(0.0);
 }
