@@ -1,16 +1,18 @@
-// Times effects on pictures of known CoC or surface, or counts their texel fetches. scripts/bench-dof and
-// scripts/bench-sss say which, as JSON on stdin, and read JSON from stdout; the figures are of their making,
-// the measuring is here.
+// Times effects on pictures of known CoC or surface, or on a capture's frame, or counts their texel fetches.
+// scripts/bench-dof, bench-sss and bench-roofline say which, as JSON on stdin, and read JSON from stdout; the
+// figures are of their making, the measuring is here.
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <iostream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "framework/capture/capture.h"
 #include "framework/effect/registry.h"
 #include "framework/gpu/buffer.h"
 #include "framework/gpu/context.h"
@@ -87,6 +89,16 @@ Capture make_surface(const json& job, const json& test) {
     return capture;
 }
 
+Capture read_capture(const json& job) {
+    Sequence sequence;
+    sequence.files = FramePattern(job.at("capture").get<std::string>());
+    sequence.profile = job.at("profile");
+    Diagnostics diagnostics;
+    const std::filesystem::path data = job.at("data").get<std::string>();
+    const CaptureReader reader(sequence, read_profiles(data / "profiles", diagnostics), {});
+    return reader.read(job.at("frame"), job.at("roles").get<std::vector<std::string>>());
+}
+
 Pipeline bind(const json& test, EffectRegistry& effects) {
     const json text = {{"aftershade", 1},
                        {"steps", {{{"effect", test.at("effect")}, {"params", test.at("params")}}}}};
@@ -113,11 +125,14 @@ std::uint64_t sum(const gpu::Buffer& counts) {
 }
 
 /// One frame to compile and touch everything, then one that counts.
+/// `read`: the capture of all cases, where the job has one.
 json measure(gpu::Context& context, gpu::Buffer& counts, const json& job, const json& test,
-             EffectRegistry& effects) {
+             EffectRegistry& effects, const std::optional<Capture>& read) {
     const Pipeline pipeline = bind(test, effects);
-    const std::string role = job.value("role", "color");
-    const Capture capture = role == "irradiance" ? make_surface(job, test) : make_capture(job, test);
+    const std::string role = test.value("role", job.value("role", "color"));
+    const Capture capture = read                   ? *read
+                            : role == "irradiance" ? make_surface(job, test)
+                                                   : make_capture(job, test);
     PipelineRenderer renderer(context, pipeline, job.at("data").get<std::string>());
     FrameInputs frame;
     frame.capture = &capture;
@@ -147,10 +162,12 @@ int run() {
     gpu::Context context(gpu::Backend::osmesa);
     gpu::Buffer counts(context, kCountWords * sizeof(std::uint32_t), "counts");
     json results = json::array();
+    std::optional<Capture> read;
+    if (job.contains("capture")) read = read_capture(job);
     // In turns, so that the machine's noise meets all alike.
     for (int i = 0; i < job.at("repetitions"); ++i)
         for (const json& test : job.at("cases")) {
-            results.push_back(measure(context, counts, job, test, effects));
+            results.push_back(measure(context, counts, job, test, effects, read));
             std::cerr << test.at("name").get<std::string>() << " " << results.back().at("ms") << " ms\n";
         }
     std::cout << json{
