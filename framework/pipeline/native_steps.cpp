@@ -129,7 +129,7 @@ void upload_table(const NativeTable& table, gpu::Texture& texture) {
 std::map<std::string, std::vector<double>> native_values(const NativeResult& result) {
     std::map<std::string, std::vector<double>> values;
     for (const auto& [name, uniform] : result.uniforms)
-        std::visit([&](const auto& numbers) { values[name].assign(numbers.begin(), numbers.end()); },
+        std::visit([&to = values[name]](const auto& numbers) { to.assign(numbers.begin(), numbers.end()); },
                    uniform);
     return values;
 }

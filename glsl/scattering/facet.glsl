@@ -3,7 +3,7 @@
 
 struct Facet {
     vec3 light;      // irradiance / pi
-    float depth_m;   // at the pixel's middle; +inf where nothing scatters
+    float depth_m;   // at the pixel's middle; 3e38 where nothing scatters
     uint key;        // 0 where nothing scatters
     vec3 position;   // of the pixel's middle in view space, mm
     vec3 normal;     // view space, unit length, towards the camera

@@ -11,11 +11,15 @@ uint id_at(ivec2 p) {
 // The object's id + 1, never 0; without ids all is one. Light goes between pixels of one key only.
 uint key_at(ivec2 p) { return min(id_at(p), 0xFFFFFFFEu) + 1u; }
 
-// Whether a surface that is there, at the given light, is to scatter.
-bool may_scatter(ivec2 p, vec3 light) {
-    bool listed = object_ids(id_at(p)) && !any(isnan(light)) && !any(isinf(light));
+bool is_surface(float depth_m) { return depth_m > 0.0 && depth_m < 1e30; }
+
+bool is_listed(ivec2 p) {
+    bool listed = object_ids(id_at(p));
 #ifdef HAS_MASK
     listed = listed && texelFetch(mask, p, 0).r > 0.0;
 #endif
     return listed;
 }
+
+// Whether a surface that is there, at the given light, is to scatter.
+bool may_scatter(ivec2 p, vec3 light) { return is_listed(p) && !any(isnan(light)) && !any(isinf(light)); }

@@ -6,8 +6,6 @@
 // Surface is spread over its pixels at most ten times: what is nearer to edge-on has no reliable slope.
 const float kMostSlope = 9.95;
 
-bool is_surface(float depth_m) { return depth_m > 0.0 && depth_m < 1e30; }
-
 // Depth's change from a pixel to its neighbour over their distance, for small steps: large where the neighbour is another
 // object, so that the other side's is taken.
 float step_to(ivec2 p, ivec2 neighbour, float depth_m, float px) {
@@ -35,6 +33,6 @@ void main() {
         slope_between(step_to(p, p - ivec2(1, 0), depth_m, px), step_to(p, p + ivec2(1, 0), depth_m, px)),
         slope_between(step_to(p, p - ivec2(0, 1), depth_m, px), step_to(p, p + ivec2(0, 1), depth_m, px)));
     slope *= min(1.0, kMostSlope / max(length(slope), 1e-6));
-    out_surface = vec4(light, scatters ? depth_m : uintBitsToFloat(0x7F800000u));
+    out_surface = vec4(light, scatters ? depth_m : 3e38);
     out_facet = scatters ? uvec2(key_at(p), packHalf2x16(slope)) : uvec2(0u);
 }

@@ -10,7 +10,7 @@ from techniques import psnr_db, scale_of, scatter
 
 SCENE, SIZE = "skin_front", os.environ.get("SIZE", "1920x1080")
 FRAMES, SETTLED = 32, 24  # times are the least of the frames after SETTLED
-COLUMNS = {"setup": ["surface", "tile_scatters", "lit_tiles", "plan", "kernel", "tile_light", "tile_range", "tile_class", "tile_rows",
+COLUMNS = {"setup": ["scatters", "scattering_tiles", "surface", "plan", "kernel", "tile_light", "tile_range", "tile_class", "tile_rows",
                      "sampled_tiles", "row_tiles", "blurred_tiles"],
            "pre-filtering": ["light"],
            "sampling": ["gather", "gather_hybrid", "lit_pixels", "rows", "columns"],
