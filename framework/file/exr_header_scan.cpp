@@ -116,7 +116,7 @@ private:
         bool sound = fixed == std::end(kFixedSizes) || fixed->bytes == size;
         const std::uint64_t end = begin + std::uint64_t(size);
         if (type == "floatvector") sound = size % 4 == 0;
-        if (type == "chlist") sound = channels_end(end) == end;
+        if (type == "chlist") sound = is_channel_list(end);
         if (type == "stringvector") sound = strings_end(end) == end;
         if (!sound)
             fail(path_,
@@ -142,14 +142,15 @@ private:
                  which, OPENEXR_VERSION_STRING, shell_line({path_.string()})));
     }
 
-    std::uint64_t channels_end(std::uint64_t limit) {
-        int count = 0;
-        while (file_.tellg() < limit && !read_name("channel").empty()) {
-            if (++count > kMaxChannels)
+    /// The library reads up to the empty name that ends the list, wherever that is.
+    bool is_channel_list(std::uint64_t end) {
+        for (int count = 0; file_.tellg() < end; ++count) {
+            if (read_name("channel").empty()) return file_.tellg() == end;
+            if (count == kMaxChannels)
                 fail(path_, fmt::format("more than {} channels, which is the limit", kMaxChannels));
             file_.seekg(std::min(file_.size(), file_.tellg() + 16));
         }
-        return file_.tellg();
+        return false;
     }
 
     std::uint64_t strings_end(std::uint64_t limit) {

@@ -81,6 +81,8 @@ inline constexpr std::uint64_t kMaxImageBytes = 512ull * 1024 * 1024;
 /// Why a picture of this size is not read; "" where it is. Then stb may take what it needs for it: the pixels
 /// unpacked, the pixels filtered back, and room to grow into.
 inline std::string fault_of_size(int width, int height, int channels) {
+    if (width < 1 || height < 1)
+        return "damaged: it is " + std::to_string(width) + " x " + std::to_string(height) + " px";
     const std::uint64_t values = std::uint64_t(width) * std::uint64_t(height) * std::uint64_t(channels);
     constexpr std::uint64_t kSpareBytes = 64ull * 1024 * 1024;
     bytes_left = std::size_t(4 * values * sizeof(float) + kSpareBytes);

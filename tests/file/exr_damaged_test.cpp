@@ -189,6 +189,16 @@ TEST_F(Damaged, DoesNotBelieveTheSizeOfAnAttribute) {
     EXPECT_EQ(outcome_of(bytes), "header attribute 'channels' is not a well-formed chlist of 20 bytes");
 }
 
+TEST_F(Damaged, RefusesAListOfChannelsWithoutTheEmptyNameThatEndsIt) {
+    std::string bytes = good();
+    const std::size_t at = value_position(bytes, "channels", "chlist") - 4;
+    int size = 0;
+    std::memcpy(&size, &bytes[at], sizeof size);
+    patch(bytes, at, size - 1);  // the library would read on, past what was checked
+    EXPECT_EQ(outcome_of(bytes), "header attribute 'channels' is not a well-formed chlist of " +
+                                     std::to_string(size - 1) + " bytes");
+}
+
 TEST_F(Damaged, ShowsNamesFromTheFileWithoutControlCharacters) {
     std::string bytes = good();
     const std::size_t value = value_position(bytes, "comment", "string");

@@ -116,6 +116,15 @@ TEST(HostilePictures, OfRadianceWhoseRunsEndEarlyAreRefused) {
               std::string::npos);
 }
 
+TEST(HostilePictures, OfRadianceWithoutPixelsAreRefused) {
+    const TemporaryFolder folder;
+    for (const std::string size : {"-Y 4 +X 0", "-Y 0 +X 4", "-Y 4 +X none"}) {
+        write_text(folder / "a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + size + "\n");
+        EXPECT_NE(refusal([&] { read_hdr(folder / "a.hdr"); }).find("damaged: it is "), std::string::npos)
+            << size;
+    }
+}
+
 TEST(Render, OfAPictureThatFillsTheMemoryIsRefusedWithTheRemedy) {
     scene::Scene scene;
     scene::Job job;
