@@ -44,9 +44,8 @@ bool is_identity() {
 }
 
 void main() {
-    vec4 texel = texelFetch(color, ivec2(gl_FragCoord.xy), 0);
-    if (is_identity()) out_color = texel;
-    else if (texel.a > 0.0) out_color = vec4(graded(texel.rgb / texel.a) * texel.a, texel.a);
+    if (is_identity()) out_color = color;
+    else if (color.a > 0.0) out_color = vec4(graded(color.rgb / color.a) * color.a, color.a);
     // Light without coverage (glows, flames) is graded, but offset must not light up the empty background.
-    else out_color = vec4(graded(texel.rgb) - graded(vec3(0.0)), texel.a);
+    else out_color = vec4(graded(color.rgb) - graded(vec3(0.0)), color.a);
 }

@@ -39,15 +39,14 @@ vec3 grain(vec2 display_px) {
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
-    vec4 texel = texelFetch(color, p, 0);
     if (param.intensity == 0.0) {
-        out_color = texel;
+        out_color = color;
         return;
     }
-    vec3 light = texel.a > 0.0 ? texel.rgb / texel.a : texel.rgb;
+    vec3 light = color.a > 0.0 ? color.rgb / color.a : color.rgb;
     float level = clamp(luminance(frame.rec709_from_color * light), kDarkest, kBrightest);
     // 1 / size^2 grains in a pixel leave `size` of their deviation.
     float deviation = param.intensity * min(param.size, 1.0) * pow(level / kMiddleGrey, -param.response);
     vec3 gain = exp(deviation * grain(vec2(p + frame.origin)) - 0.5 * deviation * deviation);
-    out_color = vec4(texel.rgb * gain, texel.a);
+    out_color = vec4(color.rgb * gain, color.a);
 }
