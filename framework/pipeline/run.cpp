@@ -198,7 +198,9 @@ private:
         if (hooks.before_frame) hooks.before_frame(number, renderer_);
         FrameRun::Rendered frame;
         try {
-            frame = frame_run_.render(index, wanted_roles(setup_.outputs), report_, observer_);
+            frame = frame_run_.render(index,
+                                      wanted_roles(setup_.outputs, setup_.pipeline.writes_role(kDisplayRole)),
+                                      report_, observer_);
         } catch (const Error& error) {
             if (error.exit_code() != ExitCode::memory) finish_write();
             if (error.exit_code() != ExitCode::capture) throw;
