@@ -126,6 +126,8 @@ void add_diagnosis_options(CLI::App& app, RunArguments& options) {
                  "Print every parameter's value and its source, and run nothing");
     app.add_flag("--audit", options.audit,
                  "Name the pass that first writes NaN or infinite values, with place and count; slow");
+    app.add_flag("--apart", options.apart,
+                 "Draw each pass by itself, also where passes could be fused: the time of each, slower");
     app.add_option("--telemetry", options.telemetry,
                    "Write each frame's statistics, memory by format and time by pass to this .json");
     app.add_option("--telemetry-plot", options.telemetry_plot,
@@ -229,6 +231,7 @@ RunOptions run_options(const RunArguments& options, Diagnostics& diagnostics) {
     run.missing = missing_frame(options.missing);
     run.on_nan = nan_policy(options.on_nan);
     run.audit = options.audit;
+    run.fuse_passes = !options.apart;
     // A gap in a stream would shift every frame behind it.
     run.stop_on_error = options.jobs.stop_on_error || options.streams();
     run.telemetry = !options.telemetry.empty() || !options.telemetry_plot.empty();

@@ -36,6 +36,7 @@ struct RunArguments {
     std::string compression = "zip";
     bool keep_channels = false;
     bool audit = false;
+    bool apart = false;
     bool explain = false;
     bool watch = false;
     std::string telemetry;

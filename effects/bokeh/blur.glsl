@@ -84,17 +84,21 @@ Light blur(usampler2D image, ivec2 p, float near_px, Line line) {
     }
 
     Sum front = Sum(vec4(0.0), 0.0, 0.0), back = Sum(vec4(0.0), 0.0, 0.0);
-    for (int k = -count; k <= count; ++k) {
+    // Loops that test at their end: llvmpipe runs the body of the others once more, with every pixel masked. A slab
+    // touches at least one texel.
+    int k = -count;
+    do {
         float along = floor(float(k) * step_px + 0.5);
         float middle = along * line.slope;
         float low = middle - 0.5 * line.width, high = middle + 0.5 * line.width;
         float own_cover = cover(line.major * abs(centre.coc), abs(along), step_px);
-        for (int j = int(floor(low + 0.501)); j <= int(ceil(high - 0.501)); ++j) {
+        int j = int(floor(low + 0.501)), last_j = int(ceil(high - 0.501));
+        do {
             float across = (min(float(j) + 0.5, high) - max(float(j) - 0.5, low)) / line.width;
             ivec2 offset = line.x_major ? ivec2(int(along), j) : ivec2(j, int(along));
             Light tap = unpack_light(texelFetch(image, clamp(p + offset, ivec2(0), last), 0));
             add_tap(front, back, tap, centre.coc, across, own_cover, abs(along), line.major, step_px);
-        }
-    }
+        } while (++j <= last_j);
+    } while (++k <= count);
     return combine_sums(front, back, centre.coc);
 }

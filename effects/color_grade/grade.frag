@@ -44,9 +44,16 @@ bool is_identity() {
 }
 
 void main() {
-    vec4 texel = texelFetch(color, ivec2(gl_FragCoord.xy), 0);
-    if (is_identity()) out_color = texel;
-    else if (texel.a > 0.0) out_color = vec4(graded(texel.rgb / texel.a) * texel.a, texel.a);
-    // Light without coverage (glows, flames) is graded, but offset must not light up the empty background.
-    else out_color = vec4(graded(texel.rgb) - graded(vec3(0.0)), texel.a);
+    bool is_covered = color.a > 0.0;
+    // Light without coverage (glows, flames) is graded, but offset must not light up the empty background: a second turn
+    // grades black. A branch would cost both on llvmpipe, and so would a loop that tests before its first turn.
+    vec3 light = is_covered ? color.rgb / color.a : color.rgb, result = vec3(0.0), before;
+    int turn = 0;
+    do {
+        before = result;
+        result = graded(light);
+        light = vec3(0.0);
+    } while (++turn < (is_covered ? 1 : 2));
+    out_color = vec4(is_covered ? result * color.a : before - result, color.a);
+    if (is_identity()) out_color = color;
 }

@@ -5,6 +5,8 @@
 #include "plate.glsl"
 #include "levels.glsl"
 
+// The loops over a disk test at their end: llvmpipe runs the body of the others once more, with every pixel masked. A row
+// has one texel at least.
 int half_width(float reach, float dy) { return int(ceil(sqrt(max(reach * reach - dy * dy, 0.0)))); }
 
 struct Layer {
@@ -35,11 +37,12 @@ Layer gather_front(vec2 center, float coc, float visible_coc, float reach_px, in
 #endif
     Layer front = kNothing;
     ivec2 low = ivec2(floor(center - reach)), high = ivec2(floor(center + reach));
-    for (int y = low.y; y <= high.y; ++y) {
+    int y = low.y;
+    do {
         float dy = float(y) + 0.5 - center.y;
         int width = half_width(reach, dy);
-        int end = int(floor(center.x)) + width;
-        for (int x = int(floor(center.x)) - width; x <= end; ++x) {
+        int x = int(floor(center.x)) - width, end = int(floor(center.x)) + width;
+        do {
             Light tap = tap_light(ivec2(x, y), level);
             vec2 offset = center - vec2(x, y) - 0.5;
             float radius = abs(tap.coc) * texels_per_px, part = part_of(which, tap.coc);
@@ -55,8 +58,8 @@ Layer gather_front(vec2 center, float coc, float visible_coc, float reach_px, in
                 own_sum += seen * part * in_front(tap.coc, coc);
             }
 #endif
-        }
-    }
+        } while (++x <= end);
+    } while (++y <= high.y);
     float opacity = min(front.opacity, 1.0);
 #ifdef SILHOUETTES
     float least = aperture_sum > 0.0 ? own_sum / aperture_sum : 0.0;
@@ -93,11 +96,12 @@ Back gather_back(vec2 center, Light point, int level) {
     vec4 own = kLeastWeight * point.color, behind = vec4(0.0);
     float own_weight = kLeastWeight, behind_weight = 0.0;
     ivec2 low = ivec2(floor(center - reach)), high = ivec2(floor(center + reach));
-    for (int y = low.y; y <= high.y; ++y) {
+    int y = low.y;
+    do {
         float dy = float(y) + 0.5 - center.y;
         int width = half_width(reach, dy);
-        int end = int(floor(center.x)) + width;
-        for (int x = int(floor(center.x)) - width; x <= end; ++x) {
+        int x = int(floor(center.x)) - width, end = int(floor(center.x)) + width;
+        do {
             Light tap = tap_light(ivec2(x, y), level);
 #ifdef SILHOUETTES
             if (tap.coc < coc - kClear) tap = plate_tap(ivec2(x, y), level, tap);
@@ -109,8 +113,8 @@ Back gather_back(vec2 center, Light point, int level) {
             own_weight += same;
             behind += further * tap.color;
             behind_weight += further;
-        }
-    }
+        } while (++x <= end);
+    } while (++y <= high.y);
     float sum = own_weight + behind_weight;
     return Back((own + behind) / sum, own_weight / sum);
 }

@@ -64,7 +64,8 @@ vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
     int taps = tap_count(furthest);
     float shift = time_shift(furthest, taps);
     vec4 sum = vec4(0.0);
-    for (int i = 0; i < taps; ++i) {
+    int i = 0;
+    do {
         float t = tap_time(i, shift, taps);
         Found near = what_comes(point, furthest, t), far = what_comes(point, own.path, t);
         if (far.depth_m < near.depth_m) {
@@ -78,6 +79,6 @@ vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
         vec4 seen = light_at(near.comes ? near.from : far.comes ? far.from : beside);
         if (!is_found) seen = behind_at(point, beside, own, t, seen);
         sum += seen;
-    }
+    } while (++i < taps);
     return sum / float(taps);
 }

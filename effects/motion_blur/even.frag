@@ -9,6 +9,8 @@ void main() {
     vec4 path = motion_at(point).path, sum = vec4(0.0);
     int taps = tap_count(path);
     float shift = time_shift(path, taps);
-    for (int i = 0; i < taps; ++i) sum += color_at(point - way_px(path, tap_time(i, shift, taps)));
+    int i = 0;
+    do sum += color_at(point - way_px(path, tap_time(i, shift, taps)));
+    while (++i < taps);
     out_color = sum / float(taps);
 }

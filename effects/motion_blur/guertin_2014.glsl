@@ -20,7 +20,8 @@ vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
     own_direction = mixed / max(length(mixed), 1e-3);
     float weight = float(taps) / (kOwnShare * max(own.way_px, 0.5));
     vec4 sum = weight * texelFetch(color, p, 0);
-    for (int i = 0; i < taps; ++i) {
+    int i = 0;
+    do {
         bool is_own = (i & 1) == 1;
         vec2 offset = -way_px(is_own ? own.path : furthest, tap_time(i, shift, taps));
         vec2 along = is_own ? own_direction : main_direction;
@@ -32,6 +33,6 @@ vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
                     + 2.0 * cylinder(away_px, min(tap.way_px, own.way_px)) * max(own_turn, tap_turn);
         weight += share;
         sum += share * color_at(point + offset);
-    }
+    } while (++i < taps);
     return sum / weight;
 }

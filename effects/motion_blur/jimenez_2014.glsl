@@ -6,7 +6,8 @@ vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
     float shift = time_shift(furthest, taps);
     vec4 sum = vec4(0.0), behind = vec4(0.0);
     float weight = 0.0, behind_weight = 0.0;
-    for (int i = 0; i < taps; ++i) {
+    int i = 0;
+    do {
         vec2 offset = -way_px(furthest, tap_time(i, shift, taps));
         Motion tap = motion_at(point + offset);
         vec4 tap_color = color_at(point + offset);
@@ -17,7 +18,7 @@ vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
         weight += front_share + back_share;
         behind += back_share * tap_color;
         behind_weight += back_share;
-    }
+    } while (++i < taps);
     vec4 fill = behind_weight > 0.01 ? behind / behind_weight : texelFetch(color, p, 0);
     weight /= float(taps);
     return sum / float(taps) / max(weight, 1.0) + fill * max(1.0 - weight, 0.0);

@@ -5,7 +5,8 @@ vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
     float shift = time_shift(furthest, taps);
     float weight = 1.0 / max(own.way_px, 0.5);
     vec4 sum = weight * texelFetch(color, p, 0);
-    for (int i = 0; i < taps; ++i) {
+    int i = 0;
+    do {
         vec2 offset = -way_px(furthest, tap_time(i, shift, taps));
         Motion tap = motion_at(point + offset);
         float away_px = length(offset);
@@ -14,6 +15,6 @@ vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
                     + 2.0 * cylinder(away_px, min(tap.way_px, own.way_px));
         weight += share;
         sum += share * color_at(point + offset);
-    }
+    } while (++i < taps);
     return sum / weight;
 }

@@ -2,7 +2,8 @@
 #include <shutter/random_phase.glsl>
 #include "motion.glsl"
 
-// One a px of the sweep, at least two.
+// One a px of the sweep, at least two: the loops over them test at their end, because llvmpipe runs the body of the others
+// once more, with every pixel masked.
 int tap_count(vec4 path) { return clamp(int(ceil(distance(way_px(path, kOpens), way_px(path, kCloses)))), 2, param.samples); }
 
 // How far this pixel's times are moved, in their distance: nothing where there is a time for each px.

@@ -20,9 +20,8 @@ float artistic_darkness(vec2 from_centre_px) {
 }
 
 void main() {
-    vec4 texel = texelFetch(color, ivec2(gl_FragCoord.xy), 0);
     vec2 from_centre_px = gl_FragCoord.xy + vec2(frame.origin) - 0.5 * vec2(frame.display_size);
     float light = mix(1.0, natural_falloff(from_centre_px), param.natural);
     light *= 1.0 - param.strength * artistic_darkness(from_centre_px);
-    out_color = vec4(texel.rgb * light, texel.a);
+    out_color = vec4(color.rgb * light, color.a);
 }

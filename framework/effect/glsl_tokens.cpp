@@ -12,12 +12,14 @@ namespace {
 
 class Tokens {
 public:
-    explicit Tokens(const ShaderSource& source) {
+    Tokens(const ShaderSource& source, bool all) {
         std::size_t begin = 0;
-        for (const SourceLine& line : source.lines) {
+        for (std::size_t i = 0; i < source.lines.size(); ++i) {
+            const SourceLine& line = source.lines[i];
             const std::size_t end = source.text.find('\n', begin);
-            if (line.file != "<generated>")
-                add_line(std::string_view(source.text).substr(begin, end - begin), line);
+            if (all || line.file != "<generated>")
+                add_line(std::string_view(source.text).substr(begin, end - begin),
+                         all ? SourceLine{"", int(i) + 1} : line);
             begin = end + 1;
         }
     }
@@ -59,7 +61,11 @@ private:
 }  // namespace
 
 std::vector<Token> glsl_tokens(const ShaderSource& source) {
-    return Tokens(source).take();
+    return Tokens(source, false).take();
+}
+
+std::vector<Token> all_glsl_tokens(const ShaderSource& source) {
+    return Tokens(source, true).take();
 }
 
 void check_shader_size(const ShaderSource& source, Diagnostics& diagnostics) {

@@ -18,6 +18,8 @@ struct Token {
 
 /// What the author wrote, without comments and without the host's own lines.
 std::vector<Token> glsl_tokens(const ShaderSource& source);
+/// The same with the host's own lines; every token's place is its line in the source's text.
+std::vector<Token> all_glsl_tokens(const ShaderSource& source);
 
 /// Holds what the author wrote against kMaxShaderTerms and kMaxShaderArrayElements. What macros make of it is
 /// not seen here.

@@ -117,6 +117,24 @@ const gpu::Program& ProgramCache::host(const std::string& file, const std::vecto
     return programs_.emplace(key, make(sources, "host." + file)).first->second;
 }
 
+const gpu::Program* ProgramCache::fused(const FusedProgram& passes) {
+    Diagnostics faults;
+    Sources sources;
+    sources.vertex = full_screen_;
+    sources.main = assemble_fused(passes, faults);
+    if (faults.has_errors()) return nullptr;
+    const std::string key = key_of(sources);
+    if (const auto known = programs_.find(key); known != programs_.end()) return &known->second;
+    std::string label;
+    for (const FusedShader& part : passes.parts)
+        label += (label.empty() ? "" : "+") + part.shader.manifest->id + "." + part.shader.pass->name;
+    try {
+        return &programs_.emplace(key, make(sources, label)).first->second;
+    } catch (const gpu::ShaderError&) {
+        return nullptr;
+    }
+}
+
 namespace {
 
 /// A wrong name in the shader is found by its text, too, which offers the right one.

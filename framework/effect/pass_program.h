@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/effect/fused_shader.h"
 #include "framework/effect/program_store.h"
 #include "framework/effect/shader_source.h"
 #include "framework/gpu/program.h"
@@ -26,11 +27,15 @@ public:
     /// The program of a draw or a compute pass. Throws Error(ExitCode::effect) with one line per fault:
     /// "effects/bokeh/coc.frag:6:17: error: 'parm' undeclared   [pass coc, llvmpipe ...]".
     const gpu::Program& get(const ShaderContext& context);
+    /// The program of several passes; nullptr where the driver does not take it, or a part has a fault that
+    /// get() reports.
+    const gpu::Program* fused(const FusedProgram& passes);
     /// A full-screen shader of the host's own, glsl/host/<file>, with symbols defined after its first line.
     const gpu::Program& host(const std::string& file, const std::vector<std::string>& defines);
     /// Programs made from now on report into a storage block whether llvmpipe ended one of their loops.
     /// [before the first program]
     void guard_loops() { guards_loops_ = true; }
+    bool is_guarding_loops() const { return guards_loops_; }
     const std::filesystem::path& glsl_folder() const { return glsl_folder_; }
     int compiled_count() const { return compiled_; }  ///< programs made from text
     int loaded_count() const { return loaded_; }      ///< programs taken from the store

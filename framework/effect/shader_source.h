@@ -6,6 +6,7 @@
 // module's folder there, `#include "x.glsl"` one of the including file's own folder; each is included once.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -33,6 +34,22 @@ inline constexpr int kPassBinding = 4;  ///< only in passes with `repeat`
 inline constexpr int kNativeBinding = 5;
 inline constexpr int kLightsBinding = 6;  ///< only of effects with "uses": ["lights"]
 
+/// A pass as one part of a fused program (framework/effect/fused_shader.h).
+struct FusedPart {
+    int first_sampler = 0;  ///< what is added to the bindings of samplers, uniform blocks and storage blocks
+    int first_block = 0;
+    int first_buffer = 0;
+    std::vector<std::string> held;  ///< reads by the pixel, by their GLSL name, that an earlier part makes
+    std::vector<int> left_out;      ///< uniform blocks that its shader does not use, by their bindings
+
+    bool is_held(const std::string& read) const {
+        return std::find(held.begin(), held.end(), read) != held.end();
+    }
+    bool leaves_out(int block) const {
+        return std::find(left_out.begin(), left_out.end(), block) != left_out.end();
+    }
+};
+
 /// What one pass sees, resolved for one set of parameters and inputs.
 struct ShaderContext {
     const EffectManifest* manifest = nullptr;
@@ -42,6 +59,7 @@ struct ShaderContext {
     std::filesystem::path glsl_folder;
     /// What the paths of file parameters hold, by parameter; nullptr or no entry: none has a file.
     const std::map<std::string, ParamFile>* files = nullptr;
+    const FusedPart* part = nullptr;  ///< nullptr: the pass is a program by itself
 
     const ParamFile& file_of(const std::string& param) const;
 };
@@ -75,6 +93,9 @@ enum class ShaderFile { main, vertex };
 /// Where a pass's shader begins: the author's file, or the host's own where tiles are listed or drawn over.
 std::filesystem::path shader_path(const PassSpec& pass, ShaderFile file,
                                   const std::filesystem::path& glsl_folder);
+
+/// Of a texel as GLSL declares it: float, uint, vec2, uvec4.
+std::string texel_type(gpu::TextureFormat format);
 
 struct SourceLine {
     std::string file;  ///< "<generated>" for the host's own lines
@@ -173,6 +194,7 @@ struct FrameBlock {
     std::int32_t subframe_count = 1;
     float subframe_time = 0;  ///< within the frame, -1/2 .. 1/2
 };
+/// Each with a binding of its own: kFrameBinding and so on.
 std::string_view frame_block_glsl();
 
 /// A mat4 as GLSL lays it out: 16 floats by columns.

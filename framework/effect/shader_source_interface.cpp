@@ -12,6 +12,9 @@ namespace aftershade {
 
 namespace {
 
+/// What the sampler of a read by the pixel is called, before the read's name: no author's word.
+constexpr std::string_view kTexelsOf = "aftershade_texels_of_";
+
 /// A float literal: "3" would divide as an integer, and without brackets "x -SKEW" might become "x --3".
 std::string float_literal(double value) {
     std::string text = format_number(value);
@@ -39,13 +42,6 @@ std::string type_prefix(gpu::TextureFormat format) {
     return gpu::is_signed_integer(format) ? "i" : "u";
 }
 
-std::string texel_type(gpu::TextureFormat format) {
-    const int channels = gpu::channel_count(format);
-    const std::string prefix = type_prefix(format);
-    if (channels == 1) return prefix == "u" ? "uint" : prefix == "i" ? "int" : "float";
-    return prefix + "vec" + std::to_string(channels);
-}
-
 std::string_view qualifier(AccessSpec::Kind kind) {
     switch (kind) {
         case AccessSpec::Kind::read: return "readonly ";
@@ -58,17 +54,21 @@ std::string_view qualifier(AccessSpec::Kind kind) {
 class InterfaceWriter {
 public:
     explicit InterfaceWriter(const ShaderContext& context)
-        : context_(context), manifest_(*context.manifest), bindings_(pass_bindings(context)) {}
+        : context_(context),
+          manifest_(*context.manifest),
+          part_(context.part ? *context.part : FusedPart{}),
+          bindings_(pass_bindings(context)) {}
 
     std::string write(ShaderFile file) {
         defines();
-        if (bindings_.has_param_block) params();
-        text_ << frame_block_glsl() << camera_block_glsl();
-        if (manifest_.uses_lights) text_ << lights_block_glsl();
-        if (bindings_.has_pass_block)
-            text_ << "layout(std140, binding = " << kPassBinding << ") uniform PassBlock {\n"
+        if (bindings_.has_param_block && has(kParamBinding)) params();
+        shared_block(kFrameBinding, frame_block_glsl());
+        shared_block(kCameraBinding, camera_block_glsl());
+        if (manifest_.uses_lights) shared_block(kLightsBinding, lights_block_glsl());
+        if (bindings_.has_pass_block && has(kPassBinding))
+            text_ << "layout(std140, binding = " << block(kPassBinding) << ") uniform PassBlock {\n"
                   << "    int index;\n    int count;\n} pass;\n";
-        if (bindings_.has_native_block) native_uniforms();
+        if (bindings_.has_native_block && has(kNativeBinding)) native_uniforms();
         reads();
         param_resources();
         native_tables();
@@ -79,6 +79,17 @@ public:
     }
 
 private:
+    bool has(int block) const { return !part_.leaves_out(block); }
+    int block(int binding) const { return part_.first_block + binding; }
+
+    void shared_block(int binding, std::string_view glsl) {
+        if (!has(binding)) return;
+        const std::string own = "binding = " + std::to_string(binding);
+        std::string text(glsl);
+        text.replace(text.find(own), own.size(), "binding = " + std::to_string(block(binding)));
+        text_ << text;
+    }
+
     void defines() {
         presence();
         if (bindings_.has_tile_grid) tiles();
@@ -133,7 +144,7 @@ private:
     }
 
     void params() {
-        text_ << "layout(std140, binding = " << kParamBinding << ") uniform ParamBlock {\n";
+        text_ << "layout(std140, binding = " << block(kParamBinding) << ") uniform ParamBlock {\n";
         for (const ParamSpec& spec : manifest_.params)
             if (spec.bind == ParamBind::uniform && is_block_type(spec.type))
                 text_ << "    " << spec.type->glsl_type << " " << spec.name << ";\n";
@@ -141,7 +152,7 @@ private:
     }
 
     void native_uniforms() {
-        text_ << "layout(std140, binding = " << kNativeBinding << ") uniform NativeBlock {\n";
+        text_ << "layout(std140, binding = " << block(kNativeBinding) << ") uniform NativeBlock {\n";
         for (const NativeUniformSpec& uniform : manifest_.native->uniforms)
             text_ << "    " << uniform.type << " " << uniform.name << ";\n";
         text_ << "} native;\n";
@@ -154,23 +165,30 @@ private:
 
     void reads() {
         const auto& reads = bindings_.reads;
-        for (std::size_t i = 0; i < reads.size(); ++i)
-            text_ << "layout(binding = " << i << ") uniform "
-                  << type_prefix(format_of_read(manifest_, reads[i].name))
-                  << (is_array(reads[i].name) ? "sampler2DArray " : "sampler2D ") << reads[i].glsl_name()
-                  << ";\n";
-        if (reads.empty() && !bindings_.has_tile_grid) return;
-        text_ << "layout(std140, binding = " << kSizeBinding << ") uniform SizeBlock {\n";
+        for (const ReadSpec& read : reads) {
+            const std::string prefix = type_prefix(format_of_read(manifest_, read.name));
+            const std::string name = read.glsl_name(), texel = prefix + "vec4 " + name;
+            if (part_.is_held(name)) {
+                text_ << texel << ";\n";
+                continue;
+            }
+            text_ << "layout(binding = " << next_sampler_++ << ") uniform " << prefix
+                  << (is_array(read.name) ? "sampler2DArray " : "sampler2D ")
+                  << (read.is_pixel ? kTexelsOf : "") << name << ";\n";
+            if (read.is_pixel)
+                text_ << texel << " = texelFetch(" << kTexelsOf << name << ", ivec2(gl_FragCoord.xy), 0);\n";
+        }
+        if ((reads.empty() && !bindings_.has_tile_grid) || !has(kSizeBinding)) return;
+        text_ << "layout(std140, binding = " << block(kSizeBinding) << ") uniform SizeBlock {\n";
         for (const ReadSpec& read : reads) text_ << "    vec4 " << read.glsl_name() << "_size;\n";
         if (bindings_.has_tile_grid) text_ << "    vec4 tile_grid_size;\n";
         text_ << "};\n";
     }
 
     void param_resources() {
-        int binding = bindings_.first_param_sampler;
         for (const ParamSpec* spec : bindings_.param_samplers)
-            text_ << param_sampler_glsl(*spec, context_.file_of(spec->name), binding++);
-        binding = bindings_.first_param_buffer;
+            text_ << param_sampler_glsl(*spec, context_.file_of(spec->name), next_sampler_++);
+        int binding = part_.first_buffer + bindings_.first_param_buffer;
         for (const ParamSpec* spec : bindings_.param_buffers)
             text_ << param_table_glsl(*spec, binding++, has_rows(*spec));
     }
@@ -180,9 +198,8 @@ private:
     }
 
     void native_tables() {
-        int binding = bindings_.first_native_sampler;
         for (const NativeTableSpec* table : bindings_.native_tables)
-            text_ << "layout(binding = " << binding++ << ") uniform "
+            text_ << "layout(binding = " << next_sampler_++ << ") uniform "
                   << (table->element.starts_with('u') ? "usampler2D " : "sampler2D ") << table->name << ";\n";
     }
 
@@ -200,27 +217,36 @@ private:
         const auto& buffers = bindings_.buffers;
         for (std::size_t i = 0; i < buffers.size(); ++i) {
             const std::string name = buffers[i].glsl_name();
-            text_ << "layout(std430, binding = " << i << ") " << qualifier(buffers[i].kind) << "buffer "
-                  << storage_block_name(name) << " { " << manifest_.find_buffer(buffers[i].name)->element
-                  << " " << name << "[]; };\n";
+            text_ << "layout(std430, binding = " << part_.first_buffer + int(i) << ") "
+                  << qualifier(buffers[i].kind) << "buffer " << storage_block_name(name) << " { "
+                  << manifest_.find_buffer(buffers[i].name)->element << " " << name << "[]; };\n";
         }
     }
 
     void writes() {
         const auto& writes = bindings_.writes;
         for (std::size_t i = 0; i < writes.size(); ++i)
-            text_ << "layout(location = " << i << ") out "
+            text_ << (context_.part ? "" : "layout(location = " + std::to_string(i) + ") out ")
                   << texel_type(format_of_write(manifest_, writes[i].name)) << " out_" << writes[i].name
                   << ";\n";
     }
 
     const ShaderContext& context_;
     const EffectManifest& manifest_;
+    const FusedPart part_;
     const PassBindings bindings_;
+    int next_sampler_ = part_.first_sampler;
     std::ostringstream text_;
 };
 
 }  // namespace
+
+std::string texel_type(gpu::TextureFormat format) {
+    const int channels = gpu::channel_count(format);
+    const std::string prefix = type_prefix(format);
+    if (channels == 1) return prefix == "u" ? "uint" : prefix == "i" ? "int" : "float";
+    return prefix + "vec" + std::to_string(channels);
+}
 
 std::string interface_glsl(const ShaderContext& context, ShaderFile file) {
     return InterfaceWriter(context).write(file);

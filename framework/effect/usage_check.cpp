@@ -92,6 +92,7 @@ private:
         for (const ReadSpec& read : pass.reads)
             if (!pass_has(pass, read.glsl_name()) && !pass_has(pass, read.glsl_name() + "_size"))
                 unused(read.place, "its read '" + read.glsl_name() + "'");
+        check_pixel_reads(pass);
         for (const AccessSpec& image : pass.images)
             if (!pass_has(pass, image.name)) unused(image.place, "its image '" + image.name + "'");
         for (const AccessSpec& buffer : pass.buffers) {
@@ -102,6 +103,23 @@ private:
         for (const WriteSpec& write : pass.writes)
             if (!pass_has(pass, std::string(kOut) + write.name))
                 unused(write.place, "its target 'out_" + write.name + "'");
+    }
+
+    /// A read by the pixel has no sampler; only what looks at neighbouring pixels could still see others.
+    void check_pixel_reads(const PassSpec& pass) {
+        const auto reads_pixel = [](const ReadSpec& read) { return read.is_pixel; };
+        const ShaderUses& uses = shaders_.at((pass.folder / pass.shader).string());
+        for (const ReadSpec& read : pass.reads)
+            if (const auto use = uses.samplers.find(read.glsl_name());
+                read.is_pixel && use != uses.samplers.end())
+                once(use->second, "pass '" + pass.name + "' reads '" + read.glsl_name() +
+                                      "' by the pixel: it is the texel itself, no sampler; write '" +
+                                      read.glsl_name() + "', or read it without \"pixel\"");
+        if (std::none_of(pass.reads.begin(), pass.reads.end(), reads_pixel)) return;
+        for (const std::string& word : uses.words)
+            if (word.starts_with("dFd") || word.starts_with("fwidth") || word.starts_with("aftershade_"))
+                once(pass.place, "pass '" + pass.name + "' reads by the pixel, but its shader has '" + word +
+                                     "', by which it could see other pixels");
     }
 
     /// Passes may share a shader, whose #if branches then use what only one of them declares.

@@ -114,6 +114,11 @@ Written FrameGraph::add_pass(Pass pass) {
     return written;
 }
 
+void FrameGraph::fuse(const std::vector<int>& passes, Pass fused, std::vector<TextureHandle> targets) {
+    for (const int index : passes) passes_[std::size_t(index)].is_fused_away = true;
+    passes_[std::size_t(passes.back())] = {std::move(fused), {.targets = std::move(targets)}};
+}
+
 void FrameGraph::keep(TextureHandle handle) {
     const Texture& texture = live(*this, handle, "keep()");
     for (int layer = 0; layer < texture.desc.layers; ++layer)

@@ -39,7 +39,8 @@ struct Read {
     int binding = 0;  ///< of the sampler
     gpu::Filter filter = gpu::Filter::nearest;
     gpu::Wrap wrap = gpu::Wrap::clamp;
-    int level = -1;  ///< the only level that is seen, as level 0; -1: all
+    int level = -1;         ///< the only level that is seen, as level 0; -1: all
+    bool is_pixel = false;  ///< each pixel of the pass needs the texel at its own place alone
 };
 
 /// One level and layer that a draw renders to or a clear sets; -1 in a clear: every one.
@@ -83,6 +84,10 @@ struct Groups {
     std::optional<BufferHandle> indirect{};
 };
 
+/// Whether a pass may be one part of a fused pass (framework/graph/fusion.h): not at all, the first, or one
+/// that begins with what others make.
+enum class Fusing { never, leads, follows };
+
 struct Pass {
     std::string name;  ///< "bokeh.coc"
     PassKind kind = PassKind::draw;
@@ -96,6 +101,7 @@ struct Pass {
     Instances instances{};
     Groups groups{};
     std::array<double, 4> clear_value = {0, 0, 0, 0};
+    Fusing fusing = Fusing::never;
 };
 
 /// What a pass made: new versions of what it wrote. A texture that a pass writes in several places (two
@@ -171,6 +177,12 @@ public:
     /// Whether `target` of `pass` leaves nothing of what its texture held.
     bool overwrites(const Pass& pass, const Target& target) const;
 
+    /// Replaces draws, by rising indices, by one that makes `targets` of what they made, at the place of the
+    /// last; the others stay without use. See framework/graph/fusion.h for which may be.
+    void fuse(const std::vector<int>& passes, Pass fused, std::vector<TextureHandle> targets);
+    /// Whether the pass was replaced by one that follows.
+    bool is_fused_away(int index) const { return passes_[std::size_t(index)].is_fused_away; }
+
     /// Marks a texture that is read after the frame: an output or a tap. Nothing may write it afterwards.
     void keep(TextureHandle handle);
     void keep(BufferHandle handle);
@@ -216,6 +228,7 @@ private:
     struct Node {
         Pass pass;
         Written written;
+        bool is_fused_away = false;
     };
 
     TextureHandle add_texture(Texture texture);

@@ -13,6 +13,7 @@ PassUses uses_of(const FrameGraph& graph, int pass_index) {
     const Written& written = graph.written(pass_index);
     const int buffers = int(graph.textures().size());
     PassUses uses;
+    if (graph.is_fused_away(pass_index)) return uses;
     const auto need = [&](TextureHandle h) { uses.needs.push_back({h.texture, h.version}); };
     const auto need_buffer = [&](BufferHandle h) { uses.needs.push_back({buffers + h.buffer, h.version}); };
     for (const Read& read : pass.reads) need(read.texture);

@@ -27,6 +27,7 @@ public:
     std::string run() {
         text_ = "digraph frame {\n  rankdir=LR;\n  node [fontname=\"sans-serif\"];\n";
         for (int i = 0; i < graph_.pass_count(); ++i) {
+            if (graph_.is_fused_away(i)) continue;
             runs_ = std::find(compiled_.passes.begin(), compiled_.passes.end(), i) != compiled_.passes.end();
             const char* const grey = runs_ ? "" : ", color=grey, fontcolor=grey";
             text_ +=

@@ -79,11 +79,12 @@ public:
     }
 
     void operator()(const BlockBinding& binding) const {
-        const auto first = std::lower_bound(binding.passes.begin(), binding.passes.end(), feed_.first_pass);
-        if (first == binding.passes.end()) return;
+        const auto first = std::ranges::lower_bound(binding.places, feed_.first_pass, {}, &BlockPlace::pass);
+        if (first == binding.places.end()) return;
         const std::vector<std::byte> bytes = block(binding.kind, binding.step);
-        std::for_each(first, binding.passes.end(),
-                      [&](int pass) { executor_.set_uniforms(pass, gl_binding(binding.kind), bytes); });
+        std::for_each(first, binding.places.end(), [&](const BlockPlace& place) {
+            executor_.set_uniforms(place.pass, place.binding, bytes);
+        });
     }
 
 private:

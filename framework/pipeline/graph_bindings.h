@@ -47,11 +47,17 @@ struct NativeTableBinding {
 /// The uniform blocks whose contents change from frame to frame.
 enum class BlockKind { param, frame, camera, lights, native, mix };
 
+/// A uniform block of a pass of the graph.
+struct BlockPlace {
+    int pass = 0;
+    int binding = 0;
+};
+
 /// A block, the same in each of some passes.
 struct BlockBinding {
     BlockKind kind = BlockKind::param;
-    int step = 0;             ///< of a camera, which is every step's: the first one
-    std::vector<int> passes;  ///< by their index in the graph
+    int step = 0;                    ///< of a camera, which is every step's: the first one
+    std::vector<BlockPlace> places;  ///< by the pass's index in the graph, rising
 };
 
 /// Where a shader declares the block.

@@ -49,12 +49,6 @@ int count_value(const CountSpec& count, const ParamReader& params) {
     return count.param.empty() ? count.number : int(std::get<std::int64_t>(params.get(count.param)));
 }
 
-WorkStatus status_of_pass(const PipelineStep& step, const std::string& pass, const std::string& phase,
-                          const StatusWriter* status) {
-    return {step.name,         "",   phase,          status ? status->current().frame : std::nullopt,
-            step.manifest->id, pass, step.is_foreign};
-}
-
 std::pair<int, int> grid_size(const GridSpec& grid, const ParamReader& params, int width, int height) {
     switch (grid.kind) {
         case GridSpec::Kind::size: return {grid.size[0], grid.size[1]};
@@ -78,6 +72,7 @@ GraphBuilder::GraphBuilder(const GraphTools& tools, const GraphFrame& frame)
       pipeline_(frame.pipeline),
       width_(frame_.width_px()),
       height_(frame_.height_px()),
+      programs_({tools.programs, tools.status, tools.fuses_passes}),
       built_(std::make_unique<BuiltGraph>()) {}
 
 std::unique_ptr<BuiltGraph> GraphBuilder::build() {
@@ -90,6 +85,7 @@ std::unique_ptr<BuiltGraph> GraphBuilder::build() {
     keep_results();
     keep_taps();
     if (tools_.telemetry) keep_statistics();
+    programs_.finish(graph_, blocks_, built_->first_single_pass);
     std::vector<GraphBinding>& bindings = built_->bindings;
     for (const auto& [image, texture] : imports_)
         bindings.emplace_back(CaptureBinding{image.first, image.second, texture});
@@ -284,7 +280,7 @@ void GraphBuilder::bind_block(const StepBuild& build, BlockKind kind, graph::Pas
     };
     auto block = std::find_if(blocks_.begin(), blocks_.end(), same);
     if (block == blocks_.end()) block = blocks_.insert(block, BlockBinding{kind, build.index, {}});
-    block->passes.push_back(graph_.pass_count());
+    block->places.push_back({graph_.pass_count(), gl_binding(kind)});
 }
 
 void GraphBuilder::keep_histories(StepBuild& build) {

@@ -16,6 +16,7 @@
 #include "framework/pipeline/built_graph.h"
 #include "framework/pipeline/graph_bindings.h"
 #include "framework/pipeline/graph_key.h"
+#include "framework/pipeline/pass_programs.h"
 #include "framework/pipeline/step_files.h"
 
 namespace aftershade {
@@ -28,6 +29,7 @@ struct GraphTools {
     bool telemetry = false;          ///< keep the textures of the steps' statistics
     StatusWriter* status = nullptr;  ///< receives which pass is compiled; may be null
     bool keeps_steps = false;        ///< each texture has memory of its own
+    bool fuses_passes = true;        ///< passes that can run as one do
 };
 
 /// Throws Error(ExitCode::effect) where a pass reads, or a step outputs, what no pass has written with these
@@ -58,7 +60,6 @@ private:
     void declare_native_tables(StepBuild& build);
     void add_pass(StepBuild& build, const PassSpec& spec);
     void add_turn(StepBuild& build, const PassSpec& spec, int turn, int turns);
-    const gpu::Program& program_of(const StepBuild& build, const ShaderContext& shader);
     void add_clear(StepBuild& build, const PassSpec& spec);
     void add_mix(StepBuild& build);
     graph::TextureHandle mask_of(const StepBuild& build);
@@ -82,6 +83,7 @@ private:
     int width_ = 0;
     int height_ = 0;
     graph::FrameGraph graph_;
+    PassPrograms programs_;
     std::unique_ptr<BuiltGraph> built_;
     std::map<std::pair<std::string, int>, graph::TextureHandle> imports_;  // by role and offset
     std::map<int, graph::TextureHandle> masks_;                            // by step
@@ -89,10 +91,6 @@ private:
     std::vector<NativeTableBinding> native_tables_;
     std::vector<BlockBinding> blocks_;
 };
-
-/// A pass that is worked on in the frame that `status`, which may be null, is at.
-WorkStatus status_of_pass(const PipelineStep& step, const std::string& pass, const std::string& phase,
-                          const StatusWriter* status);
 
 /// Extent of a grid over a working grid of width x height px.
 std::pair<int, int> grid_size(const GridSpec& grid, const ParamReader& params, int width, int height);

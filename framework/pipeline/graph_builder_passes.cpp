@@ -52,7 +52,7 @@ void bind_reads(const StepBuild& build, const PassSpec& spec, const PassBindings
         const int level = read.level >= 0                     ? level_in_turn(read.level, turn)
                           : is_input && texture.desc.mips > 1 ? 0
                                                               : -1;
-        pass.reads.push_back({handle, int(pass.reads.size()), read.filter, read.wrap, level});
+        pass.reads.push_back({handle, int(pass.reads.size()), read.filter, read.wrap, level, read.is_pixel});
         const auto size = size_of(texture.desc, level);
         sizes.add(std::span<const float>(size));
     }
@@ -89,11 +89,21 @@ void GraphBuilder::add_pass(StepBuild& build, const PassSpec& spec) {
     for (int turn = 0; turn < turns; ++turn) add_turn(build, spec, turn, turns);
 }
 
-const gpu::Program& GraphBuilder::program_of(const StepBuild& build, const ShaderContext& shader) {
-    const StatusScope scope(tools_.status,
-                            status_of_pass(build.step, shader.pass->name, "compile", tools_.status));
-    return tools_.programs.get(shader);
+namespace {
+
+/// By the manifest; what the shader's text forbids is found later.
+graph::Fusing fusing_of(const PassSpec& spec, const graph::Pass& pass) {
+    const bool is_plain = pass.kind == graph::PassKind::draw && !spec.has_vertex_shader() &&
+                          spec.blend == gpu::Blend::none && pass.images.empty() && !spec.repeat &&
+                          std::ranges::all_of(pass.buffers, [](const graph::BufferUse& use) {
+                              return use.access == gpu::Access::read;
+                          });
+    if (!is_plain) return graph::Fusing::never;
+    const bool follows = std::ranges::any_of(pass.reads, &graph::Read::is_pixel);
+    return follows ? graph::Fusing::follows : graph::Fusing::leads;
 }
+
+}  // namespace
 
 void GraphBuilder::add_clear(StepBuild& build, const PassSpec& spec) {
     graph::Pass pass;
@@ -118,7 +128,6 @@ void GraphBuilder::add_turn(StepBuild& build, const PassSpec& spec, int turn, in
     const PassBindings bindings = pass_bindings(shader);
     graph::Pass pass;
     pass.name = build.prefix() + spec.name + (turns > 1 ? "[" + std::to_string(turn) + "]" : "");
-    pass.program = &program_of(build, shader);
     pass.blend = spec.blend;
     bind_reads(build, spec, bindings, turn, tile_grid_size(build, spec, bindings), graph_, pass);
     bind_memory(build, bindings, pass);
@@ -132,6 +141,8 @@ void GraphBuilder::add_turn(StepBuild& build, const PassSpec& spec, int turn, in
         pass.targets.push_back({write_target(build, bindings, write.name, pass.name),
                                 level_in_turn(write.level, turn), level_in_turn(write.layer, turn)});
     set_kind(build, spec, pass);
+    pass.fusing = fusing_of(spec, pass);
+    programs_.add(graph_.pass_count(), shader, build.step);
     const graph::Written written = graph_.add_pass(std::move(pass));
     for (std::size_t i = 0; i < bindings.writes.size(); ++i)
         build.textures[bindings.writes[i].name] = written.targets[i];

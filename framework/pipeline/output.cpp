@@ -164,15 +164,17 @@ void check_outputs(const OutputOptions& options, const Sequence& sequence, Input
     }
 }
 
-std::vector<std::string> wanted_roles(const OutputOptions& options) {
+std::vector<std::string> wanted_roles(const OutputOptions& options, bool makes_display) {
+    const std::vector<std::string> shown = makes_display ? std::vector<std::string>{kDisplayRole}
+                                                         : std::vector<std::string>{kDisplayRole, kColorRole};
     if (options.keep_channels) return role_names();
     std::vector<std::string> roles;
     for (const std::string& pattern : options.patterns) {
         if (extension(pattern) == ".exr")
             roles.insert(roles.end(), options.roles.begin(), options.roles.end());
-        else roles.insert(roles.end(), {kDisplayRole, kColorRole});
+        else roles.insert(roles.end(), shown.begin(), shown.end());
     }
-    if (options.stream_format) roles.insert(roles.end(), {kDisplayRole, kColorRole});
+    if (options.stream_format) roles.insert(roles.end(), shown.begin(), shown.end());
     std::sort(roles.begin(), roles.end());
     roles.erase(std::unique(roles.begin(), roles.end()), roles.end());
     return roles;

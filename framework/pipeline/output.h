@@ -22,8 +22,9 @@ void prepare_output_folders(const OutputOptions& options, const Sequence& sequen
 void check_outputs(const OutputOptions& options, const Sequence& sequence, InputFiles& inputs,
                    Diagnostics& diagnostics);
 
-/// Roles that the options need from the pipeline: those of EXR, and display where a PNG is an output.
-std::vector<std::string> wanted_roles(const OutputOptions& options);
+/// Roles that the options need from the pipeline: those of EXR, and display where a PNG is an output, or
+/// color where the pipeline may make no display.
+std::vector<std::string> wanted_roles(const OutputOptions& options, bool makes_display = false);
 
 /// The files that write_outputs makes of a frame, in its order.
 std::vector<std::filesystem::path> output_files(const OutputOptions& options, const std::vector<Tap>& taps,

@@ -105,7 +105,9 @@ void PipelineRenderer::prepare(const FrameInputs& frame, const std::vector<std::
     // The old textures go before the new ones come, unless what they hold lives on.
     std::unique_ptr<BuiltGraph> old = std::move(built_);
     if (!pipeline_.has_history()) old.reset();
-    built_ = build_graph({context_, *programs_, files_, telemetry_, status_, keeps_steps_}, graph_frame);
+    built_ = build_graph({context_, *programs_, files_, telemetry_, status_, keeps_steps_,
+                          fuses_passes_ && !keeps_steps_ && !audit_},
+                         graph_frame);
     ++graphs_built_;
     set_hooks();
     if (old) built_->executor->take_history_from(*old->executor);

@@ -61,6 +61,9 @@ public:
     FrameResult render_again(const FrameInputs& frame, const std::vector<std::string>& roles, bool timed);
     /// Gives each texture memory of its own, so that it lives until the next frame. [before the first frame]
     void keep_steps() { keeps_steps_ = true; }
+    /// Whether passes that can run as one do, unless keep_steps() or set_audit() want each by itself.
+    /// [before the first frame]
+    void fuse_passes(bool fuses) { fuses_passes_ = fuses; }
     /// Of the last frame: how many of the pipeline's steps were drawn.
     int steps_drawn() const { return steps_drawn_; }
     /// Reads every input and every float texture back after its pass and looks for NaN and infinities. Slow.
@@ -138,6 +141,7 @@ private:
     std::vector<std::string> kept_on_gpu_;
     bool is_stale_ = false;
     bool keeps_steps_ = false;
+    bool fuses_passes_ = true;
     int steps_drawn_ = 0;
     std::vector<std::string> mixes_drawn_;  // by step, as a document would write them
 };

@@ -198,7 +198,9 @@ private:
         if (hooks.before_frame) hooks.before_frame(number, renderer_);
         FrameRun::Rendered frame;
         try {
-            frame = frame_run_.render(index, wanted_roles(setup_.outputs), report_, observer_);
+            frame = frame_run_.render(index,
+                                      wanted_roles(setup_.outputs, setup_.pipeline.writes_role(kDisplayRole)),
+                                      report_, observer_);
         } catch (const Error& error) {
             if (error.exit_code() != ExitCode::memory) finish_write();
             if (error.exit_code() != ExitCode::capture) throw;
@@ -270,6 +272,7 @@ private:
 RunReport run_frames(const RunSetup& setup, const RunObserver& observer, const std::atomic<bool>& stop) {
     PipelineRenderer renderer(setup.context, setup.pipeline, setup.data_folder, setup.options.natives);
     renderer.set_audit(setup.options.audit);
+    renderer.fuse_passes(setup.options.fuse_passes);
     renderer.set_telemetry(setup.options.telemetry);
     try {
         if (!setup.options.history_in.empty()) renderer.load_history(setup.options.history_in);

@@ -33,6 +33,7 @@ struct RunOptions {
     NanPolicy on_nan = NanPolicy::warn;
     bool stop_on_error = false;  ///< the first frame that fails ends the run
     bool audit = false;
+    bool fuse_passes = true;
     bool telemetry = false;
     int scale_divisor = 1;              ///< frames are rendered at 1/this of their size
     std::optional<Window> region;       ///< px of the display window at full scale, from its top left

@@ -72,6 +72,28 @@ TEST(UsageCheck, IsContentWithTheEffectsThatShip) {
     EXPECT_GT(count, 0);
 }
 
+TEST(UsageCheck, RefusesToSampleWhatIsReadByThePixel) {
+    const Sound effect({{test::kInputs, R"("inputs": {"color": {"role": "color"}})"},
+                        {test::kTextures, R"("textures": {})"},
+                        {test::kPasses, R"("passes": [{"name": "only", "shader": "a.frag",
+                            "reads": [{"color": "pixel"}], "writes": ["color"]}])"}});
+    const auto faults_with = [&](const std::string& main) {
+        effect.folder.write("a.frag", "#version 450 core\n#include <pass>\n" + main + "\n");
+        Lines faults;
+        for (const std::string& line : effect.faults())
+            if (line.find("by the pixel") != line.npos) faults.push_back(line);
+        return faults;
+    };
+    EXPECT_EQ(faults_with("void main() { out_color = color; }"), Lines{});
+    EXPECT_EQ(faults_with("void main() { out_color = texelFetch(color, ivec2(1), 0); }"),
+              (Lines{"a.frag:3:38: error: pass 'only' reads 'color' by the pixel: it is the texel itself, no "
+                     "sampler; write 'color', or read it without \"pixel\""}));
+    ASSERT_EQ(faults_with("void main() { out_color = dFdx(color); }").size(), 1u);
+    ASSERT_EQ(faults_with("void main() { out_color = texelFetch(aftershade_texels_of_color, ivec2(1), 0); }")
+                  .size(),
+              1u);
+}
+
 TEST(UsageCheck, NamesTheLineOfWhatIsNotDeclared) {
     Sound effect;
     effect.folder.write("mode.glsl",

@@ -76,6 +76,8 @@ TEST(WantedRoles, AreThoseOfExrAndDisplayForPictures) {
     using Roles = std::vector<std::string>;
     EXPECT_EQ(wanted_roles({{"a.exr"}}), Roles{"color"});
     EXPECT_EQ(wanted_roles({{"a.png"}, {"depth"}}), (Roles{"color", "display"}));
+    EXPECT_EQ(wanted_roles({{"a.png"}}, true), Roles{"display"});
+    EXPECT_EQ(wanted_roles({{"a.png", "b.exr"}}, true), (Roles{"color", "display"}));
     EXPECT_EQ(wanted_roles({{"a.exr", "b.png"}, {"depth", "color"}}), (Roles{"color", "depth", "display"}));
 }
 

@@ -103,6 +103,7 @@ struct ReadSpec {
     std::string name;       ///< of an input or a texture
     bool previous = false;  ///< "<name>.prev": as it was at the end of the last frame
     gpu::Filter filter = gpu::Filter::nearest;
+    bool is_pixel = false;  ///< the shader has the texel at its own pixel, and no sampler
     gpu::Wrap wrap = gpu::Wrap::clamp;
     int level = -1;  ///< one level only, or kPassIndex + n; -1: all
     /// All must hold, or there is no sampler. With any, the shader has HAS_<NAME> where it is there.

@@ -21,7 +21,7 @@ namespace {
 constexpr int kMaxLevel = 14;      // of 16384 texels a side
 constexpr int kMaxGroups = 65535;  // GL_MAX_COMPUTE_WORK_GROUP_COUNT is at least this
 
-const std::vector<std::string> kFilters{"nearest", "linear"};
+const std::vector<std::string> kFilters{"nearest", "linear", "pixel"};
 
 Form file_form(const std::string& key) {
     return text(
@@ -226,9 +226,9 @@ std::optional<int> pass_offset(std::string_view text) {
 
 Form reads_form() {
     const Form filter =
-        grammar::with_fault(choice(kFilters), "the filter of a read is 'nearest' or 'linear'");
+        grammar::with_fault(choice(kFilters), "the filter of a read is 'nearest', 'linear' or 'pixel'");
     const Form options = grammar::by_kind({filter, grammar::object(read_block)},
-                                          "the filter of a read is 'nearest' or 'linear'");
+                                          "the filter of a read is 'nearest', 'linear' or 'pixel'");
     return grammar::list(named_use(
         options, "a read is a name, or an object of one name with its filter: {\"color\": \"linear\"}",
         R"(name, `name.prev`, `{"name": "linear"}` or `{"name": `[read](#read)`}`)"));
@@ -239,7 +239,10 @@ const Block& read_block() {
         .name = "read",
         .thing = "the read of '{}'",
         .doc = "How a pass samples what it reads.",
-        .keys = {optional("filter", choice(kFilters), "Filter between texels.", "\"nearest\""),
+        .keys = {optional("filter", choice(kFilters),
+                          "Filter between texels; `pixel`: no sampler, but the texel at the pixel itself "
+                          "([fused passes](#fused-passes)).",
+                          "\"nearest\""),
                  optional("outside", choice({"clamp", "weight_zero"}),
                           "Value beyond the edges: the edge texel, or 0, which darkens a filter there.",
                           "\"clamp\""),

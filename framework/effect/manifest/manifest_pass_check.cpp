@@ -157,6 +157,24 @@ private:
             fault(read.place, "'" + read.name + "' cannot be filtered linearly: " +
                                   (input ? "its role is " + input->role : "its format is integer"));
         if (read.level >= 0) check_place(read.name, "level", read.level, texture, true, read.place);
+        if (read.is_pixel) check_pixel_read(read, input, texture);
+    }
+
+    /// The pixel of a draw over the full screen is a texel of what it reads.
+    void check_pixel_read(const ReadSpec& read, const InputSpec* input, const TextureSpec* texture) {
+        const std::string reads = "reads '" + read.glsl_name() + "' by the pixel, ";
+        if (pass_->kind != PassKind::draw || pass_->has_vertex_shader() || !pass_->lists.empty())
+            fault(read.place, reads + "which only a draw over the full screen can");
+        else if (input && !find_role(input->role))
+            fault(read.place, reads + "but an 'aov:' image may have another size: fetch its texels");
+        else if (texture && (texture->layers > 1 || texture->mips > 1 || texture->auto_mips))
+            fault(read.place, reads + "but it has several levels or layers: name no filter");
+        const GridSpec grid = texture ? texture->grid : GridSpec{};
+        for (const WriteSpec& write : pass_->writes) {
+            const TextureSpec* target = manifest_.find_texture(write.name);
+            if ((target ? target->grid : GridSpec{}) == grid && write.level == 0) continue;
+            fault(read.place, reads + "but its target '" + write.name + "' has another size");
+        }
     }
 
     /// A level or layer, in every turn of a repeated pass, is one that the texture has.

@@ -38,6 +38,7 @@ ReadSpec read_of(const Node& item) {
     const Reader reader(options, read_block());
     const std::string filter = options.is_string() ? options.string : reader.text("filter");
     if (filter == "linear") read.filter = gpu::Filter::linear;
+    read.is_pixel = filter == "pixel";
     read.wrap = reader.choice<gpu::Wrap>("outside");
     read.level = level_of(reader, "level", -1);
     add_conditions(reader, read.when);
