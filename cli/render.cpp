@@ -9,6 +9,7 @@
 #include "cli/effect_options.h"
 #include "cli/interrupt.h"
 #include "cli/verbs.h"
+#include "cli/visibility_options.h"
 #include "framework/capture/deep_layers.h"
 #include "framework/capture/frame_range.h"
 #include "framework/core/input_files.h"
@@ -34,6 +35,7 @@ struct RenderArguments {
     int texture_size = 512;
     std::string profile = "native";
     std::vector<std::string> profile_paths;
+    VisibilityArguments visibility;
     bool only_truth = false;
     bool json = false;
     bool quiet = false;
@@ -61,6 +63,7 @@ void add_options(CLI::App& app, RenderArguments& options) {
         ->check(CLI::IsMember({"visible", "whole"}))
         ->capture_default_str();
     app.add_flag("--truth-only", options.only_truth, "Write no capture");
+    add_visibility_options(app, options.visibility);
     app.add_option("--layers", options.job.layers,
                    "Surfaces behind one another, each in files of its own that capture.json names as layers")
         ->check(CLI::Range(1, kMostLayers))
@@ -156,6 +159,7 @@ void complete_job(const RenderArguments& options, const scene::Scene& scene, sce
     job.method =
         options.method == "interleaved" ? scene::TruthMethod::interleaved : scene::TruthMethod::accumulation;
     job.visible_only = options.surface == "visible";
+    job.visibility = read_visibility(options.visibility, diagnostics);
     job.captures = !options.only_truth;
     job.jitter = options.jitter == "halton";
     job.texture_side_px = options.texture_size;
@@ -172,6 +176,7 @@ void print_report(const RenderArguments& options, const scene::JobReport& report
                                        {"roles_left_out", report.roles_left_out}};
         json["files"] = nlohmann::json::array();
         for (const auto& file : report.files) json["files"].push_back(file.string());
+        if (!report.visibility.empty()) json["visibility"] = visibility_json(report.visibility);
         std::cout << json.dump(2) << "\n";
     } else {
         for (const auto& file : report.files) std::cout << file.string() << "\n";
@@ -179,6 +184,7 @@ void print_report(const RenderArguments& options, const scene::JobReport& report
     if (!report.roles_left_out.empty())
         std::cerr << "the profile '" << options.profile << "' has no way to store "
                   << list_of_names(report.roles_left_out, "and") << "\n";
+    if (!options.quiet && !options.json) print_visibility(report.visibility);
     if (!options.quiet)
         std::cerr << counted(std::size_t(report.frames), "frame") << " in " << report.total_s
                   << " s, of which rendering " << report.render_s << " s\n";
