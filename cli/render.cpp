@@ -1,12 +1,15 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
+#include <optional>
 #include <thread>
 
 #include <nlohmann/json.hpp>
 
 #include "cli/capture_options.h"
 #include "cli/effect_options.h"
+#include "cli/gl_options.h"
+#include "cli/gl_visibility.h"
 #include "cli/interrupt.h"
 #include "cli/verbs.h"
 #include "cli/visibility_options.h"
@@ -168,7 +171,8 @@ void complete_job(const RenderArguments& options, const scene::Scene& scene, sce
     scene::check_job(scene, job, diagnostics);
 }
 
-void print_report(const RenderArguments& options, const scene::JobReport& report) {
+void print_report(const RenderArguments& options, const scene::JobReport& report,
+                  const std::optional<GlVisibility>& gl) {
     if (options.json) {
         nlohmann::ordered_json json = {{"frames", report.frames},
                                        {"render_s", report.render_s},
@@ -177,6 +181,7 @@ void print_report(const RenderArguments& options, const scene::JobReport& report
         json["files"] = nlohmann::json::array();
         for (const auto& file : report.files) json["files"].push_back(file.string());
         if (!report.visibility.empty()) json["visibility"] = visibility_json(report.visibility);
+        if (gl) json["gl"] = gl->counts_json();
         std::cout << json.dump(2) << "\n";
     } else {
         for (const auto& file : report.files) std::cout << file.string() << "\n";
@@ -214,10 +219,15 @@ ExitCode render(RenderArguments options) {
                             std::filesystem::path(options.folder) / "capture.json", diagnostics);
     diagnostics.print(std::cerr);
     if (diagnostics.has_errors()) return ExitCode::usage;
+    std::optional<GlVisibility> gl;
+    if (options.job.visibility && options.visibility.device == "gl") {
+        gl.emplace(chosen_backend(options.visibility.backend));
+        options.job.id_tracer = gl->tracer();
+    }
     const scene::JobReport report = scene::run_job(*scene, *profile, options.job, stop, [&](int frame) {
         if (!options.quiet) std::cerr << "frame " << frame << "\n";
     });
-    print_report(options, report);
+    print_report(options, report, gl);
     return stop ? ExitCode::interrupted : ExitCode::done;
 }
 

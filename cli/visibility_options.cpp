@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/gl_options.h"
+
 namespace aftershade::cli {
 
 void add_visibility_options(CLI::App& app, VisibilityArguments& options) {
@@ -45,6 +47,14 @@ void add_visibility_options(CLI::App& app, VisibilityArguments& options) {
         ->check(CLI::IsMember({"triangle", "picture"}))
         ->each(of_memoised("--shading-grid"))
         ->capture_default_str();
+    app.add_option(
+           "--visibility-on", options.device,
+           "memoised: what traces the samples: cpu, or gl in single precision by compute shaders, whose "
+           "caches count as well")
+        ->check(CLI::IsMember({"cpu", "gl"}))
+        ->each(of_memoised("--visibility-on"))
+        ->capture_default_str();
+    add_backend_option(app, options.backend);
     app.add_flag("--anisotropic-shading", settings.grid.anisotropic,
                  "memoised: coarser shading where lens and shutter blur it");
 }
@@ -55,7 +65,8 @@ std::optional<scene::VisibilitySettings> read_visibility(const VisibilityArgumen
     if (options.settings.grid.anisotropic) unused.push_back("--anisotropic-shading");
     const auto visibility = scene::parse_visibility(options.visibility);
     if (visibility != scene::Visibility::memoised)
-        for (const std::string& name : unused) diagnostics.error({name, 0, 0}, "is for --visibility memoised");
+        for (const std::string& name : unused)
+            diagnostics.error({name, 0, 0}, "is for --visibility memoised");
     if (!visibility) return std::nullopt;
     scene::VisibilitySettings settings = options.settings;
     settings.visibility = *visibility;

@@ -19,6 +19,8 @@ struct VisibilityArguments {
     std::string visibility = "none";
     std::string cache = "global";
     std::string grid = "triangle";
+    std::string device = "cpu";
+    std::string backend{};
     scene::VisibilitySettings settings;
     std::vector<std::string> given{};  ///< options that are of no use without --visibility memoised
 };

@@ -223,8 +223,9 @@ private:
         settings.seed = job_.seed;
         settings.jitter_px = jitter_px(frame);
         const Scene triangles = triangulated(scene_);
-        VisibilityPicture picture = render_visibility(
-            SceneRenderer(triangles, job_.width_px, job_.height_px, job_.threads), frame, settings);
+        VisibilityPicture picture =
+            render_visibility(SceneRenderer(triangles, job_.width_px, job_.height_px, job_.threads), frame,
+                              settings, job_.id_tracer);
         report_.render_s += seconds_since(start);
         report_.visibility.push_back(picture.report);
         Capture capture = empty_capture(frame);

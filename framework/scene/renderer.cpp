@@ -122,11 +122,6 @@ SceneRenderer::SamplePoint SceneRenderer::sample_point(const TruthSettings& trut
     return point;
 }
 
-Ray SceneRenderer::sample_ray(const World& world, int x, int y, const SamplePoint& point) const {
-    const CameraState& camera = world.state().camera;
-    return camera_ray(camera, dvec2(x, y) + point.offset_px, camera.aperture_radius_m * point.on_lens);
-}
-
 World SceneRenderer::world_at(int frame, double time) const {
     return World(geometry_, state_at(scene_, frame, time));
 }
@@ -146,22 +141,36 @@ std::vector<World> SceneRenderer::moments_of(int frame, const TruthSettings& tru
     return moments;
 }
 
+Ray SceneRenderer::sample_ray(const CameraState& camera, int x, int y, const SamplePoint& point) const {
+    return camera_ray(camera, dvec2(x, y) + point.offset_px, camera.aperture_radius_m * point.on_lens);
+}
+
+SceneRenderer::PixelSample SceneRenderer::sample_of(int frame, const TruthSettings& truth, int sample, int x,
+                                                    int y, const std::vector<World>& moments) const {
+    std::uint32_t seed = pcg3d(truth.seed, std::uint32_t(frame), 0)[0];
+    std::size_t moment = 0;
+    if (truth.method == TruthMethod::interleaved) {
+        seed = pcg3d(std::uint32_t(x), std::uint32_t(y), seed)[0];
+        moment = pcg3d(seed, std::uint32_t(sample), 0x27d4eb2fu)[0] % moments.size();
+    }
+    const CameraState& camera = moments[moment].state().camera;
+    return {moment, sample_ray(camera, x, y, sample_point(truth, sample, seed))};
+}
+
 void SceneRenderer::for_each_sample(int frame, const TruthSettings& truth, const SampleVisitor& visit) const {
-    const bool own = truth.method == TruthMethod::interleaved;
     const std::uint32_t frame_seed = pcg3d(truth.seed, std::uint32_t(frame), 0)[0];
     for (int sample = 0; sample < truth.samples; ++sample) {
         const std::vector<World> moments = moments_of(frame, truth, sample);
+        const CameraState& camera = moments.front().state().camera;
         const SamplePoint shared = sample_point(truth, sample, frame_seed);
         for_each_row(height_px_, threads_, [&](int y) {
             for (int x = 0; x < width_px_; ++x) {
-                if (!own) {
-                    visit(x, y, sample, moments.front(), sample_ray(moments.front(), x, y, shared));
+                if (truth.method == TruthMethod::accumulation) {
+                    visit(x, y, sample, moments.front(), sample_ray(camera, x, y, shared));
                     continue;
                 }
-                const std::uint32_t seed = pcg3d(std::uint32_t(x), std::uint32_t(y), frame_seed)[0];
-                const World& world =
-                    moments[pcg3d(seed, std::uint32_t(sample), 0x27d4eb2fu)[0] % moments.size()];
-                visit(x, y, sample, world, sample_ray(world, x, y, sample_point(truth, sample, seed)));
+                const PixelSample own = sample_of(frame, truth, sample, x, y, moments);
+                visit(x, y, sample, moments[own.moment], own.ray);
             }
         });
     }

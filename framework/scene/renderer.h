@@ -93,6 +93,16 @@ public:
     /// of the frame's camera.
     Capture render_texture_space(int frame, int object, int side_px) const;
 
+    /// The scene at the moments that sample `sample` of every pixel chooses from.
+    std::vector<World> moments_of(int frame, const TruthSettings& settings, int sample) const;
+    struct PixelSample {
+        std::size_t moment = 0;  ///< index into moments_of()
+        Ray ray;
+    };
+    /// `moments` are moments_of() of the same sample.
+    PixelSample sample_of(int frame, const TruthSettings& settings, int sample, int x, int y,
+                          const std::vector<World>& moments) const;
+
     Ray camera_ray(const CameraState& camera, const glm::dvec2& pixel, const glm::dvec2& lens_m) const;
     /// Where the pinhole camera sees a point (w 1) or a direction (w 0), px; false behind it.
     bool project(const CameraState& camera, const glm::dvec4& point, glm::dvec2& pixel) const;
@@ -112,13 +122,12 @@ private:
     };
     Motion motion_of(const std::array<const SceneState*, 3>& states, const Surface* surface,
                      const glm::dvec3& direction) const;
-    std::vector<World> moments_of(int frame, const TruthSettings& settings, int sample) const;
     struct SamplePoint {
         glm::dvec2 offset_px{0};  ///< from the pixel's top left
         glm::dvec2 on_lens{0};    ///< over the aperture's radius, +y down
     };
+    Ray sample_ray(const CameraState& camera, int x, int y, const SamplePoint& point) const;
     SamplePoint sample_point(const TruthSettings& settings, int index, std::uint32_t seed) const;
-    Ray sample_ray(const World& world, int x, int y, const SamplePoint& point) const;
 
     const Scene& scene_;
     Geometry geometry_;

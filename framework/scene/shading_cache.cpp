@@ -170,8 +170,7 @@ std::string_view shading_cache_name(ShadingCache cache) {
 
 CacheCounts replay(const SampleIds& samples, const ShadingCacheSettings& settings) {
     switch (settings.cache) {
-        case ShadingCache::global:
-            return replay_with(InfiniteCache(false), samples, settings.tile_px);
+        case ShadingCache::global: return replay_with(InfiniteCache(false), samples, settings.tile_px);
         case ShadingCache::tile: return replay_with(InfiniteCache(true), samples, settings.tile_px);
         case ShadingCache::sorted: return replay_sorted(samples, settings.tile_px);
         case ShadingCache::lru:

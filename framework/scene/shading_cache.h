@@ -27,7 +27,8 @@ struct ShadingCacheSettings {
     int entries = 1024;  ///< lru and fifo
 };
 
-/// The ids that the samples of a picture met: ids[(y * width_px + x) * samples + i], kNoShading where nothing.
+/// The ids that the samples of a picture met: ids[(y * width_px + x) * samples + i], kNoShading where
+/// nothing.
 struct SampleIds {
     std::span<const std::uint32_t> ids;
     int width_px = 0;
@@ -36,9 +37,9 @@ struct SampleIds {
 };
 
 struct CacheCounts {
-    std::uint64_t requests = 0;             ///< samples that met a surface
-    std::uint64_t shadings = 0;             ///< misses
-    std::uint64_t bytes = 0;                ///< of the cache itself, the largest it was
+    std::uint64_t requests = 0;     ///< samples that met a surface
+    std::uint64_t shadings = 0;     ///< misses
+    std::uint64_t bytes = 0;        ///< of the cache itself, the largest it was
     std::vector<float> of_pixel{};  ///< shadings: each divided among the samples that used it
 };
 

@@ -62,10 +62,11 @@ ShadingGrids::ShadingGrids(const SceneRenderer& renderer, int frame, const Shadi
             grid.start = std::uint32_t(cells);
             cells += std::uint64_t(grid.size.x) * std::uint64_t(grid.size.y);
             if (2 * cells > kMaxShadingIds)
-                throw Error(ExitCode::usage,
-                            fmt::format("{}: the triangles of frame {} have more than {} shading samples at a "
-                                        "shading rate of {}; choose a lower --shading-rate or --size",
-                                        scene.path.string(), frame, kMaxShadingIds, settings.rate));
+                throw Error(
+                    ExitCode::usage,
+                    fmt::format("{}: the triangles of frame {} have more than {} shading samples at a "
+                                "shading rate of {}; choose a lower --shading-rate or --size",
+                                scene.path.string(), frame, kMaxShadingIds, settings.rate));
         }
     }
     id_count_ = std::uint32_t(2 * cells);
@@ -118,14 +119,15 @@ std::uint32_t ShadingGrids::id_of(const Surface& surface) const {
     const Grid& grid = grids_[first_triangle_[std::size_t(surface.object)] + surface.triangle];
     const glm::dmat4& world_from_object = world_.state().world_from_object[std::size_t(surface.object)];
     const dvec2 px = reference_px(dvec3(world_from_object * dvec4(surface.local, 1)));
-    const glm::ivec2 cell = glm::clamp(glm::ivec2(glm::floor(grid.cells_from_px * px - grid.low)),
-                                       glm::ivec2(0), grid.size - 1);
+    const glm::ivec2 cell =
+        glm::clamp(glm::ivec2(glm::floor(grid.cells_from_px * px - grid.low)), glm::ivec2(0), grid.size - 1);
     return 2 * (grid.start + std::uint32_t(cell.y * grid.size.x + cell.x)) + (surface.from_behind ? 1 : 0);
 }
 
 std::uint32_t ShadingGrids::triangle_of(std::uint32_t id) const {
-    const auto after = std::upper_bound(grids_.begin(), grids_.end(), id / 2,
-                                        [](std::uint32_t cell, const Grid& grid) { return cell < grid.start; });
+    const auto after =
+        std::upper_bound(grids_.begin(), grids_.end(), id / 2,
+                         [](std::uint32_t cell, const Grid& grid) { return cell < grid.start; });
     return std::uint32_t(after - grids_.begin()) - 1;
 }
 
@@ -142,8 +144,7 @@ ShadingPlace ShadingGrids::place_of(std::uint32_t id) const {
     place.triangle = index - *object;
     place.from_behind = (id & 1) != 0;
     const Scene& scene = renderer_.scene();
-    const Mesh& mesh =
-        scene.meshes[std::size_t(scene.objects[std::size_t(place.object)].shape.mesh)];
+    const Mesh& mesh = scene.meshes[std::size_t(scene.objects[std::size_t(place.object)].shape.mesh)];
     const Ray ray = renderer_.camera_ray(world_.state().camera, px, dvec2(0));
     const glm::dmat4 object_from_world =
         glm::inverse(world_.state().world_from_object[std::size_t(place.object)]);

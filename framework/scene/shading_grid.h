@@ -36,8 +36,8 @@ struct ShadingPlace {
 };
 
 /// Each triangle has a grid over its bounds as the reference pose shows them: the pinhole camera at the
-/// frame's own time. Ids are the prefix sum over the triangles' cells, twice: the two sides of a triangle have
-/// ids of their own. Beyond one picture's width and height outside the picture all is the grid's border.
+/// frame's own time. Ids are the prefix sum over the triangles' cells, twice: the two sides of a triangle
+/// have ids of their own. Beyond one picture's width and height outside the picture all is the grid's border.
 /// [const functions: any thread]
 class ShadingGrids {
 public:
@@ -54,21 +54,26 @@ public:
     std::uint32_t triangle_of(std::uint32_t id) const;
     glm::dvec3 shade(std::uint32_t id) const;
 
-private:
+    /// Of one triangle.
     struct Grid {
         glm::dmat2 cells_from_px{1};
         glm::dvec2 low{0};  ///< of the grid, in cells
         glm::ivec2 size{1};
         std::uint32_t start = 0;  ///< the first id over 2
     };
+    /// Of each triangle of each object, in their order.
+    const std::vector<Grid>& grids() const { return grids_; }
+    const SceneState& reference() const { return world_.state(); }
+
+private:
     Grid grid_of(int object, const Mesh& mesh, std::uint32_t triangle, const ShadingGridSettings& settings,
                  const std::array<SceneState, 2>& ends) const;
     glm::dvec2 reference_px(const glm::dvec3& world) const;
 
     const SceneRenderer& renderer_;
-    World world_;  ///< at the frame's own time
+    World world_;                                ///< at the frame's own time
     std::vector<std::uint32_t> first_triangle_;  ///< of each object
-    std::vector<Grid> grids_;                    ///< of each triangle of each object
+    std::vector<Grid> grids_;
     std::uint32_t id_count_ = 0;
 };
 

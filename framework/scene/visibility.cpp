@@ -20,17 +20,6 @@ constexpr std::array<std::pair<Visibility, std::string_view>, 3> kVisibilityName
 
 constexpr std::uint64_t kShadingBytes = 12, kReferenceBytes = 8;
 
-TruthSettings truth_of(const VisibilitySettings& settings) {
-    TruthSettings truth;
-    truth.kinds = {.lens = true, .shutter = true, .antialias = true};
-    truth.method = settings.visibility == Visibility::accumulation ? TruthMethod::accumulation
-                                                                   : TruthMethod::interleaved;
-    truth.samples = settings.samples;
-    truth.seed = settings.seed;
-    truth.jitter_px = settings.jitter_px;
-    return truth;
-}
-
 std::size_t pixel_count(const SceneRenderer& renderer) {
     return std::size_t(renderer.width_px()) * std::size_t(renderer.height_px());
 }
@@ -106,16 +95,13 @@ Image rate_image(const SceneRenderer& renderer, const std::vector<float>& of_pix
     return image;
 }
 
-VisibilityPicture render_memoised(const SceneRenderer& renderer, int frame,
-                                  const VisibilitySettings& settings) {
-    const ShadingGrids grids(renderer, frame, settings.grid);
-    const std::vector<std::uint32_t> ids = trace_ids(renderer, grids, frame, settings);
+VisibilityPicture render_memoised(const SceneRenderer& renderer, const ShadingGrids& grids, int frame,
+                                  const VisibilitySettings& settings, const std::vector<std::uint32_t>& ids) {
     const CacheCounts counts =
         replay({ids, renderer.width_px(), renderer.height_px(), settings.samples}, settings.cache);
     const IdSet set(ids, grids.id_count());
     VisibilityPicture picture;
-    picture.color =
-        resolve(renderer, ids, set, shade_all(renderer, grids, set), settings.samples);
+    picture.color = resolve(renderer, ids, set, shade_all(renderer, grids, set), settings.samples);
     picture.shading_rate = rate_image(renderer, counts.of_pixel);
     VisibilityReport& report = picture.report;
     report = {.frame = frame,
@@ -124,8 +110,7 @@ VisibilityPicture render_memoised(const SceneRenderer& renderer, int frame,
               .shadings = counts.shadings,
               .rate = {},
               .bytes = {ids.size() * kReferenceBytes, counts.shadings * kShadingBytes, counts.bytes, 0}};
-    report.rate.multisampled =
-        double(triangles_of_pixels(renderer, grids, ids, settings.samples));
+    report.rate.multisampled = double(triangles_of_pixels(renderer, grids, ids, settings.samples));
     complete(report, counts.of_pixel);
     return picture;
 }
@@ -136,11 +121,9 @@ VisibilityPicture render_plain(const SceneRenderer& renderer, int frame, const V
     std::vector<float> of_pixel(sums.size());
     renderer.for_each_sample(
         frame, truth_of(settings), [&](int x, int y, int, const World& world, const Ray& ray) {
-            const std::size_t pixel =
-                std::size_t(y) * std::size_t(renderer.width_px()) + std::size_t(x);
+            const std::size_t pixel = std::size_t(y) * std::size_t(renderer.width_px()) + std::size_t(x);
             const auto surface = world.trace(ray, 0, std::numeric_limits<double>::infinity());
-            sums[pixel] +=
-                surface ? world.shade(*surface, ray.origin).color() : renderer.scene().background;
+            sums[pixel] += surface ? world.shade(*surface, ray.origin).color() : renderer.scene().background;
             of_pixel[pixel] += surface ? 1.0f : 0.0f;
         });
     VisibilityPicture picture;
@@ -182,17 +165,28 @@ std::vector<std::uint32_t> trace_ids(const SceneRenderer& renderer, const Shadin
         frame, truth_of(settings), [&](int x, int y, int sample, const World& world, const Ray& ray) {
             const auto surface = world.trace(ray, 0, std::numeric_limits<double>::infinity());
             if (!surface) return;
-            const std::size_t pixel =
-                std::size_t(y) * std::size_t(renderer.width_px()) + std::size_t(x);
+            const std::size_t pixel = std::size_t(y) * std::size_t(renderer.width_px()) + std::size_t(x);
             ids[pixel * std::size_t(settings.samples) + std::size_t(sample)] = grids.id_of(*surface);
         });
     return ids;
 }
 
+TruthSettings truth_of(const VisibilitySettings& settings) {
+    TruthSettings truth;
+    truth.kinds = {.lens = true, .shutter = true, .antialias = true};
+    truth.method = settings.visibility == Visibility::accumulation ? TruthMethod::accumulation
+                                                                   : TruthMethod::interleaved;
+    truth.samples = settings.samples;
+    truth.seed = settings.seed;
+    truth.jitter_px = settings.jitter_px;
+    return truth;
+}
+
 VisibilityPicture render_visibility(const SceneRenderer& renderer, int frame,
-                                    const VisibilitySettings& settings) {
-    return settings.visibility == Visibility::memoised ? render_memoised(renderer, frame, settings)
-                                                       : render_plain(renderer, frame, settings);
+                                    const VisibilitySettings& settings, const IdTracer& tracer) {
+    if (settings.visibility != Visibility::memoised) return render_plain(renderer, frame, settings);
+    const ShadingGrids grids(renderer, frame, settings.grid);
+    return render_memoised(renderer, grids, frame, settings, tracer(renderer, grids, frame, settings));
 }
 
 }  // namespace aftershade::scene

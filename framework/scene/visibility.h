@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -39,7 +40,7 @@ struct ShadingRate {
     double of_pixels = 0;          ///< mean over the picture
     double of_covered_pixels = 0;  ///< over the area where samples met a surface; supersampling: the samples
     double p95 = 0;                ///< 95 of 100 pixels have at most this
-    double multisampled = 0;       ///< of_covered_pixels if each triangle were shaded once for each pixel (MSAA)
+    double multisampled = 0;  ///< of_covered_pixels if each triangle were shaded once for each pixel (MSAA)
 };
 
 /// As Liktor and Dachsbacher 2012 count it: 12 bytes of G-buffer for a shading sample (depth, two RGBA8), and
@@ -66,14 +67,20 @@ struct VisibilityPicture {
     VisibilityReport report;
 };
 
-/// `renderer` is of a scene of meshes (triangulated()). What all caches give is one picture: they change the
-/// count alone. Nothing depends on the number of threads.
-VisibilityPicture render_visibility(const SceneRenderer& renderer, int frame,
-                                    const VisibilitySettings& settings);
-
-/// What each sample met, as SampleIds has it. Samples are those of the interleaved truth of lens, shutter and
+/// The samples of a picture, as the renderer makes them: those of the interleaved truth of lens, shutter and
 /// antialias.
+TruthSettings truth_of(const VisibilitySettings& settings);
+
+/// What each sample met, as SampleIds has it.
 std::vector<std::uint32_t> trace_ids(const SceneRenderer& renderer, const ShadingGrids& grids, int frame,
                                      const VisibilitySettings& settings);
+/// That, or what does the same elsewhere.
+using IdTracer = std::function<std::vector<std::uint32_t>(
+    const SceneRenderer& renderer, const ShadingGrids& grids, int frame, const VisibilitySettings& settings)>;
+
+/// `renderer` is of a scene of meshes (triangulated()). What all caches give is one picture: they change the
+/// count alone. Nothing depends on the number of threads. `tracer` is for Visibility::memoised.
+VisibilityPicture render_visibility(const SceneRenderer& renderer, int frame,
+                                    const VisibilitySettings& settings, const IdTracer& tracer = trace_ids);
 
 }  // namespace aftershade::scene

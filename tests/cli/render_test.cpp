@@ -96,6 +96,42 @@ TEST_F(Render, ReportsTheShadingRateOfManyVisibilitySamples) {
     EXPECT_TRUE(fs::exists(folder_ / "toys/memoised_rate_0004.png"));
 }
 
+TEST_F(Render, TracesVisibilityWithGlAlikeOnOneThreadAndOnTwo) {
+    std::vector<std::vector<float>> reds;
+    for (const char* threads : {"1", "2"}) {
+        Args words = {AFTERSHADE_EXECUTABLE,
+                      "render",
+                      scene("toys"),
+                      "-o",
+                      threads,
+                      "--size",
+                      "96x54",
+                      "--frames",
+                      "4",
+                      "--truth-only",
+                      "--visibility",
+                      "memoised",
+                      "--visibility-samples",
+                      "64",
+                      "--visibility-on",
+                      "gl",
+                      "--backend",
+                      "osmesa",
+                      "--json",
+                      "--quiet"};
+        const CommandResult made =
+            Command(std::move(words), folder_.path(), {{"LP_NUM_THREADS", threads}}).wait();
+        ASSERT_EQ(made.exit_code, 0) << made.err;
+        const auto report = nlohmann::json::parse(made.out);
+        const auto counted = report.at("gl").at("frames").at(0);
+        EXPECT_EQ(counted.at("misses"), report.at("visibility").at(0).at("misses"));
+        EXPECT_EQ(counted.at("hits"), report.at("visibility").at(0).at("hits"));
+        EXPECT_EQ(counted.at("overflows"), 0);
+        reds.push_back(channel(std::string(threads) + "/memoised_0004.exr", "R"));
+    }
+    EXPECT_EQ(reds[0], reds[1]);
+}
+
 TEST_F(Render, RefusesACacheWithoutShadingSamples) {
     const CommandResult refused = render({scene("toys"), "-o", "toys", "--visibility", "supersampled",
                                           "--shading-cache", "lru", "--anisotropic-shading"});
@@ -196,7 +232,7 @@ TEST_F(Render, TellsWhatIsWrongWithTheCommand) {
         {{head, "-o", "x", "--space", "uv", "--object", "skul"}, "did you mean 'skull'?"},
         {{head, "-o", "x", "--object", "skull"}, "is for --space uv"},
         {{head, "-o", "x", "--profile", "blendr"}, "did you mean 'blender'?"},
-        {{head, "-o", "x", "--truth-only"}, "there is no --truth to render"},
+        {{head, "-o", "x", "--truth-only"}, "there is no --truth and no --visibility to render"},
         {{scene("wheel"), "-o", "x", "--truth", "scattering"},
          "no material of the scene has a \"scattering_profile\""},
         {{"nowhere", "-o", "x"}, "nowhere"},

@@ -108,8 +108,8 @@ TEST(ShadingCaches, OfSomeEntriesDropWhatALineOfThemDrops) {
             line.push_back(id);
             if (line.size() > 40) line.pop_front();
         }
-        const CacheCounts counts = replay(
-            {ids, 32, 32, 4}, {renews ? ShadingCache::lru : ShadingCache::fifo, 32, 40});
+        const CacheCounts counts =
+            replay({ids, 32, 32, 4}, {renews ? ShadingCache::lru : ShadingCache::fifo, 32, 40});
         EXPECT_EQ(counts.shadings, misses) << renews;
         EXPECT_EQ(counts.requests, ids.size());
     }
@@ -127,8 +127,8 @@ TEST(ShadingCaches, OfTilesShadeAgainWhereATrailCrossesThem) {
     const TracedSheet blurred = traced(sheet({0, 0}, 8));
     const double across = 8.0 / 32, corners = std::numbers::pi / 4 * across * across;
     const double expected = kSheetCells * (1 + 2 * across + corners);
-    EXPECT_NEAR(double(replay(blurred.samples(), {ShadingCache::tile, 32}).shadings),
-                expected, 0.05 * expected);
+    EXPECT_NEAR(double(replay(blurred.samples(), {ShadingCache::tile, 32}).shadings), expected,
+                0.05 * expected);
 }
 
 TEST(Visibility, ShadesEachCellOfASheetOnceWhateverTheBlur) {
@@ -184,8 +184,8 @@ TEST(Visibility, IsTheSameOnAnyNumberOfThreads) {
     for (const int threads : {2, 5}) {
         const VisibilityPicture many = picture_of(scene, 4, settings, threads);
         EXPECT_EQ(many.report.shadings, one.report.shadings);
-        EXPECT_TRUE(std::equal(one.color.floats().begin(), one.color.floats().end(),
-                               many.color.floats().begin()));
+        EXPECT_TRUE(
+            std::equal(one.color.floats().begin(), one.color.floats().end(), many.color.floats().begin()));
     }
 }
 
@@ -249,7 +249,8 @@ TEST(ShadingGrids, RefuseMoreIdsThanASetOf128MiBHolds) {
         const ShadingGrids grids(renderer, 1, {.rate = 4});
         FAIL() << grids.id_count();
     } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("choose a lower --shading-rate or --size"), std::string::npos)
+        EXPECT_NE(std::string(error.what()).find("choose a lower --shading-rate or --size"),
+                  std::string::npos)
             << error.what();
     }
 }
