@@ -1,14 +1,18 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
+#include <optional>
 #include <thread>
 
 #include <nlohmann/json.hpp>
 
 #include "cli/capture_options.h"
 #include "cli/effect_options.h"
+#include "cli/gl_options.h"
+#include "cli/gl_visibility.h"
 #include "cli/interrupt.h"
 #include "cli/verbs.h"
+#include "cli/visibility_options.h"
 #include "framework/capture/deep_layers.h"
 #include "framework/capture/frame_range.h"
 #include "framework/core/input_files.h"
@@ -34,6 +38,7 @@ struct RenderArguments {
     int texture_size = 512;
     std::string profile = "native";
     std::vector<std::string> profile_paths;
+    VisibilityArguments visibility;
     bool only_truth = false;
     bool json = false;
     bool quiet = false;
@@ -61,6 +66,7 @@ void add_options(CLI::App& app, RenderArguments& options) {
         ->check(CLI::IsMember({"visible", "whole"}))
         ->capture_default_str();
     app.add_flag("--truth-only", options.only_truth, "Write no capture");
+    add_visibility_options(app, options.visibility);
     app.add_option("--layers", options.job.layers,
                    "Surfaces behind one another, each in files of its own that capture.json names as layers")
         ->check(CLI::Range(1, kMostLayers))
@@ -156,6 +162,7 @@ void complete_job(const RenderArguments& options, const scene::Scene& scene, sce
     job.method =
         options.method == "interleaved" ? scene::TruthMethod::interleaved : scene::TruthMethod::accumulation;
     job.visible_only = options.surface == "visible";
+    job.visibility = read_visibility(options.visibility, diagnostics);
     job.captures = !options.only_truth;
     job.jitter = options.jitter == "halton";
     job.texture_side_px = options.texture_size;
@@ -164,7 +171,8 @@ void complete_job(const RenderArguments& options, const scene::Scene& scene, sce
     scene::check_job(scene, job, diagnostics);
 }
 
-void print_report(const RenderArguments& options, const scene::JobReport& report) {
+void print_report(const RenderArguments& options, const scene::JobReport& report,
+                  const std::optional<GlVisibility>& gl) {
     if (options.json) {
         nlohmann::ordered_json json = {{"frames", report.frames},
                                        {"render_s", report.render_s},
@@ -172,6 +180,8 @@ void print_report(const RenderArguments& options, const scene::JobReport& report
                                        {"roles_left_out", report.roles_left_out}};
         json["files"] = nlohmann::json::array();
         for (const auto& file : report.files) json["files"].push_back(file.string());
+        if (!report.visibility.empty()) json["visibility"] = visibility_json(report.visibility);
+        if (gl) json["gl"] = gl->counts_json();
         std::cout << json.dump(2) << "\n";
     } else {
         for (const auto& file : report.files) std::cout << file.string() << "\n";
@@ -179,6 +189,7 @@ void print_report(const RenderArguments& options, const scene::JobReport& report
     if (!report.roles_left_out.empty())
         std::cerr << "the profile '" << options.profile << "' has no way to store "
                   << list_of_names(report.roles_left_out, "and") << "\n";
+    if (!options.quiet && !options.json) print_visibility(report.visibility);
     if (!options.quiet)
         std::cerr << counted(std::size_t(report.frames), "frame") << " in " << report.total_s
                   << " s, of which rendering " << report.render_s << " s\n";
@@ -208,10 +219,15 @@ ExitCode render(RenderArguments options) {
                             std::filesystem::path(options.folder) / "capture.json", diagnostics);
     diagnostics.print(std::cerr);
     if (diagnostics.has_errors()) return ExitCode::usage;
+    std::optional<GlVisibility> gl;
+    if (options.job.visibility && options.visibility.device == "gl") {
+        gl.emplace(chosen_backend(options.visibility.backend));
+        options.job.id_tracer = gl->tracer();
+    }
     const scene::JobReport report = scene::run_job(*scene, *profile, options.job, stop, [&](int frame) {
         if (!options.quiet) std::cerr << "frame " << frame << "\n";
     });
-    print_report(options, report);
+    print_report(options, report, gl);
     return stop ? ExitCode::interrupted : ExitCode::done;
 }
 

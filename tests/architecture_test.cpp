@@ -38,6 +38,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
      {"core", "image", "file", "capture", "inspect", "compare", "gpu", "graph", "effect", "pipeline"}},
     {"serve", {"core", "image", "file", "capture", "gpu", "graph", "effect", "pipeline"}},
     {"scene", {"core", "scattering", "image", "file", "capture"}},
+    {"visibility", {"core", "gpu", "scene"}},
 };
 
 struct Line {

@@ -14,7 +14,9 @@
 #include "framework/core/error.h"
 #include "framework/core/units.h"
 #include "framework/image/role.h"
+#include "framework/scene/rate_image.h"
 #include "framework/scene/samples.h"
+#include "framework/scene/triangulate.h"
 
 namespace aftershade::scene {
 
@@ -76,14 +78,17 @@ bool has_texture_space(const Scene& scene, int object) {
 
 constexpr double kGiB = 1024.0 * 1024 * 1024;
 
-/// Of one capture of every role, and the one before it, which is being written.
+/// Of one capture of every role, and the one before it, which is being written; and of what each visibility
+/// sample met.
 std::uint64_t bytes_of_job(const Job& job) {
     std::uint64_t channels = 0;
     for (const std::string& role : role_names()) channels += std::uint64_t(find_role(role)->channels);
     const bool is_texture = job.texture_object >= 0;
     const std::uint64_t width = std::uint64_t(is_texture ? job.texture_side_px : job.width_px);
     const std::uint64_t height = std::uint64_t(is_texture ? job.texture_side_px : job.height_px);
-    return 2 * width * height * channels * sizeof(float) * std::uint64_t(job.layers);
+    const std::uint64_t visibility =
+        job.visibility ? width * height * std::uint64_t(job.visibility->samples) * sizeof(std::uint32_t) : 0;
+    return 2 * width * height * channels * sizeof(float) * std::uint64_t(job.layers) + visibility;
 }
 
 bool is_constant(const Light& light) {
@@ -125,6 +130,7 @@ public:
             if (stop) break;
             if (job_.captures) render_captures(frame);
             for (const Truth& truth : job_.truths) render_truth(frame, truth);
+            if (job_.visibility) render_visibility_of(frame, *job_.visibility);
             ++report_.frames;
             rendered_.push_back(frame);
             done(frame);
@@ -185,11 +191,7 @@ private:
 
     void render_truth(int frame, const Truth& truth) {
         const Clock::time_point start = Clock::now();
-        Capture capture;
-        capture.header.data_window =
-            capture.header.display_window = {0, 0, job_.width_px - 1, job_.height_px - 1};
-        capture.header.camera =
-            capture_camera(scene_, state_at(scene_, frame, frame), job_.width_px, job_.height_px);
+        Capture capture = empty_capture(frame);
         if (truth.scattering) {
             ScatteringTruth scattered = renderer_.render_scattering(
                 frame, {job_.scattering_samples, job_.visible_only, jitter_px(frame)});
@@ -205,6 +207,38 @@ private:
         const int samples = truth.scattering ? job_.scattering_samples : job_.samples;
         write(std::move(capture), fmt::format("truth_{}_{:04}.exr", name, frame), frame, frame,
               {{"aftershade/truth", truth.name()}, {"aftershade/samples", samples}});
+    }
+
+    Capture empty_capture(int frame) const {
+        Capture capture;
+        capture.header.data_window =
+            capture.header.display_window = {0, 0, job_.width_px - 1, job_.height_px - 1};
+        capture.header.camera =
+            capture_camera(scene_, state_at(scene_, frame, frame), job_.width_px, job_.height_px);
+        return capture;
+    }
+
+    void render_visibility_of(int frame, VisibilitySettings settings) {
+        const Clock::time_point start = Clock::now();
+        settings.seed = job_.seed;
+        settings.jitter_px = jitter_px(frame);
+        const Scene triangles = triangulated(scene_);
+        VisibilityPicture picture =
+            render_visibility(SceneRenderer(triangles, job_.width_px, job_.height_px, job_.threads), frame,
+                              settings, job_.id_tracer);
+        report_.render_s += seconds_since(start);
+        report_.visibility.push_back(picture.report);
+        Capture capture = empty_capture(frame);
+        capture.images["color"] = std::move(picture.color);
+        const std::string name(visibility_name(settings.visibility));
+        write(std::move(capture), fmt::format("{}_{:04}.exr", name, frame), frame, frame,
+              {{"aftershade/visibility", name}, {"aftershade/samples", settings.samples}});
+        const fs::path rates = job_.folder / fmt::format("{}_rate_{:04}", name, frame);
+        for (const char* ending : {".exr", ".png"}) report_.files.push_back(rates.string() + ending);
+        writer_.write([rates, rate = std::move(picture.shading_rate)] {
+            write_rate_exr(rates.string() + ".exr", rate);
+            write_rate_png(rates.string() + ".png", rate);
+        });
     }
 
     void write(Capture capture, const std::string& name, int frame, double time,
@@ -313,7 +347,8 @@ void check_job(const Scene& scene, const Job& job, Diagnostics& diagnostics) {
               fmt::format("rendering takes about {:.1f} GiB of memory, the limit is {:.0f} GiB; render fewer "
                           "pixels at once",
                           double(bytes) / kGiB, double(kMaxJobBytes) / kGiB));
-    if (!job.captures && job.truths.empty()) fault("--truth-only", "there is no --truth to render");
+    if (!job.captures && job.truths.empty() && !job.visibility)
+        fault("--truth-only", "there is no --truth and no --visibility to render");
     const bool scattering =
         std::any_of(job.truths.begin(), job.truths.end(), [](const Truth& t) { return t.scattering; });
     const bool scatters =
@@ -330,6 +365,7 @@ void check_job(const Scene& scene, const Job& job, Diagnostics& diagnostics) {
               "its angle is 0, so that it never opens; write \"shutter\": { \"angle\": 180 } in the scene");
     if (job.texture_object >= 0 && job.subframes > 1) fault("--subframes", "texture space has no sub-frames");
     if (job.texture_object >= 0 && !job.truths.empty()) fault("--truth", "is not there in texture space");
+    if (job.texture_object >= 0 && job.visibility) fault("--visibility", "is not there in texture space");
     const char* const layered = job.deep ? "--deep" : job.layers > 1 ? "--layers" : nullptr;
     if (layered && job.texture_object >= 0) fault(layered, "is not there in texture space");
     if (layered && !job.captures) fault(layered, "is of captures, and --truth-only writes none");

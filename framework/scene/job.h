@@ -14,6 +14,7 @@
 #include "framework/file/exr_file.h"
 #include "framework/scene/renderer.h"
 #include "framework/scene/scene.h"
+#include "framework/scene/visibility.h"
 
 namespace aftershade::scene {
 
@@ -44,6 +45,8 @@ struct Job {
     int samples = 256;  ///< of lens, shutter and antialias
     int scattering_samples = 2048;
     bool visible_only = true;
+    std::optional<VisibilitySettings> visibility;  ///< jitter and seed are the job's
+    IdTracer id_tracer = trace_ids;
     std::uint32_t seed = 0;
     int threads = 1;
     std::string compression = "zip";
@@ -58,8 +61,9 @@ void check_job(const Scene& scene, const Job& job, Diagnostics& diagnostics);
 struct JobReport {
     int frames = 0;
     std::vector<std::filesystem::path> files;
-    std::vector<std::string> roles_left_out;  ///< that the profile has no way to store
-    double render_s = 0;                      ///< without writing
+    std::vector<std::string> roles_left_out;   ///< that the profile has no way to store
+    std::vector<VisibilityReport> visibility;  ///< of each frame
+    double render_s = 0;                       ///< without writing
     double total_s = 0;
 };
 

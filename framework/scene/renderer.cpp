@@ -122,12 +122,8 @@ SceneRenderer::SamplePoint SceneRenderer::sample_point(const TruthSettings& trut
     return point;
 }
 
-dvec3 SceneRenderer::radiance(const World& world, int x, int y, const SamplePoint& point) const {
-    const CameraState& camera = world.state().camera;
-    const Ray ray =
-        camera_ray(camera, dvec2(x, y) + point.offset_px, camera.aperture_radius_m * point.on_lens);
-    const auto surface = world.trace(ray, 0, kFar);
-    return surface ? world.shade(*surface, ray.origin).color() : scene_.background;
+World SceneRenderer::world_at(int frame, double time) const {
+    return World(geometry_, state_at(scene_, frame, time));
 }
 
 /// The moments of one sample: its own for accumulation, several to choose from where pixels have their own.
@@ -145,26 +141,48 @@ std::vector<World> SceneRenderer::moments_of(int frame, const TruthSettings& tru
     return moments;
 }
 
-Image SceneRenderer::render_truth(int frame, const TruthSettings& truth) const {
-    const bool own = truth.method == TruthMethod::interleaved;
+Ray SceneRenderer::sample_ray(const CameraState& camera, int x, int y, const SamplePoint& point) const {
+    return camera_ray(camera, dvec2(x, y) + point.offset_px, camera.aperture_radius_m * point.on_lens);
+}
+
+SceneRenderer::PixelSample SceneRenderer::sample_of(int frame, const TruthSettings& truth, int sample, int x,
+                                                    int y, const std::vector<World>& moments) const {
+    std::uint32_t seed = pcg3d(truth.seed, std::uint32_t(frame), 0)[0];
+    std::size_t moment = 0;
+    if (truth.method == TruthMethod::interleaved) {
+        seed = pcg3d(std::uint32_t(x), std::uint32_t(y), seed)[0];
+        moment = pcg3d(seed, std::uint32_t(sample), 0x27d4eb2fu)[0] % moments.size();
+    }
+    const CameraState& camera = moments[moment].state().camera;
+    return {moment, sample_ray(camera, x, y, sample_point(truth, sample, seed))};
+}
+
+void SceneRenderer::for_each_sample(int frame, const TruthSettings& truth, const SampleVisitor& visit) const {
     const std::uint32_t frame_seed = pcg3d(truth.seed, std::uint32_t(frame), 0)[0];
-    std::vector<dvec3> sums(std::size_t(width_px_) * std::size_t(height_px_), dvec3(0));
     for (int sample = 0; sample < truth.samples; ++sample) {
         const std::vector<World> moments = moments_of(frame, truth, sample);
+        const CameraState& camera = moments.front().state().camera;
         const SamplePoint shared = sample_point(truth, sample, frame_seed);
         for_each_row(height_px_, threads_, [&](int y) {
             for (int x = 0; x < width_px_; ++x) {
-                dvec3& sum = sums[std::size_t(y) * std::size_t(width_px_) + std::size_t(x)];
-                if (!own) {
-                    sum += radiance(moments.front(), x, y, shared);
+                if (truth.method == TruthMethod::accumulation) {
+                    visit(x, y, sample, moments.front(), sample_ray(camera, x, y, shared));
                     continue;
                 }
-                const std::uint32_t seed = pcg3d(std::uint32_t(x), std::uint32_t(y), frame_seed)[0];
-                const auto moment = pcg3d(seed, std::uint32_t(sample), 0x27d4eb2fu)[0] % moments.size();
-                sum += radiance(moments[moment], x, y, sample_point(truth, sample, seed));
+                const PixelSample own = sample_of(frame, truth, sample, x, y, moments);
+                visit(x, y, sample, moments[own.moment], own.ray);
             }
         });
     }
+}
+
+Image SceneRenderer::render_truth(int frame, const TruthSettings& truth) const {
+    std::vector<dvec3> sums(std::size_t(width_px_) * std::size_t(height_px_), dvec3(0));
+    for_each_sample(frame, truth, [&](int x, int y, int, const World& world, const Ray& ray) {
+        const auto surface = world.trace(ray, 0, kFar);
+        sums[std::size_t(y) * std::size_t(width_px_) + std::size_t(x)] +=
+            surface ? world.shade(*surface, ray.origin).color() : scene_.background;
+    });
     Image image(width_px_, height_px_, 4);
     for (std::size_t i = 0; i < sums.size(); ++i) {
         for (std::size_t c = 0; c < 3; ++c)

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "framework/capture/capture.h"
@@ -69,6 +70,12 @@ public:
     DeepImage render_deep(int frame, double time, std::array<double, 2> jitter_px) const;
     static constexpr int kDeepRays = 16;
 
+    /// One sample of a pixel: its ray, and the scene at the sample's own moment.
+    using SampleVisitor = std::function<void(int x, int y, int sample, const World& world, const Ray& ray)>;
+    /// Every sample of every pixel that render_truth() takes. Rows on several threads, the samples of a pixel
+    /// in their order.
+    void for_each_sample(int frame, const TruthSettings& settings, const SampleVisitor& visit) const;
+
     /// RGBA. Of the shutter, sample i of n is the middle of part i of the exposure, or for interleaved
     /// samples one of 16 moments in that part; lens and pixel are multi-jittered. Without `antialias` rays go
     /// through the pixels' centres, moved by `jitter_px`.
@@ -86,10 +93,28 @@ public:
     /// of the frame's camera.
     Capture render_texture_space(int frame, int object, int side_px) const;
 
-private:
+    /// The scene at the moments that sample `sample` of every pixel chooses from.
+    std::vector<World> moments_of(int frame, const TruthSettings& settings, int sample) const;
+    struct PixelSample {
+        std::size_t moment = 0;  ///< index into moments_of()
+        Ray ray;
+    };
+    /// `moments` are moments_of() of the same sample.
+    PixelSample sample_of(int frame, const TruthSettings& settings, int sample, int x, int y,
+                          const std::vector<World>& moments) const;
+
     Ray camera_ray(const CameraState& camera, const glm::dvec2& pixel, const glm::dvec2& lens_m) const;
     /// Where the pinhole camera sees a point (w 1) or a direction (w 0), px; false behind it.
     bool project(const CameraState& camera, const glm::dvec4& point, glm::dvec2& pixel) const;
+    double pixels_per_tangent(const CameraState& camera) const;
+    World world_at(int frame, double time) const;
+
+    const Scene& scene() const { return scene_; }
+    int width_px() const { return width_px_; }
+    int height_px() const { return height_px_; }
+    int threads() const { return threads_; }
+
+private:
     /// From the frame before and to the one after, px; 0 where a point is behind a camera.
     struct Motion {
         glm::dvec2 velocity_px{0};
@@ -97,14 +122,12 @@ private:
     };
     Motion motion_of(const std::array<const SceneState*, 3>& states, const Surface* surface,
                      const glm::dvec3& direction) const;
-    std::vector<World> moments_of(int frame, const TruthSettings& settings, int sample) const;
     struct SamplePoint {
         glm::dvec2 offset_px{0};  ///< from the pixel's top left
         glm::dvec2 on_lens{0};    ///< over the aperture's radius, +y down
     };
+    Ray sample_ray(const CameraState& camera, int x, int y, const SamplePoint& point) const;
     SamplePoint sample_point(const TruthSettings& settings, int index, std::uint32_t seed) const;
-    glm::dvec3 radiance(const World& world, int x, int y, const SamplePoint& point) const;
-    double pixels_per_tangent(const CameraState& camera) const;
 
     const Scene& scene_;
     Geometry geometry_;

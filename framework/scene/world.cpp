@@ -26,6 +26,13 @@ Bounds transformed(const Bounds& bounds, const dmat4& matrix) {
     return result;
 }
 
+/// Both normals on the side that the ray came from.
+void face(Surface& surface, bool from_behind) {
+    surface.from_behind = from_behind;
+    if (from_behind) surface.geometric_normal = -surface.geometric_normal;
+    if (glm::dot(surface.geometric_normal, surface.normal) < 0) surface.normal = -surface.normal;
+}
+
 }  // namespace
 
 Geometry::Geometry(const Scene& scene) : scene_(scene) {
@@ -92,9 +99,8 @@ std::optional<Surface> World::trace(const Ray& ray, double low, double high, int
     Surface found =
         surface(nearest->object, point_of(*nearest->shape, nearest->mesh, nearest->local(ray), nearest_hit));
     found.t = nearest_hit.t;
-    found.from_behind = glm::dot(found.geometric_normal, ray.direction) > 0;
-    if (found.from_behind) found.geometric_normal = -found.geometric_normal;
-    if (glm::dot(found.geometric_normal, found.normal) < 0) found.normal = -found.normal;
+    found.triangle = nearest_hit.triangle;
+    face(found, glm::dot(found.geometric_normal, ray.direction) > 0);
     return found;
 }
 
@@ -144,6 +150,15 @@ Surface World::surface(int object, const ShapePoint& on_shape) const {
     surface.uv = on_shape.uv;
     surface.object = object;
     return surface;
+}
+
+Surface World::surface_on(int object, std::uint32_t triangle, const glm::dvec2& barycentric,
+                          bool from_behind) const {
+    const Seen& seen = seen_[std::size_t(seen_of_object_[std::size_t(object)])];
+    Surface found = surface(object, point_of(*seen.shape, seen.mesh, {}, {0, triangle, barycentric}));
+    found.triangle = triangle;
+    face(found, from_behind);
+    return found;
 }
 
 }  // namespace aftershade::scene

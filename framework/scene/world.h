@@ -1,6 +1,7 @@
 // A scene at one moment that rays can be sent into, and the light on what they meet.
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
 #include <vector>
@@ -32,10 +33,11 @@ struct Surface {
     glm::dvec3 normal{0};            ///< world, unit length, for shading
     glm::dvec3 geometric_normal{0};  ///< world, unit length; both on the side that the ray came from
     glm::dvec2 uv{0};
-    bool from_behind = false;  ///< whether that is the inside, by the shape's outward normal
-    int object = -1;           ///< index into Scene::objects
-    double t = 0;              ///< along the ray
-    double precision = 1e-9;   ///< of the position, over the size of its coordinates
+    bool from_behind = false;    ///< whether that is the inside, by the shape's outward normal
+    int object = -1;             ///< index into Scene::objects
+    std::uint32_t triangle = 0;  ///< of a mesh
+    double t = 0;                ///< along the ray
+    double precision = 1e-9;     ///< of the position, over the size of its coordinates
 };
 
 /// Light at a surface, as the roles of a capture have it.
@@ -67,6 +69,9 @@ public:
 
     /// A point of an object: by its own space. Normals are outwards.
     Surface surface(int object, const ShapePoint& point) const;
+    /// A point of a mesh's triangle, with both normals on the side that is given.
+    Surface surface_on(int object, std::uint32_t triangle, const glm::dvec2& barycentric,
+                       bool from_behind) const;
 
     /// E / pi, with shadows.
     glm::dvec3 irradiance(const Surface& surface) const { return light(surface, nullptr).irradiance; }

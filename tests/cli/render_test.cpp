@@ -76,6 +76,72 @@ TEST_F(Render, GivesTheSameBitsTwice) {
     EXPECT_NE(bytes("a/gbuffer_0001.exr"), bytes("a/gbuffer_0002.exr"));
 }
 
+TEST_F(Render, ReportsTheShadingRateOfManyVisibilitySamples) {
+    const CommandResult made =
+        render({scene("toys"), "-o", "toys", "--size", "96x54", "--frames", "4", "--truth-only",
+                "--visibility", "memoised", "--visibility-samples", "8", "--shading-cache", "tile",
+                "--shading-tile", "8", "--anisotropic-shading", "--json", "--quiet"});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    const auto report = nlohmann::json::parse(made.out);
+    const auto frame = report.at("visibility").at(0);
+    const double misses = frame.at("misses"), hits = frame.at("hits");
+    EXPECT_EQ(hits + misses, 96 * 54 * 8);
+    EXPECT_NEAR(frame.at("shading_rate").at("mean"), misses / (96 * 54), 1e-9);
+    EXPECT_LT(misses, hits);
+    EXPECT_EQ(frame.at("bytes").at("supersampled"), 96 * 54 * 8 * 12);
+    double sum = 0;
+    for (const float rate : channel("toys/memoised_rate_0004.exr", "rate")) sum += double(rate);
+    EXPECT_NEAR(sum, misses, 0.5);
+    EXPECT_EQ(channel("toys/memoised_0004.exr", "R").size(), 96u * 54);
+    EXPECT_TRUE(fs::exists(folder_ / "toys/memoised_rate_0004.png"));
+}
+
+TEST_F(Render, TracesVisibilityWithGlAlikeOnOneThreadAndOnTwo) {
+    std::vector<std::vector<float>> reds;
+    for (const char* threads : {"1", "2"}) {
+        Args words = {AFTERSHADE_EXECUTABLE,
+                      "render",
+                      scene("toys"),
+                      "-o",
+                      threads,
+                      "--size",
+                      "96x54",
+                      "--frames",
+                      "4",
+                      "--truth-only",
+                      "--visibility",
+                      "memoised",
+                      "--visibility-samples",
+                      "64",
+                      "--visibility-on",
+                      "gl",
+                      "--backend",
+                      "osmesa",
+                      "--json",
+                      "--quiet"};
+        const CommandResult made =
+            Command(std::move(words), folder_.path(), {{"LP_NUM_THREADS", threads}}).wait();
+        ASSERT_EQ(made.exit_code, 0) << made.err;
+        const auto report = nlohmann::json::parse(made.out);
+        const auto counted = report.at("gl").at("frames").at(0);
+        EXPECT_EQ(counted.at("misses"), report.at("visibility").at(0).at("misses"));
+        EXPECT_EQ(counted.at("hits"), report.at("visibility").at(0).at("hits"));
+        EXPECT_EQ(counted.at("overflows"), 0);
+        reds.push_back(channel(std::string(threads) + "/memoised_0004.exr", "R"));
+    }
+    EXPECT_EQ(reds[0], reds[1]);
+}
+
+TEST_F(Render, RefusesACacheWithoutShadingSamples) {
+    const CommandResult refused = render({scene("toys"), "-o", "toys", "--visibility", "supersampled",
+                                          "--shading-cache", "lru", "--anisotropic-shading"});
+    EXPECT_EQ(refused.exit_code, 2);
+    for (const char* option : {"--shading-cache", "--anisotropic-shading"})
+        EXPECT_NE(refused.err.find(std::string(option) + ": error: is for --visibility memoised"),
+                  std::string::npos)
+            << refused.err;
+}
+
 TEST_F(Render, WritesSubframesThatAreOneFramesExposure) {
     ASSERT_EQ(render({scene("moving_box"), "-o", "box", "--size", "120x68", "--frames", "4-5", "--subframes",
                       "4", "--truth", "shutter", "--samples", "4"})
@@ -166,7 +232,7 @@ TEST_F(Render, TellsWhatIsWrongWithTheCommand) {
         {{head, "-o", "x", "--space", "uv", "--object", "skul"}, "did you mean 'skull'?"},
         {{head, "-o", "x", "--object", "skull"}, "is for --space uv"},
         {{head, "-o", "x", "--profile", "blendr"}, "did you mean 'blender'?"},
-        {{head, "-o", "x", "--truth-only"}, "there is no --truth to render"},
+        {{head, "-o", "x", "--truth-only"}, "there is no --truth and no --visibility to render"},
         {{scene("wheel"), "-o", "x", "--truth", "scattering"},
          "no material of the scene has a \"scattering_profile\""},
         {{"nowhere", "-o", "x"}, "nowhere"},

@@ -1,0 +1,29 @@
+#include "cli/gl_visibility.h"
+
+#include <nlohmann/json.hpp>
+
+namespace aftershade::cli {
+
+scene::IdTracer GlVisibility::tracer() {
+    return [this](const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids, int frame,
+                  const scene::VisibilitySettings& settings) {
+        std::vector<std::uint32_t> ids = visibility::trace_ids(context_, renderer, grids, frame, settings);
+        const bool is_of_tiles = settings.cache.cache == scene::ShadingCache::tile ||
+                                 settings.cache.cache == scene::ShadingCache::sorted;
+        counts_.push_back(visibility::count_shadings(
+            context_, {ids, renderer.width_px(), renderer.height_px(), settings.samples}, grids.id_count(),
+            is_of_tiles ? settings.cache.tile_px : 0));
+        return ids;
+    };
+}
+
+nlohmann::ordered_json GlVisibility::counts_json() const {
+    auto frames = nlohmann::ordered_json::array();
+    for (const visibility::CacheCounts& counts : counts_)
+        frames.push_back({{"hits", counts.requests - counts.shadings},
+                          {"misses", counts.shadings},
+                          {"overflows", counts.overflows}});
+    return {{"renderer", context_.info().renderer}, {"frames", frames}};
+}
+
+}  // namespace aftershade::cli

@@ -1,0 +1,108 @@
+#include "cli/visibility_options.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/gl_options.h"
+
+namespace aftershade::cli {
+
+void add_visibility_options(CLI::App& app, VisibilityArguments& options) {
+    scene::VisibilitySettings& settings = options.settings;
+    // Only --visibility memoised has shading samples.
+    const auto of_memoised = [&options](const std::string& name) {
+        return [&options, name](const std::string&) { options.given.push_back(name); };
+    };
+    app.add_option("--visibility", options.visibility,
+                   "Also render lens, shutter and antialias over triangles: memoised (light "
+                   "once for each shading sample), supersampled or accumulation (light at every sample)")
+        ->check(CLI::IsMember({"none", "memoised", "supersampled", "accumulation"}))
+        ->capture_default_str();
+    app.add_option("--visibility-samples", settings.samples, "Samples of each pixel")
+        ->check(CLI::Range(1, scene::kMaxVisibilitySamples))
+        ->capture_default_str();
+    app.add_option("--shading-cache", options.cache,
+                   "memoised: global, tile or sorted (no sharing between tiles), lru or fifo (some entries)")
+        ->check(CLI::IsMember({"global", "tile", "sorted", "lru", "fifo"}))
+        ->each(of_memoised("--shading-cache"))
+        ->capture_default_str();
+    app.add_option("--shading-tile", settings.cache.tile_px, "memoised: side of a tile in px")
+        ->check(CLI::Range(8, 32))
+        ->each(of_memoised("--shading-tile"))
+        ->capture_default_str();
+    app.add_option("--cache-entries", settings.cache.entries, "memoised: entries of lru and fifo")
+        ->check(CLI::Range(1, 1 << 20))
+        ->each(of_memoised("--cache-entries"))
+        ->capture_default_str();
+    app.add_option("--shading-rate", settings.grid.rate,
+                   "memoised: cells of the shading grid for each px, along x and y")
+        ->check(CLI::Range(0.125, 4.0))
+        ->each(of_memoised("--shading-rate"))
+        ->capture_default_str();
+    app.add_option("--shading-grid", options.grid,
+                   "memoised: where the grid begins: at a corner of each triangle's bounds, or the picture's")
+        ->check(CLI::IsMember({"triangle", "picture"}))
+        ->each(of_memoised("--shading-grid"))
+        ->capture_default_str();
+    app.add_option(
+           "--visibility-on", options.device,
+           "memoised: what traces the samples: cpu, or gl in single precision by compute shaders, whose "
+           "caches count as well")
+        ->check(CLI::IsMember({"cpu", "gl"}))
+        ->each(of_memoised("--visibility-on"))
+        ->capture_default_str();
+    add_backend_option(app, options.backend);
+    app.add_flag("--anisotropic-shading", settings.grid.anisotropic,
+                 "memoised: coarser shading where lens and shutter blur it");
+}
+
+std::optional<scene::VisibilitySettings> read_visibility(const VisibilityArguments& options,
+                                                         Diagnostics& diagnostics) {
+    std::vector<std::string> unused = options.given;
+    if (options.settings.grid.anisotropic) unused.push_back("--anisotropic-shading");
+    const auto visibility = scene::parse_visibility(options.visibility);
+    if (visibility != scene::Visibility::memoised)
+        for (const std::string& name : unused)
+            diagnostics.error({name, 0, 0}, "is for --visibility memoised");
+    if (!visibility) return std::nullopt;
+    scene::VisibilitySettings settings = options.settings;
+    settings.visibility = *visibility;
+    settings.grid.origin =
+        options.grid == "picture" ? scene::GridOrigin::picture : scene::GridOrigin::triangle;
+    settings.cache.cache = *scene::parse_shading_cache(options.cache);
+    return settings;
+}
+
+nlohmann::ordered_json visibility_json(const std::vector<scene::VisibilityReport>& reports) {
+    auto frames = nlohmann::ordered_json::array();
+    for (const scene::VisibilityReport& report : reports)
+        frames.push_back({{"frame", report.frame},
+                          {"samples", report.samples},
+                          {"hits", report.requests - report.shadings},
+                          {"misses", report.shadings},
+                          {"shading_rate",
+                           {{"mean", report.rate.of_pixels},
+                            {"p95", report.rate.p95},
+                            {"of_covered_pixels", report.rate.of_covered_pixels},
+                            {"multisampled", report.rate.multisampled}}},
+                          {"bytes",
+                           {{"visibility", report.bytes.visibility},
+                            {"shading", report.bytes.shading},
+                            {"cache", report.bytes.cache},
+                            {"supersampled", report.bytes.supersampled}}}});
+    return frames;
+}
+
+void print_visibility(const std::vector<scene::VisibilityReport>& reports) {
+    for (const scene::VisibilityReport& report : reports)
+        std::cerr << fmt::format(
+            "frame {}: {:.2f} shadings a px of {} samples, {:.2f} where something is seen, 95 % of the px at "
+            "most {:.2f}; cache hits {}, misses {}\n",
+            report.frame, report.rate.of_pixels, report.samples, report.rate.of_covered_pixels,
+            report.rate.p95, report.requests - report.shadings, report.shadings);
+}
+
+}  // namespace aftershade::cli

@@ -1,0 +1,206 @@
+#include "framework/scene/shading_cache.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <iterator>
+#include <list>
+#include <unordered_map>
+#include <utility>
+
+#include "framework/scene/shading_grid.h"
+
+namespace aftershade::scene {
+
+namespace {
+
+constexpr std::array<std::pair<ShadingCache, std::string_view>, 5> kCacheNames = {
+    {{ShadingCache::global, "global"},
+     {ShadingCache::tile, "tile"},
+     {ShadingCache::sorted, "sorted"},
+     {ShadingCache::lru, "lru"},
+     {ShadingCache::fifo, "fifo"}}};
+
+/// Of an id and of its shading's number.
+constexpr std::uint64_t kEntryBytes = 8;
+
+/// Calls visit(sample) for the samples of a tile that met something.
+template <class Visit>
+void for_each_sample_of_tile(const SampleIds& samples, int left, int top, int tile_px, const Visit& visit) {
+    const auto count = std::size_t(samples.samples);
+    for (int y = top; y < std::min(top + tile_px, samples.height_px); ++y)
+        for (int x = left; x < std::min(left + tile_px, samples.width_px); ++x) {
+            const std::size_t first =
+                (std::size_t(y) * std::size_t(samples.width_px) + std::size_t(x)) * count;
+            for (std::size_t i = first; i < first + count; ++i)
+                if (samples.ids[i] != kNoShading) visit(i);
+        }
+}
+
+template <class Visit>
+void for_each_tile(const SampleIds& samples, int tile_px, const Visit& visit) {
+    for (int top = 0; top < samples.height_px; top += tile_px)
+        for (int left = 0; left < samples.width_px; left += tile_px) visit(left, top);
+}
+
+/// The shadings of a picture as they are made and used, by numbers from 0.
+class Shadings {
+public:
+    explicit Shadings(const SampleIds& samples)
+        : samples_(samples), of_sample_(samples.ids.size(), kNoShading) {}
+
+    std::uint32_t add() {
+        uses_.push_back(0);
+        return std::uint32_t(uses_.size()) - 1;
+    }
+    void use(std::uint32_t shading, std::size_t sample) {
+        ++uses_[shading];
+        of_sample_[sample] = shading;
+    }
+    CacheCounts counts(std::uint64_t cache_bytes) const {
+        CacheCounts counts;
+        counts.shadings = uses_.size();
+        counts.bytes = cache_bytes;
+        for (const std::uint32_t uses : uses_) counts.requests += uses;
+        counts.of_pixel.resize(std::size_t(samples_.width_px) * std::size_t(samples_.height_px));
+        for (std::size_t i = 0; i < of_sample_.size(); ++i)
+            if (of_sample_[i] != kNoShading)
+                counts.of_pixel[i / std::size_t(samples_.samples)] += 1.0f / float(uses_[of_sample_[i]]);
+        return counts;
+    }
+
+private:
+    const SampleIds& samples_;
+    std::vector<std::uint32_t> uses_;
+    std::vector<std::uint32_t> of_sample_;
+};
+
+/// A cache has entry_of(id), a shading that is kNoShading where the id is new; begin_tile(); and bytes().
+template <class Cache>
+CacheCounts replay_with(Cache cache, const SampleIds& samples, int tile_px) {
+    Shadings shadings(samples);
+    std::uint64_t bytes = 0;
+    for_each_tile(samples, tile_px, [&](int left, int top) {
+        cache.begin_tile();
+        for_each_sample_of_tile(samples, left, top, tile_px, [&](std::size_t sample) {
+            std::uint32_t& shading = cache.entry_of(samples.ids[sample]);
+            if (shading == kNoShading) shading = shadings.add();
+            shadings.use(shading, sample);
+        });
+        bytes = std::max(bytes, cache.bytes());
+    });
+    return shadings.counts(bytes);
+}
+
+class InfiniteCache {
+public:
+    explicit InfiniteCache(bool is_of_tile) : is_of_tile_(is_of_tile) {}
+    void begin_tile() {
+        if (is_of_tile_) entries_.clear();
+    }
+    std::uint32_t& entry_of(std::uint32_t id) { return entries_.try_emplace(id, kNoShading).first->second; }
+    std::uint64_t bytes() const { return entries_.size() * kEntryBytes; }
+
+private:
+    bool is_of_tile_;
+    std::unordered_map<std::uint32_t, std::uint32_t> entries_;
+};
+
+/// Entries in the order of their use, or of their coming.
+class FiniteCache {
+public:
+    FiniteCache(int entries, bool renews) : entries_(std::size_t(entries)), renews_(renews) {}
+    void begin_tile() {}
+    std::uint32_t& entry_of(std::uint32_t id) {
+        const auto found = place_.find(id);
+        if (found != place_.end()) {
+            if (renews_) order_.splice(order_.end(), order_, found->second);
+            return found->second->second;
+        }
+        if (order_.size() == entries_) {
+            place_.erase(order_.front().first);
+            order_.pop_front();
+        }
+        order_.emplace_back(id, kNoShading);
+        place_[id] = std::prev(order_.end());
+        return order_.back().second;
+    }
+    std::uint64_t bytes() const { return entries_ * kEntryBytes; }
+
+private:
+    using Order = std::list<std::pair<std::uint32_t, std::uint32_t>>;  // id, shading
+    std::size_t entries_;
+    bool renews_;
+    Order order_;
+    std::unordered_map<std::uint32_t, Order::iterator> place_;
+};
+
+CacheCounts replay_sorted(const SampleIds& samples, int tile_px) {
+    Shadings shadings(samples);
+    std::uint64_t bytes = 0;
+    std::vector<std::pair<std::uint32_t, std::size_t>> list;  // id, sample
+    for_each_tile(samples, tile_px, [&](int left, int top) {
+        list.clear();
+        for_each_sample_of_tile(samples, left, top, tile_px,
+                                [&](std::size_t sample) { list.emplace_back(samples.ids[sample], sample); });
+        bytes = std::max(bytes, list.size() * kEntryBytes);
+        std::sort(list.begin(), list.end());
+        std::uint32_t shading = 0;
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            if (i == 0 || list[i].first != list[i - 1].first) shading = shadings.add();
+            shadings.use(shading, list[i].second);
+        }
+    });
+    return shadings.counts(bytes);
+}
+
+}  // namespace
+
+std::optional<ShadingCache> parse_shading_cache(std::string_view name) {
+    for (const auto& [cache, own_name] : kCacheNames)
+        if (own_name == name) return cache;
+    return std::nullopt;
+}
+
+std::string_view shading_cache_name(ShadingCache cache) {
+    return std::find_if(kCacheNames.begin(), kCacheNames.end(),
+                        [&](const auto& entry) { return entry.first == cache; })
+        ->second;
+}
+
+CacheCounts replay(const SampleIds& samples, const ShadingCacheSettings& settings) {
+    switch (settings.cache) {
+        case ShadingCache::global: return replay_with(InfiniteCache(false), samples, settings.tile_px);
+        case ShadingCache::tile: return replay_with(InfiniteCache(true), samples, settings.tile_px);
+        case ShadingCache::sorted: return replay_sorted(samples, settings.tile_px);
+        case ShadingCache::lru:
+        case ShadingCache::fifo: break;
+    }
+    return replay_with(FiniteCache(settings.entries, settings.cache == ShadingCache::lru), samples,
+                       settings.tile_px);
+}
+
+IdSet::IdSet(std::span<const std::uint32_t> ids, std::uint32_t id_count)
+    : bits_((std::size_t(id_count) + 63) / 64) {
+    for (const std::uint32_t id : ids)
+        if (id != kNoShading) bits_[id / 64] |= std::uint64_t(1) << (id % 64);
+    before_.push_back(0);
+    for (const std::uint64_t word : bits_)
+        before_.push_back(before_.back() + std::uint32_t(std::popcount(word)));
+}
+
+std::uint32_t IdSet::number_of(std::uint32_t id) const {
+    const std::uint64_t smaller = bits_[id / 64] & ((std::uint64_t(1) << (id % 64)) - 1);
+    return before_[id / 64] + std::uint32_t(std::popcount(smaller));
+}
+
+std::vector<std::uint32_t> IdSet::ids() const {
+    std::vector<std::uint32_t> all;
+    all.reserve(size());
+    for (std::size_t word = 0; word < bits_.size(); ++word)
+        for (std::uint64_t rest = bits_[word]; rest != 0; rest &= rest - 1)
+            all.push_back(std::uint32_t(word * 64) + std::uint32_t(std::countr_zero(rest)));
+    return all;
+}
+
+}  // namespace aftershade::scene

@@ -1,0 +1,164 @@
+#include "framework/scene/shading_grid.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "framework/core/error.h"
+#include "framework/scene/blur_extent.h"
+#include "framework/scene/shape.h"
+
+namespace aftershade::scene {
+
+using glm::dvec2;
+using glm::dvec3;
+using glm::dvec4;
+
+namespace {
+
+/// Cells: bounds that are whole cells but for rounding take no cell more.
+constexpr double kHardlyMore = 1e-6;
+
+std::array<dvec3, 3> corners_of(const Mesh& mesh, std::uint32_t triangle) {
+    const auto& corner = mesh.triangles[triangle];
+    return {mesh.vertices[corner[0]].position, mesh.vertices[corner[1]].position,
+            mesh.vertices[corner[2]].position};
+}
+
+/// Moller and Trumbore 1997, on the triangle's plane; its middle where the ray runs along that.
+dvec2 barycentric_on_plane(const Ray& ray, const std::array<dvec3, 3>& corners) {
+    const dvec3 ab = corners[1] - corners[0], ac = corners[2] - corners[0];
+    const dvec3 p = glm::cross(ray.direction, ac), s = ray.origin - corners[0];
+    const double scale = glm::dot(ab, p);
+    const dvec2 found = dvec2(glm::dot(s, p), glm::dot(ray.direction, glm::cross(s, ab))) / scale;
+    return std::isfinite(found.x) && std::isfinite(found.y) ? found : dvec2(1.0 / 3);
+}
+
+/// What lies outside comes to the edge.
+dvec2 inside_triangle(const dvec2& barycentric) {
+    const dvec3 weights =
+        glm::max(dvec3(1 - barycentric.x - barycentric.y, barycentric.x, barycentric.y), dvec3(0));
+    return dvec2(weights.y, weights.z) / (weights.x + weights.y + weights.z);
+}
+
+}  // namespace
+
+ShadingGrids::ShadingGrids(const SceneRenderer& renderer, int frame, const ShadingGridSettings& settings)
+    : renderer_(renderer), world_(renderer.world_at(frame, frame)) {
+    const Scene& scene = renderer.scene();
+    const Exposure exposure = exposure_of(scene.camera, frame);
+    const std::array<SceneState, 2> ends = {state_at(scene, frame, exposure.first),
+                                            state_at(scene, frame, exposure.last)};
+    std::uint64_t cells = 0;
+    for (std::size_t object = 0; object < scene.objects.size(); ++object) {
+        first_triangle_.push_back(std::uint32_t(grids_.size()));
+        const int index = scene.objects[object].shape.mesh;
+        if (index < 0) continue;
+        const Mesh& mesh = scene.meshes[std::size_t(index)];
+        for (std::uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
+            grids_.push_back(grid_of(int(object), mesh, triangle, settings, ends));
+            Grid& grid = grids_.back();
+            grid.start = std::uint32_t(cells);
+            cells += std::uint64_t(grid.size.x) * std::uint64_t(grid.size.y);
+            if (2 * cells > kMaxShadingIds)
+                throw Error(
+                    ExitCode::usage,
+                    fmt::format("{}: the triangles of frame {} have more than {} shading samples at a "
+                                "shading rate of {}; choose a lower --shading-rate or --size",
+                                scene.path.string(), frame, kMaxShadingIds, settings.rate));
+        }
+    }
+    id_count_ = std::uint32_t(2 * cells);
+}
+
+/// The middle of the picture where a point lies behind the camera: somewhere on the grid.
+dvec2 ShadingGrids::reference_px(const dvec3& world) const {
+    const dvec2 picture_px(renderer_.width_px(), renderer_.height_px());
+    dvec2 px;
+    if (!renderer_.project(world_.state().camera, dvec4(world, 1), px)) return 0.5 * picture_px;
+    return glm::clamp(px, -picture_px, 2.0 * picture_px);
+}
+
+ShadingGrids::Grid ShadingGrids::grid_of(int object, const Mesh& mesh, std::uint32_t triangle,
+                                         const ShadingGridSettings& settings,
+                                         const std::array<SceneState, 2>& ends) const {
+    const std::array<dvec3, 3> corners = corners_of(mesh, triangle);
+    const glm::dmat4& world_from_object = world_.state().world_from_object[std::size_t(object)];
+    Grid grid;
+    grid.cells_from_px = glm::dmat2(settings.rate);
+    if (settings.anisotropic)
+        grid.cells_from_px = settings.rate * cells_from_px_of_blur(renderer_, world_.state().camera, ends,
+                                                                   world_from_object, object, corners);
+    const dvec2 picture_px(renderer_.width_px(), renderer_.height_px());
+    dvec2 low(1e300), high(-1e300), unused;
+    const auto add = [&](const dvec2& px) {
+        low = glm::min(low, grid.cells_from_px * px);
+        high = glm::max(high, grid.cells_from_px * px);
+    };
+    for (const dvec3& corner : corners) {
+        const dvec4 world = world_from_object * dvec4(corner, 1);
+        add(reference_px(dvec3(world)));
+        if (renderer_.project(world_.state().camera, world, unused)) continue;
+        // What crosses the camera's plane may be anywhere.
+        for (const dvec2 part : {dvec2(-1), dvec2(2, -1), dvec2(-1, 2), dvec2(2)}) add(part * picture_px);
+    }
+    if (settings.origin == GridOrigin::triangle) {
+        grid.size = glm::max(glm::ivec2(glm::ceil(high - low - kHardlyMore)), 1);
+        const dvec2 fit = dvec2(grid.size) / glm::max(high - low, dvec2(kHardlyMore));
+        grid.cells_from_px = glm::dmat2(fit.x, 0, 0, fit.y) * grid.cells_from_px;
+        grid.low = low * fit;
+    } else {
+        grid.low = glm::floor(low);
+        grid.size = glm::ivec2(glm::floor(high) - grid.low) + 1;
+    }
+    return grid;
+}
+
+std::uint32_t ShadingGrids::id_of(const Surface& surface) const {
+    const Grid& grid = grids_[first_triangle_[std::size_t(surface.object)] + surface.triangle];
+    const glm::dmat4& world_from_object = world_.state().world_from_object[std::size_t(surface.object)];
+    const dvec2 px = reference_px(dvec3(world_from_object * dvec4(surface.local, 1)));
+    const glm::ivec2 cell =
+        glm::clamp(glm::ivec2(glm::floor(grid.cells_from_px * px - grid.low)), glm::ivec2(0), grid.size - 1);
+    return 2 * (grid.start + std::uint32_t(cell.y * grid.size.x + cell.x)) + (surface.from_behind ? 1 : 0);
+}
+
+std::uint32_t ShadingGrids::triangle_of(std::uint32_t id) const {
+    const auto after =
+        std::upper_bound(grids_.begin(), grids_.end(), id / 2,
+                         [](std::uint32_t cell, const Grid& grid) { return cell < grid.start; });
+    return std::uint32_t(after - grids_.begin()) - 1;
+}
+
+ShadingPlace ShadingGrids::place_of(std::uint32_t id) const {
+    const std::uint32_t index = triangle_of(id);
+    // Objects without triangles begin where the next one does.
+    const auto object = std::upper_bound(first_triangle_.begin(), first_triangle_.end(), index) - 1;
+    const Grid& grid = grids_[index];
+    const std::uint32_t cell = id / 2 - grid.start, columns = std::uint32_t(grid.size.x);
+    const dvec2 px =
+        glm::inverse(grid.cells_from_px) * (grid.low + dvec2(cell % columns + 0.5, cell / columns + 0.5));
+    ShadingPlace place;
+    place.object = int(object - first_triangle_.begin());
+    place.triangle = index - *object;
+    place.from_behind = (id & 1) != 0;
+    const Scene& scene = renderer_.scene();
+    const Mesh& mesh = scene.meshes[std::size_t(scene.objects[std::size_t(place.object)].shape.mesh)];
+    const Ray ray = renderer_.camera_ray(world_.state().camera, px, dvec2(0));
+    const glm::dmat4 object_from_world =
+        glm::inverse(world_.state().world_from_object[std::size_t(place.object)]);
+    const Ray local = {dvec3(object_from_world * dvec4(ray.origin, 1)),
+                       glm::dmat3(object_from_world) * ray.direction};
+    place.barycentric = inside_triangle(barycentric_on_plane(local, corners_of(mesh, place.triangle)));
+    return place;
+}
+
+dvec3 ShadingGrids::shade(std::uint32_t id) const {
+    const ShadingPlace place = place_of(id);
+    const Surface surface =
+        world_.surface_on(place.object, place.triangle, place.barycentric, place.from_behind);
+    return world_.shade(surface, dvec3(world_.state().camera.world_from_camera[3])).color();
+}
+
+}  // namespace aftershade::scene

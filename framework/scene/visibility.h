@@ -1,0 +1,86 @@
+// Pictures through lens and shutter by many visibility samples a pixel, and how often they compute light.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "framework/scene/renderer.h"
+#include "framework/scene/shading_cache.h"
+#include "framework/scene/shading_grid.h"
+
+namespace aftershade::scene {
+
+enum class Visibility {
+    memoised,      ///< light once for each shading sample: decoupled sampling (Ragan-Kelley et al. 2011)
+    supersampled,  ///< light at every sample (Cook 1986)
+    accumulation   ///< the same, and all pixels have the same samples (Haeberli and Akeley 1990)
+};
+
+/// "memoised", "supersampled", "accumulation"; nullopt for anything else.
+std::optional<Visibility> parse_visibility(std::string_view name);
+std::string_view visibility_name(Visibility visibility);
+
+inline constexpr int kMaxVisibilitySamples = 64;
+
+struct VisibilitySettings {
+    Visibility visibility = Visibility::memoised;
+    int samples = 16;  ///< of pixel, lens and shutter together; 1 to kMaxVisibilitySamples
+    std::uint32_t seed = 0;
+    std::array<double, 2> jitter_px{0, 0};
+    ShadingGridSettings grid;
+    ShadingCacheSettings cache;
+};
+
+/// Shadings of a pixel.
+struct ShadingRate {
+    double of_pixels = 0;          ///< mean over the picture
+    double of_covered_pixels = 0;  ///< over the area where samples met a surface; supersampling: the samples
+    double p95 = 0;                ///< 95 of 100 pixels have at most this
+    double multisampled = 0;  ///< of_covered_pixels if each triangle were shaded once for each pixel (MSAA)
+};
+
+/// As Liktor and Dachsbacher 2012 count it: 12 bytes of G-buffer for a shading sample (depth, two RGBA8), and
+/// for a visibility sample 4 bytes of depth and 4 that refer to its shading sample.
+struct VisibilityBytes {
+    std::uint64_t visibility = 0;
+    std::uint64_t shading = 0;
+    std::uint64_t cache = 0;
+    std::uint64_t supersampled = 0;  ///< what a G-buffer of all samples would take
+};
+
+struct VisibilityReport {
+    int frame = 0;
+    int samples = 0;
+    std::uint64_t requests = 0;  ///< samples that met a surface
+    std::uint64_t shadings = 0;  ///< requests that the cache had nothing for
+    ShadingRate rate;
+    VisibilityBytes bytes;
+};
+
+struct VisibilityPicture {
+    Image color;         ///< RGBA
+    Image shading_rate;  ///< shadings, one channel: each divided among the samples that used it
+    VisibilityReport report;
+};
+
+/// The samples of a picture, as the renderer makes them: those of the interleaved truth of lens, shutter and
+/// antialias.
+TruthSettings truth_of(const VisibilitySettings& settings);
+
+/// What each sample met, as SampleIds has it.
+std::vector<std::uint32_t> trace_ids(const SceneRenderer& renderer, const ShadingGrids& grids, int frame,
+                                     const VisibilitySettings& settings);
+/// That, or what does the same elsewhere.
+using IdTracer = std::function<std::vector<std::uint32_t>(
+    const SceneRenderer& renderer, const ShadingGrids& grids, int frame, const VisibilitySettings& settings)>;
+
+/// `renderer` is of a scene of meshes (triangulated()). What all caches give is one picture: they change the
+/// count alone. Nothing depends on the number of threads. `tracer` is for Visibility::memoised.
+VisibilityPicture render_visibility(const SceneRenderer& renderer, int frame,
+                                    const VisibilitySettings& settings, const IdTracer& tracer = trace_ids);
+
+}  // namespace aftershade::scene

@@ -1,0 +1,98 @@
+#version 450 core
+// One visibility sample of every pixel of a band: the nearest triangle that its ray meets at its own moment, and the shading sample there.
+layout(local_size_x = 64) in;
+
+struct Node {
+    vec4 low_skip;    // xyz: m; w: the next node that is not below this one, as bits
+    vec4 high_items;  // w: the first item times 8 plus their count, as bits; count 0: not a leaf
+};
+struct Triangle {
+    vec4 corner;         // in the object's space, m; w: the object, as bits
+    vec4 to_second;      // w: the grid's first cell, as bits
+    vec4 to_third;
+    vec4 view[3];        // the corners before the reference pose's camera, m
+    vec4 cells_from_px;  // columns
+    vec4 grid;           // low corner, in cells; size, as bits
+};
+struct Moment {
+    vec4 object_from_world[3];  // rows
+};
+struct Ray {
+    vec4 origin;     // w: the moment, as bits
+    vec4 direction;
+};
+
+layout(std430, binding = 0) readonly buffer Nodes { Node nodes[]; };
+layout(std430, binding = 1) readonly buffer Triangles { Triangle triangles[]; };  // as the leaves order them
+layout(std430, binding = 2) readonly buffer Moments { Moment moments[]; };        // objects of a moment side by side
+layout(std430, binding = 3) readonly buffer Rays { Ray rays[]; };
+layout(std430, binding = 4) writeonly buffer Ids { uint ids[]; };
+layout(std140, binding = 0) uniform Settings {
+    vec2 size_px;
+    float px_per_tangent;
+    uint node_count;
+    uint object_count;
+    uint pixel_count;
+    uint sample_index;
+    uint sample_count;
+};
+
+const uint kNoShading = 0xffffffffu;
+
+struct Hit {
+    float t;
+    uint triangle;
+    vec2 barycentric;
+    bool from_behind;
+};
+
+bool meets(vec3 origin, vec3 inverse_direction, vec3 low, vec3 high, float nearest) {
+    vec3 a = (low - origin) * inverse_direction, b = (high - origin) * inverse_direction;
+    vec3 near = min(a, b), far = max(a, b);
+    float enter = max(max(near.x, near.y), near.z), leave = min(min(far.x, far.y), far.z);
+    return enter <= leave && leave > 0.0 && enter < nearest;
+}
+
+// Moller and Trumbore 1997, both sides, in the object's space.
+void meet_triangle(uint index, vec3 origin, vec3 direction, uint moment, inout Hit hit) {
+    Moment at = moments[moment * object_count + floatBitsToUint(triangles[index].corner.w)];
+    vec4 p1 = vec4(origin, 1.0), d1 = vec4(direction, 0.0);
+    vec3 o = vec3(dot(at.object_from_world[0], p1), dot(at.object_from_world[1], p1), dot(at.object_from_world[2], p1));
+    vec3 d = vec3(dot(at.object_from_world[0], d1), dot(at.object_from_world[1], d1), dot(at.object_from_world[2], d1));
+    vec3 ab = triangles[index].to_second.xyz, ac = triangles[index].to_third.xyz;
+    vec3 p = cross(d, ac), s = o - triangles[index].corner.xyz, q = cross(s, ab);
+    float inverse = 1.0 / dot(ab, p), u = dot(s, p) * inverse, v = dot(d, q) * inverse, t = dot(ac, q) * inverse;
+    if (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0 && t < hit.t)
+        hit = Hit(t, index, vec2(u, v), dot(cross(ab, ac), d) > 0.0);
+}
+
+uint id_of(Hit hit) {
+    Triangle at = triangles[hit.triangle];
+    vec3 view = (1.0 - hit.barycentric.x - hit.barycentric.y) * at.view[0].xyz + hit.barycentric.x * at.view[1].xyz +
+                hit.barycentric.y * at.view[2].xyz;
+    vec2 px = view.z < 0.0 ? 0.5 * size_px + px_per_tangent * vec2(view.x, -view.y) / -view.z : 0.5 * size_px;
+    px = clamp(px, -size_px, 2.0 * size_px);
+    ivec2 size = floatBitsToInt(at.grid.zw);
+    ivec2 cell = clamp(ivec2(floor(mat2(at.cells_from_px) * px - at.grid.xy)), ivec2(0), size - 1);
+    return 2u * (floatBitsToUint(at.to_second.w) + uint(cell.y * size.x + cell.x)) + (hit.from_behind ? 1u : 0u);
+}
+
+void main() {
+    uint pixel = gl_GlobalInvocationID.x;
+    if (pixel >= pixel_count) return;
+    vec3 origin = rays[pixel].origin.xyz, direction = rays[pixel].direction.xyz, inverse = 1.0 / direction;
+    uint moment = floatBitsToUint(rays[pixel].origin.w);
+    Hit hit = Hit(1e30, kNoShading, vec2(0.0), false);
+    uint at = 0u;
+    // A ray comes to each node once at most, since it only goes on to later ones.
+    for (uint step = 0u; step < node_count && at < node_count; ++step) {
+        if (!meets(origin, inverse, nodes[at].low_skip.xyz, nodes[at].high_items.xyz, hit.t)) {
+            at = floatBitsToUint(nodes[at].low_skip.w);
+            continue;
+        }
+        uint items = floatBitsToUint(nodes[at].high_items.w), first = items >> 3;
+        for (uint i = 0u; i < (items & 7u); ++i) meet_triangle(first + i, origin, direction, moment, hit);
+        ++at;
+    }
+    ids[pixel * sample_count + sample_index] = hit.triangle == kNoShading ? kNoShading : id_of(hit);
+}

@@ -1,0 +1,102 @@
+// Visibility and caches as compute shaders, against the CPU renderer and sets of ids.
+#include "framework/visibility/gpu_visibility.h"
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <unordered_set>
+#include <vector>
+
+#include "framework/scene/triangulate.h"
+#include "tests/gpu/gpu_test.h"
+#include "tests/scene/scene_text.h"
+
+namespace aftershade::visibility {
+namespace {
+
+using scene::kNoShading;
+
+class VisibilityOn : public gpu::SoftwareTest {};
+INSTANTIATE_TEST_SUITE_P(Backends, VisibilityOn,
+                         testing::Values(gpu::Backend::egl_software, gpu::Backend::osmesa),
+                         gpu::parameter_name);
+
+struct Traced {
+    std::vector<std::uint32_t> on_cpu;
+    std::vector<std::uint32_t> on_gpu;
+    std::uint32_t id_count = 0;
+};
+
+constexpr int kWidth_px = 160, kHeight_px = 90;
+
+Traced traced(gpu::Context& context, const std::string& id, int frame, int samples) {
+    const scene::Scene triangles = scene::triangulated(scene::shipped_scene(id));
+    const scene::SceneRenderer renderer(triangles, kWidth_px, kHeight_px, 2);
+    const scene::ShadingGrids grids(renderer, frame, {});
+    scene::VisibilitySettings settings;
+    settings.samples = samples;
+    return {scene::trace_ids(renderer, grids, frame, settings),
+            trace_ids(context, renderer, grids, frame, settings), grids.id_count()};
+}
+
+TEST_P(VisibilityOn, MeetsWhatTheCpuMeetsButAtEdges) {
+    for (const auto& [id, frame] : {std::pair("bats", 6), {"toys", 4}, {"camera_checker", 6}}) {
+        const Traced found = traced(context(), id, frame, 8);
+        ASSERT_EQ(found.on_gpu.size(), found.on_cpu.size());
+        std::size_t other = 0;
+        for (std::size_t i = 0; i < found.on_cpu.size(); ++i) other += found.on_cpu[i] != found.on_gpu[i];
+        EXPECT_LT(double(other) / double(found.on_cpu.size()), 0.002) << id;
+    }
+}
+
+TEST_P(VisibilityOn, CountsTheShadingsThatASetCounts) {
+    const Traced found = traced(context(), "toys", 4, 64);
+    const scene::SampleIds samples{found.on_gpu, kWidth_px, kHeight_px, 64};
+    std::unordered_set<std::uint32_t> all;
+    std::set<std::array<std::size_t, 3>> of_tiles;
+    for (std::size_t i = 0; i < found.on_gpu.size(); ++i) {
+        if (found.on_gpu[i] == kNoShading) continue;
+        const std::size_t pixel = i / 64;
+        all.insert(found.on_gpu[i]);
+        of_tiles.insert({pixel % kWidth_px / 16, pixel / kWidth_px / 16, found.on_gpu[i]});
+    }
+    const CacheCounts global = count_shadings(context(), samples, found.id_count, 0);
+    EXPECT_EQ(global.shadings, all.size());
+    EXPECT_EQ(global.overflows, 0u);
+    const CacheCounts tiles = count_shadings(context(), samples, found.id_count, 16);
+    EXPECT_EQ(tiles.shadings, of_tiles.size());
+    EXPECT_EQ(tiles.overflows, 0u);
+    EXPECT_EQ(tiles.requests, scene::replay(samples, {}).requests);
+}
+
+TEST_P(VisibilityOn, IsTheSameInBandsOfRows) {
+    const scene::Scene triangles = scene::triangulated(scene::shipped_scene("toys"));
+    const scene::SceneRenderer renderer(triangles, kWidth_px, kHeight_px, 2);
+    const scene::ShadingGrids grids(renderer, 4, {});
+    scene::VisibilitySettings settings;
+    settings.samples = 4;
+    const auto whole = trace_ids(context(), renderer, grids, 4, settings);
+    // 20 rows of rays at 32 bytes a pixel.
+    EXPECT_EQ(trace_ids(context(), renderer, grids, 4, settings, 20 * kWidth_px * 32), whole);
+    const scene::SampleIds samples{whole, kWidth_px, kHeight_px, 4};
+    for (const int tile_px : {0, 8}) {
+        const CacheCounts once = count_shadings(context(), samples, grids.id_count(), tile_px);
+        const CacheCounts in_bands = count_shadings(context(), samples, grids.id_count(), tile_px, 150000);
+        EXPECT_EQ(in_bands.overflows, 0u);
+        EXPECT_EQ(in_bands.shadings, once.shadings);
+        EXPECT_EQ(in_bands.requests, once.requests);
+    }
+}
+
+TEST_P(VisibilityOn, EndsWithCountedOverflowsWhereATableIsTooSmall) {
+    // Half a million ids are said to be 64: all places are taken, and each attempt ends.
+    std::vector<std::uint32_t> ids(std::size_t(64) * 64 * 128);
+    for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = std::uint32_t(i);
+    const CacheCounts counts = count_shadings(context(), {ids, 64, 128, 64}, 64, 0);
+    EXPECT_EQ(counts.requests, ids.size());
+    EXPECT_EQ(counts.shadings, ids.size());
+    EXPECT_EQ(counts.overflows, ids.size() - 128);
+}
+
+}  // namespace
+}  // namespace aftershade::visibility
