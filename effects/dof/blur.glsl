@@ -28,7 +28,7 @@ float part_of(int which, float coc) {
 // What lies in front of CoC radius `coc` spreads over the point as far as its own CoC reaches, thinned by that area.
 // visible_coc: of the surface that the point shows. Where it hides the surface of `coc`, it covers at least as much of the point as
 // of its own aperture, so that no slope of its CoC opens a gap.
-const float kNoReach = -2.0;  // px; no tap is taken
+const float kNoReach = -0.5;  // px; one tap is taken, the least that the loops below can do
 Layer gather_front(vec2 center, float coc, float visible_coc, float reach_px, int level, int which) {
     float texels_per_px = 1.0 / float(1 << level), reach = reach_px * texels_per_px + 0.5;
 #ifdef SILHOUETTES

@@ -79,7 +79,6 @@ void main() {
         int level = level_for(reach_px, around_coc);
         over = gather_front(center / float(1 << level), own.coc, visible_coc, reach_px, level, kAll);
     } else if (is_reached_far) {
-        // Software GL skips a loop without turns, not a branch.
         float narrow_reach_px = has_narrow_blurs(p / kTile) ? kFullSizePx : kNoReach;
         over = both(gather_front(center, own.coc, visible_coc, narrow_reach_px, 0, kNarrow), coarse.over);
     }

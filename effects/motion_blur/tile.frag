@@ -2,7 +2,7 @@
 #include <pass>
 #include "motion_here.glsl"
 
-// Software GL skips a loop without turns, not a branch: a tile at rest costs its fetches alone.
+// Software GL runs both sides of a branch, but a loop only while some pixel needs it: a tile at rest costs its fetches alone.
 bool is_at_rest(ivec2 corner, ivec2 last) {
     vec2 most = vec2(0.0);
     for (int y = 0; y < kTile; ++y)
