@@ -50,6 +50,8 @@ void add_options(CLI::App& app, RenderArguments& options) {
     app.add_option("-o,--output", options.folder, "Folder for the capture; created if missing")->required();
     app.add_option("--frames", options.frames, "Frames to render, such as 1-24 (default: the scene's)");
     app.add_option("--size", options.size, "WIDTHxHEIGHT in px (default: the scene's)");
+    const std::string group = app.option_defaults()->get_group();
+    app.option_defaults()->group("Truth");
     app.add_option(
            "--truth", options.truths,
            "Also render a true picture: lens, shutter and antialias, joined by +, or scattering; repeatable")
@@ -66,6 +68,7 @@ void add_options(CLI::App& app, RenderArguments& options) {
         ->check(CLI::IsMember({"visible", "whole"}))
         ->capture_default_str();
     app.add_flag("--truth-only", options.only_truth, "Write no capture");
+    app.option_defaults()->group(group);
     add_visibility_options(app, options.visibility);
     app.add_option("--layers", options.job.layers,
                    "Surfaces behind one another, each in files of its own that capture.json names as layers")

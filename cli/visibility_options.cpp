@@ -16,6 +16,8 @@ void add_visibility_options(CLI::App& app, VisibilityArguments& options) {
     const auto of_memoised = [&options](const std::string& name) {
         return [&options, name](const std::string&) { options.given.push_back(name); };
     };
+    const std::string group = app.option_defaults()->get_group();
+    app.option_defaults()->group("Many visibility samples");
     app.add_option("--visibility", options.visibility,
                    "Also render lens, shutter and antialias over triangles: memoised (light "
                    "once for each shading sample), supersampled or accumulation (light at every sample)")
@@ -57,6 +59,7 @@ void add_visibility_options(CLI::App& app, VisibilityArguments& options) {
     add_backend_option(app, options.backend);
     app.add_flag("--anisotropic-shading", settings.grid.anisotropic,
                  "memoised: coarser shading where lens and shutter blur it");
+    app.option_defaults()->group(group);
 }
 
 std::optional<scene::VisibilitySettings> read_visibility(const VisibilityArguments& options,

@@ -80,14 +80,15 @@ GpuScene in_order_of(const scene::Bvh& bvh, const std::vector<GpuTriangle>& tria
 GpuScene make_gpu_scene(const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids, int frame) {
     const scene::Scene& scene = renderer.scene();
     if (grids.grids().size() > kMaxTriangles)
-        throw Error(ExitCode::usage,
-                    fmt::format("{}: {} triangles, the limit of visibility by GL is {}; trace them on the CPU",
-                                scene.path.string(), grids.grids().size(), kMaxTriangles));
+        throw Error(
+            ExitCode::usage,
+            fmt::format("{}: {} triangles, the limit of visibility by GL is {}; trace them on the CPU",
+                        scene.path.string(), grids.grids().size(), kMaxTriangles));
     const scene::Exposure exposure = exposure_of(scene.camera, frame);
     std::vector<scene::SceneState> states;
     for (int i = 0; i < kMoments; ++i)
-        states.push_back(state_at(
-            scene, frame, exposure.first + (exposure.last - exposure.first) * i / (kMoments - 1)));
+        states.push_back(
+            state_at(scene, frame, exposure.first + (exposure.last - exposure.first) * i / (kMoments - 1)));
     std::vector<Bounds> bounds;
     std::vector<GpuTriangle> triangles;
     for (std::size_t object = 0; object < scene.objects.size(); ++object) {

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstring>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -21,8 +22,8 @@ std::string_view visibility_cache_shader();  // cache.comp
 
 namespace aftershade::visibility {
 
-using gpu::Buffer;
 using glm::vec4;
+using gpu::Buffer;
 using scene::kNoShading;
 
 namespace {
@@ -92,7 +93,8 @@ std::uint32_t slots_for(std::uint64_t entries, std::uint64_t tables, std::size_t
 
 std::vector<std::uint32_t> trace_ids(gpu::Context& context, const scene::SceneRenderer& renderer,
                                      const scene::ShadingGrids& grids, int frame,
-                                     const scene::VisibilitySettings& settings, std::size_t max_buffer_bytes) {
+                                     const scene::VisibilitySettings& settings,
+                                     std::size_t max_buffer_bytes) {
     const auto width = std::size_t(renderer.width_px()), samples = std::size_t(settings.samples);
     const scene::TruthSettings truth = truth_of(settings);
     const GpuScene scene = make_gpu_scene(renderer, grids, frame);
@@ -109,14 +111,14 @@ std::vector<std::uint32_t> trace_ids(gpu::Context& context, const scene::SceneRe
     Buffer uniforms(context, sizeof values, "settings");
     std::vector<std::uint32_t> ids;
     const std::size_t bytes_of_row = width * std::max(samples * sizeof(std::uint32_t), sizeof(GpuRay));
-    for_each_band(renderer.width_px(), renderer.height_px(), bytes_of_row, 1, max_buffer_bytes, [&](int first, int rows) {
+    const auto trace_band = [&](int first, int rows) {
         const std::size_t pixels = width * std::size_t(rows);
         const Buffer found(context, pixels * samples * sizeof(std::uint32_t), "ids");
         for (int sample = 0; sample < settings.samples; ++sample) {
             const std::vector<scene::World> worlds = renderer.moments_of(frame, truth, sample);
             const Buffer moments = filled(context, make_moments(worlds), "moments");
-            const Buffer rays = filled(
-                context, rays_of_band(renderer, frame, truth, sample, worlds, first, rows), "rays");
+            const Buffer rays =
+                filled(context, rays_of_band(renderer, frame, truth, sample, worlds, first, rows), "rays");
             values.pixel_count = std::uint32_t(pixels);
             values.sample_index = std::uint32_t(sample);
             uniforms.write(bytes_of(std::array{values}));
@@ -128,36 +130,38 @@ std::vector<std::uint32_t> trace_ids(gpu::Context& context, const scene::SceneRe
         }
         const std::vector<std::uint32_t> band = values_of<std::uint32_t>(found);
         ids.insert(ids.end(), band.begin(), band.end());
-    });
+    };
+    for_each_band(renderer.width_px(), renderer.height_px(), bytes_of_row, 1, max_buffer_bytes, trace_band);
     return ids;
 }
 
-CacheCounts count_shadings(gpu::Context& context, const scene::SampleIds& samples, std::uint32_t id_count, int tile_px, std::size_t max_buffer_bytes) {
+CacheCounts count_shadings(gpu::Context& context, const scene::SampleIds& samples, std::uint32_t id_count,
+                           int tile_px, std::size_t max_buffer_bytes) {
     const auto width = std::size_t(samples.width_px), count = std::size_t(samples.samples);
     const std::size_t of_row = width * count * sizeof(std::uint32_t);
     const gpu::Program program =
         gpu::Program::compute(context, std::string(visibility_cache_shader()), "shading cache");
     const int step = std::max(tile_px, 1);
-    const std::uint64_t of_tile = std::min(std::uint64_t(step) * std::uint64_t(step) * count,
-                                           std::uint64_t(id_count));
+    const std::uint64_t of_tile =
+        std::min(std::uint64_t(step) * std::uint64_t(step) * count, std::uint64_t(id_count));
     const std::uint64_t tiles_of_row = (width + std::size_t(step) - 1) / std::size_t(step);
     CacheSettings values;
     values.width_px = std::uint32_t(width);
     values.sample_count = std::uint32_t(count);
     values.tile_px = std::uint32_t(tile_px);
-    values.slots = tile_px > 0 ? slots_for(of_tile, tiles_of_row, max_buffer_bytes)
-                               : slots_for(std::min(std::uint64_t(samples.ids.size()), std::uint64_t(id_count)), 1, max_buffer_bytes);
+    values.slots = tile_px > 0
+                       ? slots_for(of_tile, tiles_of_row, max_buffer_bytes)
+                       : slots_for(std::min(std::uint64_t(samples.ids.size()), std::uint64_t(id_count)), 1,
+                                   max_buffer_bytes);
     const std::size_t table_of_row =
         tile_px > 0 ? tiles_of_row * values.slots * sizeof(std::uint32_t) / std::size_t(step) : 0;
     Buffer uniforms(context, sizeof values, "settings"), counts(context, 3 * sizeof(std::uint32_t), "counts");
     std::optional<Buffer> table;
-    for_each_band(samples.width_px, samples.height_px, std::max(of_row, table_of_row), step, max_buffer_bytes, [&](int first, int rows) {
+    const auto count_band = [&](int first, int rows) {
         const std::size_t pixels = width * std::size_t(rows);
-        const Buffer ids = filled(
-            context,
-            std::vector(samples.ids.begin() + std::ptrdiff_t(std::size_t(first) * width * count),
-                        samples.ids.begin() + std::ptrdiff_t((std::size_t(first) * width + pixels) * count)),
-            "ids");
+        const std::span<const std::uint32_t> of_band =
+            samples.ids.subspan(std::size_t(first) * width * count, pixels * count);
+        const Buffer ids = filled(context, std::vector(of_band.begin(), of_band.end()), "ids");
         const std::uint64_t tables = tile_px > 0 ? tiles_of_row * std::uint64_t((rows + step - 1) / step) : 1;
         if (tile_px > 0 || !table) {
             table.emplace(context, std::size_t(tables * values.slots * sizeof(std::uint32_t)), "table");
@@ -168,7 +172,9 @@ CacheCounts count_shadings(gpu::Context& context, const scene::SampleIds& sample
         const gpu::BufferBinding block[] = {{&uniforms, 0}};
         const gpu::BufferBinding storage[] = {{&ids, 0}, {&*table, 1}, {&counts, 2}};
         gpu::dispatch(context, program, group_count(pixels), 1, 1, {.uniforms = block, .storage = storage});
-    });
+    };
+    for_each_band(samples.width_px, samples.height_px, std::max(of_row, table_of_row), step, max_buffer_bytes,
+                  count_band);
     const std::vector<std::uint32_t> found = values_of<std::uint32_t>(counts);
     return {found[0], std::uint64_t(found[1]) + found[2], found[2]};
 }

@@ -1,4 +1,5 @@
-// Visibility samples and shading caches as compute shaders, over a scene's triangles. No buffer is larger than 128 MiB: larger pictures are done in bands of rows.
+// Visibility samples and shading caches as compute shaders, over a scene's triangles. No buffer is larger
+// than 128 MiB: larger pictures are done in bands of rows.
 #pragma once
 
 #include <cstddef>
