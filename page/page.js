@@ -266,12 +266,9 @@ viewer.addEventListener("picture", ({ detail }) => {
 viewer.addEventListener("probe", ({ detail }) => probe.show(detail, viewer.frame));
 addEventListener("focus", () => store.state && store.isSaved && store.refresh());
 
-// As `run --watch`, for effects that are edited in another program.
+// As `run --watch`, for a look and effects that are edited in another program.
 const FOLLOW_MS = 500;
-setInterval(
-  () => store.state?.capture && store.state.effect_folders.length && !document.hidden && store.followEffects(),
-  FOLLOW_MS,
-);
+setInterval(() => store.state?.capture && !document.hidden && store.followFiles(), FOLLOW_MS);
 
 try {
   setTheme(localStorage.getItem("aftershade.theme") ?? "system");

@@ -145,12 +145,14 @@ export class Store extends EventTarget {
     });
   }
 
-  /** Reads the effects again where another program has changed their files. */
-  followEffects() {
+  /** Reads the effects and the look again where another program has changed their files. */
+  followFiles() {
+    if (this.#running) return this.#running; // the next call follows
     return this.#inTurn(async () => {
       try {
-        const { effects_revision } = await get("/api/changes");
+        const { revision, effects_revision } = await get("/api/changes");
         if (effects_revision !== this.state.effects_revision) await this.#takeWithEffects(await get("/api/state"));
+        else if (revision !== this.state.revision) await this.refresh();
         return true;
       } catch (error) {
         this.#fail(error);

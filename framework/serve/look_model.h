@@ -49,6 +49,12 @@ public:
     /// Writes the file, whole or not at all. Throws Error(ExitCode::output) too.
     void save();
 
+    /// Takes over what another program wrote to the file, as one step of undo, faults and all. Nothing happens
+    /// where the text here is not saved, or the file cannot be read or is longer than a look may be.
+    void follow_file();
+    /// Counts the changes of the text and of the effects.
+    std::uint64_t revision() const;
+
     /// Reads all effects again: what is bound from now on is bound to those.
     void reload_effects();
     /// Counts reload_effects().

@@ -154,7 +154,9 @@ void PageServer::follow_effects() {
 
 Response PageServer::changes() {
     follow_effects();
-    return json_response({{"effects_revision", setup_.look.effects_revision()}});
+    setup_.look.follow_file();
+    return json_response(
+        {{"revision", setup_.look.revision()}, {"effects_revision", setup_.look.effects_revision()}});
 }
 
 Response PageServer::shaders(const Request& request) const {

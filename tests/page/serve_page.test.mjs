@@ -1206,6 +1206,42 @@ inPage("chooses a scattering profile, sets its numbers, and gives objects their 
   assert.match(await page.locator(".faults").innerText(), /none\.json/);
 });
 
+inPage(
+  "keeps the last good picture where another program empties the look's file, and draws it again once it is back",
+  async (page, { look }) => {
+    const good = await page.evaluate(() => window.aftershade.viewer.picture.first !== null);
+    assert.equal(good, true);
+    writeFileSync(look, "");
+    await page.waitForFunction(() => window.aftershade.store.hasFaults);
+    await page.evaluate(() => window.aftershade.settled());
+    assert.match(await page.locator(".faults li").first().innerText(), /^1:1/);
+    assert.match(await page.locator(".badge").innerText(), /last good picture/);
+    writeFileSync(look, LOOK.replace("0.3", "0.6"));
+    await page.waitForFunction(() => !window.aftershade.store.hasFaults);
+    await page.evaluate(() => window.aftershade.settled());
+    assert.equal((await lookOf(page)).steps[1].params.exposure, 0.6);
+    await page.waitForFunction(() => !/last good/.test(document.querySelector(".badge").textContent));
+    assert.equal((await state(page)).revision, (await state(page)).saved_revision, "nothing is unsaved");
+  },
+  { own: true },
+);
+
+test("opens a look that is empty, and draws it once another program has written it", noRow, async () => {
+  const server = await serve("");
+  let page;
+  try {
+    page = await open(server.address);
+    await page.waitForFunction(() => window.aftershade.store.state?.faults.length);
+    assert.match(await page.locator(".badge").innerText(), /no picture yet/);
+    writeFileSync(server.look, LOOK);
+    await drawn(page);
+    assert.deepEqual(page.faults, []);
+  } finally {
+    await page?.context().close();
+    await server.end();
+  }
+});
+
 // ---- everybody ----
 
 inPage("can be used by the keyboard alone, with the focus in sight", async (page, { look }) => {

@@ -290,6 +290,30 @@ TEST_F(ServeShaders, WritesNoShaderWithReadOnly) {
     EXPECT_EQ(shader_on_disk(), tint_shader("light"));
 }
 
+TEST_F(Serve, FollowsALookThatAnotherProgramEmptiesAndWritesAgain) {
+    start();
+    const std::string first = get("/api/picture?frame=1").body;
+    write_text(folder_ / "look.json", "");
+    get("/api/changes");
+    const Json emptied = get("/api/state").json();
+    EXPECT_EQ(emptied["text"], "");
+    ASSERT_FALSE(emptied["faults"].empty());
+    EXPECT_EQ(emptied["faults"][0]["line"], 1);
+    const Answer kept = get("/api/picture?frame=1");
+    EXPECT_EQ(kept.status, 200);
+    EXPECT_EQ(kept.body, first) << "the last good picture stays";
+    write_text(folder_ / "look.json", kLook);
+    get("/api/changes");
+    EXPECT_TRUE(get("/api/state").json()["faults"].empty());
+    EXPECT_EQ(get("/api/picture?frame=1").body, first);
+
+    ASSERT_EQ(set(0.75).status, 200);
+    write_text(folder_ / "look.json", "");
+    get("/api/changes");
+    EXPECT_NE(get("/api/state").json()["text"], "") << "what is not saved is not overwritten";
+    EXPECT_EQ(post("/api/save").status, 409);
+}
+
 TEST_F(Serve, CountsTheNanOfTheFinalPicture) {
     has_nan_ = true;
     start();
