@@ -25,11 +25,7 @@ const probe = new Probe(),
 at("dock").append(probe.node, histogram.node, waveform.node, costs.node);
 
 const dialog = new AddDialog(store);
-const openAdd = () => {
-  const { steps } = store.state;
-  // What comes after a view transform has no scene colour to work on.
-  dialog.open(steps.at(-1)?.effect === "view_transform" ? steps.length - 1 : steps.length);
-};
+const openAdd = () => dialog.open(store.lastPlace);
 
 /** A parameter that the picture can give: the focus distance from the depth, objects from the ids. */
 function pickFor(parameter, commit) {

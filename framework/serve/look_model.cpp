@@ -162,6 +162,11 @@ std::string LookModel::effects_json() const {
     return list.dump();
 }
 
+bool LookModel::has_effect(const std::string& effect) const {
+    const std::lock_guard lock(mutex_);
+    return effects_->contains(effect);
+}
+
 EffectFiles LookModel::files_of(const std::string& effect) const {
     const std::lock_guard lock(mutex_);
     return effect_files(*effects_, effect, read_only_);

@@ -1558,6 +1558,45 @@ withTint("writes a shader by Ctrl+S and shows the picture that `run` then draws"
   assert.ok(shown === run, "the pixels differ");
 });
 
+withTint(
+  "makes a new effect by the keyboard alone, adds it to the look and edits its shader",
+  async (page, { files }) => {
+    await page.keyboard.press("t");
+    await page.keyboard.press("t");
+    const tabTo = async (label) => {
+      for (let i = 0; i < 60; ++i) {
+        if ((await page.evaluate(() => document.activeElement.getAttribute("aria-label"))) === label) return;
+        await page.keyboard.press("Tab");
+      }
+      assert.fail(`Tab does not lead to ${label}`);
+    };
+    await page.waitForFunction(() => !document.querySelector(".new-effect").hidden);
+    await tabTo("Name of a new effect");
+    await page.keyboard.type("corner_shade");
+    await page.keyboard.press("Enter");
+    await page.waitForFunction(() => document.activeElement.getAttribute("aria-label") === "The shader as GLSL");
+    assert.deepEqual(
+      (await lookOf(page)).steps.map(({ effect }) => effect),
+      ["bokeh", "color_grade", "tint", "vignette", "corner_shade", "view_transform"],
+    );
+    const shader = join(files, "../corner_shade/corner_shade.frag"),
+      made = readFileSync(shader, "utf8");
+    assert.equal(await page.getByLabel("The shader as GLSL").inputValue(), made);
+    await page.keyboard.press("Control+Home");
+    await page.keyboard.press("End");
+    await page.keyboard.press("Enter");
+    await page.keyboard.type("// mine");
+    await page.keyboard.press("Control+s");
+    await page.waitForFunction(() => /Saved corner_shade/.test(document.getElementById("notice").textContent));
+    assert.match(readFileSync(shader, "utf8"), /core\n\/\/ mine\n/);
+    await page.evaluate(() => window.aftershade.settled());
+    // Back to another effect by the list.
+    await tabTo("Effect");
+    await page.keyboard.press("Home");
+    await page.waitForFunction(() => !document.querySelector("#panel-shaders textarea").value.includes("// mine"));
+  },
+);
+
 withTint("shows GLSL's faults at their file and line, and keeps the last good picture", async (page) => {
   const area = await openShader(page),
     good = await centre(page);
