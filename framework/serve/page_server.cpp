@@ -191,7 +191,7 @@ Response PageServer::new_effect(const Request& request) {
     if (setup_.look.is_read_only())
         throw Refusal{403, "no effect is made: the program runs with --read-only"};
     if (std::ranges::find(setup_.effect_folders, folder) == setup_.effect_folders.end())
-        throw Refusal{403, "'" + folder.string() + "' is no folder of --effect-path"};
+        throw Refusal{403, "'" + folder.string() + "' is not a folder of --effect-path"};
     if (!is_snake_case(id)) throw Refusal{400, "the effect's name '" + id + "' " + kMustBeSnakeCase};
     if (id.size() > kLongestId)
         throw Refusal{400, "the effect's name has " + std::to_string(id.size()) +
