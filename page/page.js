@@ -25,11 +25,7 @@ const probe = new Probe(),
 at("dock").append(probe.node, histogram.node, waveform.node, costs.node);
 
 const dialog = new AddDialog(store);
-const openAdd = () => {
-  const { steps } = store.state;
-  // What comes after a view transform has no scene colour to work on.
-  dialog.open(steps.at(-1)?.effect === "view_transform" ? steps.length - 1 : steps.length);
-};
+const openAdd = () => dialog.open(store.lastPlace);
 
 /** A parameter that the picture can give: the focus distance from the depth, objects from the ids. */
 function pickFor(parameter, commit) {
@@ -266,12 +262,9 @@ viewer.addEventListener("picture", ({ detail }) => {
 viewer.addEventListener("probe", ({ detail }) => probe.show(detail, viewer.frame));
 addEventListener("focus", () => store.state && store.isSaved && store.refresh());
 
-// As `run --watch`, for effects that are edited in another program.
+// As `run --watch`, for a look and effects that are edited in another program.
 const FOLLOW_MS = 500;
-setInterval(
-  () => store.state?.capture && store.state.effect_folders.length && !document.hidden && store.followEffects(),
-  FOLLOW_MS,
-);
+setInterval(() => store.state?.capture && !document.hidden && store.followFiles(), FOLLOW_MS);
 
 try {
   setTheme(localStorage.getItem("aftershade.theme") ?? "system");

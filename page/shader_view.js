@@ -50,7 +50,44 @@ export class ShaderView {
       this.list,
       this.code.node,
       this.note,
+      this.#newForm(),
     );
+  }
+
+  #newForm() {
+    this.newName = element("input", {
+      type: "text",
+      "aria-label": "Name of a new effect",
+      placeholder: "name_of_a_new_effect",
+      maxlength: 64,
+      autocomplete: "off",
+      spellcheck: "false",
+    });
+    this.newFolder = element("select", { "aria-label": "Folder of a new effect" });
+    this.newForm = element(
+      "form",
+      { class: "shader-head new-effect", hidden: true },
+      this.newName,
+      this.newFolder,
+      element("button", { type: "submit", title: "Make an effect's folder and add it to the look" }, "New effect"),
+    );
+    this.newForm.addEventListener("submit", (event) => {
+      event.preventDefault();
+      this.make();
+    });
+    return this.newForm;
+  }
+
+  /** Makes an effect from the templates, adds it as the last step and shows its shader. */
+  async make() {
+    const effect = this.newName.value.trim();
+    if (!(await this.store.newEffect({ folder: this.newFolder.value, effect }))) return this.newName.focus();
+    this.newName.value = "";
+    const isAdded = await this.store.edit([{ op: "add", at: this.store.lastPlace, effect }]);
+    if (!isAdded) return;
+    notify(`Made ${effect}`);
+    await this.show(effect);
+    this.code.area.focus();
   }
 
   get key() {
@@ -65,7 +102,14 @@ export class ShaderView {
 
   /** The look has changed, or the effects on disk. */
   async update() {
-    const { steps, effects_revision } = this.store.state;
+    const { steps, effects_revision, effect_folders, read_only } = this.store.state;
+    this.newForm.hidden = read_only || effect_folders.length === 0;
+    this.newFolder.hidden = effect_folders.length < 2;
+    options(
+      this.newFolder,
+      effect_folders.map((folder) => [folder, folder]),
+      this.newFolder.value || effect_folders[0],
+    );
     if (effects_revision !== this.revision) this.#disk.clear();
     this.revision = effects_revision;
     const effects = [...new Set(steps.map(({ effect }) => effect))].filter((id) => this.store.effects.has(id));

@@ -19,6 +19,11 @@ export class Store extends EventTarget {
   get hasFaults() {
     return this.state.faults.some(({ severity }) => severity !== "warning");
   }
+  /** Of a new step. What comes after a view transform has no scene colour to work on. */
+  get lastPlace() {
+    const { steps } = this.state;
+    return steps.at(-1)?.effect === "view_transform" ? steps.length - 1 : steps.length;
+  }
   get isSaved() {
     return this.state.revision === this.state.saved_revision;
   }
@@ -134,9 +139,16 @@ export class Store extends EventTarget {
 
   /** shader: {effect, file, before, text}; `before` is what the file is thought to hold. */
   saveShader(shader) {
+    return this.#write("/api/shader", shader);
+  }
+  /** {folder, effect}: an effect from the templates of `aftershade new`. */
+  newEffect(effect) {
+    return this.#write("/api/effect", effect);
+  }
+  #write(path, body) {
     return this.#inTurn(async () => {
       try {
-        await this.#takeWithEffects(await post("/api/shader", shader));
+        await this.#takeWithEffects(await post(path, body));
         return true;
       } catch (error) {
         this.#fail(error);
@@ -145,12 +157,14 @@ export class Store extends EventTarget {
     });
   }
 
-  /** Reads the effects again where another program has changed their files. */
-  followEffects() {
+  /** Reads the effects and the look again where another program has changed their files. */
+  followFiles() {
+    if (this.#running) return this.#running; // the next call follows
     return this.#inTurn(async () => {
       try {
-        const { effects_revision } = await get("/api/changes");
+        const { revision, effects_revision } = await get("/api/changes");
         if (effects_revision !== this.state.effects_revision) await this.#takeWithEffects(await get("/api/state"));
+        else if (revision !== this.state.revision) await this.refresh();
         return true;
       } catch (error) {
         this.#fail(error);

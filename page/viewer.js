@@ -213,8 +213,9 @@ export class Viewer extends EventTarget {
     this.exposureSlider.style.setProperty("--fill", `${(100 * (this.exposure + 8)) / 16}%`);
     this.frameField.show(String(this.frame));
     this.placeWipe();
+    const { revision, has_picture } = this.store.state;
+    if (!has_picture) return this.setBadge("no picture yet: the look has faults");
     if (this.store.hasFaults) this.setBadge("last good picture: the look has faults");
-    const { revision } = this.store.state;
     this.pictures.want({ revision, frame: this.frame, view: this.view, other: this.other, exposure: this.exposure });
   }
 

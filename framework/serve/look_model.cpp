@@ -121,6 +121,21 @@ void LookModel::save() {
     saved_revision_ = revision_;
 }
 
+void LookModel::follow_file() {
+    const std::lock_guard lock(mutex_);
+    if (texts_[at_] != saved_text_) return;
+    std::error_code failure;
+    std::string on_disk = read_text_file(path_, failure);
+    if (failure || on_disk == saved_text_ || on_disk.size() > kMaxDocumentBytes) return;
+    saved_text_ = on_disk;
+    change(std::move(on_disk));
+}
+
+std::uint64_t LookModel::revision() const {
+    const std::lock_guard lock(mutex_);
+    return revision_;
+}
+
 void LookModel::reload_effects() {
     std::shared_ptr<EffectRegistry> effects = find_effects_();
     const std::lock_guard lock(mutex_);
@@ -147,6 +162,11 @@ std::string LookModel::effects_json() const {
     return list.dump();
 }
 
+bool LookModel::has_effect(const std::string& effect) const {
+    const std::lock_guard lock(mutex_);
+    return effects_->contains(effect);
+}
+
 EffectFiles LookModel::files_of(const std::string& effect) const {
     const std::lock_guard lock(mutex_);
     return effect_files(*effects_, effect, read_only_);
@@ -165,6 +185,7 @@ nlohmann::ordered_json LookModel::state(const CaptureHeader& header) const {
     state["can_redo"] = at_ + 1 < texts_.size();
     state["text"] = texts_[at_];
     state["faults"] = faults_json(faults_);
+    state["has_picture"] = bound_ != nullptr;
     const bool is_bound = bound_ && bound_->revision == revision_;
     state["steps"] = steps_json(texts_[at_], is_bound ? bound_.get() : nullptr, *effects_, header);
     return state;

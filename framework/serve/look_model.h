@@ -49,12 +49,20 @@ public:
     /// Writes the file, whole or not at all. Throws Error(ExitCode::output) too.
     void save();
 
+    /// Takes over what another program wrote to the file, as one step of undo, faults and all. Nothing
+    /// happens where the text here is not saved, or the file cannot be read or is longer than a look may be.
+    void follow_file();
+    /// Counts the changes of the text and of the effects.
+    std::uint64_t revision() const;
+
     /// Reads all effects again: what is bound from now on is bound to those.
     void reload_effects();
     /// Counts reload_effects().
     std::uint64_t effects_revision() const;
     /// JSON: what `describe --json` gives for each effect without faults.
     std::string effects_json() const;
+    bool has_effect(const std::string& effect) const;
+    bool is_read_only() const { return read_only_; }
     /// Throws Refusal 404 where there is no such effect.
     EffectFiles files_of(const std::string& effect) const;
 

@@ -10,6 +10,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/text.h"
+#include "framework/effect/new_effect.h"
 #include "framework/image/role.h"
 #include "framework/serve/view_picture.h"
 
@@ -154,7 +155,9 @@ void PageServer::follow_effects() {
 
 Response PageServer::changes() {
     follow_effects();
-    return json_response({{"effects_revision", setup_.look.effects_revision()}});
+    setup_.look.follow_file();
+    return json_response(
+        {{"revision", setup_.look.revision()}, {"effects_revision", setup_.look.effects_revision()}});
 }
 
 Response PageServer::shaders(const Request& request) const {
@@ -177,6 +180,31 @@ Response PageServer::save_shader(const Request& request) {
     return state();
 }
 
+Response PageServer::new_effect(const Request& request) {
+    constexpr std::size_t kLongestId = 64;  // characters
+    const Json body = shallow_json(request.body);
+    for (const char* key : {"folder", "effect"})
+        if (!body.is_object() || !body.contains(key) || !body[key].is_string())
+            throw Refusal{400, "the body is {\"folder\", \"effect\"}, both of them a text"};
+    const std::filesystem::path folder = body["folder"].get<std::string>();
+    const auto id = body["effect"].get<std::string>();
+    if (setup_.look.is_read_only())
+        throw Refusal{403, "no effect is made: the program runs with --read-only"};
+    if (std::ranges::find(setup_.effect_folders, folder) == setup_.effect_folders.end())
+        throw Refusal{403, "'" + folder.string() + "' is not a folder of --effect-path"};
+    if (!is_snake_case(id)) throw Refusal{400, "the effect's name '" + id + "' " + kMustBeSnakeCase};
+    if (id.size() > kLongestId)
+        throw Refusal{400, "the effect's name has " + std::to_string(id.size()) +
+                               " characters; the most is " + std::to_string(kLongestId)};
+    std::error_code failure;
+    if (setup_.look.has_effect(id) ||
+        std::filesystem::symlink_status(folder / id, failure).type() != std::filesystem::file_type::not_found)
+        throw Refusal{409, "'" + id + "' is there already; choose another name"};
+    make_effect(folder, id);
+    follow_effects();
+    return state();
+}
+
 Response PageServer::answer(const Request& request) {
     using Answer = std::function<Response()>;
     const std::map<std::string, std::pair<std::string, Answer>> answers = {
@@ -193,6 +221,7 @@ Response PageServer::answer(const Request& request) {
         {"/api/changes", {"GET", [&] { return changes(); }}},
         {"/api/shaders", {"GET", [&] { return shaders(request); }}},
         {"/api/shader", {"POST", [&] { return save_shader(request); }}},
+        {"/api/effect", {"POST", [&] { return new_effect(request); }}},
         {"/api/edit", {"POST", [&] { return change(request); }}},
         {"/api/undo", {"POST", [&] { return change(request); }}},
         {"/api/redo", {"POST", [&] { return change(request); }}},

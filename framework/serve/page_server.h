@@ -48,6 +48,7 @@ private:
     Response changes();
     Response shaders(const Request& request) const;
     Response save_shader(const Request& request);
+    Response new_effect(const Request& request);
     void follow_effects();
     PictureRequest request_of(const Request& request) const;
 

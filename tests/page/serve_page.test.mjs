@@ -464,6 +464,7 @@ inPage("lists the faults of the text at their lines while the last good picture 
   assert.match(await faults.first().innerText(), /^7:\d+[^]*vignete/);
   assert.match(await page.locator(".badge").innerText(), /last good picture/);
   assert.equal(await page.locator(".numbers .faulty").first().innerText(), "7");
+  await page.evaluate(() => window.aftershade.settled()); // a coarse picture may come first
   assert.deepEqual(await colors(), good);
   await faults.first().getByRole("button").click();
   const line = await area.evaluate((node) => node.value.slice(0, node.selectionStart).split("\n").length);
@@ -1206,6 +1207,42 @@ inPage("chooses a scattering profile, sets its numbers, and gives objects their 
   assert.match(await page.locator(".faults").innerText(), /none\.json/);
 });
 
+inPage(
+  "keeps the last good picture where another program empties the look's file, and draws it again once it is back",
+  async (page, { look }) => {
+    const good = await page.evaluate(() => window.aftershade.viewer.picture.first !== null);
+    assert.equal(good, true);
+    writeFileSync(look, "");
+    await page.waitForFunction(() => window.aftershade.store.hasFaults);
+    await page.evaluate(() => window.aftershade.settled());
+    assert.match(await page.locator(".faults li").first().innerText(), /^1:1/);
+    assert.match(await page.locator(".badge").innerText(), /last good picture/);
+    writeFileSync(look, LOOK.replace("0.3", "0.6"));
+    await page.waitForFunction(() => !window.aftershade.store.hasFaults);
+    await page.evaluate(() => window.aftershade.settled());
+    assert.equal((await lookOf(page)).steps[1].params.exposure, 0.6);
+    await page.waitForFunction(() => !/last good/.test(document.querySelector(".badge").textContent));
+    assert.equal((await state(page)).revision, (await state(page)).saved_revision, "nothing is unsaved");
+  },
+  { own: true },
+);
+
+test("opens a look that is empty, and draws it once another program has written it", noRow, async () => {
+  const server = await serve("");
+  let page;
+  try {
+    page = await open(server.address);
+    await page.waitForFunction(() => window.aftershade.store.state?.faults.length);
+    assert.match(await page.locator(".badge").innerText(), /no picture yet/);
+    writeFileSync(server.look, LOOK);
+    await drawn(page);
+    assert.deepEqual(page.faults, []);
+  } finally {
+    await page?.context().close();
+    await server.end();
+  }
+});
+
 // ---- everybody ----
 
 inPage("can be used by the keyboard alone, with the focus in sight", async (page, { look }) => {
@@ -1522,6 +1559,45 @@ withTint("writes a shader by Ctrl+S and shows the picture that `run` then draws"
   assert.ok(shown === run, "the pixels differ");
 });
 
+withTint(
+  "makes a new effect by the keyboard alone, adds it to the look and edits its shader",
+  async (page, { files }) => {
+    await page.keyboard.press("t");
+    await page.keyboard.press("t");
+    const tabTo = async (label) => {
+      for (let i = 0; i < 60; ++i) {
+        if ((await page.evaluate(() => document.activeElement.getAttribute("aria-label"))) === label) return;
+        await page.keyboard.press("Tab");
+      }
+      assert.fail(`Tab does not lead to ${label}`);
+    };
+    await page.waitForFunction(() => !document.querySelector(".new-effect").hidden);
+    await tabTo("Name of a new effect");
+    await page.keyboard.type("corner_shade");
+    await page.keyboard.press("Enter");
+    await page.waitForFunction(() => document.activeElement.getAttribute("aria-label") === "The shader as GLSL");
+    assert.deepEqual(
+      (await lookOf(page)).steps.map(({ effect }) => effect),
+      ["bokeh", "color_grade", "tint", "vignette", "corner_shade", "view_transform"],
+    );
+    const shader = join(files, "../corner_shade/corner_shade.frag"),
+      made = readFileSync(shader, "utf8");
+    assert.equal(await page.getByLabel("The shader as GLSL").inputValue(), made);
+    await page.keyboard.press("Control+Home");
+    await page.keyboard.press("End");
+    await page.keyboard.press("Enter");
+    await page.keyboard.type("// mine");
+    await page.keyboard.press("Control+s");
+    await page.waitForFunction(() => /Saved corner_shade/.test(document.getElementById("notice").textContent));
+    assert.match(readFileSync(shader, "utf8"), /core\n\/\/ mine\n/);
+    await page.evaluate(() => window.aftershade.settled());
+    // Back to another effect by the list.
+    await tabTo("Effect");
+    await page.keyboard.press("Home");
+    await page.waitForFunction(() => !document.querySelector("#panel-shaders textarea").value.includes("// mine"));
+  },
+);
+
 withTint("shows GLSL's faults at their file and line, and keeps the last good picture", async (page) => {
   const area = await openShader(page),
     good = await centre(page);
@@ -1539,6 +1615,7 @@ withTint("shows GLSL's faults at their file and line, and keeps the last good pi
   await area.press("Control+s");
   await page.waitForFunction(() => document.querySelector(".shader-faults").hidden);
   assert.equal(await page.locator("#panel-shaders .faulty").count(), 0);
+  await page.evaluate(() => window.aftershade.settled()); // a coarse picture may come first
   assert.deepEqual(await centre(page), good);
 });
 

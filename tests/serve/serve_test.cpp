@@ -290,6 +290,62 @@ TEST_F(ServeShaders, WritesNoShaderWithReadOnly) {
     EXPECT_EQ(shader_on_disk(), tint_shader("light"));
 }
 
+TEST_F(ServeShaders, MakesANewEffectAsTheCommandDoesAndOverwritesNothing) {
+    start_with_tint();
+    const auto make = [&](const std::string& effect, const std::string& folder = "effects") {
+        return post("/api/effect", Json{{"folder", folder}, {"effect", effect}}.dump());
+    };
+    const auto before = contents(folder_.path());
+    for (const char* id : {"", "Glow", "../glow", "glow/x", "/tmp/glow", ".", "a b", "g\u00fc"})
+        EXPECT_EQ(make(id).status, 400) << id;
+    EXPECT_EQ(make(std::string(65, 'g')).status, 400);
+    EXPECT_EQ(make("tint").status, 409) << "it is there";
+    EXPECT_EQ(make("vignette").status, 409) << "it comes with the program";
+    for (const char* folder : {"", ".", "..", "/tmp", "effects/tint", "effects/../effects"})
+        EXPECT_EQ(make("glow", folder).status, 403) << folder;
+    EXPECT_EQ(post("/api/effect", "[]").status, 400);
+    EXPECT_EQ(contents(folder_.path()), before);
+
+    std::filesystem::create_symlink("nowhere", folder_ / "effects/hanging");
+    EXPECT_EQ(make("hanging").status, 409) << "a link that leads nowhere is overwritten neither";
+    ASSERT_EQ(make("glow").status, 200);
+    EXPECT_NE(get("/api/effects").body.find("\"glow\""), std::string::npos);
+    ASSERT_EQ(run_aftershade({"new", "glow", "--path", "made"}, folder_.path()).exit_code, 0);
+    for (const char* file : {"effect.json", "glow.frag", "look.json"})
+        EXPECT_EQ(read_text(folder_ / "effects/glow" / file), read_text(folder_ / "made/glow" / file));
+    EXPECT_EQ(make("glow").status, 409);
+}
+
+TEST_F(ServeShaders, MakesNoEffectWithReadOnly) {
+    start_with_tint({"--read-only"});
+    EXPECT_EQ(post("/api/effect", R"({"folder": "effects", "effect": "glow"})").status, 403);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "effects/glow"));
+}
+
+TEST_F(Serve, FollowsALookThatAnotherProgramEmptiesAndWritesAgain) {
+    start();
+    const std::string first = get("/api/picture?frame=1").body;
+    write_text(folder_ / "look.json", "");
+    get("/api/changes");
+    const Json emptied = get("/api/state").json();
+    EXPECT_EQ(emptied["text"], "");
+    ASSERT_FALSE(emptied["faults"].empty());
+    EXPECT_EQ(emptied["faults"][0]["line"], 1);
+    const Answer kept = get("/api/picture?frame=1");
+    EXPECT_EQ(kept.status, 200);
+    EXPECT_EQ(kept.body, first) << "the last good picture stays";
+    write_text(folder_ / "look.json", kLook);
+    get("/api/changes");
+    EXPECT_TRUE(get("/api/state").json()["faults"].empty());
+    EXPECT_EQ(get("/api/picture?frame=1").body, first);
+
+    ASSERT_EQ(set(0.75).status, 200);
+    write_text(folder_ / "look.json", "");
+    get("/api/changes");
+    EXPECT_NE(get("/api/state").json()["text"], "") << "what is not saved is not overwritten";
+    EXPECT_EQ(post("/api/save").status, 409);
+}
+
 TEST_F(Serve, CountsTheNanOfTheFinalPicture) {
     has_nan_ = true;
     start();
