@@ -17,6 +17,7 @@ from roofline import table
 WORK = ROOT / "build/bench"
 PAGE, HISTORY = ROOT / "docs/speed.md", ROOT / "scripts/speed/history.json"
 PARTS = os.environ.get("PARTS", "frames exr start film dof motion roofline").split()
+ROUNDS = os.environ.get("ROUNDS", "5")
 RIVAL_PYTHON = ROOT / "build/bench-venv/bin/python"
 AFTERSHADE = os.environ["AFTERSHADE"]
 TAIL = ["chromatic_aberration", "vignette", "film_grain", "color_grade", "view_transform"]
@@ -31,10 +32,10 @@ def said(words, **environment):
     return done.stdout
 
 
-def by_file(script):
+def by_file(script, *words):
     """Of a bench that writes its figures."""
     file = WORK / "figures.json"
-    said([RIVAL_PYTHON, ROOT / "scripts" / script], FIGURES=str(file))
+    said([RIVAL_PYTHON, ROOT / "scripts" / script, *words], FIGURES=str(file))
     return json.loads(file.read_text())
 
 
@@ -105,7 +106,7 @@ def roofline():
     return {}
 
 
-WORKS = {"frames": lambda: by_file("bench-frames"), "exr": lambda: by_file("bench-exr"), "start": start, "film": film, "dof": dof,
+WORKS = {"frames": lambda: by_file("bench-frames", ROUNDS), "exr": lambda: by_file("bench-exr"), "start": start, "film": film, "dof": dof,
          "motion": motion, "roofline": roofline}
 
 
