@@ -73,7 +73,8 @@ def copy_gb_per_s(threads):
         for _ in range(8):
             numpy.copyto(target, source)
 
-    copies(*pairs[0])
+    for pair in pairs:
+        copies(*pair)
     workers = [threading.Thread(target=copies, args=pair) for pair in pairs]
     begin = time.perf_counter()
     for worker in workers:

@@ -40,11 +40,16 @@ TEST_F(Warm, LeavesNothingForALaterRunToCompile) {
     EXPECT_NE(warmed.out.find(cache.string()), std::string::npos) << warmed.out;
     const std::set<fs::path> after_warm = files_below(cache);
     EXPECT_TRUE(fs::is_directory(cache / "mesa_shader_cache")) << "Mesa's code lies in the same folder";
-    const CommandResult ran = run({"run", kWarmLook, kWarmCapture, "--frames", "4", "--backend", "osmesa",
-                                   "-o", "o_####.exr", "-o", "o_####.png"},
-                                  cache.string());
-    ASSERT_EQ(ran.exit_code, 0) << ran.err;
-    EXPECT_EQ(files_below(cache), after_warm) << "the run compiled something that warm had not";
+    using Words = std::vector<std::string>;
+    for (const Words& outputs : {Words{"-o", "o_####.exr"}, Words{"-o", "o_####.png"},
+                                 Words{"-o", "o_####.exr", "-o", "o_####.png"}}) {
+        Words words{"run", kWarmLook, kWarmCapture, "--frames", "4", "--backend", "osmesa", "--overwrite"};
+        words.insert(words.end(), outputs.begin(), outputs.end());
+        const CommandResult ran = run(words, cache.string());
+        ASSERT_EQ(ran.exit_code, 0) << ran.err;
+        EXPECT_EQ(files_below(cache), after_warm)
+            << "the run compiled something that warm had not: " << outputs[1];
+    }
 }
 
 TEST_F(Warm, FailsWhereTheCacheIsOffOrTheLookIsFaulty) {
