@@ -180,7 +180,7 @@ export class Costs {
       share = sum > 0 ? most / sum : 0;
     this.hint.hidden = !(sorted.length > 2 && share > 0.5);
     if (!this.hint.hidden)
-      this.hint.textContent = `${sorted[0].step}.${sorted[0].name} takes ${Math.round(share * 100)} % of the time.`;
+      this.hint.textContent = `${[sorted[0].step, sorted[0].name].filter(Boolean).join(".")} takes ${Math.round(share * 100)} % of the time.`;
     this.none.hidden = sorted.length > 0;
     this.bars.replaceChildren(
       ...sorted.map(({ step, name, ms }) => {
