@@ -1,33 +1,9 @@
 // scripts/bench-coarse CAPTURE: the time of the first picture, a quarter of the size, over the full one's, after an edit.
-import { spawn } from "node:child_process";
-import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
-import { join } from "node:path";
+import { serve } from "./served.mjs";
 
 const EDITS = 7,
   LIMIT = 0.2, // of the full picture's time
-  folder = mkdtempSync(join(tmpdir(), "aftershade-coarse-")),
-  look = join(folder, "look.json");
-writeFileSync(
-  look,
-  JSON.stringify({
-    aftershade: 1,
-    steps: [
-      { effect: "dof", params: { focus_distance: "6.4 m", f_number: 0.5 } },
-      { effect: "view_transform", params: { exposure: 0.5 } },
-    ],
-  }),
-);
-const server = spawn(process.env.AFTERSHADE_EXECUTABLE, ["serve", look, process.argv[2], "--port", "0"], {
-  env: { AFTERSHADE_BACKEND: "osmesa", ...process.env },
-  stdio: ["ignore", "pipe", "inherit"],
-});
-const address = await new Promise((ready) =>
-  server.stdout.on("data", (data) => {
-    const found = /http:\S+/.exec(data);
-    if (found) ready(new URL(found[0]));
-  }),
-);
+  { address, end } = await serve(process.argv[2]);
 const headers = { "X-Aftershade-Token": address.hash.slice("#token=".length) };
 async function call(path, body) {
   const response = await fetch(
@@ -62,6 +38,5 @@ for (const [step, param] of [
   console.log(`${param}: coarse ${coarse} ms, full ${full} ms, ${share.toFixed(3)} of it, limit ${LIMIT}`);
   isWithin &&= share <= LIMIT;
 }
-server.kill("SIGINT");
-rmSync(folder, { recursive: true });
+end();
 process.exitCode = isWithin ? 0 : 1;

@@ -1,41 +1,17 @@
 // scripts/bench-page: 50 edits through the page's own store, each until its full picture is there.
-import { spawn } from "node:child_process";
-import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 
 import { openBrowser } from "../../tests/page/browser.mjs";
+import { serve } from "./served.mjs";
 
 const EDITS = 50,
   PAUSE_MS = 60,
   root = resolve(import.meta.dirname, "../.."),
-  folder = mkdtempSync(join(tmpdir(), "aftershade-latency-")),
-  look = join(folder, "look.json");
-writeFileSync(
-  look,
-  JSON.stringify({
-    aftershade: 1,
-    steps: [
-      { effect: "dof", params: { focus_distance: "6.4 m", f_number: 0.5 } },
-      { effect: "view_transform", params: { exposure: 0.5 } },
-    ],
-  }),
-);
-const server = spawn(
-  process.env.AFTERSHADE_EXECUTABLE,
-  ["serve", look, join(root, "scenes/suzanne/capture.json"), "--port", "0"],
-  { env: { AFTERSHADE_BACKEND: "osmesa", ...process.env }, stdio: ["ignore", "pipe", "inherit"] },
-);
-const address = await new Promise((ready) =>
-  server.stdout.on("data", (data) => {
-    const found = /http:\S+/.exec(data);
-    if (found) ready(found[0]);
-  }),
-);
+  { address, end } = await serve(join(root, "scenes/suzanne/capture.json"));
 
 const browser = await openBrowser(),
   page = await browser.newPage({ viewport: { width: 1440, height: 900 } });
-await page.goto(address);
+await page.goto(address.href);
 await page.waitForFunction(() => window.aftershade?.viewer.canvas.dataset.scale === "1");
 await page.waitForTimeout(1000);
 const median = await page.evaluate(
@@ -63,8 +39,7 @@ const median = await page.evaluate(
   [EDITS, PAUSE_MS],
 );
 await browser.close();
-server.kill("SIGINT");
-rmSync(folder, { recursive: true });
+end();
 
 const limit_ms = 1.3 * median.passes_ms + 30;
 console.log(

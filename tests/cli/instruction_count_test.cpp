@@ -76,7 +76,7 @@ TEST(InstructionCounts, AreNotMoreThanThreePercentAboveThoseOnRecord) {
             const double before = counts.at("instructions").at(counted.name);
             EXPECT_LE(now, (1 + kTolerance) * before)
                 << counted.name << ": " << now / before
-                << " times the count on record. Mend it, or say in the commit why, "
+                << " times the count on record. Fix it, or give the reason in the commit, "
                 << "and renew the record with AFTERSHADE_RENEW_COUNTS=1";
         }
         counts["instructions"][counted.name] = std::uint64_t(now);

@@ -1,0 +1,85 @@
+// `aftershade serve` as a process, over a small capture and a look of two steps.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "framework/capture/capture_writer.h"
+#include "framework/image/role.h"
+#include "tests/cli/command.h"
+#include "tests/serve/client.h"
+#include "tests/synthetic_capture.h"
+
+namespace aftershade::test {
+
+inline const std::string kLook = R"({ "aftershade": 1,
+  // by eye
+  "steps": [
+    { "effect": "vignette" },
+    { "effect": "view_transform", "params": { "exposure": 0.5 } }
+  ] }
+)";
+
+class Serve : public ::testing::Test {
+protected:
+    void start(std::vector<std::string> more = {}) {
+        SyntheticScene scene{
+            .width = 64, .height = 36, .background = {0.1f, 0.2f, 0.4f}, .background_depth_m = 8};
+        scene.box = SyntheticBox{4, 6, 16, 12, 5, 2};
+        Capture capture = make_capture(scene, 1);
+        if (has_nan_) capture.images.at(kColorRole).at(3, 2, 1) = std::numeric_limits<float>::quiet_NaN();
+        write_capture(capture, folder_ / "in_0001.exr");
+        write_text(folder_ / "look.json", kLook);
+        write_text(folder_ / "secret.txt", "secret");
+        std::vector<std::string> words{"serve", "look.json", "in_0001.exr", "--backend", "osmesa"};
+        words.insert(words.end(), more.begin(), more.end());
+        command_.emplace(aftershade_words(words), folder_.path());
+        ASSERT_TRUE(command_->wait_for_lines(1)) << command_->wait().err;
+        const std::string address = command_->printed();
+        const std::size_t colon = address.rfind(':'), hash = address.find("/#token=");
+        ASSERT_TRUE(address.starts_with("http://127.0.0.1:") && hash != std::string::npos) << address;
+        port_ = std::stoi(address.substr(colon + 1, hash - colon - 1));
+        token_ = address.substr(hash + 8, 32);
+    }
+
+    std::string host() const { return "127.0.0.1:" + std::to_string(port_); }
+    Answer ask(const std::string& bytes) const {
+        const Client client(port_);
+        client.send(bytes);
+        return parsed(client.receive());
+    }
+    std::string head(const std::string& line, const std::string& more = "") const {
+        return line + " HTTP/1.1\r\nHost: " + host() + "\r\nX-Aftershade-Token: " + token_ + "\r\n" + more;
+    }
+    Answer get(const std::string& path) const { return ask(head("GET " + path) + "\r\n"); }
+    Answer post(const std::string& path, const std::string& body = "") const {
+        return ask(head("POST " + path, "Content-Length: " + std::to_string(body.size()) + "\r\n") + "\r\n" +
+                   body);
+    }
+    Answer set(double value, int step = 1, const char* param = "exposure") const {
+        const Json state = get("/api/state").json();
+        return post("/api/edit",
+                    Json{{"revision", state["revision"]},
+                         {"edits", {{{"op", "set"}, {"step", step}, {"param", param}, {"value", value}}}}}
+                        .dump());
+    }
+    Json times(const std::string& query = "") const {
+        return Json::parse(get("/api/picture?frame=1" + query).header("X-Aftershade-Times"));
+    }
+    int ended_by(int signal) {
+        command_->send(signal);
+        return command_->wait().exit_code;
+    }
+
+    TemporaryFolder folder_;
+    std::optional<Command> command_;
+    bool has_nan_ = false;
+    int port_ = 0;
+    std::string token_;
+};
+
+}  // namespace aftershade::test
