@@ -11,6 +11,11 @@ void main() {
     uint count = 0u;
     vec2 coc_px = texelFetch(tile_coc, tile, 0).rg;
     bool may_shine = p.y < frame.size.y && max(-coc_px.x, coc_px.y) >= kLeastHighlightRadiusPx;
+#ifdef HAS_HIDDEN_HIGHLIGHT
+    int hiding = p.y < frame.size.y && texelFetch(patched, tile, 0).r > 0.5 ? min(kTile, frame.size.x - p.x) : 0;
+    for (int i = 0; i < hiding; ++i)
+        if (texelFetch(hidden_highlight, p + ivec2(i, 0), 0).a > 0.5) ++count;
+#endif
     int columns = may_shine ? min(kTile, frame.size.x - p.x) : 0;
     for (int i = 0; i < columns; ++i)
         if (texelFetch(is_highlight, p + ivec2(i, 0), 0).r > 0.5) ++count;

@@ -101,24 +101,95 @@ TEST(DofHidden, AWireThatIsLitOnOneSideIsNoHighlight) {
     expect_bar(out, 47, 49, 0.08, 0.02);
 }
 
+/// A layer of the capture: premultiplied light, its alpha, its depth; alpha 0 where there is none.
+struct LayerPixel {
+    float light, alpha, depth_m;
+};
+
+template <typename PixelAt>
+void add_layer(Capture& capture, int layer, PixelAt pixel_at) {
+    Image color(kWidth, kHeight, 4), depth(kWidth, kHeight, 1);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            const LayerPixel pixel = pixel_at(x, y);
+            for (int c = 0; c < 3; ++c) color.at(x, y, c) = pixel.light;
+            color.at(x, y, 3) = pixel.alpha;
+            depth.at(x, y, 0) = pixel.depth_m;
+        }
+    capture.images[layer_role(layer, "color")] = std::move(color);
+    capture.images[layer_role(layer, "depth")] = std::move(depth);
+}
+
+constexpr float kNowhere = std::numeric_limits<float>::infinity();
+
 /// What no chord could guess: behind the bar the stripes stand the other way round.
 TEST(DofHidden, TheSecondLayerOfTheCaptureShowsThrough) {
     Capture capture = columns_over_stripes(43, std::vector<Column>(10, Column{0.05f, true}));
-    Image color(kWidth, kHeight, 4), depth(kWidth, kHeight, 1);
-    std::ranges::fill(depth.floats(), std::numeric_limits<float>::infinity());
-    for (int y = 0; y < kHeight; ++y)
-        for (int x = 43; x < 53; ++x) {
-            for (int c = 0; c < 3; ++c) color.at(x, y, c) = 1 - stripe(y);
-            color.at(x, y, 3) = 1;
-            depth.at(x, y, 0) = kApertureFocusM;
-        }
-    capture.images[layer_role(1, "color")] = std::move(color);
-    capture.images[layer_role(1, "depth")] = std::move(depth);
+    add_layer(capture, 1, [](int x, int y) {
+        return x >= 43 && x < 53 ? LayerPixel{1 - stripe(y), 1, kApertureFocusM} : LayerPixel{0, 0, kNowhere};
+    });
     const Image out = blurred(capture);
     for (int y = 20; y < 44; ++y)
         for (int x = 44; x < 52; ++x) {
             const double opacity = bar_opacity(x, 43, 53);
             EXPECT_NEAR(out.at(x, y, 0), opacity * 0.05 + (1 - opacity) * double(1 - stripe(y)), 0.02)
+                << x << " " << y;
+        }
+}
+
+/// Its pixels have the depth of the stripes, which cover more of them: by one sample of depth it is no wire.
+TEST(DofHidden, AWireThatHasTwoFifthsOfItsPixelsSpreadsTwoFifths) {
+    constexpr float share = 0.4f, light = 0.05f;
+    Capture capture = columns_over_stripes(47, {{light, false, 1 - share}});
+    add_layer(capture, 0, [&](int x, int y) {
+        return x == 47 ? LayerPixel{share * light, share, kApertureFocusM / 2}
+                       : LayerPixel{stripe(y), 1, kApertureFocusM};
+    });
+    add_layer(capture, 1, [&](int x, int y) {
+        return x == 47 ? LayerPixel{stripe(y), 1, kApertureFocusM} : LayerPixel{0, 0, kNowhere};
+    });
+    const Image out = blurred(capture);
+    double spread = 0, expected = 0;
+    for (int y = 20; y < 44; ++y)
+        for (int x = 24; x < 72; ++x) {
+            const double opacity = share * bar_opacity(x, 47, 48);
+            EXPECT_NEAR(out.at(x, y, 0), opacity * light + (1 - opacity) * double(stripe(y)), 0.015)
+                << x << " " << y;
+            expected += opacity * double(stripe(y) - light);
+            spread += double(stripe(y) - out.at(x, y, 0));
+        }
+    EXPECT_NEAR(spread / expected, 1, 0.1);
+}
+
+/// Half of a lamp stands behind a wire: as sharp a disk as the other half, dimmed by the wire's blur.
+TEST(DofHidden, ALampThatALayerHasBehindAWireIsASharpDisk) {
+    constexpr float lamp = 200, wall = 0.1f, lamp_m = 2 * kApertureFocusM, wall_m = 4 * kApertureFocusM;
+    constexpr double lamp_radius_px = kRadiusPx / 2;
+    Capture capture = columns_over_stripes(47, {{0.05f, true}});
+    const auto behind = [&](int x, int y) {
+        return (x == 47 || x == 48) && y == 32 ? LayerPixel{lamp, 1, lamp_m} : LayerPixel{wall, 1, wall_m};
+    };
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            if (x == 47) continue;
+            for (int c = 0; c < 3; ++c) capture.images["color"].at(x, y, c) = behind(x, y).light;
+            capture.images["depth"].at(x, y, 0) = behind(x, y).depth_m;
+        }
+    add_layer(capture, 1, [&](int x, int y) { return x == 47 ? behind(x, y) : LayerPixel{0, 0, kNowhere}; });
+    const Image out = blurred(capture);
+    const double disk = lamp / (kPi * lamp_radius_px * lamp_radius_px);
+    for (int y = 22; y < 43; ++y)
+        for (int x = 36; x < 60; ++x) {
+            double lit = wall;
+            bool is_rim = false;
+            for (const double center : {47.5, 48.5}) {
+                const double distance_px = std::hypot(x + 0.5 - center, y + 0.5 - 32.5);
+                is_rim = is_rim || std::abs(distance_px - lamp_radius_px) < 1;
+                if (distance_px < lamp_radius_px) lit += disk;
+            }
+            if (is_rim) continue;
+            const double opacity = bar_opacity(x, 47, 48);
+            EXPECT_NEAR(out.at(x, y, 0), opacity * 0.05 + (1 - opacity) * lit, 0.04 * lit + 0.01)
                 << x << " " << y;
         }
 }

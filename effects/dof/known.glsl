@@ -1,31 +1,32 @@
-#include <behind.glsl>
 #include <lens/lens.glsl>
 
 // What the capture's layers have behind a pixel.
-#if defined(HAS_SECOND) && defined(HAS_SECOND_DEPTH)
-#define KNOWS_BEHIND
+#ifdef KNOWS_LAYERS
+#if HIGHLIGHTS == HIGHLIGHTS_SCATTER
+#define FINDS_HIGHLIGHTS
+#endif
 
-const float kOneLayerPx = 2.0;  // difference of CoC radii on one surface
+const float kOneLayerPx = 2.0;  // difference of CoC radii of a surface and a guess of it
 
 struct Known {
     Light light;
     bool is_there;
 };
 
-Known known_of(vec4 behind, float depth_m, float least_coc_px) {
-    Light light = Light(covering(behind), coc_of(depth_m, lens_at_infinity_px()));
-    return Known(light, light.color.a > 0.0 && light.coc > least_coc_px - kOneLayerPx);
+// Share of what is left of a pixel at a layer that it and those behind it hold.
+float rest_of(Layers layers, int from) {
+    float left = 1.0;
+    for (int k = from; k < kLayers; ++k) left *= 1.0 - layers.color[k].a;
+    return 1.0 - left;
 }
 
-// The first layer that does not lie clearly in front of least_coc_px.
-Known known_behind(ivec2 p, float least_coc_px) {
-    Known known = known_of(texelFetch(second, p, 0), texelFetch(second_depth, p, 0).r, least_coc_px);
-#if defined(HAS_THIRD) && defined(HAS_THIRD_DEPTH)
-    if (!known.is_there) known = known_of(texelFetch(third, p, 0), texelFetch(third_depth, p, 0).r, least_coc_px);
-#endif
-#if defined(HAS_FOURTH) && defined(HAS_FOURTH_DEPTH)
-    if (!known.is_there) known = known_of(texelFetch(fourth, p, 0), texelFetch(fourth_depth, p, 0).r, least_coc_px);
-#endif
-    return known;
+// Of what has more than least_coc_px, the nearest surface that holds most of the rest of the pixel.
+Known known_behind(Layers layers, float least_coc_px) {
+    for (int k = 1; k < kLayers; ++k) {
+        if (layers.color[k].a <= 0.0 || layers.coc[k] <= least_coc_px) continue;
+        vec4 sum = composite_of(layers, k, k);
+        if (sum.a > 0.5 * rest_of(layers, k)) return Known(Light(sum / sum.a, layers.coc[k]), true);
+    }
+    return Known(Light(vec4(0.0), 0.0), false);
 }
 #endif

@@ -1,5 +1,6 @@
 #version 450 core
 #include <pass>
+#include "highlights.glsl"
 #include "tile.glsl"
 
 layout(local_size_x = 1) in;
@@ -10,6 +11,11 @@ void main() {
     if (tile_count[number] == 0u) return;
     uint next = tile_first[number];
     for (int y = corner.y; y < end.y; ++y)
-        for (int x = corner.x; x < end.x; ++x)
-            if (texelFetch(is_highlight, ivec2(x, y), 0).r > 0.5) highlight_list[next++] = uint(x) | uint(y) << 16;
+        for (int x = corner.x; x < end.x; ++x) {
+            ivec2 p = ivec2(x, y);
+            if (texelFetch(is_highlight, p, 0).r > 0.5) highlight_list[next++] = place_of(p);
+#ifdef HAS_HIDDEN_HIGHLIGHT
+            if (texelFetch(hidden_highlight, p, 0).a > 0.5) highlight_list[next++] = place_of(p) | kHidden;
+#endif
+        }
 }

@@ -1,12 +1,23 @@
 #version 450 core
 #include <pass>
+#include "own.glsl"
 #include "tile.glsl"
+
+float amount(vec4 light) { return dot(light.rgb, vec3(1.0)); }
 
 void main() {
     int rows = texelFetch(lit, 8 * ivec2(gl_FragCoord.xy) / kTile, 0).r > 0.5 ? 8 : 0;
     ivec2 last = ivec2(color_size.xy) - 1, corner = 8 * ivec2(gl_FragCoord.xy);
-    float sum = 0.0;
+    vec2 sum = vec2(0.0);
     for (int y = 0; y < rows; ++y)
-        for (int x = 0; x < 8; ++x) sum += dot(texelFetch(color, min(corner + ivec2(x, y), last), 0).rgb, vec3(1.0));
+        for (int x = 0; x < 8; ++x) {
+            ivec2 p = min(corner + ivec2(x, y), last);
+            float visible = amount(own_color(p));
+            sum.x += visible;
+#ifdef HAS_SECOND
+            vec4 behind = texelFetch(second, p, 0);
+            sum.y += behind.a > 0.0 ? amount(behind) / behind.a : visible;
+#endif
+        }
     out_mean = sum / 64.0;
 }

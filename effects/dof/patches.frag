@@ -3,6 +3,9 @@
 #include <lens/highlight.glsl>
 #include "taps.glsl"
 #include "known.glsl"
+#ifdef FINDS_HIGHLIGHTS
+#include "shine.glsl"
+#endif
 #include "neighbours.glsl"
 
 // What lies behind a surface near its silhouette, continued from both ends of chords through the pixel. Chords whose ends are
@@ -135,11 +138,24 @@ Patch patch_behind(vec2 center, Light own, float reach_px, bool is_thin) {
     return Patch(mean, true);
 }
 
+#ifdef KNOWS_LAYERS
+float highlight_share_of(Known known, ivec2 p) {
+#ifdef FINDS_HIGHLIGHTS
+    if (known.is_there)
+        return highlight_share(amount(known.light.color.rgb), texelFetch(surround, p / 8, 0).ba, abs(known.light.coc), vec2(p) + 0.5);
+#endif
+    return 0.0;
+}
+#endif
+
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     vec2 center = vec2(p) + 0.5;
     Light own = tap_light(p, 0);
     out_patches = kNoPatch;
+#ifdef FINDS_HIGHLIGHTS
+    out_hidden_highlight = vec4(0.0);
+#endif
 #ifdef SEES_NEIGHBOURS
     out_seen = 0.0;
 #endif
@@ -152,9 +168,20 @@ void main() {
         if (!next.is_there) break;
         patched = next;
     }
-#ifdef KNOWS_BEHIND
-    Known known = known_behind(p, patched.is_there ? patched.mean.light.coc : -1e9);
+#ifdef KNOWS_LAYERS
+    Layers layers = layers_at(p, lens_at_infinity_px());
+    // A small light may lie in front of what the chords lead to.
+    Known known = known_behind(layers, own.coc + kClear);
+    float share = highlight_share_of(known, p);
+    if (share == 0.0 && patched.is_there) {
+        known = known_behind(layers, patched.mean.light.coc - kOneLayerPx);
+        share = highlight_share_of(known, p);
+    }
     if (known.is_there) {
+#ifdef FINDS_HIGHLIGHTS
+        out_hidden_highlight = vec4(share * known.light.color.rgb, share > 0.0 ? 1.0 : 0.0);
+#endif
+        known.light.color.rgb *= 1.0 - share;
         out_patches = pack_light(known.light);
         return;
     }

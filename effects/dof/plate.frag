@@ -9,8 +9,8 @@ void main() {
     out_plate = texelFetch(patches, p, 0);
     Light own = unpack_light(out_plate);
     if (!is_patch(own)) return;
-#ifdef KNOWS_BEHIND
-    Known known = known_behind(p, own.coc);
+#ifdef KNOWS_LAYERS
+    Known known = known_behind(layers_at(p, lens_at_infinity_px()), own.coc - kOneLayerPx);
     if (known.is_there && abs(known.light.coc - own.coc) < 0.1) return;
 #endif
 #ifdef HAS_SEEN

@@ -1,13 +1,27 @@
 #version 450 core
 #include <pass>
+#include <lens/packing.glsl>
+#include "highlights.glsl"
+#include "own.glsl"
 
-layout(location = 0) flat out ivec2 source;
+layout(location = 0) flat out vec2 source;
+layout(location = 1) flat out vec3 highlight;
+layout(location = 2) flat out float source_coc;
 
 void main() {
     uint place = highlight_list[gl_InstanceID];
-    source = ivec2(place & 0xffffu, place >> 16);
-    float reach_px = abs(texelFetch(coc, source, 0).r) + 1.0;
+    ivec2 p = highlight_place(place);
+    source = vec2(p) + 0.5;
+    source_coc = texelFetch(coc, p, 0).r;
+    highlight = own_color(p).rgb - unpack_light(texelFetch(light, p, 0)).color.rgb;
+#ifdef HAS_HIDDEN_HIGHLIGHT
+    if (is_hidden(place)) {
+        source_coc = unpack_light(texelFetch(plate, p, 0)).coc;
+        highlight = texelFetch(hidden_highlight, p, 0).rgb;
+    }
+#endif
+    float reach_px = abs(source_coc) + 1.0;
     vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
-    vec2 p = vec2(source) + 0.5 + reach_px * corner;
-    gl_Position = vec4(2.0 * p.x / float(frame.size.x) - 1.0, 1.0 - 2.0 * p.y / float(frame.size.y), 0.0, 1.0);
+    vec2 at = source + reach_px * corner;
+    gl_Position = vec4(2.0 * at.x / float(frame.size.x) - 1.0, 1.0 - 2.0 * at.y / float(frame.size.y), 0.0, 1.0);
 }

@@ -13,4 +13,14 @@ float coc_of(float depth_m, float at_infinity_px) {
     return clamp(coc, -param.max_coc_radius, param.max_coc_radius);
 }
 
-float coc_at(ivec2 p, float at_infinity_px) { return coc_of(texelFetch(depth, p, 0).r, at_infinity_px); }
+#if defined(HAS_SECOND) && defined(HAS_SECOND_DEPTH)
+#include "surface.glsl"
+#endif
+
+float coc_at(ivec2 p, float at_infinity_px) {
+#ifdef SHARES_PIXELS
+    return surface_at(p, at_infinity_px).coc;
+#else
+    return coc_of(texelFetch(depth, p, 0).r, at_infinity_px);
+#endif
+}
