@@ -269,5 +269,51 @@ TEST(DofHidden, ALightBesideAWireIsNotContinuedBehindIt) {
         for (int x = 46; x < 50; ++x) EXPECT_LE(out.at(x, y, 0), 1) << x << " " << y;
 }
 
+/// A wire crosses an antialiased lamp in focus: pixels that both share have the wire's depth and much of the
+/// lamp's light, and pixels of the stripes beside them take it for a light of the wire.
+TEST(DofHidden, ALampBehindAWireThrowsNoDiskOfTheWires) {
+    Capture capture = columns_over_stripes(47, {{0.05f, true}});
+    const auto light = [&](int x, int y, float amount) {
+        for (int c = 0; c < 3; ++c) capture.images["color"].at(x, y, c) = amount;
+    };
+    for (const int y : {31, 32}) {
+        light(47, y, 25);
+        light(48, y, 40);
+        light(49, y, 40);
+    }
+    for (const int y : {30, 33}) {
+        light(48, y, 20);
+        light(49, y, 20);
+    }
+    const Image out = blurred(capture);
+    // The wire lacks the two pixels that the lamp has.
+    for (int y = 20; y < 44; ++y) {
+        if (y % 8 < 2 || y % 8 > 5) continue;
+        for (int x = 32; x < 64; ++x) {
+            if (std::hypot(x - 48, y - 32) < 4) continue;
+            const double opacity = bar_opacity(x, 47, 48);
+            EXPECT_NEAR(out.at(x, y, 0), opacity * 0.05 + (1 - opacity) * double(stripe(y)), 0.025)
+                << x << " " << y;
+        }
+    }
+}
+
+/// Across a wire's side the darker stripe is like a mixture of the lighter one and the wire. It is none: the
+/// stripe goes on.
+TEST(DofHidden, AnEdgeOfWhatIsInFocusStaysSharpBesideAWire) {
+    Capture capture = columns_over_stripes(47, {{0.02f, true}, {0.02f, true}});
+    const auto half = [](int y) { return y < 32 ? 0.5f : 0.18f; };
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x)
+            for (int c = 0; c < 3 && x != 47 && x != 48; ++c) capture.images["color"].at(x, y, c) = half(y);
+    const Image out = blurred(capture);
+    for (int y = 28; y < 36; ++y)
+        for (const int x : {45, 46, 49, 50}) {
+            const double opacity = bar_opacity(x, 47, 49);
+            EXPECT_NEAR(out.at(x, y, 0), opacity * 0.02 + (1 - opacity) * double(half(y)), 0.02)
+                << x << " " << y;
+        }
+}
+
 }  // namespace
 }  // namespace aftershade::test::dof

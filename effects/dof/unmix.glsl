@@ -10,17 +10,39 @@ const float kLeastBlurredPx = 2.0;
 const float kContrast = 0.15;  // of two surfaces, below which a mixture cannot be seen
 const float kOffLine = 0.03;   // squared distance from the line between both colours, of its length squared
 
+bool is_across(ivec2 p, float coc_px) { return abs(coc_inside(p) - coc_px) > kOneSurfacePx; }
+
+// Whether a pixel near p, of its surface and off the silhouette, has p's colour, which then is the surface's own. Upscaled
+// captures repeat a mixed pixel up to kTexturePx - 1 times.
+const float kSameColor = 0.01;  // squared difference, of the squared one of both surfaces
+const int kTexturePx = 3;
+bool is_texture(ivec2 p, vec3 own, float coc_px, ivec2 to, float length_2) {
+    ivec2 side = ivec2(-to.y, to.x);
+    for (int i = 0; i < 9; ++i) {
+        ivec2 q = p + kTexturePx * (ivec2(i % 3, i / 3) - 1);
+        if (i == 4 || is_across(q, coc_px) || is_across(q + to, coc_px) || is_across(q + side, coc_px) || is_across(q - side, coc_px)) continue;
+        vec3 off = color_inside(q) - own;
+        if (dot(off, off) < kSameColor * length_2) return true;
+    }
+    return false;
+}
+
 vec3 unmixed(ivec2 p, vec3 own, float coc_px) {
     float most = kLeastShare;
     vec3 result = own;
+    ivec2 best = ivec2(0);
+    float length_of_best = 0.0;
     for (int i = 0; i < 9; ++i) {
         ivec2 to = ivec2(i % 3, i / 3) - 1;
         float across_coc = coc_inside(p + to);
-        if (abs(across_coc - coc_px) <= kOneSurfacePx || abs(coc_inside(p - 2 * to) - coc_px) > kOneSurfacePx) continue;
+        if (abs(across_coc - coc_px) <= kOneSurfacePx || is_across(p - 2 * to, coc_px)) continue;
         if (abs(min(across_coc, coc_px)) < kLeastBlurredPx) continue;  // a nearer one in focus keeps its antialiasing
-        bool is_thick = abs(coc_inside(p + 2 * to) - across_coc) <= kOneSurfacePx;
-        vec3 self = color_inside(p - 2 * to), change = self - color_inside(p - 3 * to);
-        vec3 difference = color_inside(is_thick ? p + 2 * to : p + to) - self;
+        vec3 self = color_inside(p - 2 * to), change = self - color_inside(p - 3 * to), difference = color_inside(p + to) - self;
+        if (abs(coc_inside(p + 2 * to) - across_coc) <= kOneSurfacePx) {
+            // The pixel across may be mixed too, or the only one of a lit rim.
+            vec3 inner = color_inside(p + 2 * to) - self;
+            if (dot(inner, inner) > dot(difference, difference)) difference = inner;
+        }
         float length_2 = dot(difference, difference);
         if (amount(abs(difference)) < kContrast * (amount(abs(self)) + amount(abs(self + difference)))) continue;
         // Shading that continues as it does inside the surface is not a mixture.
@@ -28,7 +50,9 @@ vec3 unmixed(ivec2 p, vec3 own, float coc_px) {
         vec3 rest = own - self - share * difference;
         if (share <= most || share > kMostShare || max(dot(rest, rest), dot(change, change)) > kOffLine * length_2) continue;
         most = share;
+        best = to;
+        length_of_best = length_2;
         result = max(own - share * difference, min(own, self));
     }
-    return result;
+    return best != ivec2(0) && is_texture(p, own, coc_px, best, length_of_best) ? own : result;
 }
