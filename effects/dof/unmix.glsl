@@ -27,32 +27,45 @@ bool is_texture(ivec2 p, vec3 own, float coc_px, ivec2 to, float length_2) {
     return false;
 }
 
+struct Mixture {
+    vec3 rest;       // light without what came from across
+    float share;     // 0 where p is no mixture
+    float length_2;
+};
+
+// p as a mixture of a colour of its own surface and one from across. beyond: further inside than self.
+Mixture mixture_of(vec3 own, vec3 self, vec3 beyond, vec3 across) {
+    vec3 difference = across - self, change = self - beyond;
+    float length_2 = dot(difference, difference);
+    const Mixture none = Mixture(vec3(0.0), 0.0, 0.0);
+    if (amount(abs(difference)) < kContrast * (amount(abs(self)) + amount(abs(across)))) return none;
+    // Shading that continues as it does inside the surface is not a mixture.
+    float share = (dot(own - self, difference) - 2.0 * max(dot(change, difference), 0.0)) / length_2;
+    vec3 rest = own - self - share * difference;
+    if (share <= kLeastShare || share > kMostShare || max(dot(rest, rest), dot(change, change)) > kOffLine * length_2) return none;
+    return Mixture(max(own - share * difference, min(own, self)), share, length_2);
+}
+
 vec3 unmixed(ivec2 p, vec3 own, float coc_px) {
-    float most = kLeastShare;
-    vec3 result = own;
-    ivec2 best = ivec2(0);
-    float length_of_best = 0.0;
+    Mixture best = Mixture(own, 0.0, 0.0);
+    ivec2 way = ivec2(0);
     for (int i = 0; i < 9; ++i) {
         ivec2 to = ivec2(i % 3, i / 3) - 1;
         float across_coc = coc_inside(p + to);
         if (abs(across_coc - coc_px) <= kOneSurfacePx || is_across(p - 2 * to, coc_px)) continue;
         if (abs(min(across_coc, coc_px)) < kLeastBlurredPx) continue;  // a nearer one in focus keeps its antialiasing
-        vec3 self = color_inside(p - 2 * to), change = self - color_inside(p - 3 * to), difference = color_inside(p + to) - self;
+        vec3 self = color_inside(p - 2 * to), across = color_inside(p + to);
         if (abs(coc_inside(p + 2 * to) - across_coc) <= kOneSurfacePx) {
             // The pixel across may be mixed too, or the only one of a lit rim.
-            vec3 inner = color_inside(p + 2 * to) - self;
-            if (dot(inner, inner) > dot(difference, difference)) difference = inner;
+            vec3 inner = color_inside(p + 2 * to) - self, outer = across - self;
+            if (dot(inner, inner) > dot(outer, outer)) across = inner + self;
         }
-        float length_2 = dot(difference, difference);
-        if (amount(abs(difference)) < kContrast * (amount(abs(self)) + amount(abs(self + difference)))) continue;
-        // Shading that continues as it does inside the surface is not a mixture.
-        float share = (dot(own - self, difference) - 2.0 * max(dot(change, difference), 0.0)) / length_2;
-        vec3 rest = own - self - share * difference;
-        if (share <= most || share > kMostShare || max(dot(rest, rest), dot(change, change)) > kOffLine * length_2) continue;
-        most = share;
-        best = to;
-        length_of_best = length_2;
-        result = max(own - share * difference, min(own, self));
+        Mixture mixture = mixture_of(own, self, color_inside(p - 3 * to), across);
+        // An edge of the surface's own may lie that near.
+        if (mixture.share == 0.0 && !is_across(p - to, coc_px)) mixture = mixture_of(own, color_inside(p - to), self, across);
+        if (mixture.share <= best.share) continue;
+        best = mixture;
+        way = to;
     }
-    return best != ivec2(0) && is_texture(p, own, coc_px, best, length_of_best) ? own : result;
+    return way != ivec2(0) && is_texture(p, own, coc_px, way, best.length_2) ? own : best.rest;
 }
