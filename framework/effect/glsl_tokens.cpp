@@ -39,18 +39,18 @@ private:
                 in_comment_ = true;
                 at += 2;
             } else {
-                at = add_token(text, at, {line.file, line.line, int(at) + 1});
+                at = add_token(text, at, line);
             }
         }
     }
 
-    std::size_t add_token(std::string_view text, std::size_t at, Place place) {
+    std::size_t add_token(std::string_view text, std::size_t at, const SourceLine& line) {
         const auto is_part = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
         std::size_t end = at + 1;
         // A number takes its letters along: 1e5, 0xff, 2u.
         while (is_part(text[at]) && end < text.size() && is_part(text[end])) ++end;
         if (!std::isspace(static_cast<unsigned char>(text[at])))
-            tokens_.push_back({std::string(text.substr(at, end - at)), std::move(place)});
+            tokens_.push_back({std::string(text.substr(at, end - at)), {line.file, line.line, int(at) + 1}});
         return end;
     }
 

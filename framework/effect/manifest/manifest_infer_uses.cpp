@@ -1,6 +1,7 @@
 // Reads and writes of passes that leave them to their shaders' text.
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -25,7 +26,7 @@ public:
         // The author's own file: of a tile list, whose shader is the host's, the predicate.
         if (!fs::is_regular_file(pass.folder / pass.shader)) return;  // told later
         pass_ = &pass;
-        const ShaderUses main = uses_of(ShaderFile::main);
+        const ShaderUses& main = uses_of(ShaderFile::main);
         if (pass.infers_reads) {
             add_reads(main);
             const fs::path vertex = shader_path(pass, ShaderFile::vertex, glsl_folder_);
@@ -41,8 +42,14 @@ public:
     }
 
 private:
-    ShaderUses uses_of(ShaderFile file) const {
-        return ShaderUses(glsl_tokens(author_text(manifest_, *pass_, glsl_folder_, diagnostics_, file)));
+    /// Passes of one shader with different defines share its text. A tile list's shader includes its
+    /// predicate.
+    const ShaderUses& uses_of(ShaderFile file) {
+        const std::pair path(shader_path(*pass_, file, glsl_folder_), pass_->folder / pass_->shader);
+        const auto found = uses_.find(path);
+        if (found != uses_.end()) return found->second;
+        const ShaderSource text = author_text(manifest_, *pass_, glsl_folder_, diagnostics_, file);
+        return uses_.emplace(path, ShaderUses(glsl_tokens(text))).first->second;
     }
 
     /// Where the text uses a name, by itself or as the value of one of the pass's defines.
@@ -149,6 +156,7 @@ private:
     const EffectManifest& manifest_;
     const fs::path glsl_folder_;
     Diagnostics& diagnostics_;
+    std::map<std::pair<fs::path, fs::path>, ShaderUses> uses_;
     PassSpec* pass_ = nullptr;  // whose uses are inferred
     std::set<std::string> told_;
 };
