@@ -129,12 +129,40 @@ export class Histogram {
   }
 }
 
+const chip = (words, kind = "", title = null) => element("span", { class: `chip ${kind}`, title }, words);
+
+/** How far the steps' colour is from the truths beside the frame. */
+class Truths {
+  constructor() {
+    this.node = element("div", { class: "truths", role: "group", "aria-label": "Distance from the truth", hidden: true });
+  }
+
+  /** Figures of an older call are dropped. */
+  async load(frame, truths) {
+    this.node.hidden = !truths.length;
+    const call = (this.call = {}),
+      chips = [];
+    for (const truth of truths) {
+      try {
+        const { psnr_db, flip } = await get("/api/metrics", { frame, truth });
+        const psnr = psnr_db === "inf" ? "equal" : `${short(psnr_db, 4)} dB`;
+        chips.push(chip(`${truth}: ${psnr}, FLIP ${short(flip, 3)}`, "", `PSNR and mean FLIP of the steps' colour against the truth '${truth}'`));
+      } catch (error) {
+        chips.push(chip(`${truth}: not compared`, "bad", error.message));
+      }
+      if (call !== this.call) return;
+    }
+    this.node.replaceChildren(...chips);
+  }
+}
+
 export class Costs {
   known = new Map();
 
   constructor() {
     this.total = element("span", { class: "aside" });
     this.chips = element("div", { class: "chips" });
+    this.truths = new Truths();
     this.bars = element("ol", { class: "bars", "aria-label": "Time by pass" });
     this.hint = element("p", { class: "slow", hidden: true });
     this.none = element(
@@ -146,6 +174,7 @@ export class Costs {
       "Cost",
       this.total,
       this.chips,
+      this.truths.node,
       this.hint,
       this.none,
       element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Times" }, this.bars),
@@ -157,7 +186,6 @@ export class Costs {
     if (!times) return;
     const { passes, total_ms, steps_drawn, steps_cached, memory_bytes, non_finite } = times;
     this.total.textContent = `${milliseconds(total_ms)}${isCoarse ? " at 1/4" : ""}`;
-    const chip = (words, kind = "", title = null) => element("span", { class: `chip ${kind}`, title }, words);
     const counted = (count) => `${count} ${count === 1 ? "step" : "steps"}`;
     this.chips.replaceChildren(
       chip(

@@ -257,6 +257,7 @@ viewer.addEventListener("picture", ({ detail }) => {
       shown: isFinal ? detail.bitmap : null,
     });
     probe.again(viewer.frame);
+    costs.truths.load(viewer.frame, store.state.capture.truths[viewer.frame] ?? []);
   }, 150);
 });
 viewer.addEventListener("probe", ({ detail }) => probe.show(detail, viewer.frame));

@@ -161,6 +161,7 @@ export class Viewer extends EventTarget {
     const roles = capture.roles.map(({ name }) => `role:${name}`);
     const groups = [
       ["Picture", ["final", "before"]],
+      ["Truth", [...new Set(Object.values(capture.truths).flat())].map((name) => `truth:${name}`)],
       ["Roles of the capture", roles],
       ["Taps", taps],
     ];

@@ -36,7 +36,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
     {"batch", {"core", "image", "file", "capture", "compare", "gpu", "graph", "effect", "pipeline"}},
     {"host",
      {"core", "image", "file", "capture", "inspect", "compare", "gpu", "graph", "effect", "pipeline"}},
-    {"serve", {"core", "image", "file", "capture", "gpu", "graph", "effect", "pipeline"}},
+    {"serve", {"core", "image", "file", "capture", "compare", "gpu", "graph", "effect", "pipeline"}},
     {"scene", {"core", "scattering", "image", "file", "capture"}},
     {"visibility", {"core", "gpu", "scene"}},
 };

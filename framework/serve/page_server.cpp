@@ -12,6 +12,7 @@
 #include "framework/core/text.h"
 #include "framework/effect/new_effect.h"
 #include "framework/image/role.h"
+#include "framework/serve/truths.h"
 #include "framework/serve/view_picture.h"
 
 namespace aftershade::serve {
@@ -60,12 +61,15 @@ Json capture_json(const Sequence& sequence, const CaptureHeader& header, const s
                                           ? std::size_t(contract ? contract->channels : 0)
                                           : stored->second.size()}});
     }
+    Json truths = Json::object();
+    for (const auto& [frame, names] : truths_of(sequence)) truths[std::to_string(frame)] = names;
     return {{"path", path},
             {"frames", sequence.frames},
             {"fps", sequence.fps},
             {"width", header.display_window.width()},
             {"height", header.display_window.height()},
-            {"roles", roles}};
+            {"roles", roles},
+            {"truths", truths}};
 }
 
 }  // namespace
@@ -135,6 +139,13 @@ Response PageServer::histogram(const Request& request) {
     const PictureRequest wanted = request_of(request);
     return setup_.pictures.run({},
                                [&](PictureMaker& maker) { return json_response(maker.histogram(wanted)); });
+}
+
+Response PageServer::metrics(const Request& request) {
+    const PictureRequest wanted = request_of(request);
+    const std::string truth = request.parameter("truth");
+    return setup_.pictures.run(
+        {}, [&](PictureMaker& maker) { return json_response(maker.metrics(wanted, truth)); });
 }
 
 Response PageServer::command() const {
@@ -217,6 +228,7 @@ Response PageServer::answer(const Request& request) {
         {"/api/picture", {"GET", [&] { return picture(request); }}},
         {"/api/probe", {"GET", [&] { return probe(request); }}},
         {"/api/histogram", {"GET", [&] { return histogram(request); }}},
+        {"/api/metrics", {"GET", [&] { return metrics(request); }}},
         {"/api/command", {"GET", [&] { return command(); }}},
         {"/api/changes", {"GET", [&] { return changes(); }}},
         {"/api/shaders", {"GET", [&] { return shaders(request); }}},

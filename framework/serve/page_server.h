@@ -44,6 +44,7 @@ private:
     Response picture(const Request& request);
     Response probe(const Request& request);
     Response histogram(const Request& request);
+    Response metrics(const Request& request);
     Response command() const;
     Response changes();
     Response shaders(const Request& request) const;

@@ -15,6 +15,7 @@
 #include "framework/image/role.h"
 #include "framework/pipeline/nan_policy.h"
 #include "framework/serve/quick_png.h"
+#include "framework/serve/truths.h"
 #include "framework/serve/view_picture.h"
 
 namespace aftershade::serve {
@@ -22,6 +23,8 @@ namespace aftershade::serve {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr std::string_view kTruthView = "truth:";
 
 double ms_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -65,6 +68,7 @@ PictureMaker::PictureMaker(Sequence sequence, std::vector<Profile> profiles, Rea
                            gpu::Backend backend, std::filesystem::path data_folder)
     : sequence_(std::move(sequence)),
       reader_(sequence_, std::move(profiles), limits),
+      limits_(limits),
       context_(backend),
       programs_(
           std::make_shared<ProgramCache>(context_, data_folder / "glsl", ProgramStore::from_environment())) {}
@@ -184,7 +188,10 @@ MadePicture PictureMaker::make(const PictureRequest& request) {
     Image shown;
     const bool is_stored_role =
         request.view.starts_with("role:") && !scaled.result.images.contains(request.view.substr(5));
-    if (is_stored_role) {
+    if (request.view.starts_with(kTruthView)) {
+        const Capture& wanted = truth(request.frame, request.view.substr(kTruthView.size()));
+        shown = view_picture({"before", request.exposure_ev, scaled.result, wanted});
+    } else if (is_stored_role) {
         const Capture& whole = whole_capture(request.frame);
         shown = view_picture({request.view, request.exposure_ev, scaled.result, whole});
     } else {
@@ -222,6 +229,29 @@ const Capture& PictureMaker::whole_capture(int frame) {
         whole_frame_ = frame;
     }
     return *whole_;
+}
+
+const Capture& PictureMaker::truth(int frame, const std::string& name) {
+    const std::pair key(frame, name);
+    if (!truth_ || truth_key_ != key) {
+        truth_.reset();
+        const CaptureHeader header =
+            reader_.read_header(sequence_.file_number(frame, sequence_.subframes / 2));
+        truth_ = std::make_unique<Capture>(read_truth(sequence_, frame, name, header, limits_));
+        truth_key_ = key;
+    }
+    return *truth_;
+}
+
+nlohmann::ordered_json PictureMaker::metrics(const PictureRequest& request, const std::string& name) {
+    const Image& reference = truth(request.frame, name).images.at(kColorRole);
+    PictureRequest full = request;
+    full.scale = 1;
+    full.view = std::string("role:") + kColorRole;
+    const Scaled& scaled = draw(full);
+    const auto made = scaled.result.images.find(kColorRole);
+    if (made != scaled.result.images.end()) return metrics_json(name, reference, made->second);
+    return metrics_json(name, reference, whole_capture(request.frame).images.at(kColorRole));
 }
 
 nlohmann::ordered_json PictureMaker::probe(const PictureRequest& request, int x, int y) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -24,7 +25,7 @@ struct PictureRequest {
     std::shared_ptr<const BoundText> look;
     int frame = 0;
     int scale = 1;               ///< the picture has 1/scale of the pixels of each side
-    std::string view = "final";  ///< or before, tap:STEP.TEXTURE, role:NAME
+    std::string view = "final";  ///< or before, tap:STEP.TEXTURE, role:NAME, truth:NAME
     double exposure_ev = 0;
 };
 
@@ -47,6 +48,8 @@ public:
     nlohmann::ordered_json probe(const PictureRequest& request, int x, int y);
     /// Of the final picture: how many pixels have each of 256 values.
     nlohmann::ordered_json histogram(const PictureRequest& request);
+    /// How far the colour that the steps make is from a truth beside the frame.
+    nlohmann::ordered_json metrics(const PictureRequest& request, const std::string& truth);
 
 private:
     /// The captures of one frame.
@@ -78,14 +81,18 @@ private:
     FrameResult draw_frame(Scaled& scaled, const std::vector<std::string>& roles, bool is_same);
     Image picture(const Scaled& scaled, const PictureRequest& request) const;
     const Capture& whole_capture(int frame);
+    const Capture& truth(int frame, const std::string& name);
 
     Sequence sequence_;
     CaptureReader reader_;
+    ReadLimits limits_;
     gpu::Context context_;
     std::shared_ptr<ProgramCache> programs_;
     std::map<int, Scaled> scaled_;    // by scale
     std::unique_ptr<Capture> whole_;  // with every role, for probes
     int whole_frame_ = 0;
+    std::unique_ptr<Capture> truth_;  // the last that was requested
+    std::pair<int, std::string> truth_key_;
     int drawn_ = 0;  // steps, by the last draw(); 0 where everything was there
 };
 

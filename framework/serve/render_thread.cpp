@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "framework/core/error.h"
+#include "framework/serve/refusal.h"
 
 namespace aftershade::serve {
 
@@ -24,6 +25,8 @@ bool is_of_documents(ExitCode code) {
 Response answer_of(const RenderThread::Work& work, PictureMaker& maker) {
     try {
         return work(maker);
+    } catch (const Refusal& refusal) {
+        return error_response(refusal.status, refusal.message);
     } catch (const Error& error) {
         return error_response(is_of_documents(error.exit_code()) ? 400 : 500, error.what());
     } catch (const std::exception& error) {

@@ -1,7 +1,7 @@
 // The authoring page of `aftershade serve`, as its users have it: the program serves a look in a folder of its own.
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
-import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { copyFileSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { basename, join, resolve } from "node:path";
 import { after, before, test } from "node:test";
@@ -40,7 +40,8 @@ after(async () => {
   rmSync(folder, { recursive: true, force: true });
 });
 
-async function serve(text = LOOK, ...words) {
+const serve = (text, ...words) => serveOver(capture, text, ...words);
+async function serveOver(capture, text = LOOK, ...words) {
   const look = join(folder, `look_${++count}.json`);
   writeFileSync(look, text);
   const child = spawn(program, ["serve", look, capture, "--port", "0", ...words], { env: environment });
@@ -713,6 +714,41 @@ inPage("plots the histogram of the final picture", async (page) => {
       return data.filter((value, i) => i % 4 === 3 && value > 100).length;
     });
   assert.ok(painted > 200, `${painted} px`);
+});
+
+test("shows the truth beside the frame, and how far the steps' colour is from it", async () => {
+  const beside = mkdtempSync(join(folder, "truth-")),
+    frame = join(beside, "gbuffer_0001.exr"),
+    text = JSON.stringify({ aftershade: 1, steps: [{ effect: "color_grade", params: { exposure: 0.3 } }] });
+  copyFileSync(join(root, "scenes/starter/gbuffer_0001.exr"), frame);
+  writeFileSync(join(beside, "look.json"), text);
+  const made = spawnSync(
+    program,
+    ["run", join(beside, "look.json"), frame, "--pixel-type", "float", "-o", join(beside, "truth_lens_0001.exr")],
+    { env: environment, encoding: "utf8" },
+  );
+  assert.equal(made.status, 0, made.stderr);
+  const server = await serveOver(frame, text);
+  try {
+    const page = await open(server.address);
+    await drawn(page);
+    const figures = page.getByRole("group", { name: "Distance from the truth" });
+    await figures.getByText("lens: equal, FLIP 0").waitFor();
+    await page.evaluate(() =>
+      window.aftershade.store.edit([{ op: "set", step: 0, param: "exposure", value: 0.5 }]),
+    );
+    await figures.getByText(/^lens: \d+(\.\d+)? dB, FLIP 0\.\d+$/).waitFor();
+    const bytes = () =>
+      page.locator(".stage canvas").evaluate((canvas) => canvas.toDataURL());
+    const final = await bytes();
+    await page.getByLabel("View", { exact: true }).selectOption("truth:lens");
+    await drawn(page);
+    assert.notEqual(await bytes(), final);
+    assert.deepEqual(page.faults, []);
+    await page.context().close();
+  } finally {
+    await server.end();
+  }
 });
 
 inPage("steps through the frames and plays them", async (page) => {

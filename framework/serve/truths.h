@@ -1,0 +1,27 @@
+// What `aftershade render --truth` wrote beside a frame: the same picture through a lens or a shutter.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "framework/capture/capture.h"
+#include "framework/capture/sequence.h"
+
+namespace aftershade::serve {
+
+/// Names as `render --truth` has them ("lens", "lens+shutter"), by frame. Links are left out.
+std::map<int, std::vector<std::string>> truths_of(const Sequence& sequence);
+
+/// The colour of a truth, with the frame's header. Throws Refusal where there is none, or where it has
+/// another size; Error(ExitCode::capture) where it cannot be read.
+Capture read_truth(const Sequence& sequence, int frame, const std::string& name, const CaptureHeader& header,
+                   const ReadLimits& limits);
+
+/// {"truth", "psnr_db", "flip"}: as docs/design.md, Measures, has PSNR, and the mean of LDR-FLIP. Both images
+/// have one size.
+nlohmann::ordered_json metrics_json(const std::string& name, const Image& truth, const Image& color);
+
+}  // namespace aftershade::serve
