@@ -184,7 +184,7 @@ export class Costs {
   /** `steps`: names of the steps that the look has. */
   show(times, isCoarse, steps) {
     if (!times) return;
-    const { passes, total_ms, steps_drawn, steps_cached, memory_bytes, non_finite } = times;
+    const { passes, total_ms, steps_drawn, steps_cached, memory_bytes, gl_objects, non_finite } = times;
     this.total.textContent = `${milliseconds(total_ms)}${isCoarse ? " at 1/4" : ""}`;
     const counted = (count) => `${count} ${count === 1 ? "step" : "steps"}`;
     this.chips.replaceChildren(
@@ -195,7 +195,7 @@ export class Costs {
       ),
       chip(`${counted(steps_drawn)} drawn`),
       chip(`${counted(steps_cached)} cached`, "", "Steps before the change, whose pictures were kept"),
-      chip(megabytes(memory_bytes), "", "Memory of textures and buffers"),
+      chip(megabytes(memory_bytes), "", `Memory of textures and buffers; the program has ${gl_objects} GL objects`),
     );
     if (isCoarse) return;
     // Passes of cached steps keep the time of their last drawing.

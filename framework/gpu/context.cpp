@@ -14,6 +14,7 @@
 #include "framework/gpu/egl_current.h"
 #include "framework/gpu/egl_platform.h"
 #include "framework/gpu/foreign_context.h"
+#include "framework/gpu/handle.h"
 #include "framework/gpu/self_test.h"
 
 namespace aftershade::gpu {
@@ -145,6 +146,20 @@ void Context::release() noexcept {
 
 void Context::abandon() noexcept {
     impl_->abandoned = true;
+}
+
+void count_object(Context& context, ObjectKind kind, int by) noexcept {
+    ObjectCounts& counts = context.impl().handles;
+    (kind == ObjectKind::buffer    ? counts.buffers
+     : kind == ObjectKind::texture ? counts.textures
+                                   : counts.programs) += std::size_t(by);
+}
+
+ObjectCounts Context::objects() const {
+    ObjectCounts counts = impl_->handles;
+    counts.framebuffers = impl_->cache->framebuffer_count();
+    counts.views = impl_->cache->view_count();
+    return counts;
 }
 
 void Context::finish() {

@@ -1,6 +1,7 @@
 // A GL 4.5 core context without a window, through EGL or OSMesa, both opened at run time.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
@@ -43,6 +44,13 @@ struct SharedEglContext {
     void* context = nullptr;
 };
 
+/// GL objects that are alive.
+struct ObjectCounts {
+    std::size_t buffers = 0, textures = 0, programs = 0;
+    std::size_t framebuffers = 0, views = 0;  ///< made on first use, and kept as long as their textures
+    std::size_t total() const { return buffers + textures + programs + framebuffers + views; }
+};
+
 /// Owns the GL context and its function table. Objects made from it keep a reference and must die first.
 /// Construction draws a known colour into a float framebuffer and reads it back; a context that cannot is
 /// refused. [one thread: the one that made it; several contexts may exist in one process, make_current()
@@ -60,6 +68,8 @@ public:
     Context& operator=(const Context&) = delete;
 
     const ContextInfo& info() const;
+    /// Stays the same while the same work is done again.
+    ObjectCounts objects() const;
     void make_current();
     /// Leaves this thread without it, so that another thread may make it current.
     void release() noexcept;

@@ -49,6 +49,7 @@ struct Context::Impl {
     std::vector<std::string> errors;  ///< what KHR_debug reported since the last check()
     GLuint vertex_array = 0;          ///< empty; core profile draws nothing without one
     std::unique_ptr<ObjectCache> cache;
+    ObjectCounts handles;  ///< of Handle alone
     bool abandoned = false;
 
 private:

@@ -9,15 +9,22 @@ class Context;
 
 enum class ObjectKind { buffer, texture, program };
 
+/// For Context::objects().
+void count_object(Context& context, ObjectKind kind, int by) noexcept;
+
 /// Moves leave no name behind, so that a class with such a member needs no move and no destructor of its own.
 /// [the context's thread]
 template <ObjectKind kind>
 class Handle {
 public:
     Handle() = default;
-    Handle(Context& context, unsigned int name) : context_(&context), name_(name) {}
+    Handle(Context& context, unsigned int name) : context_(&context), name_(name) {
+        if (name_ != 0) count_object(*context_, kind, 1);
+    }
     ~Handle() {
-        if (name_ != 0) remove(*context_, name_);
+        if (name_ == 0) return;
+        count_object(*context_, kind, -1);
+        remove(*context_, name_);
     }
     Handle(Handle&& other) noexcept : context_(other.context_), name_(std::exchange(other.name_, 0)) {}
     Handle& operator=(Handle&& other) noexcept {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <compare>
+#include <cstddef>
 #include <map>
 #include <span>
 #include <utility>
@@ -30,6 +31,8 @@ public:
     unsigned int framebuffer(std::span<const Target> targets);
     /// Drops what refers to a texture that is about to die; GL may give its name to another.
     void forget_texture(unsigned int handle);
+    std::size_t framebuffer_count() const { return framebuffers_.size(); }
+    std::size_t view_count() const { return views_.size(); }
 
 private:
     struct Attachment {

@@ -212,6 +212,7 @@ MadePicture PictureMaker::make(const PictureRequest& request) {
     times["steps_drawn"] = drawn_;
     times["steps_cached"] = int(scaled.pipeline->steps.size()) - drawn_;
     times["memory_bytes"] = scaled.renderer->graph_bytes().first;
+    times["gl_objects"] = context_.objects().total();
     std::uint64_t non_finite = 0;
     for (const NonFiniteOutput& output : apply_nan_policy(NanPolicy::warn, scaled.result))
         non_finite += output.pixels.count();

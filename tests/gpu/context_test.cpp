@@ -68,6 +68,21 @@ TEST_P(ContextOn, KeepsMovedFromObjectsHarmless) {
     EXPECT_EQ(drawn(taken, 1, 1), std::vector<float>(4, 1.0F));
 }
 
+TEST_P(ContextOn, CountsTheObjectsThatAreAlive) {
+    const ObjectCounts before = context().objects();
+    {
+        Texture first = texture(4, 4, TextureFormat::r32f);
+        const Texture moved(std::move(first));
+        const Buffer buffer(context(), 4, "a");
+        const Program program = fragment("layout(location = 0) out vec4 c; void main() { c = vec4(1); }");
+        EXPECT_EQ(context().objects().textures, before.textures + 1);
+        EXPECT_EQ(context().objects().buffers, before.buffers + 1);
+        EXPECT_EQ(context().objects().programs, before.programs + 1);
+        drawn(program, 1, 1);  // into a target that has a framebuffer while it lives
+    }
+    EXPECT_EQ(context().objects().total(), before.total());
+}
+
 TEST(Context, EglAndOsmesaAlternateInOneProcess) {
     for (Backend backend : {Backend::egl_software, Backend::osmesa}) {
         if (const std::string reason = why_not(backend); !reason.empty()) GTEST_SKIP() << reason;

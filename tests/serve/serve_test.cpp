@@ -65,6 +65,22 @@ TEST_F(Serve, DrawsTheStepsFromTheChangedOneOnAndTheSameBits) {
     }
 }
 
+TEST_F(Serve, HoldsAsManyGlObjectsAfterTheSameEditsAgain) {
+    start();
+    const auto objects_after_edits = [&] {
+        for (const double value : {0.1, 0.9, 0.5}) {
+            set(value);
+            for (const char* scale : {"4", "2", "1"}) times(std::string("&scale=") + scale);
+            times("&view=role:depth");
+        }
+        return times()["gl_objects"].get<int>();
+    };
+    const int first = objects_after_edits();
+    EXPECT_GT(first, 5);
+    EXPECT_EQ(objects_after_edits(), first);
+    EXPECT_EQ(objects_after_edits(), first);
+}
+
 TEST_F(Serve, SavesTheLookAloneAndKeepsItsComments) {
     start();
     const auto before = contents(folder_.path());

@@ -1,0 +1,96 @@
+// scripts/soak-page MINUTES
+import { spawnSync } from "node:child_process";
+import { readFileSync } from "node:fs";
+import { join, resolve } from "node:path";
+
+import { random, randomEdit } from "../../tests/page/random_edits.mjs";
+import { serve } from "./served.mjs";
+
+const ACTIONS = 40, // of a round
+  WARM_UP = 0.25, // of the time
+  GROWTH = 0.02, // of resident memory, at most
+  LEAST_ROUNDS = 12,
+  minutes = Number(process.argv[2]),
+  capture = join(resolve(import.meta.dirname, "../.."), "scenes/starter/capture.json"),
+  { address, pid, end } = await serve(capture),
+  headers = { "X-Aftershade-Token": address.hash.slice("#token=".length) },
+  next = random(28),
+  pick = (list) => list[Math.floor(next() * list.length)];
+
+async function call(path, body) {
+  const options = body ? { method: "POST", headers, body: JSON.stringify(body) } : { headers };
+  const response = await fetch(address.origin + path, options);
+  await response.clone().arrayBuffer();
+  return response;
+}
+const json = async (path, body) => (await call(path, body)).json();
+const picture = (view, frame, scale) => call(`/api/picture?${new URLSearchParams({ view, frame, scale })}`);
+
+const first = await json("/api/state"),
+  { frames, width, height, roles } = first.capture,
+  ids = ["dof", "bokeh", "color_grade", "vignette", "view_transform", "sharpen", "bloom", "film_grain", "sanitize"],
+  effects = new Map(
+    ids.map((id) => {
+      const { stdout } = spawnSync(process.env.AFTERSHADE_EXECUTABLE, ["describe", id, "--json"], { encoding: "utf8" });
+      return [id, JSON.parse(stdout)];
+    }),
+  );
+const counts = { actions: 0, refused: 0 };
+
+async function act() {
+  const state = await json("/api/state"),
+    frame = pick(frames);
+  const edit = () => call("/api/edit", { revision: state.revision, edits: [randomEdit(next, state.steps, effects)] });
+  const actions = [
+    edit,
+    edit,
+    edit,
+    () => call("/api/undo", {}),
+    () => call("/api/redo", {}),
+    () => picture("final", frame, pick([1, 2, 4])),
+    () => picture("before", frame, 1),
+    () => picture(`role:${pick(roles).name}`, frame, 1),
+    () => call(`/api/probe?frame=${frame}&x=${Math.floor(next() * width)}&y=${Math.floor(next() * height)}`),
+    () => call(`/api/histogram?frame=${frame}`),
+  ];
+  const { ok } = await pick(actions)();
+  ++counts.actions;
+  if (!ok) ++counts.refused; // nothing to undo, a look that has faults
+}
+
+/** The first look again and its pictures: what is held then must not grow. */
+async function settled() {
+  const { revision } = await json("/api/state");
+  await call("/api/edit", { revision, edits: [{ op: "text", value: first.text }] });
+  for (const frame of frames) for (const scale of [4, 2, 1]) await picture("final", frame, scale);
+  const response = await picture("final", frames[0], 1);
+  if (!response.ok) throw new Error(`the first look gives no picture: ${await response.text()}`);
+  const { gl_objects } = JSON.parse(response.headers.get("X-Aftershade-Times"));
+  const resident_kib = Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${pid}/status`, "utf8"))[1]);
+  return { gl_objects, resident_mib: resident_kib / 1024 };
+}
+
+const begun = performance.now(),
+  share = () => (performance.now() - begun) / (60_000 * minutes),
+  rounds = [];
+while (share() < 1 || rounds.length < LEAST_ROUNDS) {
+  for (let i = 0; i < ACTIONS; ++i) await act();
+  rounds.push({ at: share(), ...(await settled()) });
+}
+end();
+
+const warm = rounds.filter(({ at }) => at >= WARM_UP),
+  later = warm.length >= LEAST_ROUNDS / 2 ? warm : rounds.slice(rounds.length / 2),
+  quarter = Math.ceil(later.length / 4),
+  median = (list) => list.toSorted((a, b) => a - b)[list.length >> 1],
+  memory = (part) => median(part.map(({ resident_mib }) => resident_mib)),
+  objects = (part) => Math.max(...part.map(({ gl_objects }) => gl_objects));
+const early = later.slice(0, quarter),
+  late = later.slice(-quarter),
+  growth = memory(late) / memory(early) - 1;
+console.log(
+  `${((performance.now() - begun) / 60_000).toFixed(1)} min, ${rounds.length} rounds, ${counts.actions} actions, ${counts.refused} refused: ` +
+    `resident ${memory(early).toFixed(1)} to ${memory(late).toFixed(1)} MiB (${(100 * growth).toFixed(1)} %), ` +
+    `GL objects ${objects(early)} to ${objects(late)}`,
+);
+process.exitCode = growth <= GROWTH && objects(late) <= objects(early) ? 0 : 1;
