@@ -1,5 +1,6 @@
 #include "framework/effect/pass_program.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 #include <sstream>
@@ -105,31 +106,58 @@ gpu::Program ProgramCache::make(const Sources& sources, const std::string& label
     return program;
 }
 
-const gpu::Program& ProgramCache::host(const std::string& file, const std::vector<std::string>& defines) {
+std::shared_ptr<const gpu::Program> ProgramCache::made_once(const Sources& sources,
+                                                            const std::string& label) {
+    const std::string key = key_of(sources);
+    Cached& cached = programs_[key];
+    if (!cached.program) {
+        try {
+            cached.program = std::make_shared<const gpu::Program>(make(sources, label));
+        } catch (...) {
+            programs_.erase(key);
+            throw;
+        }
+    }
+    cached.last_use = ++uses_;
+    const std::shared_ptr<const gpu::Program> program = cached.program;
+    drop_idle();
+    return program;
+}
+
+/// Values that are compiled in leave a program behind with each step of a slider.
+void ProgramCache::drop_idle() {
+    const auto is_idle = [](const auto& entry) { return entry.second.program.use_count() == 1; };
+    if (std::ranges::count_if(programs_, is_idle) <= std::ptrdiff_t(kMostIdlePrograms)) return;
+    auto oldest = programs_.end();
+    for (auto entry = programs_.begin(); entry != programs_.end(); ++entry)
+        if (is_idle(*entry) &&
+            (oldest == programs_.end() || entry->second.last_use < oldest->second.last_use))
+            oldest = entry;
+    programs_.erase(oldest);
+}
+
+std::shared_ptr<const gpu::Program> ProgramCache::host(const std::string& file,
+                                                       const std::vector<std::string>& defines) {
     Sources sources;
     sources.vertex = full_screen_;
     sources.main.text = read_text_file(glsl_folder_ / "host" / file, ExitCode::effect);
     std::string symbols;
     for (const std::string& define : defines) symbols += "#define " + define + " 1\n";
     sources.main.text.insert(sources.main.text.find('\n') + 1, symbols);
-    const std::string key = key_of(sources);
-    if (const auto known = programs_.find(key); known != programs_.end()) return known->second;
-    return programs_.emplace(key, make(sources, "host." + file)).first->second;
+    return made_once(sources, "host." + file);
 }
 
-const gpu::Program* ProgramCache::fused(const FusedProgram& passes) {
+std::shared_ptr<const gpu::Program> ProgramCache::fused(const FusedProgram& passes) {
     Diagnostics faults;
     Sources sources;
     sources.vertex = full_screen_;
     sources.main = assemble_fused(passes, faults);
     if (faults.has_errors()) return nullptr;
-    const std::string key = key_of(sources);
-    if (const auto known = programs_.find(key); known != programs_.end()) return &known->second;
     std::string label;
     for (const FusedShader& part : passes.parts)
         label += (label.empty() ? "" : "+") + part.shader.manifest->id + "." + part.shader.pass->name;
     try {
-        return &programs_.emplace(key, make(sources, label)).first->second;
+        return made_once(sources, label);
     } catch (const gpu::ShaderError&) {
         return nullptr;
     }
@@ -150,17 +178,14 @@ void add_hints(const EffectManifest& manifest, const std::filesystem::path& glsl
 
 }  // namespace
 
-const gpu::Program& ProgramCache::get(const ShaderContext& context) {
+std::shared_ptr<const gpu::Program> ProgramCache::get(const ShaderContext& context) {
     const PassSpec& pass = *context.pass;
     const std::string where = "pass " + pass.name + ", " + context_.info().renderer;
     Diagnostics faults;
     const Sources sources = assemble(context, faults);
     if (!faults.has_errors()) {
-        const std::string key = key_of(sources);
-        if (const auto known = programs_.find(key); known != programs_.end()) return known->second;
         try {
-            auto program = make(sources, context.manifest->id + "." + pass.name);
-            return programs_.emplace(key, std::move(program)).first->second;
+            return made_once(sources, context.manifest->id + "." + pass.name);
         } catch (const gpu::ShaderError& error) {
             const ShaderSource& source = sources.of_stage(error.stage());
             add_hints(*context.manifest, glsl_folder_, source, faults);

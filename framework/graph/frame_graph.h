@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -91,7 +92,7 @@ enum class Fusing { never, leads, follows };
 struct Pass {
     std::string name;  ///< "bokeh.coc"
     PassKind kind = PassKind::draw;
-    const gpu::Program* program = nullptr;  ///< nullptr for a clear
+    std::shared_ptr<const gpu::Program> program{};  ///< nullptr for a clear
     std::vector<Read> reads{};
     std::vector<Target> targets{};  ///< draw, instances: of one size; clear: what is set to `clear_value`
     std::vector<ImageUse> images{};

@@ -301,7 +301,7 @@ void GraphBuilder::add_copy(StepBuild& build, const std::string& name, graph::Te
     const bool is_integer = gpu::is_integer(graph_.textures()[std::size_t(from.texture)].desc.format);
     graph::Pass pass;
     pass.name = build.step.name + "." + name + ".keep";
-    pass.program = &tools_.programs.host(
+    pass.program = tools_.programs.host(
         "copy.frag", is_integer ? std::vector<std::string>{"COPY_UINT"} : std::vector<std::string>{});
     pass.reads.push_back({from, 0, gpu::Filter::nearest, gpu::Wrap::clamp, input_level(from)});
     pass.targets.push_back({to});
@@ -331,7 +331,7 @@ void GraphBuilder::add_mix(StepBuild& build) {
             defines = {"MASK_FILE"};
             pass.reads.push_back({mask_of(build), 2, gpu::Filter::linear});
         }
-        pass.program = &tools_.programs.host("mix.frag", defines);
+        pass.program = tools_.programs.host("mix.frag", defines);
         bind_block(build, BlockKind::mix, pass);
         const gpu::TextureDesc desc = graph_.textures()[std::size_t(build.textures.at(name).texture)].desc;
         pass.targets.push_back({graph_.create_texture(pass.name, desc)});

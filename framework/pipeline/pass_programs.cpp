@@ -44,8 +44,8 @@ public:
     }
 
     const FusedProgram& program() const { return program_; }
-    graph::Pass pass(const gpu::Program& program) {
-        fused_.program = &program;
+    graph::Pass pass(std::shared_ptr<const gpu::Program> program) {
+        fused_.program = std::move(program);
         return std::move(fused_);
     }
 
@@ -146,7 +146,7 @@ void PassPrograms::finish(graph::FrameGraph& graph, std::vector<BlockBinding>& b
     for (const auto& [pass, added] : added_) {
         if (graph.is_fused_away(pass) || graph.pass(pass).program) continue;
         const StatusScope scope(tools_.status, compiling(added, added.shader.pass->name));
-        graph.pass(pass).program = &tools_.programs.get(added.shader);
+        graph.pass(pass).program = tools_.programs.get(added.shader);
     }
 }
 
@@ -160,10 +160,10 @@ void PassPrograms::fuse(graph::FrameGraph& graph, const graph::Fusion& fusion,
     }
     maker.add_targets();
     const StatusScope scope(tools_.status, compiling(added_.at(fusion.passes.front()), names));
-    const gpu::Program* program = tools_.programs.fused(maker.program());
+    std::shared_ptr<const gpu::Program> program = tools_.programs.fused(maker.program());
     if (!program) return;
     point_to_fused(blocks, fusion.passes, maker.program().parts);
-    graph.fuse(fusion.passes, maker.pass(*program), fusion.targets);
+    graph.fuse(fusion.passes, maker.pass(std::move(program)), fusion.targets);
 }
 
 }  // namespace aftershade

@@ -88,6 +88,7 @@ const warm = rounds.filter(({ at }) => at >= WARM_UP),
 const early = later.slice(0, quarter),
   late = later.slice(-quarter),
   growth = memory(late) / memory(early) - 1;
+if (process.env.VERBOSE) for (const { at, resident_mib, gl_objects } of rounds) console.log(at.toFixed(3), resident_mib.toFixed(1), gl_objects);
 console.log(
   `${((performance.now() - begun) / 60_000).toFixed(1)} min, ${rounds.length} rounds, ${counts.actions} actions, ${counts.refused} refused: ` +
     `resident ${memory(early).toFixed(1)} to ${memory(late).toFixed(1)} MiB (${(100 * growth).toFixed(1)} %), ` +

@@ -73,13 +73,29 @@ TEST_P(ProgramCacheOn, CompilesComputeInstancesAndAtomics) {
     EXPECT_EQ(programs.compiled_count(), 6);
     const EffectManifest manifest = toy("tile_classify");
     const ParamSet params = defaults_of(manifest);
-    const auto compiled = [&](std::size_t pass) -> const gpu::Program& {
+    const auto compiled = [&](std::size_t pass) {
         return programs.get({&manifest, &manifest.passes[pass], params, {}, kSource / "glsl"});
     };
-    EXPECT_TRUE(compiled(0).is_compute());
-    EXPECT_FALSE(compiled(2).is_compute());
-    EXPECT_NE(&compiled(2), &compiled(3)) << "one fragment shader, but another vertex shader";
+    EXPECT_TRUE(compiled(0)->is_compute());
+    EXPECT_FALSE(compiled(2)->is_compute());
+    EXPECT_NE(compiled(2), compiled(3)) << "one fragment shader, but another vertex shader";
     EXPECT_EQ(programs.compiled_count(), 6);
+}
+
+TEST_P(ProgramCacheOn, KeepsAsManyIdleProgramsAsItMay) {
+    ProgramCache programs(context(), kSource / "glsl", ProgramStore());
+    const std::size_t before = context().objects().programs;
+    const auto held = programs.host("mix.frag", {"HELD"});
+    for (std::size_t i = 0; i < ProgramCache::kMostIdlePrograms + 20; ++i)
+        programs.host("mix.frag", {"SYMBOL_" + std::to_string(i)});
+    // The newest was in use while the others were counted.
+    EXPECT_EQ(context().objects().programs - before, ProgramCache::kMostIdlePrograms + 2);
+    EXPECT_EQ(programs.host("mix.frag", {"HELD"}), held) << "it is not idle";
+    const int compiled = programs.compiled_count();
+    programs.host("mix.frag", {"SYMBOL_" + std::to_string(ProgramCache::kMostIdlePrograms + 19)});
+    EXPECT_EQ(programs.compiled_count(), compiled) << "it was used last";
+    programs.host("mix.frag", {"SYMBOL_0"});
+    EXPECT_EQ(programs.compiled_count(), compiled + 1);
 }
 
 TEST_P(ProgramCacheOn, CompilesEveryKindOfBinding) {

@@ -52,7 +52,7 @@ void main() {
     gpu::Program twice_plus() { return draws("result = texelFetch(source, p, 0).r * 2.0 + add;"); }
 
     static Pass with(Pass pass, const gpu::Program& program) {
-        pass.program = &program;
+        pass.program = kept_by_caller(program);
         return pass;
     }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,11 @@
 #include "framework/graph/frame_graph.h"
 
 namespace aftershade::graph {
+
+/// For a program that outlives the graph.
+inline std::shared_ptr<const gpu::Program> kept_by_caller(const gpu::Program& program) {
+    return {std::shared_ptr<void>(), &program};
+}
 
 inline const gpu::TextureDesc kFull{.width = 64, .height = 36, .format = gpu::TextureFormat::rgba32f};
 inline const gpu::TextureDesc kHalf{.width = 32, .height = 18, .format = gpu::TextureFormat::rgba32f};
