@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <istream>
@@ -55,18 +56,29 @@ void skip_header(std::istream& in) {
     std::getline(in, line);  // the size
 }
 
+/// Where pixels have no runs, from here on: stb reads 0 for each that is missing, one after the other.
+std::string fault_of_plain_pixels(std::istream& in, std::uint64_t bytes) {
+    const auto begin = in.tellg();
+    in.seekg(0, std::ios::end);
+    return std::uint64_t(in.tellg() - begin) < bytes ? kCutOff : "";
+}
+
 /// Why the run lengths do not cover the pixels; "" where they do, or where stb finds the fault itself. It
 /// reads 0 where a length is missing, and a run of 0 pixels brings it no nearer to the end of the line.
 std::string fault_of_runs(std::istream& in, int width, int height) {
-    constexpr int kLeastWidth = 8, kLongestDump = 128;  // narrower pictures have no runs
-    if (width < kLeastWidth) return "";
+    constexpr int kLeastWidth = 8, kEndOfWidths = 32768;  // others have no runs
+    constexpr int kLongestDump = 128;
+    const std::uint64_t plain_bytes = 4 * std::uint64_t(width) * std::uint64_t(height);
+    if (width < kLeastWidth || width >= kEndOfWidths) return fault_of_plain_pixels(in, plain_bytes);
     std::streambuf& bytes = *in.rdbuf();
     constexpr int kEnd = std::char_traits<char>::eof();
     for (int row = 0; row < height; ++row) {
         std::array<int, 4> head{};
         for (int& byte : head)
             if ((byte = bytes.sbumpc()) == kEnd) return kCutOff;
-        if (head[0] != 2 || head[1] != 2 || head[2] >= 128) return "";  // pixels without runs
+        // stb takes these four bytes for the first of all pixels.
+        if (head[0] != 2 || head[1] != 2 || head[2] >= 128)
+            return fault_of_plain_pixels(in, plain_bytes - head.size());
         if ((head[2] << 8 | head[3]) != width) return "";
         for (int channel = 0; channel < 4; ++channel)
             for (int left = width; left > 0;) {

@@ -4,6 +4,7 @@
 #include <zlib.h>
 
 #include <cstdint>
+#include <ctime>
 #include <functional>
 #include <string>
 
@@ -114,6 +115,21 @@ TEST(HostilePictures, OfRadianceWhoseRunsEndEarlyAreRefused) {
     write_text(folder / "a.hdr", empty_run);
     EXPECT_NE(refusal([&] { read_hdr(folder / "a.hdr"); }).find("a run of pixels is 0 px long"),
               std::string::npos);
+}
+
+/// 44 million pixels without runs, of which the file has one.
+TEST(HostilePictures, OfRadianceWhosePixelsAreMissingAreRefusedBeforeTheyAreRead) {
+    const TemporaryFolder folder;
+    const std::string head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";
+    for (const std::string size : {"-Y 5500 +X 8000", "-Y 7 +X 7", "-Y 9000000 +X 4"}) {
+        write_text(folder / "a.hdr", head + size + "\n\xd0\xd0\xd0\xd0");
+        const std::clock_t begun = std::clock();
+        EXPECT_NE(refusal([&] { read_hdr(folder / "a.hdr"); }).find("cut off"), std::string::npos) << size;
+        EXPECT_LT(double(std::clock() - begun) / CLOCKS_PER_SEC, 0.1) << size;
+    }
+    const std::string pixel("\x80\x80\x80\x81", 4);
+    write_text(folder / "a.hdr", head + "-Y 1 +X 2\n" + pixel + pixel);
+    EXPECT_EQ(read_hdr(folder / "a.hdr").at(1, 0, 0), 1.0f);
 }
 
 TEST(HostilePictures, OfRadianceWithoutPixelsAreRefused) {
