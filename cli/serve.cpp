@@ -17,6 +17,7 @@
 #include "cli/verbs.h"
 #include "framework/core/data_path.h"
 #include "framework/core/error.h"
+#include "framework/core/memory_limit.h"
 
 extern char** environ;
 
@@ -48,6 +49,7 @@ void open_browser(const std::string& address) {
 
 ExitCode serve(const ServeArguments& arguments) {
     if (const auto code = run_in_worker({}, !arguments.effect_paths.empty())) return *code;
+    share_one_heap();
     const std::atomic<bool>& stop = watch_for_interrupt();
     const gpu::Backend backend = chosen_backend(arguments.backend);
     Diagnostics diagnostics;

@@ -166,11 +166,15 @@ void require_address_space(std::uint64_t bytes, const std::string& what) {
                                       std::to_string(*left / kMiB) + " MiB: " + std::string(kRemedy));
 }
 
+void share_one_heap() {
+    mallopt(M_ARENA_MAX, 1);
+}
+
 void prepare_for_memory_limit() {
     std::set_terminate(on_terminate);
     const auto limit = address_space_limit();
     if (!limit) return;
-    mallopt(M_ARENA_MAX, 1);
+    share_one_heap();
     limit_llvmpipe(*limit);
     watch_crashes();
 }

@@ -34,4 +34,8 @@ void require_address_space(std::uint64_t bytes, const std::string& what);
 /// is what was missing.
 void prepare_for_memory_limit();
 
+/// For a program that runs for hours: what one thread frees, the others use again. Otherwise glibc gives
+/// threads heaps of their own, and each keeps the most that it ever held. [before the first other thread]
+void share_one_heap();
+
 }  // namespace aftershade
