@@ -110,7 +110,8 @@ TEST_F(Serve, DrawsTheNewestOfManyRequestsAndLetsTheOlderOnesGo) {
         if (answer.status == 200) ++drawn;
         else if (answer.status == 204 && answer.body.empty()) ++dropped;
     }
-    EXPECT_GE(drawn, 2) << "the first, which had begun, and the newest";
+    // The first is among them only if its drawing began before the others came.
+    EXPECT_GE(drawn, 1) << "the newest";
     EXPECT_GE(dropped, 1);
     EXPECT_EQ(drawn + dropped, kRequests);
 }
