@@ -50,6 +50,19 @@ void add_visibility_options(CLI::App& app, VisibilityArguments& options) {
         ->each(of_memoised("--shading-grid"))
         ->capture_default_str();
     app.add_option(
+           "--transparency", options.transparency,
+           "Materials with an opacity below 1: stochastic (a sample shows one of the surfaces that it "
+           "crosses, by chance), lists (memoised: blend all, out of a list for each pixel), or sorted "
+           "(supersampled, accumulation: blend all)")
+        ->check(CLI::IsMember({"stochastic", "lists", "sorted"}))
+        ->capture_default_str();
+    app.add_option("--list-nodes", settings.transparency.list_nodes,
+                   "--transparency lists: surfaces for each px that a row has room for; what is beyond is "
+                   "counted and stops samples by chance")
+        ->check(CLI::Range(0, scene::kMaxListNodes))
+        ->each([&options](const std::string&) { options.has_list_nodes = true; })
+        ->capture_default_str();
+    app.add_option(
            "--visibility-on", options.device,
            "memoised: what traces the samples: cpu, or gl in single precision by compute shaders, whose "
            "caches count as well")
@@ -62,6 +75,24 @@ void add_visibility_options(CLI::App& app, VisibilityArguments& options) {
     app.option_defaults()->group(group);
 }
 
+namespace {
+
+void check_transparency(const VisibilityArguments& options, std::optional<scene::Visibility> visibility,
+                        scene::Transparency transparency, Diagnostics& diagnostics) {
+    const bool memoised = visibility == scene::Visibility::memoised;
+    const Place place{"--transparency " + options.transparency, 0, 0};
+    if (transparency == scene::Transparency::lists && !memoised)
+        diagnostics.error(place, "is for --visibility memoised");
+    if (transparency == scene::Transparency::lists && options.device == "gl")
+        diagnostics.error(place, "is for --visibility-on cpu; gl takes stochastic");
+    if (transparency == scene::Transparency::sorted && (memoised || !visibility))
+        diagnostics.error(place, "is for --visibility supersampled or accumulation");
+    if (options.has_list_nodes && transparency != scene::Transparency::lists)
+        diagnostics.error({"--list-nodes", 0, 0}, "is for --transparency lists");
+}
+
+}  // namespace
+
 std::optional<scene::VisibilitySettings> read_visibility(const VisibilityArguments& options,
                                                          Diagnostics& diagnostics) {
     std::vector<std::string> unused = options.given;
@@ -70,9 +101,12 @@ std::optional<scene::VisibilitySettings> read_visibility(const VisibilityArgumen
     if (visibility != scene::Visibility::memoised)
         for (const std::string& name : unused)
             diagnostics.error({name, 0, 0}, "is for --visibility memoised");
+    const auto transparency = *scene::parse_transparency(options.transparency);
+    check_transparency(options, visibility, transparency, diagnostics);
     if (!visibility) return std::nullopt;
     scene::VisibilitySettings settings = options.settings;
     settings.visibility = *visibility;
+    settings.transparency.transparency = transparency;
     settings.grid.origin =
         options.grid == "picture" ? scene::GridOrigin::picture : scene::GridOrigin::triangle;
     settings.cache.cache = *scene::parse_shading_cache(options.cache);
@@ -91,21 +125,28 @@ nlohmann::ordered_json visibility_json(const std::vector<scene::VisibilityReport
                             {"p95", report.rate.p95},
                             {"of_covered_pixels", report.rate.of_covered_pixels},
                             {"multisampled", report.rate.multisampled}}},
+                          {"lists", {{"nodes", report.list_nodes}, {"overflows", report.list_overflows}}},
                           {"bytes",
                            {{"visibility", report.bytes.visibility},
                             {"shading", report.bytes.shading},
                             {"cache", report.bytes.cache},
+                            {"lists", report.bytes.lists},
                             {"supersampled", report.bytes.supersampled}}}});
     return frames;
 }
 
 void print_visibility(const std::vector<scene::VisibilityReport>& reports) {
-    for (const scene::VisibilityReport& report : reports)
+    for (const scene::VisibilityReport& report : reports) {
         std::cerr << fmt::format(
             "frame {}: {:.2f} shadings a px of {} samples, {:.2f} where something is seen, 95 % of the px at "
             "most {:.2f}; cache hits {}, misses {}\n",
             report.frame, report.rate.of_pixels, report.samples, report.rate.of_covered_pixels,
             report.rate.p95, report.requests - report.shadings, report.shadings);
+        if (report.list_nodes + report.list_overflows > 0)
+            std::cerr << fmt::format("frame {}: lists hold {} transparent surfaces, {} found no room{}\n",
+                                     report.frame, report.list_nodes, report.list_overflows,
+                                     report.list_overflows > 0 ? "; give them more --list-nodes" : "");
+    }
 }
 
 }  // namespace aftershade::cli

@@ -19,9 +19,11 @@ struct VisibilityArguments {
     std::string visibility = "none";
     std::string cache = "global";
     std::string grid = "triangle";
+    std::string transparency = "stochastic";
     std::string device = "cpu";
     std::string backend{};
     scene::VisibilitySettings settings;
+    bool has_list_nodes = false;
     std::vector<std::string> given{};  ///< options that are of no use without --visibility memoised
 };
 

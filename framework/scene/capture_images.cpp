@@ -48,6 +48,11 @@ void write_surface(Capture& capture, int x, int y, const Scene& scene, const Sur
     capture.images.at("object_id").uint_at(x, y, 0) = scene.objects[std::size_t(surface.object)].id;
 }
 
+void write_color(Capture& capture, int x, int y, const glm::dvec3& premultiplied, double alpha) {
+    write(capture.images.at("color"), x, y, premultiplied);
+    capture.images.at("color").at(x, y, 3) = float(alpha);
+}
+
 void write_motion(Capture& capture, int x, int y, const glm::dvec2& velocity_px,
                   const glm::dvec2& velocity_next_px) {
     for (int c = 0; c < 2; ++c) {

@@ -18,6 +18,8 @@ Capture make_capture(int frame, int width_px, int height_px, std::span<const std
 // Everything but depth and motion; from several threads for different pixels.
 void write_surface(Capture& capture, int x, int y, const Scene& scene, const Surface& surface,
                    const Shading& shading);
+/// Over what write_surface() wrote as the surface's color.
+void write_color(Capture& capture, int x, int y, const glm::dvec3& premultiplied, double alpha);
 void write_motion(Capture& capture, int x, int y, const glm::dvec2& velocity_px,
                   const glm::dvec2& velocity_next_px);
 void write_background(Capture& capture, int x, int y, const glm::dvec3& radiance);

@@ -26,8 +26,8 @@ struct Hit {
     int occurrence = 0;  ///< how often the ray has met the object before: such hits do not lie side by side
     double front_m = std::numeric_limits<double>::infinity();
     double back_m = std::numeric_limits<double>::infinity();
-    dvec3 color{0};  ///< the sum over the rays
-    int rays = 1;
+    dvec3 color{0};    ///< premultiplied, the sum over the rays
+    double alpha = 1;  ///< the sum over the rays
     dvec3 normal{0};
     std::uint32_t id = 0;
     dvec2 velocity_px{0}, velocity_next_px{0};
@@ -53,7 +53,7 @@ std::array<double, kChannels.size()> values_of(const Hit& hit, int rays) {
     return {color.x,
             color.y,
             color.z,
-            std::min(1.0, double(hit.rays) / rays),
+            std::min(1.0, hit.alpha / rays),
             hit.front_m,
             hit.back_m,
             hit.velocity_px.x,
@@ -80,7 +80,7 @@ void merge(std::vector<Hit>& hits) {
         }
         last->back_m = hit.back_m;
         last->color += hit.color;
-        ++last->rays;
+        last->alpha += hit.alpha;
     }
     std::stable_sort(merged.begin(), merged.end(),
                      [](const Hit& a, const Hit& b) { return a.front_m < b.front_m; });
@@ -104,8 +104,9 @@ DeepImage SceneRenderer::render_deep(int frame, double time, std::array<double, 
             std::map<int, int> met;
             for (const Surface& surface : world.trace_through(ray, kMostSurfaces)) {
                 const Motion motion = motion_of(states, &surface, ray.direction);
+                const double opacity = world.opacity_of(surface);
                 hits.push_back({surface.object, met[surface.object]++, surface.t, surface.t,
-                                world.shade(surface, ray.origin).color(), 1, surface.normal,
+                                opacity * world.shade(surface, ray.origin).color(), opacity, surface.normal,
                                 scene_.objects[std::size_t(surface.object)].id, motion.velocity_px,
                                 motion.velocity_next_px});
             }

@@ -202,6 +202,8 @@ Block material_block() {
                   plain_number("specular", "", 0.04, 0, 1,
                                "Reflectance at normal incidence, by Schlick; 0 for no highlight."),
                   color("emission", 0, 1e9, "Radiance that it gives off."),
+                  plain_number("opacity", "", 1, 0, 1,
+                               "Share of the light that each crossing of the surface stops."),
                   grammar::optional("scattering_profile", grammar::scattering_profile(),
                                     "Light goes in and comes out nearby.")}});
 }

@@ -78,6 +78,10 @@ bool has_texture_space(const Scene& scene, int object) {
 
 constexpr double kGiB = 1024.0 * 1024 * 1024;
 
+bool has_lists(const Job& job) {
+    return job.visibility && job.visibility->transparency.transparency == Transparency::lists;
+}
+
 /// Of one capture of every role, and the one before it, which is being written; and of what each visibility
 /// sample met.
 std::uint64_t bytes_of_job(const Job& job) {
@@ -86,8 +90,14 @@ std::uint64_t bytes_of_job(const Job& job) {
     const bool is_texture = job.texture_object >= 0;
     const std::uint64_t width = std::uint64_t(is_texture ? job.texture_side_px : job.width_px);
     const std::uint64_t height = std::uint64_t(is_texture ? job.texture_side_px : job.height_px);
-    const std::uint64_t visibility =
-        job.visibility ? width * height * std::uint64_t(job.visibility->samples) * sizeof(std::uint32_t) : 0;
+    std::uint64_t visibility = 0;
+    if (job.visibility) {
+        visibility = std::uint64_t(job.visibility->samples) * sizeof(std::uint32_t);
+        if (has_lists(job))
+            visibility += std::uint64_t(job.visibility->transparency.list_nodes) *
+                          (sizeof(ListNode) + sizeof(std::uint32_t));
+        visibility *= width * height;
+    }
     return 2 * width * height * channels * sizeof(float) * std::uint64_t(job.layers) + visibility;
 }
 
@@ -345,8 +355,9 @@ void check_job(const Scene& scene, const Job& job, Diagnostics& diagnostics) {
     if (const std::uint64_t bytes = bytes_of_job(job); bytes > kMaxJobBytes)
         fault(job.texture_object >= 0 ? "--texture-size" : "--size",
               fmt::format("rendering takes about {:.1f} GiB of memory, the limit is {:.0f} GiB; render fewer "
-                          "pixels at once",
-                          double(bytes) / kGiB, double(kMaxJobBytes) / kGiB));
+                          "pixels at once{}",
+                          double(bytes) / kGiB, double(kMaxJobBytes) / kGiB,
+                          has_lists(job) ? ", or choose fewer --list-nodes" : ""));
     if (!job.captures && job.truths.empty() && !job.visibility)
         fault("--truth-only", "there is no --truth and no --visibility to render");
     const bool scattering =
@@ -354,6 +365,9 @@ void check_job(const Scene& scene, const Job& job, Diagnostics& diagnostics) {
     const bool scatters =
         std::any_of(scene.materials.begin(), scene.materials.end(),
                     [](const Material& material) { return material.scattering.has_value(); });
+    if (scattering && scene.has_transparency())
+        fault("--truth scattering",
+              "the scene has materials with an \"opacity\" below 1; scattering needs 1");
     if (scattering && !scatters)
         fault("--truth scattering", "no material of the scene has a \"scattering_profile\"");
     if (scattering && job.scattering_samples < 64)

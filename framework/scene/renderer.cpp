@@ -52,6 +52,18 @@ bool SceneRenderer::project(const CameraState& camera, const dvec4& point, dvec2
     return true;
 }
 
+/// A surface of one layer; of the last, with what shines through it.
+void SceneRenderer::write_hit(Capture& capture, int x, int y, const World& world, const Surface& surface,
+                              const Ray& ray, bool is_last) const {
+    const Shading shading = world.shade(surface, ray.origin);
+    write_surface(capture, x, y, scene_, surface, shading);
+    const double opacity = world.opacity_of(surface);
+    if (opacity >= 1) return;
+    dvec3 color = opacity * shading.color();
+    if (is_last) color += (1 - opacity) * world.radiance(World::past(surface, ray));
+    write_color(capture, x, y, color, is_last ? 1 : opacity);
+}
+
 /// `states` are now, a frame before, a frame after. What nothing hides moves with the camera alone; a point
 /// that one of two cameras has behind it gets 0.
 SceneRenderer::Motion SceneRenderer::motion_of(const std::array<const SceneState*, 3>& states,
@@ -96,9 +108,8 @@ std::vector<Capture> SceneRenderer::render_layers(int frame, double time, std::a
                 if (k > surfaces.size()) continue;
                 const Motion motion = motion_of(states, surface, ray.direction);
                 write_motion(capture, x, y, motion.velocity_px, motion.velocity_next_px);
-                if (surface)
-                    write_surface(capture, x, y, scene_, *surface, world.shade(*surface, ray.origin));
-                else write_background(capture, x, y, scene_.background);
+                if (!surface) write_background(capture, x, y, scene_.background);
+                else write_hit(capture, x, y, world, *surface, ray, k + 1 == captures.size());
             }
         }
     });
@@ -179,9 +190,7 @@ void SceneRenderer::for_each_sample(int frame, const TruthSettings& truth, const
 Image SceneRenderer::render_truth(int frame, const TruthSettings& truth) const {
     std::vector<dvec3> sums(std::size_t(width_px_) * std::size_t(height_px_), dvec3(0));
     for_each_sample(frame, truth, [&](int x, int y, int, const World& world, const Ray& ray) {
-        const auto surface = world.trace(ray, 0, kFar);
-        sums[std::size_t(y) * std::size_t(width_px_) + std::size_t(x)] +=
-            surface ? world.shade(*surface, ray.origin).color() : scene_.background;
+        sums[std::size_t(y) * std::size_t(width_px_) + std::size_t(x)] += world.radiance(ray);
     });
     Image image(width_px_, height_px_, 4);
     for (std::size_t i = 0; i < sums.size(); ++i) {

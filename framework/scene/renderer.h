@@ -55,18 +55,21 @@ public:
     SceneRenderer(const Scene& scene, int width_px, int height_px, int threads);
 
     /// Every role but mask, at `time` in frames; motion is to `time` minus and plus one frame, in the shot of
-    /// `frame`. `jitter_px` is the samples' offset from the pixels' centres, +y down.
+    /// `frame`. Where the first surface is transparent, color has what shines through as well; the other
+    /// roles are of that surface. `jitter_px` is the samples' offset from the pixels' centres, +y down.
     Capture render_capture(int frame, double time, std::array<double, 2> jitter_px = {0, 0}) const;
     Capture render_capture(int frame) const { return render_capture(frame, frame); }
 
     /// The same, and what lies behind: layer n has the n-th surface that each ray meets
-    /// (World::trace_through) and alpha 1, the background behind the last one, and nothing, alpha 0 and depth
-    /// +inf, behind that. The first is render_capture()'s.
+    /// (World::trace_through), color times its opacity and alpha its opacity, the background behind the last
+    /// one, and nothing, alpha 0 and depth +inf, behind that. What shines through the last layer is in it,
+    /// with alpha 1. The first of one layer is render_capture()'s.
     std::vector<Capture> render_layers(int frame, double time, std::array<double, 2> jitter_px,
                                        int layers) const;
     /// Deep samples: all that kDeepRays rays over each pixel's square meet. What they meet of one object at
-    /// nearly one depth is a sample, whose alpha is the share of the rays. Channels: R G B A Z ZBack,
-    /// velocity.XY, velocity_next.XY, normal.XYZ, object_id.I. The background is an opaque sample at +inf.
+    /// nearly one depth is a sample, whose alpha is the share of the rays times the opacity. Channels: R G B
+    /// A Z ZBack, velocity.XY, velocity_next.XY, normal.XYZ, object_id.I. The background is an opaque sample
+    /// at +inf.
     DeepImage render_deep(int frame, double time, std::array<double, 2> jitter_px) const;
     static constexpr int kDeepRays = 16;
 
@@ -122,6 +125,8 @@ private:
     };
     Motion motion_of(const std::array<const SceneState*, 3>& states, const Surface* surface,
                      const glm::dvec3& direction) const;
+    void write_hit(Capture& capture, int x, int y, const World& world, const Surface& surface, const Ray& ray,
+                   bool is_last) const;
     struct SamplePoint {
         glm::dvec2 offset_px{0};  ///< from the pixel's top left
         glm::dvec2 on_lens{0};    ///< over the aperture's radius, +y down

@@ -70,6 +70,12 @@ dvec2 multi_jittered(std::uint32_t index, std::uint32_t count, std::uint32_t see
     return {(column + x) / columns, (row + y) / rows};
 }
 
+dvec2 shifted_hammersley(std::uint32_t index, std::uint32_t count, std::uint32_t seed) {
+    const dvec2 shifted(double(index) / count + unit_hash(0, seed),
+                        radical_inverse(int(index), 2) + unit_hash(1, seed));
+    return shifted - glm::floor(shifted);
+}
+
 dvec2 on_aperture(const dvec2& u, int blades, double rotation_rad) {
     if (blades == 0) {
         const dvec2 p = 2.0 * u - 1.0;

@@ -18,6 +18,10 @@ std::uint32_t permuted(std::uint32_t index, std::uint32_t count, std::uint32_t s
 /// hashes as Kensler 2013). Where `count` has no such grid, the last cells stay empty.
 glm::dvec2 multi_jittered(std::uint32_t index, std::uint32_t count, std::uint32_t seed);
 
+/// Point `index` of `count` of Hammersley's set, shifted at random around the unit square (Cranley and
+/// Patterson 1976). Unlike multi_jittered() it fills the square evenly for any `count`.
+glm::dvec2 shifted_hammersley(std::uint32_t index, std::uint32_t count, std::uint32_t seed);
+
 /// The unit square onto the aperture, of circumradius 1, evenly by area: a disk for 0 blades (Shirley and
 /// Chiu 1997), else a polygon with the middle of a straight edge at +x, which `rotation_rad` turns towards
 /// +y (down in the picture).

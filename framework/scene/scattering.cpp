@@ -67,7 +67,7 @@ public:
 private:
     void add(const Surface& there, double radius_m, double area_m2) {
         // From a little before the point, so that it does not hide itself.
-        if (visible_only_ && world_.is_hidden(eye_, glm::mix(there.position, eye_, 1e-6), false)) return;
+        if (visible_only_ && world_.is_hidden(eye_, glm::mix(there.position, eye_, 1e-6))) return;
         dvec3 weight;
         for (int c = 0; c < 3; ++c) weight[c] = scattering_density(scattering_, c, radius_m) * area_m2;
         sum_ += weight * world_.irradiance(there);

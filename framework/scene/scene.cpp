@@ -9,6 +9,11 @@
 
 namespace aftershade::scene {
 
+bool Scene::has_transparency() const {
+    return std::any_of(materials.begin(), materials.end(),
+                       [](const Material& material) { return material.opacity < 1; });
+}
+
 Shot Scene::shot_of(int frame) const {
     Shot shot;
     for (const int cut : cuts) {
@@ -105,6 +110,7 @@ void SceneReader::read_material(const std::string& name, const grammar::Reader& 
     material.roughness = number(reader, "roughness");
     material.specular = number(reader, "specular");
     material.emission = vec3(reader, "emission");
+    material.opacity = number(reader, "opacity");
     if (const Node* scattering = reader.find("scattering_profile"))
         if (auto profile = parse_scattering_profile(*scattering, "materials." + name + ".scattering_profile",
                                                     scene_.path.parent_path(), diagnostics_)) {

@@ -48,6 +48,7 @@ struct Material {
     double roughness = 0.5;       ///< GGX alpha is its square
     double specular = 0.04;       ///< reflectance at normal incidence; 0: none
     glm::dvec3 emission{0};       ///< radiance
+    double opacity = 1;           ///< share of the light that the surface stops; the rest continues unbent
     std::optional<Scattering> scattering;
 };
 
@@ -123,6 +124,11 @@ struct Scene {
     std::vector<Light> lights;
 
     Shot shot_of(int frame) const;
+    const Material& material_of(int object) const {
+        return materials[std::size_t(objects[std::size_t(object)].material)];
+    }
+    /// Whether any material lets light through.
+    bool has_transparency() const;
 };
 
 /// Reads and checks scene.json and the meshes that it names, relative to its folder. nullopt after errors.

@@ -27,12 +27,10 @@ constexpr std::uint64_t kEntryBytes = 8;
 /// Calls visit(sample) for the samples of a tile that met something.
 template <class Visit>
 void for_each_sample_of_tile(const SampleIds& samples, int left, int top, int tile_px, const Visit& visit) {
-    const auto count = std::size_t(samples.samples);
     for (int y = top; y < std::min(top + tile_px, samples.height_px); ++y)
         for (int x = left; x < std::min(left + tile_px, samples.width_px); ++x) {
-            const std::size_t first =
-                (std::size_t(y) * std::size_t(samples.width_px) + std::size_t(x)) * count;
-            for (std::size_t i = first; i < first + count; ++i)
+            const std::size_t pixel = std::size_t(y) * std::size_t(samples.width_px) + std::size_t(x);
+            for (std::size_t i = samples.first_of(pixel); i < samples.first_of(pixel + 1); ++i)
                 if (samples.ids[i] != kNoShading) visit(i);
         }
 }
@@ -62,10 +60,10 @@ public:
         counts.shadings = uses_.size();
         counts.bytes = cache_bytes;
         for (const std::uint32_t uses : uses_) counts.requests += uses;
-        counts.of_pixel.resize(std::size_t(samples_.width_px) * std::size_t(samples_.height_px));
-        for (std::size_t i = 0; i < of_sample_.size(); ++i)
-            if (of_sample_[i] != kNoShading)
-                counts.of_pixel[i / std::size_t(samples_.samples)] += 1.0f / float(uses_[of_sample_[i]]);
+        counts.of_pixel.resize(samples_.pixel_count());
+        for (std::size_t pixel = 0; pixel < counts.of_pixel.size(); ++pixel)
+            for (std::size_t i = samples_.first_of(pixel); i < samples_.first_of(pixel + 1); ++i)
+                if (of_sample_[i] != kNoShading) counts.of_pixel[pixel] += 1.0f / float(uses_[of_sample_[i]]);
         return counts;
     }
 

@@ -27,13 +27,22 @@ struct ShadingCacheSettings {
     int entries = 1024;  ///< lru and fifo
 };
 
-/// The ids that the samples of a picture met: ids[(y * width_px + x) * samples + i], kNoShading where
-/// nothing.
+/// The ids that the samples of a picture met, kNoShading where nothing: `samples` of each pixel, row by row.
 struct SampleIds {
     std::span<const std::uint32_t> ids;
     int width_px = 0;
     int height_px = 0;
     int samples = 0;
+    /// Where a pixel has another number of them: the index of each pixel's first, and the end.
+    std::span<const std::size_t> first = {};
+
+    std::size_t pixel_count() const { return std::size_t(width_px) * std::size_t(height_px); }
+    std::size_t first_of(std::size_t pixel) const {
+        return first.empty() ? pixel * std::size_t(samples) : first[pixel];
+    }
+    std::span<const std::uint32_t> of_pixel(std::size_t pixel) const {
+        return ids.subspan(first_of(pixel), first_of(pixel + 1) - first_of(pixel));
+    }
 };
 
 struct CacheCounts {

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <limits>
+#include <numeric>
+#include <span>
 #include <utility>
 
 #include "framework/core/parallel.h"
@@ -20,8 +23,28 @@ constexpr std::array<std::pair<Visibility, std::string_view>, 3> kVisibilityName
 
 constexpr std::uint64_t kShadingBytes = 12, kReferenceBytes = 8;
 
+std::size_t pixel_of(const SceneRenderer& renderer, int x, int y) {
+    return std::size_t(y) * std::size_t(renderer.width_px()) + std::size_t(x);
+}
+
 std::size_t pixel_count(const SceneRenderer& renderer) {
-    return std::size_t(renderer.width_px()) * std::size_t(renderer.height_px());
+    return pixel_of(renderer, 0, renderer.height_px());
+}
+
+template <class Visit>
+void for_each_pixel(const SceneRenderer& renderer, const Visit& visit) {
+    for_each_row(renderer.height_px(), renderer.threads(), [&](int y) {
+        for (int x = 0; x < renderer.width_px(); ++x) visit(x, y);
+    });
+}
+
+/// The one surface that a sample shows.
+std::optional<Surface> trace_sample(const World& world, const Ray& ray, const VisibilitySettings& settings,
+                                    int frame, int x, int y, int sample) {
+    if (!world.scene().has_transparency())
+        return world.trace(ray, 0, std::numeric_limits<double>::infinity());
+    const std::uint32_t seed = StopNumbers::pixel_seed(settings.seed, frame, x, y);
+    return trace_stochastic(world, ray, StopNumbers(seed, sample, settings.samples));
 }
 
 /// The light of each id of the set, by its number in it.
@@ -37,48 +60,105 @@ std::vector<dvec3> shade_all(const SceneRenderer& renderer, const ShadingGrids& 
     return light;
 }
 
-Image resolve(const SceneRenderer& renderer, const std::vector<std::uint32_t>& ids, const IdSet& set,
+/// What the samples of a picture ended at, and what they crossed before that.
+struct Traced {
+    std::vector<std::uint32_t> ends;  ///< as SampleIds has them
+    std::optional<TransparentLists> lists;
+};
+
+/// The mean over the samples; `list` is by sample, the nearest first.
+template <class LightOf>
+dvec3 blended(std::span<const std::uint32_t> ends, std::span<const ListNode> list, const LightOf& light_of) {
+    dvec3 sum(0);
+    std::size_t at = 0;
+    for (std::size_t sample = 0; sample < ends.size(); ++sample) {
+        double through = 1;
+        for (; at < list.size() && list[at].sample == sample; ++at) {
+            const double opacity = double(list[at].opacity);
+            sum += through * opacity * light_of(list[at].id);
+            through *= 1 - opacity;
+        }
+        sum += through * light_of(ends[sample]);
+    }
+    return sum / double(ends.size());
+}
+
+Image resolve(const SceneRenderer& renderer, const Traced& traced, const IdSet& set,
               const std::vector<dvec3>& light, int samples) {
     Image color(renderer.width_px(), renderer.height_px(), 4);
-    for_each_row(renderer.height_px(), renderer.threads(), [&](int y) {
-        for (int x = 0; x < renderer.width_px(); ++x) {
-            const std::size_t first =
-                (std::size_t(y) * std::size_t(renderer.width_px()) + std::size_t(x)) * std::size_t(samples);
-            dvec3 sum(0);
-            for (std::size_t i = first; i < first + std::size_t(samples); ++i)
-                sum += ids[i] == kNoShading ? renderer.scene().background : light[set.number_of(ids[i])];
-            for (int c = 0; c < 3; ++c) color.at(x, y, c) = float(sum[c] / samples);
-            color.at(x, y, 3) = 1;
-        }
+    const auto light_of = [&](std::uint32_t id) {
+        return id == kNoShading ? renderer.scene().background : light[set.number_of(id)];
+    };
+    for_each_pixel(renderer, [&](int x, int y) {
+        const auto ends = std::span(traced.ends)
+                              .subspan(pixel_of(renderer, x, y) * std::size_t(samples), std::size_t(samples));
+        const std::vector<ListNode> list =
+            traced.lists ? traced.lists->sorted(x, y) : std::vector<ListNode>();
+        const dvec3 mean = blended(ends, list, light_of);
+        for (int c = 0; c < 3; ++c) color.at(x, y, c) = float(mean[c]);
+        color.at(x, y, 3) = 1;
     });
     return color;
 }
 
 /// How many triangles the samples of each pixel met, summed.
 std::uint64_t triangles_of_pixels(const SceneRenderer& renderer, const ShadingGrids& grids,
-                                  const std::vector<std::uint32_t>& ids, int samples) {
+                                  const SampleIds& samples) {
     std::vector<std::uint64_t> of_row(std::size_t(renderer.height_px()));
     for_each_row(renderer.height_px(), renderer.threads(), [&](int y) {
         std::vector<std::uint32_t> met;
         for (int x = 0; x < renderer.width_px(); ++x) {
-            const std::size_t first =
-                (std::size_t(y) * std::size_t(renderer.width_px()) + std::size_t(x)) * std::size_t(samples);
             met.clear();
-            for (std::size_t i = first; i < first + std::size_t(samples); ++i)
-                if (ids[i] != kNoShading) met.push_back(grids.triangle_of(ids[i]));
+            for (const std::uint32_t id : samples.of_pixel(pixel_of(renderer, x, y)))
+                if (id != kNoShading) met.push_back(grids.triangle_of(id));
             std::sort(met.begin(), met.end());
             of_row[std::size_t(y)] += std::uint64_t(std::unique(met.begin(), met.end()) - met.begin());
         }
     });
-    std::uint64_t sum = 0;
-    for (const std::uint64_t row : of_row) sum += row;
-    return sum;
+    return std::reduce(of_row.begin(), of_row.end(), std::uint64_t(0));
+}
+
+/// What lists hold and what samples ended at, together.
+struct AllIds {
+    std::vector<std::uint32_t> ids;
+    std::vector<std::size_t> first;
+};
+
+AllIds all_ids_of(const SceneRenderer& renderer, const Traced& traced, int samples) {
+    AllIds all;
+    for (int y = 0; y < renderer.height_px(); ++y)
+        for (int x = 0; x < renderer.width_px(); ++x) {
+            all.first.push_back(all.ids.size());
+            for (const ListNode& node : traced.lists->sorted(x, y)) all.ids.push_back(node.id);
+            const auto end =
+                traced.ends.begin() + std::ptrdiff_t(pixel_of(renderer, x, y) * std::size_t(samples));
+            all.ids.insert(all.ids.end(), end, end + samples);
+        }
+    all.first.push_back(all.ids.size());
+    return all;
+}
+
+/// Samples that met a surface.
+std::uint64_t met_samples(const SceneRenderer& renderer, const Traced& traced, int samples) {
+    if (!traced.lists)
+        return std::uint64_t(std::count_if(traced.ends.begin(), traced.ends.end(),
+                                           [](std::uint32_t id) { return id != kNoShading; }));
+    std::vector<std::uint64_t> of_row(std::size_t(renderer.height_px()));
+    for_each_pixel(renderer, [&](int x, int y) {
+        const std::size_t first = pixel_of(renderer, x, y) * std::size_t(samples);
+        std::uint64_t met = 0;
+        for (int i = 0; i < samples; ++i)
+            if (traced.ends[first + std::size_t(i)] != kNoShading) met |= std::uint64_t(1) << i;
+        for (const ListNode& node : traced.lists->sorted(x, y)) met |= std::uint64_t(1) << node.sample;
+        of_row[std::size_t(y)] += std::uint64_t(std::popcount(met));
+    });
+    return std::reduce(of_row.begin(), of_row.end(), std::uint64_t(0));
 }
 
 /// Rates and bytes out of the counts.
-void complete(VisibilityReport& report, std::vector<float> of_pixel) {
+void complete(VisibilityReport& report, std::vector<float> of_pixel, std::uint64_t met) {
     const double pixels = double(of_pixel.size());
-    const double covered = double(report.requests) / report.samples;
+    const double covered = double(met) / report.samples;
     report.rate.of_pixels = double(report.shadings) / pixels;
     report.rate.of_covered_pixels = covered > 0 ? double(report.shadings) / covered : 0;
     report.rate.multisampled = covered > 0 ? report.rate.multisampled / covered : 0;
@@ -96,35 +176,56 @@ Image rate_image(const SceneRenderer& renderer, const std::vector<float>& of_pix
 }
 
 VisibilityPicture render_memoised(const SceneRenderer& renderer, const ShadingGrids& grids, int frame,
-                                  const VisibilitySettings& settings, const std::vector<std::uint32_t>& ids) {
-    const CacheCounts counts =
-        replay({ids, renderer.width_px(), renderer.height_px(), settings.samples}, settings.cache);
-    const IdSet set(ids, grids.id_count());
+                                  const VisibilitySettings& settings, const Traced& traced) {
+    SampleIds samples{traced.ends, renderer.width_px(), renderer.height_px(), settings.samples};
+    AllIds all;
+    if (traced.lists) {
+        all = all_ids_of(renderer, traced, settings.samples);
+        samples.ids = all.ids;
+        samples.first = all.first;
+    }
+    const CacheCounts counts = replay(samples, settings.cache);
+    const IdSet set(samples.ids, grids.id_count());
     VisibilityPicture picture;
-    picture.color = resolve(renderer, ids, set, shade_all(renderer, grids, set), settings.samples);
+    picture.color = resolve(renderer, traced, set, shade_all(renderer, grids, set), settings.samples);
     picture.shading_rate = rate_image(renderer, counts.of_pixel);
     VisibilityReport& report = picture.report;
-    report = {.frame = frame,
-              .samples = settings.samples,
-              .requests = counts.requests,
-              .shadings = counts.shadings,
-              .rate = {},
-              .bytes = {ids.size() * kReferenceBytes, counts.shadings * kShadingBytes, counts.bytes, 0}};
-    report.rate.multisampled = double(triangles_of_pixels(renderer, grids, ids, settings.samples));
-    complete(report, counts.of_pixel);
+    report.frame = frame;
+    report.samples = settings.samples;
+    report.requests = counts.requests;
+    report.shadings = counts.shadings;
+    report.bytes.visibility = traced.ends.size() * kReferenceBytes;
+    report.bytes.shading = counts.shadings * kShadingBytes;
+    report.bytes.cache = counts.bytes;
+    if (traced.lists) {
+        report.list_nodes = traced.lists->node_count();
+        report.list_overflows = traced.lists->overflows();
+        report.bytes.lists = traced.lists->bytes();
+    }
+    report.rate.multisampled = double(triangles_of_pixels(renderer, grids, samples));
+    complete(report, counts.of_pixel, met_samples(renderer, traced, settings.samples));
     return picture;
 }
 
 /// Light at every sample.
 VisibilityPicture render_plain(const SceneRenderer& renderer, int frame, const VisibilitySettings& settings) {
     std::vector<dvec3> sums(pixel_count(renderer), dvec3(0));
-    std::vector<float> of_pixel(sums.size());
+    std::vector<std::uint32_t> shadings(sums.size()), met(sums.size());
+    const bool sorted = settings.transparency.transparency == Transparency::sorted;
     renderer.for_each_sample(
-        frame, truth_of(settings), [&](int x, int y, int, const World& world, const Ray& ray) {
-            const std::size_t pixel = std::size_t(y) * std::size_t(renderer.width_px()) + std::size_t(x);
-            const auto surface = world.trace(ray, 0, std::numeric_limits<double>::infinity());
+        frame, truth_of(settings), [&](int x, int y, int sample, const World& world, const Ray& ray) {
+            const std::size_t pixel = pixel_of(renderer, x, y);
+            if (sorted) {
+                int own = 0;
+                sums[pixel] += world.radiance(ray, &own);
+                shadings[pixel] += std::uint32_t(own);
+                met[pixel] += own > 0 ? 1 : 0;
+                return;
+            }
+            const auto surface = trace_sample(world, ray, settings, frame, x, y, sample);
             sums[pixel] += surface ? world.shade(*surface, ray.origin).color() : renderer.scene().background;
-            of_pixel[pixel] += surface ? 1.0f : 0.0f;
+            shadings[pixel] += surface ? 1 : 0;
+            met[pixel] += surface ? 1 : 0;
         });
     VisibilityPicture picture;
     picture.color = Image(renderer.width_px(), renderer.height_px(), 4);
@@ -133,15 +234,44 @@ VisibilityPicture render_plain(const SceneRenderer& renderer, int frame, const V
             picture.color.floats()[i * 4 + c] = float(sums[i][int(c)] / settings.samples);
         picture.color.floats()[i * 4 + 3] = 1;
     }
+    std::vector<float> of_pixel(shadings.begin(), shadings.end());
     picture.shading_rate = rate_image(renderer, of_pixel);
     VisibilityReport& report = picture.report;
     report.frame = frame;
     report.samples = settings.samples;
-    for (const float shadings : of_pixel) report.requests += std::uint64_t(shadings);
-    report.shadings = report.requests;
-    complete(report, std::move(of_pixel));
+    report.requests = report.shadings = std::reduce(shadings.begin(), shadings.end(), std::uint64_t(0));
+    complete(report, std::move(of_pixel), std::reduce(met.begin(), met.end(), std::uint64_t(0)));
     report.bytes.shading = report.bytes.supersampled;
     return picture;
+}
+
+/// What does not fit into the lists stops samples by chance, as all does without them.
+Traced trace_lists(const SceneRenderer& renderer, const ShadingGrids& grids, int frame,
+                   const VisibilitySettings& settings) {
+    Traced traced{
+        std::vector(pixel_count(renderer) * std::size_t(settings.samples), kNoShading),
+        TransparentLists(renderer.width_px(), renderer.height_px(), settings.transparency.list_nodes)};
+    renderer.for_each_sample(
+        frame, truth_of(settings), [&](int x, int y, int sample, const World& world, const Ray& ray) {
+            const std::uint32_t seed = StopNumbers::pixel_seed(settings.seed, frame, x, y);
+            const StopNumbers stops(seed, sample, settings.samples);
+            std::uint32_t& end =
+                traced.ends[pixel_of(renderer, x, y) * std::size_t(settings.samples) + std::size_t(sample)];
+            int crossing = 0;
+            world.cross(ray, [&](const Surface& surface) {
+                const double opacity = world.opacity_of(surface);
+                const std::uint32_t id = grids.id_of(surface);
+                const double stop = stops.at(crossing++);
+                if (opacity <= 0) return true;
+                if (opacity < 1) {
+                    const ListNode node{id, float(surface.t), float(opacity), std::uint32_t(sample)};
+                    if (traced.lists->add(x, y, node) || stop >= opacity) return true;
+                }
+                end = id;
+                return false;
+            });
+        });
+    return traced;
 }
 
 }  // namespace
@@ -163,10 +293,10 @@ std::vector<std::uint32_t> trace_ids(const SceneRenderer& renderer, const Shadin
     std::vector<std::uint32_t> ids(pixel_count(renderer) * std::size_t(settings.samples), kNoShading);
     renderer.for_each_sample(
         frame, truth_of(settings), [&](int x, int y, int sample, const World& world, const Ray& ray) {
-            const auto surface = world.trace(ray, 0, std::numeric_limits<double>::infinity());
+            const auto surface = trace_sample(world, ray, settings, frame, x, y, sample);
             if (!surface) return;
-            const std::size_t pixel = std::size_t(y) * std::size_t(renderer.width_px()) + std::size_t(x);
-            ids[pixel * std::size_t(settings.samples) + std::size_t(sample)] = grids.id_of(*surface);
+            ids[pixel_of(renderer, x, y) * std::size_t(settings.samples) + std::size_t(sample)] =
+                grids.id_of(*surface);
         });
     return ids;
 }
@@ -186,7 +316,11 @@ VisibilityPicture render_visibility(const SceneRenderer& renderer, int frame,
                                     const VisibilitySettings& settings, const IdTracer& tracer) {
     if (settings.visibility != Visibility::memoised) return render_plain(renderer, frame, settings);
     const ShadingGrids grids(renderer, frame, settings.grid);
-    return render_memoised(renderer, grids, frame, settings, tracer(renderer, grids, frame, settings));
+    Traced traced;
+    if (settings.transparency.transparency == Transparency::lists)
+        traced = trace_lists(renderer, grids, frame, settings);
+    else traced.ends = tracer(renderer, grids, frame, settings);
+    return render_memoised(renderer, grids, frame, settings, traced);
 }
 
 }  // namespace aftershade::scene

@@ -11,6 +11,7 @@
 #include "framework/scene/renderer.h"
 #include "framework/scene/shading_cache.h"
 #include "framework/scene/shading_grid.h"
+#include "framework/scene/transparency.h"
 
 namespace aftershade::scene {
 
@@ -33,6 +34,7 @@ struct VisibilitySettings {
     std::array<double, 2> jitter_px{0, 0};
     ShadingGridSettings grid;
     ShadingCacheSettings cache;
+    TransparencySettings transparency;
 };
 
 /// Shadings of a pixel.
@@ -49,14 +51,17 @@ struct VisibilityBytes {
     std::uint64_t visibility = 0;
     std::uint64_t shading = 0;
     std::uint64_t cache = 0;
+    std::uint64_t lists = 0;         ///< of transparent surfaces
     std::uint64_t supersampled = 0;  ///< what a G-buffer of all samples would take
 };
 
 struct VisibilityReport {
     int frame = 0;
     int samples = 0;
-    std::uint64_t requests = 0;  ///< samples that met a surface
-    std::uint64_t shadings = 0;  ///< requests that the cache had nothing for
+    std::uint64_t requests = 0;        ///< surfaces that samples met: one each, or all that they blend
+    std::uint64_t shadings = 0;        ///< requests that the cache had nothing for
+    std::uint64_t list_nodes = 0;      ///< surfaces in lists
+    std::uint64_t list_overflows = 0;  ///< surfaces that no list had room for; those stop samples by chance
     ShadingRate rate;
     VisibilityBytes bytes;
 };
@@ -71,7 +76,7 @@ struct VisibilityPicture {
 /// antialias.
 TruthSettings truth_of(const VisibilitySettings& settings);
 
-/// What each sample met, as SampleIds has it.
+/// What each sample met, as SampleIds has it; one surface, transparent ones by chance.
 std::vector<std::uint32_t> trace_ids(const SceneRenderer& renderer, const ShadingGrids& grids, int frame,
                                      const VisibilitySettings& settings);
 /// That, or what does the same elsewhere.
@@ -79,7 +84,8 @@ using IdTracer = std::function<std::vector<std::uint32_t>(
     const SceneRenderer& renderer, const ShadingGrids& grids, int frame, const VisibilitySettings& settings)>;
 
 /// `renderer` is of a scene of meshes (triangulated()). What all caches give is one picture: they change the
-/// count alone. Nothing depends on the number of threads. `tracer` is for Visibility::memoised.
+/// count alone. Nothing depends on the number of threads. `tracer` is for Visibility::memoised without lists;
+/// those are for Visibility::memoised, and Transparency::sorted is for the others.
 VisibilityPicture render_visibility(const SceneRenderer& renderer, int frame,
                                     const VisibilitySettings& settings, const IdTracer& tracer = trace_ids);
 

@@ -49,8 +49,8 @@ World::World(const Geometry& geometry, SceneState state) : geometry_(&geometry),
         seen_of_object_.push_back(local.empty() ? -1 : int(seen_.size()));
         if (local.empty()) continue;
         const dmat4& matrix = state_.world_from_object[i];
-        seen_.push_back(
-            {int(i), object.casts_shadow, &object.shape, mesh, glm::dmat4x3(glm::inverse(matrix))});
+        seen_.push_back({int(i), object.casts_shadow, scene().material_of(int(i)).opacity, &object.shape,
+                         mesh, glm::dmat4x3(glm::inverse(matrix))});
         bounds.push_back(transformed(local, matrix));
         // A flat box keeps rays that run along it only if it has some height.
         const dvec3 margin = 1e-12 * glm::max(glm::abs(bounds.back().low), glm::abs(bounds.back().high));
@@ -105,37 +105,64 @@ std::optional<Surface> World::trace(const Ray& ray, double low, double high, int
 }
 
 std::vector<Surface> World::trace_through(const Ray& ray, std::size_t most) const {
-    // Two triangles that share an edge may both be met there.
-    constexpr double kStep = 1 + 1e-7;
     std::vector<Surface> found;
-    std::vector<int> entered;  // objects, once for each front that has no back yet
-    double low = 0;
-    while (found.size() < most) {
-        const auto surface = trace(ray, low, std::numeric_limits<double>::infinity());
-        if (!surface) break;
-        low = surface->t * kStep;
-        const auto inside = std::find(entered.begin(), entered.end(), surface->object);
-        if (surface->from_behind && inside != entered.end()) {
+    std::vector<int> entered;  // opaque objects, once for each front that has no back yet
+    cross(ray, [&](const Surface& surface) {
+        const auto inside = std::find(entered.begin(), entered.end(), surface.object);
+        if (surface.from_behind && inside != entered.end()) {
             entered.erase(inside);
-            continue;
+            return true;
         }
-        if (!surface->from_behind) entered.push_back(surface->object);
-        found.push_back(*surface);
-    }
+        if (!surface.from_behind && opacity_of(surface) >= 1) entered.push_back(surface.object);
+        found.push_back(surface);
+        return found.size() < most;
+    });
     return found;
 }
 
-bool World::is_hidden(const dvec3& from, const dvec3& to, bool casts_shadow) const {
+dvec3 World::radiance(const Ray& ray, int* shadings) const {
+    dvec3 light(0);
+    double through = 1;
+    cross(ray, [&](const Surface& surface) {
+        const double opacity = opacity_of(surface);
+        if (opacity <= 0) return true;
+        light += through * opacity * shade(surface, ray.origin).color();
+        through *= 1 - opacity;
+        if (shadings) ++*shadings;
+        return through > 0;
+    });
+    return through > 0 ? light + through * scene().background : light;
+}
+
+bool World::is_hidden(const dvec3& from, const dvec3& to) const {
     const Ray ray{from, to - from};
     double high = 1;
     bool hidden = false;
     walk(ray, 0, high, [&](const Seen& seen) {
         ShapeHit hit;
-        hidden = (seen.casts_shadow || !casts_shadow) &&
-                 intersect(*seen.shape, seen.mesh, seen.local(ray), 0, 1, true, hit);
+        hidden = intersect(*seen.shape, seen.mesh, seen.local(ray), 0, 1, true, hit);
         return hidden;
     });
     return hidden;
+}
+
+double World::light_through(const dvec3& from, const dvec3& to) const {
+    const Ray ray{from, to - from};
+    double high = 1, share = 1;
+    walk(ray, 0, high, [&](const Seen& seen) {
+        if (!seen.casts_shadow) return false;
+        const Ray local = seen.local(ray);
+        const bool opaque = seen.opacity >= 1;
+        ShapeHit hit;
+        double low = 0;
+        for (int crossing = 0; crossing < kMostCrossings && share > 0; ++crossing) {
+            if (!intersect(*seen.shape, seen.mesh, local, low, 1, opaque, hit)) break;
+            share *= 1 - seen.opacity;
+            low = hit.t * kPast;
+        }
+        return share <= 0;
+    });
+    return share;
 }
 
 Surface World::surface(int object, const ShapePoint& on_shape) const {

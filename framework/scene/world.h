@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -61,11 +62,26 @@ public:
 
     /// The nearest surface with low < t < high; of one object alone where `only` is its index.
     std::optional<Surface> trace(const Ray& ray, double low, double high, int only = -1) const;
-    /// What a ray meets, the nearest first and at most `most`; without the insides of what it has entered, so
-    /// that behind a ball's front comes what stands behind the ball.
+    /// Calls visit(surface) for what a ray crosses, the nearest first, until that returns false; at most
+    /// kMostCrossings times.
+    template <class Visit>
+    void cross(const Ray& ray, const Visit& visit) const;
+    static constexpr int kMostCrossings = 1024;
+    /// The light that comes along a ray: that of each surface by its opacity, through those before it. Adds
+    /// to `shadings` how many surfaces that took.
+    glm::dvec3 radiance(const Ray& ray, int* shadings = nullptr) const;
+    /// What a ray meets, the nearest first and at most `most`; without the insides of the opaque things that
+    /// it has entered, so that behind a ball's front comes what stands behind the ball.
     std::vector<Surface> trace_through(const Ray& ray, std::size_t most) const;
-    /// Whether anything stands between two points; with `casts_shadow`, of what casts shadows alone.
-    bool is_hidden(const glm::dvec3& from, const glm::dvec3& to, bool casts_shadow) const;
+    /// Whether anything stands between two points.
+    bool is_hidden(const glm::dvec3& from, const glm::dvec3& to) const;
+    /// The share of light that goes from one point to another past what casts shadows.
+    double light_through(const glm::dvec3& from, const glm::dvec3& to) const;
+    /// The rest of the ray that met the surface.
+    static Ray past(const Surface& surface, const Ray& ray) {
+        return {ray.origin + surface.t * kPast * ray.direction, ray.direction};
+    }
+    double opacity_of(const Surface& surface) const { return scene().material_of(surface.object).opacity; }
 
     /// A point of an object: by its own space. Normals are outwards.
     Surface surface(int object, const ShapePoint& point) const;
@@ -82,6 +98,7 @@ private:
     struct Seen {
         int object = 0;
         bool casts_shadow = true;
+        double opacity = 1;
         const Shape* shape = nullptr;
         const MeshTree* mesh = nullptr;
         glm::dmat4x3 object_from_world{1};
@@ -91,6 +108,8 @@ private:
                     glm::dmat3(object_from_world) * ray.direction};
         }
     };
+    /// Past a surface, as a ratio of distances: two triangles that share an edge may both be met there.
+    static constexpr double kPast = 1 + 1e-7;
     template <class Visit>
     void walk(const Ray& ray, double low, double& high, const Visit& visit) const;
     Shading light(const Surface& surface, const glm::dvec3* to_eye) const;
@@ -104,5 +123,15 @@ private:
     std::vector<Seen> seen_;
     Bvh bvh_;  ///< over seen_, in world space
 };
+
+template <class Visit>
+void World::cross(const Ray& ray, const Visit& visit) const {
+    double low = 0;
+    for (int crossing = 0; crossing < kMostCrossings; ++crossing) {
+        const auto surface = trace(ray, low, std::numeric_limits<double>::infinity());
+        if (!surface || !visit(*surface)) return;
+        low = surface->t * kPast;
+    }
+}
 
 }  // namespace aftershade::scene

@@ -90,27 +90,29 @@ dvec3 albedo_at(const Material& material, const glm::dvec2& uv) {
 
 }  // namespace
 
-/// Of an area light: the part of a grid of its points that nothing hides. Points below the surface's horizon
-/// do not count, since polygon_cosine cuts them off; where all are, the highest corner stands for the rest.
+/// Of an area light: the share of a grid of its points that shines through. Points below the surface's
+/// horizon do not count, since polygon_cosine cuts them off; where all are, the highest corner stands for the
+/// rest.
 double World::visible_part(std::size_t index, const Surface& surface) const {
     const LightState& light = state_.lights[index];
     const int side = scene().lights[index].shadow_samples;
     const dvec3 from = off_surface(surface);
-    int seen = 0, count = 0;
+    double seen = 0;
+    int count = 0;
     for (int y = 0; y < side; ++y)
         for (int x = 0; x < side; ++x) {
             const double u = (x + 0.5) / side * 2 - 1, v = (y + 0.5) / side * 2 - 1;
             const dvec3 to = light.position_m + u * light.half_u_m + v * light.half_v_m;
             if (height_over(surface, to) <= 0) continue;
             ++count;
-            seen += is_hidden(from, to, true) ? 0 : 1;
+            seen += light_through(from, to);
         }
-    if (count > 0) return double(seen) / count;
+    if (count > 0) return seen / count;
     const Quad corners = corners_of(light);
     const dvec3& highest = *std::max_element(
         corners.begin(), corners.end(),
         [&](const dvec3& a, const dvec3& b) { return height_over(surface, a) < height_over(surface, b); });
-    return is_hidden(from, highest, true) ? 0 : 1;
+    return light_through(from, highest);
 }
 
 void World::add_light(std::size_t index, const Surface& surface, const dvec3* to_eye,
@@ -136,14 +138,13 @@ void World::add_light(std::size_t index, const Surface& surface, const dvec3* to
     if (light.shadows) {
         const dvec3 from = off_surface(surface);
         const dvec3 to = is_far ? from + toward * kFar_m : now.position_m;
-        const double seen = is_area ? visible_part(index, surface) : is_hidden(from, to, true) ? 0 : 1;
+        const double seen = is_area ? visible_part(index, surface) : light_through(from, to);
         received *= seen;
         highlighted *= seen;
     }
     shading.irradiance += now.color_intensity * (received / std::numbers::pi);
     if (!to_eye || highlighted <= 0) return;
-    const Material& material =
-        scene().materials[std::size_t(scene().objects[std::size_t(surface.object)].material)];
+    const Material& material = scene().material_of(surface.object);
     shading.specular +=
         now.color_intensity * (highlighted * highlight(material, surface.normal, toward, *to_eye));
 }
@@ -158,8 +159,7 @@ Shading World::light(const Surface& surface, const dvec3* to_eye) const {
 Shading World::shade(const Surface& surface, const dvec3& eye) const {
     const dvec3 to_eye = glm::normalize(eye - surface.position);
     Shading shading = light(surface, &to_eye);
-    const Material& material =
-        scene().materials[std::size_t(scene().objects[std::size_t(surface.object)].material)];
+    const Material& material = scene().material_of(surface.object);
     shading.albedo = albedo_at(material, surface.uv);
     shading.emission = material.emission;
     return shading;

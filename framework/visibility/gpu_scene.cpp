@@ -50,11 +50,11 @@ void add_way(Bounds& bounds, const std::vector<scene::SceneState>& states, std::
 }
 
 GpuTriangle triangle_of(const scene::ShadingGrids::Grid& grid, const scene::SceneState& reference,
-                        std::size_t object, const std::array<dvec3, 3>& corners) {
+                        std::size_t object, const std::array<dvec3, 3>& corners, double opacity) {
     GpuTriangle triangle;
     triangle.corner = with(corners[0], bits(std::uint32_t(object)));
     triangle.to_second = with(corners[1] - corners[0], bits(grid.start));
-    triangle.to_third = with(corners[2] - corners[0]);
+    triangle.to_third = with(corners[2] - corners[0], float(opacity));
     const glm::dmat4 view_from_object =
         reference.camera.camera_from_world * reference.world_from_object[object];
     for (std::size_t i = 0; i < 3; ++i)
@@ -97,8 +97,8 @@ GpuScene make_gpu_scene(const scene::SceneRenderer& renderer, const scene::Shadi
         const scene::Mesh& mesh = scene.meshes[std::size_t(index)];
         for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
             const std::array<dvec3, 3> corners = corners_of(mesh, i);
-            triangles.push_back(
-                triangle_of(grids.grids()[triangles.size()], grids.reference(), object, corners));
+            triangles.push_back(triangle_of(grids.grids()[triangles.size()], grids.reference(), object,
+                                            corners, scene.material_of(int(object)).opacity));
             Bounds& own = bounds.emplace_back();
             for (const dvec3& corner : corners) add_way(own, states, object, corner);
         }

@@ -31,6 +31,7 @@ namespace {
 struct GpuRay {
     vec4 origin{0};
     vec4 direction{0};
+    vec4 stops{0};
 };
 
 struct TraceSettings {
@@ -41,6 +42,8 @@ struct TraceSettings {
     std::uint32_t pixel_count = 0;
     std::uint32_t sample_index = 0;
     std::uint32_t sample_count = 0;
+    std::uint32_t transparent = 0;
+    std::array<std::uint32_t, 3> unused{};
 };
 
 struct CacheSettings {
@@ -67,9 +70,20 @@ std::vector<T> values_of(const Buffer& buffer) {
     return values;
 }
 
+/// Where the sample stops at transparent surfaces, and the seed for what it crosses after four of them.
+void set_stops(GpuRay& ray, const scene::VisibilitySettings& settings, int frame, int x, int y, int sample) {
+    const std::uint32_t seed = scene::StopNumbers::pixel_seed(settings.seed, frame, x, y);
+    const scene::StopNumbers stops(seed, sample, settings.samples);
+    const std::array<double, 4>& first = stops.first();
+    ray.stops = vec4(first[0], first[1], first[2], first[3]);
+    ray.direction.w = std::bit_cast<float>(seed);
+}
+
 std::vector<GpuRay> rays_of_band(const scene::SceneRenderer& renderer, int frame,
-                                 const scene::TruthSettings& truth, int sample,
+                                 const scene::VisibilitySettings& settings, int sample,
                                  const std::vector<scene::World>& moments, int first_row, int rows) {
+    const scene::TruthSettings truth = truth_of(settings);
+    const bool transparent = renderer.scene().has_transparency();
     std::vector<GpuRay> rays(std::size_t(renderer.width_px()) * std::size_t(rows));
     for_each_row(rows, renderer.threads(), [&](int row) {
         for (int x = 0; x < renderer.width_px(); ++x) {
@@ -77,6 +91,7 @@ std::vector<GpuRay> rays_of_band(const scene::SceneRenderer& renderer, int frame
             GpuRay& ray = rays[std::size_t(row) * std::size_t(renderer.width_px()) + std::size_t(x)];
             ray.origin = vec4(glm::vec3(own.ray.origin), std::bit_cast<float>(std::uint32_t(own.moment)));
             ray.direction = vec4(glm::vec3(own.ray.direction), 0);
+            if (transparent) set_stops(ray, settings, frame, x, first_row + row, sample);
         }
     });
     return rays;
@@ -108,6 +123,7 @@ std::vector<std::uint32_t> trace_ids(gpu::Context& context, const scene::SceneRe
     values.node_count = std::uint32_t(scene.nodes.size());
     values.object_count = std::uint32_t(renderer.scene().objects.size());
     values.sample_count = std::uint32_t(settings.samples);
+    values.transparent = renderer.scene().has_transparency() ? 1 : 0;
     Buffer uniforms(context, sizeof values, "settings");
     std::vector<std::uint32_t> ids;
     const std::size_t bytes_of_row = width * std::max(samples * sizeof(std::uint32_t), sizeof(GpuRay));
@@ -118,7 +134,7 @@ std::vector<std::uint32_t> trace_ids(gpu::Context& context, const scene::SceneRe
             const std::vector<scene::World> worlds = renderer.moments_of(frame, truth, sample);
             const Buffer moments = filled(context, make_moments(worlds), "moments");
             const Buffer rays =
-                filled(context, rays_of_band(renderer, frame, truth, sample, worlds, first, rows), "rays");
+                filled(context, rays_of_band(renderer, frame, settings, sample, worlds, first, rows), "rays");
             values.pixel_count = std::uint32_t(pixels);
             values.sample_index = std::uint32_t(sample);
             uniforms.write(bytes_of(std::array{values}));

@@ -1,5 +1,6 @@
 #version 450 core
 // One visibility sample of every pixel of a band: the nearest triangle that its ray meets at its own moment, and the shading sample there.
+// Transparent triangles stop it by chance (Enderton et al. 2010).
 layout(local_size_x = 64) in;
 
 struct Node {
@@ -9,7 +10,7 @@ struct Node {
 struct Triangle {
     vec4 corner;         // in the object's space, m; w: the object, as bits
     vec4 to_second;      // w: the grid's first cell, as bits
-    vec4 to_third;
+    vec4 to_third;       // w: opacity
     vec4 view[3];        // the corners before the reference pose's camera, m
     vec4 cells_from_px;  // columns
     vec4 grid;           // low corner, in cells; size, as bits
@@ -19,7 +20,8 @@ struct Moment {
 };
 struct Ray {
     vec4 origin;     // w: the moment, as bits
-    vec4 direction;
+    vec4 direction;  // w: the pixel's seed, as bits
+    vec4 stops;      // for the first transparent surfaces
 };
 
 layout(std430, binding = 0) readonly buffer Nodes { Node nodes[]; };
@@ -35,9 +37,13 @@ layout(std140, binding = 0) uniform Settings {
     uint pixel_count;
     uint sample_index;
     uint sample_count;
+    uint transparent;  // 1: some triangles are
 };
 
 const uint kNoShading = 0xffffffffu;
+// As World::kMostCrossings; and past a surface, as a ratio of distances in single precision.
+const uint kMostCrossings = 1024u;
+const float kPast = 1.0 + 2e-6;
 
 struct Hit {
     float t;
@@ -54,7 +60,7 @@ bool meets(vec3 origin, vec3 inverse_direction, vec3 low, vec3 high, float neare
 }
 
 // Moller and Trumbore 1997, both sides, in the object's space.
-void meet_triangle(uint index, vec3 origin, vec3 direction, uint moment, inout Hit hit) {
+void meet_triangle(uint index, vec3 origin, vec3 direction, uint moment, float low, inout Hit hit) {
     Moment at = moments[moment * object_count + floatBitsToUint(triangles[index].corner.w)];
     vec4 p1 = vec4(origin, 1.0), d1 = vec4(direction, 0.0);
     vec3 o = vec3(dot(at.object_from_world[0], p1), dot(at.object_from_world[1], p1), dot(at.object_from_world[2], p1));
@@ -62,7 +68,7 @@ void meet_triangle(uint index, vec3 origin, vec3 direction, uint moment, inout H
     vec3 ab = triangles[index].to_second.xyz, ac = triangles[index].to_third.xyz;
     vec3 p = cross(d, ac), s = o - triangles[index].corner.xyz, q = cross(s, ab);
     float inverse = 1.0 / dot(ab, p), u = dot(s, p) * inverse, v = dot(d, q) * inverse, t = dot(ac, q) * inverse;
-    if (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0 && t < hit.t)
+    if (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > low && t < hit.t)
         hit = Hit(t, index, vec2(u, v), dot(cross(ab, ac), d) > 0.0);
 }
 
@@ -77,11 +83,25 @@ uint id_of(Hit hit) {
     return 2u * (floatBitsToUint(at.to_second.w) + uint(cell.y * size.x + cell.x)) + (hit.from_behind ? 1u : 0u);
 }
 
-void main() {
-    uint pixel = gl_GlobalInvocationID.x;
-    if (pixel >= pixel_count) return;
-    vec3 origin = rays[pixel].origin.xyz, direction = rays[pixel].direction.xyz, inverse = 1.0 / direction;
-    uint moment = floatBitsToUint(rays[pixel].origin.w);
+// Jarzynski and Olano 2020, Hash Functions for GPU Rendering: pcg3d.
+uint pcg3d_x(uvec3 v) {
+    v = v * 1664525u + 1013904223u;
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v ^= v >> 16u;
+    return v.x + v.y * v.z;
+}
+
+// The twin of StopNumbers::at.
+float stop_at(uint pixel, uint crossing) {
+    if (crossing < 4u) return rays[pixel].stops[crossing];
+    return float(pcg3d_x(uvec3(floatBitsToUint(rays[pixel].direction.w), sample_index, crossing)) >> 8u) / 16777216.0;
+}
+
+// The nearest triangle beyond `low`.
+Hit trace(vec3 origin, vec3 direction, uint moment, float low) {
+    vec3 inverse = 1.0 / direction;
     Hit hit = Hit(1e30, kNoShading, vec2(0.0), false);
     uint at = 0u;
     // A ray comes to each node once at most, since it only goes on to later ones.
@@ -91,8 +111,24 @@ void main() {
             continue;
         }
         uint items = floatBitsToUint(nodes[at].high_items.w), first = items >> 3;
-        for (uint i = 0u; i < (items & 7u); ++i) meet_triangle(first + i, origin, direction, moment, hit);
+        for (uint i = 0u; i < (items & 7u); ++i) meet_triangle(first + i, origin, direction, moment, low, hit);
         ++at;
+    }
+    return hit;
+}
+
+void main() {
+    uint pixel = gl_GlobalInvocationID.x;
+    if (pixel >= pixel_count) return;
+    vec3 origin = rays[pixel].origin.xyz, direction = rays[pixel].direction.xyz;
+    uint moment = floatBitsToUint(rays[pixel].origin.w);
+    Hit hit = trace(origin, direction, moment, 0.0);
+    uint crossed = 0u;
+    for (uint i = 0u; transparent != 0u && hit.triangle != kNoShading && i < kMostCrossings; ++i) {
+        float opacity = triangles[hit.triangle].to_third.w;
+        if (opacity >= 1.0 || stop_at(pixel, crossed) < opacity) break;
+        ++crossed;
+        hit = trace(origin, direction, moment, hit.t * kPast);
     }
     ids[pixel * sample_count + sample_index] = hit.triangle == kNoShading ? kNoShading : id_of(hit);
 }

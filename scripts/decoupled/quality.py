@@ -6,6 +6,7 @@ from PIL import Image
 
 from family import AFTERSHADE, CAPTURES, ROOT, command, psnr_db, read_exr, srgb, write_exr
 from rates import on_triangles
+from transparency import on_transparent
 
 WORK = ROOT / "build/quality-decoupled"
 IMAGES = ROOT / "docs/images/decoupled"
@@ -144,7 +145,8 @@ def main():
     suzanne = on_suzanne()
     scenes, pictures = both_at_once()
     parts = [text("head"), "## A renderer's frame", text("suzanne"), suzanne, "![suzanne](images/decoupled/suzanne.jpg)",
-             "## Lens and shutter at once", text("both"), scenes, *pictures, "## Hidden surfaces", text("hidden"), hidden(), *on_triangles(table, text, IMAGES), text("faults")]
+             "## Lens and shutter at once", text("both"), scenes, *pictures, "## Hidden surfaces", text("hidden"), hidden(), *on_triangles(table, text, IMAGES),
+             *on_transparent(table, text, IMAGES), text("faults")]
     (ROOT / "docs/quality-decoupled.md").write_text("\n\n".join(parts) + "\n")
     print("docs/quality-decoupled.md")
 

@@ -132,6 +132,43 @@ TEST_F(Render, TracesVisibilityWithGlAlikeOnOneThreadAndOnTwo) {
     EXPECT_EQ(reds[0], reds[1]);
 }
 
+TEST_F(Render, CountsTheTransparentSurfacesInItsLists) {
+    const auto lists_of = [&](const std::string& nodes) {
+        const CommandResult made =
+            render({scene("panes"), "-o", "panes", "--size", "96x54", "--frames", "4", "--truth-only",
+                    "--visibility", "memoised", "--visibility-samples", "8", "--transparency", "lists",
+                    "--list-nodes", nodes, "--json", "--quiet"});
+        EXPECT_EQ(made.exit_code, 0) << made.err;
+        return nlohmann::json::parse(made.out).at("visibility").at(0).at("lists");
+    };
+    const auto all = lists_of("64"), some = lists_of("4");
+    EXPECT_EQ(all.at("overflows"), 0);
+    EXPECT_GT(all.at("nodes"), 96 * 54);
+    EXPECT_GT(some.at("overflows"), 0);
+    EXPECT_LE(some.at("nodes"), 4 * 96 * 54);
+}
+
+TEST_F(Render, RefusesWaysOfTransparencyThatDoNotFit) {
+    const std::vector<std::pair<Args, std::string>> faults = {
+        {{"--visibility", "supersampled", "--transparency", "lists"},
+         "--transparency lists: error: is for --visibility memoised"},
+        {{"--visibility", "memoised", "--transparency", "sorted"},
+         "--transparency sorted: error: is for --visibility supersampled or accumulation"},
+        {{"--visibility", "memoised", "--visibility-on", "gl", "--transparency", "lists"},
+         "--transparency lists: error: is for --visibility-on cpu; gl takes stochastic"},
+        {{"--visibility", "memoised", "--list-nodes", "9"},
+         "--list-nodes: error: is for --transparency lists"},
+        {{"--truth", "scattering"},
+         "--truth scattering: error: the scene has materials with an \"opacity\""}};
+    for (const auto& [words, message] : faults) {
+        Args all = {scene("panes"), "-o", "panes"};
+        all.insert(all.end(), words.begin(), words.end());
+        const CommandResult refused = render(all);
+        EXPECT_EQ(refused.exit_code, 2);
+        EXPECT_NE(refused.err.find(message), std::string::npos) << refused.err;
+    }
+}
+
 TEST_F(Render, RefusesACacheWithoutShadingSamples) {
     const CommandResult refused = render({scene("toys"), "-o", "toys", "--visibility", "supersampled",
                                           "--shading-cache", "lru", "--anisotropic-shading"});

@@ -40,12 +40,13 @@ Traced traced(gpu::Context& context, const std::string& id, int frame, int sampl
 }
 
 TEST_P(VisibilityOn, MeetsWhatTheCpuMeetsButAtEdges) {
-    for (const auto& [id, frame] : {std::pair("bats", 6), {"toys", 4}, {"camera_checker", 6}}) {
+    for (const auto& [id, frame] : {std::pair("bats", 6), {"toys", 4}, {"camera_checker", 6}, {"panes", 4}}) {
         const Traced found = traced(context(), id, frame, 8);
         ASSERT_EQ(found.on_gpu.size(), found.on_cpu.size());
         std::size_t other = 0;
         for (std::size_t i = 0; i < found.on_cpu.size(); ++i) other += found.on_cpu[i] != found.on_gpu[i];
-        EXPECT_LT(double(other) / double(found.on_cpu.size()), 0.002) << id;
+        EXPECT_LT(double(other) / double(found.on_cpu.size()), id == std::string("panes") ? 0.004 : 0.002)
+            << id;
     }
 }
 
