@@ -156,6 +156,8 @@ ExitCode run_here(const RunArguments& options, CheckedRun& run, const CaptureRea
     if (run.settings.warmup_frames == 0 && !options.jobs.is_worker())
         if (const auto lost = lost_history_text(pipeline, run.sequence, reader, run.settings); !lost.empty())
             std::cerr << "aftershade: warning: " << printable(lost) << "\n";
+    if (!options.jobs.is_worker())
+        std::cerr << printable_lines(stale_layers_text(pipeline, run.sequence, reader));
     const RunSession session{options,          status,       run.sequence, reader,
                              context,          run.settings, run.outputs,  parse_progress(options.progress),
                              profile_documents};

@@ -5,6 +5,7 @@
 #include "cli/command_line.h"
 #include "framework/capture/frame_range.h"
 #include "framework/core/diagnostics.h"
+#include "framework/core/error.h"
 #include "framework/core/text.h"
 
 namespace aftershade::cli {
@@ -48,6 +49,24 @@ std::string lost_history_text(const Pipeline& pipeline, const Sequence& sequence
            " is there; this frame and those after it differ from those of an uncut run (run the frames up "
            "to " +
            std::to_string(first - 1) + " with --history-out FILE, and these with --history-in FILE)";
+}
+
+std::string stale_layers_text(const Pipeline& pipeline, const Sequence& sequence,
+                              const CaptureReader& reader) {
+    const std::vector<StaleLayers> stale = find_stale_layers(pipeline);
+    if (stale.empty() || sequence.frames.empty()) return "";
+    try {
+        if (reader.read_header(sequence.file_number(sequence.frames.front())).layer_roles.empty()) return "";
+    } catch (const Error&) {
+        return "";  // the run reports it
+    }
+    std::string text;
+    for (const StaleLayers& one : stale)
+        text += "aftershade: warning: step '" + one.step + "' reads the capture's layers, and " +
+                list_of_names(one.changed_by, "and") +
+                " before it changed the picture's color alone; move what " + "changes light behind '" +
+                one.step + "'\n";
+    return text;
 }
 
 }  // namespace aftershade::cli

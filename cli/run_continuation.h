@@ -1,4 +1,5 @@
-// How an interrupted run resumes, and where a run that begins in the middle of a shot lacks its history.
+// How an interrupted run resumes; and what a run lacks: history where it begins in the middle of a shot,
+// changes of color in layers.
 #pragma once
 
 #include <string>
@@ -20,5 +21,10 @@ std::string continuation_text(const std::vector<std::string>& command, const Run
 /// if all is well, or if the look has no history.
 std::string lost_history_text(const Pipeline& pipeline, const Sequence& sequence, const CaptureReader& reader,
                               const RunOptions& run);
+
+/// Warnings, a line each, where the capture has layers and a step reads them after others have changed the
+/// picture's color; "" if all is well, or if the first frame cannot be read.
+std::string stale_layers_text(const Pipeline& pipeline, const Sequence& sequence,
+                              const CaptureReader& reader);
 
 }  // namespace aftershade::cli

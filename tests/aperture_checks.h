@@ -206,6 +206,46 @@ inline Capture near_box_before_focus() {
                         0);
 }
 
+/// The same with what the box hides, as a second layer.
+inline Capture near_box_with_what_it_hides() {
+    Capture capture = near_box_before_focus();
+    Image color(96, 48, 4), depth(96, 48, 1);
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 96; ++x) {
+            depth.at(x, y, 0) = x >= 30 && x < 64 ? kApertureFocusM : kApertureFarM;
+            for (int c = 0; c < 4 && x >= 30 && x < 64; ++c) color.at(x, y, c) = c == 3 ? 1 : kApertureDark;
+        }
+    capture.images[layer_role(1, "color")] = std::move(color);
+    capture.images[layer_role(1, "depth")] = std::move(depth);
+    return capture;
+}
+
+/// A wall in focus of light 1, before which a wire out of focus of light 10 has two fifths of a column of
+/// pixels: in layers, and as the picture that these make.
+inline Capture wire_of_two_fifths_of_a_column() {
+    constexpr int kColumn = 48;
+    Capture capture = make_capture(
+        {.width = 96, .height = 48, .background = {1, 1, 1}, .background_depth_m = kApertureFocusM}, 0);
+    Image first = capture.images["color"], first_depth = capture.images["depth"], second(96, 48, 4),
+          second_depth(96, 48, 1);
+    std::fill(second_depth.floats().begin(), second_depth.floats().end(),
+              std::numeric_limits<float>::infinity());
+    for (int y = 0; y < 48; ++y) {
+        first_depth.at(kColumn, y, 0) = kApertureNearM;
+        second_depth.at(kColumn, y, 0) = kApertureFocusM;
+        for (int c = 0; c < 4; ++c) {
+            first.at(kColumn, y, c) = 0.4f * (c < 3 ? 10 : 1);
+            second.at(kColumn, y, c) = 1;
+            capture.images["color"].at(kColumn, y, c) = c < 3 ? 0.4f * 10 + 0.6f : 1;
+        }
+    }
+    capture.images[layer_role(0, "color")] = std::move(first);
+    capture.images[layer_role(0, "depth")] = std::move(first_depth);
+    capture.images[layer_role(1, "color")] = std::move(second);
+    capture.images[layer_role(1, "depth")] = std::move(second_depth);
+    return capture;
+}
+
 inline Image near_box_over_focus(const std::string& effect) {
     return through_aperture(effect, near_box_before_focus(), 12, R"("blades": 4)");
 }

@@ -152,6 +152,31 @@ TEST(BokehGather, LetsHalfOfTheLightPastTheEdgeOfANearObject) {
     }
 }
 
+TEST(BokehGather, ShowsWhatTheSecondLayerHasInsideASilhouette) {
+    const Image out = blur(near_box_with_what_it_hides(), 12, R"("blades": 4, "taps": 1024)");
+    expect_near_ramp(out, 48, 0.03f);
+}
+
+TEST(BokehGather, DissolvesAWireBeforeWhatTheSecondLayerHas) {
+    Capture capture = near_box_with_what_it_hides();
+    const auto outside = [](int x) { return x < 46 || x >= 48; };
+    // Of the box two columns are left.
+    for (int y = 0; y < 48; ++y)
+        for (int x = 30; x < 64; ++x) {
+            if (!outside(x)) continue;
+            capture.images["depth"].at(x, y, 0) = kApertureFocusM;
+            capture.images[layer_role(1, "depth")].at(x, y, 0) = std::numeric_limits<float>::infinity();
+            for (int c = 0; c < 4; ++c) {
+                capture.images["color"].at(x, y, c) = c == 3 ? 1 : kApertureDark;
+                capture.images[layer_role(1, "color")].at(x, y, c) = 0;
+            }
+        }
+    const Image out = blur(capture, 12, R"("blades": 4, "taps": 1024)");
+    const double cover = 2 / (2 * 12 / std::sqrt(2.0));
+    for (const int x : {40, 44, 46, 47, 50, 54})
+        EXPECT_NEAR(out.at(x, 24, 0), cover + (1 - cover) * double(kApertureDark), 0.02) << x;
+}
+
 TEST(BokehGather, BlursAlphaWithTheColorThatItCovers) {
     expect_alpha_blurs_with_color(kEffect, 2e-3f);
 }

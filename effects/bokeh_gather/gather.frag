@@ -58,16 +58,16 @@ Light take(ivec2 texel, int level) {
 }
 
 // What lies in front of the centre counts as far as its own CoC reaches, thinned by the area it covers; the rest is seen
-// through the centre's own aperture.
-void add_tap(inout Sum front, inout Sum back, Light tap, Aperture a, float centre_coc, vec2 offset, float own_cover,
-             float step_px) {
+// through the centre's own aperture. Returns how much of the tap is in front.
+float add_tap(inout Sum front, inout Sum back, Light tap, Aperture a, float centre_coc, vec2 offset, float own_cover,
+              float step_px) {
     float in_front = clamp(centre_coc - tap.coc, 0.0, 1.0);
     float back_weight = (1.0 - in_front) * own_cover;
     back.light += back_weight * tap.color;
     back.weight += back_weight;
-    if (in_front == 0.0) return;
+    if (in_front == 0.0) return 0.0;
     float radius_px = abs(tap.coc);
-    if (radius_px == 0.0) return;
+    if (radius_px == 0.0) return in_front;
     float gauge_px = aperture_gauge(a, tap.coc < 0.0 ? offset : -offset);
     float reached = clamp((radius_px - gauge_px) * a.inradius / step_px + 0.5, 0.0, 1.0);
     float tap_area = step_px * step_px;
@@ -77,7 +77,16 @@ void add_tap(inout Sum front, inout Sum back, Light tap, Aperture a, float centr
 #endif
     front.light += front_weight * tap.color;
     front.weight += front_weight;
+    return in_front;
 }
+
+#ifdef HAS_BEHIND
+// Where the centre is near and out of focus, what it hides is seen past it.
+Light farthest_at(ivec2 p, Light nearest) {
+    Light other = unpack_light(texelFetch(behind, p, 0));
+    return nearest.coc <= -kLeastBlurPx && other.color.a > 0.0 && other.coc > nearest.coc ? other : nearest;
+}
+#endif
 
 vec4 gather(ivec2 p, Light centre, float near_px) {
     Aperture a = make_aperture(param.blades, param.curvature, radians(param.rotation));
@@ -111,7 +120,13 @@ vec4 gather(ivec2 p, Light centre, float near_px) {
             if (own_cover > 0.0 && !sharp) own_cover *= passes_at(-offset / own_coc);
 #endif
             Light tap = take(texel, sharp && middle ? 0 : level);
-            add_tap(row_front, row_back, tap, a, centre.coc, offset, own_cover, step_px);
+            float in_front = add_tap(row_front, row_back, tap, a, centre.coc, offset, own_cover, step_px);
+#ifdef HAS_BEHIND
+            if (in_front == 0.0) continue;
+            Light hidden = unpack_light(texelFetch(behind, texel, 0));
+            if (hidden.color.a == 0.0 || hidden.coc <= tap.coc) continue;
+            add_tap(row_front, row_back, hidden, a, centre.coc, offset, in_front * own_cover, step_px);
+#endif
         }
         front = Sum(front.light + row_front.light, front.weight + row_front.weight);
         back = Sum(back.light + row_back.light, back.weight + row_back.weight);
@@ -125,5 +140,8 @@ void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     Light centre = unpack_light(texelFetch(light, p, 0));
     float near_px = texelFetch(near, p / kTile, 0).r;
+#ifdef HAS_BEHIND
+    centre = farthest_at(p, centre);
+#endif
     out_color = max(abs(centre.coc), near_px) < kLeastBlurPx ? texelFetch(color, p, 0) : gather(p, centre, near_px);
 }

@@ -17,16 +17,17 @@ TEST(DofScatter, SpreadsANearObjectSoftlyOverWhatIsInFocus) {
 }
 
 TEST(DofScatter, ShowsWhatTheSecondLayerHasInsideASilhouette) {
-    Capture capture = near_box_before_focus();
-    Image color(96, 48, 4), depth(96, 48, 1);
-    for (int y = 0; y < 48; ++y)
-        for (int x = 0; x < 96; ++x) {
-            depth.at(x, y, 0) = x >= 30 && x < 64 ? kApertureFocusM : kApertureFarM;
-            for (int c = 0; c < 4 && x >= 30 && x < 64; ++c) color.at(x, y, c) = c == 3 ? 1 : kApertureDark;
-        }
-    capture.images[layer_role(1, "color")] = std::move(color);
-    capture.images[layer_role(1, "depth")] = std::move(depth);
-    expect_near_ramp(through_aperture(Named::kEffect, capture, 12, R"("blades": 4)"), 48, 0.01f);
+    const Image out = through_aperture(Named::kEffect, near_box_with_what_it_hides(), 12, R"("blades": 4)");
+    expect_near_ramp(out, 48, 0.01f);
+}
+
+TEST(DofScatter, SpreadsEachLayerOfASharedPixelByItsShare) {
+    const Image out =
+        through_aperture(Named::kEffect, wire_of_two_fifths_of_a_column(), 12, R"("blades": 4)");
+    // The wire's two fifths of a pixel, over the width of a square of circumradius 12 px.
+    const double cover = 0.4 / (2 * 12 / std::sqrt(2.0));
+    for (const int x : {42, 46, 48, 50, 54}) EXPECT_NEAR(out.at(x, 24, 0), 10 * cover + 1 - cover, 0.01) << x;
+    EXPECT_NEAR(out.at(30, 24, 0), 1, 1e-4);
 }
 
 TEST(DofScatter, ShowsAFarPointOnlyWhereNothingInFocusCoversIt) {

@@ -2,6 +2,7 @@
 #include <pass>
 
 flat in vec4 light;
+flat in float cover;
 flat in vec3 middle_radius;
 
 vec3 outline_to(float y) {
@@ -28,5 +29,5 @@ float part_here() {
 void main() {
     float part = part_here();
     out_slices = part * light;
-    out_coverage = part;
+    out_coverage = part * cover;
 }

@@ -166,6 +166,22 @@ std::optional<MissingRole> find_missing_role(const Pipeline& pipeline,
     return std::nullopt;
 }
 
+std::vector<StaleLayers> find_stale_layers(const Pipeline& pipeline) {
+    std::vector<StaleLayers> found;
+    std::vector<std::string> before;  // steps so far that change color
+    for (const PipelineStep& step : pipeline.steps) {
+        const auto& inputs = step.manifest->inputs;
+        if (std::ranges::any_of(inputs,
+                                [](const InputSpec& i) { return i.role == kColorRole && i.layer > 0; }) &&
+            !before.empty())
+            found.push_back({step.name, before});
+        if (std::ranges::any_of(step.manifest->outputs,
+                                [](const OutputSpec& output) { return output.role == kColorRole; }))
+            before.push_back(step.name);
+    }
+    return found;
+}
+
 namespace {
 
 /// "--profile blender or vray finds it; --layer 'B' has it; --role depth=FILE reads it from a file of its

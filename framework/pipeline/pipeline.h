@@ -131,6 +131,14 @@ struct MissingRole {
 /// `roles`: those that the capture has.
 std::optional<MissingRole> find_missing_role(const Pipeline& pipeline, const std::vector<std::string>& roles);
 
+/// A step that reads the color of layers behind the picture, and earlier steps that change the picture's
+/// color, which changes no layer.
+struct StaleLayers {
+    std::string step;
+    std::vector<std::string> changed_by;
+};
+std::vector<StaleLayers> find_stale_layers(const Pipeline& pipeline);
+
 /// Throws Error(ExitCode::capture) if the capture lacks a role that a step requires, naming the effect, the
 /// role, the channels that the file does have, and what would give the role: other profiles and layers, found
 /// by the reader that the header comes from, where it is given.

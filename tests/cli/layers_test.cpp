@@ -79,6 +79,24 @@ TEST_F(CapturesWithLayers, ShowWhatIsHiddenToEffectsThatAskForIt) {
     EXPECT_EQ(read_text(folder_ / "layers/gbuffer_0001.exr"), read_text(folder_ / "plain/gbuffer_0001.exr"));
 }
 
+TEST_F(CapturesWithLayers, DrawAWarningWhereColorChangesBeforeTheyAreRead) {
+    command({"render", "scene.json", "-o", "layers", "--layers", "2", "--frames", "1"});
+    command({"render", "scene.json", "-o", "plain", "--frames", "1"});
+    const auto warning = [&](const std::string& steps, const std::string& capture) {
+        write_text(folder_ / "look.json", R"({"aftershade": 1, "steps": [)" + steps + "]}");
+        return command({"run", "look.json", capture, "--effect-path", "effects", "-o", "out.exr", "--backend",
+                        "osmesa", "--overwrite", "--progress", "none"})
+            .err;
+    };
+    const std::string grade = R"({"effect": "color_grade"})", reveal = R"({"effect": "reveal"})";
+    EXPECT_EQ(
+        warning(grade + "," + reveal, "layers"),
+        "aftershade: warning: step 'reveal' reads the capture's layers, and 'color_grade' before it changed "
+        "the picture's color alone; move what changes light behind 'reveal'\n");
+    EXPECT_EQ(warning(reveal + "," + grade, "layers"), "");
+    EXPECT_EQ(warning(grade + "," + reveal, "plain"), "");
+}
+
 TEST_F(CapturesWithLayers, KeepTheChannelsOfADeepFileFlatAndThoseOfSeveralFilesNot) {
     command({"render", "scene.json", "-o", "layers", "--layers", "2", "--frames", "1"});
     command({"render", "scene.json", "-o", "deep", "--deep", "--frames", "1"});
