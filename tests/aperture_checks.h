@@ -246,6 +246,15 @@ inline Capture wire_of_two_fifths_of_a_column() {
     return capture;
 }
 
+/// The wire's two fifths of a pixel, over the width of a square of circumradius 12 px.
+inline void expect_wire_dissolves(const std::string& effect, double tolerance) {
+    const Image out = through_aperture(effect, wire_of_two_fifths_of_a_column(), 12, R"("blades": 4)");
+    const double cover = 0.4 / (2 * 12 / std::sqrt(2.0));
+    for (const int x : {42, 46, 48, 50, 54})
+        EXPECT_NEAR(out.at(x, 24, 0), 10 * cover + 1 - cover, tolerance) << x;
+    EXPECT_NEAR(out.at(30, 24, 0), 1, 1e-4);
+}
+
 inline Image near_box_over_focus(const std::string& effect) {
     return through_aperture(effect, near_box_before_focus(), 12, R"("blades": 4)");
 }

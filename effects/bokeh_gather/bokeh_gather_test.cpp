@@ -177,6 +177,10 @@ TEST(BokehGather, DissolvesAWireBeforeWhatTheSecondLayerHas) {
         EXPECT_NEAR(out.at(x, 24, 0), cover + (1 - cover) * double(kApertureDark), 0.02) << x;
 }
 
+TEST(BokehGather, DrawsOneSurfaceOfASharedPixelByLot) {
+    expect_wire_dissolves(kEffect, 0.08);
+}
+
 TEST(BokehGather, BlursAlphaWithTheColorThatItCovers) {
     expect_alpha_blurs_with_color(kEffect, 2e-3f);
 }

@@ -1,12 +1,13 @@
 #version 450 core
 #include <pass>
 #include <lens/packing.glsl>
+#include <lens/own.glsl>
 
 const float kLeastBlurPx = 0.5;
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
-    vec4 texel = texelFetch(color, p, 0);
+    vec4 texel = own_color(p);
     float coc_px = texelFetch(coc, p, 0).r;
     out_light = pack_light(Light(texel, coc_px));
 #if SAMPLER == SAMPLER_MIPS

@@ -1,7 +1,7 @@
 #version 450 core
 #include <pass>
 #include <lens/packing.glsl>
-#include "own.glsl"
+#include <lens/own.glsl>
 #ifdef HAS_SURROUND
 #include "shine.glsl"
 #endif

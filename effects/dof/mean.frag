@@ -1,6 +1,6 @@
 #version 450 core
 #include <pass>
-#include "own.glsl"
+#include <lens/own.glsl>
 #include "tile.glsl"
 
 float amount(vec4 light) { return dot(light.rgb, vec3(1.0)); }

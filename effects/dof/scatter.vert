@@ -2,7 +2,7 @@
 #include <pass>
 #include <lens/packing.glsl>
 #include "highlights.glsl"
-#include "own.glsl"
+#include <lens/own.glsl>
 
 layout(location = 0) flat out vec2 source;
 layout(location = 1) flat out vec3 highlight;

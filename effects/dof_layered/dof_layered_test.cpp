@@ -53,6 +53,10 @@ TEST(DofLayered, TakesWhatLiesBehindFromTheSecondLayerOfTheCapture) {
     EXPECT_NEAR(middle(), 1 - strip, 0.03);
 }
 
+TEST(DofLayered, DrawsOneSurfaceOfASharedPixelByLot) {
+    expect_wire_dissolves(Named::kEffect, 0.08);
+}
+
 /// A slanted plane lies in many layers; where its own light is even, no layer may show through another.
 TEST(DofLayered, KeepsASurfaceAcrossLayersWhole) {
     const SyntheticBox box{.x = 0, .y = 0, .width = 96, .height = 64, .color = {0.5f, 0.5f, 0.5f}};

@@ -1,5 +1,6 @@
 // Part of a layer: its light, its opacity, and how much is known about it.
 #include "layers.glsl"
+#include <lens/own.glsl>
 
 struct Part {
     vec4 light;
@@ -25,7 +26,7 @@ Part part_at(ivec2 p, Layers layers) {
     float behind = float(pass.index) - layer_of(layers, texelFetch(coc, p, 0).r);
     float seen = seen_in(behind), hidden = hidden_in(behind);
     Part part = Part(vec4(0.0), vec2(seen, seen_from(behind)));
-    if (seen > 0.0) part.light = seen * texelFetch(color, p, 0);
+    if (seen > 0.0) part.light = seen * own_color(p);
     if (hidden > 0.0) {
         vec3 at = vec3((vec2(p) + 0.5) * color_size.zw, float(pass.index));
 #ifdef KNOWS_BEHIND

@@ -2,6 +2,7 @@
 #include <pass>
 #include "layers.glsl"
 #include <lens/highlight.glsl>
+#include <lens/own.glsl>
 
 // Highlights are weighted down: behind an object, one that was never seen would stand out.
 void main() {
@@ -12,9 +13,9 @@ void main() {
     for (int y = corner.y; y < end.y; ++y)
         for (int x = corner.x; x < end.x; ++x) {
             float behind = float(pass.index) - layer_of(layers, texelFetch(coc, ivec2(x, y), 0).r);
-            vec4 own = texelFetch(color, ivec2(x, y), 0);
-            float weight = 1.0 / (1.0 + max(amount(own.rgb), 0.0));
-            light += weight * seen_in(behind) * own;
+            vec4 here = own_color(ivec2(x, y));
+            float weight = 1.0 / (1.0 + max(amount(here.rgb), 0.0));
+            light += weight * seen_in(behind) * here;
             share += weight * vec2(seen_in(behind), seen_from(behind));
         }
     out_seen_light = light / 16.0;
