@@ -8,11 +8,14 @@ scene::IdTracer GlVisibility::tracer() {
     return [this](const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids, int frame,
                   const scene::VisibilitySettings& settings) {
         std::vector<std::uint32_t> ids = visibility::trace_ids(context_, renderer, grids, frame, settings);
-        const bool is_of_tiles = settings.cache.cache == scene::ShadingCache::tile ||
-                                 settings.cache.cache == scene::ShadingCache::sorted;
-        counts_.push_back(visibility::count_shadings(
-            context_, {ids, renderer.width_px(), renderer.height_px(), settings.samples}, grids.id_count(),
-            is_of_tiles ? settings.cache.tile_px : 0));
+        const scene::ShadingCacheSettings& cache = settings.cache;
+        const bool is_of_tiles =
+            cache.cache == scene::ShadingCache::tile || cache.cache == scene::ShadingCache::sorted;
+        const scene::SampleIds samples{ids, renderer.width_px(), renderer.height_px(), settings.samples};
+        counts_.push_back(cache.cache == scene::ShadingCache::fifo
+                              ? visibility::count_shadings_in_buckets(context_, samples, cache.entries)
+                              : visibility::count_shadings(context_, samples, grids.id_count(),
+                                                           is_of_tiles ? cache.tile_px : 0));
         return ids;
     };
 }

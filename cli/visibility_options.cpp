@@ -103,6 +103,9 @@ std::optional<scene::VisibilitySettings> read_visibility(const VisibilityArgumen
             diagnostics.error({name, 0, 0}, "is for --visibility memoised");
     const auto transparency = *scene::parse_transparency(options.transparency);
     check_transparency(options, visibility, transparency, diagnostics);
+    if (visibility == scene::Visibility::memoised && options.device == "gl" && options.cache == "lru")
+        diagnostics.error({"--shading-cache lru", 0, 0},
+                          "is for --visibility-on cpu; gl has fifo, in buckets of four entries");
     if (!visibility) return std::nullopt;
     scene::VisibilitySettings settings = options.settings;
     settings.visibility = *visibility;

@@ -16,8 +16,9 @@
 #include "framework/visibility/gpu_scene.h"
 
 namespace aftershade {
-std::string_view visibility_trace_shader();  // trace.comp
-std::string_view visibility_cache_shader();  // cache.comp
+std::string_view visibility_trace_shader();   // trace.comp
+std::string_view visibility_cache_shader();   // cache.comp
+std::string_view visibility_bucket_shader();  // bucket.comp
 }  // namespace aftershade
 
 namespace aftershade::visibility {
@@ -27,6 +28,8 @@ using gpu::Buffer;
 using scene::kNoShading;
 
 namespace {
+
+constexpr std::uint32_t kPlacesOfBucket = 4;  // as bucket.comp has it
 
 struct GpuRay {
     vec4 origin{0};
@@ -191,6 +194,36 @@ CacheCounts count_shadings(gpu::Context& context, const scene::SampleIds& sample
     };
     for_each_band(samples.width_px, samples.height_px, std::max(of_row, table_of_row), step, max_buffer_bytes,
                   count_band);
+    const std::vector<std::uint32_t> found = values_of<std::uint32_t>(counts);
+    return {found[0], std::uint64_t(found[1]) + found[2], found[2]};
+}
+
+CacheCounts count_shadings_in_buckets(gpu::Context& context, const scene::SampleIds& samples, int entries,
+                                      std::size_t max_buffer_bytes) {
+    const auto width = std::size_t(samples.width_px), count = std::size_t(samples.samples);
+    const gpu::Program program =
+        gpu::Program::compute(context, std::string(visibility_bucket_shader()), "shading cache");
+    CacheSettings values;
+    values.width_px = std::uint32_t(width);
+    values.sample_count = std::uint32_t(count);
+    values.slots = std::bit_ceil(std::uint32_t(entries + kPlacesOfBucket - 1) / kPlacesOfBucket);
+    Buffer uniforms(context, sizeof values, "settings"), counts(context, 3 * sizeof(std::uint32_t), "counts");
+    Buffer keys(context, values.slots * kPlacesOfBucket * sizeof(std::uint32_t), "keys"),
+        buckets(context, values.slots * 2 * sizeof(std::uint32_t), "buckets");
+    keys.clear(kNoShading);
+    const auto count_band = [&](int first, int rows) {
+        const std::size_t pixels = width * std::size_t(rows);
+        const std::span<const std::uint32_t> of_band =
+            samples.ids.subspan(std::size_t(first) * width * count, pixels * count);
+        const Buffer ids = filled(context, std::vector(of_band.begin(), of_band.end()), "ids");
+        values.pixel_count = std::uint32_t(pixels);
+        uniforms.write(bytes_of(std::array{values}));
+        const gpu::BufferBinding block[] = {{&uniforms, 0}};
+        const gpu::BufferBinding storage[] = {{&ids, 0}, {&keys, 1}, {&counts, 2}, {&buckets, 3}};
+        gpu::dispatch(context, program, group_count(pixels), 1, 1, {.uniforms = block, .storage = storage});
+    };
+    for_each_band(samples.width_px, samples.height_px, width * count * sizeof(std::uint32_t), 1,
+                  max_buffer_bytes, count_band);
     const std::vector<std::uint32_t> found = values_of<std::uint32_t>(counts);
     return {found[0], std::uint64_t(found[1]) + found[2], found[2]};
 }

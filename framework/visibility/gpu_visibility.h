@@ -27,12 +27,17 @@ std::vector<std::uint32_t> trace_ids(gpu::Context& context, const scene::SceneRe
 struct CacheCounts {
     std::uint64_t requests = 0;
     std::uint64_t shadings = 0;   ///< with the overflows, which a cache without room shades again
-    std::uint64_t overflows = 0;  ///< requests that found no place in their table
+    std::uint64_t overflows = 0;  ///< requests that found no place in their table, or no turn at their bucket
 };
 
 /// Shadings of a cache that keeps all: one for the picture, or with `tile_px` above 0 one for each tile.
 /// `ids` are below `id_count` or kNoShading.
 CacheCounts count_shadings(gpu::Context& context, const scene::SampleIds& samples, std::uint32_t id_count,
                            int tile_px, std::size_t max_buffer_bytes = kMaxBufferBytes);
+
+/// Shadings of a cache of at least `entries` ids in buckets of four, first in, first out. Which requests are
+/// hits depends on the order in which invocations run.
+CacheCounts count_shadings_in_buckets(gpu::Context& context, const scene::SampleIds& samples, int entries,
+                                      std::size_t max_buffer_bytes = kMaxBufferBytes);
 
 }  // namespace aftershade::visibility

@@ -132,6 +132,43 @@ TEST_F(Render, TracesVisibilityWithGlAlikeOnOneThreadAndOnTwo) {
     EXPECT_EQ(reds[0], reds[1]);
 }
 
+TEST_F(Render, EndsWithGlsLockedBucketsOnOneThreadAndOnTwo) {
+    for (const char* threads : {"1", "2"}) {
+        Args words = {AFTERSHADE_EXECUTABLE,
+                      "render",
+                      scene("toys"),
+                      "-o",
+                      threads,
+                      "--size",
+                      "64x36",
+                      "--frames",
+                      "4",
+                      "--truth-only",
+                      "--visibility",
+                      "memoised",
+                      "--visibility-samples",
+                      "64",
+                      "--visibility-on",
+                      "gl",
+                      "--backend",
+                      "osmesa",
+                      "--shading-cache",
+                      "fifo",
+                      "--cache-entries",
+                      "256",
+                      "--json",
+                      "--quiet"};
+        const CommandResult made =
+            Command(std::move(words), folder_.path(), {{"LP_NUM_THREADS", threads}}).wait();
+        ASSERT_EQ(made.exit_code, 0) << made.err;
+        const auto report = nlohmann::json::parse(made.out);
+        const auto by_gl = report.at("gl").at("frames").at(0), by_cpu = report.at("visibility").at(0);
+        EXPECT_EQ(by_gl.at("hits").get<int>() + by_gl.at("misses").get<int>(),
+                  by_cpu.at("hits").get<int>() + by_cpu.at("misses").get<int>());
+        EXPECT_LT(by_gl.at("misses").get<double>(), 3 * by_cpu.at("misses").get<double>());
+    }
+}
+
 TEST_F(Render, CountsTheTransparentSurfacesInItsLists) {
     const auto lists_of = [&](const std::string& nodes) {
         const CommandResult made =
@@ -148,7 +185,7 @@ TEST_F(Render, CountsTheTransparentSurfacesInItsLists) {
     EXPECT_LE(some.at("nodes"), 4 * 96 * 54);
 }
 
-TEST_F(Render, RefusesWaysOfTransparencyThatDoNotFit) {
+TEST_F(Render, RefusesWaysOfTransparencyAndCachesThatDoNotFit) {
     const std::vector<std::pair<Args, std::string>> faults = {
         {{"--visibility", "supersampled", "--transparency", "lists"},
          "--transparency lists: error: is for --visibility memoised"},
@@ -156,6 +193,8 @@ TEST_F(Render, RefusesWaysOfTransparencyThatDoNotFit) {
          "--transparency sorted: error: is for --visibility supersampled or accumulation"},
         {{"--visibility", "memoised", "--visibility-on", "gl", "--transparency", "lists"},
          "--transparency lists: error: is for --visibility-on cpu; gl takes stochastic"},
+        {{"--visibility", "memoised", "--visibility-on", "gl", "--shading-cache", "lru"},
+         "--shading-cache lru: error: is for --visibility-on cpu; gl has fifo, in buckets of four entries"},
         {{"--visibility", "memoised", "--list-nodes", "9"},
          "--list-nodes: error: is for --transparency lists"},
         {{"--truth", "scattering"},

@@ -99,5 +99,29 @@ TEST_P(VisibilityOn, EndsWithCountedOverflowsWhereATableIsTooSmall) {
     EXPECT_EQ(counts.overflows, ids.size() - 128);
 }
 
+TEST_P(VisibilityOn, KeepsIdsInLockedBucketsAndEndsWhateverTheirNumber) {
+    constexpr int kSamples = 16;
+    const Traced found = traced(context(), "toys", 4, kSamples);
+    const scene::SampleIds samples{found.on_gpu, kWidth_px, kHeight_px, kSamples};
+    std::unordered_set<std::uint32_t> all(found.on_gpu.begin(), found.on_gpu.end());
+    all.erase(kNoShading);
+    const std::uint64_t requests = scene::replay(samples, {}).requests;
+    // Sixteen places for each id: no bucket drops any.
+    const CacheCounts roomy = count_shadings_in_buckets(context(), samples, int(16 * all.size()));
+    EXPECT_EQ(roomy.requests, requests);
+    EXPECT_LE(roomy.shadings - roomy.overflows, all.size());
+    EXPECT_GE(roomy.shadings, all.size());
+    EXPECT_LT(double(roomy.overflows), 0.001 * double(requests));
+    const scene::ShadingCacheSettings fifo{scene::ShadingCache::fifo, 16, 1024};
+    const CacheCounts tight = count_shadings_in_buckets(context(), samples, 1024);
+    EXPECT_EQ(tight.requests, requests);
+    EXPECT_GT(tight.shadings, all.size());
+    EXPECT_LT(double(tight.shadings), 2.5 * double(scene::replay(samples, fifo).shadings));
+    const CacheCounts one = count_shadings_in_buckets(context(), samples, 1);
+    EXPECT_EQ(one.requests, requests);
+    EXPECT_LE(one.shadings, requests);
+    EXPECT_GT(one.shadings, tight.shadings);
+}
+
 }  // namespace
 }  // namespace aftershade::visibility
