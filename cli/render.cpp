@@ -96,8 +96,14 @@ void add_options(CLI::App& app, RenderArguments& options) {
     app.add_option("--profile-path", options.profile_paths,
                    "Search this folder for profiles before the shipped ones; repeatable")
         ->allow_extra_args(false);
-    app.add_option("--compression", options.job.compression, "none, rle, zips, zip or piz")
-        ->check(CLI::IsMember({"none", "rle", "zips", "zip", "piz"}))
+    app.add_option("--compression", options.job.compression,
+                   "none, rle, zips, zip or piz; zip:1 packs fastest, zip:9 most")
+        ->check([](const std::string& text) -> std::string {
+            const std::vector<std::string> lossless = {"none", "rle", "zips", "zip", "piz"};
+            if (std::ranges::find(lossless, text) != lossless.end() || exr_compression_level(text)) return "";
+            return text + " is none of " + list_of_names(lossless) +
+                   ", or zip or zips with a level, as zip:1";
+        })
         ->capture_default_str();
     app.add_option("--seed", options.job.seed, "Seed of the random samples");
     add_allow_path_option(app);

@@ -90,7 +90,10 @@ ExrWriteOptions write_options(const CaptureHeader& header, const Chromaticities&
 void write_deep_capture(const std::filesystem::path& path, const DeepImage& image,
                         const CaptureHeader& header, const CaptureWriteOptions& options) {
     ExrWriteOptions write = write_options(header, header.primaries, options);
-    if (write.compression != "none" && write.compression != "rle") write.compression = "zips";
+    // Deep files have no other method; its level stays.
+    if (const auto level = exr_compression_level(write.compression))
+        write.compression = "zips:" + std::to_string(*level);
+    else if (write.compression != "none" && write.compression != "rle") write.compression = "zips";
     write_deep_exr(path, image, write);
 }
 

@@ -132,6 +132,21 @@ TEST_F(Render, TracesVisibilityWithGlAlikeOnOneThreadAndOnTwo) {
     EXPECT_EQ(reds[0], reds[1]);
 }
 
+TEST_F(Render, PacksAsHardAsItsLevelOfZipSays) {
+    const auto size_of = [&](const std::string& compression, const std::string& kind) {
+        Args words = {scene("toys"), "-o", "out",           "--size",   "160x90",
+                      "--frames",    "4",  "--compression", compression};
+        if (!kind.empty()) words.push_back(kind);
+        EXPECT_EQ(render(words).exit_code, 0);
+        return fs::file_size(folder_ / "out/gbuffer_0004.exr");
+    };
+    EXPECT_LT(size_of("zip:9", ""), size_of("zip:1", ""));
+    EXPECT_LT(size_of("zip:9", "--deep"), size_of("zip:1", "--deep"));
+    const CommandResult refused = render({scene("toys"), "-o", "out", "--compression", "zip:0"});
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_NE(refused.err.find("zip:0 is none of"), std::string::npos) << refused.err;
+}
+
 TEST_F(Render, EndsWithGlsLockedBucketsOnOneThreadAndOnTwo) {
     for (const char* threads : {"1", "2"}) {
         Args words = {AFTERSHADE_EXECUTABLE,
