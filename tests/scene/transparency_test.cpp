@@ -189,10 +189,10 @@ TEST(StochasticTransparency, HasTheSortedPictureAsItsMeanForAnyNumberOfSamples) 
     }
 }
 
-/// 35 dB and an error of one over the root of the samples, or less. Pixels are four times as large as the
+/// 35 dB and an error of one over the root of the samples, or less. Pixels are five times as large as the
 /// scene's, so that a cell of one px would blur the light more than the samples do: four cells a px.
 void expect_nearer_with_samples(const std::string& id) {
-    const Triangles scene(shipped_scene(id), 120, 68);
+    const Triangles scene(shipped_scene(id), 96, 54);
     const Image truth = scene.renderer().render_truth(4, truth_with(128));
     std::map<int, double> error;
     for (const int samples : {4, 16, 64}) {
