@@ -157,7 +157,8 @@ ExitCode run_here(const RunArguments& options, CheckedRun& run, const CaptureRea
         if (const auto lost = lost_history_text(pipeline, run.sequence, reader, run.settings); !lost.empty())
             std::cerr << "aftershade: warning: " << printable(lost) << "\n";
     if (!options.jobs.is_worker())
-        std::cerr << printable_lines(stale_layers_text(pipeline, run.sequence, reader));
+        for (const std::string& stale : stale_layers_texts(pipeline, run.sequence, reader))
+            std::cerr << "aftershade: warning: " << printable(stale) << "\n";
     const RunSession session{options,          status,       run.sequence, reader,
                              context,          run.settings, run.outputs,  parse_progress(options.progress),
                              profile_documents};

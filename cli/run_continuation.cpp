@@ -51,22 +51,22 @@ std::string lost_history_text(const Pipeline& pipeline, const Sequence& sequence
            std::to_string(first - 1) + " with --history-out FILE, and these with --history-in FILE)";
 }
 
-std::string stale_layers_text(const Pipeline& pipeline, const Sequence& sequence,
-                              const CaptureReader& reader) {
+std::vector<std::string> stale_layers_texts(const Pipeline& pipeline, const Sequence& sequence,
+                                            const CaptureReader& reader) {
     const std::vector<StaleLayers> stale = find_stale_layers(pipeline);
-    if (stale.empty() || sequence.frames.empty()) return "";
+    if (stale.empty() || sequence.frames.empty()) return {};
     try {
-        if (reader.read_header(sequence.file_number(sequence.frames.front())).layer_roles.empty()) return "";
+        if (reader.read_header(sequence.file_number(sequence.frames.front())).layer_roles.empty()) return {};
     } catch (const Error&) {
-        return "";  // the run reports it
+        return {};  // the run reports it
     }
-    std::string text;
+    std::vector<std::string> texts;
     for (const StaleLayers& one : stale)
-        text += "aftershade: warning: step '" + one.step + "' reads the capture's layers, and " +
-                list_of_names(one.changed_by, "and") +
-                " before it changed the picture's color alone; move what " + "changes light behind '" +
-                one.step + "'\n";
-    return text;
+        texts.push_back("step '" + one.step + "' reads the capture's layers, and " +
+                        list_of_names(one.changed_by, "and") +
+                        " before it changed the picture's color alone; move what changes light behind '" +
+                        one.step + "'");
+    return texts;
 }
 
 }  // namespace aftershade::cli

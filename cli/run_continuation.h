@@ -22,9 +22,9 @@ std::string continuation_text(const std::vector<std::string>& command, const Run
 std::string lost_history_text(const Pipeline& pipeline, const Sequence& sequence, const CaptureReader& reader,
                               const RunOptions& run);
 
-/// Warnings, a line each, where the capture has layers and a step reads them after others have changed the
-/// picture's color; "" if all is well, or if the first frame cannot be read.
-std::string stale_layers_text(const Pipeline& pipeline, const Sequence& sequence,
-                              const CaptureReader& reader);
+/// Warnings where the capture has layers and a step reads them after others have changed the picture's color;
+/// none if the first frame cannot be read.
+std::vector<std::string> stale_layers_texts(const Pipeline& pipeline, const Sequence& sequence,
+                                            const CaptureReader& reader);
 
 }  // namespace aftershade::cli

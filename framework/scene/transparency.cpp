@@ -25,12 +25,6 @@ std::optional<Transparency> parse_transparency(std::string_view name) {
     return std::nullopt;
 }
 
-std::string_view transparency_name(Transparency transparency) {
-    return std::find_if(kTransparencyNames.begin(), kTransparencyNames.end(),
-                        [&](const auto& entry) { return entry.first == transparency; })
-        ->second;
-}
-
 std::uint32_t StopNumbers::pixel_seed(std::uint32_t seed, int frame, int x, int y) {
     const std::uint32_t of_frame = pcg3d(seed, std::uint32_t(frame), 0x51ed270bu)[0];
     return pcg3d(std::uint32_t(x), std::uint32_t(y), of_frame)[0];

@@ -21,7 +21,6 @@ enum class Transparency {
 
 /// "stochastic", "lists", "sorted"; nullopt for anything else.
 std::optional<Transparency> parse_transparency(std::string_view name);
-std::string_view transparency_name(Transparency transparency);
 
 inline constexpr int kMaxListNodes = 4096;
 

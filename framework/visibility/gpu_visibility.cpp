@@ -107,6 +107,36 @@ std::uint32_t slots_for(std::uint64_t entries, std::uint64_t tables, std::size_t
     return std::uint32_t(slots);
 }
 
+/// Runs a cache over the samples, band by band. `tables_of(rows)` gives the buffers beside ids and counts.
+template <class Tables>
+CacheCounts count_in_bands(gpu::Context& context, std::string_view shader, const scene::SampleIds& samples,
+                           CacheSettings values, std::size_t table_of_row, int step,
+                           std::size_t max_buffer_bytes, const Tables& tables_of) {
+    const auto width = std::size_t(samples.width_px), count = std::size_t(samples.samples);
+    const gpu::Program program = gpu::Program::compute(context, std::string(shader), "shading cache");
+    values.width_px = std::uint32_t(width);
+    values.sample_count = std::uint32_t(count);
+    Buffer uniforms(context, sizeof values, "settings"), counts(context, 3 * sizeof(std::uint32_t), "counts");
+    const auto count_band = [&](int first, int rows) {
+        const std::size_t pixels = width * std::size_t(rows);
+        const std::span<const std::uint32_t> of_band =
+            samples.ids.subspan(std::size_t(first) * width * count, pixels * count);
+        const Buffer ids = filled(context, std::vector(of_band.begin(), of_band.end()), "ids");
+        std::vector<gpu::BufferBinding> storage = tables_of(rows);
+        storage.push_back({&ids, 0});
+        storage.push_back({&counts, 2});
+        values.pixel_count = std::uint32_t(pixels);
+        uniforms.write(bytes_of(std::array{values}));
+        const gpu::BufferBinding block[] = {{&uniforms, 0}};
+        gpu::dispatch(context, program, group_count(pixels), 1, 1, {.uniforms = block, .storage = storage});
+    };
+    for_each_band(samples.width_px, samples.height_px,
+                  std::max(width * count * sizeof(std::uint32_t), table_of_row), step, max_buffer_bytes,
+                  count_band);
+    const std::vector<std::uint32_t> found = values_of<std::uint32_t>(counts);
+    return {found[0], std::uint64_t(found[1]) + found[2], found[2]};
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> trace_ids(gpu::Context& context, const scene::SceneRenderer& renderer,
@@ -157,16 +187,11 @@ std::vector<std::uint32_t> trace_ids(gpu::Context& context, const scene::SceneRe
 CacheCounts count_shadings(gpu::Context& context, const scene::SampleIds& samples, std::uint32_t id_count,
                            int tile_px, std::size_t max_buffer_bytes) {
     const auto width = std::size_t(samples.width_px), count = std::size_t(samples.samples);
-    const std::size_t of_row = width * count * sizeof(std::uint32_t);
-    const gpu::Program program =
-        gpu::Program::compute(context, std::string(visibility_cache_shader()), "shading cache");
     const int step = std::max(tile_px, 1);
     const std::uint64_t of_tile =
         std::min(std::uint64_t(step) * std::uint64_t(step) * count, std::uint64_t(id_count));
     const std::uint64_t tiles_of_row = (width + std::size_t(step) - 1) / std::size_t(step);
     CacheSettings values;
-    values.width_px = std::uint32_t(width);
-    values.sample_count = std::uint32_t(count);
     values.tile_px = std::uint32_t(tile_px);
     values.slots = tile_px > 0
                        ? slots_for(of_tile, tiles_of_row, max_buffer_bytes)
@@ -174,58 +199,29 @@ CacheCounts count_shadings(gpu::Context& context, const scene::SampleIds& sample
                                    max_buffer_bytes);
     const std::size_t table_of_row =
         tile_px > 0 ? tiles_of_row * values.slots * sizeof(std::uint32_t) / std::size_t(step) : 0;
-    Buffer uniforms(context, sizeof values, "settings"), counts(context, 3 * sizeof(std::uint32_t), "counts");
     std::optional<Buffer> table;
-    const auto count_band = [&](int first, int rows) {
-        const std::size_t pixels = width * std::size_t(rows);
-        const std::span<const std::uint32_t> of_band =
-            samples.ids.subspan(std::size_t(first) * width * count, pixels * count);
-        const Buffer ids = filled(context, std::vector(of_band.begin(), of_band.end()), "ids");
+    const auto tables_of = [&](int rows) {
         const std::uint64_t tables = tile_px > 0 ? tiles_of_row * std::uint64_t((rows + step - 1) / step) : 1;
         if (tile_px > 0 || !table) {
             table.emplace(context, std::size_t(tables * values.slots * sizeof(std::uint32_t)), "table");
             table->clear(kNoShading);
         }
-        values.pixel_count = std::uint32_t(pixels);
-        uniforms.write(bytes_of(std::array{values}));
-        const gpu::BufferBinding block[] = {{&uniforms, 0}};
-        const gpu::BufferBinding storage[] = {{&ids, 0}, {&*table, 1}, {&counts, 2}};
-        gpu::dispatch(context, program, group_count(pixels), 1, 1, {.uniforms = block, .storage = storage});
+        return std::vector<gpu::BufferBinding>{{&*table, 1}};
     };
-    for_each_band(samples.width_px, samples.height_px, std::max(of_row, table_of_row), step, max_buffer_bytes,
-                  count_band);
-    const std::vector<std::uint32_t> found = values_of<std::uint32_t>(counts);
-    return {found[0], std::uint64_t(found[1]) + found[2], found[2]};
+    return count_in_bands(context, visibility_cache_shader(), samples, values, table_of_row, step,
+                          max_buffer_bytes, tables_of);
 }
 
 CacheCounts count_shadings_in_buckets(gpu::Context& context, const scene::SampleIds& samples, int entries,
                                       std::size_t max_buffer_bytes) {
-    const auto width = std::size_t(samples.width_px), count = std::size_t(samples.samples);
-    const gpu::Program program =
-        gpu::Program::compute(context, std::string(visibility_bucket_shader()), "shading cache");
     CacheSettings values;
-    values.width_px = std::uint32_t(width);
-    values.sample_count = std::uint32_t(count);
     values.slots = std::bit_ceil(std::uint32_t(entries + kPlacesOfBucket - 1) / kPlacesOfBucket);
-    Buffer uniforms(context, sizeof values, "settings"), counts(context, 3 * sizeof(std::uint32_t), "counts");
     Buffer keys(context, values.slots * kPlacesOfBucket * sizeof(std::uint32_t), "keys"),
         buckets(context, values.slots * 2 * sizeof(std::uint32_t), "buckets");
     keys.clear(kNoShading);
-    const auto count_band = [&](int first, int rows) {
-        const std::size_t pixels = width * std::size_t(rows);
-        const std::span<const std::uint32_t> of_band =
-            samples.ids.subspan(std::size_t(first) * width * count, pixels * count);
-        const Buffer ids = filled(context, std::vector(of_band.begin(), of_band.end()), "ids");
-        values.pixel_count = std::uint32_t(pixels);
-        uniforms.write(bytes_of(std::array{values}));
-        const gpu::BufferBinding block[] = {{&uniforms, 0}};
-        const gpu::BufferBinding storage[] = {{&ids, 0}, {&keys, 1}, {&counts, 2}, {&buckets, 3}};
-        gpu::dispatch(context, program, group_count(pixels), 1, 1, {.uniforms = block, .storage = storage});
-    };
-    for_each_band(samples.width_px, samples.height_px, width * count * sizeof(std::uint32_t), 1,
-                  max_buffer_bytes, count_band);
-    const std::vector<std::uint32_t> found = values_of<std::uint32_t>(counts);
-    return {found[0], std::uint64_t(found[1]) + found[2], found[2]};
+    const auto tables_of = [&](int) { return std::vector<gpu::BufferBinding>{{&keys, 1}, {&buckets, 3}}; };
+    return count_in_bands(context, visibility_bucket_shader(), samples, values, 0, 1, max_buffer_bytes,
+                          tables_of);
 }
 
 }  // namespace aftershade::visibility

@@ -1,8 +1,5 @@
-#version 450 core
 // One visibility sample of every pixel of a band: the nearest triangle that its ray meets at its own moment, and the shading sample there.
 // Transparent triangles stop it by chance (Enderton et al. 2010).
-layout(local_size_x = 64) in;
-
 struct Node {
     vec4 low_skip;    // xyz: m; w: the next node that is not below this one, as bits
     vec4 high_items;  // w: the first item times 8 plus their count, as bits; count 0: not a leaf
@@ -83,20 +80,10 @@ uint id_of(Hit hit) {
     return 2u * (floatBitsToUint(at.to_second.w) + uint(cell.y * size.x + cell.x)) + (hit.from_behind ? 1u : 0u);
 }
 
-// Jarzynski and Olano 2020, Hash Functions for GPU Rendering: pcg3d.
-uint pcg3d_x(uvec3 v) {
-    v = v * 1664525u + 1013904223u;
-    v.x += v.y * v.z;
-    v.y += v.z * v.x;
-    v.z += v.x * v.y;
-    v ^= v >> 16u;
-    return v.x + v.y * v.z;
-}
-
 // The twin of StopNumbers::at.
 float stop_at(uint pixel, uint crossing) {
     if (crossing < 4u) return rays[pixel].stops[crossing];
-    return float(pcg3d_x(uvec3(floatBitsToUint(rays[pixel].direction.w), sample_index, crossing)) >> 8u) / 16777216.0;
+    return float(pcg3d(uvec3(floatBitsToUint(rays[pixel].direction.w), sample_index, crossing)).x >> 8u) / 16777216.0;
 }
 
 // The nearest triangle beyond `low`.

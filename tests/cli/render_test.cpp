@@ -96,33 +96,36 @@ TEST_F(Render, ReportsTheShadingRateOfManyVisibilitySamples) {
     EXPECT_TRUE(fs::exists(folder_ / "toys/memoised_rate_0004.png"));
 }
 
+/// `toys` by GL's visibility at 64 samples, with so many threads of llvmpipe.
+nlohmann::json visibility_by_gl(const fs::path& folder, const std::string& threads, const Args& more) {
+    Args words = {AFTERSHADE_EXECUTABLE,
+                  "render",
+                  scene("toys"),
+                  "-o",
+                  threads,
+                  "--frames",
+                  "4",
+                  "--truth-only",
+                  "--visibility",
+                  "memoised",
+                  "--visibility-samples",
+                  "64",
+                  "--visibility-on",
+                  "gl",
+                  "--backend",
+                  "osmesa",
+                  "--json",
+                  "--quiet"};
+    words.insert(words.end(), more.begin(), more.end());
+    const CommandResult made = Command(std::move(words), folder, {{"LP_NUM_THREADS", threads}}).wait();
+    EXPECT_EQ(made.exit_code, 0) << made.err;
+    return nlohmann::json::parse(made.out);
+}
+
 TEST_F(Render, TracesVisibilityWithGlAlikeOnOneThreadAndOnTwo) {
     std::vector<std::vector<float>> reds;
     for (const char* threads : {"1", "2"}) {
-        Args words = {AFTERSHADE_EXECUTABLE,
-                      "render",
-                      scene("toys"),
-                      "-o",
-                      threads,
-                      "--size",
-                      "96x54",
-                      "--frames",
-                      "4",
-                      "--truth-only",
-                      "--visibility",
-                      "memoised",
-                      "--visibility-samples",
-                      "64",
-                      "--visibility-on",
-                      "gl",
-                      "--backend",
-                      "osmesa",
-                      "--json",
-                      "--quiet"};
-        const CommandResult made =
-            Command(std::move(words), folder_.path(), {{"LP_NUM_THREADS", threads}}).wait();
-        ASSERT_EQ(made.exit_code, 0) << made.err;
-        const auto report = nlohmann::json::parse(made.out);
+        const auto report = visibility_by_gl(folder_.path(), threads, {"--size", "96x54"});
         const auto counted = report.at("gl").at("frames").at(0);
         EXPECT_EQ(counted.at("misses"), report.at("visibility").at(0).at("misses"));
         EXPECT_EQ(counted.at("hits"), report.at("visibility").at(0).at("hits"));
@@ -149,34 +152,9 @@ TEST_F(Render, PacksAsHardAsItsLevelOfZipSays) {
 
 TEST_F(Render, EndsWithGlsLockedBucketsOnOneThreadAndOnTwo) {
     for (const char* threads : {"1", "2"}) {
-        Args words = {AFTERSHADE_EXECUTABLE,
-                      "render",
-                      scene("toys"),
-                      "-o",
-                      threads,
-                      "--size",
-                      "64x36",
-                      "--frames",
-                      "4",
-                      "--truth-only",
-                      "--visibility",
-                      "memoised",
-                      "--visibility-samples",
-                      "64",
-                      "--visibility-on",
-                      "gl",
-                      "--backend",
-                      "osmesa",
-                      "--shading-cache",
-                      "fifo",
-                      "--cache-entries",
-                      "256",
-                      "--json",
-                      "--quiet"};
-        const CommandResult made =
-            Command(std::move(words), folder_.path(), {{"LP_NUM_THREADS", threads}}).wait();
-        ASSERT_EQ(made.exit_code, 0) << made.err;
-        const auto report = nlohmann::json::parse(made.out);
+        const auto report =
+            visibility_by_gl(folder_.path(), threads,
+                             {"--size", "64x36", "--shading-cache", "fifo", "--cache-entries", "256"});
         const auto by_gl = report.at("gl").at("frames").at(0), by_cpu = report.at("visibility").at(0);
         EXPECT_EQ(by_gl.at("hits").get<int>() + by_gl.at("misses").get<int>(),
                   by_cpu.at("hits").get<int>() + by_cpu.at("misses").get<int>());

@@ -45,8 +45,7 @@ TEST_P(VisibilityOn, MeetsWhatTheCpuMeetsButAtEdges) {
         ASSERT_EQ(found.on_gpu.size(), found.on_cpu.size());
         std::size_t other = 0;
         for (std::size_t i = 0; i < found.on_cpu.size(); ++i) other += found.on_cpu[i] != found.on_gpu[i];
-        EXPECT_LT(double(other) / double(found.on_cpu.size()), id == std::string("panes") ? 0.004 : 0.002)
-            << id;
+        EXPECT_LT(double(other) / double(found.on_cpu.size()), 0.002) << id;
     }
 }
 

@@ -1,0 +1,18 @@
+// Asks the cache's request() for the ids of one pixel.
+void main() {
+    uint pixel = gl_GlobalInvocationID.x;
+    if (pixel >= pixel_count) return;
+    uint first_slot = 0u;
+    if (tile_px > 0u) {
+        uint columns = (width_px + tile_px - 1u) / tile_px;
+        first_slot = (pixel / width_px / tile_px * columns + pixel % width_px / tile_px) * slots;
+    }
+    uint own = 0u;
+    for (uint i = 0u; i < sample_count; ++i) {
+        uint id = ids[pixel * sample_count + i];
+        if (id == kNoShading) continue;
+        ++own;
+        request(id, first_slot);
+    }
+    atomicAdd(requests, own);
+}

@@ -1,0 +1,23 @@
+// What the caches share: the ids that samples ask for, and what is counted.
+layout(std430, binding = 0) readonly buffer Ids { uint ids[]; };
+layout(std430, binding = 2) buffer Counts {
+    uint requests;
+    uint misses;
+    uint overflows;
+};
+layout(std140, binding = 0) uniform Settings {
+    uint width_px;
+    uint pixel_count;   // of the band
+    uint sample_count;
+    uint tile_px;       // 0: one table for the picture
+    uint slots;         // of a table, or buckets; a power of two
+};
+
+const uint kNoShading = 0xffffffffu;
+
+// Degski's 32-bit mixer: neighbouring ids go to places far apart.
+uint mixed(uint x) {
+    x = (x ^ (x >> 16)) * 0x45d9f3bu;
+    x = (x ^ (x >> 16)) * 0x45d9f3bu;
+    return x ^ (x >> 16);
+}
