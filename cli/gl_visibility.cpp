@@ -2,31 +2,45 @@
 
 #include <nlohmann/json.hpp>
 
+#include "framework/visibility/gpu_light.h"
+#include "framework/visibility/gpu_visibility.h"
+
 namespace aftershade::cli {
 
-scene::IdTracer GlVisibility::tracer() {
-    return [this](const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids, int frame,
-                  const scene::VisibilitySettings& settings) {
-        std::vector<std::uint32_t> ids = visibility::trace_ids(context_, renderer, grids, frame, settings);
-        const scene::ShadingCacheSettings& cache = settings.cache;
-        const bool is_of_tiles =
-            cache.cache == scene::ShadingCache::tile || cache.cache == scene::ShadingCache::sorted;
-        const scene::SampleIds samples{ids, renderer.width_px(), renderer.height_px(), settings.samples};
-        counts_.push_back(cache.cache == scene::ShadingCache::fifo
-                              ? visibility::count_shadings_in_buckets(context_, samples, cache.entries)
-                              : visibility::count_shadings(context_, samples, grids.id_count(),
-                                                           is_of_tiles ? cache.tile_px : 0));
+scene::VisibilityPasses GlVisibility::passes() {
+    scene::VisibilityPasses passes;
+    passes.trace = [this](const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids, int frame,
+                          const scene::VisibilitySettings& settings) {
+        std::vector<std::uint32_t> ids = visibility::trace_ids(passes_, renderer, grids, frame, settings);
+        count({ids, renderer.width_px(), renderer.height_px(), settings.samples}, grids, settings.cache);
         return ids;
     };
+    passes.resolve = [this](const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids,
+                            const scene::SampleIds& samples, const scene::IdSet& set) {
+        return visibility::resolve_light(passes_, renderer, grids, samples, set);
+    };
+    return passes;
 }
 
-nlohmann::ordered_json GlVisibility::counts_json() const {
+void GlVisibility::count(const scene::SampleIds& samples, const scene::ShadingGrids& grids,
+                         const scene::ShadingCacheSettings& cache) {
+    const bool is_of_tiles =
+        cache.cache == scene::ShadingCache::tile || cache.cache == scene::ShadingCache::sorted;
+    counts_.push_back(cache.cache == scene::ShadingCache::fifo
+                          ? visibility::count_shadings_in_buckets(passes_, samples, cache.entries)
+                          : visibility::count_shadings(passes_, samples, grids.id_count(),
+                                                       is_of_tiles ? cache.tile_px : 0));
+}
+
+nlohmann::ordered_json GlVisibility::json() const {
     auto frames = nlohmann::ordered_json::array();
     for (const visibility::CacheCounts& counts : counts_)
         frames.push_back({{"hits", counts.requests - counts.shadings},
                           {"misses", counts.shadings},
                           {"overflows", counts.overflows}});
-    return {{"renderer", context_.info().renderer}, {"frames", frames}};
+    return {{"renderer", passes_.context().info().renderer},
+            {"passes_ms", passes_.milliseconds()},
+            {"frames", frames}};
 }
 
 }  // namespace aftershade::cli

@@ -6,21 +6,26 @@
 
 #include "framework/gpu/context.h"
 #include "framework/scene/visibility.h"
-#include "framework/visibility/gpu_visibility.h"
+#include "framework/visibility/gpu_cache.h"
+#include "framework/visibility/passes.h"
 
 namespace aftershade::cli {
 
-/// Traces ids with GL, and has its caches count them too. [the thread that made it]
+/// Traces ids and resolves their light with GL, and has its caches count them too. [the thread that made it]
 class GlVisibility {
 public:
-    explicit GlVisibility(gpu::Backend backend) : context_(backend) {}
-    /// This must outlive it.
-    scene::IdTracer tracer();
-    /// For each frame, the renderer and what its caches counted.
-    nlohmann::ordered_json counts_json() const;
+    explicit GlVisibility(gpu::Backend backend) : context_(backend), passes_(context_) {}
+    /// This must outlive them.
+    scene::VisibilityPasses passes();
+    /// The renderer, the time of each pass over all frames and, for each frame, what its caches counted.
+    nlohmann::ordered_json json() const;
 
 private:
+    void count(const scene::SampleIds& samples, const scene::ShadingGrids& grids,
+               const scene::ShadingCacheSettings& cache);
+
     gpu::Context context_;
+    visibility::Passes passes_;
     std::vector<visibility::CacheCounts> counts_;
 };
 

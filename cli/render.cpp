@@ -190,7 +190,7 @@ void print_report(const RenderArguments& options, const scene::JobReport& report
         json["files"] = nlohmann::json::array();
         for (const auto& file : report.files) json["files"].push_back(file.string());
         if (!report.visibility.empty()) json["visibility"] = visibility_json(report.visibility);
-        if (gl) json["gl"] = gl->counts_json();
+        if (gl) json["gl"] = gl->json();
         std::cout << json.dump(2) << "\n";
     } else {
         for (const auto& file : report.files) std::cout << file.string() << "\n";
@@ -231,7 +231,7 @@ ExitCode render(RenderArguments options) {
     std::optional<GlVisibility> gl;
     if (options.job.visibility && options.visibility.device == "gl") {
         gl.emplace(chosen_backend(options.visibility.backend));
-        options.job.id_tracer = gl->tracer();
+        options.job.visibility_passes = gl->passes();
     }
     const scene::JobReport report = scene::run_job(*scene, *profile, options.job, stop, [&](int frame) {
         if (!options.quiet) std::cerr << "frame " << frame << "\n";

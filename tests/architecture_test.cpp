@@ -38,7 +38,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
      {"core", "image", "file", "capture", "inspect", "compare", "gpu", "graph", "effect", "pipeline"}},
     {"serve", {"core", "image", "file", "capture", "compare", "gpu", "graph", "effect", "pipeline"}},
     {"scene", {"core", "scattering", "image", "file", "capture"}},
-    {"visibility", {"core", "gpu", "scene"}},
+    {"visibility", {"core", "gpu", "graph", "image", "scene"}},
 };
 
 struct Line {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <set>
 
+#include "framework/core/text.h"
 #include "framework/image/color_space.h"
 #include "framework/image/role.h"
 
@@ -17,12 +17,6 @@ constexpr Components kTristimulus = {"X", "Y", "Z", "A"};
 constexpr std::array kColorComponents = {Components{"R", "G", "B", "A"}, Components{"r", "g", "b", "a"},
                                          Components{"red", "green", "blue", "alpha"},
                                          Components{"Red", "Green", "Blue", "Alpha"}, kTristimulus};
-
-std::string in_lower_case(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
-    return text;
-}
 
 std::string joined_name(const std::string& layer, const std::string& component) {
     return layer.empty() ? component : layer + "." + component;
@@ -64,7 +58,7 @@ bool holds_data(const std::string& layer) {
         "pos",    "z",       "uv",           "st",        "tangent", "id",      "vector",    "vectors",
         "motion", "mvec",    "motionvector", "motionvec", "forward", "backward"};
     if (layer.empty()) return false;
-    const std::string word = in_lower_case(layer.substr(layer.rfind('.') + 1));
+    const std::string word = lower_case(layer.substr(layer.rfind('.') + 1));
     return words.contains(word) || word.find("crypto") != std::string::npos || find_role(word).has_value();
 }
 
@@ -74,7 +68,7 @@ std::optional<std::string> usual_layer(const std::vector<std::string>& layers) {
                                    "beauty", "color", "c",        "ci"};
     for (const char* usual : kUsual)
         for (const std::string& layer : layers)
-            if (in_lower_case(layer.substr(layer.rfind('.') + 1)) == usual) return layer;
+            if (lower_case(layer.substr(layer.rfind('.') + 1)) == usual) return layer;
     if (layers.size() == 1) return layers.front();
     return std::nullopt;
 }

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cctype>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -99,10 +98,7 @@ std::optional<std::string> unknown_object(const CryptomatteLayer& layer,
 }
 
 bool says_object(const CryptomatteLayer& layer) {
-    std::string lower = layer.name;
-    std::transform(lower.begin(), lower.end(), lower.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
-    return lower.find("object") != std::string::npos;
+    return lower_case(layer.name).find("object") != std::string::npos;
 }
 
 std::uint32_t id_bits(const Image& ranks, std::size_t pixel, std::size_t rank) {

@@ -1,5 +1,4 @@
 // How the stored channels of a role become its image.
-#include <cctype>
 #include <map>
 
 #include "framework/capture/capture_grammar.h"
@@ -148,7 +147,7 @@ bool can_be_mean(const ChannelRole& role) {
 }
 
 std::string component_key(const std::string& native_channel) {
-    return {char(std::tolower(static_cast<unsigned char>(native_channel.back())))};
+    return lower_case(native_channel.substr(native_channel.size() - 1));
 }
 
 const std::vector<std::string>& velocity_delta_names() {

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <utility>
 
 #include "framework/capture/common_names.h"
 #include "framework/core/diagnostics.h"
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 #include "framework/image/window.h"
 
 namespace aftershade {
@@ -55,9 +55,7 @@ std::string layer_of(const ExrPart& part, const std::string& view) {
 bool is_color_layer(const std::string& layer) {
     constexpr std::array<std::string_view, 8> kNames = {"",      "rgba", "rgb",      "beauty",
                                                         "color", "main", "combined", "c"};
-    std::string lower = layer;
-    std::transform(lower.begin(), lower.end(), lower.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
+    const std::string lower = lower_case(layer);
     return std::find(kNames.begin(), kNames.end(), lower) != kNames.end() || lower.starts_with("rgba");
 }
 

@@ -1,10 +1,10 @@
 #include "framework/capture/profile.h"
 
 #include <algorithm>
-#include <cctype>
 
 #include "framework/capture/common_names.h"
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
@@ -22,15 +22,10 @@ std::vector<std::string> split_alternatives(const std::string& text) {
     return parts;
 }
 
-bool same_in_any_case(const std::string& a, const std::string& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
-}
-
 /// The channel that goes by the name; "" where none does.
 std::string channel_called(const ExrPart& part, const std::string& name, bool in_any_case) {
     const auto is_it = [&](const std::string& one) {
-        return in_any_case ? same_in_any_case(one, name) : one == name || matches_pattern(one, name);
+        return in_any_case ? lower_case(one) == lower_case(name) : one == name || matches_pattern(one, name);
     };
     for (const ExrChannel& channel : part.channels)
         if (is_it(channel.name)) return channel.name;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "framework/compare/difference_picture.h"
+#include "framework/core/text.h"
 #include "framework/image/false_color.h"
 
 namespace aftershade {
@@ -82,8 +83,7 @@ std::string false_color_role(const LayerComparison& layer, const Image& image) {
         case LayerRole::velocity: return image.channels() >= 2 ? role_of_kind(RoleKind::motion) : data;
         default: break;
     }
-    std::string name = layer.label;
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    const std::string name = lower_case(layer.label);
     for (const ChannelRole& role : channel_roles())
         if ((role.kind == RoleKind::direction || role.kind == RoleKind::place) &&
             image.channels() == role.channels && name.find(role.name) != std::string::npos)

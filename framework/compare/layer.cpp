@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <map>
 #include <set>
 
+#include "framework/core/text.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
@@ -14,12 +14,6 @@ namespace {
 
 constexpr std::array<std::string_view, 7> kRoleNames = {"color",    "display", "alpha", "depth",
                                                         "velocity", "id",      "data"};
-
-std::string lower(std::string_view text) {
-    std::string result(text);
-    for (char& c : result) c = char(std::tolower(static_cast<unsigned char>(c)));
-    return result;
-}
 
 std::string component_of(const std::string& channel) {
     return channel.substr(channel.rfind('.') + 1);  // npos + 1 is 0
@@ -36,7 +30,7 @@ bool has_word(const std::string& name, const std::set<std::string>& words) {
     std::size_t begin = 0;
     while (begin <= name.size()) {
         const std::size_t end = std::min(name.find('.', begin), name.size());
-        if (words.contains(lower(name.substr(begin, end - begin)))) return true;
+        if (words.contains(lower_case(name.substr(begin, end - begin)))) return true;
         begin = end + 1;
     }
     return false;
@@ -74,23 +68,23 @@ std::set<std::string> words_of(LayerRole layer, std::set<std::string> words = {}
 }
 
 bool is_cryptomatte(const std::string& name) {
-    return lower(name).find("crypto") != std::string::npos;
+    return lower_case(name).find("crypto") != std::string::npos;
 }
 
 /// Where the component stands in its layer; those that are not in the list keep the file's order.
 std::size_t rank(const std::string& channel) {
     static const std::vector<std::string> order = {"r", "red", "x",    "u", "g", "green", "y",
                                                    "v", "b",   "blue", "z", "a", "alpha", "w"};
-    return std::size_t(std::ranges::find(order, lower(component_of(channel))) - order.begin());
+    return std::size_t(std::ranges::find(order, lower_case(component_of(channel))) - order.begin());
 }
 
 bool is_color_component(const std::string& component) {
     static const std::set<std::string> names = {"r", "g", "b", "red", "green", "blue"};
-    return names.contains(lower(component));
+    return names.contains(lower_case(component));
 }
 
 bool is_alpha_component(const std::string& component) {
-    const std::string name = lower(component);
+    const std::string name = lower_case(component);
     return name == "a" || name == "alpha";
 }
 
@@ -102,7 +96,7 @@ std::string group_of(const ExrChannel& channel, const std::string& prefix, bool 
     if (is_color_component(component)) return "color";
     if (is_alpha_component(component) && (has_color || prefix.empty())) return "alpha";
     if (!prefix.empty()) return "";
-    const std::string name = lower(component);
+    const std::string name = lower_case(component);
     if (name == "z") return "depth";
     if (name == "y" && !has_color) return "color";  // luminance alone
     return component;

@@ -15,6 +15,9 @@ bool is_snake_case(std::string_view name);
 /// What an error says of a name that is not: "<thing> 'Name' " and this.
 inline constexpr const char* kMustBeSnakeCase = "must be snake_case: a-z, 0-9 and _, beginning with a letter";
 
+/// A-Z as a-z; every other byte as it is, whatever the locale.
+std::string lower_case(std::string_view text);
+
 /// Without the spaces at its ends.
 std::string_view trimmed(std::string_view text);
 /// What stands between the separators: one piece more than there are of them, some of them perhaps empty.

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
 #include <dlfcn.h>
 #include <fmt/format.h>
 
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 #include "framework/gpu/egl_platform.h"
 #include "framework/gpu/osmesa_platform.h"
 
@@ -21,9 +21,7 @@ std::unique_ptr<Platform> make_platform(Backend backend) {
 bool is_software_renderer(std::string_view renderer) {
     static constexpr std::array<std::string_view, 5> kNames = {"llvmpipe", "softpipe", "swrast",
                                                                "software rasterizer", "swiftshader"};
-    std::string lower(renderer);
-    std::transform(lower.begin(), lower.end(), lower.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string lower = lower_case(renderer);
     return std::any_of(kNames.begin(), kNames.end(),
                        [&](std::string_view name) { return lower.find(name) != std::string::npos; });
 }

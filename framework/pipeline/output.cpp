@@ -7,6 +7,7 @@
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 #include "framework/file/png_file.h"
 #include "framework/image/display.h"
 #include "framework/image/false_color.h"
@@ -20,10 +21,7 @@ namespace fs = std::filesystem;
 namespace {
 
 std::string extension(const fs::path& path) {
-    std::string text = path.extension().string();
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
-    return text;
+    return lower_case(path.extension().string());
 }
 
 /// What a display shows of the frame.

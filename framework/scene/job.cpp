@@ -235,7 +235,7 @@ private:
         const Scene triangles = triangulated(scene_);
         VisibilityPicture picture =
             render_visibility(SceneRenderer(triangles, job_.width_px, job_.height_px, job_.threads), frame,
-                              settings, job_.id_tracer);
+                              settings, job_.visibility_passes);
         report_.render_s += seconds_since(start);
         report_.visibility.push_back(picture.report);
         Capture capture = empty_capture(frame);

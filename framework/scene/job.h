@@ -46,7 +46,7 @@ struct Job {
     int scattering_samples = 2048;
     bool visible_only = true;
     std::optional<VisibilitySettings> visibility;  ///< jitter and seed are the job's
-    IdTracer id_tracer = trace_ids;
+    VisibilityPasses visibility_passes = {};
     std::uint32_t seed = 0;
     int threads = 1;
     std::string compression = "zip";

@@ -139,9 +139,8 @@ World SceneRenderer::world_at(int frame, double time) const {
 
 /// The moments of one sample: its own for accumulation, several to choose from where pixels have their own.
 std::vector<World> SceneRenderer::moments_of(int frame, const TruthSettings& truth, int sample) const {
-    constexpr int kMomentsOfAPixel = 16;
     const bool own = truth.method == TruthMethod::interleaved && truth.kinds.shutter;
-    const int count = own ? kMomentsOfAPixel : 1;
+    const int count = own ? kMomentsOfSample : 1;
     const Exposure exposure = exposure_of(scene_.camera, frame);
     std::vector<World> moments;
     for (int i = 0; i < count; ++i) {

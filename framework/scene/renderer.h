@@ -96,7 +96,8 @@ public:
     /// of the frame's camera.
     Capture render_texture_space(int frame, int object, int side_px) const;
 
-    /// The scene at the moments that sample `sample` of every pixel chooses from.
+    /// The scene at the moments that sample `sample` of every pixel chooses from, at most kMomentsOfSample.
+    static constexpr int kMomentsOfSample = 16;
     std::vector<World> moments_of(int frame, const TruthSettings& settings, int sample) const;
     struct PixelSample {
         std::size_t moment = 0;  ///< index into moments_of()

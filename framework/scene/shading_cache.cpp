@@ -8,18 +8,18 @@
 #include <unordered_map>
 #include <utility>
 
+#include "framework/core/names.h"
 #include "framework/scene/shading_grid.h"
 
 namespace aftershade::scene {
 
 namespace {
 
-constexpr std::array<std::pair<ShadingCache, std::string_view>, 5> kCacheNames = {
-    {{ShadingCache::global, "global"},
-     {ShadingCache::tile, "tile"},
-     {ShadingCache::sorted, "sorted"},
-     {ShadingCache::lru, "lru"},
-     {ShadingCache::fifo, "fifo"}}};
+constexpr Names<ShadingCache, 5> kCacheNames = {{{ShadingCache::global, "global"},
+                                                 {ShadingCache::tile, "tile"},
+                                                 {ShadingCache::sorted, "sorted"},
+                                                 {ShadingCache::lru, "lru"},
+                                                 {ShadingCache::fifo, "fifo"}}};
 
 /// Of an id and of its shading's number.
 constexpr std::uint64_t kEntryBytes = 8;
@@ -155,15 +155,11 @@ CacheCounts replay_sorted(const SampleIds& samples, int tile_px) {
 }  // namespace
 
 std::optional<ShadingCache> parse_shading_cache(std::string_view name) {
-    for (const auto& [cache, own_name] : kCacheNames)
-        if (own_name == name) return cache;
-    return std::nullopt;
+    return value_named(kCacheNames, name);
 }
 
 std::string_view shading_cache_name(ShadingCache cache) {
-    return std::find_if(kCacheNames.begin(), kCacheNames.end(),
-                        [&](const auto& entry) { return entry.first == cache; })
-        ->second;
+    return name_of(kCacheNames, cache);
 }
 
 CacheCounts replay(const SampleIds& samples, const ShadingCacheSettings& settings) {

@@ -62,10 +62,14 @@ public:
     std::uint32_t size() const { return before_.back(); }
     std::uint32_t number_of(std::uint32_t id) const;
     std::vector<std::uint32_t> ids() const;  ///< ascending
+    /// Bit i of word w is set where id 64 w + i is in the set.
+    const std::vector<std::uint64_t>& bits() const { return bits_; }
+    /// How many ids come before each word, and at the end all of them.
+    const std::vector<std::uint32_t>& before() const { return before_; }
 
 private:
     std::vector<std::uint64_t> bits_;
-    std::vector<std::uint32_t> before_;  ///< ids in earlier words
+    std::vector<std::uint32_t> before_;
 };
 
 }  // namespace aftershade::scene

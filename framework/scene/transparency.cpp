@@ -4,25 +4,23 @@
 #include <tuple>
 #include <utility>
 
+#include "framework/core/names.h"
 #include "framework/scene/samples.h"
 
 namespace aftershade::scene {
 
 namespace {
 
-constexpr std::array<std::pair<Transparency, std::string_view>, 3> kTransparencyNames = {
-    {{Transparency::stochastic, "stochastic"},
-     {Transparency::lists, "lists"},
-     {Transparency::sorted, "sorted"}}};
+constexpr Names<Transparency, 3> kTransparencyNames = {{{Transparency::stochastic, "stochastic"},
+                                                        {Transparency::lists, "lists"},
+                                                        {Transparency::sorted, "sorted"}}};
 
 constexpr std::uint32_t kNoNode = 0xffffffff;
 
 }  // namespace
 
 std::optional<Transparency> parse_transparency(std::string_view name) {
-    for (const auto& [transparency, own_name] : kTransparencyNames)
-        if (own_name == name) return transparency;
-    return std::nullopt;
+    return value_named(kTransparencyNames, name);
 }
 
 std::uint32_t StopNumbers::pixel_seed(std::uint32_t seed, int frame, int x, int y) {

@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "framework/core/names.h"
 #include "framework/core/parallel.h"
 
 namespace aftershade::scene {
@@ -16,10 +17,9 @@ using glm::dvec3;
 
 namespace {
 
-constexpr std::array<std::pair<Visibility, std::string_view>, 3> kVisibilityNames = {
-    {{Visibility::memoised, "memoised"},
-     {Visibility::supersampled, "supersampled"},
-     {Visibility::accumulation, "accumulation"}}};
+constexpr Names<Visibility, 3> kVisibilityNames = {{{Visibility::memoised, "memoised"},
+                                                    {Visibility::supersampled, "supersampled"},
+                                                    {Visibility::accumulation, "accumulation"}}};
 
 constexpr std::uint64_t kShadingBytes = 12, kReferenceBytes = 8;
 
@@ -83,18 +83,17 @@ dvec3 blended(std::span<const std::uint32_t> ends, std::span<const ListNode> lis
     return sum / double(ends.size());
 }
 
-Image resolve(const SceneRenderer& renderer, const Traced& traced, const IdSet& set,
-              const std::vector<dvec3>& light, int samples) {
+/// `ends` are what the samples ended at, `lists` what they crossed before; `set` has the ids of both.
+Image blend(const SceneRenderer& renderer, const ShadingGrids& grids, const SampleIds& ends,
+            const TransparentLists* lists, const IdSet& set) {
+    const std::vector<dvec3> light = shade_all(renderer, grids, set);
     Image color(renderer.width_px(), renderer.height_px(), 4);
     const auto light_of = [&](std::uint32_t id) {
         return id == kNoShading ? renderer.scene().background : light[set.number_of(id)];
     };
     for_each_pixel(renderer, [&](int x, int y) {
-        const auto ends = std::span(traced.ends)
-                              .subspan(pixel_of(renderer, x, y) * std::size_t(samples), std::size_t(samples));
-        const std::vector<ListNode> list =
-            traced.lists ? traced.lists->sorted(x, y) : std::vector<ListNode>();
-        const dvec3 mean = blended(ends, list, light_of);
+        const std::vector<ListNode> list = lists ? lists->sorted(x, y) : std::vector<ListNode>();
+        const dvec3 mean = blended(ends.of_pixel(pixel_of(renderer, x, y)), list, light_of);
         for (int c = 0; c < 3; ++c) color.at(x, y, c) = float(mean[c]);
         color.at(x, y, 3) = 1;
     });
@@ -176,8 +175,10 @@ Image rate_image(const SceneRenderer& renderer, const std::vector<float>& of_pix
 }
 
 VisibilityPicture render_memoised(const SceneRenderer& renderer, const ShadingGrids& grids, int frame,
-                                  const VisibilitySettings& settings, const Traced& traced) {
-    SampleIds samples{traced.ends, renderer.width_px(), renderer.height_px(), settings.samples};
+                                  const VisibilitySettings& settings, const Traced& traced,
+                                  const LightResolver& resolve) {
+    const SampleIds ends{traced.ends, renderer.width_px(), renderer.height_px(), settings.samples};
+    SampleIds samples = ends;
     AllIds all;
     if (traced.lists) {
         all = all_ids_of(renderer, traced, settings.samples);
@@ -187,7 +188,8 @@ VisibilityPicture render_memoised(const SceneRenderer& renderer, const ShadingGr
     const CacheCounts counts = replay(samples, settings.cache);
     const IdSet set(samples.ids, grids.id_count());
     VisibilityPicture picture;
-    picture.color = resolve(renderer, traced, set, shade_all(renderer, grids, set), settings.samples);
+    picture.color = traced.lists ? blend(renderer, grids, ends, &*traced.lists, set)
+                                 : resolve(renderer, grids, ends, set);
     picture.shading_rate = rate_image(renderer, counts.of_pixel);
     VisibilityReport& report = picture.report;
     report.frame = frame;
@@ -277,15 +279,11 @@ Traced trace_lists(const SceneRenderer& renderer, const ShadingGrids& grids, int
 }  // namespace
 
 std::optional<Visibility> parse_visibility(std::string_view name) {
-    for (const auto& [visibility, own_name] : kVisibilityNames)
-        if (own_name == name) return visibility;
-    return std::nullopt;
+    return value_named(kVisibilityNames, name);
 }
 
 std::string_view visibility_name(Visibility visibility) {
-    return std::find_if(kVisibilityNames.begin(), kVisibilityNames.end(),
-                        [&](const auto& entry) { return entry.first == visibility; })
-        ->second;
+    return name_of(kVisibilityNames, visibility);
 }
 
 std::vector<std::uint32_t> trace_ids(const SceneRenderer& renderer, const ShadingGrids& grids, int frame,
@@ -301,6 +299,11 @@ std::vector<std::uint32_t> trace_ids(const SceneRenderer& renderer, const Shadin
     return ids;
 }
 
+Image resolve_light(const SceneRenderer& renderer, const ShadingGrids& grids, const SampleIds& samples,
+                    const IdSet& set) {
+    return blend(renderer, grids, samples, nullptr, set);
+}
+
 TruthSettings truth_of(const VisibilitySettings& settings) {
     TruthSettings truth;
     truth.kinds = {.lens = true, .shutter = true, .antialias = true};
@@ -313,14 +316,14 @@ TruthSettings truth_of(const VisibilitySettings& settings) {
 }
 
 VisibilityPicture render_visibility(const SceneRenderer& renderer, int frame,
-                                    const VisibilitySettings& settings, const IdTracer& tracer) {
+                                    const VisibilitySettings& settings, const VisibilityPasses& passes) {
     if (settings.visibility != Visibility::memoised) return render_plain(renderer, frame, settings);
     const ShadingGrids grids(renderer, frame, settings.grid);
     Traced traced;
     if (settings.transparency.transparency == Transparency::lists)
         traced = trace_lists(renderer, grids, frame, settings);
-    else traced.ends = tracer(renderer, grids, frame, settings);
-    return render_memoised(renderer, grids, frame, settings, traced);
+    else traced.ends = passes.trace(renderer, grids, frame, settings);
+    return render_memoised(renderer, grids, frame, settings, traced, passes.resolve);
 }
 
 }  // namespace aftershade::scene

@@ -83,10 +83,24 @@ std::vector<std::uint32_t> trace_ids(const SceneRenderer& renderer, const Shadin
 using IdTracer = std::function<std::vector<std::uint32_t>(
     const SceneRenderer& renderer, const ShadingGrids& grids, int frame, const VisibilitySettings& settings)>;
 
+/// RGBA: the mean over the samples of each pixel, which is the light of the shading sample that each met, or
+/// the background. `set` has the ids of `samples`, which has as many for each pixel.
+Image resolve_light(const SceneRenderer& renderer, const ShadingGrids& grids, const SampleIds& samples,
+                    const IdSet& set);
+/// That, or what does the same elsewhere.
+using LightResolver = std::function<Image(const SceneRenderer& renderer, const ShadingGrids& grids,
+                                          const SampleIds& samples, const IdSet& set)>;
+
+/// The parts of Visibility::memoised without lists.
+struct VisibilityPasses {
+    IdTracer trace = trace_ids;
+    LightResolver resolve = resolve_light;
+};
+
 /// `renderer` is of a scene of meshes (triangulated()). What all caches give is one picture: they change the
-/// count alone. Nothing depends on the number of threads. `tracer` is for Visibility::memoised without lists;
-/// those are for Visibility::memoised, and Transparency::sorted is for the others.
+/// count alone. Nothing depends on the number of threads. Lists are for Visibility::memoised, and
+/// Transparency::sorted is for the others.
 VisibilityPicture render_visibility(const SceneRenderer& renderer, int frame,
-                                    const VisibilitySettings& settings, const IdTracer& tracer = trace_ids);
+                                    const VisibilitySettings& settings, const VisibilityPasses& passes = {});
 
 }  // namespace aftershade::scene

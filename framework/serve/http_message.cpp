@@ -6,15 +6,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "framework/core/text.h"
+
 namespace aftershade::serve {
 
 namespace {
-
-std::string lowered(std::string_view text) {
-    std::string result(text);
-    std::ranges::transform(result, result.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    return result;
-}
 
 std::string_view trimmed(std::string_view text) {
     while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
@@ -77,7 +73,7 @@ std::optional<std::map<std::string, std::string>> read_headers(std::string_view 
         const std::string_view value = trimmed(line.substr(colon + 1));
         if (std::ranges::any_of(value, [](unsigned char c) { return c < ' ' && c != '\t'; }))
             return std::nullopt;
-        if (!headers.emplace(lowered(line.substr(0, colon)), value).second) return std::nullopt;
+        if (!headers.emplace(lower_case(line.substr(0, colon)), value).second) return std::nullopt;
     }
     return headers;
 }

@@ -16,18 +16,12 @@ using scene::Bounds;
 
 namespace {
 
-/// The items of a leaf have three bits of their word in trace.comp, their index 29.
-constexpr int kLeafSize = 4;
 constexpr std::size_t kMaxTriangles = std::size_t(1) << 20;
 /// Between two of these moments of the exposure a corner strays from its way by less than the way itself.
 constexpr int kMoments = 17;
 
 float bits(std::uint32_t value) {
     return std::bit_cast<float>(value);
-}
-
-vec4 with(const dvec3& xyz, float w = 0) {
-    return {glm::vec3(xyz), w};
 }
 
 std::array<dvec3, 3> corners_of(const scene::Mesh& mesh, std::size_t triangle) {
@@ -66,24 +60,26 @@ GpuTriangle triangle_of(const scene::ShadingGrids::Grid& grid, const scene::Scen
     return triangle;
 }
 
-GpuScene in_order_of(const scene::Bvh& bvh, const std::vector<GpuTriangle>& triangles) {
-    GpuScene result;
+}  // namespace
+
+std::vector<GpuNode> gpu_nodes(const scene::Bvh& bvh) {
+    std::vector<GpuNode> nodes;
     for (const scene::BvhNode& node : bvh.nodes)
-        result.nodes.push_back({with(node.bounds.low, bits(node.skip)),
-                                with(node.bounds.high, bits(node.first << 3 | node.count))});
-    for (const std::uint32_t item : bvh.items) result.triangles.push_back(triangles[item]);
-    return result;
+        nodes.push_back({with(node.bounds.low, bits(node.skip)),
+                         with(node.bounds.high, bits(node.first << 3 | node.count))});
+    return nodes;
 }
 
-}  // namespace
+void check_triangle_count(const scene::Scene& scene, const scene::ShadingGrids& grids) {
+    if (grids.grids().size() <= kMaxTriangles) return;
+    throw Error(ExitCode::usage,
+                fmt::format("{}: {} triangles, the limit of visibility by GL is {}; trace them on the CPU",
+                            scene.path.string(), grids.grids().size(), kMaxTriangles));
+}
 
 GpuScene make_gpu_scene(const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids, int frame) {
     const scene::Scene& scene = renderer.scene();
-    if (grids.grids().size() > kMaxTriangles)
-        throw Error(
-            ExitCode::usage,
-            fmt::format("{}: {} triangles, the limit of visibility by GL is {}; trace them on the CPU",
-                        scene.path.string(), grids.grids().size(), kMaxTriangles));
+    check_triangle_count(scene, grids);
     const scene::Exposure exposure = exposure_of(scene.camera, frame);
     std::vector<scene::SceneState> states;
     for (int i = 0; i < kMoments; ++i)
@@ -103,7 +99,10 @@ GpuScene make_gpu_scene(const scene::SceneRenderer& renderer, const scene::Shadi
             for (const dvec3& corner : corners) add_way(own, states, object, corner);
         }
     }
-    return in_order_of(scene::build_bvh(bounds, kLeafSize), triangles);
+    const scene::Bvh bvh = scene::build_bvh(bounds, kLeafSize);
+    GpuScene result{gpu_nodes(bvh), {}};
+    for (const std::uint32_t item : bvh.items) result.triangles.push_back(triangles[item]);
+    return result;
 }
 
 std::vector<vec4> make_moments(const std::vector<scene::World>& moments) {

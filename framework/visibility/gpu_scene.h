@@ -1,4 +1,4 @@
-// A scene's triangles as trace.comp reads them; for the sources of this folder.
+// A scene's triangles over an exposure as trace.comp reads them; for the sources of this folder.
 #pragma once
 
 #include <array>
@@ -10,6 +10,11 @@
 #include "framework/scene/shading_grid.h"
 
 namespace aftershade::visibility {
+
+template <class W = float>
+glm::vec4 with(const glm::dvec3& xyz, W w = 0) {
+    return {glm::vec3(xyz), float(w)};
+}
 
 struct GpuNode {
     glm::vec4 low_skip{0};
@@ -29,6 +34,13 @@ struct GpuScene {
     std::vector<GpuNode> nodes;
     std::vector<GpuTriangle> triangles;  ///< as the leaves order them
 };
+
+/// The items of a leaf have three bits of their word in bvh.glsl, their index 29.
+inline constexpr int kLeafSize = 4;
+std::vector<GpuNode> gpu_nodes(const scene::Bvh& bvh);
+
+/// Throws Error(ExitCode::usage) for more than 2^20.
+void check_triangle_count(const scene::Scene& scene, const scene::ShadingGrids& grids);
 
 /// One hierarchy over all triangles, whose boxes hold them over the whole exposure of `frame`.
 GpuScene make_gpu_scene(const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids, int frame);

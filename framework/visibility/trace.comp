@@ -1,9 +1,5 @@
 // One visibility sample of every pixel of a band: the nearest triangle that its ray meets at its own moment, and the shading sample there.
 // Transparent triangles stop it by chance (Enderton et al. 2010).
-struct Node {
-    vec4 low_skip;    // xyz: m; w: the next node that is not below this one, as bits
-    vec4 high_items;  // w: the first item times 8 plus their count, as bits; count 0: not a leaf
-};
 struct Triangle {
     vec4 corner;         // in the object's space, m; w: the object, as bits
     vec4 to_second;      // w: the grid's first cell, as bits
@@ -49,24 +45,15 @@ struct Hit {
     bool from_behind;
 };
 
-bool meets(vec3 origin, vec3 inverse_direction, vec3 low, vec3 high, float nearest) {
-    vec3 a = (low - origin) * inverse_direction, b = (high - origin) * inverse_direction;
-    vec3 near = min(a, b), far = max(a, b);
-    float enter = max(max(near.x, near.y), near.z), leave = min(min(far.x, far.y), far.z);
-    return enter <= leave && leave > 0.0 && enter < nearest;
-}
-
-// Moller and Trumbore 1997, both sides, in the object's space.
+// Both sides, in the object's space.
 void meet_triangle(uint index, vec3 origin, vec3 direction, uint moment, float low, inout Hit hit) {
     Moment at = moments[moment * object_count + floatBitsToUint(triangles[index].corner.w)];
     vec4 p1 = vec4(origin, 1.0), d1 = vec4(direction, 0.0);
     vec3 o = vec3(dot(at.object_from_world[0], p1), dot(at.object_from_world[1], p1), dot(at.object_from_world[2], p1));
     vec3 d = vec3(dot(at.object_from_world[0], d1), dot(at.object_from_world[1], d1), dot(at.object_from_world[2], d1));
     vec3 ab = triangles[index].to_second.xyz, ac = triangles[index].to_third.xyz;
-    vec3 p = cross(d, ac), s = o - triangles[index].corner.xyz, q = cross(s, ab);
-    float inverse = 1.0 / dot(ab, p), u = dot(s, p) * inverse, v = dot(d, q) * inverse, t = dot(ac, q) * inverse;
-    if (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > low && t < hit.t)
-        hit = Hit(t, index, vec2(u, v), dot(cross(ab, ac), d) > 0.0);
+    vec3 met = on_plane(triangles[index].corner.xyz, ab, ac, o, d);
+    if (is_inside(met.yz) && met.x > low && met.x < hit.t) hit = Hit(met.x, index, met.yz, dot(cross(ab, ac), d) > 0.0);
 }
 
 uint id_of(Hit hit) {

@@ -49,6 +49,10 @@ TEST(Pieces, AreJoinedAsASentenceHasThem) {
     EXPECT_EQ(joined(words, "\n", "\n"), "a\nb\nc");
 }
 
+TEST(LowerCase, ChangesAsciiLettersAlone) {
+    EXPECT_EQ(lower_case("aZ.[@`{ \u00c4\xff"), "az.[@`{ \u00c4\xff");
+}
+
 TEST(TextFor, PeopleHasNoControlCharacters) {
     EXPECT_EQ(printable("Gr\u00f6\u00dfe \u4e2d \U0001f600"), "Gr\u00f6\u00dfe \u4e2d \U0001f600");
     EXPECT_EQ(printable("a\x1b[31mb\n\x7f"), "a?[31mb??");

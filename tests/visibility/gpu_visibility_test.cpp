@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "framework/scene/triangulate.h"
+#include "framework/visibility/gpu_cache.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/scene/scene_text.h"
 
@@ -29,19 +30,20 @@ struct Traced {
 
 constexpr int kWidth_px = 160, kHeight_px = 90;
 
-Traced traced(gpu::Context& context, const std::string& id, int frame, int samples) {
+Traced traced(Passes& passes, const std::string& id, int frame, int samples) {
     const scene::Scene triangles = scene::triangulated(scene::shipped_scene(id));
     const scene::SceneRenderer renderer(triangles, kWidth_px, kHeight_px, 2);
     const scene::ShadingGrids grids(renderer, frame, {});
     scene::VisibilitySettings settings;
     settings.samples = samples;
     return {scene::trace_ids(renderer, grids, frame, settings),
-            trace_ids(context, renderer, grids, frame, settings), grids.id_count()};
+            trace_ids(passes, renderer, grids, frame, settings), grids.id_count()};
 }
 
 TEST_P(VisibilityOn, MeetsWhatTheCpuMeetsButAtEdges) {
+    Passes passes(context());
     for (const auto& [id, frame] : {std::pair("bats", 6), {"toys", 4}, {"camera_checker", 6}, {"panes", 4}}) {
-        const Traced found = traced(context(), id, frame, 8);
+        const Traced found = traced(passes, id, frame, 8);
         ASSERT_EQ(found.on_gpu.size(), found.on_cpu.size());
         std::size_t other = 0;
         for (std::size_t i = 0; i < found.on_cpu.size(); ++i) other += found.on_cpu[i] != found.on_gpu[i];
@@ -50,7 +52,8 @@ TEST_P(VisibilityOn, MeetsWhatTheCpuMeetsButAtEdges) {
 }
 
 TEST_P(VisibilityOn, CountsTheShadingsThatASetCounts) {
-    const Traced found = traced(context(), "toys", 4, 64);
+    Passes passes(context());
+    const Traced found = traced(passes, "toys", 4, 64);
     const scene::SampleIds samples{found.on_gpu, kWidth_px, kHeight_px, 64};
     std::unordered_set<std::uint32_t> all;
     std::set<std::array<std::size_t, 3>> of_tiles;
@@ -60,28 +63,29 @@ TEST_P(VisibilityOn, CountsTheShadingsThatASetCounts) {
         all.insert(found.on_gpu[i]);
         of_tiles.insert({pixel % kWidth_px / 16, pixel / kWidth_px / 16, found.on_gpu[i]});
     }
-    const CacheCounts global = count_shadings(context(), samples, found.id_count, 0);
+    const CacheCounts global = count_shadings(passes, samples, found.id_count, 0);
     EXPECT_EQ(global.shadings, all.size());
     EXPECT_EQ(global.overflows, 0u);
-    const CacheCounts tiles = count_shadings(context(), samples, found.id_count, 16);
+    const CacheCounts tiles = count_shadings(passes, samples, found.id_count, 16);
     EXPECT_EQ(tiles.shadings, of_tiles.size());
     EXPECT_EQ(tiles.overflows, 0u);
     EXPECT_EQ(tiles.requests, scene::replay(samples, {}).requests);
 }
 
 TEST_P(VisibilityOn, IsTheSameInBandsOfRows) {
+    Passes passes(context());
     const scene::Scene triangles = scene::triangulated(scene::shipped_scene("toys"));
     const scene::SceneRenderer renderer(triangles, kWidth_px, kHeight_px, 2);
     const scene::ShadingGrids grids(renderer, 4, {});
     scene::VisibilitySettings settings;
     settings.samples = 4;
-    const auto whole = trace_ids(context(), renderer, grids, 4, settings);
+    const auto whole = trace_ids(passes, renderer, grids, 4, settings);
     // 20 rows of rays at 32 bytes a pixel.
-    EXPECT_EQ(trace_ids(context(), renderer, grids, 4, settings, 20 * kWidth_px * 32), whole);
+    EXPECT_EQ(trace_ids(passes, renderer, grids, 4, settings, 20 * kWidth_px * 32), whole);
     const scene::SampleIds samples{whole, kWidth_px, kHeight_px, 4};
     for (const int tile_px : {0, 8}) {
-        const CacheCounts once = count_shadings(context(), samples, grids.id_count(), tile_px);
-        const CacheCounts in_bands = count_shadings(context(), samples, grids.id_count(), tile_px, 150000);
+        const CacheCounts once = count_shadings(passes, samples, grids.id_count(), tile_px);
+        const CacheCounts in_bands = count_shadings(passes, samples, grids.id_count(), tile_px, 150000);
         EXPECT_EQ(in_bands.overflows, 0u);
         EXPECT_EQ(in_bands.shadings, once.shadings);
         EXPECT_EQ(in_bands.requests, once.requests);
@@ -89,34 +93,36 @@ TEST_P(VisibilityOn, IsTheSameInBandsOfRows) {
 }
 
 TEST_P(VisibilityOn, EndsWithCountedOverflowsWhereATableIsTooSmall) {
+    Passes passes(context());
     // Half a million ids are said to be 64: all places are taken, and each attempt ends.
     std::vector<std::uint32_t> ids(std::size_t(64) * 64 * 128);
     for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = std::uint32_t(i);
-    const CacheCounts counts = count_shadings(context(), {ids, 64, 128, 64}, 64, 0);
+    const CacheCounts counts = count_shadings(passes, {ids, 64, 128, 64}, 64, 0);
     EXPECT_EQ(counts.requests, ids.size());
     EXPECT_EQ(counts.shadings, ids.size());
     EXPECT_EQ(counts.overflows, ids.size() - 128);
 }
 
 TEST_P(VisibilityOn, KeepsIdsInLockedBucketsAndEndsWhateverTheirNumber) {
+    Passes passes(context());
     constexpr int kSamples = 16;
-    const Traced found = traced(context(), "toys", 4, kSamples);
+    const Traced found = traced(passes, "toys", 4, kSamples);
     const scene::SampleIds samples{found.on_gpu, kWidth_px, kHeight_px, kSamples};
     std::unordered_set<std::uint32_t> all(found.on_gpu.begin(), found.on_gpu.end());
     all.erase(kNoShading);
     const std::uint64_t requests = scene::replay(samples, {}).requests;
     // Sixteen places for each id: no bucket drops any.
-    const CacheCounts roomy = count_shadings_in_buckets(context(), samples, int(16 * all.size()));
+    const CacheCounts roomy = count_shadings_in_buckets(passes, samples, int(16 * all.size()));
     EXPECT_EQ(roomy.requests, requests);
     EXPECT_LE(roomy.shadings - roomy.overflows, all.size());
     EXPECT_GE(roomy.shadings, all.size());
     EXPECT_LT(double(roomy.overflows), 0.001 * double(requests));
     const scene::ShadingCacheSettings fifo{scene::ShadingCache::fifo, 16, 1024};
-    const CacheCounts tight = count_shadings_in_buckets(context(), samples, 1024);
+    const CacheCounts tight = count_shadings_in_buckets(passes, samples, 1024);
     EXPECT_EQ(tight.requests, requests);
     EXPECT_GT(tight.shadings, all.size());
     EXPECT_LT(double(tight.shadings), 2.5 * double(scene::replay(samples, fifo).shadings));
-    const CacheCounts one = count_shadings_in_buckets(context(), samples, 1);
+    const CacheCounts one = count_shadings_in_buckets(passes, samples, 1);
     EXPECT_EQ(one.requests, requests);
     EXPECT_LE(one.shadings, requests);
     EXPECT_GT(one.shadings, tight.shadings);

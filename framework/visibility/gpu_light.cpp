@@ -1,0 +1,193 @@
+#include "framework/visibility/gpu_light.h"
+
+#include <algorithm>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "framework/visibility/bands.h"
+#include "framework/visibility/light_scene.h"
+
+namespace aftershade {
+std::string_view visibility_shade_shader();    // shade.comp
+std::string_view visibility_resolve_shader();  // resolve.comp
+}  // namespace aftershade
+
+namespace aftershade::visibility {
+
+using glm::vec4;
+using gpu::Access;
+
+namespace {
+
+struct ShadeSettings {
+    glm::mat4 world_from_camera{1};
+    vec4 ambient{0};
+    glm::vec2 size_px{0};
+    float px_per_tangent = 0;
+    std::uint32_t id_count = 0;
+    std::uint32_t node_count = 0;
+    std::uint32_t surface_count = 0;
+    std::uint32_t light_count = 0;
+    std::uint32_t unused = 0;
+};
+
+struct ResolveSettings {
+    vec4 background{0};
+    std::uint32_t pixel_count = 0;
+    std::uint32_t sample_count = 0;
+    std::uint32_t first = 0;
+    std::uint32_t count = 0;
+};
+
+/// What one run of the passes has room for.
+struct Room {
+    std::size_t ids = 0;     ///< shading samples
+    std::size_t pixels = 0;  ///< of a band
+    std::size_t samples = 0;
+};
+
+/// Two passes: the light of some shading samples, and what it adds to the pixels of a band.
+class LightGraph {
+public:
+    LightGraph(Passes& passes, const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids,
+               const scene::IdSet& set, const Room& room)
+        : passes_(passes),
+          scene_(make_light_scene(renderer, grids)),
+          words_(words_of(set)),
+          executor_(executor_of(passes, make_graph(room, set))) {
+        shade_.world_from_camera = glm::mat4(grids.reference().camera.world_from_camera);
+        shade_.ambient = vec4(glm::vec3(renderer.scene().ambient), 0);
+        shade_.size_px = {renderer.width_px(), renderer.height_px()};
+        shade_.px_per_tangent = float(renderer.pixels_per_tangent(grids.reference().camera));
+        shade_.node_count = std::uint32_t(scene_.nodes.size());
+        shade_.surface_count = std::uint32_t(scene_.surfaces.size());
+        shade_.light_count = std::uint32_t(scene_.lights.size());
+        set_scene(set);
+    }
+
+    /// `ids` are those of the set from its number `first`.
+    void shade(std::span<const std::uint32_t> ids, std::size_t first) {
+        shade_.id_count = resolve_.count = std::uint32_t(ids.size());
+        resolve_.first = std::uint32_t(first);
+        set(executor_, ids_, ids);
+        executor_.set_uniforms(kShade, 0, bytes_of(shade_));
+        passes_.run(executor_, {kShade, kShade + 1});
+    }
+
+    /// RGB of the band's pixels, without what other slices add.
+    std::vector<vec4> resolve(std::span<const std::uint32_t> ids, int samples, const glm::dvec3& background) {
+        resolve_.background = vec4(glm::vec3(background), 0);
+        resolve_.sample_count = std::uint32_t(samples);
+        resolve_.pixel_count = std::uint32_t(ids.size()) / resolve_.sample_count;
+        set(executor_, met_, ids);
+        executor_.set_uniforms(kResolve, 0, bytes_of(resolve_));
+        passes_.run(executor_, {kResolve, kResolve + 1});
+        return values_of<vec4>(executor_, means_);
+    }
+
+private:
+    static constexpr int kShade = 0, kResolve = 1;
+
+    /// The set's bits as the shader reads them: low words first.
+    static std::vector<std::uint32_t> words_of(const scene::IdSet& set) {
+        std::vector<std::uint32_t> words;
+        words.reserve(2 * set.bits().size());
+        for (const std::uint64_t bits : set.bits()) {
+            words.push_back(std::uint32_t(bits));
+            words.push_back(std::uint32_t(bits >> 32));
+        }
+        return words;
+    }
+
+    graph::FrameGraph make_graph(const Room& room, const scene::IdSet& set) {
+        graph::FrameGraph graph;
+        nodes_ = graph.import_buffer("nodes", room_for(scene_.nodes));
+        blockers_ = graph.import_buffer("blockers", room_for(scene_.blockers));
+        starts_ = graph.import_buffer("starts", room_for(scene_.starts));
+        surfaces_ = graph.import_buffer("surfaces", room_for(scene_.surfaces));
+        materials_ = graph.import_buffer("materials", room_for(scene_.materials));
+        lights_ = graph.import_buffer("lights", room_for(scene_.lights));
+        ids_ = graph.import_buffer("ids", {room.ids * sizeof(std::uint32_t)});
+        graph::Pass shade =
+            passes_.pass("visibility.shade", visibility_shade_shader(), group_count(room.ids));
+        const auto light = graph.create_buffer("light", {room.ids * sizeof(vec4)});
+        shade.uniforms = {{0, bytes_of(shade_)}};
+        const graph::BufferHandle read[] = {nodes_, blockers_, starts_, surfaces_, materials_, lights_, ids_};
+        for (int i = 0; i < int(std::size(read)); ++i) shade.buffers.push_back({read[i], i, Access::read});
+        shade.buffers.push_back({light, 7, Access::write});
+        const graph::Written shaded = graph.add_pass(std::move(shade));
+
+        met_ = graph.import_buffer("met", {room.pixels * room.samples * sizeof(std::uint32_t)});
+        set_ = graph.import_buffer("set", room_for(words_));
+        before_ = graph.import_buffer("before", room_for(set.before()));
+        graph::Pass resolve =
+            passes_.pass("visibility.resolve", visibility_resolve_shader(), group_count(room.pixels));
+        resolve.uniforms = {{0, bytes_of(resolve_)}};
+        resolve.buffers = {{met_, 0, Access::read},
+                           {set_, 1, Access::read},
+                           {before_, 2, Access::read},
+                           {shaded.buffers.back(), 3, Access::read},
+                           {graph.create_buffer("means", {room.pixels * sizeof(vec4)}), 4, Access::write}};
+        means_ = graph.add_pass(std::move(resolve)).buffers.back();
+        graph.keep(means_);
+        return graph;
+    }
+
+    void set_scene(const scene::IdSet& ids) {
+        set(executor_, nodes_, scene_.nodes);
+        set(executor_, blockers_, scene_.blockers);
+        set(executor_, starts_, scene_.starts);
+        set(executor_, surfaces_, scene_.surfaces);
+        set(executor_, materials_, scene_.materials);
+        set(executor_, lights_, scene_.lights);
+        set(executor_, set_, words_);
+        set(executor_, before_, ids.before());
+    }
+
+    Passes& passes_;
+    LightScene scene_;
+    std::vector<std::uint32_t> words_;
+    ShadeSettings shade_;
+    ResolveSettings resolve_;
+    graph::BufferHandle nodes_, blockers_, starts_, surfaces_, materials_, lights_, ids_, met_, set_, before_,
+        means_;
+    graph::Executor executor_;  // made of all the above
+};
+
+void add(Image& color, int first_row, int rows, const std::vector<vec4>& means) {
+    const std::size_t pixels = std::size_t(color.width()) * std::size_t(rows);
+    const std::size_t first = std::size_t(color.width()) * std::size_t(first_row);
+    for (std::size_t i = 0; i < pixels; ++i)
+        for (std::size_t c = 0; c < 3; ++c) color.floats()[(first + i) * 4 + c] += means[i][int(c)];
+}
+
+}  // namespace
+
+Image resolve_light(Passes& passes, const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids,
+                    const scene::SampleIds& samples, const scene::IdSet& set, std::size_t max_buffer_bytes) {
+    const auto width = std::size_t(samples.width_px), count = std::size_t(samples.samples);
+    const Bands bands(samples.width_px, samples.height_px,
+                      width * std::max(count * sizeof(std::uint32_t), sizeof(vec4)), 1, max_buffer_bytes);
+    const std::vector<std::uint32_t> ids = set.ids();
+    const std::size_t most = std::min(max_buffer_bytes / sizeof(vec4), std::size_t(kGroup) * kMaxGroups);
+    const std::size_t slice = std::clamp(ids.size(), std::size_t(1), most);
+    LightGraph graph(passes, renderer, grids, set, {slice, width * std::size_t(bands.rows), count});
+    Image color(samples.width_px, samples.height_px, 4);
+    std::size_t first = 0;
+    do {
+        graph.shade(std::span(ids).subspan(first, std::min(slice, ids.size() - first)), first);
+        const glm::dvec3 background = first == 0 ? renderer.scene().background : glm::dvec3(0);
+        bands.for_each([&](int row, int rows) {
+            const auto met =
+                samples.ids.subspan(std::size_t(row) * width * count, std::size_t(rows) * width * count);
+            add(color, row, rows, graph.resolve(met, samples.samples, background));
+        });
+        first += slice;
+    } while (first < ids.size());
+    for (std::size_t i = 3; i < color.floats().size(); i += 4) color.floats()[i] = 1;
+    return color;
+}
+
+}  // namespace aftershade::visibility

@@ -1,0 +1,60 @@
+// A scene at the frame's own time as shade.comp reads it; for the sources of this folder.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "framework/scene/renderer.h"
+#include "framework/scene/shading_grid.h"
+#include "framework/visibility/gpu_scene.h"
+
+namespace aftershade::visibility {
+
+/// A triangle that casts a shadow.
+struct GpuBlocker {
+    glm::vec4 corner{0};
+    glm::vec4 to_second{0};
+    glm::vec4 to_third{0};
+};
+
+/// A triangle that light falls on, and its grid of shading samples.
+struct GpuSurface {
+    glm::vec4 corner{0};
+    glm::vec4 to_second{0};
+    glm::vec4 to_third{0};
+    std::array<glm::vec4, 3> normals{};
+    glm::vec4 px_from_cells{0};
+    glm::vec4 grid{0};
+};
+
+struct GpuMaterial {
+    glm::vec4 albedo{0};
+    glm::vec4 albedo_2{0};
+    glm::vec4 emission{0};
+    glm::vec4 checker_cells{0};
+};
+
+struct GpuLight {
+    glm::vec4 position{0};
+    glm::vec4 direction{0};
+    glm::vec4 half_u{0};
+    glm::vec4 half_v{0};
+    glm::vec4 intensity{0};
+    glm::vec4 axis{0};
+};
+
+struct LightScene {
+    std::vector<GpuNode> nodes;
+    std::vector<GpuBlocker> blockers;   ///< as the leaves order them
+    std::vector<std::uint32_t> starts;  ///< as scene::ShadingGrids::grids()
+    std::vector<GpuSurface> surfaces;   ///< the same
+    std::vector<GpuMaterial> materials;
+    std::vector<GpuLight> lights;
+};
+
+/// Throws Error(ExitCode::usage) for more than 2^20 triangles.
+LightScene make_light_scene(const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids);
+
+}  // namespace aftershade::visibility
