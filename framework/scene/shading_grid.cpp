@@ -35,6 +35,12 @@ dvec2 barycentric_on_plane(const Ray& ray, const std::array<dvec3, 3>& corners) 
     return std::isfinite(found.x) && std::isfinite(found.y) ? found : dvec2(1.0 / 3);
 }
 
+dvec2 uv_of(const Mesh& mesh, std::uint32_t triangle, const dvec2& barycentric) {
+    const auto& corner = mesh.triangles[triangle];
+    return (1 - barycentric.x - barycentric.y) * mesh.vertices[corner[0]].uv +
+           barycentric.x * mesh.vertices[corner[1]].uv + barycentric.y * mesh.vertices[corner[2]].uv;
+}
+
 /// What lies outside comes to the edge.
 dvec2 inside_triangle(const dvec2& barycentric) {
     const dvec3 weights =
@@ -70,6 +76,11 @@ ShadingGrids::ShadingGrids(const SceneRenderer& renderer, int frame, const Shadi
         }
     }
     id_count_ = std::uint32_t(2 * cells);
+}
+
+const Mesh& ShadingGrids::mesh_of(int object) const {
+    const Scene& scene = renderer_.scene();
+    return scene.meshes[std::size_t(scene.objects[std::size_t(object)].shape.mesh)];
 }
 
 /// The middle of the picture where a point lies behind the camera: somewhere on the grid.
@@ -131,34 +142,57 @@ std::uint32_t ShadingGrids::triangle_of(std::uint32_t id) const {
     return std::uint32_t(after - grids_.begin()) - 1;
 }
 
+Ray ShadingGrids::ray_through(const ShadingPlace& place, std::uint32_t id, const dvec2& part) const {
+    const Grid& grid = grids_[first_triangle_[std::size_t(place.object)] + place.triangle];
+    const std::uint32_t cell = id / 2 - grid.start, columns = std::uint32_t(grid.size.x);
+    const dvec2 px =
+        glm::inverse(grid.cells_from_px) * (grid.low + dvec2(cell % columns, cell / columns) + part);
+    const Ray ray = renderer_.camera_ray(world_.state().camera, px, dvec2(0));
+    return {world_.to_object(place.object, ray.origin),
+            world_.to_object(place.object, ray.origin + ray.direction) -
+                world_.to_object(place.object, ray.origin)};
+}
+
 ShadingPlace ShadingGrids::place_of(std::uint32_t id) const {
     const std::uint32_t index = triangle_of(id);
     // Objects without triangles begin where the next one does.
     const auto object = std::upper_bound(first_triangle_.begin(), first_triangle_.end(), index) - 1;
-    const Grid& grid = grids_[index];
-    const std::uint32_t cell = id / 2 - grid.start, columns = std::uint32_t(grid.size.x);
-    const dvec2 px =
-        glm::inverse(grid.cells_from_px) * (grid.low + dvec2(cell % columns + 0.5, cell / columns + 0.5));
     ShadingPlace place;
     place.object = int(object - first_triangle_.begin());
     place.triangle = index - *object;
     place.from_behind = (id & 1) != 0;
-    const Scene& scene = renderer_.scene();
-    const Mesh& mesh = scene.meshes[std::size_t(scene.objects[std::size_t(place.object)].shape.mesh)];
-    const Ray ray = renderer_.camera_ray(world_.state().camera, px, dvec2(0));
-    const glm::dmat4 object_from_world =
-        glm::inverse(world_.state().world_from_object[std::size_t(place.object)]);
-    const Ray local = {dvec3(object_from_world * dvec4(ray.origin, 1)),
-                       glm::dmat3(object_from_world) * ray.direction};
-    place.barycentric = inside_triangle(barycentric_on_plane(local, corners_of(mesh, place.triangle)));
+    place.barycentric = inside_triangle(barycentric_on_plane(
+        ray_through(place, id, dvec2(0.5)), corners_of(mesh_of(place.object), place.triangle)));
     return place;
+}
+
+dvec3 ShadingGrids::mean_albedo(const ShadingPlace& place, std::uint32_t id) const {
+    const Mesh& mesh = mesh_of(place.object);
+    const Material& material = renderer_.scene().material_of(place.object);
+    const std::array<dvec3, 3> corners = corners_of(mesh, place.triangle);
+    const auto albedo = [&](const dvec2& barycentric) {
+        return albedo_at(material, uv_of(mesh, place.triangle, barycentric));
+    };
+    dvec3 sum(0);
+    int count = 0;
+    for (int i = 0; i < kAlbedoPoints * kAlbedoPoints; ++i) {
+        const dvec2 part = (dvec2(i % kAlbedoPoints, i / kAlbedoPoints) + 0.5) / double(kAlbedoPoints);
+        const dvec2 barycentric = barycentric_on_plane(ray_through(place, id, part), corners);
+        if (barycentric.x < 0 || barycentric.y < 0 || barycentric.x + barycentric.y > 1) continue;
+        sum += albedo(barycentric);
+        ++count;
+    }
+    return count > 0 ? sum / double(count) : albedo(place.barycentric);
 }
 
 dvec3 ShadingGrids::shade(std::uint32_t id) const {
     const ShadingPlace place = place_of(id);
     const Surface surface =
         world_.surface_on(place.object, place.triangle, place.barycentric, place.from_behind);
-    return world_.shade(surface, dvec3(world_.state().camera.world_from_camera[3])).color();
+    Shading shading = world_.shade(surface, dvec3(world_.state().camera.world_from_camera[3]));
+    if (renderer_.scene().material_of(place.object).checker_cells != dvec2(0))
+        shading.albedo = mean_albedo(place, id);
+    return shading.color();
 }
 
 }  // namespace aftershade::scene

@@ -52,7 +52,9 @@ public:
     ShadingPlace place_of(std::uint32_t id) const;
     /// Which triangle of the whole scene an id belongs to.
     std::uint32_t triangle_of(std::uint32_t id) const;
+    /// Light at the cell's centre, with the mean albedo of kAlbedoPoints x kAlbedoPoints places of the cell.
     glm::dvec3 shade(std::uint32_t id) const;
+    static constexpr int kAlbedoPoints = 4;
 
     /// Of one triangle.
     struct Grid {
@@ -69,6 +71,10 @@ private:
     Grid grid_of(int object, const Mesh& mesh, std::uint32_t triangle, const ShadingGridSettings& settings,
                  const std::array<SceneState, 2>& ends) const;
     glm::dvec2 reference_px(const glm::dvec3& world) const;
+    const Mesh& mesh_of(int object) const;
+    /// The ray through `part` of a cell, 0 to 1 along x and y, in the object's space.
+    Ray ray_through(const ShadingPlace& place, std::uint32_t id, const glm::dvec2& part) const;
+    glm::dvec3 mean_albedo(const ShadingPlace& place, std::uint32_t id) const;
 
     const SceneRenderer& renderer_;
     World world_;                                ///< at the frame's own time

@@ -50,6 +50,8 @@ struct Shading {
     glm::dvec3 color() const { return albedo * irradiance + specular + emission; }
 };
 
+glm::dvec3 albedo_at(const Material& material, const glm::dvec2& uv);
+
 /// [immutable: any thread]
 class World {
 public:

@@ -81,14 +81,14 @@ double highlight(const Material& material, const dvec3& normal, const dvec3& to_
            (material.specular + (1 - material.specular) * squared * squared * grazing);
 }
 
+}  // namespace
+
 dvec3 albedo_at(const Material& material, const glm::dvec2& uv) {
     const auto cell = [](double at) { return std::int64_t(std::floor(at)); };
     const bool second =
         ((cell(uv.x * material.checker_cells.x) + cell(uv.y * material.checker_cells.y)) & 1) != 0;
     return second ? material.albedo_2 : material.albedo;
 }
-
-}  // namespace
 
 /// Of an area light: the share of a grid of its points that shines through. Points below the surface's
 /// horizon do not count, since polygon_cosine cuts them off; where all are, the highest corner stands for the

@@ -52,11 +52,14 @@ const float kEdge = 1.0, kCosine = 2.0;        // kinds of patterns; 0: none
 // Of a position, over the size of its coordinates: where a ray leaves a surface that must not hide itself.
 const float kPrecision = 1e-5;
 
+// Places of a cell a side whose mean albedo counts, as ShadingGrids::kAlbedoPoints.
+const int kAlbedoPoints = 4;
+
 struct Point {
     vec3 position;
     vec3 normal;            // for shading
     vec3 geometric_normal;  // both of unit length, on the side that is seen
-    vec2 uv;
+    vec3 albedo;
     uint material;
 };
 
@@ -71,15 +74,41 @@ uint surface_of(uint cell) {
     return low;
 }
 
+// Weights of the second and third corner where the pinhole camera sees a place of the grid.
+vec2 weights_at(Surface at, vec2 place) {
+    vec2 tangent = (mat2(at.px_from_cells) * place - 0.5 * size_px) / px_per_tangent;
+    vec3 direction = mat3(world_from_camera) * vec3(tangent.x, -tangent.y, -1.0);
+    return on_plane(at.corner.xyz, at.to_second.xyz, at.to_third.xyz, world_from_camera[3].xyz, direction).yz;
+}
+
+vec3 albedo_at(Surface at, Material material, vec2 on) {
+    vec3 weights = vec3(1.0 - on.x - on.y, on);
+    vec2 uv = vec2(dot(vec3(at.normals[0].w, at.normals[1].w, at.normals[2].w), weights), dot(vec3(at.to_second.w, at.to_third.w, at.grid.w), weights));
+    ivec2 square = ivec2(floor(uv * material.checker_cells.xy));
+    return ((square.x + square.y) & 1) != 0 ? material.albedo_2.rgb : material.albedo.rgb;
+}
+
+// Over the cell whose corner is `corner`; `middle` stands for a cell of which no place lies on the triangle.
+vec3 mean_albedo(Surface at, Material material, vec2 corner, vec2 middle) {
+    if (material.checker_cells.xy == vec2(0.0)) return material.albedo.rgb;
+    vec3 sum = vec3(0.0);
+    float count = 0.0;
+    for (int i = 0; i < kAlbedoPoints * kAlbedoPoints; ++i) {
+        vec2 on = weights_at(at, corner + (vec2(float(i % kAlbedoPoints), float(i / kAlbedoPoints)) + 0.5) / float(kAlbedoPoints));
+        if (!is_inside(on)) continue;
+        sum += albedo_at(at, material, on);
+        count += 1.0;
+    }
+    return count > 0.0 ? sum / count : albedo_at(at, material, middle);
+}
+
 // The cell's centre as the pinhole camera sees it, drawn into the triangle.
 Point point_of(uint id) {
     uint index = surface_of(id / 2u);
     Surface at = surfaces[index];
     uint cell = id / 2u - starts[index], columns = floatBitsToUint(at.grid.z);
-    vec2 px = mat2(at.px_from_cells) * (at.grid.xy + vec2(float(cell % columns), float(cell / columns)) + 0.5);
-    vec2 tangent = (px - 0.5 * size_px) / px_per_tangent;
-    vec3 direction = mat3(world_from_camera) * vec3(tangent.x, -tangent.y, -1.0);
-    vec2 on = on_plane(at.corner.xyz, at.to_second.xyz, at.to_third.xyz, world_from_camera[3].xyz, direction).yz;
+    vec2 corner = at.grid.xy + vec2(float(cell % columns), float(cell / columns));
+    vec2 on = weights_at(at, corner + 0.5);
     if (any(isnan(on)) || any(isinf(on))) on = vec2(1.0 / 3.0);
     vec3 weights = max(vec3(1.0 - on.x - on.y, on.x, on.y), vec3(0.0));
     weights /= weights.x + weights.y + weights.z;
@@ -88,9 +117,8 @@ Point point_of(uint id) {
     point.geometric_normal = normalize(cross(at.to_second.xyz, at.to_third.xyz)) * ((id & 1u) != 0u ? -1.0 : 1.0);
     point.normal = normalize(mat3(at.normals[0].xyz, at.normals[1].xyz, at.normals[2].xyz) * weights);
     if (dot(point.geometric_normal, point.normal) < 0.0) point.normal = -point.normal;
-    point.uv = vec2(dot(vec3(at.normals[0].w, at.normals[1].w, at.normals[2].w), weights),
-                    dot(vec3(at.to_second.w, at.to_third.w, at.grid.w), weights));
     point.material = floatBitsToUint(at.corner.w);
+    point.albedo = mean_albedo(at, materials[point.material], corner, weights.yz);
     return point;
 }
 
@@ -227,7 +255,5 @@ void main() {
     vec3 to_eye = normalize(world_from_camera[3].xyz - point.position);
     vec3 irradiance = ambient.rgb, reflected = vec3(0.0);
     for (uint i = 0u; i < light_count; ++i) add_light(lights[i], material, point, to_eye, irradiance, reflected);
-    ivec2 square = ivec2(floor(point.uv * material.checker_cells.xy));
-    vec3 albedo = ((square.x + square.y) & 1) != 0 ? material.albedo_2.rgb : material.albedo.rgb;
-    shaded[index] = vec4(albedo * irradiance + reflected + material.emission.rgb, 1.0);
+    shaded[index] = vec4(point.albedo * irradiance + reflected + material.emission.rgb, 1.0);
 }

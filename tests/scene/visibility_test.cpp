@@ -56,6 +56,21 @@ Scene sheet(const glm::dvec2& motion_px, double coc_px) {
                                 f_number, -step_m.x, -step_m.y, step_m.x, step_m.y));
 }
 
+TEST(ShadingSamples, HaveTheMeanAlbedoOfTheirCells) {
+    Scene scene = sheet({0, 0}, 0);
+    // Checks of half a pixel by one: each pixel has as much of both.
+    scene.materials[0].albedo = glm::dvec3(0.8);
+    scene.materials[0].albedo_2 = glm::dvec3(0.2);
+    scene.materials[0].checker_cells = {512, 128};
+    const Image color = picture_of(scene, 1, with_samples(4)).color;
+    for (int y = 0; y < 128; ++y)
+        for (int x = 0; x < 256; ++x) {
+            if (std::abs(x - 2 * y) < 4 || std::abs(256 - x - 2 * y) < 4)
+                continue;  // the triangles' common edge
+            ASSERT_NEAR(color.at(64 + x, 32 + y, 0), 0.5 * 0.5, 1e-6) << x << ", " << y;
+        }
+}
+
 /// Cells of the sheet's two triangles: all of them, and those of the diagonal a second time.
 constexpr double kSheetCells = 256 * 128 + 256;
 constexpr double kSheetPixels = 256 * 128;
