@@ -122,10 +122,10 @@ vec4 gather(ivec2 p, Light centre, float near_px) {
             Light tap = take(texel, sharp && middle ? 0 : level);
             float in_front = add_tap(row_front, row_back, tap, a, centre.coc, offset, own_cover, step_px);
 #ifdef HAS_BEHIND
-            if (in_front == 0.0) continue;
+            // Through the centre's own aperture alone: what is hidden and in front of the centre as well is rare.
             Light hidden = unpack_light(texelFetch(behind, texel, 0));
-            if (hidden.color.a == 0.0 || hidden.coc <= tap.coc) continue;
-            add_tap(row_front, row_back, hidden, a, centre.coc, offset, in_front * own_cover, step_px);
+            float hidden_weight = hidden.color.a > 0.0 && hidden.coc > tap.coc ? in_front * own_cover : 0.0;
+            row_back = Sum(row_back.light + hidden_weight * hidden.color, row_back.weight + hidden_weight);
 #endif
         }
         front = Sum(front.light + row_front.light, front.weight + row_front.weight);
