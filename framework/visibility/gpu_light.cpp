@@ -56,6 +56,7 @@ public:
         : passes_(passes),
           scene_(make_light_scene(renderer, grids)),
           words_(words_of(set)),
+          scene_path_(renderer.scene().path.string()),
           executor_(executor_of(passes, make_graph(room, set))) {
         shade_.world_from_camera = glm::mat4(grids.reference().camera.world_from_camera);
         shade_.ambient = vec4(glm::vec3(renderer.scene().ambient), 0);
@@ -74,6 +75,7 @@ public:
         set(executor_, ids_, ids);
         executor_.set_uniforms(kShade, 0, bytes_of(shade_));
         passes_.run(executor_, {kShade, kShade + 1});
+        check_loops(executor_, unfinished_, scene_path_);
     }
 
     /// RGB of the band's pixels, without what other slices add.
@@ -117,7 +119,9 @@ private:
         const graph::BufferHandle read[] = {nodes_, blockers_, starts_, surfaces_, materials_, lights_, ids_};
         for (int i = 0; i < int(std::size(read)); ++i) shade.buffers.push_back({read[i], i, Access::read});
         shade.buffers.push_back({light, 7, Access::write});
-        const graph::Written shaded = graph.add_pass(std::move(shade));
+        const std::size_t shaded = shade.buffers.size() - 1;
+        const graph::Written written = add_with_loops(graph, std::move(shade));
+        unfinished_ = written.buffers.back();
 
         met_ = graph.import_buffer("met", {room.pixels * room.samples * sizeof(std::uint32_t)});
         set_ = graph.import_buffer("set", room_for(words_));
@@ -128,7 +132,7 @@ private:
         resolve.buffers = {{met_, 0, Access::read},
                            {set_, 1, Access::read},
                            {before_, 2, Access::read},
-                           {shaded.buffers.back(), 3, Access::read},
+                           {written.buffers[shaded], 3, Access::read},
                            {graph.create_buffer("means", {room.pixels * sizeof(vec4)}), 4, Access::write}};
         means_ = graph.add_pass(std::move(resolve)).buffers.back();
         graph.keep(means_);
@@ -152,7 +156,8 @@ private:
     ShadeSettings shade_;
     ResolveSettings resolve_;
     graph::BufferHandle nodes_, blockers_, starts_, surfaces_, materials_, lights_, ids_, met_, set_, before_,
-        means_;
+        means_, unfinished_;
+    std::string scene_path_;
     graph::Executor executor_;  // made of all the above
 };
 

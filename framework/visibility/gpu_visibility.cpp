@@ -69,8 +69,12 @@ std::vector<GpuRay> rays_of_band(const scene::SceneRenderer& renderer, int frame
 /// One pass: what one sample of each pixel of a band meets.
 class TraceGraph {
 public:
-    TraceGraph(Passes& passes, const GpuScene& scene, const TraceSettings& settings, std::size_t pixels)
-        : passes_(passes), settings_(settings), executor_(executor_of(passes, make_graph(scene, pixels))) {
+    TraceGraph(Passes& passes, const GpuScene& scene, const TraceSettings& settings, std::size_t pixels,
+               std::string scene_path)
+        : passes_(passes),
+          settings_(settings),
+          scene_path_(std::move(scene_path)),
+          executor_(executor_of(passes, make_graph(scene, pixels))) {
         set(executor_, nodes_, scene.nodes);
         set(executor_, triangles_, scene.triangles);
     }
@@ -82,6 +86,7 @@ public:
         set(executor_, rays_, rays);
         executor_.set_uniforms(0, 0, bytes_of(settings_));
         passes_.run(executor_);
+        check_loops(executor_, unfinished_, scene_path_);
     }
     /// Of the band whose samples were traced.
     std::vector<std::uint32_t> ids() {
@@ -107,14 +112,18 @@ private:
             {rays_, 3, Access::read},
             {graph.create_buffer("ids", {pixels * settings_.sample_count * sizeof(std::uint32_t)}), 4,
              Access::write}};
-        ids_ = graph.add_pass(std::move(trace)).buffers.back();
+        const int ids = int(trace.buffers.size()) - 1;
+        const graph::Written written = add_with_loops(graph, std::move(trace));
+        ids_ = written.buffers[std::size_t(ids)];
+        unfinished_ = written.buffers.back();
         graph.keep(ids_);
         return graph;
     }
 
     Passes& passes_;
     TraceSettings settings_;
-    graph::BufferHandle nodes_, triangles_, moments_, rays_, ids_;
+    graph::BufferHandle nodes_, triangles_, moments_, rays_, ids_, unfinished_;
+    std::string scene_path_;
     graph::Executor executor_;  // made of all the above
 };
 
@@ -136,7 +145,7 @@ std::vector<std::uint32_t> trace_ids(Passes& passes, const scene::SceneRenderer&
     values.transparent = renderer.scene().has_transparency() ? 1 : 0;
     const Bands bands(renderer.width_px(), renderer.height_px(),
                       width * std::max(samples * sizeof(std::uint32_t), sizeof(GpuRay)), 1, max_buffer_bytes);
-    TraceGraph graph(passes, scene, values, width * std::size_t(bands.rows));
+    TraceGraph graph(passes, scene, values, width * std::size_t(bands.rows), renderer.scene().path.string());
     std::vector<std::uint32_t> ids;
     bands.for_each([&](int first, int rows) {
         for (int sample = 0; sample < settings.samples; ++sample) {

@@ -1,5 +1,10 @@
 #include "framework/visibility/passes.h"
 
+#include <cstdint>
+#include <utility>
+
+#include "framework/core/error.h"
+
 namespace aftershade::visibility {
 
 graph::Pass Passes::pass(const std::string& name, std::string_view shader, int groups) {
@@ -17,6 +22,24 @@ graph::Pass Passes::pass(const std::string& name, std::string_view shader, int g
 void Passes::run(graph::Executor& executor, graph::PassRange range) {
     for (const graph::PassTime& time : executor.run(true, {}, range))
         milliseconds_[time.pass] += time.milliseconds;
+}
+
+graph::Written add_with_loops(graph::FrameGraph& graph, graph::Pass pass) {
+    constexpr int kBinding = 9;  // as loops.glsl has it
+    const graph::BufferHandle unfinished =
+        graph.create_buffer("unfinished", {sizeof(std::uint32_t)}, std::vector<std::uint32_t>{0});
+    pass.buffers.push_back({unfinished, kBinding, gpu::Access::read_write});
+    graph::Written written = graph.add_pass(std::move(pass));
+    graph.keep(written.buffers.back());
+    return written;
+}
+
+void check_loops(graph::Executor& executor, graph::BufferHandle unfinished, const std::string& what) {
+    if (values_of<std::uint32_t>(executor, unfinished).front() == 0) return;
+    throw Error(ExitCode::effect,
+                what +
+                    ": a ray needs more than the 65,535 loop turns that llvmpipe allows; choose "
+                    "--visibility-on cpu");
 }
 
 }  // namespace aftershade::visibility

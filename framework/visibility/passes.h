@@ -38,6 +38,13 @@ private:
     std::map<std::string, double> milliseconds_;
 };
 
+/// Adds a pass whose shader calls check_loops() of loops.glsl. The last of what it writes is for
+/// check_loops().
+graph::Written add_with_loops(graph::FrameGraph& graph, graph::Pass pass);
+/// After the pass has run. Throws Error(ExitCode::effect), which begins with `what`, if GL ended its loops
+/// early.
+void check_loops(graph::Executor& executor, graph::BufferHandle unfinished, const std::string& what);
+
 /// A graph on which a buffer keeps what it has from one run to the next.
 inline graph::Executor executor_of(Passes& passes, graph::FrameGraph graph) {
     return {passes.context(), std::move(graph), false};

@@ -256,4 +256,5 @@ void main() {
     vec3 irradiance = ambient.rgb, reflected = vec3(0.0);
     for (uint i = 0u; i < light_count; ++i) add_light(lights[i], material, point, to_eye, irradiance, reflected);
     shaded[index] = vec4(point.albedo * irradiance + reflected + material.emission.rgb, 1.0);
+    check_loops();
 }

@@ -105,4 +105,5 @@ void main() {
         hit = trace(origin, direction, moment, hit.t * kPast);
     }
     ids[pixel * sample_count + sample_index] = hit.triangle == kNoShading ? kNoShading : id_of(hit);
+    check_loops();
 }

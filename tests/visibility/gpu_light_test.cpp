@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "framework/core/error.h"
 #include "framework/scene/triangulate.h"
 #include "framework/scene/visibility.h"
 #include "tests/gpu/gpu_test.h"
@@ -26,15 +27,15 @@ struct Pictures {
 
 /// Of the same ids, which the CPU has traced.
 Pictures pictures(gpu::Context& context, const scene::Scene& scene, int frame, int samples,
-                  std::size_t max_buffer_bytes = kMaxBufferBytes) {
+                  std::size_t max_buffer_bytes = kMaxBufferBytes, const glm::ivec2& size_px = kLitSize_px) {
     Passes passes(context);
     const scene::Scene triangles = scene::triangulated(scene);
-    const scene::SceneRenderer renderer(triangles, kLitSize_px.x, kLitSize_px.y, 2);
+    const scene::SceneRenderer renderer(triangles, size_px.x, size_px.y, 2);
     const scene::ShadingGrids grids(renderer, frame, {});
     scene::VisibilitySettings settings;
     settings.samples = samples;
     const std::vector<std::uint32_t> ids = scene::trace_ids(renderer, grids, frame, settings);
-    const scene::SampleIds met{ids, kLitSize_px.x, kLitSize_px.y, samples};
+    const scene::SampleIds met{ids, size_px.x, size_px.y, samples};
     const scene::IdSet set(ids, grids.id_count());
     return {scene::resolve_light(renderer, grids, met, set),
             resolve_light(passes, renderer, grids, met, set, max_buffer_bytes)};
@@ -120,6 +121,23 @@ TEST_P(LightOn, IsTheSameInSlicesAndBands) {
         ASSERT_NEAR(whole.on_gpu.floats()[i], in_parts.on_gpu.floats()[i],
                     2e-6f * (1 + whole.on_gpu.floats()[i]))
             << i;
+}
+
+TEST_P(LightOn, SaysWhereGlEndsItsLoopsEarly) {
+    std::string lights;
+    for (int i = 0; i < 8; ++i)
+        lights +=
+            std::string(i > 0 ? "," : "") + R"({ "name": "window )" + std::to_string(i) +
+            R"(", "type": "area", "position": [-1.5, 1.2, 1.5], "target": [0, 0.2, 0], "size": [1.6, 1.2],
+                     "intensity": 1, "shadow_samples": 16 })";
+    try {
+        pictures(context(), room_under(lights), 1, 1, kMaxBufferBytes, {32, 18});
+        FAIL() << "2048 shadow rays for each shading sample had all their turns";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.exit_code(), ExitCode::effect);
+        EXPECT_NE(std::string(error.what()).find("choose --visibility-on cpu"), std::string::npos)
+            << error.what();
+    }
 }
 
 TEST_P(LightOn, IsTheBackgroundWhereNothingIsMet) {
