@@ -3,6 +3,7 @@ import { element } from "./elements.js";
 import { literal, numberOf, quantity, scaleOf, short, typedNumber } from "./values.js";
 
 const PLACES = 1000; // of a slider
+const REST_MS = 200; // after which a slider counts as let go, where each value costs a compilation
 
 /**
  * A text field that commits on Enter and on leaving, and takes its words back on Escape.
@@ -67,7 +68,16 @@ export function numberControl({ label, parameter, describedBy, commit }) {
   const scale = scaleOf(parameter);
   let entry = { effective: parameter.default };
   let gesture = 0;
-  const send = (number, isDrag) => commit(literal(number, parameter, entry.value), isDrag ? `drag ${gesture}` : null);
+  let waiting = null; // what a slider that rests will send
+  const send = (number, isDrag) => {
+    clearTimeout(waiting?.timer);
+    const now = () => {
+      waiting = null;
+      commit(literal(number, parameter, entry.value), isDrag ? `drag ${gesture}` : null);
+    };
+    if (isDrag && parameter.bind === "define") waiting = { now, timer: setTimeout(now, REST_MS) };
+    else now();
+  };
 
   const slider = element("input", {
     type: "range",
@@ -95,6 +105,10 @@ export function numberControl({ label, parameter, describedBy, commit }) {
     paint(number);
     typed.show(short(number, 6));
     if (number !== entry.effective) send(number, isDragged);
+  });
+  slider.addEventListener("change", () => {
+    clearTimeout(waiting?.timer);
+    waiting?.now();
   });
   // Keys: a hundredth of the range, which for whole numbers is at least 1.
   slider.addEventListener("keydown", (event) => {
@@ -132,7 +146,7 @@ export function numberControl({ label, parameter, describedBy, commit }) {
     update(next) {
       entry = next;
       const number = numberOf(next.effective, parameter.unit);
-      if (!isDragged) {
+      if (!isDragged && !waiting) {
         paint(number);
         typed.show(short(number, 6));
       }

@@ -359,6 +359,30 @@ inPage("undoes a whole drag of a slider in one step, and redoes it", async (page
   await page.waitForFunction((text) => window.aftershade.store.state.text === text, dragged);
 });
 
+inPage("compiles a value that is compiled in once a drag rests, not at each place of the slider", async (page) => {
+  const dof = { aftershade: 1, steps: [{ effect: "dof", params: { curvature: 0.9 } }] };
+  await page.evaluate((value) => window.aftershade.store.edit([{ op: "text", value }]), JSON.stringify(dof));
+  await drawn(page);
+  const slider = row(await opened(page, "dof"), "curvature").getByRole("slider"),
+    { revision } = await state(page);
+  await slider.scrollIntoViewIfNeeded();
+  const box = await slider.boundingBox();
+  const at = async (share) => page.mouse.move(box.x + box.width * share, box.y + box.height / 2);
+  await at(0.9);
+  await page.mouse.down();
+  for (const share of [0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2]) await at(share);
+  const typed = row(step(page, "dof"), "curvature").getByRole("textbox");
+  assert.ok(Math.abs((await typed.inputValue()) - 0.2) < 0.05, "the number follows the drag");
+  assert.equal((await lookOf(page)).steps[0].params.curvature, 0.9, "the look waits");
+  await changed(page, JSON.stringify(dof)); // the slider is still held
+  await at(0.1);
+  await page.mouse.up();
+  await drawn(page);
+  const { curvature } = (await lookOf(page)).steps[0].params;
+  assert.ok(Math.abs(curvature - 0.1) < 0.05, `${curvature}`);
+  assert.equal((await state(page)).revision, revision + 2, "once when the slider rests, once when it is released");
+});
+
 inPage("adds a step that is found by a word of its summary", async (page) => {
   const before = await textOf(page);
   await page.keyboard.press("a");
