@@ -4,7 +4,8 @@ import json
 import numpy
 from PIL import Image
 
-from family import AFTERSHADE, CAPTURES, ROOT, command, psnr_db, read_exr, srgb, write_exr
+from family import AFTERSHADE, CAPTURES, ROOT, command, psnr_db, read_exr, srgb
+from hidden import NEIGHBOURS, rendered
 from rates import on_triangles
 from transparency import on_transparent
 
@@ -107,24 +108,7 @@ def both_at_once():
 
 def kinds_of(name):
     """Captures of what near things hide, as scripts/quality-hidden makes them, and the truth of each."""
-    folder = ROOT / "build/quality-hidden" / name
-    more = lambda kind: folder.parent / f"{name}_{kind}"
-    if not (folder / f"truth_lens_antialias_{FRAME:04}.exr").exists():
-        command([AFTERSHADE, "render", ROOT / "scenes" / name, "-o", folder, "--frames", FRAME, "--samples", 256, "--quiet",
-                 "--truth", "lens", "--truth", "antialias", "--truth", "lens+antialias"])
-    for kind, words in {"2_layers": ["--layers", 2], "4_layers": ["--layers", 4], "deep": ["--deep"]}.items():
-        if not (more(kind) / "capture.json").exists():
-            command([AFTERSHADE, "render", ROOT / "scenes" / name, "-o", more(kind), "--frames", FRAME, "--quiet", *words])
-    mixed, flat = more("antialiased"), f"gbuffer_{FRAME:04}.exr"
-    mixed.mkdir(exist_ok=True)
-    (mixed / "capture.json").write_text((folder / "capture.json").read_text())
-    names = ["A", "Z"]
-    planes = dict(zip(names, (read_exr(folder / flat, [n]) for n in names)))
-    color = read_exr(folder / f"truth_antialias_{FRAME:04}.exr", RGB)
-    write_exr(mixed / flat, planes | {c: color[..., i] for i, c in enumerate(RGB)})
-    sharp, smooth = (read_exr(folder / f"truth_{kind}_{FRAME:04}.exr", RGB) for kind in ("lens", "lens_antialias"))
-    return {"one ray a pixel": (folder, sharp), "antialiased": (mixed, smooth), "2 layers": (more("2_layers"), sharp),
-            "4 layers": (more("4_layers"), sharp), "deep": (more("deep"), smooth)}
+    return {kind: (capture.parent, read_exr(truth, RGB)) for kind, (capture, _, truth) in rendered(name).items() if kind != NEIGHBOURS}
 
 
 def hidden():

@@ -120,4 +120,5 @@ def main():
     print("docs/quality-hidden.md")
 
 
-main()
+if __name__ == "__main__":
+    main()
