@@ -61,6 +61,10 @@ void add_plugin_options(CLI::App& app, PluginOptions& options) {
     app.add_option("--plugin-memory", options.memory_bytes,
                    "Limit the address space of the plug-in process (default: 4GB)")
         ->transform(CLI::AsSizeValue(false));
+    add_pass_timeout_option(app, options);
+}
+
+void add_pass_timeout_option(CLI::App& app, PluginOptions& options) {
     app.add_option_function<double>(
            "--pass-timeout",
            [&options](double seconds) {

@@ -30,6 +30,8 @@ struct PluginOptions {
 };
 
 void add_plugin_options(CLI::App& app, PluginOptions& options);
+/// --pass-timeout alone.
+void add_pass_timeout_option(CLI::App& app, PluginOptions& options);
 
 /// Runs this command once more as a worker, which writes to the same streams, where `is_foreign` says that it
 /// uses untrusted code, or --plugin-path or --pass-timeout is given: a shader may crash or stop the GL

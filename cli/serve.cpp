@@ -14,10 +14,14 @@
 #include "cli/gl_options.h"
 #include "cli/interrupt.h"
 #include "cli/plugin_options.h"
+#include "cli/restart.h"
 #include "cli/verbs.h"
+#include "framework/batch/watchdog.h"
+#include "framework/batch/worker.h"
 #include "framework/core/data_path.h"
 #include "framework/core/error.h"
 #include "framework/core/memory_limit.h"
+#include "framework/core/status.h"
 
 extern char** environ;
 
@@ -33,6 +37,7 @@ struct ServeArguments {
     int port = 0;
     bool opens = false;
     bool read_only = false;
+    PluginOptions limits;
 };
 
 /// By the desktop's own command; where there is none, the address that was printed does.
@@ -47,10 +52,22 @@ void open_browser(const std::string& address) {
     std::thread([id] { waitpid(id, nullptr, 0); }).detach();
 }
 
+/// Why the picture at work was given up; "" where it was not.
+std::string reason_of(const Watchdog& watchdog) {
+    if (!watchdog.barked()) return "";
+    WorkerResult at_bark;
+    at_bark.status = watchdog.status_at_bark();
+    const std::string reason = describe_timeout(at_bark, watchdog.timeout());
+    std::cerr << "aftershade: warning: " << reason << "; the server starts again, the look as it was\n";
+    return reason + "; change the look or the shader, or allow more time with --pass-timeout";
+}
+
 ExitCode serve(const ServeArguments& arguments) {
-    if (const auto code = run_in_worker({}, !arguments.effect_paths.empty())) return *code;
+    if (const auto code = run_in_worker(arguments.limits, !arguments.effect_paths.empty())) return *code;
     share_one_heap();
-    const std::atomic<bool>& stop = watch_for_interrupt();
+    const std::string handover = state_before_restart();
+    Watchdog watchdog(Watchdog::Duration::max(), arguments.limits.pass_limit(), watch_for_interrupt());
+    StatusWriter status([&](const WorkStatus& now) { watchdog.is_at(now); });
     const gpu::Backend backend = chosen_backend(arguments.backend);
     Diagnostics diagnostics;
     find_effects(arguments.effect_paths, diagnostics);  // for its faults and warnings
@@ -69,12 +86,16 @@ ExitCode serve(const ServeArguments& arguments) {
     options.effect_folders.assign(arguments.effect_paths.begin(), arguments.effect_paths.end());
     options.port = arguments.port;
     options.read_only = arguments.read_only;
+    options.status = &status;
+    options.hang = [&] { return reason_of(watchdog); };
+    options.restart = [](const std::string& state) { restart(state); };
+    options.handover = handover;
     options.ready = [&](const std::string& address) {
         std::cout << address << std::endl;
         std::cerr << "the page is at the address above, for this machine alone; interrupt to end\n";
         if (arguments.opens) open_browser(address);
     };
-    serve::serve(options, stop);
+    serve::serve(options, watchdog.flag());
     return ExitCode::interrupted;
 }
 
@@ -91,6 +112,7 @@ Verb add_serve(CLI::App& app) {
     app.add_flag("--read-only", arguments->read_only, "Never write the look or a shader");
     add_capture_options(app, arguments->capture, "Frames to show, such as 1-24 (default: the capture's)");
     add_effect_path_option(app, arguments->effect_paths);
+    add_pass_timeout_option(app, arguments->limits);
     add_backend_option(app, arguments->backend);
     return [arguments] { return serve(*arguments); };
 }

@@ -82,10 +82,14 @@ StatusWriter::StatusWriter() {
     descriptor_ = descriptor;
 }
 
+StatusWriter::StatusWriter(std::function<void(const WorkStatus&)> listener)
+    : listener_(std::move(listener)) {}
+
 void StatusWriter::write(const WorkStatus& status) {
     const std::lock_guard lock(mutex_);
     if (status == current_) return;
     current_ = status;
+    if (listener_) listener_(status);
     send(status_line(status));
 }
 

@@ -2,6 +2,7 @@
 // something.
 #pragma once
 
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -65,10 +66,12 @@ std::string status_line(const WorkStatus& status);
 class StatusWriter {
 public:
     StatusWriter();
+    /// Calls a listener in this process instead, on the thread that writes.
+    explicit StatusWriter(std::function<void(const WorkStatus&)> listener);
     StatusWriter(const StatusWriter&) = delete;
     StatusWriter& operator=(const StatusWriter&) = delete;
 
-    bool active() const { return descriptor_ >= 0; }
+    bool active() const { return descriptor_ >= 0 || listener_; }
     void write(const WorkStatus& status);
     void write(const FrameEvent& event);
     void write(const ObjectSighting& sighting);
@@ -80,6 +83,7 @@ private:
     void send(const std::string& line);
 
     int descriptor_ = -1;
+    std::function<void(const WorkStatus&)> listener_;
     mutable std::mutex mutex_;
     WorkStatus current_;
 };

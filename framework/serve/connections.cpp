@@ -205,10 +205,12 @@ void Connections::work(const Handler& handler) {
     }
 }
 
-void Connections::run(const Handler& handler, const std::atomic<bool>& stop) {
+void Connections::run(const Handler& handler, const std::atomic<bool>& stop,
+                      const std::function<void()>& stopping) {
     std::vector<std::jthread> workers;
     for (int i = 0; i < limits_.workers; ++i) workers.emplace_back([&] { work(handler); });
     while (!stop) poll_once();
+    if (stopping) stopping();
     const std::lock_guard lock(mutex_);
     ends_ = true;
     waiting_.notify_all();

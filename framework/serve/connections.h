@@ -41,8 +41,10 @@ public:
     Connections& operator=(const Connections&) = delete;
 
     int port() const { return port_; }
-    /// Until `stop`; `handler` is called on several threads.
-    void run(const Handler& handler, const std::atomic<bool>& stop);
+    /// Until `stop`; `handler` is called on several threads. `stopping`, if any, is called then, before the
+    /// handlers that still work are waited for.
+    void run(const Handler& handler, const std::atomic<bool>& stop,
+             const std::function<void()>& stopping = {});
 
 private:
     using Clock = std::chrono::steady_clock;

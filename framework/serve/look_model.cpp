@@ -38,12 +38,42 @@ LookModel::LookModel(std::filesystem::path path, FindEffects find_effects, bool 
     bind();
 }
 
+LookModel::LookModel(std::filesystem::path path, FindEffects find_effects, bool read_only,
+                     LookHistory history, HungText hung)
+    : path_(std::move(path)),
+      find_effects_(std::move(find_effects)),
+      read_only_(read_only),
+      effects_(find_effects_()),
+      effects_revision_(history.effects_revision + 1),
+      texts_(std::move(history.texts)),
+      at_(history.at),
+      saved_text_(std::move(history.saved_text)),
+      revision_(history.revision + 1),
+      saved_revision_(history.saved_revision),
+      hung_(std::move(hung)) {
+    // The picture stays that of the text before.
+    if (at_ > 0 && texts_[at_] == hung_.text) {
+        --at_;
+        bind();
+        ++at_;
+        ++revision_;
+    }
+    bind();
+}
+
+LookHistory LookModel::history() const {
+    const std::lock_guard lock(mutex_);
+    return {texts_, at_, saved_text_, revision_, saved_revision_, effects_revision_};
+}
+
 void LookModel::bind() {
     faults_ = {};
     auto bound = std::make_shared<BoundText>();
     const auto node = parse_document(texts_[at_], path_.string(), faults_);
     auto look = node ? parse_look(*node, faults_) : std::nullopt;
     if (!look) return;
+    if (!hung_.reason.empty() && texts_[at_] == hung_.text) faults_.error(node->place, hung_.reason);
+    bound->text = texts_[at_];
     bound->effects = effects_;
     bound->effects_revision = effects_revision_;
     bound->look = std::move(*look);
@@ -140,6 +170,7 @@ void LookModel::reload_effects() {
     std::shared_ptr<EffectRegistry> effects = find_effects_();
     const std::lock_guard lock(mutex_);
     effects_ = std::move(effects);
+    hung_ = {};
     ++effects_revision_;
     ++revision_;
     bind();

@@ -23,11 +23,28 @@ namespace aftershade::serve {
 
 /// A text without faults, bound to its effects.
 struct BoundText {
+    std::string text;
     std::shared_ptr<EffectRegistry> effects;  ///< owns the manifests of `pipeline`
     Look look;
     Pipeline pipeline;
     std::uint64_t revision = 0;
     std::uint64_t effects_revision = 0;
+};
+
+/// What a model has, for one of another process that takes its place.
+struct LookHistory {
+    std::vector<std::string> texts;
+    std::size_t at = 0;  ///< of texts
+    std::string saved_text;
+    std::uint64_t revision = 1;
+    std::uint64_t saved_revision = 1;
+    std::uint64_t effects_revision = 1;
+};
+
+/// A text whose pictures do not come to an end, and why.
+struct HungText {
+    std::string text;
+    std::string reason;  ///< "" where there is none
 };
 
 /// [any thread]
@@ -37,6 +54,10 @@ public:
 
     /// Reads the file. Throws Error(ExitCode::usage) where it cannot be read.
     LookModel(std::filesystem::path path, FindEffects find_effects, bool read_only);
+    /// Continues. `hung` counts as faulty until effects are reloaded.
+    LookModel(std::filesystem::path path, FindEffects find_effects, bool read_only, LookHistory history,
+              HungText hung);
+    LookHistory history() const;
 
     const std::filesystem::path& path() const { return path_; }
     /// Of the last text that had no faults; nullptr before there was one.
@@ -88,6 +109,7 @@ private:
     std::uint64_t saved_revision_ = 1;
     Diagnostics faults_;
     std::shared_ptr<const BoundText> bound_;
+    HungText hung_;
 };
 
 }  // namespace aftershade::serve

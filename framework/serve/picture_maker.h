@@ -1,6 +1,7 @@
 // Pictures of a look over a capture's frames, made on one GL context: a later call draws only what changed.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -14,6 +15,7 @@
 
 #include "framework/capture/capture.h"
 #include "framework/capture/sequence.h"
+#include "framework/core/status.h"
 #include "framework/gpu/context.h"
 #include "framework/pipeline/frame_loader.h"
 #include "framework/pipeline/renderer.h"
@@ -29,6 +31,12 @@ struct PictureRequest {
     double exposure_ev = 0;
 };
 
+/// What is drawn at the moment. [any thread; `status` may be null]
+struct Drawing {
+    std::atomic<std::shared_ptr<const BoundText>> look;
+    StatusWriter* status = nullptr;
+};
+
 struct MadePicture {
     std::string png;
     std::string times;  ///< JSON, one line
@@ -37,9 +45,9 @@ struct MadePicture {
 /// [the context's thread]
 class PictureMaker {
 public:
-    /// Copies the sequence. Throws Error(ExitCode::gl) without a context.
+    /// Copies the sequence; `drawing` must outlive this. Throws Error(ExitCode::gl) without a context.
     PictureMaker(Sequence sequence, std::vector<Profile> profiles, ReadLimits limits, gpu::Backend backend,
-                 std::filesystem::path data_folder);
+                 std::filesystem::path data_folder, Drawing& drawing);
     ~PictureMaker();
 
     /// Throws Error as `run` does.
@@ -86,6 +94,7 @@ private:
     Sequence sequence_;
     CaptureReader reader_;
     ReadLimits limits_;
+    Drawing& drawing_;
     gpu::Context context_;
     std::shared_ptr<ProgramCache> programs_;
     std::map<int, Scaled> scaled_;    // by scale

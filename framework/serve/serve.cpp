@@ -5,6 +5,7 @@
 #include "framework/capture/capture.h"
 #include "framework/serve/connections.h"
 #include "framework/serve/guards.h"
+#include "framework/serve/handover.h"
 #include "framework/serve/look_model.h"
 #include "framework/serve/page_files.h"
 #include "framework/serve/page_server.h"
@@ -28,16 +29,25 @@ void serve(const ServeOptions& options, const std::atomic<bool>& stop) {
     std::vector<std::filesystem::path> folders = options.effect_folders;
     folders.push_back(options.data_folder / "effects");
     const auto find_effects = [&] { return std::make_shared<EffectRegistry>(folders); };
-    LookModel look(std::filesystem::absolute(options.look), find_effects, options.read_only);
-    Connections connections(options.port, {});
+    const bool continues = !options.handover.empty();
+    const Handover before =
+        continues ? read_handover(options.handover) : Handover{options.port, random_token(), {}, {}};
+    const std::filesystem::path path = std::filesystem::absolute(options.look);
+    const std::unique_ptr<LookModel> look =
+        continues
+            ? std::make_unique<LookModel>(path, find_effects, options.read_only, before.look, before.hung)
+            : std::make_unique<LookModel>(path, find_effects, options.read_only);
+    Connections connections(before.port, {});
+    Drawing drawing;
+    drawing.status = options.status;
     const auto make = [&] {
         return std::make_unique<PictureMaker>(options.sequence, options.profiles, options.limits,
-                                              options.backend, options.data_folder);
+                                              options.backend, options.data_folder, drawing);
     };
     RenderThread pictures(make, stop);
-    PageServer server({look, pictures, options.sequence, header, options.capture, options.effect_folders});
-    const std::string token = random_token();
-    if (options.ready)
+    PageServer server({*look, pictures, options.sequence, header, options.capture, options.effect_folders});
+    const std::string& token = before.token;
+    if (options.ready && !continues)
         options.ready("http://127.0.0.1:" + std::to_string(connections.port()) + "/#token=" + token);
     connections.run(
         [&](const Request& request) {
@@ -48,7 +58,14 @@ void serve(const ServeOptions& options, const std::atomic<bool>& stop) {
             if (request.method != "GET") return error_response(405, "this address takes GET");
             return file->second;
         },
-        stop);
+        stop,
+        [&] {
+            const std::string reason = options.hang ? options.hang() : "";
+            const std::shared_ptr<const BoundText> drawn = drawing.look;
+            if (reason.empty() || !drawn) return;
+            options.restart(
+                handover_bytes({connections.port(), token, look->history(), {drawn->text, reason}}));
+        });
 }
 
 }  // namespace aftershade::serve

@@ -9,6 +9,7 @@
 
 #include "framework/capture/profile.h"
 #include "framework/capture/sequence.h"
+#include "framework/core/status.h"
 #include "framework/file/exr_file.h"
 #include "framework/gpu/context.h"
 
@@ -26,6 +27,13 @@ struct ServeOptions {
     int port = 0;                                       ///< 0: a free one
     bool read_only = false;
     std::function<void(const std::string& address)> ready;  ///< once it answers
+
+    StatusWriter* status = nullptr;  ///< receives which pass is compiled and drawn; may be null
+    /// Called once `stop` is set: why the pass at work does not end; "" where it does, or none is at work.
+    std::function<std::string()> hang{};
+    /// Called where there is a reason: replaces this process by one with `handover`, and does not return.
+    std::function<void(const std::string& handover)> restart{};
+    std::string handover{};  ///< bytes of the server that this one replaces; "": none
 };
 
 /// Until `stop`. Throws Error: usage for the look and the port, capture for the first frame, gl for the

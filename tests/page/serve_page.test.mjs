@@ -1587,6 +1587,29 @@ async function openShader(page) {
   return area;
 }
 
+withTint(
+  "starts again where a pass does not end, with the look, its undo and the picture of the text before",
+  async (page, { shader, look }) => {
+    const before = await textOf(page),
+      lines = Array.from({ length: 12_000 }, (_, i) => `light = light * 1.01 + sin(light * ${i}.0);`);
+    writeFileSync(shader, tintShader("light * param.amount").replace("    out_color", `${lines.join("\n")}\nout_color`));
+    const isFaulty = (words) => window.aftershade.store.state.faults.some(({ message }) => message.includes(words));
+    await page.waitForFunction(isFaulty, "did not finish within 4 s");
+    assert.equal(await textOf(page), before);
+    assert.equal((await state(page)).can_undo, true);
+    assert.equal(readFileSync(look, "utf8"), LOOK, "nothing is written before it is saved");
+    writeFileSync(shader, tintShader("light * vec4(0.0, 2.0, 0.0, 1.0)"));
+    await page.waitForFunction(() => !window.aftershade.store.state.faults.length);
+    const isGreen = ([red, green]) => green > red,
+      after = await centreOnce(page, isGreen);
+    assert.ok(isGreen(after), `${after}`);
+    await page.keyboard.press("Control+z");
+    await page.waitForFunction((text) => window.aftershade.store.state.text !== text, before);
+    page.faults = page.faults.filter((words) => !words.includes("net::ERR_")); // requests that the end cut off
+  },
+  { words: ["--pass-timeout", "4"] },
+);
+
 withTint("writes a shader by Ctrl+S and shows the picture that `run` then draws", async (page, { shader, files, look }) => {
   const area = await openShader(page),
     before = await centre(page);

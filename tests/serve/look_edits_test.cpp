@@ -13,6 +13,7 @@
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
 #include "framework/effect/registry.h"
+#include "framework/serve/handover.h"
 #include "framework/serve/look_model.h"
 #include "tests/temporary_folder.h"
 
@@ -213,6 +214,47 @@ TEST(LookModel, NeverWritesWhereItOnlyReadsNorOverAnotherProgramsChange) {
     write_text_file(path, "{}");
     EXPECT_THROW(writer.save(), Refusal);
     EXPECT_EQ(read_text_file(path, ExitCode::usage), "{}");
+}
+
+TEST(LookModel, ContinuesInAnotherProcessWithItsUndoAndWithoutTheTextThatHangs) {
+    const TemporaryFolder folder;
+    const std::filesystem::path path = folder / "look.json";
+    write_text_file(path, kLook);
+    LookModel first(path, shipped_effects, false);
+    first.edit(1, Json::parse(R"([{"op": "set", "step": 0, "param": "f_number", "value": 4}])"));
+    const std::string bytes = handover_bytes({4711, "token", first.history(), {first.text(), "it hangs"}});
+    const Handover handover = read_handover(bytes);
+    EXPECT_EQ(handover.port, 4711);
+    EXPECT_EQ(handover.token, "token");
+    LookModel second(path, shipped_effects, false, handover.look, handover.hung);
+    EXPECT_EQ(second.text(), first.text());
+    EXPECT_GT(second.revision(), first.revision());
+    EXPECT_GT(second.effects_revision(), first.effects_revision());
+    const Json state = second.state({});
+    ASSERT_EQ(state["faults"].size(), 1u);
+    EXPECT_EQ(state["faults"][0]["message"], "it hangs");
+    ASSERT_TRUE(second.bound());
+    EXPECT_EQ(second.bound()->text, kLook) << "the picture stays that of the text before";
+    second.undo();
+    EXPECT_TRUE(second.state({})["faults"].empty());
+    EXPECT_EQ(second.text(), kLook);
+    second.redo();
+    EXPECT_EQ(second.state({})["faults"].size(), 1u);
+    second.reload_effects();
+    EXPECT_TRUE(second.state({})["faults"].empty()) << "another shader may come to its end";
+}
+
+TEST(LookModel, IsHandedOverByTheByte) {
+    const LookHistory look{{std::string("\xff\0{", 3), "{}"}, 1, "{ ", 7, 5, 3};
+    const Handover read = read_handover(handover_bytes({1, "t", look, {"", ""}}));
+    EXPECT_EQ(read.look.texts, look.texts);
+    EXPECT_EQ(read.look.at, 1u);
+    EXPECT_EQ(read.look.saved_text, "{ ");
+    EXPECT_EQ(read.look.revision, 7u);
+    EXPECT_EQ(read.look.saved_revision, 5u);
+    EXPECT_EQ(read.look.effects_revision, 3u);
+    EXPECT_THROW(read_handover("no state"), Error);
+    EXPECT_THROW(read_handover(handover_bytes({1, "t", {}, {"", ""}})), Error) << "a model without a text";
 }
 
 TEST(LookModel, KeepsTheLastLookWithoutFaultsAndSaysWhereTheFaultIs) {
