@@ -1,11 +1,34 @@
 // `aftershade serve` for the page's measurements: dof and view_transform over CAPTURE, in a folder of its own.
 import { spawn } from "node:child_process";
-import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 
-/** Starts it on AFTERSHADE_EXECUTABLE; gives the page's address with its token, and what ends it. */
-export async function serve(capture) {
+/** The shader of the effect `tint`, by what it makes of `light`. */
+export const tintShader = (expression) => `#version 450 core
+#include <pass>
+
+void main() {
+    vec4 light = texelFetch(color, ivec2(gl_FragCoord.xy), 0);
+    out_color = ${expression};
+}
+`;
+
+const TINT = {
+  aftershade: 1,
+  id: "tint",
+  version: "1.0.0",
+  summary: "Multiplies the colour.",
+  inputs: { color: { role: "color", doc: "Any." } },
+  outputs: { color: { role: "color", doc: "The same, tinted." } },
+  passes: [{ name: "tint", shader: "tint.frag", reads: ["color"], writes: ["color"] }],
+};
+
+/**
+ * Starts it on AFTERSHADE_EXECUTABLE; gives the page's address with its token, the process that draws, and what ends it.
+ * `ownEffect`: with the step `tint` between, whose shader may be edited.
+ */
+export async function serve(capture, { ownEffect = false } = {}) {
   const folder = mkdtempSync(join(tmpdir(), "aftershade-served-")),
     look = join(folder, "look.json");
   writeFileSync(
@@ -14,11 +37,20 @@ export async function serve(capture) {
       aftershade: 1,
       steps: [
         { effect: "dof", params: { focus_distance: "6.4 m", f_number: 0.5 } },
+        ...(ownEffect ? [{ effect: "tint" }] : []),
         { effect: "view_transform", params: { exposure: 0.5 } },
       ],
     }),
   );
-  const server = spawn(process.env.AFTERSHADE_EXECUTABLE, ["serve", look, capture, "--port", "0"], {
+  const words = ["serve", look, capture, "--port", "0"];
+  if (ownEffect) {
+    const effect = join(folder, "effects/tint");
+    mkdirSync(effect, { recursive: true });
+    writeFileSync(join(effect, "effect.json"), JSON.stringify(TINT));
+    writeFileSync(join(effect, "tint.frag"), tintShader("light"));
+    words.push("--effect-path", join(folder, "effects"));
+  }
+  const server = spawn(process.env.AFTERSHADE_EXECUTABLE, words, {
     env: { AFTERSHADE_BACKEND: "osmesa", ...process.env },
     stdio: ["ignore", "pipe", "inherit"],
   });
@@ -31,7 +63,10 @@ export async function serve(capture) {
   });
   return {
     address,
-    pid: server.pid,
+    // Effects that are not shipped are drawn in a process of their own.
+    pid: ownEffect
+      ? Number(readFileSync(`/proc/${server.pid}/task/${server.pid}/children`, "utf8").trim().split(" ")[0])
+      : server.pid,
     end() {
       server.kill("SIGINT");
       rmSync(folder, { recursive: true });

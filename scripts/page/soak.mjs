@@ -4,7 +4,7 @@ import { readFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 
 import { random, randomEdit } from "../../tests/page/random_edits.mjs";
-import { serve } from "./served.mjs";
+import { serve, tintShader } from "./served.mjs";
 
 const ACTIONS = 40, // of a round
   WARM_UP = 0.25, // of the time
@@ -12,7 +12,7 @@ const ACTIONS = 40, // of a round
   LEAST_ROUNDS = 12,
   minutes = Number(process.argv[2]),
   capture = join(resolve(import.meta.dirname, "../.."), "scenes/starter/capture.json"),
-  { address, pid, end } = await serve(capture),
+  { address, pid, end } = await serve(capture, { ownEffect: true }),
   headers = { "X-Aftershade-Token": address.hash.slice("#token=".length) },
   next = random(28),
   pick = (list) => list[Math.floor(next() * list.length)];
@@ -34,8 +34,18 @@ const first = await json("/api/state"),
       const { stdout } = spawnSync(process.env.AFTERSHADE_EXECUTABLE, ["describe", id, "--json"], { encoding: "utf8" });
       return [id, JSON.parse(stdout)];
     }),
-  );
+  ).set("tint", { params: {} });
 const counts = { actions: 0, refused: 0 };
+
+let shader = tintShader("light");
+const writeShader = (text) => {
+  const before = shader;
+  shader = text;
+  return call("/api/shader", { effect: "tint", file: "tint.frag", before, text });
+};
+/** One in five does not compile. */
+const randomShader = () =>
+  tintShader(next() < 0.2 ? "light * ;" : `light * vec4(${[1, 2, 3].map(() => next().toFixed(6)).join(", ")}, 1.0)`);
 
 async function act() {
   const state = await json("/api/state"),
@@ -45,6 +55,7 @@ async function act() {
     edit,
     edit,
     edit,
+    () => writeShader(randomShader()),
     () => call("/api/undo", {}),
     () => call("/api/redo", {}),
     () => picture("final", frame, pick([1, 2, 4])),
@@ -58,8 +69,9 @@ async function act() {
   if (!ok) ++counts.refused; // nothing to undo, a look that has faults
 }
 
-/** The first look again and its pictures: what is held then must not grow. */
+/** The first look and shader again and its pictures: what is held then must not grow. */
 async function settled() {
+  await writeShader(tintShader("light"));
   const { revision } = await json("/api/state");
   await call("/api/edit", { revision, edits: [{ op: "text", value: first.text }] });
   for (const frame of frames) for (const scale of [4, 2, 1]) await picture("final", frame, scale);
