@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <charconv>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <string_view>
@@ -21,7 +22,8 @@ namespace {
 constexpr const char* kVariable = "AFTERSHADE_STATE_FD";
 
 [[noreturn]] void fail() {
-    throw Error(ExitCode::effect, std::string("the server cannot start again: ") + std::strerror(errno));
+    std::fprintf(stderr, "aftershade: error: the server cannot start again: %s\n", std::strerror(errno));
+    _exit(int(ExitCode::effect));
 }
 
 }  // namespace

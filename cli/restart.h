@@ -6,8 +6,8 @@
 
 namespace aftershade::cli {
 
-/// Replaces this process by the same command, which finds `state` by state_before_restart(). Throws
-/// Error(ExitCode::effect) where the system refuses.
+/// Replaces this process by the same command, which finds `state` by state_before_restart(). Where the
+/// system refuses, this process ends at once with code 5: nothing can wait for the thread that hangs.
 [[noreturn]] void restart(const std::string& state);
 
 /// "" where this process was not started by restart(). Call it once, before threads begin.

@@ -57,9 +57,8 @@ std::string reason_of(const Watchdog& watchdog) {
     if (!watchdog.barked()) return "";
     WorkerResult at_bark;
     at_bark.status = watchdog.status_at_bark();
-    const std::string reason = describe_timeout(at_bark, watchdog.timeout());
-    std::cerr << "aftershade: warning: " << reason << "; the server starts again, the look as it was\n";
-    return reason + "; change the look or the shader, or allow more time with --pass-timeout";
+    return describe_timeout(at_bark, watchdog.timeout()) +
+           "; change the look or the shader, or allow more time with --pass-timeout";
 }
 
 ExitCode serve(const ServeArguments& arguments) {
@@ -88,7 +87,10 @@ ExitCode serve(const ServeArguments& arguments) {
     options.read_only = arguments.read_only;
     options.status = &status;
     options.hang = [&] { return reason_of(watchdog); };
-    options.restart = [](const std::string& state) { restart(state); };
+    options.restart = [&](const std::string& state) {
+        std::cerr << "aftershade: warning: " << reason_of(watchdog) << "; the server starts again\n";
+        restart(state);
+    };
     options.handover = handover;
     options.ready = [&](const std::string& address) {
         std::cout << address << std::endl;

@@ -35,12 +35,6 @@ dvec2 barycentric_on_plane(const Ray& ray, const std::array<dvec3, 3>& corners) 
     return std::isfinite(found.x) && std::isfinite(found.y) ? found : dvec2(1.0 / 3);
 }
 
-dvec2 uv_of(const Mesh& mesh, std::uint32_t triangle, const dvec2& barycentric) {
-    const auto& corner = mesh.triangles[triangle];
-    return (1 - barycentric.x - barycentric.y) * mesh.vertices[corner[0]].uv +
-           barycentric.x * mesh.vertices[corner[1]].uv + barycentric.y * mesh.vertices[corner[2]].uv;
-}
-
 /// What lies outside comes to the edge.
 dvec2 inside_triangle(const dvec2& barycentric) {
     const dvec3 weights =
@@ -147,10 +141,7 @@ Ray ShadingGrids::ray_through(const ShadingPlace& place, std::uint32_t id, const
     const std::uint32_t cell = id / 2 - grid.start, columns = std::uint32_t(grid.size.x);
     const dvec2 px =
         glm::inverse(grid.cells_from_px) * (grid.low + dvec2(cell % columns, cell / columns) + part);
-    const Ray ray = renderer_.camera_ray(world_.state().camera, px, dvec2(0));
-    return {world_.to_object(place.object, ray.origin),
-            world_.to_object(place.object, ray.origin + ray.direction) -
-                world_.to_object(place.object, ray.origin)};
+    return world_.to_object(place.object, renderer_.camera_ray(world_.state().camera, px, dvec2(0)));
 }
 
 ShadingPlace ShadingGrids::place_of(std::uint32_t id) const {
@@ -171,7 +162,7 @@ dvec3 ShadingGrids::mean_albedo(const ShadingPlace& place, std::uint32_t id) con
     const Material& material = renderer_.scene().material_of(place.object);
     const std::array<dvec3, 3> corners = corners_of(mesh, place.triangle);
     const auto albedo = [&](const dvec2& barycentric) {
-        return albedo_at(material, uv_of(mesh, place.triangle, barycentric));
+        return albedo_at(material, mesh_point(mesh, {0, place.triangle, barycentric}).uv);
     };
     dvec3 sum(0);
     int count = 0;

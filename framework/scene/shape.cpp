@@ -179,6 +179,8 @@ ShapePoint cylinder_point(const dvec3& near, const dvec3& half_size) {
     return point;
 }
 
+}  // namespace
+
 ShapePoint mesh_point(const Mesh& mesh, const ShapeHit& hit) {
     const auto& corner = mesh.triangles[hit.triangle];
     const Vertex &a = mesh.vertices[corner[0]], &b = mesh.vertices[corner[1]], &c = mesh.vertices[corner[2]];
@@ -187,8 +189,6 @@ ShapePoint mesh_point(const Mesh& mesh, const ShapeHit& hit) {
             wa * a.normal + wb * b.normal + wc * c.normal,
             glm::cross(b.position - a.position, c.position - a.position), wa * a.uv + wb * b.uv + wc * c.uv};
 }
-
-}  // namespace
 
 MeshTree::MeshTree(const Mesh& of) : mesh(&of) {
     std::vector<Bounds> bounds(of.triangles.size());

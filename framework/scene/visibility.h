@@ -84,7 +84,8 @@ using IdTracer = std::function<std::vector<std::uint32_t>(
     const SceneRenderer& renderer, const ShadingGrids& grids, int frame, const VisibilitySettings& settings)>;
 
 /// RGBA: the mean over the samples of each pixel, which is the light of the shading sample that each met, or
-/// the background. `set` has the ids of `samples`, which has as many for each pixel.
+/// the background. `set` has the ids of `samples`; each pixel has
+/// samples.samples of them.
 Image resolve_light(const SceneRenderer& renderer, const ShadingGrids& grids, const SampleIds& samples,
                     const IdSet& set);
 /// That, or what does the same elsewhere.

@@ -64,6 +64,10 @@ dvec3 World::to_object(int object, const dvec3& position) const {
     return seen_[std::size_t(seen_of_object_[std::size_t(object)])].object_from_world * dvec4(position, 1);
 }
 
+Ray World::to_object(int object, const Ray& ray) const {
+    return seen_[std::size_t(seen_of_object_[std::size_t(object)])].local(ray);
+}
+
 /// Calls visit(seen) for objects whose boxes the ray meets before `high`, which it may lower; ends where it
 /// returns true.
 template <class Visit>

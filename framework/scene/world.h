@@ -61,6 +61,7 @@ public:
     const SceneState& state() const { return state_; }
     const Scene& scene() const { return geometry_->scene(); }
     glm::dvec3 to_object(int object, const glm::dvec3& position) const;
+    Ray to_object(int object, const Ray& ray) const;
 
     /// The nearest surface with low < t < high; of one object alone where `only` is its index.
     std::optional<Surface> trace(const Ray& ray, double low, double high, int only = -1) const;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -61,7 +61,6 @@ struct Cache {
     std::string_view shader;
     CacheSettings settings;
     std::vector<Table> tables;
-    bool is_emptied_for_each_band = false;
 };
 
 /// Passes that empty the tables, and one by which a band's samples ask for their ids.
@@ -118,10 +117,10 @@ CacheCounts count_in_bands(Passes& passes, const scene::SampleIds& samples, Cach
     cache.settings.width_px = std::uint32_t(width);
     cache.settings.sample_count = std::uint32_t(count);
     CacheCounts counts;
-    const bool is_emptied_for_each_band = cache.is_emptied_for_each_band;
+    const bool has_tables_of_bands = cache.settings.tile_px > 0;
     CacheGraph graph(passes, std::move(cache), width * std::size_t(bands.rows));
     bands.for_each([&](int first, int rows) {
-        if (first == 0 || is_emptied_for_each_band) graph.empty_tables();
+        if (first == 0 || has_tables_of_bands) graph.empty_tables();
         const CacheCounts own = graph.request(
             samples.ids.subspan(std::size_t(first) * width * count, std::size_t(rows) * width * count));
         counts.requests += own.requests;
@@ -141,7 +140,7 @@ CacheCounts count_shadings(Passes& passes, const scene::SampleIds& samples, std:
                            int tile_px, std::size_t max_buffer_bytes) {
     const int step = std::max(tile_px, 1);
     const auto width = std::size_t(samples.width_px), side = std::size_t(step);
-    Cache cache{"requests", visibility_cache_shader(), {}, {}, tile_px > 0};
+    Cache cache{"requests", visibility_cache_shader(), {}, {}};
     cache.settings.tile_px = std::uint32_t(tile_px);
     std::uint64_t tables = 1, ids = samples.ids.size();
     std::size_t table_of_row = 0;
@@ -161,7 +160,7 @@ CacheCounts count_shadings(Passes& passes, const scene::SampleIds& samples, std:
 
 CacheCounts count_shadings_in_buckets(Passes& passes, const scene::SampleIds& samples, int entries,
                                       std::size_t max_buffer_bytes) {
-    Cache cache{"bucket_requests", visibility_bucket_shader(), {}, {}, false};
+    Cache cache{"bucket_requests", visibility_bucket_shader(), {}, {}};
     const std::uint32_t buckets =
         std::bit_ceil(std::uint32_t(entries + kPlacesOfBucket - 1) / kPlacesOfBucket);
     cache.settings.slots = buckets;

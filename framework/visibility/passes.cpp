@@ -8,7 +8,7 @@
 namespace aftershade::visibility {
 
 graph::Pass Passes::pass(const std::string& name, std::string_view shader, int groups) {
-    std::shared_ptr<const gpu::Program>& program = programs_[name];
+    std::shared_ptr<const gpu::Program>& program = programs_[shader];
     if (!program)
         program = std::make_shared<gpu::Program>(gpu::Program::compute(context_, std::string(shader), name));
     graph::Pass pass;

@@ -2,6 +2,7 @@
 // into and out of buffers.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <map>
@@ -26,7 +27,7 @@ public:
     explicit Passes(gpu::Context& context) : context_(context) {}
 
     gpu::Context& context() const { return context_; }
-    /// A pass of this shader without buffers yet. Programs are compiled once.
+    /// A pass of this shader, whose text must outlive this, without buffers yet. Programs are compiled once.
     graph::Pass pass(const std::string& name, std::string_view shader, int groups);
     /// Runs these passes and adds their time to milliseconds().
     void run(graph::Executor& executor, graph::PassRange range = {});
@@ -35,7 +36,7 @@ public:
 
 private:
     gpu::Context& context_;
-    std::map<std::string, std::shared_ptr<const gpu::Program>> programs_;
+    std::map<std::string_view, std::shared_ptr<const gpu::Program>> programs_;  // by their texts
     std::map<std::string, double> milliseconds_;
 };
 

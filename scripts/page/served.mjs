@@ -4,25 +4,7 @@ import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "nod
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 
-/** The shader of the effect `tint`, by what it makes of `light`. */
-export const tintShader = (expression) => `#version 450 core
-#include <pass>
-
-void main() {
-    vec4 light = texelFetch(color, ivec2(gl_FragCoord.xy), 0);
-    out_color = ${expression};
-}
-`;
-
-const TINT = {
-  aftershade: 1,
-  id: "tint",
-  version: "1.0.0",
-  summary: "Multiplies the colour.",
-  inputs: { color: { role: "color", doc: "Any." } },
-  outputs: { color: { role: "color", doc: "The same, tinted." } },
-  passes: [{ name: "tint", shader: "tint.frag", reads: ["color"], writes: ["color"] }],
-};
+import { TINT, tintShader } from "../../tests/page/tint.mjs";
 
 /**
  * Starts it on AFTERSHADE_EXECUTABLE; gives the page's address with its token, the process that draws, and what ends it.

@@ -4,7 +4,8 @@ import { readFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 
 import { random, randomEdit } from "../../tests/page/random_edits.mjs";
-import { serve, tintShader } from "./served.mjs";
+import { tintShader } from "../../tests/page/tint.mjs";
+import { serve } from "./served.mjs";
 
 const ACTIONS = 40, // of a round
   WARM_UP = 0.25, // of the time
@@ -38,11 +39,12 @@ const first = await json("/api/state"),
 const counts = { actions: 0, refused: 0 };
 
 let shader = tintShader("light");
-const writeShader = (text) => {
-  const before = shader;
+async function writeShader(text) {
+  const response = await call("/api/shader", { effect: "tint", file: "tint.frag", before: shader, text });
+  if (!response.ok) throw new Error(`a shader is refused: ${await response.text()}`);
   shader = text;
-  return call("/api/shader", { effect: "tint", file: "tint.frag", before, text });
-};
+  return response;
+}
 /** One in five does not compile. */
 const randomShader = () =>
   tintShader(next() < 0.2 ? "light * ;" : `light * vec4(${[1, 2, 3].map(() => next().toFixed(6)).join(", ")}, 1.0)`);

@@ -130,6 +130,8 @@ TEST_F(Render, TracesVisibilityWithGlAlikeOnOneThreadAndOnTwo) {
         EXPECT_EQ(counted.at("misses"), report.at("visibility").at(0).at("misses"));
         EXPECT_EQ(counted.at("hits"), report.at("visibility").at(0).at("hits"));
         EXPECT_EQ(counted.at("overflows"), 0);
+        for (const char* pass : {"trace", "requests", "shade", "resolve"})
+            EXPECT_GT(report.at("gl").at("passes_ms").at(std::string("visibility.") + pass), 0) << pass;
         reds.push_back(channel(std::string(threads) + "/memoised_0004.exr", "R"));
     }
     EXPECT_EQ(reds[0], reds[1]);

@@ -9,6 +9,7 @@ import { after, before, test } from "node:test";
 import { axeSource, openBrowser } from "./browser.mjs";
 import { random, randomEdit } from "./random_edits.mjs";
 import { program } from "./suite.mjs";
+import { TINT, tintShader } from "./tint.mjs";
 
 const root = resolve(import.meta.dirname, "../.."),
   capture = join(root, "scenes/starter/capture.json"), // 240 x 135 px
@@ -1524,24 +1525,6 @@ test("explains an address without its token", noRow, async () => {
 
 // ---- shaders ----
 
-const TINT = {
-  aftershade: 1,
-  id: "tint",
-  version: "1.0.0",
-  summary: "Multiplies the colour.",
-  inputs: { color: { role: "color", doc: "Any." } },
-  outputs: { color: { role: "color", doc: "The same, tinted." } },
-  params: { amount: { type: "float", default: 1, min: 0, max: 4, ui: [0, 2], doc: "Factor." } },
-  passes: [{ name: "tint", shader: "tint.frag", reads: ["color"], writes: ["color"] }],
-};
-const tintShader = (expression) => `#version 450 core
-#include <pass>
-
-void main() {
-    vec4 light = texelFetch(color, ivec2(gl_FragCoord.xy), 0);
-    out_color = ${expression};
-}
-`;
 /** A page on a look with an effect of the user's own; `files` is its folder. */
 function withTint(name, work, options = {}) {
   const effects = mkdtempSync(join(folder, "effects-")),

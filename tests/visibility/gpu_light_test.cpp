@@ -114,7 +114,7 @@ TEST_P(LightOn, IsTheMeanOverTheSamplesOfAPixel) {
 }
 
 TEST_P(LightOn, IsTheSameInSlicesAndBands) {
-    // Of 14,400 pixels and some 13,000 shading samples: 4 KiB hold 256 of these and one row.
+    // Of 14,400 pixels and some 13,000 shading samples: 16 KiB hold 1024 of these and six rows.
     const Pictures whole = pictures(context(), scene::shipped_scene("toys"), 4, 4);
     const Pictures in_parts = pictures(context(), scene::shipped_scene("toys"), 4, 4, 16 * 1024);
     for (std::size_t i = 0; i < whole.on_gpu.floats().size(); ++i)
