@@ -131,7 +131,7 @@ public:
         display_ = egl_.get_platform_display(candidate.platform, candidate.native, nullptr);
         if (display_ == EGL_NO_DISPLAY) fail("eglGetPlatformDisplay");
         initialize(candidate.force_software);
-        create_context(EGL_NO_CONTEXT);
+        open_context(EGL_NO_CONTEXT);
     }
 
     /// The display is the caller's, and initialised.
@@ -142,7 +142,7 @@ public:
             fail("eglQueryContext of the shared context");
         if (client != EGL_OPENGL_API)
             throw Error(ExitCode::gl, "the shared context is not of desktop OpenGL");
-        create_context(shared.context);
+        open_context(shared.context);
     }
 
     // No eglTerminate: a display belongs to the process, and ending it would end the other contexts on it.
@@ -163,11 +163,18 @@ public:
     Proc proc(const char* name) const override { return reinterpret_cast<Proc>(egl_.get_proc_address(name)); }
 
 private:
-    void create_context(EGLContext shared) {
+    void open_context(EGLContext shared) {
         if (!has_extension(egl_.query_string(display_, EGL_EXTENSIONS), "EGL_KHR_surfaceless_context")) {
             throw Error(ExitCode::gl, fmt::format("{}: no EGL_KHR_surfaceless_context", name_));
         }
         if (!egl_.bind_api(EGL_OPENGL_API)) fail("eglBindAPI(EGL_OPENGL_API)");
+        // What an untrusted shader reads outside its buffers is then defined, where the driver offers that.
+        context_ = create_context(shared, true);
+        if (context_ == EGL_NO_CONTEXT) context_ = create_context(shared, false);
+        if (context_ == EGL_NO_CONTEXT) fail("eglCreateContext(GL 4.5 core)");
+    }
+
+    EGLContext create_context(EGLContext shared, bool robust) {
         const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
                                      4,
                                      EGL_CONTEXT_MINOR_VERSION,
@@ -176,9 +183,10 @@ private:
                                      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                                      EGL_CONTEXT_OPENGL_DEBUG,
                                      EGL_TRUE,
+                                     robust ? EGL_CONTEXT_OPENGL_ROBUST_ACCESS : EGL_NONE,
+                                     EGL_TRUE,
                                      EGL_NONE};
-        context_ = egl_.create_context(display_, config(), shared, attributes);
-        if (context_ == EGL_NO_CONTEXT) fail("eglCreateContext(GL 4.5 core)");
+        return egl_.create_context(display_, config(), shared, attributes);
     }
 
     void initialize(bool force_software) {

@@ -77,7 +77,9 @@ std::string line_of(const json& document) {
 Journal::Journal(RunState state) : state_(std::move(state)) {
     std::error_code failure;
     if (!fs::exists(state_.journal(), failure)) return;
-    std::ifstream in(state_.journal(), std::ios::binary);
+    std::ifstream in;
+    // A pipe would wait for a writer, a device may have no end.
+    if (fs::is_regular_file(state_.journal(), failure)) in.open(state_.journal(), std::ios::binary);
     for (std::string line; std::getline(in, line);) read_line(line);
     if (!in.is_open() || in.bad())
         throw Error(ExitCode::output, state_.journal().string() +

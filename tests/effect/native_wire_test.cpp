@@ -64,6 +64,26 @@ TEST(NativeWire, RefusesWhatIsCutShortOrHoldsWrongNumbers) {
     }
 }
 
+TEST(NativeWire, RefusesMoreNumbersThanTheMessageHasRoomFor) {
+    WireWriter out;
+    out.number(1);  // uniforms
+    out.text("gain");
+    out.number(0);  // floats
+    out.number(4096);
+    // Room for 4096 things of a byte, which are 512 floats.
+    const std::string bytes = out.bytes() + std::string(4096, '\0');
+    WireReader in(bytes);
+    in.number();
+    in.text();
+    in.number();
+    EXPECT_EQ(in.count(), 4096u);
+    WireReader again(bytes);
+    again.number();
+    again.text();
+    again.number();
+    EXPECT_THROW(again.count(sizeof(double)), Error);
+}
+
 TEST(NativeWire, BringsAFrameWithItsParametersAndCamera) {
     std::vector<ParamSpec> specs(3);
     specs[0].name = "radius";

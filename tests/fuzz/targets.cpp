@@ -1,13 +1,17 @@
 #include "tests/fuzz/targets.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
+
+#include <nlohmann/json.hpp>
 
 #include "framework/batch/golden_case.h"
 #include "framework/batch/golden_suite.h"
@@ -15,10 +19,13 @@
 #include "framework/capture/frame_range.h"
 #include "framework/capture/profile.h"
 #include "framework/capture/sequence.h"
+#include "framework/core/atomic_file.h"
 #include "framework/core/document.h"
 #include "framework/core/error.h"
 #include "framework/core/memory_limit.h"
+#include "framework/core/text.h"
 #include "framework/effect/glsl_tokens.h"
+#include "framework/effect/native/native_wire.h"
 #include "framework/effect/registry.h"
 #include "framework/effect/usage_check.h"
 #include "framework/file/exr_file.h"
@@ -26,11 +33,15 @@
 #include "framework/file/png_file.h"
 #include "framework/image/lut.h"
 #include "framework/image/role.h"
+#include "framework/pipeline/history_file.h"
+#include "framework/pipeline/journal.h"
 #include "framework/pipeline/look.h"
 #include "framework/pipeline/pipeline.h"
 #include "framework/scattering/scattering_profile.h"
 #include "framework/scene/mesh.h"
 #include "framework/scene/scene.h"
+#include "framework/serve/http_message.h"
+#include "framework/serve/look_edits.h"
 #include "tests/temporary_folder.h"
 
 namespace aftershade::fuzz {
@@ -277,6 +288,110 @@ void frame_range(std::string_view bytes) {
             broken("a pattern finds the number that it wrote");
 }
 
+// ---- what runs leave for each other, and what other processes send ----
+
+/// The first line describes resources, the rest are their bytes; the checksum is right.
+void history(std::string_view bytes) {
+    const std::size_t line = std::min(bytes.find('\n'), bytes.size());
+    const std::string_view head = bytes.substr(0, line);
+    const std::string_view resources = bytes.substr(std::min(line + 1, bytes.size()));
+    const std::uint64_t sum = fnv1a(std::as_bytes(std::span(resources)), fnv1a(head));
+    std::string file = "aftershade-history 1\n";
+    file.append(head).append("\n").append(resources).append(reinterpret_cast<const char*>(&sum), sizeof sum);
+    const fs::path path = file_of("in.history", file);
+    refused_or_read([&] { read_history(path); });
+}
+
+void journal(std::string_view bytes) {
+    const RunState state = run_state((work_folder() / "run/out_####.exr").string());
+    fs::create_directories(state.state_folder());
+    file_of("run/.aftershade/journal.jsonl", bytes);
+    const std::vector<fs::path> expected{work_folder() / "run/out_0001.exr"};
+    const Journal read(state);
+    if (const JournalFrame* frame = read.find(1)) {
+        read.setup(frame->setup);
+        // No frame was rendered here.
+        if (read.fault_of_files(*frame, expected).empty()) broken("a frame without its files is not current");
+    }
+}
+
+/// What the process of a plug-in answers may be the plug-in's own.
+void plugin(std::string_view bytes) {
+    const auto refused = [](const auto& take) {
+        try {
+            take();
+        } catch (const Error& error) {
+            if (error.exit_code() != ExitCode::effect) broken("a plug-in is at fault, and nothing else");
+        }
+    };
+    refused([&] {
+        WireReader in(bytes);
+        take_declaration(in);
+        in.expect_end();
+    });
+    refused([&] {
+        WireReader in(bytes);
+        const NativeResult result = take_result(in);
+        in.expect_end();
+        WireWriter out;
+        put(out, result);
+        WireReader again(out.bytes());
+        take_result(again);
+        again.expect_end();
+    });
+    refused([&] {
+        WireReader in(bytes);
+        WireFrame frame;
+        take_frame(in, frame);
+        in.expect_end();
+    });
+}
+
+void http(std::string_view bytes) {
+    const serve::Framing framing = serve::framing_of(bytes);
+    if (framing.refusal && framing.refusal->status < 400) broken("a refusal is one");
+    if (framing.is_whole && bytes.size() > serve::kMaxHeadBytes + 4 + serve::kMaxBodyBytes)
+        broken("a request that is taken has the length that it may have");
+    // A connection gets its bytes one by one: what is refused early stays refused.
+    for (const std::size_t part : {bytes.size() / 3, bytes.size() / 2})
+        if (serve::framing_of(bytes.substr(0, part)).refusal && !framing.refusal)
+            broken("more bytes do not make a refused request sound");
+    if (!framing.is_whole) return;
+    const auto request = serve::parse_request(bytes);
+    if (request && request->body.size() > serve::kMaxBodyBytes) broken("a body is no larger than it may be");
+    if (request) serve::response_bytes(serve::error_response(404, request->path));
+}
+
+/// A list of edits, one after the other, of one look.
+void edit(std::string_view bytes) {
+    using Json = nlohmann::ordered_json;
+    constexpr int kDeepest = 80;  // the page server refuses what is nested deeper
+    int depth = 0;
+    const Json edits = Json::parse(
+        bytes,
+        [&](int level, Json::parse_event_t, Json&) {
+            depth = std::max(depth, level);
+            return level <= kDeepest;
+        },
+        false);
+    if (depth > kDeepest || !edits.is_array()) return;
+    const auto is_document = [](const std::string& text) {
+        Diagnostics faults;
+        return text.size() <= kMaxDocumentBytes && parse_document(text, "look.json", faults);
+    };
+    static const std::string look = read_text_file(kSources / "tests/schema/look.json", ExitCode::usage);
+    std::string text = look;
+    for (const Json& each : edits)
+        refused_or_read([&] {
+            const bool was_document = is_document(text);
+            text = serve::edited(text, each);
+            // The whole text may be anything, and values may nest too deep together.
+            const bool may_be_faulty = each.value("op", "") == "text" || depth > 50;
+            if (was_document && !may_be_faulty && text.size() <= kMaxDocumentBytes && !is_document(text))
+                broken("what an edit makes of a look is a document");
+        });
+}
+
 constexpr Target kTargets[] = {
     {"exr", "in.exr", exr},
     {"capture_file", "in.exr", capture_file},
@@ -296,6 +411,11 @@ constexpr Target kTargets[] = {
     {"scattering", "scattering.json", scattering},
     {"glsl", "in.frag", glsl},
     {"frame_range", "in.txt", frame_range},
+    {"history", "in.history", history},
+    {"journal", "journal.jsonl", journal},
+    {"plugin", "in.bin", plugin},
+    {"http", "in.http", http},
+    {"edit", "edits.json", edit},
 };
 
 }  // namespace

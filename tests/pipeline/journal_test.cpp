@@ -1,5 +1,6 @@
 // What runs keep in .aftershade: the journal and the locks.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -96,6 +97,16 @@ TEST_F(JournalTest, PassesOverLinesThatAreNoneOfIts) {
         ASSERT_NE(journal().find(1), nullptr) << line;
         EXPECT_EQ(journal().find(1)->fingerprint.hash, "one") << line;
     }
+}
+
+TEST_F(JournalTest, RefusesAPipeAndADeviceInItsPlace) {
+    const fs::path place = folder_ / ".aftershade/journal.jsonl";
+    fs::create_directories(place.parent_path());
+    ASSERT_EQ(mkfifo(place.c_str(), 0600), 0);
+    EXPECT_THROW(journal(), Error);
+    fs::remove(place);
+    fs::create_symlink("/dev/zero", place);
+    EXPECT_THROW(journal(), Error);
 }
 
 TEST_F(JournalTest, SaysWhyFilesAreNotWhatItsLineSays) {

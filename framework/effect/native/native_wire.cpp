@@ -60,7 +60,7 @@ ParamValue take_value(WireReader& in) {
         case 2: return in.real();
         case 3: return in.text();
         case 4: {
-            std::vector<double> vector(in.count());
+            std::vector<double> vector(in.count(sizeof(double)));
             for (double& each : vector) each = in.real();
             return vector;
         }
@@ -92,7 +92,7 @@ void put_scalars(WireWriter& out, const std::vector<Scalar>& values) {
 
 template <class Scalar>
 std::vector<Scalar> take_scalars(WireReader& in) {
-    std::vector<Scalar> values(in.count());
+    std::vector<Scalar> values(in.count(sizeof(std::int64_t)));
     for (Scalar& value : values) {
         if constexpr (std::is_floating_point_v<Scalar>) value = Scalar(in.real());
         else value = Scalar(in.number());
@@ -158,9 +158,9 @@ std::string WireReader::text() {
     return std::string(take(count()));
 }
 
-std::size_t WireReader::count() {
+std::size_t WireReader::count(std::size_t bytes_each) {
     const std::int64_t count = number();
-    if (count < 0 || std::uint64_t(count) > rest_.size()) broken();
+    if (count < 0 || std::uint64_t(count) > rest_.size() / bytes_each) broken();
     return std::size_t(count);
 }
 

@@ -40,8 +40,9 @@ public:
     double real();
     bool flag() { return number() != 0; }
     std::string text();
-    /// Of things that follow, each of at least a byte.
-    std::size_t count();
+    /// The number of things that follow, each of at least `bytes_each`. Refuses more than the rest of the
+    /// message has room for, so that a short message never allocates much.
+    std::size_t count(std::size_t bytes_each = 1);
     void expect_end() const;
 
 private:
