@@ -1,6 +1,7 @@
 #include "framework/effect/describe.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <set>
 #include <sstream>
 
@@ -44,7 +45,11 @@ std::string input_flags(const InputSpec& input) {
     if (input.history) flags += ", with the frame before";
     if (input.layer >= 0) flags += ", of layer " + std::to_string(input.layer);
     if (input.from_capture) flags += ", the capture's own";
-    if (input.frame != 0) flags += input.frame < 0 ? ", of the frame before" : ", of the next frame";
+    if (input.frame == -1) flags += ", of the frame before";
+    if (input.frame == 1) flags += ", of the next frame";
+    if (std::abs(input.frame) > 1)
+        flags += ", of " + std::to_string(std::abs(input.frame)) +
+                 (input.frame < 0 ? " frames before" : " frames after");
     return flags;
 }
 

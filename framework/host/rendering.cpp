@@ -232,7 +232,7 @@ Result::Data Rendering::render(const FrameTask& task, const RenderOptions& optio
     frame.scale = given.scale;
     frame.fps = options.fps;
     frame.fill = [&](const std::string& role, int offset, gpu::Texture& texture) {
-        const auto& from = offset < 0 ? previous : offset > 0 ? next : current;
+        const auto& from = offset == -1 ? previous : offset == 1 ? next : current;
         const auto found = from->textures.find(role);
         if (found == from->textures.end()) return false;
         check_external(context, found->second, role);

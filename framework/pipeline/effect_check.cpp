@@ -167,16 +167,18 @@ std::string fault_of(gpu::Context& context, const EffectManifest& manifest, cons
     for (const OutputSpec& output : manifest.outputs) roles.push_back(output.role);
     PipelineRenderer renderer(context, pipeline, data_folder, natives);
     renderer.guard_loops();
+    std::set<int> offsets = pipeline.neighbour_offsets();
+    offsets.insert({-1, 0, 1});
     // Two frames, so that history is read.
     for (const int number : {1, 2}) {
-        Capture previous = make_test_capture(64, 36, number - 1), capture = make_test_capture(64, 36, number),
-                next = make_test_capture(64, 36, number + 1);
-        for (Capture* each : {&previous, &capture, &next}) add_required_images(manifest, *each);
-        add_layers(manifest, capture);
+        std::map<int, Capture> captures;  // by offset
         FrameInputs frame;
-        frame.capture = &capture;
-        frame.previous = &previous;
-        frame.next = &next;
+        for (const int offset : offsets) {
+            Capture& capture = captures[offset] = make_test_capture(64, 36, number + offset);
+            add_required_images(manifest, capture);
+            if (offset == 0) add_layers(manifest, capture);
+            frame.set(offset, &capture);
+        }
         try {
             // Timed, so that each pass has ended before the next begins: what fails is then known.
             const std::string bad = first_bad_value(renderer.render(frame, roles, true));

@@ -50,7 +50,7 @@ FrameFingerprints::FrameFingerprints(std::string setup, const Sequence& sequence
       files_(sequence, reader, pipeline) {
     for (const std::string& role : pipeline.capture_roles())
         reads_motion_ = reads_motion_ || kind_of_role(role) == RoleKind::motion;
-    for (const int offset : {-1, 1})
+    for (const int offset : pipeline.neighbour_offsets())
         for (const std::string& role : pipeline.neighbour_roles(offset))
             reads_motion_ = reads_motion_ || kind_of_role(role) == RoleKind::motion;
 }

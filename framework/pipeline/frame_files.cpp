@@ -27,15 +27,17 @@ bool FrameFiles::begins_shot(int frame) const {
 }
 
 bool FrameFiles::has_neighbour(int frame, int offset) const {
-    if (pipeline_.neighbour_roles(offset).empty() || begins_shot(offset < 0 ? frame : frame + 1))
-        return false;
+    if (pipeline_.neighbour_roles(offset).empty()) return false;
+    const auto [first, last] = std::minmax(frame, frame + offset);
+    for (int later = first + 1; later <= last; ++later)
+        if (begins_shot(later)) return false;
     return reader_.has_frame(neighbour_number(frame, offset));
 }
 
 std::vector<int> FrameFiles::numbers(int frame) const {
     std::vector<int> files;
     for (int subframe = 0; subframe < subframes_; ++subframe) files.push_back(number(frame, subframe));
-    for (const int offset : {-1, 1})
+    for (const int offset : pipeline_.neighbour_offsets())
         if (has_neighbour(frame, offset)) files.push_back(neighbour_number(frame, offset));
     return files;
 }

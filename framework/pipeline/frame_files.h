@@ -22,7 +22,7 @@ public:
     /// Whether a file of the frame is not there.
     bool is_missing(int frame) const;
     bool begins_shot(int frame) const;
-    /// Whether some input wants the frame before (-1) or after (+1), and it is of the same shot and there.
+    /// Whether some input wants the frame `offset` after, and it is of the same shot and there.
     bool has_neighbour(int frame, int offset) const;
     int neighbour_number(int frame, int offset) const { return number(frame + offset, subframes_ / 2); }
     /// The numbers of the sub-frames and of the neighbours.

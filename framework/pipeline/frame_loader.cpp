@@ -51,7 +51,8 @@ FrameLoader::FrameLoader(const Sequence& sequence, const CaptureReader& reader, 
       files_(sequence, reader, pipeline),
       roles_(std::move(roles)),
       objects_(pipeline) {
-    for (const int offset : {-1, 1}) add_missing(roles_, pipeline.neighbour_roles(offset));
+    for (const int offset : pipeline.neighbour_offsets())
+        add_missing(roles_, pipeline.neighbour_roles(offset));
     if (!run.frames.empty() && !is_missing(0))
         for (const int file : files_.numbers(run.frames[0])) request(file);
 }
@@ -129,9 +130,13 @@ FrameLoader::CapturePointer FrameLoader::take(std::size_t index, int subframe) {
     return current;
 }
 
-FrameLoader::CapturePointer FrameLoader::neighbour(std::size_t index, int offset) {
+FrameLoader::Neighbours FrameLoader::neighbours(std::size_t index) {
     const int frame = run_.frames[index];
-    return files_.has_neighbour(frame, offset) ? get(files_.neighbour_number(frame, offset)) : nullptr;
+    Neighbours neighbours;
+    for (const int offset : pipeline_.neighbour_offsets())
+        if (files_.has_neighbour(frame, offset))
+            neighbours[offset] = get(files_.neighbour_number(frame, offset));
+    return neighbours;
 }
 
 }  // namespace aftershade

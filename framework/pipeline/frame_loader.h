@@ -34,8 +34,9 @@ public:
 
     /// One sub-frame with its neighbours; its number is the frame's. Throws what reading threw.
     CapturePointer take(std::size_t index, int subframe);
-    /// Of the same shot, where some input wants it and its file is there; nullptr otherwise.
-    CapturePointer neighbour(std::size_t index, int offset);
+    using Neighbours = std::map<int, CapturePointer>;  ///< by offset
+    /// Those of the same shot that some input wants and whose files are there.
+    Neighbours neighbours(std::size_t index);
     bool begins_shot(std::size_t index) const;
     /// What the frames read so far have of the objects that the look names.
     ObjectMatches& objects() { return objects_; }

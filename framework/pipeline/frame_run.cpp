@@ -16,11 +16,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 template <typename Read>
-std::shared_ptr<const Capture> timed_read(RunReport& report, const Read& read) {
+auto timed_read(RunReport& report, const Read& read) {
     const auto start = Clock::now();
-    auto capture = read();
+    auto captures = read();
     report.read_ms += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-    return capture;
+    return captures;
 }
 
 }  // namespace
@@ -46,10 +46,8 @@ FrameRun::Rendered FrameRun::render(std::size_t index, const std::vector<std::st
     inputs.scale = 1.0 / run_.scale_divisor;
     inputs.fps = sequence_.fps;
     inputs.begins_shot = loader_.begins_shot(index);
-    const auto previous = timed_read(report, [&] { return loader_.neighbour(index, -1); });
-    const auto next = timed_read(report, [&] { return loader_.neighbour(index, 1); });
-    inputs.previous = previous.get();
-    inputs.next = next.get();
+    const auto neighbours = timed_read(report, [&] { return loader_.neighbours(index); });
+    for (const auto& [offset, capture] : neighbours) inputs.set(offset, capture.get());
     std::shared_ptr<const Capture> current, centre;
     FrameResult result;
     std::vector<graph::PassTime> times;

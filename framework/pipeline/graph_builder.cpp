@@ -231,7 +231,11 @@ graph::TextureHandle GraphBuilder::import(const std::string& role, int offset) {
     const std::pair image(role, offset);
     const auto known = imports_.find(image);
     if (known != imports_.end()) return known->second;
-    const std::string where = offset < 0 ? "previous." : offset > 0 ? "next." : "capture.";
+    const std::string where = offset == 0    ? "capture."
+                              : offset == -1 ? "previous."
+                              : offset == 1  ? "next."
+                              : offset < 0   ? std::to_string(-offset) + " frames before."
+                                             : std::to_string(offset) + " frames after.";
     return imports_[image] =
                graph_.import_texture(where + role, {width_, height_, texture_format_of_role(role)});
 }

@@ -28,7 +28,7 @@ struct GraphQuestion {
     enum class About {
         width_px,
         height_px,
-        image,           ///< whether the capture at offset `of` (-1, 0, 1) has the role `name`
+        image,           ///< whether the capture `of` frames after has the role `name`
         wanted_role,     ///< whether the role `name` is to be read back
         param,           ///< the `aspect` of the parameter `name` of step `of`
         native_enabled,  ///< whether step `of` runs the pass `name`
@@ -68,7 +68,7 @@ public:
     const Pipeline& pipeline() const { return frame_.pipeline; }
     int width_px();
     int height_px();
-    /// `offset`: -1, 0, +1, of which capture.
+    /// `offset`: of which capture, in frames.
     bool has_image(const std::string& role, int offset);
     bool wants(const std::string& role);
     /// Refers to this reader.

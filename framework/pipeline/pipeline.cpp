@@ -103,6 +103,26 @@ std::vector<std::string> Pipeline::neighbour_roles(int offset) const {
     return roles;
 }
 
+std::set<int> Pipeline::neighbour_offsets() const {
+    std::set<int> offsets;
+    for (const PipelineStep& step : steps)
+        for (const InputSpec& input : step.manifest->inputs)
+            if (input.frame != 0 && step.may_take(input)) offsets.insert(input.frame);
+    return offsets;
+}
+
+const Capture* FrameInputs::at(int offset) const {
+    if (offset == 0) return capture;
+    if (offset == -1) return previous;
+    if (offset == 1) return next;
+    const auto found = further.find(offset);
+    return found == further.end() ? nullptr : found->second;
+}
+
+void FrameInputs::set(int offset, const Capture* at_offset) {
+    (offset == 0 ? capture : offset == -1 ? previous : offset == 1 ? next : further[offset]) = at_offset;
+}
+
 bool Pipeline::writes_role(const std::string& role) const {
     for (const PipelineStep& step : steps)
         for (const OutputSpec& output : step.manifest->outputs)

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -65,8 +66,10 @@ struct Pipeline {
     /// Objects that parameters of steps name, for which object_id must hold the hashes of names; masks take
     /// their coverage instead.
     std::vector<std::string> object_names() const;
-    /// Roles that some input takes from the capture before (-1) or after (+1).
+    /// Roles that some input takes from the capture `offset` frames after, or before where it is negative.
     std::vector<std::string> neighbour_roles(int offset) const;
+    /// Offsets of the captures that some input takes, without 0.
+    std::set<int> neighbour_offsets() const;
     bool writes_role(const std::string& role) const;
     bool has_history() const;
     /// Whether some effect is not one of the shipped ones.
@@ -80,6 +83,7 @@ struct FrameInputs {
     const Capture* capture = nullptr;
     const Capture* previous = nullptr;  ///< of the same shot, where some input wants it
     const Capture* next = nullptr;
+    std::map<int, const Capture*> further{};  ///< the like, by offset, where that is not -1 or 1
     bool begins_shot = false;  ///< a cut: nothing before it counts
     int subframe = 0;
     int subframe_count = 1;
@@ -89,7 +93,8 @@ struct FrameInputs {
     /// Fills the texture of a capture's image that is not in memory; false where it is. Empty: each is.
     std::function<bool(const std::string& role, int offset, gpu::Texture& texture)> fill{};
 
-    const Capture* at(int offset) const { return offset < 0 ? previous : offset > 0 ? next : capture; }
+    const Capture* at(int offset) const;
+    void set(int offset, const Capture* at_offset);
     /// Whether there is a capture at that offset, with an image of that role.
     bool has_image(const std::string& role, int offset) const {
         const Capture* const from = at(offset);

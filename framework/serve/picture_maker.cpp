@@ -98,10 +98,10 @@ void PictureMaker::adopt(Scaled& scaled, const PictureRequest& request) {
 bool PictureMaker::load(Scaled& scaled, const PictureRequest& request) {
     const Pipeline& pipeline = *scaled.pipeline;
     std::vector<std::string> reads = pipeline.capture_roles();
-    std::string key = joined_roles(reads) + "objects\n" + joined_roles(pipeline.object_names()) + "before\n" +
-                      joined_roles(pipeline.neighbour_roles(-1)) + "after\n" +
-                      joined_roles(pipeline.neighbour_roles(1)) +
-                      std::to_string(pipeline.last_accumulating_step() >= 0);
+    std::string key = joined_roles(reads) + "objects\n" + joined_roles(pipeline.object_names());
+    for (const int offset : pipeline.neighbour_offsets())
+        key += "offset " + std::to_string(offset) + "\n" + joined_roles(pipeline.neighbour_roles(offset));
+    key += std::to_string(pipeline.last_accumulating_step() >= 0);
     if (scaled.loaded && scaled.loaded->frame == request.frame && scaled.loaded->key == key) return true;
     // Readers of other scales may not meet a change of what they read by.
     if (sequence_.object_names != pipeline.object_names()) {
@@ -116,8 +116,7 @@ bool PictureMaker::load(Scaled& scaled, const PictureRequest& request) {
     loaded->run.scale_divisor = request.scale;
     loaded->loader =
         std::make_unique<FrameLoader>(sequence_, reader_, pipeline, loaded->run, std::move(reads));
-    loaded->previous = loaded->loader->neighbour(0, -1);
-    loaded->next = loaded->loader->neighbour(0, 1);
+    loaded->neighbours = loaded->loader->neighbours(0);
     for (int i = 0; i < loaded->loader->subframe_count(); ++i)
         loaded->captures.push_back(loaded->loader->take(0, i));
     require_capture_roles(pipeline, loaded->captures.front()->header, &reader_);
@@ -132,8 +131,7 @@ FrameResult PictureMaker::draw_frame(Scaled& scaled, const std::vector<std::stri
     inputs.scale = 1.0 / loaded.run.scale_divisor;
     inputs.fps = sequence_.fps;
     inputs.begins_shot = true;  // as `run --frames` begins with this frame
-    inputs.previous = loaded.previous.get();
-    inputs.next = loaded.next.get();
+    for (const auto& [offset, capture] : loaded.neighbours) inputs.set(offset, capture.get());
     FrameResult result;
     std::vector<graph::PassTime> times;
     for (int i = 0; i < inputs.subframe_count; ++i) {

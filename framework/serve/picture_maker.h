@@ -67,7 +67,7 @@ private:
         RunOptions run;
         std::unique_ptr<FrameLoader> loader;
         std::vector<std::shared_ptr<const Capture>> captures;  // the sub-frames
-        std::shared_ptr<const Capture> previous, next;
+        FrameLoader::Neighbours neighbours;
     };
     /// What is kept for one scale.
     struct Scaled {

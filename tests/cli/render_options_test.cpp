@@ -140,6 +140,43 @@ TEST_F(RenderOptions, HistoryBeginsAnewAtACutAndAfterAMissingFrameAndSaysSo) {
     }
 }
 
+/// Each frame's light is its number; the look writes the numbers that it reads as digits to the base 8.
+TEST_F(RenderOptions, FramesUpToThreeAwayAreReadAsFarAsTheShotAndTheFilesGo) {
+    const std::vector<int> offsets{-3, -2, -1, 1, 2, 3};
+    std::string inputs = R"("color": { "role": "color" })", shader = "void main() { float sum = 0.0;\n";
+    for (const int offset : offsets) {
+        const std::string distance = std::to_string(std::abs(offset));
+        inputs += std::string(", \"") + (offset < 0 ? "before_" : "after_") + distance +
+                  R"(": { "role": "color", "optional": true, "frame": )" + std::to_string(offset) + " }";
+        const std::string value =
+            std::string("texelFetch(") + (offset < 0 ? "before_" : "after_") + distance + ", ivec2(0), 0).r";
+        shader += std::string("#ifdef HAS_") + (offset < 0 ? "BEFORE_" : "AFTER_") + distance + "\nsum += " +
+                  std::to_string(int(std::pow(8, offset + 3))) + ".0 * " + value + ";\n#endif\n";
+    }
+    shader += "out_color = vec4(sum + 512.0 * texelFetch(color, ivec2(0), 0).r); }\n";
+    write_effect("around", R"("passes": [ { "name": "main", "shader": "main.frag" } ])", shader);
+    const fs::path manifest = folder_ / "effects/around/effect.json";
+    std::string text = read_text(manifest);
+    const std::string own = R"("inputs": { "color": { "role": "color" } })";
+    text.replace(text.find(own), own.size(), "\"inputs\": { " + inputs + " }");
+    write_text(manifest, text);
+    write_text(folder_ / "around.json", R"({ "aftershade": 1, "steps": [ { "effect": "around" } ] })");
+    for (int frame = 1; frame <= 7; ++frame)
+        write_capture(make_capture({.width = 16, .height = 16, .background = {float(frame), 0, 0}}, frame),
+                      folder_ / ("n_000" + std::to_string(frame) + ".exr"));
+    fs::remove(folder_ / "n_0004.exr");
+    write_text(folder_ / "capture.json",
+               R"({ "aftershade": 1, "frames": "n_####.exr", "range": "1-7", "cuts": [3] })");
+    run({"around.json", "capture.json", "--missing", "skip", "-o", "around_####.exr"});
+    for (const int frame : {1, 2, 3, 5, 6, 7}) {
+        double expected = 0;
+        for (int other = 1; other <= 7; ++other)
+            if (other != 4 && (other < 3) == (frame < 3) && std::abs(other - frame) <= 3)
+                expected += other * std::pow(8, other - frame + 3);
+        EXPECT_EQ(color("around_000" + std::to_string(frame) + ".exr").at(3, 3, 0), float(expected)) << frame;
+    }
+}
+
 TEST_F(RenderOptions, GraphIsDrawn) {
     const CommandResult result = run({"trail.json", "in_0001.exr", "-o", "a.exr", "--graph", "g.dot"});
     const std::string dot = read_text(folder_ / "g.dot");

@@ -140,8 +140,9 @@ TEST(ManifestResources, SayWhatIsWrongWithAnInput) {
     };
     test::expect_faults({{kInputs, inputs(R"("frame": 1)")}},
                         {"2: an input of another frame must be 'optional': shots begin and end"});
-    test::expect_faults({{kInputs, inputs(R"("frame": 2, "optional": true)")}},
-                        {"2: 'frame' is -1 or 1: the capture before or after"});
+    for (const char* frame : {"0", "4", "-4", "1.5"})
+        test::expect_faults({{kInputs, inputs(R"("optional": true, "frame": )" + std::string(frame))}},
+                            {"2: 'frame' is -3 to -1 or 1 to 3: a capture before or after"});
     test::expect_faults({{kInputs, inputs(R"("frame": 1, "optional": true, "history": true)")}},
                         {"2: an input has 'frame' or 'history', not both",
                          "2: the input 'depth' has 'history', but no pass reads 'depth.prev'"});

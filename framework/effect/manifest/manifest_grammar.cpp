@@ -52,11 +52,17 @@ Form version_form() {
 Block input_block() {
     constexpr const char* kLayersEnd =
         "an input of a layer must be 'optional': a capture may have fewer layers";
-    constexpr int kMostInputLayer = 7;
+    constexpr int kMostInputLayer = 7, kMostFrameOffset = 3;
     constexpr const char* kShotsEnd = "an input of another frame must be 'optional': shots begin and end";
-    const Form frame = grammar::shown_as(grammar::any_of({grammar::constant("-1"), grammar::constant("1")},
-                                                         "'frame' is -1 or 1: the capture before or after"),
-                                         "`-1` or `1`");
+    std::vector<Form> offsets;
+    for (int distance = 1; distance <= kMostFrameOffset; ++distance)
+        for (const int offset : {-distance, distance})
+            offsets.push_back(grammar::constant(std::to_string(offset)));
+    const std::string most = std::to_string(kMostFrameOffset);
+    const Form frame = grammar::shown_as(
+        grammar::any_of(std::move(offsets),
+                        "'frame' is -" + most + " to -1 or 1 to " + most + ": a capture before or after"),
+        "`-" + most + "` to `-1`, `1` to `" + most + "`");
     const auto is_optional = std::pair<std::string, Form>{"optional", grammar::constant("true")};
     return {
         .name = "input",
@@ -73,7 +79,8 @@ Block input_block() {
              optional("history", boolean(), "Passes may read the previous frame's image as `name.prev`.",
                       "false"),
              optional("frame", frame,
-                      "Take the previous or the next capture instead; such an input must be `optional`."),
+                      "Take a capture before (negative) or after this one instead; such an input must be "
+                      "`optional`."),
              optional("layer", grammar::integer(0, kMostInputLayer),
                       "The image of one layer of the capture, 0 in front; such an input is `optional`: the "
                       "capture "

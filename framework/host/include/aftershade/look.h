@@ -48,7 +48,7 @@ struct RenderOptions {
     NonFinite non_finite = NonFinite::report;
 
     /// Neighbours for effects that look at them, of the same shot and of the size of the frame; nullptr:
-    /// there is none, as at the ends of a shot.
+    /// there is none, as at the ends of a shot. Effects that look further do with these alone.
     const Capture* previous = nullptr;
     const Capture* next = nullptr;
     bool begins_shot = false;  ///< a cut: nothing before it counts. Sessions only; elsewhere it always is one
