@@ -20,10 +20,20 @@ const Layer kNothing = Layer(vec4(0.0), 0.0, vec2(0.0));
 // Which taps count in front of a point: blurs too narrow for half size, the wider ones, or all.
 const int kNarrow = 0, kWide = 1, kAll = 2;
 
-float part_of(int which, float coc) {
-    float wide = clamp(abs(coc) - kFullSizePx + 1.0, 0.0, 1.0);
-    return which == kAll ? 1.0 : which == kWide ? wide : 1.0 - wide;
+// In a coarse level, what is in focus would leak into the texel beside it.
+float part_of(int which, float coc, int level) {
+    float wide = clamp(abs(coc) - kFullSizePx + 1.0, 0.0, 1.0), blurred = level == 0 ? 1.0 : clamp(2.0 * abs(coc) - 1.0, 0.0, 1.0);
+    return which == kAll ? blurred : which == kWide ? wide : 1.0 - wide;
 }
+
+// Bilinear interpolation between texels of half size widens a blur: at the pixels, all a quarter of a texel off, by a variance of
+// 0.75 px squared along each axis. A hexagon's own is 5 / 24 of its circumradius squared, so that its radius must be 1.8 px squared
+// over the radius less. Here that of the widest blur stands for all.
+#ifdef HALF_SIZE
+float shrink_px(float radius_px) { return 1.8 / max(radius_px, kFullSizePx); }
+#else
+float shrink_px(float radius_px) { return 0.0; }
+#endif
 
 // What lies in front of CoC radius `coc` spreads over the point as far as its own CoC reaches, thinned by that area.
 // visible_coc: of the surface that the point shows. Where it hides the surface of `coc`, it covers at least as much of the point as
@@ -31,9 +41,10 @@ float part_of(int which, float coc) {
 const float kNoReach = -0.5;  // px; one tap is taken, the least that the loops below can do
 Layer gather_front(vec2 center, float coc, float visible_coc, float reach_px, int level, int which) {
     float texels_per_px = 1.0 / float(1 << level), reach = reach_px * texels_per_px + 0.5;
+    float shrink = shrink_px(reach_px) * texels_per_px;
 #ifdef SILHOUETTES
     bool hides = visible_coc < coc - kClear;
-    float own_radius = abs(visible_coc) * texels_per_px, aperture_sum = 0.0, own_sum = 0.0;
+    float own_radius = abs(visible_coc) * texels_per_px - shrink, aperture_sum = 0.0, own_sum = 0.0;
 #endif
     Layer front = kNothing;
     ivec2 low = ivec2(floor(center - reach)), high = ivec2(floor(center + reach));
@@ -45,7 +56,7 @@ Layer gather_front(vec2 center, float coc, float visible_coc, float reach_px, in
         do {
             Light tap = tap_light(ivec2(x, y), level);
             vec2 offset = center - vec2(x, y) - 0.5;
-            float radius = abs(tap.coc) * texels_per_px, part = part_of(which, tap.coc);
+            float radius = abs(tap.coc) * texels_per_px - shrink, part = part_of(which, tap.coc, level);
             float spread = part * cover(radius, gauge(offset, tap.coc)) / spread_area(radius);
             float weight = in_front(tap.coc, coc) * spread;
             front.color += weight * tap.color;
@@ -92,7 +103,7 @@ struct Back {
 Back gather_back(vec2 center, Light point, int level) {
     const float kLeastWeight = 1e-3;
     float coc = point.coc;
-    float texels_per_px = 1.0 / float(1 << level), radius = abs(coc) * texels_per_px, reach = radius + 0.5;
+    float texels_per_px = 1.0 / float(1 << level), radius = (abs(coc) - shrink_px(abs(coc))) * texels_per_px, reach = radius + 0.5;
     vec4 own = kLeastWeight * point.color, behind = vec4(0.0);
     float own_weight = kLeastWeight, behind_weight = 0.0;
     ivec2 low = ivec2(floor(center - reach)), high = ivec2(floor(center + reach));

@@ -1,5 +1,6 @@
 #version 450 core
 #include <pass>
+#define HALF_SIZE
 #include "blur.glsl"
 
 void main() {

@@ -15,7 +15,9 @@ void main() {
     vec4 texel = own_color(p);
     float coc_px = texelFetch(coc, p, 0).r;
 #ifdef SILHOUETTES
-    texel.rgb = unmixed(p, texel.rgb, coc_px);
+    Unmixed alone = unmixed(p, texel.rgb, coc_px);
+    texel.rgb = alone.color;
+    out_mixture = alone.kind;
 #endif
 #ifdef HAS_SURROUND
     vec2 around_amount = texelFetch(surround, p / 8, 0).rg;

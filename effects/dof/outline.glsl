@@ -52,7 +52,7 @@ float gauge(vec2 offset, float coc) {
 }
 
 // Area in px that a light of this CoC radius covers, at least a pixel.
-float spread_area(float radius_px) { return max(open_area * radius_px * radius_px, 1.0); }
+float spread_area(float radius_px) { return max(open_area * (radius_px * radius_px + 1.0 / (12.0 * aperture.inradius * aperture.inradius)), 1.0); }
 
 // Coverage of a pixel whose gauge is this by the outline of this radius: 1 inside, half on the outline.
 float cover(float radius_px, float gauge_px) {

@@ -33,12 +33,16 @@ struct Mixture {
     float length_2;
 };
 
+bool differ(vec3 self, vec3 across) {
+    return amount(abs(across - self)) >= kContrast * (amount(abs(self)) + amount(abs(across)));
+}
+
 // p as a mixture of a colour of its own surface and one from across. beyond: further inside than self.
 Mixture mixture_of(vec3 own, vec3 self, vec3 beyond, vec3 across) {
     vec3 difference = across - self, change = self - beyond;
     float length_2 = dot(difference, difference);
     const Mixture none = Mixture(vec3(0.0), 0.0, 0.0);
-    if (amount(abs(difference)) < kContrast * (amount(abs(self)) + amount(abs(across)))) return none;
+    if (!differ(self, across)) return none;
     // Shading that continues as it does inside the surface is not a mixture.
     float share = (dot(own - self, difference) - 2.0 * max(dot(change, difference), 0.0)) / length_2;
     vec3 rest = own - self - share * difference;
@@ -46,9 +50,18 @@ Mixture mixture_of(vec3 own, vec3 self, vec3 beyond, vec3 across) {
     return Mixture(max(own - share * difference, min(own, self)), share, length_2);
 }
 
-vec3 unmixed(ivec2 p, vec3 own, float coc_px) {
+// As the texture `mixture` keeps them.
+const float kNoEdge = 0.0, kEdge = 0.5, kMixture = 1.0;
+
+struct Unmixed {
+    vec3 color;
+    float kind;
+};
+
+Unmixed unmixed(ivec2 p, vec3 own, float coc_px) {
     Mixture best = Mixture(own, 0.0, 0.0);
     ivec2 way = ivec2(0);
+    float kind = kNoEdge;
     for (int i = 0; i < 9; ++i) {
         ivec2 to = ivec2(i % 3, i / 3) - 1;
         float across_coc = coc_inside(p + to);
@@ -60,6 +73,7 @@ vec3 unmixed(ivec2 p, vec3 own, float coc_px) {
             vec3 inner = color_inside(p + 2 * to) - self, outer = across - self;
             if (dot(inner, inner) > dot(outer, outer)) across = inner + self;
         }
+        if (differ(self, across)) kind = kEdge;
         Mixture mixture = mixture_of(own, self, color_inside(p - 3 * to), across);
         // An edge of the surface's own may lie that near.
         if (mixture.share == 0.0 && !is_across(p - to, coc_px)) mixture = mixture_of(own, color_inside(p - to), self, across);
@@ -67,5 +81,6 @@ vec3 unmixed(ivec2 p, vec3 own, float coc_px) {
         best = mixture;
         way = to;
     }
-    return way != ivec2(0) && is_texture(p, own, coc_px, way, best.length_2) ? own : best.rest;
+    if (way == ivec2(0) || is_texture(p, own, coc_px, way, best.length_2)) return Unmixed(own, kind);
+    return Unmixed(best.rest, kMixture);
 }

@@ -1,0 +1,117 @@
+// What dof must do at edges of which it knows both sides: against closed forms.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include <gtest/gtest.h>
+
+#include "tests/aperture_checks.h"
+
+namespace aftershade::test::dof_edges {
+namespace {
+
+constexpr int kWidth = 96, kHeight = 64;
+constexpr double kPi = 3.14159265358979;
+
+/// Share of a disk's area left of a line at `t` radii from its middle.
+double disk_left_of(double t) {
+    t = std::clamp(t, -1.0, 1.0);
+    return 0.5 + (t * std::sqrt(1 - t * t) + std::asin(t)) / kPi;
+}
+
+/// Opacity at the middle of column `x` of what covers the columns from `left` to `right`, through a disk.
+double opacity_of(double left, double right, int x, double radius_px) {
+    return disk_left_of((right - x - 0.5) / radius_px) - disk_left_of((left - x - 0.5) / radius_px);
+}
+
+struct Column {
+    float light, depth_m;
+};
+
+/// A picture whose rows are all alike.
+Capture picture_of_columns(const std::function<Column(int x)>& column_at) {
+    Capture capture =
+        make_capture({.width = kWidth, .height = kHeight, .background_depth_m = kApertureFocusM}, 0);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            for (int c = 0; c < 3; ++c) capture.images["color"].at(x, y, c) = column_at(x).light;
+            capture.images["depth"].at(x, y, 0) = column_at(x).depth_m;
+        }
+    return capture;
+}
+
+Image blurred(const std::function<Column(int x)>& column_at, double radius_px) {
+    return through_aperture("dof", picture_of_columns(column_at), radius_px, R"("blades": 0)");
+}
+
+/// The edge of a wall in focus lies within a texel of half size, beside a far wall and in the blur of a near
+/// bar. The wall's light stays in the wall.
+TEST(DofEdges, AFocusedEdgeBesideAFarBlurDoesNotLeakIntoIt) {
+    constexpr int edge = 47, left = 60, right = 63;
+    constexpr float wall = 0.8f, far_wall = 0.2f, bar = 0.05f, far_wall_m = kApertureFocusM / 0.625f;
+    constexpr double radius_px = 16;
+    const Image out = blurred(
+        [&](int x) {
+            return x < edge                ? Column{wall, kApertureFocusM}
+                   : x < left || x >= right ? Column{far_wall, far_wall_m}
+                                            : Column{bar, kApertureNearM};
+        },
+        radius_px);
+    for (int y = 20; y < 44; ++y)
+        for (int x = edge; x < left - 8; ++x) {
+            const double opacity = opacity_of(left, right, x, radius_px);
+            EXPECT_NEAR(out.at(x, y, 0), opacity * bar + (1 - opacity) * far_wall, 0.02) << x << " " << y;
+        }
+}
+
+/// Blurs of more than 4 px are gathered at half size. What bringing them to full size adds to their width is
+/// taken from the aperture.
+TEST(DofEdges, ABlurGatheredAtHalfSizeIsAsWideAsItsAperture) {
+    constexpr int left = 40, right = 72;
+    for (const double radius_px : {4.5, 5.5, 7.0}) {
+        const Image out = blurred(
+            [&](int x) {
+                return x >= left && x < right ? Column{0, kApertureNearM} : Column{1, kApertureFocusM};
+            },
+            radius_px);
+        double squares = 0;
+        for (int x = left - 10; x < left + 10; ++x)
+            squares += std::pow(1 - opacity_of(left, right, x, radius_px) - double(out.at(x, 32, 0)), 2);
+        EXPECT_LT(std::sqrt(squares / 20), 0.006) << radius_px;
+    }
+}
+
+/// With a radius of a pixel, the pixels' own size counts.
+TEST(DofEdges, ANarrowBlurCoversAsMuchAsItsAperture) {
+    constexpr int left = 40, right = 72;
+    for (const double radius_px : {0.7, 0.8, 1.0, 1.2, 1.5}) {
+        const Image out = blurred(
+            [&](int x) {
+                return x >= left && x < right ? Column{0, kApertureNearM} : Column{1, kApertureFocusM};
+            },
+            radius_px);
+        EXPECT_NEAR(1 - double(out.at(left - 1, 32, 0)), opacity_of(left, right, left - 1, radius_px), 0.025)
+            << radius_px;
+    }
+}
+
+/// One ray a pixel: a column of the wall has a colour between those of a bar and of the wall beyond it, as a
+/// mixture of both would have. All other silhouettes are sharp, so it is none.
+TEST(DofEdges, TextureBesideASilhouetteIsNoMixtureWhereSilhouettesAreSharp) {
+    constexpr float wall = 0.1f, bar = 0.6f, stripe = 0.4f;
+    constexpr double radius_px = 8;
+    constexpr int stripe_x = 43;
+    const auto is_bar = [](int x) { return x % 16 >= 8 && x % 16 < 11; };
+    const Image out = blurred(
+        [&](int x) {
+            return is_bar(x) ? Column{bar, kApertureNearM} : Column{x == stripe_x ? stripe : wall, kApertureFocusM};
+        },
+        radius_px);
+    double opacity = 0;
+    for (int left = 8; left < kWidth; left += 16) opacity += opacity_of(left, left + 3, stripe_x, radius_px);
+    for (int y = 20; y < 44; ++y)
+        EXPECT_NEAR(out.at(stripe_x, y, 0), opacity * bar + (1 - opacity) * stripe, 0.03) << y;
+}
+
+}  // namespace
+}  // namespace aftershade::test::dof_edges
