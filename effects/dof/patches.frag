@@ -6,7 +6,7 @@
 #ifdef FINDS_HIGHLIGHTS
 #include "shine.glsl"
 #endif
-#include "neighbours.glsl"
+#include <lens/neighbours.glsl>
 
 // What lies behind a surface near its silhouette, continued from both ends of chords through the pixel. Chords whose ends are
 // alike and close count most: they run along the edges of what is hidden. This is guessed, and shows through a blur only. Where the
@@ -14,24 +14,33 @@
 const int kChords = 12;
 const float kLeastRadiusPx = 2.0;   // of a surface that lets anything through
 const float kOneSurface = 2.0;      // difference of CoC radii of ends on one surface, px
+const float kOnePathPx = 0.5;       // and of the pixel whose motion an end has
 const float kOutshines = 8.0;       // light of one end that does not continue behind the other
 const float kUnlike = 0.02;         // relative difference of ends that halves a chord's weight
 const float kThinPx = 4.0;  // CoC radius of what may be thinner than its blur, and then shows what is behind it
+const float kTrustPx = 8.0;  // times the square of the best chord's length, px: how far a neighbour's view may lie to be like it
 
 struct End {
     Light light;
 #ifdef SEES_NEIGHBOURS
     vec4 path;
+    float path_weight;  // 0 where it is not known
 #endif
     float distance_px;  // negative where nothing was found
 };
 
-// A texel of a coarse level may show a surface whose pixels begin `further` on.
+// A texel of a coarse level may show a surface whose pixels begin up to 2 * `further` on.
 End end_at(Light light, vec2 q, vec2 further, float distance_px) {
 #ifdef SEES_NEIGHBOURS
-    ivec2 last = frame.size - 1, p = ivec2(q);
-    if (abs(tap_light(p, 0).coc - light.coc) > kOneSurface) p = clamp(ivec2(q + further), ivec2(0), last);
-    return End(light, path_at(p), distance_px);
+    End end = End(light, vec4(0.0), 0.0, distance_px);
+    ivec2 last = frame.size - 1;
+    for (int i = 0; i <= 4 && end.path_weight == 0.0; ++i) {
+        ivec2 p = clamp(ivec2(q + 0.5 * float(i) * further), ivec2(0), last);
+        if (abs(tap_light(p, 0).coc - light.coc) > kOnePathPx) continue;
+        end.path = path_at(p);
+        end.path_weight = 1.0;
+    }
+    return end;
 #else
     return End(light, distance_px);
 #endif
@@ -60,13 +69,14 @@ struct Chord {
     Light light;   // where it passes the pixel
 #ifdef SEES_NEIGHBOURS
     vec4 path;
+    float path_weight;
 #endif
     float weight;  // 0 where it has no end
 };
 
 Chord chord_of(Light light, End a, End b, float part, float weight) {
 #ifdef SEES_NEIGHBOURS
-    return Chord(light, mix(a.path, b.path, part), weight);
+    return Chord(light, mix(a.path, b.path, part), min(a.path_weight, b.path_weight), weight);
 #else
     return Chord(light, weight);
 #endif
@@ -95,6 +105,7 @@ Chord chord_through(vec2 center, Light own, vec2 direction, float reach_px, bool
 
 struct Patch {
     Chord mean;  // of all chords to one surface
+    float trust;  // in the best of them: one over the square of its length, px, if its ends are alike
     bool is_there;
 };
 
@@ -107,17 +118,19 @@ Patch patch_behind(vec2 center, Light own, float reach_px, bool is_thin) {
         chords[i] = chord_through(center, own, vec2(cos(angle), sin(angle)), reach_px, is_thin);
         if (chords[i].weight > chords[best].weight) best = i;
     }
-    if (chords[best].weight == 0.0) return Patch(chords[best], false);
+    if (chords[best].weight == 0.0) return Patch(chords[best], 0.0, false);
     float darkest = 1e30;
     for (int i = 0; i < kChords; ++i) {
         if (abs(chords[i].light.coc - chords[best].light.coc) > kOneSurface) chords[i].weight = 0.0;
         if (chords[i].weight > 0.0) darkest = min(darkest, max(amount(chords[i].light.color.rgb), 0.0));
     }
     Chord mean = chords[best];
+    float trust = kUnlike * chords[best].weight;
     mean.light = Light(vec4(0.0), 0.0);
     mean.weight = 0.0;
 #ifdef SEES_NEIGHBOURS
     mean.path = vec4(0.0);
+    mean.path_weight = 0.0;
 #endif
     for (int i = 0; i < kChords; ++i) {
         float outshines = max(amount(chords[i].light.color.rgb) / (kOutshines * darkest + 1e-6), 1.0);
@@ -125,17 +138,19 @@ Patch patch_behind(vec2 center, Light own, float reach_px, bool is_thin) {
         mean.light.color += weight * chords[i].light.color;
         mean.light.coc += weight * chords[i].light.coc;
 #ifdef SEES_NEIGHBOURS
-        mean.path += weight * chords[i].path;
+        float path_weight = weight * chords[i].path_weight;
+        mean.path += path_weight * chords[i].path;
+        mean.path_weight += path_weight;
 #endif
         mean.weight += weight;
     }
-    if (mean.weight == 0.0) return Patch(mean, false);
+    if (mean.weight == 0.0) return Patch(mean, 0.0, false);
     mean.light.color /= mean.weight;
     mean.light.coc /= mean.weight;
 #ifdef SEES_NEIGHBOURS
-    mean.path /= mean.weight;
+    mean.path /= max(mean.path_weight, 1e-30);
 #endif
-    return Patch(mean, true);
+    return Patch(mean, trust, true);
 }
 
 #ifdef KNOWS_LAYERS
@@ -188,8 +203,11 @@ void main() {
 #endif
     if (!patched.is_there) return;
 #ifdef SEES_NEIGHBOURS
-    View view = seen_by_neighbours(p, patched.mean.light.coc, patched.mean.path);
-    if (view.off_px < 1.0) {
+    Chord mean = patched.mean;
+    View view = kNoView;
+    if (mean.path_weight > 0.0)
+        view = seen_by_neighbours(p, Guess(mean.light.color.rgb, mean.light.coc, mean.path, kTrustPx * patched.trust), view);
+    if (view.cost_px < kNoView.cost_px) {
         patched.mean.light.color = view.color;
         out_seen = 1.0;
     }

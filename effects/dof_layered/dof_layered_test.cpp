@@ -7,6 +7,7 @@
 #include "framework/image/role.h"
 #include "tests/aperture_family.h"
 #include "tests/lens.h"
+#include "tests/pipeline/effect_fixture.h"
 
 namespace aftershade::test::dof_layered {
 namespace {
@@ -51,6 +52,38 @@ TEST(DofLayered, TakesWhatLiesBehindFromTheSecondLayerOfTheCapture) {
     const double h = kWidth / 2.0 / lens.radius_px;
     const double strip = 2 / std::numbers::pi * (std::asin(h) + h * std::sqrt(1 - h * h));
     EXPECT_NEAR(middle(), 1 - strip, 0.03);
+}
+
+/// The strip hides a green part of the wall again, which one other frame shows beside the strip.
+TEST(DofLayered, TakesWhatLiesBehindFromAFrameUpToThreeAway) {
+    constexpr int kSide = 128, kLeft = 60, kWidth = 8;
+    const Lens lens;
+    const auto capture_of = [&](int left, bool shows_green) {
+        const SyntheticBox box{.x = left, .y = 0, .width = kWidth, .height = kSide, .color = {0.8f, 0, 0}};
+        Capture capture = make_capture({.width = kSide,
+                                        .height = kSide,
+                                        .background = {0.25f, 0.25f, 0.25f},
+                                        .background_depth_m = 2,
+                                        .box = box},
+                                       0);
+        for (int y = 0; y < kSide && shows_green; ++y)
+            for (int x = kLeft; x < kLeft + kWidth; ++x)
+                for (int c = 0; c < 3; ++c) capture.images["color"].at(x, y, c) = c == 1 ? 1.0f : 0.0f;
+        return capture;
+    };
+    const Capture now = capture_of(kLeft, false), open = capture_of(8, true);
+    const auto middle = [&](int offset, const std::string& background) {
+        FrameInputs frame;
+        frame.capture = &now;
+        frame.set(offset, &open);
+        const std::string params = lens.params() + R"(, "blades": 0, "background": ")" + background + "\"";
+        Bench bench(EffectFolder(), look_of_step(Named::kEffect, params));
+        return bench.run(frame).images.at("color").at(kSide / 2, kSide / 2, 1);
+    };
+    const double h = kWidth / 2.0 / lens.radius_px;
+    const double strip = 2 / std::numbers::pi * (std::asin(h) + h * std::sqrt(1 - h * h));
+    for (const int offset : {-3, -2, -1, 1, 2, 3}) EXPECT_NEAR(middle(offset, "neighbours"), 1 - strip, 0.03) << offset;
+    EXPECT_LT(middle(-1, "estimate"), 0.25f);
 }
 
 TEST(DofLayered, DrawsOneSurfaceOfASharedPixelByLot) {
