@@ -65,6 +65,26 @@ TEST_P(DofShape, OfALightOfThreePixelsIsTheAperturesWithAllItsEnergy) {
     EXPECT_NEAR(energy, 1, 0.01);
 }
 
+/// The left column of a light of 3 px is half covered, as antialiasing has it: the light begins in the middle of
+/// that column.
+TEST(DofShape, OfALightWithAnAntialiasedRimBeginsWithinTheRimsPixels) {
+    constexpr int size = 96, center = size / 2;
+    constexpr float intensity = 1000, covered = 0.5f;
+    Capture capture = light_of_nine(size, false, intensity);
+    for (int y = center - 1; y <= center + 1; ++y)
+        for (int c = 0; c < 3; ++c) capture.images["color"].at(center - 1, y, c) = covered * intensity;
+    const Image out = blur(capture, 16);
+    double sum = 0, moment = 0;
+    for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x) {
+            sum += double(out.at(x, y, 0));
+            moment += (x + 0.5) * double(out.at(x, y, 0));
+        }
+    const double left = center - covered, right = center + 2;
+    EXPECT_NEAR(moment / sum, 0.5 * (left + right), 0.01);
+    EXPECT_NEAR(sum / (7.5 * double(intensity)), 1, 0.01);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Scattered, DofShape,
     testing::Values(ShapeCase{6, 24, 0, false, "scatter", 0.93}, ShapeCase{6, 24, 10, true, "scatter", 0.93},
