@@ -2,9 +2,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
+#include <utility>
 
 #include <gtest/gtest.h>
 
+#include "framework/image/role.h"
 #include "tests/aperture_checks.h"
 
 namespace aftershade::test::dof_edges {
@@ -93,6 +96,33 @@ TEST(DofEdges, ANarrowBlurCoversAsMuchAsItsAperture) {
         EXPECT_NEAR(1 - double(out.at(left - 1, 32, 0)), opacity_of(left, right, left - 1, radius_px), 0.025)
             << radius_px;
     }
+}
+
+/// A ball in focus covers two fifths of a column of pixels, and a wall that is a little out of focus the rest.
+TEST(DofEdges, AnAntialiasedEdgeInFocusStaysBeforeANarrowBlur) {
+    constexpr int edge = 47;
+    constexpr float ball = 0.8f, wall = 0.2f, share = 0.4f, wall_m = kApertureFocusM * 1.2f;
+    const float mixed = share * ball + (1 - share) * wall;
+    Capture capture = picture_of_columns([&](int x) {
+        return x < edge ? Column{ball, kApertureFocusM} : Column{x == edge ? mixed : wall, wall_m};
+    });
+    Image first = capture.images["color"], first_depth = capture.images["depth"], second(kWidth, kHeight, 4),
+          second_depth(kWidth, kHeight, 1);
+    std::ranges::fill(second_depth.floats(), std::numeric_limits<float>::infinity());
+    for (int y = 0; y < kHeight; ++y) {
+        for (int c = 0; c < 4; ++c) {
+            first.at(edge, y, c) = share * (c < 3 ? ball : 1);
+            second.at(edge, y, c) = c < 3 ? wall : 1;
+        }
+        first_depth.at(edge, y, 0) = kApertureFocusM;
+        second_depth.at(edge, y, 0) = wall_m;
+    }
+    capture.images[layer_role(0, "color")] = std::move(first);
+    capture.images[layer_role(0, "depth")] = std::move(first_depth);
+    capture.images[layer_role(1, "color")] = std::move(second);
+    capture.images[layer_role(1, "depth")] = std::move(second_depth);
+    const Image out = through_aperture("dof", capture, 16, R"("blades": 0)");
+    for (int y = 20; y < 44; ++y) EXPECT_NEAR(out.at(edge, y, 0), mixed, 0.03) << y;
 }
 
 /// One ray a pixel: a column of the wall has a colour between those of a bar and of the wall beyond it, as a

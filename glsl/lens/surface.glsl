@@ -53,6 +53,7 @@ vec4 composite_of(Layers layers, int given, int from) {
 
 #ifdef SHARES_PIXELS
 const float kFocusPx = 2.0;   // CoC radius below which a surface keeps its antialiasing
+const float kBlurredPx = 4.0;  // and from which it makes way for what is behind
 const float kWholePixel = 0.999;
 
 struct Surface {
@@ -61,13 +62,14 @@ struct Surface {
     bool is_shared;  // otherwise the picture's own colour and depth are the surface's
 };
 
-// A layer in focus and all behind it, composited, with the CoC of the one that holds most of it.
+// A layer in focus and all behind it, composited, with the CoC of the one that holds most of it, if that is well out of focus. The
+// blur of another would take the antialiasing away.
 Surface surface_in_focus(Layers layers, int from) {
     vec4 sum = vec4(0.0);
     float left = 1.0, most = 0.0, coc = layers.coc[from];
     for (int k = from; k < kLayers; ++k) {
         float share = left * layers.color[k].a;
-        if (share > most) coc = layers.coc[k];
+        if (share > most && abs(layers.coc[k]) >= kBlurredPx) coc = layers.coc[k];
         most = max(most, share);
         sum += left * layers.color[k];
         left *= 1.0 - layers.color[k].a;
