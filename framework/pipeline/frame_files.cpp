@@ -28,8 +28,7 @@ bool FrameFiles::begins_shot(int frame) const {
 
 bool FrameFiles::has_neighbour(int frame, int offset) const {
     if (pipeline_.neighbour_roles(offset).empty()) return false;
-    const auto [first, last] = std::minmax(frame, frame + offset);
-    for (int later = first + 1; later <= last; ++later)
+    for (int later = std::min(frame, frame + offset) + 1; later <= std::max(frame, frame + offset); ++later)
         if (begins_shot(later)) return false;
     return reader_.has_frame(neighbour_number(frame, offset));
 }
