@@ -27,10 +27,10 @@ float part_of(int which, float coc, int level) {
 }
 
 // Bilinear interpolation between texels of half size widens a blur: at the pixels, all a quarter of a texel off, by a variance of
-// 0.75 px squared along each axis. A hexagon's own is 5 / 24 of its circumradius squared, so that its radius must be 1.8 px squared
-// over the radius less. Here that of the widest blur stands for all.
+// 0.75 px squared along each axis. A hexagon's own is 5 / 24 of its circumradius squared, so that by variance its radius must be 1.8 px
+// squared over the radius less. Nearest to the lens is 1.6 (moving_box). Here the widest blur stands for all.
 #ifdef HALF_SIZE
-float shrink_px(float radius_px) { return 1.8 / max(radius_px, kFullSizePx); }
+float shrink_px(float radius_px) { return 1.6 / max(radius_px, kFullSizePx); }
 #else
 float shrink_px(float radius_px) { return 0.0; }
 #endif
