@@ -15,7 +15,7 @@ SAMPLES = 1024  # at 256, the noise of the truth of `fence` is 44 dB
 SMOOTH = 0.03  # a step of the truth's sRGB luminance below this is no edge
 CROPS = {"fence": (0, 60, 240, 135), "leaves": (120, 100, 240, 135)}  # x, y, w, h
 SHOWN = ["dof_layered", "dof"]
-FRAME = 4  # the camera of both scenes moves sideways
+FRAME, REACH = 4, 3  # the camera of both scenes moves sideways; frames before and after that effects read
 MORE = {"2 layers": ["--layers", 2], "4 layers": ["--layers", 4], "deep": ["--deep"]}
 NEIGHBOURS = "one ray a pixel, neighbours"
 
@@ -39,8 +39,8 @@ def rendered(name):
     kinds = {"one ray a pixel": (folder / "capture.json", flat(folder), truth("lens")),
              "antialiased": (mixed / "capture.json", flat(mixed), truth("lens_antialias"))}
     for kind, words in ({NEIGHBOURS: []} | MORE).items():
-        more = WORK / f"{name}_{kind.split()[-1] if kind == NEIGHBOURS else kind.replace(' ', '_')}"
-        frames = f"{FRAME - 1}-{FRAME + 1}" if kind == NEIGHBOURS else FRAME
+        more = WORK / f"{name}_{f'neighbours_{REACH}' if kind == NEIGHBOURS else kind.replace(' ', '_')}"
+        frames = f"{FRAME - REACH}-{FRAME + REACH}" if kind == NEIGHBOURS else FRAME
         if not (more / "capture.json").exists():
             command([AFTERSHADE, "render", ROOT / "scenes" / name, "-o", more, "--frames", frames, "--quiet", *words])
         # Deep samples are averaged over a pixel, as antialiased colour is.
