@@ -55,7 +55,7 @@ TEST(DofEdges, AFocusedEdgeBesideAFarBlurDoesNotLeakIntoIt) {
     constexpr double radius_px = 20;  // gathered from texels of 2 px
     const Image out = blurred(
         [&](int x) {
-            return x < edge                ? Column{wall, kApertureFocusM}
+            return x < edge                 ? Column{wall, kApertureFocusM}
                    : x < left || x >= right ? Column{far_wall, far_wall_m}
                                             : Column{bar, kApertureNearM};
         },
@@ -104,7 +104,8 @@ TEST(DofEdges, ANarrowBlurCoversAsMuchAsItsAperture) {
     }
 }
 
-/// A ball in focus covers two fifths of a column of pixels, and a wall that is a little out of focus the rest.
+/// A ball in focus covers two fifths of a column of pixels, and a wall that is a little out of focus the
+/// rest.
 TEST(DofEdges, AnAntialiasedEdgeInFocusStaysBeforeANarrowBlur) {
     constexpr int edge = 47;
     constexpr float ball = 0.8f, wall = 0.2f, share = 0.4f, wall_m = kApertureFocusM * 1.2f;
@@ -140,7 +141,8 @@ TEST(DofEdges, TextureBesideASilhouetteIsNoMixtureWhereSilhouettesAreSharp) {
     const auto is_bar = [](int x) { return x % 16 >= 8 && x % 16 < 11; };
     const Image out = blurred(
         [&](int x) {
-            return is_bar(x) ? Column{bar, kApertureNearM} : Column{x == stripe_x ? stripe : wall, kApertureFocusM};
+            return is_bar(x) ? Column{bar, kApertureNearM}
+                             : Column{x == stripe_x ? stripe : wall, kApertureFocusM};
         },
         radius_px);
     double opacity = 0;

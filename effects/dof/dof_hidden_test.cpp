@@ -231,7 +231,8 @@ TEST(DofHidden, AWireInFrontOfAnotherShowsWhatLiesBehindBoth) {
     }
 }
 
-/// Behind the bar the stripes stand the other way round, which no chord could guess and one other frame shows.
+/// Behind the bar the stripes stand the other way round, which no chord could guess and one other frame
+/// shows.
 TEST(DofHidden, WhatAFrameUpToThreeAwayShowsShowsThrough) {
     const std::vector<Column> bar(10, Column{0.05f, true});
     Capture now = columns_over_stripes(43, bar), open = columns_over_stripes(13, bar);
@@ -258,9 +259,9 @@ TEST(DofHidden, WhatAFrameUpToThreeAwayShowsShowsThrough) {
     EXPECT_GT(error(-1, "estimate"), 0.2);
 }
 
-/// A wire of one row crosses an edge of the wall, which moves by 2.19 px a frame. The nearest view of the pixel
-/// beside the edge is of the wall's other side. Its own side is in the rows above and below, and in a view
-/// that lies further off.
+/// A wire of one row crosses an edge of the wall, which moves by 2.19 px a frame. The nearest view of the
+/// pixel beside the edge is of the wall's other side. Its own side is in the rows above and below, and in a
+/// view that lies further off.
 TEST(DofHidden, AmongTheViewsOfNeighboursOneLikeTheSurroundingsIsTaken) {
     constexpr int row = 32, column = 48;
     constexpr float light = 0.8f, dark = 0.2f, wire = 0.05f;
@@ -281,11 +282,13 @@ TEST(DofHidden, AmongTheViewsOfNeighboursOneLikeTheSurroundingsIsTaken) {
     };
     std::map<int, Capture> captures;
     FrameInputs frame;
-    for (const int offset : {-3, -2, -1, 0, 1, 2, 3}) frame.set(offset, &(captures[offset] = frame_at(offset)));
+    for (const int offset : {-3, -2, -1, 0, 1, 2, 3})
+        frame.set(offset, &(captures[offset] = frame_at(offset)));
     const Image out = through_neighbours(frame, "neighbours");
     const double opacity = bar_opacity(row, row, row + 1);
     for (int x = column - 8; x <= column + 8; ++x)
-        EXPECT_NEAR(out.at(x, row, 0), opacity * wire + (1 - opacity) * (x + 0.5 < edge ? light : dark), 0.05) << x;
+        EXPECT_NEAR(out.at(x, row, 0), opacity * wire + (1 - opacity) * (x + 0.5 < edge ? light : dark), 0.05)
+            << x;
 }
 
 /// A patch is never brighter than what it continues: a light in focus beside a wire stays as large as it is.

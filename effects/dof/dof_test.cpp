@@ -65,8 +65,8 @@ TEST_P(DofShape, OfALightOfThreePixelsIsTheAperturesWithAllItsEnergy) {
     EXPECT_NEAR(energy, 1, 0.01);
 }
 
-/// The left column of a light of 3 px is half covered, as antialiasing has it: the light begins in the middle of
-/// that column.
+/// The left column of a light of 3 px is half covered, as antialiasing has it: the light begins in the middle
+/// of that column.
 TEST(DofShape, OfALightWithAnAntialiasedRimBeginsWithinTheRimsPixels) {
     constexpr int size = 96, center = size / 2;
     constexpr float intensity = 1000, covered = 0.5f;

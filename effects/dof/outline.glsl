@@ -51,8 +51,12 @@ float gauge(vec2 offset, float coc) {
     return outline;
 }
 
-// Area in px that a light of this CoC radius covers, at least a pixel.
-float spread_area(float radius_px) { return max(open_area * (radius_px * radius_px + 1.0 / (12.0 * aperture.inradius * aperture.inradius)), 1.0); }
+// Sum of cover() over the pixels that a light of this CoC radius reaches, at least one: the aperture's area in px, and what the rim's
+// slope of 1 px adds to it.
+float spread_area(float radius_px) {
+    float slope = 1.0 / (12.0 * aperture.inradius * aperture.inradius);
+    return max(open_area * (radius_px * radius_px + slope), 1.0);
+}
 
 // Coverage of a pixel whose gauge is this by the outline of this radius: 1 inside, half on the outline.
 float cover(float radius_px, float gauge_px) {

@@ -82,7 +82,8 @@ TEST(DofLayered, TakesWhatLiesBehindFromAFrameUpToThreeAway) {
     };
     const double h = kWidth / 2.0 / lens.radius_px;
     const double strip = 2 / std::numbers::pi * (std::asin(h) + h * std::sqrt(1 - h * h));
-    for (const int offset : {-3, -2, -1, 1, 2, 3}) EXPECT_NEAR(middle(offset, "neighbours"), 1 - strip, 0.03) << offset;
+    for (const int offset : {-3, -2, -1, 1, 2, 3})
+        EXPECT_NEAR(middle(offset, "neighbours"), 1 - strip, 0.03) << offset;
     EXPECT_LT(middle(-1, "estimate"), 0.25f);
 }
 

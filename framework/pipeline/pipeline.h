@@ -84,7 +84,7 @@ struct FrameInputs {
     const Capture* previous = nullptr;  ///< of the same shot, where some input wants it
     const Capture* next = nullptr;
     std::map<int, const Capture*> further{};  ///< the like, by offset, where that is not -1 or 1
-    bool begins_shot = false;  ///< a cut: nothing before it counts
+    bool begins_shot = false;                 ///< a cut: nothing before it counts
     int subframe = 0;
     int subframe_count = 1;
     const Capture* centre = nullptr;  ///< of several sub-frames: the one at the middle of the exposure

@@ -150,8 +150,9 @@ TEST_F(RenderOptions, FramesUpToThreeAwayAreReadAsFarAsTheShotAndTheFilesGo) {
                   R"(": { "role": "color", "optional": true, "frame": )" + std::to_string(offset) + " }";
         const std::string value =
             std::string("texelFetch(") + (offset < 0 ? "before_" : "after_") + distance + ", ivec2(0), 0).r";
-        shader += std::string("#ifdef HAS_") + (offset < 0 ? "BEFORE_" : "AFTER_") + distance + "\nsum += " +
-                  std::to_string(int(std::pow(8, offset + 3))) + ".0 * " + value + ";\n#endif\n";
+        shader += std::string("#ifdef HAS_") + (offset < 0 ? "BEFORE_" : "AFTER_") + distance +
+                  "\nsum += " + std::to_string(int(std::pow(8, offset + 3))) + ".0 * " + value +
+                  ";\n#endif\n";
     }
     shader += "out_color = vec4(sum + 512.0 * texelFetch(color, ivec2(0), 0).r); }\n";
     write_effect("around", R"("passes": [ { "name": "main", "shader": "main.frag" } ])", shader);

@@ -29,7 +29,7 @@ struct InputSpec {
     std::string role;
     bool optional = false;
     bool history = false;  ///< last frame's image may be read too, as "<name>.prev"; zero where there is none
-    int frame = 0;         ///< so many captures before (negative) or after, which must be optional: shots end
+    int frame = 0;         ///< of the capture that many frames after; must be optional, for shots end
     int layer = -1;  ///< of a capture with layers, 0 in front, which must be optional; -1: the whole picture
     bool from_capture = false;  ///< the capture's image even where an earlier step makes that role
     /// All must hold, or the input is absent and its image is not read. On parameters alone, of optional

@@ -59,10 +59,10 @@ Block input_block() {
         for (const int offset : {-distance, distance})
             offsets.push_back(grammar::constant(std::to_string(offset)));
     const std::string most = std::to_string(kMostFrameOffset);
-    const Form frame = grammar::shown_as(
-        grammar::any_of(std::move(offsets),
-                        "'frame' is -" + most + " to -1 or 1 to " + most + ": a capture before or after"),
-        "`-" + most + "` to `-1`, `1` to `" + most + "`");
+    const Form frame =
+        grammar::shown_as(grammar::any_of(std::move(offsets), "'frame' is -" + most + " to -1 or 1 to " +
+                                                                  most + ": a capture before or after"),
+                          "`-" + most + "` to `-1`, `1` to `" + most + "`");
     const auto is_optional = std::pair<std::string, Form>{"optional", grammar::constant("true")};
     return {
         .name = "input",
