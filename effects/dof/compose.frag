@@ -37,51 +37,35 @@ Coarse take_half_size(ivec2 p, float coc) {
 // Where a thin thing is lost at half size, its pixels are gathered one by one.
 const float kLeastLikeness = 0.6;
 
-// Whether a blur that is too narrow for half size may reach a pixel of this tile.
-bool has_narrow_blurs(ivec2 tile) {
-    ivec2 last = ivec2(tile_coc_size.xy) - 1;
-    for (int y = max(tile.y - 1, 0); y <= min(tile.y + 1, last.y); ++y)
-        for (int x = max(tile.x - 1, 0); x <= min(tile.x + 1, last.x); ++x) {
-            vec2 range_px = texelFetch(tile_coc, ivec2(x, y), 0).rg;
-            if (range_px.x < kFullSizePx && range_px.y > -kFullSizePx) return true;
-        }
-    return false;
-}
-
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
 #ifdef SILHOUETTES
     Light own = plate_at(p);
 #else
-    Light own = tap_light(p, 0);
+    Light own = tap_light(p);
 #endif
     vec2 center = vec2(p) + 0.5;
     vec4 around_coc = texelFetch(around, p / kTile, 0);
-    float visible_coc = tap_light(p, 0).coc, radius_px = abs(own.coc);
+    float visible_coc = tap_light(p).coc, radius_px = abs(own.coc);
     float reach_px = front_reach_px(around_coc, own.coc, visible_coc);
     bool is_wide = radius_px > kFullSizePx - 1.0, is_reached_far = reach_px > kFullSizePx;
     Coarse coarse = take_half_size(p, own.coc);
     bool is_lost = coarse.likeness < kLeastLikeness;
 
     if (radius_px >= kLeastBlurPx || reach_px >= kLeastBlurPx) prepare_outline_at(center);
-    Back surface = Back(own.color, 1.0);
-    if (radius_px >= kLeastBlurPx && (radius_px < kFullSizePx || is_lost)) {
-        int level = level_for(radius_px, around_coc);
-        surface = gather_back(center / float(1 << level), own, level);
-    }
+    bool is_own = radius_px >= kLeastBlurPx && (radius_px < kFullSizePx || is_lost);
+    bool is_all = reach_px >= kLeastBlurPx && (!is_reached_far || is_lost), is_narrow = is_reached_far && !is_all && texelFetch(lit, p / kTile, 0).g > 0.5;
+    Gathered found = gather(Point(center, own, visible_coc, is_all ? reach_px : is_narrow ? kFullSizePx : kNotAsked,
+                                  is_narrow ? kFullSizePx : widest_radius_px(around_coc), is_narrow ? kNarrow : kAll,
+                                  is_own ? radius_px : kNotAsked), around_coc);
+    Back surface = found.surface;
     if (is_wide && !is_lost) {
         float share = clamp(radius_px - kFullSizePx + 1.0, 0.0, 1.0);
         surface.color = mix(surface.color, coarse.surface.color, share);
         surface.share = mix(surface.share, coarse.surface.share, share);
     }
-    Layer over = kNothing;
-    if (reach_px >= kLeastBlurPx && (!is_reached_far || is_lost)) {
-        int level = level_for(reach_px, around_coc);
-        over = gather_front(center / float(1 << level), own.coc, visible_coc, reach_px, level, kAll);
-    } else if (is_reached_far) {
-        float narrow_reach_px = has_narrow_blurs(p / kTile) ? kFullSizePx : kNoReach;
-        over = both(gather_front(center, own.coc, visible_coc, narrow_reach_px, 0, kNarrow), coarse.over);
-    }
+    Layer over = found.over;
+    if (is_reached_far && !is_all) over = both(over, coarse.over);
     out_color = over.color + surface.color * (1.0 - over.opacity);
     bool is_hidden = visible_coc < own.coc - kClear;
     out_veil = is_hidden ? 1.0 - over.hides : (1.0 - over.opacity) * vec2(1.0, 1.0 - surface.share);

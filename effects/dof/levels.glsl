@@ -1,3 +1,5 @@
+#include "coarse.glsl"
+
 // Up to kFullSizePx the blur is gathered at full size; beyond, at half size from the finest level whose texels are at most
 // kTexels a radius: about pi times its square are fetched. Where all CoC are alike there is no silhouette to be precise about.
 #if QUALITY == QUALITY_FAST
@@ -11,6 +13,7 @@ const float kAlikePx = 2.0;  // difference of CoC radii
 
 // around_coc: the texel of `around`.
 int level_for(float radius_px, vec4 around_coc) {
+    if (!has_coarse_levels()) return 0;
     float texels = around_coc.w - around_coc.x <= kAlikePx ? kEvenTexels : kTexels;
     return clamp(int(ceil(log2(radius_px / texels))), 0, 3);
 }

@@ -1,22 +1,9 @@
-#include "blurred.glsl"
-#include <lens/highlight.glsl>
+#include "edges.glsl"
 
-// Whether the edge of a surface lies within a blur of this tile. A slope, however long, hides nothing.
-bool has_edge_within(ivec2 tile, float radius_px) {
-#ifdef HAS_COC_STEP
-    ivec2 last = ivec2(tile_coc_size.xy) - 1;
-    int range = int(ceil(radius_px / float(kTile)));
-    for (int y = max(tile.y - range, 0); y <= min(tile.y + range, last.y); ++y)
-        for (int x = max(tile.x - range, 0); x <= min(tile.x + range, last.x); ++x)
-            if (is_repaired(texelFetch(coc_step, ivec2(x, y), 0).r)) return true;
-    return false;
-#else
-    return true;
-#endif
-}
-
+// Whether a pixel of the tile lies in front of what an edge within its reach has behind it.
 bool near_tiles(ivec2 tile) {
-    vec2 own = texelFetch(tile_coc, tile, 0).rg;
-    float radius_px = max(-own.x, own.y);
-    return is_blurred(tile) && own.x < texelFetch(around, tile, 0).w - kClear && has_edge_within(tile, radius_px + 1.5);
+    ivec2 corner = tile * kTile / kBlock, last = ivec2(beyond_size.xy) - 1;
+    float behind = kNoEdge;
+    for (int i = 0; i < 4; ++i) behind = max(behind, texelFetch(beyond, min(corner + ivec2(i & 1, i >> 1), last), 0).r);
+    return texelFetch(tile_coc, tile, 0).r + kBehindPx < behind;
 }

@@ -7,6 +7,9 @@ const int kNormals = BLADES % 2 == 0 ? BLADES / 2 : BLADES;
 #if BLADES >= 3
 vec2 edge_normals[kNormals];  // over the inradius
 #endif
+#if BLADES >= 4 && BLADES % 2 == 0
+vec2 edge_slants[kNormals];   // y over x of a normal, and 1 over x
+#endif
 Aperture aperture;
 vec2 rim;          // middle of the lens's rim, in radii of the aperture
 float open_area;   // of the outline within the rim, for a radius of 1
@@ -17,6 +20,10 @@ void prepare_outline_at(vec2 pixel) {
     for (int i = 0; i < kNormals; ++i) {
         float angle = radians(param.rotation) + 2.0 * kPi * float(i) / float(BLADES);
         edge_normals[i] = vec2(cos(angle), sin(angle)) / cos(kPi / float(BLADES));
+#if BLADES >= 4 && BLADES % 2 == 0
+        float x = edge_normals[i].x < 0.0 ? min(edge_normals[i].x, -1e-4) : max(edge_normals[i].x, 1e-4);
+        edge_slants[i] = vec2(edge_normals[i].y, 1.0) / x;
+#endif
     }
 #endif
     rim = vec2(0.0);
@@ -33,7 +40,7 @@ void prepare_outline_at(vec2 pixel) {
 
 // offset: of the lit pixel from the light's own; a light in front of the focus plane is turned by 180 degrees.
 float gauge(vec2 offset, float coc) {
-    if (coc < 0.0) offset = -offset;
+    if (coc < 0.0 && (BLADES % 2 != 0 || CAT_EYE > 0.0)) offset = -offset;
     float distance = length(offset), outline = distance;
 #if BLADES >= 3
     float straight = 0.0;
@@ -61,4 +68,21 @@ float spread_area(float radius_px) {
 // Coverage of a pixel whose gauge is this by the outline of this radius: 1 inside, half on the outline.
 float cover(float radius_px, float gauge_px) {
     return clamp((radius_px - gauge_px) * aperture.inradius + 0.5, 0.0, 1.0);
+}
+
+// A CoC radius as a half, of 64 px; and what rounding adds.
+const float kHalfErrorPx = 0.05;
+
+// Columns, from the middle of an outline of at most this radius, that it may cover in a row this far from its middle.
+vec2 columns(float radius_px, float dy) {
+    float gauge_px = radius_px + 0.5 / aperture.inradius + kHalfErrorPx, across = sqrt(max(gauge_px * gauge_px - dy * dy, 0.0));
+    vec2 range = vec2(-across, across);
+#if BLADES >= 4 && BLADES % 2 == 0
+    if (CURVATURE == 0.0)
+        for (int i = 0; i < kNormals; ++i) {
+            float middle = -edge_slants[i].x * dy, half_width = gauge_px * abs(edge_slants[i].y);
+            range = vec2(max(range.x, middle - half_width), min(range.y, middle + half_width));
+        }
+#endif
+    return range;
 }

@@ -3,6 +3,7 @@
 #include <lens/highlight.glsl>
 #include "taps.glsl"
 #include "known.glsl"
+#include "edges.glsl"
 #ifdef FINDS_HIGHLIGHTS
 #include "shine.glsl"
 #endif
@@ -17,8 +18,57 @@ const float kOneSurface = 2.0;      // difference of CoC radii of ends on one su
 const float kOnePathPx = 0.5;       // and of the pixel whose motion an end has
 const float kOutshines = 8.0;       // light of one end that does not continue behind the other
 const float kUnlike = 0.02;         // relative difference of ends that halves a chord's weight
+const float kFinePx = 7.0;  // of a walk, by the pixel
 const float kThinPx = 4.0;  // CoC radius of what may be thinner than its blur, and then shows what is behind it
 const float kTrustPx = 8.0;  // times the square of the best chord's length, px: how far a neighbour's view may lie to be like it
+
+bool is_outside(vec2 q) { return any(lessThan(q, vec2(0.0))) || any(greaterThanEqual(q, vec2(frame.size))); }
+
+// A walk takes the pixels nearby, and further away texels of coarser levels.
+int level_of(float at_px) { return at_px <= kFinePx || !has_coarse_levels() ? 0 : at_px < 16.0 ? 1 : at_px < 32.0 ? 2 : 3; }
+
+struct Walk {
+    float coc, slope;   // of the last tap that lay behind what is in front of both
+    float distance_px;  // to the first surface that lies behind the pixel's own; negative until one is found
+    bool is_over;
+};
+
+// A step in CoC that continues a slope is not a silhouette.
+void step_on(inout Walk walk, float tap_coc, bool is_outside, float own_coc, float at_px, float stride_px) {
+    bool is_found = !(walk.is_over || is_outside) && tap_coc - (walk.coc + max(walk.slope, 0.0) * stride_px) > kClear && tap_coc > own_coc + kClear;
+    bool is_passed = tap_coc > own_coc - kClear;  // not something in front of both
+    walk.slope = is_passed ? clamp((tap_coc - walk.coc) * (1.0 / stride_px), -1.0, 1.0) : walk.slope;
+    walk.coc = is_passed ? tap_coc : walk.coc;
+    walk.distance_px = is_found ? at_px : walk.distance_px;
+    walk.is_over = walk.is_over || is_outside || is_found;
+}
+
+float coc_near(ivec2 p) { return as_half(texelFetch(coc, p, 0).r); }
+
+struct Walks { Walk a, b; };
+
+// Both ways along a chord at once.
+Walks walk_chord(vec2 center, float own_coc, vec2 direction, float reach_px) {
+    Walk walk = Walk(own_coc, 0.0, -1.0, false);
+    Walks walks = Walks(walk, walk);
+    float fine_px = has_coarse_levels() ? min(reach_px, kFinePx) : reach_px, at_px = 1.0;
+    do {
+        vec2 a = center + at_px * direction, b = center - at_px * direction;
+        step_on(walks.a, coc_near(ivec2(a)), is_outside(a), own_coc, at_px, 1.0);
+        step_on(walks.b, coc_near(ivec2(b)), is_outside(b), own_coc, at_px, 1.0);
+        at_px += 1.0;
+    } while (at_px <= fine_px && !(walks.a.is_over && walks.b.is_over));
+    if (at_px <= reach_px && !(walks.a.is_over && walks.b.is_over)) do {
+        vec2 a = center + at_px * direction, b = center - at_px * direction;
+        int level = level_of(at_px);
+        float stride_px = float(1 << level);
+        Grid grid = grid_of(level);
+        step_on(walks.a, coarse_coc_at(ivec2(a) >> level, grid), is_outside(a), own_coc, at_px, stride_px);
+        step_on(walks.b, coarse_coc_at(ivec2(b) >> level, grid), is_outside(b), own_coc, at_px, stride_px);
+        at_px += stride_px;
+    } while (at_px <= reach_px && !(walks.a.is_over && walks.b.is_over));
+    return walks;
+}
 
 struct End {
     Light light;
@@ -29,40 +79,24 @@ struct End {
     float distance_px;  // negative where nothing was found
 };
 
-// A texel of a coarse level may show a surface whose pixels begin up to 2 * `further` on.
-End end_at(Light light, vec2 q, vec2 further, float distance_px) {
+End end_at(vec2 center, vec2 direction, float distance_px) {
+    int level = level_of(distance_px);
+    vec2 q = center + max(distance_px, 0.0) * direction;
+    Light found = unpack_light(texelFetch(light, clamp(ivec2(q) >> level, ivec2(0), grid_of(level).last), level));
 #ifdef SEES_NEIGHBOURS
-    End end = End(light, vec4(0.0), 0.0, distance_px);
+    End end = End(found, vec4(0.0), 0.0, distance_px);
     ivec2 last = frame.size - 1;
+    // A texel of a coarse level may show a surface whose pixels begin up to two of it further on.
     for (int i = 0; i <= 4 && end.path_weight == 0.0; ++i) {
-        ivec2 p = clamp(ivec2(q + 0.5 * float(i) * further), ivec2(0), last);
-        if (abs(tap_light(p, 0).coc - light.coc) > kOnePathPx) continue;
+        ivec2 p = clamp(ivec2(q + 0.5 * float(i << level) * direction), ivec2(0), last);
+        if (abs(tap_light(p).coc - found.coc) > kOnePathPx) continue;
         end.path = path_at(p);
         end.path_weight = 1.0;
     }
     return end;
 #else
-    return End(light, distance_px);
+    return End(found, distance_px);
 #endif
-}
-
-// Walks away from a pixel to the first surface that lies behind its own. A step in CoC that continues a slope is not a silhouette.
-End walk(vec2 center, Light own, vec2 direction, float reach_px) {
-    float coc = own.coc, slope = 0.0, at_px = 1.0;
-    while (at_px <= reach_px) {
-        int level = at_px < 8.0 ? 0 : at_px < 16.0 ? 1 : at_px < 32.0 ? 2 : 3;
-        float stride_px = float(1 << level);
-        vec2 q = center + at_px * direction;
-        if (any(lessThan(q, vec2(0.0))) || any(greaterThanEqual(q, vec2(frame.size)))) break;
-        Light tap = tap_light(ivec2(q) >> level, level);
-        if (tap.coc - (coc + max(slope, 0.0) * stride_px) > kClear && tap.coc > own.coc + kClear) return end_at(tap, q, stride_px * direction, at_px);
-        if (tap.coc > own.coc - kClear) {  // not something in front of both
-            slope = clamp((tap.coc - coc) / stride_px, -1.0, 1.0);
-            coc = tap.coc;
-        }
-        at_px += stride_px;
-    }
-    return end_at(own, center, vec2(0.0), -1.0);
 }
 
 struct Chord {
@@ -84,7 +118,8 @@ Chord chord_of(Light light, End a, End b, float part, float weight) {
 
 // `is_thin`: only chords whose ends both lie within the reach.
 Chord chord_through(vec2 center, Light own, vec2 direction, float reach_px, bool is_thin) {
-    End a = walk(center, own, direction, reach_px), b = walk(center, own, -direction, reach_px);
+    Walks walks = walk_chord(center, own.coc, direction, reach_px);
+    End a = end_at(center, direction, walks.a.distance_px), b = end_at(center, -direction, walks.b.distance_px);
     bool has_a = a.distance_px > 0.0, has_b = b.distance_px > 0.0;
     if (!has_a && !has_b) return chord_of(own, a, a, 0.0, 0.0);
     if (is_thin && (!has_a || !has_b || a.distance_px + b.distance_px > reach_px)) return chord_of(own, a, a, 0.0, 0.0);
@@ -166,7 +201,7 @@ float highlight_share_of(Known known, ivec2 p) {
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     vec2 center = vec2(p) + 0.5;
-    Light own = tap_light(p, 0);
+    Light own = tap_light(p);
     out_patches = kNoPatch;
 #ifdef FINDS_HIGHLIGHTS
     out_hidden_highlight = vec4(0.0);
@@ -175,14 +210,20 @@ void main() {
     out_seen = 0.0;
 #endif
     float radius_px = abs(own.coc);
-    if (radius_px < kLeastRadiusPx || texelFetch(around, p / kTile, 0).w <= own.coc + kClear) return;
+    if (radius_px < kLeastRadiusPx || texelFetch(beyond, p / kBlock, 0).r <= own.coc + kBehindPx) return;
 
-    Patch patched = patch_behind(center, own, radius_px + 1.5, false);
-    for (int i = 0; i < 2 && patched.is_there && patched.mean.light.coc < -kThinPx; ++i) {
-        Patch next = patch_behind(center, patched.mean.light, -patched.mean.light.coc, true);
+    // What lies behind a thin thing may itself be thin.
+    Patch patched;
+    Light surface = own;
+    float reach_px = radius_px + 1.5;
+    int things = 0;
+    do {
+        Patch next = patch_behind(center, surface, reach_px, things > 0);
+        if (things == 0 || next.is_there) patched = next;
         if (!next.is_there) break;
-        patched = next;
-    }
+        surface = next.mean.light;
+        reach_px = -surface.coc;
+    } while (surface.coc < -kThinPx && ++things <= 2);
 #ifdef KNOWS_LAYERS
     Layers layers = layers_at(p, lens_at_infinity_px());
     // A small light may lie in front of what the chords lead to.

@@ -1,9 +1,11 @@
 #include "plate_at.glsl"
 
-// What plate_at gives, for a texel of a level of `light` that shows `visible`.
-Light plate_tap(ivec2 texel, int level, Light visible) {
-    texel = clamp(texel, ivec2(0), max(frame.size >> level, ivec2(1)) - 1);
-    if (level > 0) return unpack_light(texelFetch(plate_half, min(texel << (level - 1), (frame.size + 1) / 2 - 1), 0));
-    Light patched = unpack_light(texelFetch(plate, texel, 0));
+// What plate_at gives, for a texel that shows `visible`: of level 0, and of a coarse one.
+Light plate_tap(ivec2 texel, Light visible) {
+    Light patched = unpack_light(texelFetch(plate, clamp(texel, ivec2(0), frame.size - 1), 0));
     return is_patch(patched) ? patched : visible;
+}
+Light plate_coarse(ivec2 texel, int level, Grid grid) {
+    texel = clamp(texel, ivec2(0), grid.last) << (level - 1);
+    return unpack_light(texelFetch(plate_half, min(texel, (frame.size + 1) / 2 - 1), 0));
 }

@@ -15,3 +15,6 @@ float front_reach_px(vec4 around_coc, float coc, float visible_coc) {
     float reach_px = front_reach_px(around_coc, coc);
     return visible_coc < coc - kClear ? max(reach_px, max(abs(visible_coc), front_reach_px(around_coc, visible_coc))) : reach_px;
 }
+
+// Of all that reaches a point.
+float widest_radius_px(vec4 around_coc) { return max(-around_coc.x, around_coc.w); }
