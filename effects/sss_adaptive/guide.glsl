@@ -42,15 +42,15 @@ struct Guided {
 };
 
 // `now` is the frame's light, filled by its share. Light before that and shares are averaged apart: of a share that samples
-// made noisy, filled() of each frame would be brighter in the mean.
-Guided guided_light(vec3 now, vec3 share_now, Facet here) {
+// made noisy, filled() of each frame would be brighter in the mean. was_seen: whether the frame before showed this surface.
+Guided guided_light(vec3 now, vec3 share_now, Facet here, bool was_seen) {
     ivec2 q;
     vec3 times;
     bool inside = past_pixel(q);
     float near_now;
     vec4 lit_now = light_around(view_lines(), here, near_now);
     vec4 past = texelFetch(guided_prev, q, 0);
-    bool known = inside && past.a > 0.0 && texelFetch(plan, ivec2(gl_FragCoord.xy), 0).y > 0.0 &&
+    bool known = inside && past.a > 0.0 && was_seen &&
         same_light(lit_now, texelFetch(lit_prev, q, 0), near_now, texelFetch(lit_near_prev, q, 0).r, times);
     // Frames count alike until the newest would count less than its weight.
     float frames = known ? past.a + 1.0 : 1.0;

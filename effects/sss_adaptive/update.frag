@@ -2,6 +2,9 @@
 #include <pass>
 #include <scattering/facet.glsl>
 #include "moments.glsl"
+#if GUIDING
+#include "guide.glsl"
+#endif
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy), q;
@@ -27,4 +30,19 @@ void main() {
 #endif
     vec4 after = updated_history(past, known, drawn.a, value, here.key);
     out_history = here.key == 0u ? vec4(0.0) : followed ? after : unsampled_history(here.key);
+#if GUIDING
+    Guided guided_now = guided_light(drawn.rgb, texelFetch(share, p, 0).rgb, here, planned.y > 0.0);
+#ifdef HAS_BLURRED
+    // What is blurred has no noise: samples that come to it later go on from there.
+    if (texelFetch(sampled, p, 0).r == 0.0) {
+        guided_now.light = vec4(texelFetch(blurred, p, 0).rgb, 1.0 / param.guiding_weight);
+        guided_now.share = vec4(1.0);
+    }
+#endif
+    bool scatters = here.key != 0u;
+    out_guided = scatters ? guided_now.light : vec4(0.0);
+    out_guided_share = scatters ? guided_now.share : vec4(0.0);
+    out_lit = scatters ? guided_now.lit : vec4(0.0);
+    out_lit_near = scatters ? guided_now.lit_near : 0.0;
+#endif
 }

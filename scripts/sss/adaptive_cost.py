@@ -14,7 +14,7 @@ COLUMNS = {"setup": ["scatters", "scattering_tiles", "surface", "plan", "kernel"
                      "sampled_tiles", "row_tiles", "blurred_tiles"],
            "pre-filtering": ["light"],
            "sampling": ["gather", "gather_hybrid", "lit_pixels", "rows", "columns"],
-           "update": ["update", "guide"],
+           "update": ["update"],
            "combine": ["finish"]}
 FIXED = ("`sss_burley`, 64 samples", "sss_burley", {"samples": 64})
 LONG = {"guiding_weight": 0.05}
