@@ -21,7 +21,8 @@ void main() {
     ivec2 last = ivec2(tile_path_size.xy) - 1, p = ivec2(gl_FragCoord.xy);
     int range = int(ceil(param.max_blur / float(kTile)));
     vec4 furthest = texelFetch(tile_path, p, 0), low = texelFetch(tile_low, p, 0), high = texelFetch(tile_high, p, 0);
-    float way = longest_way_px(furthest);
+    float way = longest_way_px(furthest), near_m = texelFetch(tile_depth, p, 0).r;
+    vec4 near = texelFetch(tile_near, p, 0);
     for (int y = max(p.y - range, 0); y <= min(p.y + range, last.y); ++y)
         for (int x = max(p.x - range, 0); x <= min(p.x + range, last.x); ++x) {
             vec4 path = texelFetch(tile_path, ivec2(x, y), 0);
@@ -30,11 +31,19 @@ void main() {
             if (its_way <= gap - 1.0 || !passes_over(offset, path)) continue;
             low = min(low, texelFetch(tile_low, ivec2(x, y), 0));
             high = max(high, texelFetch(tile_high, ivec2(x, y), 0));
+            vec4 its_near = texelFetch(tile_near, ivec2(x, y), 0);
+            float its_m = texelFetch(tile_depth, ivec2(x, y), 0).r;
+            if (its_m < near_m && longest_way_px(its_near) > gap - 1.0 && passes_over(offset, its_near)) {
+                near = its_near;
+                near_m = its_m;
+            }
             furthest = its_way > way ? path : furthest;
             way = max(way, its_way);
         }
     vec4 spread = high - low;
     vec2 apart = (spread.xy + spread.zw * kFurthestTime) * kFurthestTime;
     out_around_path = furthest;
+    out_around_near = near;
+    out_around_depth = near_m;
     out_around_way = vec2(way, max(apart.x, apart.y));
 }

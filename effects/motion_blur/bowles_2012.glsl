@@ -1,12 +1,18 @@
 // What is seen at a point at one time of the exposure is what comes there: a pixel whose path leads to it. One is sought
-// from the pixel's own motion and one from that of the furthest moving thing around; the nearer one hides the other.
+// from the motion of the furthest moving thing around and one from another (other_guess); the nearer one hides the other.
 const float kInFront = 1.03;  // times the depth of what is in front, from which on another thing is behind it
 
 struct Found {
     vec2 from;     // where it is at the frame's own time
     float depth_m;
+    float share;   // of its pixel
     bool comes;    // its path leads to the point, within a px
+    bool is_sure;  // a second look would find the same
 };
+
+bool leads_to(vec2 point, vec2 from, vec4 path, float t) {
+    return distance(vec2(texel_at(from)) + 0.5 + way_px(path, t), point) < 1.0;
+}
 
 // `path`: a first guess of its path. The motion found there is the next guess, and once more: where motion differs from point to
 // point, as on what rolls, the first guess misses its rim.
@@ -14,8 +20,14 @@ Found what_comes(vec2 point, vec4 path, float t) {
     vec4 guess = motion_at(point - way_px(path, t)).path;
     vec2 from = point - way_px(guess, t);
     Motion m = motion_at(from);
-    float miss_px = distance(vec2(texel_at(from)) + 0.5 + way_px(m.path, t), point);
-    return Found(point - way_px(m.path, t), m.depth_m, miss_px < 1.0);
+    vec2 at = point - way_px(m.path, t);
+    return Found(at, m.depth_m, m.share, leads_to(point, from, m.path, t), texel_at(at) == texel_at(from));
+}
+
+// The pixel found may be another thing, such as a light at rest in front of what rolls, and not come.
+Found looked_at_again(Found found, vec2 point, float t) {
+    Motion m = motion_at(found.from);
+    return Found(found.from, m.depth_m, m.share, leads_to(point, found.from, m.path, t), true);
 }
 
 float amount(vec3 rgb) { return rgb.r + rgb.g + rgb.b; }
@@ -43,8 +55,6 @@ vec2 beside_at(vec2 point, Motion own, float t) {
     return kInFront * here_m < own.depth_m ? point : here;
 }
 
-#include "known.glsl"
-
 // What lies behind the thing at the point. `beside` is where the pixel comes from that shows what is behind it now.
 #if BACKGROUND == BACKGROUND_NEIGHBOURS
 #include "neighbours.glsl"
@@ -52,33 +62,63 @@ vec2 beside_at(vec2 point, Motion own, float t) {
 vec4 uncovered(vec2 point, vec2 beside, Motion own, float t, vec4 color_beside) { return color_beside; }
 #endif
 
-vec4 behind_at(vec2 point, vec2 beside, Motion own, float t, vec4 color_beside) {
-#ifdef KNOWS_BEHIND
-    vec4 known = known_behind(point, motion_at(beside).path, t);
-    if (known.a > 0.0) return known;
-#endif
-    return uncovered(point, beside, own, t, color_beside);
+struct Finds {
+    Found near, far;
+};
+
+Finds in_order(Found a, Found b) {
+    if (a.depth_m <= b.depth_m) return Finds(a, b);
+    return Finds(b, a);
 }
 
+#ifdef KNOWS_LAYERS
+#include "layers.glsl"
+#else
+vec4 seen_at(vec2 point, Finds finds, Motion own, float t) {
+    vec2 beside = beside_at(point, own, t);
+    bool is_found = finds.near.comes || finds.far.comes;
+    vec4 seen = light_at(finds.near.comes ? finds.near.from : finds.far.comes ? finds.far.from : beside);
+    return is_found ? seen : uncovered(point, beside, own, t, seen);
+}
+#endif
+
+// The pixel's own path; or that of the nearest thing around, which moves past what is faster and is found from no other path. The
+// pixel is then found from the furthest path, which its own is more like.
+vec4 other_guess(ivec2 tile, Motion own, vec4 furthest) {
+    vec4 near = texelFetch(around_near, tile, 0);
+    bool is_in_front = kInFront * texelFetch(around_depth, tile, 0).r < own.depth_m;
+    return is_in_front && distance(own.path.xy, furthest.xy) < distance(near.xy, furthest.xy) ? near : own.path;
+}
+
+Finds finds_at(vec2 point, vec4 furthest, vec4 other, float t) {
+    return in_order(what_comes(point, furthest, t), what_comes(point, other, t));
+}
+
+// Two loops, because most is found at a first look, and the first one's turns are then shorter: software GL takes all branches.
+const int kTimes = 32;  // in one turn: bits of `open`
 vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
     int taps = tap_count(furthest);
     float shift = time_shift(furthest, taps);
-    vec4 sum = vec4(0.0);
-    int i = 0;
+    vec4 sum = vec4(0.0), other = other_guess(p / kTile, own, furthest);
+    int start = 0;
     do {
-        float t = tap_time(i, shift, taps);
-        Found near = what_comes(point, furthest, t), far = what_comes(point, own.path, t);
-        if (far.depth_m < near.depth_m) {
-            Found swap = near;
-            near = far;
-            far = swap;
+        uint open = 0u;  // times at which a second look is due
+        int i = start, end = min(start + kTimes, taps);
+        do {
+            Finds finds = finds_at(point, furthest, other, tap_time(i, shift, taps));
+            Found seen = finds.near;
+            if (!seen.comes) seen = finds.far;
+            if (seen.comes && seen.is_sure && seen.share == 1.0) sum += light_at(seen.from);
+            else open |= 1u << uint(i - start);
+        } while (++i < end);
+        while (open != 0u) {
+            float t = tap_time(start + findLSB(open), shift, taps);
+            Finds finds = finds_at(point, furthest, other, t);
+            finds = in_order(looked_at_again(finds.near, point, t), looked_at_again(finds.far, point, t));
+            sum += seen_at(point, finds, own, t);
+            open &= open - 1u;
         }
-        // Where nothing comes, the thing here has moved away from what the frame does not show.
-        vec2 beside = beside_at(point, own, t);
-        bool is_found = near.comes || far.comes;
-        vec4 seen = light_at(near.comes ? near.from : far.comes ? far.from : beside);
-        if (!is_found) seen = behind_at(point, beside, own, t, seen);
-        sum += seen;
-    } while (++i < taps);
+        start = end;
+    } while (start < taps);
     return sum / float(taps);
 }

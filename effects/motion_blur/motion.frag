@@ -2,4 +2,4 @@
 #include <pass>
 #include "motion_here.glsl"
 
-void main() { out_motion = motion_here(ivec2(gl_FragCoord.xy)); }
+void main() { out_motion = pack_motion(motion_here(ivec2(gl_FragCoord.xy))); }

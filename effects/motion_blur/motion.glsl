@@ -7,23 +7,38 @@ const int kTile = 16;        // side in px of the tiles, as effect.json declares
 const float kLeastWay = 0.25;  // px; less is no blur
 const float kAlike = 0.5;    // px that paths are apart and still the same motion
 
+// Layers of the capture say which share of a pixel the nearest surface has, and what lies behind it.
+#if defined(HAS_FIRST) && defined(HAS_FIRST_VELOCITY) && defined(HAS_FIRST_DEPTH) && defined(HAS_SECOND) && defined(HAS_SECOND_VELOCITY) && defined(HAS_SECOND_DEPTH)
+#define KNOWS_LAYERS
+#endif
+
 struct Motion {
     vec4 path;
     float depth_m;
     float way_px;  // the longest
+    float share;   // of the pixel
 };
 
 // The numbers of a path whose longest way is max_blur are at most 6 times as large. 16 bits keep them to 1/4000 of max_blur.
 float path_range_px() { return 8.0 * param.max_blur; }
 
+// The share is the lowest 8 bits of the way, which are 1/30000 of it.
 uvec4 pack_motion(Motion m) {
     vec4 part = m.path / path_range_px();
-    return uvec4(packSnorm2x16(part.xy), packSnorm2x16(part.zw), floatBitsToUint(m.depth_m), floatBitsToUint(m.way_px));
+    uint way = floatBitsToUint(m.way_px);
+#ifdef KNOWS_LAYERS
+    way = (way & ~255u) | uint(clamp(m.share, 0.0, 1.0) * 255.0 + 0.5);
+#endif
+    return uvec4(packSnorm2x16(part.xy), packSnorm2x16(part.zw), floatBitsToUint(m.depth_m), way);
 }
 
 Motion unpack_motion(uvec4 texel) {
     vec4 part = vec4(unpackSnorm2x16(texel.x), unpackSnorm2x16(texel.y));
-    return Motion(part * path_range_px(), uintBitsToFloat(texel.z), uintBitsToFloat(texel.w));
+    float share = 1.0;
+#ifdef KNOWS_LAYERS
+    share = float(texel.w & 255u) / 255.0;
+#endif
+    return Motion(part * path_range_px(), uintBitsToFloat(texel.z), uintBitsToFloat(texel.w), share);
 }
 
 // From px per frame since the frame before and to the next; `scale`: a factor of the motion.
@@ -34,5 +49,5 @@ Motion motion_of(vec2 since, vec2 next, float scale, float depth_m) {
         path *= param.max_blur / way;
         way = param.max_blur;
     }
-    return Motion(path, depth_m, way);
+    return Motion(path, depth_m, way, 1.0);
 }

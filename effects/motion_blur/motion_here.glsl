@@ -1,9 +1,8 @@
 #include "motion.glsl"
 
-// Motion of a pixel by the capture, as it is packed.
-uvec4 motion_here(ivec2 p) {
-    vec2 since = finite(texelFetch(velocity, p, 0).xy);
-    vec2 next = since;
+// Motion of a pixel of the picture by the capture.
+Motion flat_motion(ivec2 p) {
+    vec2 since = finite(texelFetch(velocity, p, 0).xy), next = since;
 #if defined(HAS_VELOCITY_NEXT) && CURVE
     next = finite(texelFetch(velocity_next, p, 0).xy);
 #endif
@@ -11,5 +10,38 @@ uvec4 motion_here(ivec2 p) {
 #ifdef HAS_OBJECT_ID
     scale = objects(texelFetch(object_id, p, 0).r).scale;
 #endif
-    return pack_motion(motion_of(since, next, scale, texelFetch(depth, p, 0).r));
+    return motion_of(since, next, scale, texelFetch(depth, p, 0).r);
 }
+
+#ifdef KNOWS_LAYERS
+#include "layer_motion.glsl"
+
+Motion first_motion(ivec2 p) {
+    float scale = 1.0;
+#ifdef HAS_FIRST_OBJECT_ID
+    scale = objects(texelFetch(first_object_id, p, 0).r).scale;
+#endif
+#if defined(HAS_FIRST_VELOCITY_NEXT) && CURVE
+    return layer_motion(first, first_velocity, first_velocity_next, first_depth, scale, p);
+#else
+    return layer_motion(first, first_velocity, first_velocity, first_depth, scale, p);
+#endif
+}
+
+bool is_alike(vec4 path, vec4 other) {
+    vec4 apart = abs(path - other);
+    vec2 apart_px = (apart.xy + apart.zw * kFurthestTime) * kFurthestTime;
+    return max(apart_px.x, apart_px.y) <= kAlike;
+}
+
+const float kWholePixel = 0.999;
+
+// Where several surfaces share the pixel, that of the nearest one. Surfaces that move alike are one.
+Motion motion_here(ivec2 p) {
+    Motion whole = flat_motion(p), front = first_motion(p), behind = second_motion(p);
+    bool is_shared = front.share > 0.0 && front.share < kWholePixel && behind.share > 0.0;
+    return is_shared && !is_alike(front.path, behind.path) ? front : whole;
+}
+#else
+Motion motion_here(ivec2 p) { return flat_motion(p); }
+#endif

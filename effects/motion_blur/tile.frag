@@ -12,6 +12,9 @@ bool is_at_rest(ivec2 corner, ivec2 last) {
 #if defined(HAS_VELOCITY_NEXT) && CURVE
             most = max(most, abs(finite(texelFetch(velocity_next, p, 0).xy)));
 #endif
+#ifdef KNOWS_LAYERS
+            most = max(most, abs(finite(texelFetch(first_velocity, p, 0).xy)));
+#endif
         }
     return most == vec2(0.0);
 }
@@ -20,16 +23,29 @@ void main() {
     ivec2 last = frame.size - 1, corner = kTile * ivec2(gl_FragCoord.xy);
     int side = is_at_rest(corner, last) ? 0 : kTile;
     vec4 furthest = vec4(0.0), low = vec4(1e30), high = vec4(-1e30);
-    float way = -1.0;
+    float way = -1.0, near_m = 3e38;
+    vec4 near = vec4(0.0);
     for (int y = 0; y < side; ++y)
         for (int x = 0; x < side; ++x) {
-            Motion m = unpack_motion(motion_here(min(corner + ivec2(x, y), last)));
+            ivec2 p = min(corner + ivec2(x, y), last);
+            Motion m = unpack_motion(pack_motion(motion_here(p)));
             low = min(low, m.path);
             high = max(high, m.path);
+#ifdef KNOWS_LAYERS
+            if (m.share < 1.0) {
+                vec4 behind = second_motion(p).path;
+                low = min(low, behind);
+                high = max(high, behind);
+            }
+#endif
+            near = m.depth_m < near_m ? m.path : near;
+            near_m = min(near_m, m.depth_m);
             furthest = m.way_px > way ? m.path : furthest;
             way = max(way, m.way_px);
         }
     out_tile_path = furthest;
+    out_tile_near = near;
+    out_tile_depth = near_m;
     out_tile_low = side > 0 ? low : vec4(0.0);
     out_tile_high = side > 0 ? high : vec4(0.0);
 }

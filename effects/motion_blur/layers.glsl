@@ -1,0 +1,57 @@
+// With layers of the capture, what comes from them is composited, each by its share of its pixel.
+const float kOneSurface = 1.03;  // times the depth of a find, within which another at the same place is the same surface
+
+// What is seen so far of a time.
+struct Light {
+    vec4 sum;    // premultiplied
+    float left;  // of what lies behind
+};
+
+void put_behind(inout Light light, vec4 color, float share) {
+    light.sum += light.left * color;
+    light.left *= 1.0 - share;
+}
+
+bool is_same(Found a, Found b) {
+    float nearer_m = min(a.depth_m, b.depth_m), farther_m = max(a.depth_m, b.depth_m);
+    return a.comes && b.comes && distance(a.from, b.from) < 1.0 && farther_m <= kOneSurface * nearer_m;
+}
+
+Motion motion_behind(usampler2D image, vec2 point) { return unpack_motion(texelFetch(image, texel_at(point), 0)); }
+
+// What comes to the point in a layer behind.
+Found comes_behind(usampler2D image, vec2 point, vec4 path, float t) {
+    Motion guess = motion_behind(image, point - way_px(path, t));
+    vec2 from = point - way_px(guess.share > 0.0 ? guess.path : path, t);
+    Motion m = motion_behind(image, from);
+    vec2 middle = vec2(texel_at(from)) + 0.5;
+    float miss_px = distance(middle + way_px(m.path, t), point);
+    return Found(middle, m.depth_m, m.share, m.share > 0.0 && miss_px < 1.0, true);
+}
+
+void put(inout Light light, Found found) {
+    if (!found.comes) return;
+    put_behind(light, found.share < 1.0 ? texelFetch(first, texel_at(found.from), 0) : light_at(found.from), found.share);
+}
+
+// Whether the layer shows something there that is not among the finds already.
+bool put_hidden(inout Light light, Found found, sampler2D layer, Finds finds) {
+    if (!found.comes) return false;
+    if (!is_same(found, finds.near) && !is_same(found, finds.far)) put_behind(light, texelFetch(layer, texel_at(found.from), 0), found.share);
+    return true;
+}
+
+vec4 seen_at(vec2 point, Finds finds, Motion own, float t) {
+    Light light = Light(vec4(0.0), 1.0);
+    put(light, finds.near);
+    if (!is_same(finds.near, finds.far)) put(light, finds.far);
+    vec2 beside = beside_at(point, own, t);
+    vec4 path = motion_at(beside).path;
+    bool is_known = put_hidden(light, comes_behind(second_motion, point, path, t), second, finds);
+#ifdef HAS_THIRD_MOTION
+    bool is_deeper = put_hidden(light, comes_behind(third_motion, point, path, t), third, finds);
+    is_known = is_known || is_deeper;
+#endif
+    if (!is_known) put_behind(light, uncovered(point, beside, own, t, light_at(beside)), 1.0);
+    return light.sum;
+}
