@@ -1,7 +1,6 @@
 #version 450 core
 #include <pass>
 #include <shutter/random_phase.glsl>
-#include <behind.glsl>
 #include "path.glsl"
 
 // Within which a guess and the better one that it led to are one place, px.
@@ -26,32 +25,60 @@ Guess guess(Moment moment, Sight sight, float sought, vec2 here) {
     return Guess(better, found, found >= 0.0 && distance(better, at) < kAgree_px);
 }
 
-#if defined(HAS_SECOND) && defined(HAS_SECOND_DEPTH)
-// Of the capture's second layer, sought first at a surface beside it; alpha 0 where the layer shows nothing.
-vec4 known_behind(Moment moment, Sight sight, float sought, vec2 here) {
-    ivec2 texel = texel_at(here + offset_at(moment, sight, max(sought, 0.0)));
-    float found = inverse_depth(texelFetch(second_depth, texel, 0).r);
-    texel = texel_at(here + offset_at(moment, sight, max(found, 0.0)));
-    return covering(texelFetch(second, texel, 0));
+struct Guesses {
+    Guess back, front;
+    bool is_front;  // in front of the other
+};
+
+Guesses guesses_at(Moment moment, Sight sight, float own, float nearest, vec2 here) {
+    Guess back = guess(moment, sight, own, here), front = guess(moment, sight, nearest, here);
+    return Guesses(back, front, front.agrees && (!back.agrees || front.found > back.found));
 }
-#endif
 
 // Of what lies at the pixel's own depth and what may come over it, the nearest that agrees. Where neither does, what was hidden
-// comes out (`known`, where the capture has it); what is known of it from one layer is the farther surface beside it.
-ivec2 visible(Moment moment, Sight sight, float own, float nearest, vec2 here, out vec4 known) {
-    known = vec4(0.0);
-    Guess back = guess(moment, sight, own, here), front = guess(moment, sight, nearest, here);
-    if (front.agrees && (!back.agrees || front.found > back.found)) return texel_at(here + front.better);
+// comes out; what is known of it from one layer is the farther surface beside it.
+ivec2 visible(Guesses guesses, Moment moment, Sight sight, float own, vec2 here) {
+    Guess back = guesses.back;
+    if (guesses.is_front) return texel_at(here + guesses.front.better);
     ivec2 texel = texel_at(here + back.better);
     if (back.agrees) return texel;
-#if defined(HAS_SECOND) && defined(HAS_SECOND_DEPTH)
-    known = known_behind(moment, sight, back.found, here);
-#endif
     float beyond = texelFetch(surface, texel, 0).r;
     vec2 best = offset_at(moment, sight, max(beyond, 0.0));
     bool sound = beyond >= 0.0 && back.found >= 0.0 && (beyond < back.found || distance(best, back.better) < kAgree_px);
     return sound ? texel : texel_at(here + offset_at(moment, sight, own));
 }
+#endif
+
+struct Gathered {
+    vec4 sum;
+    float count;
+};
+
+void add(inout Gathered gathered, ivec2 texel) {
+    if (texelFetch(surface, texel, 0).r < 0.0) return;
+    gathered.sum += texelFetch(color, texel, 0);
+    gathered.count += 1.0;
+}
+
+// Where a pixel looks, and when.
+struct Gather {
+    Motion motion;
+    Sight sight;
+    vec2 span;
+    float phase;   // of the first moment, in moments
+    vec2 across;
+};
+
+Moment moment_of(Gather g, int i) {
+    float t = mix(g.span.x, g.span.y, (float(i) + g.phase) / float(param.samples));
+    return moment_at(g.motion, g.sight, g.span, t);
+}
+
+vec2 here_of(Gather g, int i) { return g.sight.px + g.across * (fract(0.5 + 0.618034 * float(i)) - 0.5); }
+
+#if OCCLUSION && defined(HAS_SECOND) && defined(HAS_SECOND_DEPTH)
+#define KNOWS_LAYERS
+#include "layers.glsl"
 #endif
 
 void main() {
@@ -73,26 +100,20 @@ void main() {
     float nearest = max(texelFetch(near, p / kTile, 0).r, own);
 #endif
 
-    vec4 sum = vec4(0.0);
-    float count = 0.0;
-    for (int i = 0; i < param.samples; ++i) {
-        float t = mix(span.x, span.y, (float(i) + phase) / float(param.samples));
-        Moment moment = moment_at(motion, sight, span, t);
-        vec2 here = sight.px + across * (fract(0.5 + 0.618034 * float(i)) - 0.5);
-#if OCCLUSION
-        vec4 known;
-        ivec2 texel = visible(moment, sight, own, nearest, here, known);
-        if (known.a > 0.0) {
-            sum += known;
-            count += 1.0;
-            continue;
-        }
+    Gathered gathered = Gathered(vec4(0.0), 0.0);
+    Gather gather = Gather(motion, sight, span, phase, across);
+#ifdef KNOWS_LAYERS
+    add_layers(gathered, gather, own, nearest);
 #else
-        ivec2 texel = texel_at(here + offset_at(moment, sight, own));
+    for (int i = 0; i < param.samples; ++i) {
+        vec2 here = here_of(gather, i);
+#if OCCLUSION
+        Moment moment = moment_of(gather, i);
+        add(gathered, visible(guesses_at(moment, sight, own, nearest, here), moment, sight, own, here));
+#else
+        add(gathered, texel_at(here + offset_at(moment_of(gather, i), sight, own)));
 #endif
-        if (texelFetch(surface, texel, 0).r < 0.0) continue;
-        sum += texelFetch(color, texel, 0);
-        count += 1.0;
     }
-    if (count > 0.0) out_color = sum / count;
+#endif
+    if (gathered.count > 0.0) out_color = gathered.sum / gathered.count;
 }

@@ -5,14 +5,17 @@
 
 #ifdef HAS_OUT_THIRD_MOTION
 Motion third_motion(ivec2 p) {
-    float scale = 1.0;
+    LayerPixel pixel = LayerPixel(1.0, 0.0);
 #ifdef HAS_THIRD_OBJECT_ID
-    scale = objects(texelFetch(third_object_id, p, 0).r).scale;
+    pixel.scale = objects(texelFetch(third_object_id, p, 0).r).scale;
+#endif
+#ifdef HAS_THIRD_DEPTH
+    pixel.depth_m = texelFetch(third_depth, p, 0).r;
 #endif
 #if defined(HAS_THIRD_VELOCITY_NEXT) && CURVE
-    return layer_motion(third, third_velocity, third_velocity_next, third_depth, scale, p);
+    return layer_motion(third, third_velocity, third_velocity_next, pixel, p);
 #else
-    return layer_motion(third, third_velocity, third_velocity, third_depth, scale, p);
+    return layer_motion(third, third_velocity, third_velocity, pixel, p);
 #endif
 }
 #endif

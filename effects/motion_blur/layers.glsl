@@ -29,16 +29,22 @@ Found comes_behind(usampler2D image, vec2 point, vec4 path, float t) {
     return Found(middle, m.depth_m, m.share, m.share > 0.0 && miss_px < 1.0, true);
 }
 
-void put(inout Light light, Found found) {
-    if (!found.comes) return;
-    put_behind(light, found.share < 1.0 ? texelFetch(first, texel_at(found.from), 0) : light_at(found.from), found.share);
+vec4 color_of(Found found) {
+#ifdef SHARES_PIXELS
+    if (found.share < 1.0) return texelFetch(first, texel_at(found.from), 0);
+#endif
+    return light_at(found.from);
 }
 
-// Whether the layer shows something there that is not among the finds already.
+void put(inout Light light, Found found) {
+    if (found.comes) put_behind(light, color_of(found), found.share);
+}
+
+// Whether the layer shows something there, which may be one of the finds already.
 bool put_hidden(inout Light light, Found found, sampler2D layer, Finds finds) {
-    if (!found.comes) return false;
-    if (!is_same(found, finds.near) && !is_same(found, finds.far)) put_behind(light, texelFetch(layer, texel_at(found.from), 0), found.share);
-    return true;
+    bool is_new = found.comes && !is_same(found, finds.near) && !is_same(found, finds.far);
+    if (is_new) put_behind(light, texelFetch(layer, texel_at(found.from), 0), found.share);
+    return found.comes;
 }
 
 vec4 seen_at(vec2 point, Finds finds, Motion own, float t) {

@@ -7,9 +7,12 @@ const int kTile = 16;        // side in px of the tiles, as effect.json declares
 const float kLeastWay = 0.25;  // px; less is no blur
 const float kAlike = 0.5;    // px that paths are apart and still the same motion
 
-// Layers of the capture say which share of a pixel the nearest surface has, and what lies behind it.
-#if defined(HAS_FIRST) && defined(HAS_FIRST_VELOCITY) && defined(HAS_FIRST_DEPTH) && defined(HAS_SECOND) && defined(HAS_SECOND_VELOCITY) && defined(HAS_SECOND_DEPTH)
+// What lies behind is in layers of the capture, and which share of a pixel the nearest surface has.
+#if defined(HAS_SECOND) && defined(HAS_SECOND_VELOCITY)
 #define KNOWS_LAYERS
+#if defined(HAS_FIRST) && defined(HAS_FIRST_VELOCITY) && defined(HAS_FIRST_DEPTH)
+#define SHARES_PIXELS
+#endif
 #endif
 
 struct Motion {

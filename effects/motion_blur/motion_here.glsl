@@ -13,18 +13,18 @@ Motion flat_motion(ivec2 p) {
     return motion_of(since, next, scale, texelFetch(depth, p, 0).r);
 }
 
-#ifdef KNOWS_LAYERS
+#ifdef SHARES_PIXELS
 #include "layer_motion.glsl"
 
 Motion first_motion(ivec2 p) {
-    float scale = 1.0;
+    LayerPixel pixel = LayerPixel(1.0, texelFetch(first_depth, p, 0).r);
 #ifdef HAS_FIRST_OBJECT_ID
-    scale = objects(texelFetch(first_object_id, p, 0).r).scale;
+    pixel.scale = objects(texelFetch(first_object_id, p, 0).r).scale;
 #endif
 #if defined(HAS_FIRST_VELOCITY_NEXT) && CURVE
-    return layer_motion(first, first_velocity, first_velocity_next, first_depth, scale, p);
+    return layer_motion(first, first_velocity, first_velocity_next, pixel, p);
 #else
-    return layer_motion(first, first_velocity, first_velocity, first_depth, scale, p);
+    return layer_motion(first, first_velocity, first_velocity, pixel, p);
 #endif
 }
 

@@ -12,7 +12,7 @@ bool is_at_rest(ivec2 corner, ivec2 last) {
 #if defined(HAS_VELOCITY_NEXT) && CURVE
             most = max(most, abs(finite(texelFetch(velocity_next, p, 0).xy)));
 #endif
-#ifdef KNOWS_LAYERS
+#ifdef SHARES_PIXELS
             most = max(most, abs(finite(texelFetch(first_velocity, p, 0).xy)));
 #endif
         }
@@ -31,7 +31,7 @@ void main() {
             Motion m = unpack_motion(pack_motion(motion_here(p)));
             low = min(low, m.path);
             high = max(high, m.path);
-#ifdef KNOWS_LAYERS
+#ifdef SHARES_PIXELS
             if (m.share < 1.0) {
                 vec4 behind = second_motion(p).path;
                 low = min(low, behind);
