@@ -129,6 +129,56 @@ TEST(CameraMotionBlur, ShowsWhatTheSecondLayerHasOfTheUncovered) {
     EXPECT_GT(known, decibels(scene, "").second + 0.5) << known;
 }
 
+/// Floors seen at a grazing angle are not uncovered: what lies behind them must not show.
+TEST(CameraMotionBlur, IsNotFartherFromTheShutterWithASecondLayer) {
+    const scene::Scene hall = scene::shipped_scene("camera_checker");
+    const double one = decibels(hall, "").second, two = decibels(hall, "", 2).second;
+    EXPECT_GE(two, one - 0.05) << one;
+}
+
+/// A near strip before a wall, both of one light, where the strip has `share` of the pixels at its edges: the
+/// layers say so, and the depth of the picture is the wall's.
+Capture strip_before_wall(const CameraPose& pose, int left, int right, float share) {
+    Capture capture = wall(pose, 6, [](glm::dvec2) { return 0.2; });
+    for (int k = 0; k < 2; ++k) {
+        capture.images[layer_role(k, "color")] = Image(kWidth, kHeight, 4);
+        capture.images[layer_role(k, "depth")] = Image(kWidth, kHeight, 1);
+    }
+    const auto put = [&](int layer, int x, int y, float light, float alpha, float depth_m) {
+        for (int c = 0; c < 3; ++c) capture.images[layer_role(layer, "color")].at(x, y, c) = alpha * light;
+        capture.images[layer_role(layer, "color")].at(x, y, 3) = alpha;
+        capture.images[layer_role(layer, "depth")].at(x, y, 0) = depth_m;
+    };
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            const bool is_strip = x >= left && x <= right;
+            const float alpha = x == left || x == right ? share : 1.0f;
+            put(0, x, y, is_strip ? 0.9f : 0.2f, is_strip ? alpha : 1.0f, is_strip ? 3.0f : 6.0f);
+            put(1, x, y, 0.2f, is_strip ? 1.0f : 0.0f, is_strip ? 6.0f : std::numeric_limits<float>::infinity());
+            if (!is_strip) continue;
+            for (int c = 0; c < 3; ++c) capture.images["color"].at(x, y, c) = 0.9f * alpha + 0.2f * (1 - alpha);
+            if (alpha > 0.5f) capture.images["depth"].at(x, y, 0) = 3;
+        }
+    return capture;
+}
+
+TEST(CameraMotionBlur, MovesWhatHasTwoFifthsOfAPixelByTwoFifths) {
+    const int left = 40, right = 54;
+    const double speed_px = 16;
+    const Image out = blurred(R"("samples": 64, "jitter": 0)",
+                              strip_before_wall(before_moving_by(speed_px), left, right, 0.4f),
+                              strip_before_wall({}, left, right, 0.4f));
+    for (int x = 30; x < 66; ++x) {
+        double covered = 0;
+        for (int i = 0; i < 256; ++i) {
+            const double shift = 0.5 * speed_px * ((i + 0.5) / 256 - 0.5);
+            const double from = std::max(left + 0.6 + shift, double(x));
+            covered += std::max(std::min(right + 0.4 + shift, x + 1.0) - from, 0.0) / 256;
+        }
+        EXPECT_NEAR(out.at(x, 27, 0), 0.2 + 0.7 * covered, 0.04) << x;
+    }
+}
+
 TEST(CameraMotionBlur, OfADepthAloneIsTheMeanAlongTheCamerasVelocity) {
     const CameraPose before = before_moving_by(13);
     const Image out = blurred_wall(R"("samples": 64)", before, {}, 3, waves);

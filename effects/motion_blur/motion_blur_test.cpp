@@ -160,6 +160,37 @@ TEST(MotionBlur, DoesNotDragALightAtRestAlongWhatMovesBehindIt) {
     });
 }
 
+/// The same before a plane that turns, where the place that a path leads back to may be the light's.
+TEST(MotionBlur, DoesNotScatterALightAtRestOverWhatTurnsBehindIt) {
+    Capture capture = stripes(96, 96);
+    each_pixel(capture.images["color"], [&](int x, int y) {
+        const double turn_rad = 0.8, from_x = x + 0.5 - 48, from_y = y + 0.5 - 60;  // a frame; of the middle
+        const auto way = [&](double angle, double u, double v) {
+            return float(u * std::cos(angle) - v * std::sin(angle) - u);
+        };
+        capture.images["velocity"].at(x, y, 0) = -way(-turn_rad, from_x, from_y);
+        capture.images["velocity"].at(x, y, 1) = -way(-turn_rad, from_y, -from_x);
+        capture.images["velocity_next"].at(x, y, 0) = way(turn_rad, from_x, from_y);
+        capture.images["velocity_next"].at(x, y, 1) = way(turn_rad, from_y, -from_x);
+    });
+    const auto is_light = [](int x, int y) { return x >= 47 && x < 50 && y >= 39 && y < 41; };
+    each_pixel(capture.images["color"], [&](int x, int y) {
+        if (!is_light(x, y)) return;
+        for (int c = 0; c < 3; ++c) capture.images["color"].at(x, y, c) = 50;
+        capture.images["depth"].at(x, y, 0) = 4;
+        set_velocity(capture, x, y, 0, 0);
+    });
+    const Image out = blur(capture);
+    each_pixel(out, [&](int x, int y) {
+        const bool is_beside = x >= 46 && x < 51 && y >= 38 && y < 42;
+        if (is_light(x, y)) {
+            EXPECT_NEAR(out.at(x, y, 0), 50, 0.5) << x << " " << y;
+        } else if (!is_beside) {
+            EXPECT_LE(out.at(x, y, 0), 1) << x << " " << y;
+        }
+    });
+}
+
 TEST(MotionBlur, OfAPictureThatMovesAsOneIsABoxAlongItsWay) {
     const int speed_px =
         20;  // 10 px while the shutter is open: as many samples, at the middles of pixels' tenths
@@ -210,6 +241,30 @@ TEST(MotionBlur, KeepsAForegroundAtRestBeforeAMovingBackgroundSharp) {
     }
     EXPECT_LT(worst, 0.01);
     EXPECT_GT(moved, 0.1);
+}
+
+/// Mean over the exposure of the part of pixel `x` that lies between two edges, which move by `way_px`.
+double coverage(int x, double left, double right, double way_px) {
+    constexpr int times = 256;
+    double sum = 0;
+    for (int i = 0; i < times; ++i) {
+        const double shift = way_px * ((i + 0.5) / times - 0.5);
+        sum += std::max(std::min(right + shift, x + 1.0) - std::max(left + shift, double(x)), 0.0);
+    }
+    return sum / times;
+}
+
+TEST(MotionBlur, SpreadsASlowThingOverTheFasterBackgroundBesideIt) {
+    Capture capture = pillar_before_moving_stripes(-48);
+    each_pixel(capture.images["color"], [&](int x, int y) {
+        if (x >= 60 && x < 100) return set_velocity(capture, x, y, 24, 0);
+        for (int c = 0; c < 3; ++c) capture.images["color"].at(x, y, c) = 0.1f;
+    });
+    const Image blurred = blur(capture);
+    for (int x = 40; x < 120; ++x) {
+        const double covered = coverage(x, 60, 100, 24 * kExposure);
+        EXPECT_NEAR(blurred.at(x, 24, 0), 0.1 + 0.8 * covered, 0.05) << x;
+    }
 }
 
 TEST(MotionBlur, OpensAtTheFramesTimeOrClosesThen) {
@@ -299,6 +354,96 @@ TEST(MotionBlur, ShowsWhatTheSecondLayerHasOfTheUncovered) {
     const double known = error_of_box_over_disc(blur(capture));
     EXPECT_LT(known, 0.02);
     EXPECT_GT(guessed, 2 * known);
+}
+
+/// Columns of a capture with layers; the nearest surface first. The flat roles are those of the largest share.
+struct LayerColumn {
+    float light, share, depth_m, velocity_px;  ///< share of what the layers in front leave
+};
+
+template <typename ColumnAt>
+Capture layered(int width, int layers, ColumnAt column_at) {
+    constexpr int height = 48;
+    Capture capture = make_capture({.width = width, .height = height, .background_depth_m = 5});
+    for (int k = 0; k < layers; ++k) {
+        capture.images[layer_role(k, "color")] = Image(width, height, 4);
+        capture.images[layer_role(k, "depth")] = Image(width, height, 1);
+        for (const char* role : {"velocity", "velocity_next"})
+            capture.images[layer_role(k, role)] = Image(width, height, 2);
+    }
+    each_pixel(capture.images["color"], [&](int x, int y) {
+        float left = 1, largest = 0, light = 0;
+        for (int k = 0; k < layers; ++k) {
+            const LayerColumn column = column_at(k, x);
+            for (int c = 0; c < 3; ++c)
+                capture.images[layer_role(k, "color")].at(x, y, c) = column.light * column.share;
+            capture.images[layer_role(k, "color")].at(x, y, 3) = column.share;
+            capture.images[layer_role(k, "depth")].at(x, y, 0) = column.depth_m;
+            for (const char* role : {"velocity", "velocity_next"})
+                capture.images[layer_role(k, role)].at(x, y, 0) = column.velocity_px;
+            light += left * column.share * column.light;
+            if (left * column.share > largest) {
+                largest = left * column.share;
+                capture.images["depth"].at(x, y, 0) = column.depth_m;
+                set_velocity(capture, x, y, column.velocity_px, 0);
+            }
+            left *= 1 - column.share;
+        }
+        for (int c = 0; c < 3; ++c) capture.images["color"].at(x, y, c) = light;
+    });
+    return capture;
+}
+
+constexpr LayerColumn kNothing{0, 0, std::numeric_limits<float>::infinity(), 0};
+
+TEST(MotionBlur, MovesWhatHasTwoFifthsOfAPixelByTwoFifths) {
+    constexpr float share = 0.4f;
+    const Capture capture = layered(160, 2, [](int layer, int x) {
+        const LayerColumn wall{0.2f, 1, 5, 0};
+        const bool is_edge = x == 70 || x == 90, is_box = x >= 70 && x <= 90;
+        if (layer == 0) return is_box ? LayerColumn{0.9f, is_edge ? share : 1.0f, 2, 24} : wall;
+        return is_box ? wall : kNothing;
+    });
+    const Image blurred = blur(capture);
+    for (int x = 55; x < 105; ++x) {
+        const double covered = coverage(x, 71 - double(share), 90 + double(share), 24 * kExposure);
+        EXPECT_NEAR(blurred.at(x, 24, 0), 0.2 + 0.7 * covered, 0.03) << x;
+    }
+}
+
+TEST(MotionBlur, LeavesAPixelOfTwoSurfacesAtRestAlone) {
+    Capture capture = layered(160, 2, [](int layer, int x) {
+        const LayerColumn wall{0.2f, 1, 5, 0};
+        if (layer == 0) return x == 90 ? LayerColumn{0.9f, 0.4f, 2, 0} : x < 80 ? LayerColumn{0.5f, 1, 3, 20} : wall;
+        return x == 90 ? wall : kNothing;
+    });
+    const Image blurred = blur(capture);
+    EXPECT_NEAR(blurred.at(90, 24, 0), 0.4 * 0.9 + 0.6 * 0.2, 1e-5);
+    EXPECT_NEAR(blurred.at(91, 24, 0), 0.2, 1e-5);
+    EXPECT_LT(blurred.at(78, 24, 0), 0.49);
+}
+
+/// Two things, one behind the other, leave the same place, the nearer one faster.
+TEST(MotionBlur, ShowsWhatTheThirdLayerHasBehindTwoThingsThatMove) {
+    const auto wall_light = [](int x) { return x >= 60 && x < 70 ? 1.0f : 0.1f; };
+    const auto column = [&](int layer, int x) {
+        const LayerColumn wall{wall_light(x), 1, 5, 0};
+        const bool is_covered = x >= 60 && x < 84;
+        if (!is_covered) return layer == 0 ? wall : kNothing;
+        return layer == 0 ? LayerColumn{0, 1, 2, 32} : layer == 1 ? LayerColumn{0.5f, 1, 3, 16} : wall;
+    };
+    const Image blurred = blur(layered(160, 3, column));
+    double error = 0;
+    for (int x = 50; x < 84; ++x) {
+        double expected = 0;
+        for (int i = 0; i < 256; ++i) {
+            const double t = (i + 0.5) / 256 - 0.5, at = x + 0.5;
+            const auto covers = [&](double way_px) { return at >= 60 + way_px * t && at < 84 + way_px * t; };
+            expected += (covers(16) ? 0 : covers(8) ? 0.5 : double(wall_light(x))) / 256;
+        }
+        error += std::abs(blurred.at(x, 24, 0) - expected) / 34;
+    }
+    EXPECT_LT(error, 0.02);
 }
 
 // ---- hostile input ----
