@@ -43,16 +43,22 @@ vec4 light_at(vec2 point) {
     return max(own, others) > kOutshines * min(own, others) ? nearest : mixed;
 }
 
-// Where a pixel lies that shows what the thing at the point hides: from where it comes, or on its other side, if a light is seen
-// there that is none here. What stands in front of the thing is not behind it.
-vec2 beside_at(vec2 point, Motion own, float t) {
+bool outshines(vec2 place, vec2 other) {
     const float kOutshines = 4.0;
-    vec2 here = point - way_px(own.path, t), there = point - way_px(own.path, -t);
+    return amount(color_at(place).rgb) > kOutshines * amount(color_at(other).rgb);
+}
+
+// Where a pixel lies that shows what the thing at the point hides: from where it comes, or on its other side. What stands in front of
+// the thing is not behind it, and a light that is seen on one side, or at the very edge, does not go on behind the thing.
+vec2 beside_at(vec2 point, Motion own, float t) {
+    const float kBeyondPx = 6.0;
+    vec2 way = way_px(own.path, t), here = point - way, there = point - way_px(own.path, -t);
     float here_m = motion_at(here).depth_m, there_m = motion_at(there).depth_m, behind_m = kInFront * own.depth_m;
-    if (here_m > behind_m && there_m > behind_m)
-        return amount(color_at(here).rgb) > kOutshines * amount(color_at(there).rgb) ? there : here;
-    if (here_m > behind_m || there_m > behind_m) return here_m > there_m ? here : there;
-    return kInFront * here_m < own.depth_m ? point : here;
+    if (here_m <= behind_m && there_m <= behind_m) return kInFront * here_m < own.depth_m || outshines(here, point) ? point : here;
+    bool is_there = there_m > here_m;
+    if (here_m > behind_m && there_m > behind_m) is_there = outshines(here, there);
+    vec2 place = is_there ? there : here, beyond = place + (is_there ? way : -way) * kBeyondPx / max(length(way), 1e-3);
+    return motion_at(beyond).depth_m > behind_m && outshines(place, beyond) ? beyond : place;
 }
 
 // What lies behind the thing at the point. `beside` is where the pixel comes from that shows what is behind it now.
