@@ -24,9 +24,19 @@ float gain(vec3 rgb, float radius) {
 float gain(vec3 rgb, float radius) { return 1.0; }
 #endif
 
+#ifdef HAS_OUT_FRONT
+#include "front.glsl"
+#endif
+
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     vec4 texel = texelFetch(color, p, 0);
     float radius = texelFetch(coc, p, 0).r;
+#ifdef HAS_OUT_FRONT
+    Parted parted = parted_at(p, texel, radius);
+    out_front = pack_light(parted.front);
+    texel = parted.behind.color;
+    radius = parted.behind.coc;
+#endif
     out_light = pack_light(Light(vec4(texel.rgb * gain(texel.rgb, abs(radius)), texel.a), radius));
 }

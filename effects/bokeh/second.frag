@@ -4,19 +4,37 @@
 #include "combine.glsl"
 
 vec4 second_blur(usampler2D image, ivec2 p, float near_px, int parallelogram) {
-    Light light = blur(image, p, near_px, second_line(parallelogram));
-    return light.color;
+    return blur(image, p, near_px, second_line(parallelogram)).color;
+}
+
+// `a`, `b`: blurred along the first direction of each parallelogram.
+vec4 polygon_of(usampler2D a, usampler2D b, ivec2 p, float near_px) {
+    vec4 first_one = second_blur(a, p, near_px, 0);
+#if SHAPE == SHAPE_HEXAGON || defined(HAS_FIRST_B)
+    return combine(first_one, second_blur(b, p, near_px, 1));
+#else
+    return first_one;
+#endif
 }
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     float near_px = texelFetch(near, p / kTile, 0).r;
-    vec4 a = second_blur(first_a, p, near_px, 0);
-#if SHAPE == SHAPE_HEXAGON
-    out_color = combine(a, second_blur(first_a, p, near_px, 1));
-#elif defined(HAS_FIRST_B)
-    out_color = combine(a, second_blur(first_b, p, near_px, 1));
+    vec4 over = vec4(0.0);
+#if defined(HAS_FRONT_B)
+    over = polygon_of(front_a, front_b, p, near_px);
+#elif defined(HAS_FRONT_A)
+    over = polygon_of(front_a, front_a, p, near_px);
+#endif
+#ifdef HAS_FRONT_A
+    near_px = texelFetch(behind_near, p / kTile, 0).r;
+#endif
+#ifdef HAS_FIRST_B
+    out_color = polygon_of(first_a, first_b, p, near_px);
 #else
-    out_color = a;
+    out_color = polygon_of(first_a, first_a, p, near_px);
+#endif
+#ifdef HAS_FRONT_A
+    out_color = over + (1.0 - over.a) * out_color;
 #endif
 }
