@@ -7,6 +7,7 @@ import numpy
 from PIL import Image
 
 import camera
+import layers
 import taa
 from family import AFTERSHADE, CAPTURES, ROOT, command, psnr_db, read_exr, srgb
 
@@ -104,6 +105,7 @@ def main():
     parts = [text("head"), "## A renderer's frame", text("suzanne"), table(["", "all pixels, dB", "changed pixels, dB"], suzanne), pictures,
              "## Scenes", text("scenes"), table(["", "sharp", *(f"`{m}`" for m in METHODS), "`curve` off", "`neighbours`"], on_scenes())]
     parts.append(camera.section(WORK, IMAGES).strip())
+    parts.append(layers.section(WORK).strip())
     parts.append(taa.section(WORK, IMAGES).strip())
     if (TEXTS / "cost-table.md").exists():
         parts += ["## Cost", text("cost"), (TEXTS / "cost-table.md").read_text().strip()]
