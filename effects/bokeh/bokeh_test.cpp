@@ -102,30 +102,31 @@ TEST(Bokeh, SpreadsANearObjectSoftlyOverWhatIsInFocus) {
     EXPECT_LE(out.at(74, 24, 0), 0.001f);
 }
 
-/// A lamp of three pixels, the middle one of which stands behind a near wire of one, as layers have it. Without
-/// them the wire's column of the blur is cut out of the bulb, and grows a spike.
-TEST(Bokeh, KeepsABulbRoundOfWhichALayerHasAPartBehindAWire) {
-    constexpr int size = 65, middle = 32;
-    constexpr float lamp = 300, wire = 0.05f;
+/// A bulb whose blur is half as wide as that of the near pole beside it. Without layers the pole's columns show
+/// the lamp as widely as they are blurred themselves: a spike.
+TEST(Bokeh, KeepsABulbRoundBesideANearPoleThatLayersHaveTheRestBehind) {
+    constexpr int size = 65, middle = 32, lamp_x = middle + 3;
     constexpr double radius_px = 16;
-    Capture capture = make_capture({.width = size, .height = size, .background_depth_m = kApertureFarM});
+    constexpr float far_m = 2 * kApertureFocusM;  // the CoC radius is half of that at infinity
+    Capture capture = make_capture({.width = size,
+                                    .height = size,
+                                    .background_depth_m = far_m,
+                                    .points = {{lamp_x, middle, 300}}});
     Image color(size, size, 4), depth(size, size, 1);
     for (int y = 0; y < size; ++y)
         for (int x = 0; x < size; ++x) {
-            const bool is_lamp = y == middle && std::abs(x - middle) <= 1, is_wire = x == middle;
-            depth.at(x, y, 0) = kApertureFarM;
-            for (int c = 0; c < 3; ++c) {
-                capture.images["color"].at(x, y, c) = is_wire ? wire : is_lamp ? lamp : 0.0f;
-                color.at(x, y, c) = is_wire && is_lamp ? lamp : 0.0f;
-            }
-            color.at(x, y, 3) = is_wire ? 1.0f : 0.0f;
-            if (is_wire) capture.images["depth"].at(x, y, 0) = kApertureNearM;
+            const bool is_pole = std::abs(x - middle) <= 1;
+            color.at(x, y, 3) = is_pole ? 1.0f : 0.0f;
+            depth.at(x, y, 0) = is_pole ? far_m : kInfinity;
+            if (!is_pole) continue;
+            for (int c = 0; c < 3; ++c) capture.images["color"].at(x, y, c) = 0.05f;
+            capture.images["depth"].at(x, y, 0) = kApertureNearM;
         }
     capture.images[layer_role(1, "color")] = std::move(color);
     capture.images[layer_role(1, "depth")] = std::move(depth);
     const Image out = through_aperture("bokeh", capture, radius_px);
-    const Image hexagon = coverage(regular_polygon(6, radius_px, 0), size, size, middle, middle);
-    EXPECT_GE(shape_iou(out, double(out.at(middle - 4, middle, 0)), hexagon), 0.93);
+    const Image hexagon = coverage(regular_polygon(6, radius_px / 2, 0), size, size, lamp_x, middle);
+    EXPECT_GE(shape_iou(out, double(out.at(lamp_x + 3, middle, 0)), hexagon), 0.95);
     for (int y = 0; y < size; ++y) EXPECT_NEAR(out.at(middle, y, 3), 1, 1e-3) << y;
 }
 

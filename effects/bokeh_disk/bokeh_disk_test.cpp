@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "framework/image/role.h"
 #include "tests/aperture_checks.h"
 
 namespace aftershade::test::bokeh_disk {
@@ -139,6 +140,39 @@ TEST(BokehDisk, SoftensAWideNearSilhouetteByTheCocFilter) {
     const float sharp = largest_step(blur(near_box_before_focus(), 12));
     const float soft = largest_step(blur(near_box_before_focus(), 12, R"("coc_filter": "near")"));
     EXPECT_LT(soft, 0.5f * sharp);
+}
+
+/// A near wire of one pixel before stripes in focus. Without the layer its column stays, closed.
+TEST(BokehDisk, DissolvesAWireOverWhatALayerHasBehindIt) {
+    constexpr int width = 96, height = 48, wire_x = 47;
+    constexpr double radius_px = 16;
+    constexpr float wire = 0.05f;
+    const auto stripe = [](int y) { return y / 8 % 2 == 0 ? 0.8f : 0.2f; };
+    Capture capture =
+        make_capture({.width = width, .height = height, .background_depth_m = kApertureFocusM});
+    Image color(width, height, 4), depth(width, height, 1);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const bool is_wire = x == wire_x;
+            for (int c = 0; c < 3; ++c) {
+                capture.images["color"].at(x, y, c) = is_wire ? wire : stripe(y);
+                color.at(x, y, c) = is_wire ? stripe(y) : 0.0f;
+            }
+            color.at(x, y, 3) = is_wire ? 1.0f : 0.0f;
+            depth.at(x, y, 0) = is_wire ? kApertureFocusM : kApertureFarM;
+            if (is_wire) capture.images["depth"].at(x, y, 0) = kApertureNearM;
+        }
+    capture.images[layer_role(1, "color")] = std::move(color);
+    capture.images[layer_role(1, "depth")] = std::move(depth);
+    const Image out = blur(capture, radius_px);
+    for (int y = 8; y < 40; ++y)
+        for (const int x : {wire_x - 6, wire_x, wire_x + 6}) {
+            // A chord of the disk, a pixel wide.
+            const double off = double(x - wire_x) / radius_px;
+            const double opacity = 2 * std::sqrt(1 - off * off) / (std::numbers::pi * radius_px);
+            EXPECT_NEAR(out.at(x, y, 0), opacity * wire + (1 - opacity) * double(stripe(y)), 0.03)
+                << x << " " << y;
+        }
 }
 
 TEST(BokehDisk, BlursAlphaWithTheColorThatItCovers) {

@@ -28,7 +28,7 @@ void add_tap(inout Blurred sum, Walk walk, ivec2 p, float radius_px, int offset)
     ivec2 texel = p + ivec2(0, offset);
     if (texel.y < 0 || texel.y >= frame.size.y) return;
     // The radius that the row was blurred by.
-    float tap_radius = gather_radius(unpack_light(texelFetch(light, texel, 0)), texelFetch(reach, texel / kTile, 0));
+    float tap_radius = gather_radius(unpack_light(texelFetch(FIELD, texel, 0)), texelFetch(reach, texel / kTile, 0));
     float distance_px = abs(float(offset)), weight = cover(radius_px, distance_px) * seen(tap_radius, radius_px, distance_px);
     if (weight <= 0.0) return;
     for (int i = 0; i < COMPONENTS; ++i) {

@@ -13,9 +13,10 @@ void main() {
     if (max(reach_px.x, reach_px.y) < kLeastBlurPx) return;
 
     Light centre = unpack_light(texelFetch(light, p, 0));
-    Light behind = unpack_light(texelFetch(far, p, 0));
-    float blurred = centre.coc > 0.0 && behind.coc > 0.0 ? smoothstep(kSharpPx, kBlurredPx, centre.coc) : 0.0;
-    vec4 base = blurred > 0.0 ? mix(own, behind.color, blurred) : own;
+    Light under = unpack_light(texelFetch(BEHIND, p, 0));
+    Light beyond = unpack_light(texelFetch(far, p, 0));
+    float blurred = under.coc > 0.0 && beyond.coc > 0.0 ? smoothstep(kSharpPx, kBlurredPx, under.coc) : 0.0;
+    vec4 base = blurred > 0.0 ? mix(under.color, beyond.color, blurred) : under.color;
     out_color = base;
     if (reach_px.x < kLeastBlurPx) return;
 
@@ -24,9 +25,11 @@ void main() {
     if (opacity == 0.0) return;
     vec4 color = max(near.color / near.weight, 0.0);
     if (centre.coc < 0.0) {
-        // Behind a near pixel the field behind the focus plane goes on, where there is any; else the near field is closed.
+        // Where no layer has what lies behind near pixels, the field behind the focus plane goes on, where there is any; else the
+        // near field is closed.
         float near_share = smoothstep(kSharpPx, kBlurredPx, -centre.coc);
-        base = mix(own, mix(color, behind.color, behind.coc), near_share);
+        if (under.coc < 0.0) base = mix(color, beyond.color, beyond.coc);
+        base = mix(own, base, near_share);
         color = mix(own, color, near_share);
     }
     out_color = mix(base, color, opacity);

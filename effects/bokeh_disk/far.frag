@@ -12,7 +12,7 @@ vec4 least_around(ivec2 p, vec4 own, float radius_px) {
     vec4 least = own;
     for (int i = 0; i < 4; ++i) {
         ivec2 to = apart * ivec2((i & 1) * 2 - 1, (i & 2) - 1);
-        least = min(least, unpack_light(texelFetch(light, clamp(p + to, ivec2(0), frame.size - 1), 0)).color);
+        least = min(least, unpack_light(texelFetch(FIELD, clamp(p + to, ivec2(0), frame.size - 1), 0)).color);
     }
     return max(least, 0.0);
 }
@@ -20,7 +20,7 @@ vec4 least_around(ivec2 p, vec4 own, float radius_px) {
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     vec4 reach_px = texelFetch(reach, p / kTile, 0);
-    Light centre = unpack_light(texelFetch(light, p, 0));
+    Light centre = unpack_light(texelFetch(FIELD, p, 0));
     out_far = uvec4(0u);
     // A pixel in focus shows nothing of what is behind it.
     if (reach_px.y < kLeastBlurPx || abs(centre.coc) < kLeastBlurPx) return;

@@ -3,6 +3,7 @@
 #include <lens/highlight.glsl>
 #include <lens/packing.glsl>
 #include "tile.glsl"
+#include "field.glsl"
 
 // a, b, A, B.
 #if COMPONENTS == 1

@@ -10,7 +10,7 @@ struct Tap {
 Tap take(ivec2 p, float radius_px, int offset) {
     ivec2 texel = p + ivec2(offset, 0);
     if (texel.x < 0 || texel.x >= frame.size.x) return Tap(vec4(0.0), 0.0);
-    Light tap = unpack_light(texelFetch(light, texel, 0));
+    Light tap = unpack_light(texelFetch(FIELD, texel, 0));
     float tap_radius = field_radius(tap.coc), distance_px = abs(float(offset));
     if (tap_radius <= 0.0) return Tap(vec4(0.0), 0.0);
     float weight = min(tap_radius, 1.0) * seen(tap_radius, radius_px, distance_px) * cover(radius_px, distance_px);
@@ -28,7 +28,7 @@ void main() {
     }
     vec4 reach_px = texelFetch(reach, p / kTile, 0);
     if ((NEAR == 1 ? reach_px.x : reach_px.y) >= kLeastBlurPx) {
-        float radius_px = gather_radius(unpack_light(texelFetch(light, p, 0)), reach_px);
+        float radius_px = gather_radius(unpack_light(texelFetch(FIELD, p, 0)), reach_px);
         Walk walk = start_walk(radius_px);
         for (int n = 0; n <= int(ceil(radius_px - 0.5)); ++n) {
             Tap tap = take(p, radius_px, n);

@@ -10,7 +10,11 @@ void main() {
     for (int y = 0; y < kTile; ++y)
         for (int x = 0; x < kTile; ++x) {
             Light pixel = unpack_light(texelFetch(light, min(corner + ivec2(x, y), last), 0));
-            largest.xy = max(largest.xy, vec2(-pixel.coc, pixel.coc));
+            largest.x = max(largest.x, -pixel.coc);
+#ifdef HAS_BEHIND
+            pixel = unpack_light(texelFetch(behind, min(corner + ivec2(x, y), last), 0));
+#endif
+            largest.y = max(largest.y, pixel.coc);
             float spread = amount(pixel.color.rgb) / max(kPi * pixel.coc * pixel.coc, kLeastSpreadPx);
             if (pixel.coc >= kLeastBlurPx && spread > largest.z) largest.zw = vec2(spread, pixel.coc);
         }
