@@ -7,6 +7,7 @@ import re
 import shutil
 import statistics
 import subprocess
+import sys
 import tempfile
 import time
 
@@ -16,7 +17,7 @@ from roofline import table
 
 WORK = ROOT / "build/bench"
 PAGE, HISTORY = ROOT / "docs/speed.md", ROOT / "scripts/speed/history.json"
-PARTS = os.environ.get("PARTS", "frames exr start film dof motion roofline").split()
+PARTS = os.environ.get("PARTS", "frames exr start film dof motion rivals roofline").split()
 ROUNDS = os.environ.get("ROUNDS", "5")
 RIVAL_PYTHON = ROOT / "build/bench-venv/bin/python"
 AFTERSHADE = os.environ["AFTERSHADE"]
@@ -101,13 +102,19 @@ def motion():
             "`motion_blur`: a frame at rest, of one that moves everywhere by 40 px": round(still / moving, 3)}
 
 
+def rivals():
+    file = WORK / "figures.json"
+    said([sys.executable, ROOT / "tests/bench/rivals.py"], FIGURES=str(file))
+    return json.loads(file.read_text())
+
+
 def roofline():
     said(["scripts/bench-roofline"])
     return {}
 
 
 WORKS = {"frames": lambda: by_file("bench-frames", ROUNDS), "exr": lambda: by_file("bench-exr"), "start": start, "film": film, "dof": dof,
-         "motion": motion, "roofline": roofline}
+         "motion": motion, "rivals": rivals, "roofline": roofline}
 
 
 def commit():

@@ -28,4 +28,5 @@ def main():
           f"Blender's Defocus {walls['blender']:.2f} s: {walls['blender'] / walls['aftershade']:.1f} times as fast")
 
 
-main()
+if __name__ == "__main__":
+    main()
