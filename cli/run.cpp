@@ -146,7 +146,9 @@ ExitCode run_here(const RunArguments& options, CheckedRun& run, const CaptureRea
         stream.emplace(FrameStream::of_standard_output(*run.outputs.stream_format));
         run.outputs.stream = &*stream;
     }
-    set_exr_threads(options.jobs.worker_threads > 0 ? options.jobs.worker_threads : allotted_cores());
+    const int cores = options.jobs.worker_threads > 0 ? options.jobs.worker_threads : allotted_cores();
+    set_exr_threads(cores);
+    run.settings.compile_threads = cores - 1;
     StatusWriter status;
     NativeRegistry natives = native_registry(options.plugins, &status);
     gpu::Context context(chosen_backend(options.backend));

@@ -14,6 +14,7 @@
 #include "cli/gl_options.h"
 #include "cli/plugin_options.h"
 #include "cli/verbs.h"
+#include "framework/core/cores.h"
 #include "framework/core/data_path.h"
 #include "framework/core/scratch_folder.h"
 #include "framework/core/status.h"
@@ -76,6 +77,7 @@ ExitCode warm(const WarmOptions& options) {
     run.frames.assign(sequence->frames.begin(),
                       sequence->frames.begin() + std::ptrdiff_t(std::min(count, sequence->frames.size())));
     run.natives = {&natives, &status};
+    run.compile_threads = allotted_cores() - 1;
     // What a file takes decides which textures the last pass writes, and so its program.
     double first_s = 0;
     for (const auto& extensions : std::vector<std::vector<std::string>>{{".exr"}, {".png"}, {".exr", ".png"}})

@@ -50,25 +50,15 @@ std::string trimmed(std::ostringstream& text) {
 
 }  // namespace
 
-/// The texts of one program.
-struct ProgramCache::Sources {
-    bool is_compute = false;
-    std::string vertex;         // of a draw
-    ShaderSource vertex_lines;  // without lines for the host's own
-    ShaderSource main;
-    const ShaderSource& of_stage(const std::string& stage) const {
-        return stage == "vertex" ? vertex_lines : main;
-    }
-};
-
 ProgramCache::ProgramCache(gpu::Context& context, std::filesystem::path glsl_folder, ProgramStore store)
     : context_(context),
       glsl_folder_(std::move(glsl_folder)),
       store_(std::move(store)),
       full_screen_(read_text_file(glsl_folder_ / "fullscreen.vert", ExitCode::effect)) {}
 
-ProgramCache::Sources ProgramCache::assemble(const ShaderContext& context, Diagnostics& faults) const {
-    Sources sources;
+ProgramSources ProgramCache::sources_of(const ShaderContext& context, Diagnostics& faults) const {
+    ProgramSources sources;
+    sources.label = context.manifest->id + "." + context.pass->name;
     sources.is_compute = context.pass->kind == PassKind::compute;
     sources.main = assemble_shader(context, faults);
     const bool guards = guards_loops_ && !faults.has_errors();
@@ -81,7 +71,7 @@ ProgramCache::Sources ProgramCache::assemble(const ShaderContext& context, Diagn
     return sources;
 }
 
-std::string ProgramCache::key_of(const Sources& sources) const {
+std::string ProgramCache::key_of(const ProgramSources& sources) const {
     const gpu::ContextInfo& gl = context_.info();
     std::string key = "aftershade " AFTERSHADE_VERSION "\n" + gl.vendor + "\n" + gl.renderer + "\n" +
                       gl.version + "\n" + (sources.is_compute ? "compute" : "draw") + "\n";
@@ -90,29 +80,34 @@ std::string ProgramCache::key_of(const Sources& sources) const {
     return key;
 }
 
-gpu::Program ProgramCache::make(const Sources& sources, const std::string& label) {
-    const std::string key = key_of(sources);
+gpu::Program ProgramCache::make(const ProgramSources& sources, const std::string& key) {
     if (const auto binary = store_.load(key))
-        if (auto program = gpu::Program::from_binary(context_, *binary, sources.is_compute, label)) {
+        if (auto program = gpu::Program::from_binary(context_, *binary, sources.is_compute, sources.label)) {
             ++loaded_;
             return std::move(*program);
         }
-    gpu::Program program = sources.is_compute
-                               ? gpu::Program::compute(context_, sources.main.text, label)
-                               : gpu::Program::draw(context_, sources.vertex, sources.main.text, label);
+    gpu::Program program =
+        sources.is_compute ? gpu::Program::compute(context_, sources.main.text, sources.label)
+                           : gpu::Program::draw(context_, sources.vertex, sources.main.text, sources.label);
     ++compiled_;
     if (store_.is_on())
         if (const auto binary = program.binary()) store_.save(key, *binary);
     return program;
 }
 
-std::shared_ptr<const gpu::Program> ProgramCache::made_once(const Sources& sources,
-                                                            const std::string& label) {
+bool ProgramCache::has(const ProgramSources& sources) const {
+    const std::string key = key_of(sources);
+    std::error_code failure;
+    return programs_.contains(key) ||
+           (store_.is_on() && std::filesystem::exists(store_.file_of(key), failure));
+}
+
+std::shared_ptr<const gpu::Program> ProgramCache::get(const ProgramSources& sources) {
     const std::string key = key_of(sources);
     Cached& cached = programs_[key];
     if (!cached.program) {
         try {
-            cached.program = std::make_shared<const gpu::Program>(make(sources, label));
+            cached.program = std::make_shared<const gpu::Program>(make(sources, key));
         } catch (...) {
             programs_.erase(key);
             throw;
@@ -138,29 +133,24 @@ void ProgramCache::drop_idle() {
 
 std::shared_ptr<const gpu::Program> ProgramCache::host(const std::string& file,
                                                        const std::vector<std::string>& defines) {
-    Sources sources;
+    ProgramSources sources;
     sources.vertex = full_screen_;
     sources.main.text = read_text_file(glsl_folder_ / "host" / file, ExitCode::effect);
     std::string symbols;
     for (const std::string& define : defines) symbols += "#define " + define + " 1\n";
     sources.main.text.insert(sources.main.text.find('\n') + 1, symbols);
-    return made_once(sources, "host." + file);
+    sources.label = "host." + file;
+    return get(sources);
 }
 
-std::shared_ptr<const gpu::Program> ProgramCache::fused(const FusedProgram& passes) {
-    Diagnostics faults;
-    Sources sources;
+ProgramSources ProgramCache::sources_of(const FusedProgram& passes, Diagnostics& faults) const {
+    ProgramSources sources;
     sources.vertex = full_screen_;
     sources.main = assemble_fused(passes, faults);
-    if (faults.has_errors()) return nullptr;
-    std::string label;
     for (const FusedShader& part : passes.parts)
-        label += (label.empty() ? "" : "+") + part.shader.manifest->id + "." + part.shader.pass->name;
-    try {
-        return made_once(sources, label);
-    } catch (const gpu::ShaderError&) {
-        return nullptr;
-    }
+        sources.label +=
+            (sources.label.empty() ? "" : "+") + part.shader.manifest->id + "." + part.shader.pass->name;
+    return sources;
 }
 
 namespace {
@@ -179,13 +169,18 @@ void add_hints(const EffectManifest& manifest, const std::filesystem::path& glsl
 }  // namespace
 
 std::shared_ptr<const gpu::Program> ProgramCache::get(const ShaderContext& context) {
+    Diagnostics faults;
+    const ProgramSources sources = sources_of(context, faults);
+    return get(context, sources, faults);
+}
+
+std::shared_ptr<const gpu::Program> ProgramCache::get(const ShaderContext& context,
+                                                      const ProgramSources& sources, Diagnostics& faults) {
     const PassSpec& pass = *context.pass;
     const std::string where = "pass " + pass.name + ", " + context_.info().renderer;
-    Diagnostics faults;
-    const Sources sources = assemble(context, faults);
     if (!faults.has_errors()) {
         try {
-            return made_once(sources, context.manifest->id + "." + pass.name);
+            return get(sources);
         } catch (const gpu::ShaderError& error) {
             const ShaderSource& source = sources.of_stage(error.stage());
             add_hints(*context.manifest, glsl_folder_, source, faults);

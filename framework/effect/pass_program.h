@@ -19,6 +19,19 @@ namespace aftershade {
 /// The storage block of a guarded program: one word, which is not 0 once llvmpipe has ended a loop.
 inline constexpr int kLoopGuardBinding = 15;
 
+/// The texts of one program, as the driver gets them.
+struct ProgramSources {
+    bool is_compute = false;
+    std::string vertex;         ///< of a draw
+    ShaderSource vertex_lines;  ///< without lines for the host's own
+    ShaderSource main;
+    std::string label;
+
+    const ShaderSource& of_stage(const std::string& stage) const {
+        return stage == "vertex" ? vertex_lines : main;
+    }
+};
+
 /// Programs by their full text, so that equal shaders compile once; those of earlier runs come from `store`.
 /// [the context's thread]
 class ProgramCache {
@@ -32,9 +45,16 @@ public:
     /// The program of a draw or a compute pass. Throws Error(ExitCode::effect) with one line per fault:
     /// "effects/bokeh/coc.frag:6:17: error: 'parm' undeclared   [pass coc, llvmpipe ...]".
     std::shared_ptr<const gpu::Program> get(const ShaderContext& context);
-    /// The program of several passes; nullptr where the driver does not take it, or a part has a fault that
-    /// get() reports.
-    std::shared_ptr<const gpu::Program> fused(const FusedProgram& passes);
+    /// The texts that get() compiles; what is wrong with them goes to `faults`. They are what make() takes.
+    ProgramSources sources_of(const ShaderContext& context, Diagnostics& faults) const;
+    std::shared_ptr<const gpu::Program> get(const ShaderContext& context, const ProgramSources& sources,
+                                            Diagnostics& faults);
+    /// Of several passes as one program.
+    ProgramSources sources_of(const FusedProgram& passes, Diagnostics& faults) const;
+    /// Throws gpu::ShaderError where the driver does not take it.
+    std::shared_ptr<const gpu::Program> get(const ProgramSources& sources);
+    /// Whether a program is there already, or on disk.
+    bool has(const ProgramSources& sources) const;
     /// A full-screen shader of the host's own, glsl/host/<file>, with symbols defined after its first line.
     std::shared_ptr<const gpu::Program> host(const std::string& file,
                                              const std::vector<std::string>& defines);
@@ -43,20 +63,18 @@ public:
     void guard_loops() { guards_loops_ = true; }
     bool is_guarding_loops() const { return guards_loops_; }
     const std::filesystem::path& glsl_folder() const { return glsl_folder_; }
+    const ProgramStore& store() const { return store_; }
     int compiled_count() const { return compiled_; }  ///< programs made from text
     int loaded_count() const { return loaded_; }      ///< programs taken from the store
 
 private:
-    struct Sources;
     struct Cached {
         std::shared_ptr<const gpu::Program> program;
         std::uint64_t last_use = 0;
     };
-    std::shared_ptr<const gpu::Program> made_once(const Sources& sources, const std::string& label);
     void drop_idle();
-    Sources assemble(const ShaderContext& context, Diagnostics& faults) const;
-    gpu::Program make(const Sources& sources, const std::string& label);
-    std::string key_of(const Sources& sources) const;
+    gpu::Program make(const ProgramSources& sources, const std::string& key);
+    std::string key_of(const ProgramSources& sources) const;
 
     gpu::Context& context_;
     std::filesystem::path glsl_folder_;

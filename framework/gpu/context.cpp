@@ -111,6 +111,12 @@ Context::Context(const SharedEglContext& shared) {
     self_test(*this);
 }
 
+Context::Context(SiblingOf other) {
+    if (current) current->release();
+    const Impl& sibling = *other.context.impl_;
+    impl_ = std::make_unique<Impl>(sibling, sibling.platform->sibling());
+}
+
 Context::Context(Backend backend) {
     // Mesa does not check every allocation: better refused here than a crash in there.
     require_address_space(kContextBytes, "OpenGL");
@@ -202,6 +208,11 @@ Context::Impl::Impl(const SharedEglContext& shared) {
     platform = make_egl_platform(shared);
     start();
     info.backend = info.software ? Backend::egl_software : Backend::egl;
+}
+
+Context::Impl::Impl(const Impl& other, std::unique_ptr<Platform> made) : platform(std::move(made)) {
+    info.backend = other.info.backend;
+    start();
 }
 
 /// What the platform made current becomes a usable context.

@@ -44,6 +44,11 @@ struct SharedEglContext {
     void* context = nullptr;
 };
 
+/// A context whose renderer another one is to have.
+struct SiblingOf {
+    const class Context& context;
+};
+
 /// GL objects that are alive.
 struct ObjectCounts {
     std::size_t buffers = 0, textures = 0, programs = 0;
@@ -63,6 +68,9 @@ public:
     /// On EGL, sharing textures, buffers and fences with a context of the caller's, which must outlive this
     /// one. Throws as the other.
     explicit Context(const SharedEglContext& shared);
+    /// Of the renderer of one that works, so without a self-test. They share no object: each may work in a
+    /// thread of its own. Throws Error(ExitCode::gl). [any thread]
+    explicit Context(SiblingOf other);
     ~Context();
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;

@@ -27,6 +27,7 @@ struct Context::Impl {
     /// Throws Error(ExitCode::gl) whose message is the reason alone; else current in this thread.
     explicit Impl(Backend backend);
     explicit Impl(const SharedEglContext& shared);
+    explicit Impl(const Impl& other, std::unique_ptr<Platform> made);
     ~Impl();
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;

@@ -145,6 +145,12 @@ public:
         open_context(shared.context);
     }
 
+    std::unique_ptr<Platform> sibling() const override {
+        auto made = std::unique_ptr<EglPlatform>(new EglPlatform(egl_, name_, display_));
+        made->make_current();
+        return made;
+    }
+
     // No eglTerminate: a display belongs to the process, and ending it would end the other contexts on it.
     ~EglPlatform() override { egl_.destroy_context(display_, context_); }
 
@@ -163,6 +169,12 @@ public:
     Proc proc(const char* name) const override { return reinterpret_cast<Proc>(egl_.get_proc_address(name)); }
 
 private:
+    /// On a display that is initialised.
+    EglPlatform(const EglApi& egl, std::string name, EGLDisplay display)
+        : egl_(egl), name_(std::move(name)), display_(display) {
+        open_context(EGL_NO_CONTEXT);
+    }
+
     void open_context(EGLContext shared) {
         if (!has_extension(egl_.query_string(display_, EGL_EXTENSIONS), "EGL_KHR_surfaceless_context")) {
             throw Error(ExitCode::gl, fmt::format("{}: no EGL_KHR_surfaceless_context", name_));

@@ -1,6 +1,7 @@
 #include "framework/gpu/osmesa_platform.h"
 
 #include <array>
+#include <mutex>
 
 #include <dlfcn.h>
 
@@ -45,6 +46,12 @@ Function symbol(const char* name) {
     return reinterpret_cast<Function>(address);
 }
 
+/// OSMesa makes its screen and links what is current without a lock of its own.
+std::mutex& osmesa_mutex() {
+    static std::mutex mutex;
+    return mutex;
+}
+
 class OsmesaPlatform : public Platform {
 public:
     OsmesaPlatform()
@@ -63,14 +70,19 @@ public:
                                   kOsmesaMinorVersion,
                                   5,
                                   0};
+        const std::lock_guard lock(osmesa_mutex());
         context_ = create(attributes, nullptr);
         if (!context_)
             throw Error(ExitCode::gl, "OSMesa makes no GL 4.5 core context; install Mesa 22 or later");
     }
 
-    ~OsmesaPlatform() override { destroy_(context_); }
+    ~OsmesaPlatform() override {
+        const std::lock_guard lock(osmesa_mutex());
+        destroy_(context_);
+    }
 
     void make_current() override {
+        const std::lock_guard lock(osmesa_mutex());
         if (!make_current_(context_, buffer_.data(), kUnsignedByte, kBufferSide, kBufferSide)) {
             throw Error(ExitCode::gl, "OSMesaMakeCurrent failed");
         }
@@ -80,7 +92,12 @@ public:
         return get_current_() == context_ && !current_egl_context().context;
     }
 
-    void release() noexcept override { make_current_(nullptr, nullptr, 0, 0, 0); }
+    void release() noexcept override {
+        const std::lock_guard lock(osmesa_mutex());
+        make_current_(nullptr, nullptr, 0, 0, 0);
+    }
+
+    std::unique_ptr<Platform> sibling() const override { return make_osmesa_platform(); }
 
     Proc proc(const char* name) const override { return get_proc_(name); }
 

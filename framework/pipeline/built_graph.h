@@ -9,6 +9,7 @@
 
 #include "framework/effect/manifest/manifest.h"
 #include "framework/graph/executor.h"
+#include "framework/pipeline/compile_ahead.h"
 #include "framework/pipeline/graph_bindings.h"
 #include "framework/pipeline/graph_key.h"
 
@@ -25,6 +26,7 @@ struct BuiltGraph {
     std::map<std::string, graph::TextureHandle> results;  ///< by role
     std::vector<int> first_pass_of_step;  ///< its index in the graph; the next step's where it has no pass
     int first_single_pass = 0;  ///< passes before it run for every sub-frame, the others once a frame
+    std::unique_ptr<CompileAhead> ahead;  ///< for the first run; nullptr where nothing needs it
     std::unique_ptr<graph::Executor> executor;
 
     /// Gives the graph all that the passes from feed.first_pass on need of a frame. Throws what give()

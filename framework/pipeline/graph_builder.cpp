@@ -72,7 +72,7 @@ GraphBuilder::GraphBuilder(const GraphTools& tools, const GraphFrame& frame)
       pipeline_(frame.pipeline),
       width_(frame_.width_px()),
       height_(frame_.height_px()),
-      programs_({tools.programs, tools.status, tools.fuses_passes}),
+      programs_({tools.context, tools.programs, tools.status, tools.fuses_passes, tools.compile_threads}),
       built_(std::make_unique<BuiltGraph>()) {}
 
 std::unique_ptr<BuiltGraph> GraphBuilder::build() {
@@ -93,6 +93,7 @@ std::unique_ptr<BuiltGraph> GraphBuilder::build() {
     for (const auto& [step, texture] : masks_) bindings.emplace_back(MaskBinding{step, texture});
     for (NativeTableBinding& binding : native_tables_) bindings.emplace_back(std::move(binding));
     for (BlockBinding& binding : blocks_) bindings.emplace_back(std::move(binding));
+    built_->ahead = programs_.take_ahead();
     built_->key = frame_.key();
     built_->executor =
         std::make_unique<graph::Executor>(tools_.context, std::move(graph_), !tools_.keeps_steps);

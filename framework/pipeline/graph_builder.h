@@ -30,6 +30,7 @@ struct GraphTools {
     StatusWriter* status = nullptr;  ///< receives which pass is compiled; may be null
     bool keeps_steps = false;        ///< each texture has memory of its own
     bool fuses_passes = true;        ///< passes that can run as one do
+    int compile_threads = 0;         ///< beside the caller's
 };
 
 /// Throws Error(ExitCode::effect) where a pass reads, or a step outputs, what no pass has written with these

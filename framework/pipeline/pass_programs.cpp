@@ -5,16 +5,14 @@
 
 namespace aftershade {
 
-namespace {
-
 /// The passes of a fusion as one pass of the graph and one program; bindings rise from part to part.
 class FusedPassMaker {
 public:
-    FusedPassMaker(const graph::FrameGraph& graph, const graph::Fusion& fusion)
-        : graph_(graph), fusion_(fusion) {}
+    FusedPassMaker(const graph::FrameGraph& graph, graph::Fusion fusion)
+        : graph_(&graph), fusion_(std::move(fusion)) {}
 
     void add(int index, const ShaderContext& shader, std::vector<int> unused_blocks) {
-        const graph::Pass& pass = graph_.pass(index);
+        const graph::Pass& pass = graph_->pass(index);
         FusedShader part{shader, {}, {}};
         part.part.first_sampler = int(fused_.reads.size());
         part.part.first_block = kBlocksPerPart * int(program_.parts.size());
@@ -44,10 +42,9 @@ public:
     }
 
     const FusedProgram& program() const { return program_; }
-    graph::Pass pass(std::shared_ptr<const gpu::Program> program) {
-        fused_.program = std::move(program);
-        return std::move(fused_);
-    }
+    /// Without its program.
+    const graph::Pass& pass() const { return fused_; }
+    const graph::Fusion& fusion() const { return fusion_; }
 
 private:
     void add_reads(const graph::Pass& pass, FusedShader& part) {
@@ -69,7 +66,7 @@ private:
     /// Which of the parts so far makes the texture; part -1: none.
     HeldRead maker_of(graph::TextureHandle texture) const {
         for (std::size_t i = 0; i < program_.parts.size(); ++i) {
-            const auto& made = graph_.written(fusion_.passes[i]).targets;
+            const auto& made = graph_->written(fusion_.passes[i]).targets;
             const auto found = std::ranges::find(made, texture);
             if (found == made.end()) continue;
             const auto write = std::size_t(found - made.begin());
@@ -78,11 +75,13 @@ private:
         return {"", -1, ""};
     }
 
-    const graph::FrameGraph& graph_;
-    const graph::Fusion& fusion_;
+    const graph::FrameGraph* graph_;
+    graph::Fusion fusion_;
     FusedProgram program_;
     graph::Pass fused_;
 };
+
+namespace {
 
 void point_to_fused(std::vector<BlockBinding>& blocks, const std::vector<int>& passes,
                     const std::vector<FusedShader>& parts) {
@@ -134,36 +133,112 @@ int PassPrograms::count_blocks(const graph::FrameGraph& graph, int pass) {
     }));
 }
 
-void PassPrograms::finish(graph::FrameGraph& graph, std::vector<BlockBinding>& blocks, int divide_at) {
-    if (tools_.fuses && !tools_.programs.is_guarding_loops()) {
-        const graph::FusionOptions options{
-            {kMaxFusedParts, kMaxFusedSamplers, kMaxFusedBuffers, kMaxFusedBlocks}, divide_at, [&](int pass) {
-                return blocks_of(graph, pass);
-            }};
-        for (const graph::Fusion& fusion : graph::find_fusions(graph, graph.compile(), options))
-            fuse(graph, fusion, blocks);
+/// A pass's texts, and what is wrong with them.
+struct PassPrograms::Assembled {
+    std::shared_ptr<const ProgramSources> sources;
+    Diagnostics faults;
+};
+
+struct PassPrograms::FusedAssembled {
+    FusedPassMaker maker;
+    std::string names;  ///< of the passes
+    Assembled texts;
+
+    const std::vector<int>& passes() const { return maker.fusion().passes; }
+};
+
+std::vector<PassPrograms::FusedAssembled> PassPrograms::assemble_fusions(const graph::FrameGraph& graph,
+                                                                         int divide_at) {
+    std::vector<FusedAssembled> fusions;
+    if (!tools_.fuses || tools_.programs.is_guarding_loops()) return fusions;
+    const graph::FusionOptions options{{kMaxFusedParts, kMaxFusedSamplers, kMaxFusedBuffers, kMaxFusedBlocks},
+                                       divide_at,
+                                       [&](int pass) { return blocks_of(graph, pass); }};
+    for (const graph::Fusion& fusion : graph::find_fusions(graph, graph.compile(), options)) {
+        FusedAssembled fused{FusedPassMaker(graph, fusion), "", {}};
+        for (const int pass : fusion.passes) {
+            fused.maker.add(pass, added_.at(pass).shader, unused_blocks_of(pass));
+            fused.names += (fused.names.empty() ? "" : "+") + added_.at(pass).shader.pass->name;
+        }
+        fused.maker.add_targets();
+        fused.texts.sources = std::make_shared<const ProgramSources>(
+            tools_.programs.sources_of(fused.maker.program(), fused.texts.faults));
+        fusions.push_back(std::move(fused));
     }
+    return fusions;
+}
+
+std::map<int, PassPrograms::Assembled> PassPrograms::assemble_others(
+    const graph::FrameGraph& graph, const std::vector<FusedAssembled>& fusions) const {
+    std::map<int, Assembled> others;
+    const auto is_fused = [&](int pass) {
+        return std::ranges::any_of(fusions, [&](const FusedAssembled& fused) {
+            return std::ranges::find(fused.passes(), pass) != fused.passes().end();
+        });
+    };
+    for (const auto& [pass, added] : added_) {
+        if (is_fused(pass) || graph.pass(pass).program) continue;
+        Assembled& texts = others[pass];
+        texts.sources =
+            std::make_shared<const ProgramSources>(tools_.programs.sources_of(added.shader, texts.faults));
+    }
+    return others;
+}
+
+/// Another thread's crash would be blamed on the pass that this one is at, so passes of foreign effects are
+/// not among them.
+void PassPrograms::compile_ahead(const graph::FrameGraph& graph, const std::vector<FusedAssembled>& fusions,
+                                 const std::map<int, Assembled>& others) {
+    if (tools_.compile_threads < 1 || tools_.programs.is_guarding_loops()) return;
+    const std::vector<int> needed = graph.compile().passes;
+    std::map<int, PassToCompile> missing;  // in the order of the passes
+    const auto add = [&](int pass, const Assembled& texts, const graph::Pass& shape) {
+        if (texts.faults.has_errors() || added_.at(pass).step->is_foreign ||
+            tools_.programs.has(*texts.sources))
+            return;
+        missing[pass] = {shape.name, texts.sources, graph::shape_of(graph, shape),
+                         std::ranges::binary_search(needed, pass)};
+    };
+    for (const FusedAssembled& fused : fusions) add(fused.passes().back(), fused.texts, fused.maker.pass());
+    for (const auto& [pass, texts] : others) add(pass, texts, graph.pass(pass));
+    if (missing.size() < 2) return;
+    std::vector<PassToCompile> passes;
+    for (auto& [index, pass] : missing) passes.push_back(std::move(pass));
+    ahead_ = std::make_unique<CompileAhead>(tools_.context, tools_.programs, std::move(passes),
+                                            tools_.compile_threads);
+}
+
+void PassPrograms::finish(graph::FrameGraph& graph, std::vector<BlockBinding>& blocks, int divide_at) {
+    std::vector<FusedAssembled> fusions = assemble_fusions(graph, divide_at);
+    std::map<int, Assembled> others = assemble_others(graph, fusions);
+    compile_ahead(graph, fusions, others);
+    for (FusedAssembled& fused : fusions) fuse(graph, fused, blocks);
     for (const auto& [pass, added] : added_) {
         if (graph.is_fused_away(pass) || graph.pass(pass).program) continue;
         const StatusScope scope(tools_.status, compiling(added, added.shader.pass->name));
-        graph.pass(pass).program = tools_.programs.get(added.shader);
+        const auto assembled = others.find(pass);
+        const CompileAhead::LinkScope linking(ahead_.get(), graph.pass(pass).name);
+        graph.pass(pass).program =
+            assembled == others.end()
+                ? tools_.programs.get(added.shader)
+                : tools_.programs.get(added.shader, *assembled->second.sources, assembled->second.faults);
     }
 }
 
-void PassPrograms::fuse(graph::FrameGraph& graph, const graph::Fusion& fusion,
-                        std::vector<BlockBinding>& blocks) {
-    FusedPassMaker maker(graph, fusion);
-    std::string names;
-    for (const int pass : fusion.passes) {
-        maker.add(pass, added_.at(pass).shader, unused_blocks_of(pass));
-        names += (names.empty() ? "" : "+") + added_.at(pass).shader.pass->name;
+/// Where the driver does not take the program, its passes stay by themselves, and a fault is reported of
+/// theirs.
+void PassPrograms::fuse(graph::FrameGraph& graph, FusedAssembled& fused, std::vector<BlockBinding>& blocks) {
+    if (fused.texts.faults.has_errors()) return;
+    const StatusScope scope(tools_.status, compiling(added_.at(fused.passes().front()), fused.names));
+    graph::Pass pass = fused.maker.pass();
+    try {
+        const CompileAhead::LinkScope linking(ahead_.get(), pass.name);
+        pass.program = tools_.programs.get(*fused.texts.sources);
+    } catch (const gpu::ShaderError&) {
+        return;
     }
-    maker.add_targets();
-    const StatusScope scope(tools_.status, compiling(added_.at(fusion.passes.front()), names));
-    std::shared_ptr<const gpu::Program> program = tools_.programs.fused(maker.program());
-    if (!program) return;
-    point_to_fused(blocks, fusion.passes, maker.program().parts);
-    graph.fuse(fusion.passes, maker.pass(std::move(program)), fusion.targets);
+    point_to_fused(blocks, fused.passes(), fused.maker.program().parts);
+    graph.fuse(fused.passes(), std::move(pass), fused.maker.fusion().targets);
 }
 
 }  // namespace aftershade

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "framework/core/status.h"
 #include "framework/effect/pass_program.h"
 #include "framework/graph/fusion.h"
+#include "framework/pipeline/compile_ahead.h"
 #include "framework/pipeline/graph_bindings.h"
 #include "framework/pipeline/pipeline.h"
 
@@ -21,9 +24,11 @@ WorkStatus status_of_pass(const PipelineStep& step, const std::string& pass, con
 class PassPrograms {
 public:
     struct Tools {
+        const gpu::Context& context;
         ProgramCache& programs;
         StatusWriter* status = nullptr;  ///< receives which pass is compiled; may be null
         bool fuses = true;
+        int compile_threads = 0;  ///< beside the caller's
     };
     explicit PassPrograms(const Tools& tools) : tools_(tools) {}
 
@@ -33,13 +38,22 @@ public:
     /// point to them. `divide_at`: no pass from this index on joins one before it. Throws
     /// Error(ExitCode::effect) for the faults of a shader.
     void finish(graph::FrameGraph& graph, std::vector<BlockBinding>& blocks, int divide_at);
+    /// After finish(): what still compiles for the first draws; nullptr where nothing does.
+    std::unique_ptr<CompileAhead> take_ahead() { return std::move(ahead_); }
 
 private:
     struct Added {
         ShaderContext shader;
         const PipelineStep* step = nullptr;
     };
-    void fuse(graph::FrameGraph& graph, const graph::Fusion& fusion, std::vector<BlockBinding>& blocks);
+    struct Assembled;
+    struct FusedAssembled;
+    std::vector<FusedAssembled> assemble_fusions(const graph::FrameGraph& graph, int divide_at);
+    std::map<int, Assembled> assemble_others(const graph::FrameGraph& graph,
+                                             const std::vector<FusedAssembled>& fusions) const;
+    void compile_ahead(const graph::FrameGraph& graph, const std::vector<FusedAssembled>& fusions,
+                       const std::map<int, Assembled>& others);
+    void fuse(graph::FrameGraph& graph, FusedAssembled& fused, std::vector<BlockBinding>& blocks);
     int blocks_of(const graph::FrameGraph& graph, int pass);
     int count_blocks(const graph::FrameGraph& graph, int pass);
     const std::vector<int>& unused_blocks_of(int pass);
@@ -49,6 +63,7 @@ private:
     std::map<int, Added> added_;              // by pass
     std::map<int, std::vector<int>> unused_;  // uniform blocks, by pass
     std::map<int, int> block_counts_;         // likewise
+    std::unique_ptr<CompileAhead> ahead_;
 };
 
 }  // namespace aftershade

@@ -106,7 +106,7 @@ void PipelineRenderer::prepare(const FrameInputs& frame, const std::vector<std::
     std::unique_ptr<BuiltGraph> old = std::move(built_);
     if (!pipeline_.has_history()) old.reset();
     built_ = build_graph({context_, *programs_, files_, telemetry_, status_, keeps_steps_,
-                          fuses_passes_ && !keeps_steps_ && !audit_},
+                          fuses_passes_ && !keeps_steps_ && !audit_, compile_threads_},
                          graph_frame);
     ++graphs_built_;
     set_hooks();
@@ -119,6 +119,14 @@ double PipelineRenderer::feed(const FrameInputs& frame, const std::vector<std::s
     timer.start();
     built_->feed({{pipeline_, frame, params_, natives_, roles}, before, files_, first_pass});
     return timer.stop_ms();
+}
+
+void PipelineRenderer::compile_on_threads(int threads) {
+    compile_threads_ = CompileAhead::useful_threads(context_, threads);
+}
+
+int PipelineRenderer::programs_compiled_ahead() const {
+    return built_ && built_->ahead ? built_->ahead->programs_made() : 0;
 }
 
 void PipelineRenderer::set_audit(bool audit) {
@@ -145,10 +153,13 @@ const PipelineStep* step_of(const Pipeline& pipeline, const std::string& pass) {
 
 void PipelineRenderer::set_hooks() {
     graph::Executor::PassHooks hooks;
-    if (status_ && status_->active())
-        hooks.begins = [this](const std::string& pass) {
-            if (const PipelineStep* step = step_of(pipeline_, pass))
+    const bool reports = status_ && status_->active();
+    if (reports || built_->ahead)
+        hooks.begins = [this, reports](const std::string& pass) {
+            const PipelineStep* step = reports ? step_of(pipeline_, pass) : nullptr;
+            if (step)
                 status_->write(status_of_pass(*step, pass.substr(step->name.size() + 1), "draw", status_));
+            if (built_->ahead) built_->ahead->take(pass);
         };
     if (loop_guard_) {
         hooks.storage = {&*loop_guard_, kLoopGuardBinding};

@@ -64,6 +64,11 @@ public:
     /// Whether passes that can run as one do, unless keep_steps() or set_audit() want each by itself.
     /// [before the first frame]
     void fuse_passes(bool fuses) { fuses_passes_ = fuses; }
+    /// How many threads beside this one compile what a new graph needs, where a driver compiles on the
+    /// processor. [before the first frame]
+    void compile_on_threads(int threads);
+    /// Of the last graph: what those threads compiled.
+    int programs_compiled_ahead() const;
     /// Of the last frame: how many of the pipeline's steps were drawn.
     int steps_drawn() const { return steps_drawn_; }
     /// Reads every input and every float texture back after its pass and looks for NaN and infinities. Slow.
@@ -142,6 +147,7 @@ private:
     bool is_stale_ = false;
     bool keeps_steps_ = false;
     bool fuses_passes_ = true;
+    int compile_threads_ = 0;
     int steps_drawn_ = 0;
     std::vector<std::string> mixes_drawn_;  // by step, as a document would write them
 };

@@ -273,6 +273,7 @@ RunReport run_frames(const RunSetup& setup, const RunObserver& observer, const s
     PipelineRenderer renderer(setup.context, setup.pipeline, setup.data_folder, setup.options.natives);
     renderer.set_audit(setup.options.audit);
     renderer.fuse_passes(setup.options.fuse_passes);
+    renderer.compile_on_threads(setup.options.compile_threads);
     renderer.set_telemetry(setup.options.telemetry);
     try {
         if (!setup.options.history_in.empty()) renderer.load_history(setup.options.history_in);

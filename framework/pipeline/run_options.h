@@ -34,6 +34,7 @@ struct RunOptions {
     bool stop_on_error = false;  ///< the first frame that fails ends the run
     bool audit = false;
     bool fuse_passes = true;
+    int compile_threads = 0;  ///< beside the one that draws, for what a first frame compiles
     bool telemetry = false;
     int scale_divisor = 1;              ///< frames are rendered at 1/this of their size
     std::optional<Window> region;       ///< px of the display window at full scale, from its top left

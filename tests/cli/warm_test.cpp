@@ -1,5 +1,6 @@
 // `aftershade warm`: caches that a later run finds.
 #include <gtest/gtest.h>
+#include <sched.h>
 
 #include <filesystem>
 #include <set>
@@ -61,6 +62,51 @@ TEST_F(Warm, FailsWhereTheCacheIsOffOrTheLookIsFaulty) {
     EXPECT_EQ(faulty.exit_code, 2);
     EXPECT_NE(faulty.err.find("blom"), std::string::npos) << faulty.err;
     EXPECT_FALSE(fs::exists(folder_ / "cache/mesa_shader_cache")) << "nothing was compiled";
+}
+
+/// This process and those that it starts on one processor.
+class OneProcessor {
+public:
+    OneProcessor() {
+        sched_getaffinity(0, sizeof found_, &found_);
+        cpu_set_t one;
+        CPU_ZERO(&one);
+        for (int i = 0; i < CPU_SETSIZE && CPU_COUNT(&one) == 0; ++i)
+            if (CPU_ISSET(i, &found_)) CPU_SET(i, &one);
+        sched_setaffinity(0, sizeof one, &one);
+    }
+    ~OneProcessor() { sched_setaffinity(0, sizeof found_, &found_); }
+    OneProcessor(const OneProcessor&) = delete;
+    OneProcessor& operator=(const OneProcessor&) = delete;
+    int processors_found() const { return CPU_COUNT(&found_); }
+
+private:
+    cpu_set_t found_{};
+};
+
+TEST_F(Warm, ThreadsCompileWhatTheFrameNeedsAndNothingElse) {
+    // Mesa's cache has one file for each machine code: a pass that the threads draw in another state than the
+    // frame does would leave one more.
+    const auto names_after_run = [&](const std::string& backend, const std::string& name) {
+        const fs::path cache = folder_ / (backend + name);
+        const CommandResult ran =
+            run({"run", AFTERSHADE_SOURCE_DIR "/scenes/looks/film.json", kWarmCapture, "--frames", "4",
+                 "--backend", backend, "--overwrite", "-o", "o_####.exr"},
+                cache.string());
+        EXPECT_EQ(ran.exit_code, 0) << ran.err;
+        std::set<std::string> names;
+        for (const fs::path& file : files_below(cache)) names.insert(file.filename().string());
+        return names;
+    };
+    for (const char* backend : {"osmesa", "egl-software"}) {
+        std::set<std::string> alone;
+        {
+            const OneProcessor one;
+            if (one.processors_found() < 2) GTEST_SKIP() << "SKIPPED: one processor compiles without threads";
+            alone = names_after_run(backend, "alone");
+        }
+        EXPECT_EQ(names_after_run(backend, "threads"), alone) << backend;
+    }
 }
 
 }  // namespace

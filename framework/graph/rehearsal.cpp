@@ -1,0 +1,108 @@
+#include "framework/graph/rehearsal.h"
+
+#include <algorithm>
+#include <bit>
+#include <deque>
+
+#include "framework/gpu/buffer.h"
+#include "framework/gpu/texture.h"
+
+namespace aftershade::graph {
+namespace {
+
+/// Bytes that a storage block gets at most; shaders cannot read past its end.
+constexpr std::size_t kMostBufferBytes = 4096;
+
+int small_side(int side) {
+    return std::has_single_bit(unsigned(side)) ? 4 : 3;
+}
+
+gpu::TextureDesc small(const gpu::TextureDesc& desc) {
+    gpu::TextureDesc result = desc;
+    result.width = small_side(desc.width);
+    result.height = small_side(desc.height);
+    result.layers = std::min(desc.layers, 2);
+    result.mips = std::min(desc.mips, 2);
+    return result;
+}
+
+/// Textures and buffers for one draw, which never move.
+class SmallMemory {
+public:
+    explicit SmallMemory(gpu::Context& context) : context_(context) {}
+
+    gpu::Texture* texture(const gpu::TextureDesc& desc) {
+        return &textures_.emplace_back(context_, desc, "rehearsal");
+    }
+    gpu::Buffer* buffer(std::size_t bytes) { return &buffers_.emplace_back(context_, bytes, "rehearsal"); }
+
+private:
+    gpu::Context& context_;
+    std::deque<gpu::Texture> textures_;
+    std::deque<gpu::Buffer> buffers_;
+};
+
+}  // namespace
+
+PassShape shape_of(const FrameGraph& graph, const Pass& pass) {
+    const auto texture = [&](TextureHandle handle) -> const FrameGraph::Texture& {
+        return graph.textures()[std::size_t(handle.texture)];
+    };
+    PassShape shape;
+    shape.kind = pass.kind;
+    shape.blend = pass.blend;
+    shape.primitive = pass.instances.primitive;
+    for (const Read& read : pass.reads) {
+        const gpu::TextureDesc desc = small(texture(read.texture).desc);
+        shape.reads.push_back(
+            {desc, read.binding, read.filter, read.wrap, std::min(read.level, desc.mips - 1)});
+    }
+    for (const Target& target : pass.targets) {
+        const FrameGraph::Texture& drawn = texture(target.texture);
+        const gpu::TextureDesc desc = small(drawn.desc);
+        shape.targets.push_back({desc, std::min(target.level, desc.mips - 1),
+                                 std::min(target.layer, desc.layers - 1),
+                                 drawn.options.auto_mips && desc.mips > 1});
+    }
+    for (const ImageUse& use : pass.images)
+        shape.images.push_back({small(texture(use.texture).desc), use.binding, use.access});
+    for (const BufferUse& use : pass.buffers)
+        shape.buffers.push_back(
+            {std::min(graph.buffers()[std::size_t(use.buffer.buffer)].desc.bytes, kMostBufferBytes),
+             use.binding});
+    for (const UniformBlock& block : pass.uniforms)
+        shape.uniforms.push_back({block.bytes.size(), block.binding});
+    return shape;
+}
+
+void rehearse(gpu::Context& context, const gpu::Program& program, const PassShape& shape) {
+    if (shape.kind == PassKind::clear) return;
+    SmallMemory memory(context);
+    std::vector<gpu::SampledTexture> textures;
+    for (const PassShape::Sampled& read : shape.reads)
+        textures.push_back({memory.texture(read.texture), read.binding, read.filter, read.wrap, read.level});
+    std::vector<gpu::ImageBinding> images;
+    for (const PassShape::Image& image : shape.images)
+        images.push_back({memory.texture(image.texture), image.binding, 0, image.access});
+    std::vector<gpu::BufferBinding> uniforms, storage;
+    for (const PassShape::Memory& block : shape.uniforms)
+        uniforms.push_back({memory.buffer(block.bytes), block.binding});
+    for (const PassShape::Memory& block : shape.buffers)
+        storage.push_back({memory.buffer(block.bytes), block.binding});
+    const gpu::Bindings bindings{textures, images, uniforms, storage};
+    if (shape.kind == PassKind::compute) return gpu::dispatch(context, program, 1, 1, 1, bindings);
+
+    std::vector<gpu::Target> targets;
+    std::vector<gpu::Texture*> with_mips;
+    for (const PassShape::Drawn& target : shape.targets) {
+        gpu::Texture* const drawn = memory.texture(target.texture);
+        targets.push_back({drawn, target.level, target.layer});
+        if (target.fills_mips) with_mips.push_back(drawn);
+    }
+    if (shape.kind == PassKind::instances)
+        gpu::draw_instances(context, program, targets, bindings, {shape.primitive, 1, nullptr}, shape.blend);
+    else gpu::draw(context, program, targets, bindings, shape.blend);
+    for (gpu::Texture* const texture : with_mips) texture->generate_mips();
+}
+
+}  // namespace aftershade::graph

@@ -1,0 +1,53 @@
+// A pass drawn over a few texels, for what the driver compiles at the first draw: llvmpipe makes a program's
+// machine code then, by the formats and filters that are bound.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "framework/graph/frame_graph.h"
+
+namespace aftershade::graph {
+
+/// What a pass binds, without what it holds: textures of a few texels whose sides are powers of two where
+/// those of the graph are, since the code that fetches from them differs.
+struct PassShape {
+    struct Sampled {
+        gpu::TextureDesc texture;
+        int binding = 0;
+        gpu::Filter filter = gpu::Filter::nearest;
+        gpu::Wrap wrap = gpu::Wrap::clamp;
+        int level = -1;
+    };
+    struct Drawn {
+        gpu::TextureDesc texture;
+        int level = 0;
+        int layer = 0;
+        bool fills_mips = false;  ///< levels 1.. are filled after the pass
+    };
+    struct Image {
+        gpu::TextureDesc texture;
+        int binding = 0;
+        gpu::Access access = gpu::Access::read;
+    };
+    struct Memory {
+        std::size_t bytes = 0;
+        int binding = 0;
+    };
+    PassKind kind = PassKind::draw;
+    std::vector<Sampled> reads{};
+    std::vector<Drawn> targets{};
+    std::vector<Image> images{};
+    std::vector<Memory> buffers{};
+    std::vector<Memory> uniforms{};
+    gpu::Blend blend = gpu::Blend::none;
+    gpu::Primitive primitive = gpu::Primitive::quads;
+};
+
+PassShape shape_of(const FrameGraph& graph, const Pass& pass);
+
+/// Draws or dispatches once over memory that holds zeros. Nothing for a clear. Throws what gpu::draw() does.
+/// [the context's thread]
+void rehearse(gpu::Context& context, const gpu::Program& program, const PassShape& shape);
+
+}  // namespace aftershade::graph

@@ -1,0 +1,137 @@
+#include "framework/pipeline/compile_ahead.h"
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include "framework/core/memory_limit.h"
+
+namespace aftershade {
+
+int CompileAhead::useful_threads(const gpu::Context& context, int threads) {
+    return context.info().software && !address_space_left() ? std::max(0, threads) : 0;
+}
+
+CompileAhead::CompileAhead(const gpu::Context& context, const ProgramCache& programs,
+                           std::vector<PassToCompile> passes, int threads)
+    : context_(context),
+      glsl_folder_(programs.glsl_folder()),
+      store_(programs.store()),
+      passes_(std::move(passes)),
+      states_(passes_.size(), State::open) {
+    try {
+        for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
+    } catch (const std::system_error&) {
+        // Without threads the caller compiles everything.
+    }
+}
+
+CompileAhead::~CompileAhead() {
+    {
+        const std::lock_guard lock(mutex_);
+        stops_ = true;
+        changed_.notify_all();
+    }
+    for (std::thread& thread : threads_) thread.join();
+}
+
+int CompileAhead::index_of(const std::string& pass) const {
+    const auto found = std::ranges::find(passes_, pass, &PassToCompile::pass);
+    return found == passes_.end() ? -1 : int(found - passes_.begin());
+}
+
+CompileAhead::LinkScope::LinkScope(CompileAhead* ahead, const std::string& pass)
+    : ahead_(ahead), index_(ahead ? ahead->begin_link(ahead->index_of(pass)) : -1) {}
+
+CompileAhead::LinkScope::~LinkScope() {
+    if (index_ < 0) return;
+    const std::lock_guard lock(ahead_->mutex_);
+    ahead_->states_[std::size_t(index_)] = State::linked;
+    ahead_->changed_.notify_all();
+}
+
+/// -1 where a thread was quicker.
+int CompileAhead::begin_link(int index) {
+    if (index < 0) return -1;
+    std::unique_lock lock(mutex_);
+    State& state = states_[std::size_t(index)];
+    changed_.wait(lock, [&] { return state != State::linking; });
+    if (state != State::open) return -1;
+    state = State::linking_here;
+    return index;
+}
+
+void CompileAhead::take(const std::string& pass) {
+    const int index = index_of(pass);
+    if (index < 0) return;
+    std::unique_lock lock(mutex_);
+    State& state = states_[std::size_t(index)];
+    changed_.wait(lock, [&] { return state != State::linking && state != State::drawing; });
+    state = State::finished;
+}
+
+int CompileAhead::programs_made() const {
+    const std::lock_guard lock(mutex_);
+    return programs_made_;
+}
+
+int CompileAhead::passes_drawn() const {
+    const std::lock_guard lock(mutex_);
+    return passes_drawn_;
+}
+
+/// The last pass that nobody works on, from now on this thread's; -1: there is none.
+int CompileAhead::begin_last_open() {
+    for (int i = int(states_.size()) - 1; i >= 0; --i) {
+        State& state = states_[std::size_t(i)];
+        if (state == State::open) state = State::linking;
+        else if (state == State::linked && passes_[std::size_t(i)].is_drawn) state = State::drawing;
+        else continue;
+        return i;
+    }
+    return -1;
+}
+
+/// Waits for what the caller is linking; -1 where nothing is left to do.
+int CompileAhead::next() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+        if (stops_) return -1;
+        if (const int index = begin_last_open(); index >= 0) return index;
+        if (std::ranges::find(states_, State::linking_here) == states_.end()) return -1;
+        changed_.wait(lock);
+    }
+}
+
+void CompileAhead::work() {
+    try {
+        gpu::Context context(gpu::SiblingOf{context_});
+        ProgramCache programs(context, glsl_folder_, store_);
+        for (int index = next(); index >= 0; index = next()) work_on(programs, context, index);
+    } catch (const std::exception&) {
+        // No context, or no memory: the caller does the rest.
+    }
+}
+
+void CompileAhead::work_on(ProgramCache& programs, gpu::Context& context, int index) {
+    const PassToCompile& pass = passes_[std::size_t(index)];
+    const auto set = [&](State state, int& count) {
+        const std::lock_guard lock(mutex_);
+        states_[std::size_t(index)] = state;
+        ++count;
+        changed_.notify_all();
+    };
+    int failures = 0;
+    try {
+        const std::shared_ptr<const gpu::Program> program = programs.get(*pass.sources);
+        set(pass.is_drawn ? State::drawing : State::finished, programs_made_);
+        if (!pass.is_drawn) return;
+        graph::rehearse(context, *program, pass.shape);
+        context.finish();
+        set(State::finished, passes_drawn_);
+    } catch (const std::exception&) {
+        set(State::finished, failures);
+    }
+}
+
+}  // namespace aftershade

@@ -1,0 +1,157 @@
+// Programs that threads compile beside the one that draws: the same pictures, the same faults, a clean end.
+#include "framework/pipeline/compile_ahead.h"
+
+#include <chrono>
+#include <cstring>
+#include <functional>
+#include <thread>
+
+#include "tests/gpu/gpu_test.h"
+#include "tests/pipeline/effect_fixture.h"
+
+namespace aftershade::test {
+namespace {
+
+const std::filesystem::path kData = AFTERSHADE_SOURCE_DIR;
+
+/// A renderer whose programs lie in an empty folder.
+class Fresh {
+public:
+    Fresh(const EffectFolder& effects, const std::string& steps, gpu::Backend backend, int threads)
+        : bound_(effects, look_of(steps)),
+          context_(backend),
+          renderer_(context_, bound_.pipeline(),
+                    std::make_shared<ProgramCache>(context_, kData / "glsl", ProgramStore(folder_.path()))) {
+        EXPECT_EQ(bound_.faults().find("error"), std::string::npos) << bound_.faults();
+        renderer_.compile_on_threads(threads);
+    }
+    FrameResult run(const Capture& capture) {
+        FrameInputs frame;
+        frame.capture = &capture;
+        return renderer_.render(frame, {"color", "display"}, false);
+    }
+    PipelineRenderer& renderer() { return renderer_; }
+
+private:
+    TemporaryFolder folder_;
+    Bound bound_;
+    gpu::Context context_;
+    PipelineRenderer renderer_;
+};
+
+class CompileAheadOn : public gpu::SoftwareTest {
+protected:
+    static Capture capture() {
+        return make_capture({.width = 61,
+                             .height = 40,
+                             .background_depth_m = 6,
+                             .box = SyntheticBox{20, 9, 14, 12, 2, 1, 2}});
+    }
+    EffectFolder none_;
+};
+ON_SOFTWARE_BACKENDS(CompileAheadOn);
+
+const char* const kLongLook =
+    R"({ "effect": "bokeh", "params": { "f_number": 0.3 } }, { "effect": "motion_blur" },
+    { "effect": "bloom" }, { "effect": "film_grain" }, { "effect": "view_transform" })";
+
+TEST_P(CompileAheadOn, GivesTheBitsOfOneThread) {
+    const FrameResult alone = Fresh(none_, kLongLook, GetParam(), 0).run(capture());
+    for (const int threads : {1, 3}) {
+        Fresh fresh(none_, kLongLook, GetParam(), threads);
+        for (int turn = 0; turn < 2; ++turn) {
+            const FrameResult result = fresh.run(capture());
+            ASSERT_EQ(result.images.size(), alone.images.size());
+            for (const auto& [role, image] : alone.images) {
+                const auto& values = result.images.at(role).floats();
+                EXPECT_EQ(std::memcmp(values.data(), image.floats().data(), image.floats().size_bytes()), 0)
+                    << role << ", " << threads << " threads";
+            }
+        }
+        EXPECT_GT(fresh.renderer().programs_compiled_ahead(), 0) << threads << " threads";
+    }
+}
+
+TEST_P(CompileAheadOn, ReportsTheFaultThatOneThreadMeetsFirst) {
+    EffectFolder effects;
+    effects.add_color("first", "source * 0.5");
+    effects.add_color("second", "source * no_such_name");
+    effects.add_color("third", "source + vec3(1)");
+    const std::string steps = R"({ "effect": "first" }, { "effect": "second" }, { "effect": "third" })";
+    std::vector<std::string> said;
+    for (const int threads : {0, 1, 3}) {
+        Fresh fresh(effects, steps, GetParam(), threads);
+        said.push_back(gpu::error_of([&] { fresh.run(capture()); }));
+        // The threads may go on with what is sound; the next frame meets the fault again.
+        EXPECT_EQ(gpu::error_of([&] { fresh.run(capture()); }), said.back());
+    }
+    EXPECT_NE(said[0].find("no_such_name"), std::string::npos) << said[0];
+    EXPECT_EQ(said[1], said[0]);
+    EXPECT_EQ(said[2], said[0]);
+}
+
+/// Passes for CompileAhead itself: a draw each, which writes its number.
+std::vector<PassToCompile> passes_to_compile(int count, const std::string& faulty = "") {
+    std::vector<PassToCompile> passes;
+    for (int i = 0; i < count; ++i) {
+        ProgramSources sources;
+        sources.vertex = gpu::kFullScreen;
+        sources.main.text = "#version 450 core\nlayout(location = 0) out vec4 c;\nvoid main() { c = vec4(" +
+                            std::to_string(i) + ".5); " + (i == count / 2 ? faulty : "") + " }\n";
+        PassToCompile pass{"pass " + std::to_string(i), std::make_shared<const ProgramSources>(sources)};
+        pass.shape.targets.push_back({{4, 4, gpu::TextureFormat::rgba32f}});
+        passes.push_back(std::move(pass));
+    }
+    return passes;
+}
+
+bool waits_for(const std::function<bool()>& holds) {
+    using namespace std::chrono_literals;
+    for (int i = 0; i < 6000 && !holds(); ++i) std::this_thread::sleep_for(10ms);
+    return holds();
+}
+
+TEST_P(CompileAheadOn, CompilesEverythingThatTheCallerLeavesIt) {
+    const TemporaryFolder folder;
+    ProgramCache programs(context(), kData / "glsl", ProgramStore(folder.path()));
+    const std::vector<PassToCompile> passes = passes_to_compile(6);
+    CompileAhead ahead(context(), programs, passes, 2);
+    EXPECT_TRUE(waits_for([&] { return ahead.passes_drawn() == 6; })) << ahead.passes_drawn();
+    EXPECT_EQ(ahead.programs_made(), 6);
+    for (const PassToCompile& pass : passes) {
+        const CompileAhead::LinkScope linking(&ahead, pass.pass);
+        EXPECT_EQ(drawn(*programs.get(*pass.sources), 1, 1)[0], std::stof(pass.pass.substr(5)) + 0.5f);
+    }
+    if (programs.loaded_count() == 0) GTEST_SKIP() << "SKIPPED: the driver gives no program binaries";
+    EXPECT_EQ(programs.compiled_count(), 0);
+}
+
+TEST_P(CompileAheadOn, LeavesAFaultToTheCallerAndGoesOn) {
+    const TemporaryFolder folder;
+    ProgramCache programs(context(), kData / "glsl", ProgramStore(folder.path()));
+    const auto passes = passes_to_compile(5, "c = no_such_name;");
+    CompileAhead ahead(context(), programs, passes, 1);
+    EXPECT_TRUE(waits_for([&] { return ahead.passes_drawn() == 4; })) << ahead.passes_drawn();
+    const CompileAhead::LinkScope linking(&ahead, passes[2].pass);
+    EXPECT_THROW(programs.get(*passes[2].sources), gpu::ShaderError);
+}
+
+TEST_P(CompileAheadOn, EndsWhileItCompiles) {
+    const TemporaryFolder folder;
+    ProgramCache programs(context(), kData / "glsl", ProgramStore(folder.path()));
+    for (int i = 0; i < 20; ++i) {
+        const auto passes = passes_to_compile(8);
+        CompileAhead ahead(context(), programs, passes, 1 + i % 3);
+        for (int taken = 0; taken < i % 8; ++taken) ahead.take(passes[std::size_t(taken)].pass);
+    }
+    EXPECT_NO_THROW(context().check("the context of the caller"));
+}
+
+TEST_P(CompileAheadOn, IsForDriversThatCompileOnTheProcessor) {
+    EXPECT_EQ(CompileAhead::useful_threads(context(), 3), 3);
+    EXPECT_EQ(CompileAhead::useful_threads(context(), 0), 0);
+    EXPECT_EQ(CompileAhead::useful_threads(context(), -1), 0);
+}
+
+}  // namespace
+}  // namespace aftershade::test
