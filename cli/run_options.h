@@ -1,6 +1,7 @@
 // The words of `aftershade run`.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,7 +46,7 @@ struct RunArguments {
     std::vector<std::string> variables;
     std::string scale = "1";
     std::string region;
-    int region_margin_px = 64;
+    std::optional<int> region_margin_px;
     std::string history_in;
     std::string history_out;
     std::string graph;

@@ -58,7 +58,7 @@ std::string outputs_text(const OutputOptions& outputs, const RunOptions& run) {
     if (run.on_nan == NanPolicy::mend) text += " mended";
     if (run.region)
         for (const int number : {run.region->min_x, run.region->min_y, run.region->max_x, run.region->max_y,
-                                 run.region_margin_px})
+                                 run.region_margin_px.value_or(-1)})
             text += " " + std::to_string(number);
     return text;
 }

@@ -17,12 +17,27 @@ void add_missing(std::vector<std::string>& list, const std::vector<std::string>&
         if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
 }
 
-/// The region of the display window at full scale, with its margin, in the coordinates of the windows.
-Window region_with_margin(const RunOptions& run, const Window& display) {
-    const Window& region = *run.region;
-    const int margin = run.region_margin_px;
-    return {display.min_x + region.min_x - margin, display.min_y + region.min_y - margin,
-            display.min_x + region.max_x + margin, display.min_y + region.max_y + margin};
+/// The region of the display window at full scale, with what is rendered around it, in the coordinates of the
+/// windows.
+Window region_with_margin(const RunOptions& run, const std::optional<RegionNeeds>& needs,
+                          const CaptureHeader& header) {
+    const Window& display = header.display_window;
+    const auto grown = [&](int margin) -> Window {
+        return {display.min_x + run.region->min_x - margin, display.min_y + run.region->min_y - margin,
+                display.min_x + run.region->max_x + margin, display.min_y + run.region->max_y + margin};
+    };
+    if (run.region_margin_px) return grown(*run.region_margin_px);
+    const Window common = intersection(grown(0), header.data_window);
+    // Without a pixel to write, it is left to crop_capture() to say so.
+    if (common.width() < 1 || common.height() < 1) return grown(0);
+    if (!needs) return header.data_window;
+    const int divisor = run.scale_divisor;
+    const Window part = window_with_needs(scaled_window(grown(0), display, divisor), *needs,
+                                          scaled_window(header.data_window, display, divisor));
+    return {display.min_x + (part.min_x - display.min_x) * divisor,
+            display.min_y + (part.min_y - display.min_y) * divisor,
+            display.min_x + (part.max_x + 1 - display.min_x) * divisor - 1,
+            display.min_y + (part.max_y + 1 - display.min_y) * divisor - 1};
 }
 
 /// Adds how long it lived.
@@ -50,6 +65,7 @@ FrameLoader::FrameLoader(const Sequence& sequence, const CaptureReader& reader, 
       run_(run),
       files_(sequence, reader, pipeline),
       roles_(std::move(roles)),
+      region_needs_(run.region ? needs_of_region(pipeline, 1.0 / run.scale_divisor) : std::nullopt),
       objects_(pipeline) {
     for (const int offset : pipeline.neighbour_offsets())
         add_missing(roles_, pipeline.neighbour_roles(offset));
@@ -79,7 +95,7 @@ Capture FrameLoader::read(int file) const {
         const TraceScope scan(run_.trace, "scan", "file " + std::to_string(file));
         apply_nan_policy(run_.on_nan, capture);  // before scaling, which spreads NaN
     }
-    if (run_.region) crop_capture(capture, region_with_margin(run_, capture.header.display_window));
+    if (run_.region) crop_capture(capture, region_with_margin(run_, region_needs_, capture.header));
     scale_capture(capture, run_.scale_divisor);
     const int subframe = (file % sequence_.subframes + sequence_.subframes) % sequence_.subframes;
     capture.header.frame = (file - subframe) / sequence_.subframes;

@@ -13,6 +13,7 @@
 #include "framework/pipeline/frame_files.h"
 #include "framework/pipeline/object_matches.h"
 #include "framework/pipeline/pipeline.h"
+#include "framework/pipeline/reach.h"
 #include "framework/pipeline/run_options.h"
 
 namespace aftershade {
@@ -55,6 +56,7 @@ private:
     const RunOptions& run_;
     FrameFiles files_;
     std::vector<std::string> roles_;
+    std::optional<RegionNeeds> region_needs_;
     std::map<int, std::shared_future<CapturePointer>> reads_;  // by file
     CapturePointer last_;
     mutable std::atomic<double> busy_ms_ = 0;

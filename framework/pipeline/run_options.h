@@ -36,11 +36,12 @@ struct RunOptions {
     bool fuse_passes = true;
     int compile_threads = 0;  ///< beside the one that draws, for what a first frame compiles
     bool telemetry = false;
-    int scale_divisor = 1;              ///< frames are rendered at 1/this of their size
-    std::optional<Window> region;       ///< px of the display window at full scale, from its top left
-    int region_margin_px = 64;          ///< rendered around the region, and not written
-    std::filesystem::path history_in;   ///< "" for none
-    std::filesystem::path history_out;  ///< "" for none
+    int scale_divisor = 1;                ///< frames are rendered at 1/this of their size
+    std::optional<Window> region;         ///< px of the display window at full scale, from its top left
+    std::optional<int> region_margin_px;  ///< rendered around the region, and not written; nullopt: what it
+                                          ///< needs (framework/pipeline/reach.h)
+    std::filesystem::path history_in;     ///< "" for none
+    std::filesystem::path history_out;    ///< "" for none
     NativeSources natives{};
     Trace* trace = nullptr;  ///< gets what the run does and when; nullptr for none
 };

@@ -39,6 +39,31 @@ void ManifestParser::identity(const Reader& document) {
         manifest_.warmup = {int(warmup->integer("frames")), warmup->number("error")};
 }
 
+void ManifestParser::reach(const Reader& document) {
+    const Node* node = document.find("reach");
+    if (!node) return;
+    ReachSpec reach;
+    reach.place = node->place;
+    reach.is_all = node->is_string();
+    const auto add = [&](const Node& part) {
+        if (part.is_number()) {
+            reach.px += int(part.number);
+            return;
+        }
+        const ParamSpec* const spec = manifest_.find_param(part.string);
+        if (!spec && !faulty_params_.contains(part.string))
+            fault(part.place, "'reach' names '" + part.string + "', which is not a parameter" +
+                                  did_you_mean(part.string, manifest_.param_names()));
+        else if (spec && (spec->unit != "px" || !spec->max))
+            fault(part.place,
+                  "'reach' names '" + part.string + "', which is not a parameter in px with a max");
+        reach.params.push_back(part.string);
+    };
+    if (node->is_array()) std::ranges::for_each(node->items, add);
+    else if (!reach.is_all) add(*node);
+    manifest_.reach = std::move(reach);
+}
+
 void ManifestParser::uses(const Reader& document) {
     if (const Node* names = document.find("uses"))
         for (const Node& item : names->items)
@@ -143,6 +168,7 @@ std::optional<EffectManifest> parse_manifest(const Node& node, const fs::path& f
     parser.outputs(document);
     parser.declarations(document, &ManifestParser::uses);
     parser.declarations(document, &ManifestParser::params);
+    parser.reach(document);
     check_relation_declarations(manifest.params, diagnostics);
     parser.declarations(document, &ManifestParser::textures);
     parser.declarations(document, &ManifestParser::buffers);

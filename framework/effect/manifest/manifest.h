@@ -288,6 +288,15 @@ struct WarmupSpec {
 };
 inline constexpr int kMaxWarmupFrames = 4096;
 
+/// "reach": how far around a pixel of an output the pixels of the inputs lie that it depends on, in x and y.
+struct ReachSpec {
+    bool is_all = false;              ///< the whole frame
+    int px = 0;                       ///< as rendered ...
+    std::vector<std::string> params;  ///< ... and the values of these, in px
+    Place place;
+};
+inline constexpr int kMaxReachPx = 16384;
+
 struct EffectManifest {
     std::string id;
     std::string version;
@@ -306,6 +315,7 @@ struct EffectManifest {
     std::optional<NativeSpec> native;
     bool accumulates_subframes = false;  ///< "accumulates": "subframes": runs for each, emits at the last
     std::optional<WarmupSpec> warmup;
+    std::optional<ReachSpec> reach;  ///< nullopt: the passes decide (framework/pipeline/reach.h)
     std::vector<PresetSpec> presets;
     std::vector<TelemetrySpec> telemetry;
     std::filesystem::path folder;

@@ -237,6 +237,14 @@ Block warmup_block() {
                               "relative to its mean.")}};
 }
 
+Form reach_form() {
+    constexpr const char* kFault = "'reach' is a number of px, \"all\", or a list of numbers and parameters";
+    const Form px = integer(0, kMaxReachPx);
+    const Form part = grammar::by_kind({px, reference_form(schema::kSnakeCase, "name")},
+                                       "a part of 'reach' is a number of px or the name of a parameter");
+    return grammar::by_kind({px, choice({"all"}), grammar::list(part, {.min = 1})}, kFault);
+}
+
 Block make_effect_block() {
     // The parser reports a module that does not exist.
     const Form module = reference_form(schema::kSnakeCase, "name");
@@ -252,6 +260,8 @@ Block make_effect_block() {
                           "Run the effect once per sub-frame; the last one outputs the result."),
                  optional("warmup", grammar::object(warmup_block()),
                           "How fast the effect recovers from missing history: [below](#warmup)."),
+                 optional("reach", reach_form(),
+                          "How far around a pixel its result depends on the inputs: [below](#reach)."),
                  optional("modules", grammar::list(module, {.unique = true}),
                           "Modules whose declarations come before the effect's own: [below](#modules)."),
                  required("inputs", grammar::named(grammar::object(input_block()), "input"),

@@ -39,6 +39,7 @@ public:
     void inputs(const Reader& document);
     void outputs(const Reader& document);
     void uses(const Reader& document);
+    void reach(const Reader& document);   ///< after params
     void params(const Reader& document);  ///< before everything that may count by one
     void textures(const Reader& document);
     void buffers(const Reader& document);
