@@ -2,26 +2,29 @@
 
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <string>
 #include <thread>
 
 #include "cli/capture_options.h"
+#include "cli/command_line.h"
 #include "cli/effect_options.h"
 #include "cli/gl_options.h"
 #include "cli/interrupt.h"
 #include "cli/plugin_options.h"
-#include "cli/restart.h"
 #include "cli/verbs.h"
 #include "framework/batch/watchdog.h"
 #include "framework/batch/worker.h"
 #include "framework/core/data_path.h"
 #include "framework/core/error.h"
 #include "framework/core/memory_limit.h"
-#include "framework/core/status.h"
+#include "framework/serve/drawer.h"
 
 extern char** environ;
 
@@ -52,52 +55,72 @@ void open_browser(const std::string& address) {
     std::thread([id] { waitpid(id, nullptr, 0); }).detach();
 }
 
-/// Why the picture at work was given up; "" where it was not.
-std::string reason_of(const Watchdog& watchdog) {
-    if (!watchdog.barked()) return "";
-    WorkerResult at_bark;
-    at_bark.status = watchdog.status_at_bark();
-    return describe_timeout(at_bark, watchdog.timeout()) +
-           "; change the look or the shader, or allow more time with --pass-timeout";
+/// Set for the process that draws, which has the command line of the one that speaks HTTP.
+constexpr const char* kDrawsVariable = "AFTERSHADE_SERVE_DRAWS";
+
+serve::DrawerEnd end_of(const WorkerResult& result, const Watchdog& watchdog) {
+    if (watchdog.barked()) {
+        WorkerResult at_bark;
+        at_bark.status = watchdog.status_at_bark();
+        return {describe_timeout(at_bark, watchdog.timeout()), at_bark.status.step, true};
+    }
+    const bool is_memory =
+        result.end == WorkerEnd::out_of_memory || result.exit_code == int(ExitCode::memory);
+    return {describe(result), result.status.step, false, is_memory ? ExitCode::memory : ExitCode::effect};
+}
+
+/// Runs this command once more as the process that draws, until `stop` at the latest.
+serve::DrawerEnd run_drawer(int socket, PassLimit limit, const std::atomic<bool>& stop) {
+    WorkerCommand command;
+    command.arguments = own_arguments();
+    command.arguments[0] = "/proc/self/exe";
+    command.environment[kDrawsVariable] = "1";
+    command.shares_streams = true;
+    command.input = socket;
+    command.limits.resident_bytes = foreign_memory_bytes();
+    command.grace = std::chrono::milliseconds(0);  // it has nothing to write
+    Watchdog watchdog(Watchdog::Duration::max(), limit, stop);
+    WorkerListener listener;
+    listener.on_status = [&](const WorkStatus& status) { watchdog.is_at(status); };
+    const WorkerResult result = run_worker(command, listener, &watchdog.flag());
+    const serve::DrawerEnd end = end_of(result, watchdog);
+    if (!stop && !result.ended_in_order())
+        std::cerr << "aftershade: warning: " << end.reason << "; the process that draws starts again\n";
+    return end;
 }
 
 ExitCode serve(const ServeArguments& arguments) {
-    if (const auto code = run_in_worker(arguments.limits, !arguments.effect_paths.empty())) return *code;
+    const bool draws = std::getenv(kDrawsVariable) != nullptr;
     share_one_heap();
-    const std::string handover = state_before_restart();
-    Watchdog watchdog(Watchdog::Duration::max(), arguments.limits.pass_limit(), watch_for_interrupt());
-    StatusWriter status([&](const WorkStatus& now) { watchdog.is_at(now); });
-    const gpu::Backend backend = chosen_backend(arguments.backend);
     Diagnostics diagnostics;
-    find_effects(arguments.effect_paths, diagnostics);  // for its faults and warnings
+    if (!draws) find_effects(arguments.effect_paths, diagnostics);  // for its faults and warnings
     const std::vector<Profile> profiles = load_profiles(arguments.capture.profile_paths, diagnostics);
     const auto sequence = find_sequence(arguments.capture, profiles, diagnostics);
     stop_at_errors(diagnostics);
-    diagnostics.print(std::cerr);
     serve::ServeOptions options;
     options.look = arguments.look;
     options.capture = arguments.capture.capture;
     options.sequence = *sequence;
     options.profiles = profiles;
     options.limits = arguments.capture.limits;
-    options.backend = backend;
+    options.backend = chosen_backend(arguments.backend);
     options.data_folder = data_path();
     options.effect_folders.assign(arguments.effect_paths.begin(), arguments.effect_paths.end());
     options.port = arguments.port;
     options.read_only = arguments.read_only;
-    options.status = &status;
-    options.hang = [&] { return reason_of(watchdog); };
-    options.restart = [&](const std::string& state) {
-        std::cerr << "aftershade: warning: " << reason_of(watchdog) << "; the server starts again\n";
-        restart(state);
-    };
-    options.handover = handover;
+    if (draws) {
+        serve::draw_for(options, STDIN_FILENO);
+        return ExitCode::done;
+    }
+    diagnostics.print(std::cerr);
+    const std::atomic<bool>& stop = watch_for_interrupt();
+    options.run_drawer = [&](int socket) { return run_drawer(socket, arguments.limits.pass_limit(), stop); };
     options.ready = [&](const std::string& address) {
         std::cout << address << std::endl;
         std::cerr << "the page is at the address above, for this machine alone; interrupt to end\n";
         if (arguments.opens) open_browser(address);
     };
-    serve::serve(options, watchdog.flag());
+    serve::serve(options, stop);
     return ExitCode::interrupted;
 }
 

@@ -12,23 +12,15 @@ export class ApiError extends Error {
   }
 }
 
-/** What changes nothing may be requested again: the server starts again by itself where a pass does not end. */
-const RETRIES = 6,
-  RETRY_MS = 400;
-
 async function answer(path, options) {
-  for (let left = options.method ? 0 : RETRIES; ; --left) {
-    try {
-      return await fetch(path, { ...options, headers: { "X-Aftershade-Token": token, ...options.headers } });
-    } catch (error) {
-      if (error.name === "AbortError") throw error;
-      if (left === 0)
-        throw new ApiError(
-          0,
-          "the program does not answer: start `aftershade serve` again and open the address that it prints",
-        );
-    }
-    await new Promise((resolve) => setTimeout(resolve, RETRY_MS));
+  try {
+    return await fetch(path, { ...options, headers: { "X-Aftershade-Token": token, ...options.headers } });
+  } catch (error) {
+    if (error.name === "AbortError") throw error;
+    throw new ApiError(
+      0,
+      "the program does not answer: start `aftershade serve` again and open the address that it prints",
+    );
   }
 }
 

@@ -31,7 +31,7 @@ SpawnedWorker spawn_worker(const WorkerCommand& command) {
     ChildCommand child;
     child.arguments = command.arguments;
     child.environment = child_environment(command);
-    child.descriptors = {-1, shares ? STDOUT_FILENO : out.write.get(),
+    child.descriptors = {command.input, shares ? STDOUT_FILENO : out.write.get(),
                          shares ? STDERR_FILENO : error.write.get(), status.write.get()};
     child.limits = command.limits;
     child.leads_group = true;

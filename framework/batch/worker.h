@@ -30,6 +30,9 @@ struct WorkerCommand {
     WorkerLimits limits;
     /// It writes to this process's standard output and error, and the listener hears none of it.
     bool shares_streams = false;
+    /// A descriptor of this process, from make_pipe or make_socket_pair, that it has as its standard input,
+    /// which is empty otherwise (-1).
+    int input = -1;
     /// How long a worker may take to end after SIGTERM (after an interrupt) before it is killed.
     std::chrono::milliseconds grace{2000};
     /// Once raised: the worker hangs, and half a second is all that it is given. May be null.
@@ -70,7 +73,7 @@ struct WorkerResult {
 };
 
 /// Runs the command to its end. The child leads a process group of its own; what is left of the group when
-/// the child has ended is killed. Its standard input is empty. It dies with the thread that called this.
+/// the child has ended is killed. It dies with the thread that called this.
 /// Throws Error(ExitCode::effect) where the program cannot be started, naming it and the system's reason.
 /// [thread-safe: several workers may run from several threads]
 WorkerResult run_worker(const WorkerCommand& command, const WorkerListener& listener = {},

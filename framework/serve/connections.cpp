@@ -101,13 +101,22 @@ bool Connections::read(std::uint64_t id, int socket, Peer& peer) {
             return write(socket, peer);
         }
         if (!framing.is_whole) continue;
-        peer.phase = Peer::Phase::working;
-        const std::lock_guard lock(mutex_);
-        work_.push_back({id, std::move(peer.bytes)});
-        peer.bytes.clear();
-        waiting_.notify_one();
-        return true;
+        if (enqueue(id, peer)) return true;
+        answer(peer, error_response(503, "too many requests wait; send it again"));
+        return write(socket, peer);
     }
+}
+
+/// false: what waits is too much.
+bool Connections::enqueue(std::uint64_t id, Peer& peer) {
+    const std::lock_guard lock(mutex_);
+    if (waiting_bytes_ + peer.bytes.size() > limits_.waiting_bytes) return false;
+    waiting_bytes_ += peer.bytes.size();
+    work_.push_back({id, std::move(peer.bytes)});
+    peer.phase = Peer::Phase::working;
+    peer.bytes = {};
+    waiting_.notify_one();
+    return true;
 }
 
 bool Connections::write(int socket, Peer& peer) {
@@ -159,6 +168,19 @@ void Connections::close_late() {
     for (const std::uint64_t id : late) close_peer(id);
 }
 
+/// The newest stays, however long its answer is.
+void Connections::close_beyond_memory() {
+    std::size_t held = 0;
+    for (const auto& [id, entry] : peers_) held += entry.second.bytes.capacity();
+    while (held > limits_.held_bytes && peers_.size() > 1) {
+        const auto oldest = std::ranges::find_if(
+            peers_, [](const auto& peer) { return !peer.second.second.bytes.empty(); });
+        if (oldest == peers_.end() || oldest->first == peers_.rbegin()->first) return;
+        held -= oldest->second.second.bytes.capacity();
+        close_peer(oldest->first);
+    }
+}
+
 void Connections::poll_once() {
     std::vector<pollfd> waits{{listener_, POLLIN, 0}, {wake_, POLLIN, 0}};
     std::vector<std::uint64_t> ids;
@@ -172,12 +194,16 @@ void Connections::poll_once() {
     if (::poll(waits.data(), waits.size(), kStopIsSeenWithin_ms) < 0) return;
     for (std::size_t i = 0; i < ids.size(); ++i) {
         if (waits[i + 2].revents == 0) continue;
-        auto& [socket, peer] = peers_.at(ids[i]);
+        const auto found = peers_.find(ids[i]);
+        if (found == peers_.end()) continue;  // closed for the memory of another
+        auto& [socket, peer] = found->second;
         const bool lives =
             peer.phase == Peer::Phase::reading ? read(ids[i], socket, peer) : write(socket, peer);
         if (!lives) close_peer(ids[i]);
+        close_beyond_memory();
     }
     take_answers();
+    close_beyond_memory();
     close_late();
     if (waits[0].revents != 0) accept_all();
 }
@@ -189,6 +215,7 @@ void Connections::work(const Handler& handler) {
         if (ends_) return;
         const Work work = std::move(work_.front());
         work_.pop_front();
+        waiting_bytes_ -= work.bytes.size();
         lock.unlock();
         const std::optional<Request> request = parse_request(work.bytes);
         Response response;
@@ -205,12 +232,10 @@ void Connections::work(const Handler& handler) {
     }
 }
 
-void Connections::run(const Handler& handler, const std::atomic<bool>& stop,
-                      const std::function<void()>& stopping) {
+void Connections::run(const Handler& handler, const std::atomic<bool>& stop) {
     std::vector<std::jthread> workers;
     for (int i = 0; i < limits_.workers; ++i) workers.emplace_back([&] { work(handler); });
     while (!stop) poll_once();
-    if (stopping) stopping();
     const std::lock_guard lock(mutex_);
     ends_ = true;
     waiting_.notify_all();

@@ -31,6 +31,9 @@ public:
         std::chrono::milliseconds request{10'000};  ///< from the first byte to the last
         std::chrono::milliseconds answer{30'000};   ///< for the peer to take it
         int workers = 8;
+        /// Of requests that are not whole, and of answers that are not taken; beyond, the oldest are closed.
+        std::size_t held_bytes = std::size_t(32) << 20;
+        std::size_t waiting_bytes = std::size_t(8) << 20;  ///< of whole requests; beyond, they are refused
     };
     using Handler = std::function<Response(const Request&)>;
 
@@ -41,10 +44,9 @@ public:
     Connections& operator=(const Connections&) = delete;
 
     int port() const { return port_; }
-    /// Until `stop`; `handler` is called on several threads. `stopping`, if any, is called then, before the
-    /// handlers that still work are waited for.
-    void run(const Handler& handler, const std::atomic<bool>& stop,
-             const std::function<void()>& stopping = {});
+    /// Until `stop`, and until the handlers that still work then have ended; `handler` is called on several
+    /// threads.
+    void run(const Handler& handler, const std::atomic<bool>& stop);
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -67,6 +69,8 @@ private:
     void answer(Peer& peer, const Response& response);
     void take_answers();
     void close_late();
+    void close_beyond_memory();
+    bool enqueue(std::uint64_t id, Peer& peer);
     void work(const Handler& handler);
     void poll_once();
     void close_peer(std::uint64_t id);
@@ -81,6 +85,7 @@ private:
     std::mutex mutex_;  // of what follows
     std::condition_variable waiting_;
     std::deque<Work> work_;
+    std::size_t waiting_bytes_ = 0;  // of work_
     std::vector<std::pair<std::uint64_t, std::string>> answers_;
     bool ends_ = false;
 };

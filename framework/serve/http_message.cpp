@@ -122,6 +122,11 @@ std::string Request::parameter(const std::string& name, const std::string& other
     return found == query.end() ? otherwise : found->second;
 }
 
+Response json_response(const nlohmann::ordered_json& json) {
+    constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
+    return {200, "application/json", json.dump(-1, ' ', false, kReplace)};
+}
+
 Response error_response(int status, const std::string& message) {
     const nlohmann::json json = {{"error", message}};
     constexpr auto kReplace = nlohmann::json::error_handler_t::replace;

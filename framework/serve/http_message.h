@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include <nlohmann/json_fwd.hpp>
+
 namespace aftershade::serve {
 
 inline constexpr std::size_t kMaxHeadBytes = 16 * 1024;
@@ -32,6 +34,7 @@ struct Response {
     std::map<std::string, std::string> headers{};
 };
 
+Response json_response(const nlohmann::ordered_json& json);
 /// {"error": message}
 Response error_response(int status, const std::string& message);
 

@@ -23,7 +23,27 @@ std::size_t bytes_of(const std::vector<std::string>& texts) {
     return bytes;
 }
 
+/// The look's beginning for a step that is not there.
+Place place_of_step(const Look& look, const std::string& step) {
+    for (const LookStep& one : look.steps)
+        if (one.name == step) return one.place;
+    return {look.file, 1, 1};
+}
+
 }  // namespace
+
+std::shared_ptr<BoundText> bind_text(const std::string& text, const std::filesystem::path& path,
+                                     const std::shared_ptr<EffectRegistry>& effects, Diagnostics& faults) {
+    const auto node = parse_document(text, path.string(), faults);
+    auto look = node ? parse_look(*node, faults) : std::nullopt;
+    if (!look) return nullptr;
+    auto bound = std::make_shared<BoundText>();
+    bound->text = text;
+    bound->effects = effects;
+    bound->look = std::move(*look);
+    bound->pipeline = bind_pipeline(bound->look, *effects, {}, faults);
+    return bound;
+}
 
 LookModel::LookModel(std::filesystem::path path, FindEffects find_effects, bool read_only)
     : path_(std::move(path)),
@@ -35,51 +55,63 @@ LookModel::LookModel(std::filesystem::path path, FindEffects find_effects, bool 
         throw Error(ExitCode::usage, path_.string() + ": is longer than 1 MiB, the most that a look may be");
     saved_text_ = text;
     texts_.push_back(std::move(text));
-    bind();
+    adopt(binding_of(texts_[at_], Origin::disk));
+    if (bound_) return;
+    Diagnostics none;
+    const auto capture_alone = bind_text(kNoSteps, path_, effects_, none);
+    capture_alone->effects_revision = effects_revision_;
+    bound_ = capture_alone;
 }
 
-LookModel::LookModel(std::filesystem::path path, FindEffects find_effects, bool read_only,
-                     LookHistory history, HungText hung)
-    : path_(std::move(path)),
-      find_effects_(std::move(find_effects)),
-      read_only_(read_only),
-      effects_(find_effects_()),
-      effects_revision_(history.effects_revision + 1),
-      texts_(std::move(history.texts)),
-      at_(history.at),
-      saved_text_(std::move(history.saved_text)),
-      revision_(history.revision + 1),
-      saved_revision_(history.saved_revision),
-      hung_(std::move(hung)) {
-    // The picture stays that of the text before.
-    if (at_ > 0 && texts_[at_] == hung_.text) {
-        --at_;
-        bind();
-        ++at_;
-        ++revision_;
-    }
-    bind();
+std::string LookModel::why_not(const std::filesystem::path& file) const {
+    if (named_on_disk_.contains(resolved_path(file))) return "";
+    for (const auto& folder : folders_)
+        if (out_of_bounds(file, folder).empty()) return "";
+    return out_of_bounds(file, path_.parent_path());
 }
 
-LookHistory LookModel::history() const {
-    const std::lock_guard lock(mutex_);
-    return {texts_, at_, saved_text_, revision_, saved_revision_, effects_revision_};
+/// A text on disk is of who has the disk, and not of a page: its files may be named from then on.
+LookModel::Binding LookModel::binding_of(const std::string& text, Origin origin) {
+    Binding binding;
+    const FileRule rule([&](const std::filesystem::path& file) {
+        if (origin == Origin::disk) named_on_disk_.insert(resolved_path(file));
+        std::string reason = why_not(file);
+        if (!reason.empty() && binding.refused.empty()) binding.refused = "'" + file.string() + "' " + reason;
+        return reason;
+    });
+    binding.bound = bind_text(text, path_, effects_, binding.faults);
+    return binding;
+}
+
+void LookModel::adopt(Binding binding) {
+    faults_ = std::move(binding.faults);
+    if (!binding.bound) return;
+    if (!undrawable_.reason.empty() && binding.bound->text == undrawable_text_)
+        faults_.error(place_of_step(binding.bound->look, undrawable_.step), undrawable_.reason);
+    binding.bound->effects_revision = effects_revision_;
+    binding.bound->revision = revision_;
+    if (!faults_.has_errors()) bound_ = std::move(binding.bound);
 }
 
 void LookModel::bind() {
-    faults_ = {};
-    auto bound = std::make_shared<BoundText>();
-    const auto node = parse_document(texts_[at_], path_.string(), faults_);
-    auto look = node ? parse_look(*node, faults_) : std::nullopt;
-    if (!look) return;
-    if (!hung_.reason.empty() && texts_[at_] == hung_.text) faults_.error(node->place, hung_.reason);
-    bound->text = texts_[at_];
-    bound->effects = effects_;
-    bound->effects_revision = effects_revision_;
-    bound->look = std::move(*look);
-    bound->pipeline = bind_pipeline(bound->look, *effects_, {}, faults_);
-    bound->revision = revision_;
-    if (!faults_.has_errors()) bound_ = std::move(bound);
+    adopt(binding_of(texts_[at_], Origin::page));
+}
+
+void LookModel::drawn(const std::string& text, std::uint64_t effects_revision) {
+    const std::lock_guard lock(mutex_);
+    if (bound_ && bound_->text == text && bound_->effects_revision == effects_revision) drawn_ = bound_;
+}
+
+void LookModel::give_up(const std::string& text, std::uint64_t effects_revision, const Undrawable& why) {
+    const std::lock_guard lock(mutex_);
+    if (!bound_ || bound_->text != text || bound_->effects_revision != effects_revision) return;
+    // Shaders are read from disk, so a picture from before a change of the effects cannot be drawn again.
+    if (drawn_ && (drawn_->text == text || drawn_->effects_revision != effects_revision_)) drawn_.reset();
+    bound_ = drawn_;
+    undrawable_text_ = text;
+    undrawable_ = why;
+    ++revision_;
+    bind();
 }
 
 std::shared_ptr<const BoundText> LookModel::bound() const {
@@ -170,7 +202,8 @@ void LookModel::reload_effects() {
     std::shared_ptr<EffectRegistry> effects = find_effects_();
     const std::lock_guard lock(mutex_);
     effects_ = std::move(effects);
-    hung_ = {};
+    undrawable_text_.clear();
+    undrawable_ = {};
     ++effects_revision_;
     ++revision_;
     bind();

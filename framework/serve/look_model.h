@@ -31,20 +31,14 @@ struct BoundText {
     std::uint64_t effects_revision = 0;
 };
 
-/// What a model has, for one of another process that takes its place.
-struct LookHistory {
-    std::vector<std::string> texts;
-    std::size_t at = 0;  ///< of texts
-    std::string saved_text;
-    std::uint64_t revision = 1;
-    std::uint64_t saved_revision = 1;
-    std::uint64_t effects_revision = 1;
-};
+/// Faults go to `faults`; nullptr where the text is no look. Its revisions are 0.
+std::shared_ptr<BoundText> bind_text(const std::string& text, const std::filesystem::path& path,
+                                     const std::shared_ptr<EffectRegistry>& effects, Diagnostics& faults);
 
-/// A text whose pictures do not come to an end, and why.
-struct HungText {
-    std::string text;
-    std::string reason;  ///< "" where there is none
+/// Why a text cannot be drawn.
+struct Undrawable {
+    std::string reason;
+    std::string step{};  ///< of the look, at which it is; "" where that is not known
 };
 
 /// [any thread]
@@ -54,10 +48,6 @@ public:
 
     /// Reads the file. Throws Error(ExitCode::usage) where it cannot be read.
     LookModel(std::filesystem::path path, FindEffects find_effects, bool read_only);
-    /// Continues. `hung` counts as faulty until effects are reloaded.
-    LookModel(std::filesystem::path path, FindEffects find_effects, bool read_only, LookHistory history,
-              HungText hung);
-    LookHistory history() const;
 
     const std::filesystem::path& path() const { return path_; }
     /// Of the last text that had no faults; nullptr before there was one.
@@ -75,6 +65,12 @@ public:
     void follow_file();
     /// Counts the changes of the text and of the effects.
     std::uint64_t revision() const;
+
+    /// A whole picture of the text came.
+    void drawn(const std::string& text, std::uint64_t effects_revision);
+    /// The text cannot be drawn: it counts as faulty until the effects are read again, and the last one that
+    /// was drawn takes its place. Nothing happens where the effects were read again meanwhile.
+    void give_up(const std::string& text, std::uint64_t effects_revision, const Undrawable& why);
 
     /// Reads all effects again: what is bound from now on is bound to those.
     void reload_effects();
@@ -109,7 +105,9 @@ private:
     std::uint64_t saved_revision_ = 1;
     Diagnostics faults_;
     std::shared_ptr<const BoundText> bound_;
-    HungText hung_;
+    std::shared_ptr<const BoundText> drawn_;  // the last one of which a whole picture came
+    std::string undrawable_text_;             // given up
+    Undrawable undrawable_;                   // without a reason: no text was
 };
 
 }  // namespace aftershade::serve

@@ -21,11 +21,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Response json_response(const Json& json) {
-    constexpr auto kReplace = Json::error_handler_t::replace;
-    return {200, "application/json", json.dump(-1, ' ', false, kReplace)};
-}
-
 template <typename Number>
 Number number_of(const Request& request, const std::string& name, Number otherwise) {
     const std::string text = request.parameter(name);
@@ -76,6 +71,7 @@ Json capture_json(const Sequence& sequence, const CaptureHeader& header, const s
 
 Response PageServer::state() const {
     Json state = setup_.look.state(setup_.header);
+    if (setup_.pictures.last_final()) state["has_picture"] = true;
     state["effect_folders"] = Json::array();
     for (const auto& folder : setup_.effect_folders) state["effect_folders"].push_back(folder.string());
     state["capture"] = capture_json(setup_.sequence, setup_.header, setup_.capture);
@@ -96,10 +92,14 @@ Response PageServer::change(const Request& request) {
     return state();
 }
 
-PictureRequest PageServer::request_of(const Request& request) const {
-    PictureRequest wanted;
-    wanted.look = setup_.look.bound();
-    if (!wanted.look) throw Refusal{409, "the look has faults, and there was none without before it"};
+DrawRequest PageServer::request_of(const Request& request, DrawRequest::Kind kind) const {
+    DrawRequest wanted;
+    wanted.kind = kind;
+    const std::shared_ptr<const BoundText> look = setup_.look.bound();
+    if (!look) throw Refusal{409, "the look has faults, and there was none without before it"};
+    wanted.text = look->text;
+    wanted.revision = look->revision;
+    wanted.effects_revision = look->effects_revision;
     wanted.frame = number_of(request, "frame", setup_.sequence.frames.front());
     if (std::ranges::find(setup_.sequence.frames, wanted.frame) == setup_.sequence.frames.end())
         throw Refusal{404, "the capture has no frame " + std::to_string(wanted.frame)};
@@ -113,39 +113,31 @@ PictureRequest PageServer::request_of(const Request& request) const {
 }
 
 Response PageServer::picture(const Request& request) {
-    const PictureRequest wanted = request_of(request);
+    if (!setup_.look.bound() && request.parameter("view", "final") == "final")
+        if (auto last = setup_.pictures.last_final()) return *last;
+    const DrawRequest wanted = request_of(request, DrawRequest::Kind::picture);
     if (request.parameter("format", "png") != "png") throw Refusal{400, "'format' is png"};
-    return setup_.pictures.run({wanted.view, wanted.scale, wanted.look->revision}, [&](PictureMaker& maker) {
-        MadePicture made = maker.make(wanted);
-        return Response{200,
-                        "image/png",
-                        std::move(made.png),
-                        {{"X-Aftershade-Times", made.times},
-                         {"X-Aftershade-Revision", std::to_string(wanted.look->revision)}}};
-    });
+    return setup_.pictures.run(wanted);
 }
 
 Response PageServer::probe(const Request& request) {
-    const PictureRequest wanted = request_of(request);
-    const int x = number_of(request, "x", -1), y = number_of(request, "y", -1);
-    if (x < 0 || y < 0 || x >= setup_.header.display_window.width() ||
-        y >= setup_.header.display_window.height())
+    DrawRequest wanted = request_of(request, DrawRequest::Kind::probe);
+    wanted.x = number_of(request, "x", -1);
+    wanted.y = number_of(request, "y", -1);
+    if (wanted.x < 0 || wanted.y < 0 || wanted.x >= setup_.header.display_window.width() ||
+        wanted.y >= setup_.header.display_window.height())
         throw Refusal{400, "'x' and 'y' are a pixel of the picture"};
-    return setup_.pictures.run({},
-                               [&](PictureMaker& maker) { return json_response(maker.probe(wanted, x, y)); });
+    return setup_.pictures.run(wanted);
 }
 
 Response PageServer::histogram(const Request& request) {
-    const PictureRequest wanted = request_of(request);
-    return setup_.pictures.run({},
-                               [&](PictureMaker& maker) { return json_response(maker.histogram(wanted)); });
+    return setup_.pictures.run(request_of(request, DrawRequest::Kind::histogram));
 }
 
 Response PageServer::metrics(const Request& request) {
-    const PictureRequest wanted = request_of(request);
-    const std::string truth = request.parameter("truth");
-    return setup_.pictures.run(
-        {}, [&](PictureMaker& maker) { return json_response(maker.metrics(wanted, truth)); });
+    DrawRequest wanted = request_of(request, DrawRequest::Kind::metrics);
+    wanted.truth = request.parameter("truth");
+    return setup_.pictures.run(wanted);
 }
 
 Response PageServer::command() const {

@@ -15,14 +15,14 @@
 #include "framework/effect/registry.h"
 #include "framework/serve/http_message.h"
 #include "framework/serve/look_model.h"
-#include "framework/serve/render_thread.h"
+#include "framework/serve/picture_queue.h"
 
 namespace aftershade::serve {
 
 /// [refers to what the caller keeps]
 struct PageSetup {
     LookModel& look;
-    RenderThread& pictures;
+    PictureQueue& pictures;
     const Sequence& sequence;
     const CaptureHeader& header;                        ///< of the first frame
     std::string capture;                                ///< as the user named it
@@ -51,7 +51,7 @@ private:
     Response save_shader(const Request& request);
     Response new_effect(const Request& request);
     void follow_effects();
-    PictureRequest request_of(const Request& request) const;
+    DrawRequest request_of(const Request& request, DrawRequest::Kind kind) const;
 
     PageSetup setup_;
     std::mutex mutex_;   // of what follows

@@ -65,11 +65,11 @@ std::string joined_roles(const std::vector<std::string>& roles) {
 }  // namespace
 
 PictureMaker::PictureMaker(Sequence sequence, std::vector<Profile> profiles, ReadLimits limits,
-                           gpu::Backend backend, std::filesystem::path data_folder, Drawing& drawing)
+                           gpu::Backend backend, std::filesystem::path data_folder, StatusWriter& status)
     : sequence_(std::move(sequence)),
       reader_(sequence_, std::move(profiles), limits),
       limits_(limits),
-      drawing_(drawing),
+      status_(status),
       context_(backend),
       programs_(
           std::make_shared<ProgramCache>(context_, data_folder / "glsl", ProgramStore::from_environment())) {}
@@ -86,7 +86,7 @@ void PictureMaker::adopt(Scaled& scaled, const PictureRequest& request) {
     scaled.form = std::move(form);
     if (!scaled.renderer) {
         scaled.renderer = std::make_unique<PipelineRenderer>(context_, *scaled.pipeline, programs_,
-                                                             NativeSources{nullptr, drawing_.status});
+                                                             NativeSources{nullptr, &status_});
         scaled.renderer->keep_steps();
     } else if (has_changed) {
         scaled.renderer->pipeline_changed();
@@ -148,7 +148,6 @@ FrameResult PictureMaker::draw_frame(Scaled& scaled, const std::vector<std::stri
 
 PictureMaker::Scaled& PictureMaker::draw(const PictureRequest& request) {
     const auto start = Clock::now();
-    drawing_.look = request.look;
     context_.make_current();
     Scaled& scaled = scaled_[request.scale];
     const std::shared_ptr<const BoundText> before = scaled.look;  // until the renderer has let go of it

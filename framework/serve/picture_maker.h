@@ -1,10 +1,8 @@
 // Pictures of a look over a capture's frames, made on one GL context: a later call draws only what changed.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -31,12 +29,6 @@ struct PictureRequest {
     double exposure_ev = 0;
 };
 
-/// What is drawn at the moment. [any thread; `status` may be null]
-struct Drawing {
-    std::atomic<std::shared_ptr<const BoundText>> look;
-    StatusWriter* status = nullptr;
-};
-
 struct MadePicture {
     std::string png;
     std::string times;  ///< JSON, one line
@@ -45,9 +37,9 @@ struct MadePicture {
 /// [the context's thread]
 class PictureMaker {
 public:
-    /// Copies the sequence; `drawing` must outlive this. Throws Error(ExitCode::gl) without a context.
+    /// Copies the sequence; `status`, which receives the pass at work, must outlive this. Throws Error(ExitCode::gl) without a context.
     PictureMaker(Sequence sequence, std::vector<Profile> profiles, ReadLimits limits, gpu::Backend backend,
-                 std::filesystem::path data_folder, Drawing& drawing);
+                 std::filesystem::path data_folder, StatusWriter& status);
     ~PictureMaker();
 
     /// Throws Error as `run` does.
@@ -94,7 +86,7 @@ private:
     Sequence sequence_;
     CaptureReader reader_;
     ReadLimits limits_;
-    Drawing& drawing_;
+    StatusWriter& status_;
     gpu::Context context_;
     std::shared_ptr<ProgramCache> programs_;
     std::map<int, Scaled> scaled_;    // by scale

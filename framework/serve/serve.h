@@ -4,14 +4,16 @@
 #include <atomic>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "framework/capture/profile.h"
 #include "framework/capture/sequence.h"
-#include "framework/core/status.h"
+#include "framework/effect/registry.h"
 #include "framework/file/exr_file.h"
 #include "framework/gpu/context.h"
+#include "framework/serve/drawing_process.h"
 
 namespace aftershade::serve {
 
@@ -28,16 +30,15 @@ struct ServeOptions {
     bool read_only = false;
     std::function<void(const std::string& address)> ready;  ///< once it answers
 
-    StatusWriter* status = nullptr;  ///< receives which pass is compiled and drawn; may be null
-    /// Called once `stop` is set: why the pass at work does not end; "" where it does, or none is at work.
-    std::function<std::string()> hang{};
-    /// Called where there is a reason: replaces this process by one with `handover`, and does not return.
-    std::function<void(const std::string& handover)> restart{};
-    std::string handover{};  ///< bytes of the server that this one replaces; "": none
+    /// Runs the process that draws. Called again, on another thread, where it has ended.
+    RunDrawer run_drawer;
 };
 
-/// Until `stop`. Throws Error: usage for the look and the port, capture for the first frame, gl for the
-/// context.
+/// Those of the options' folders and the shipped ones, read now.
+std::shared_ptr<EffectRegistry> find_effects(const ServeOptions& options);
+
+/// Until `stop`, which ends the process that draws, too. Throws Error: usage for the look and the port,
+/// capture for the first frame, gl for the context.
 void serve(const ServeOptions& options, const std::atomic<bool>& stop);
 
 }  // namespace aftershade::serve

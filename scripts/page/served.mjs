@@ -1,13 +1,20 @@
 // `aftershade serve` for the page's measurements: dof and view_transform over CAPTURE, in a folder of its own.
 import { spawn } from "node:child_process";
-import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 
 import { TINT, tintShader } from "../../tests/page/tint.mjs";
 
+/** A child belongs to the thread that started it. */
+const childrenOf = (pid) =>
+  readdirSync(`/proc/${pid}/task`)
+    .flatMap((thread) => readFileSync(`/proc/${pid}/task/${thread}/children`, "utf8").trim().split(" "))
+    .filter(Boolean)
+    .map(Number);
+
 /**
- * Starts it on AFTERSHADE_EXECUTABLE; gives the page's address with its token, the process that draws, and what ends it.
+ * Starts it on AFTERSHADE_EXECUTABLE; gives the page's address with its token, its processes, and what ends it.
  * `ownEffect`: with the step `tint` between, whose shader may be edited.
  */
 export async function serve(capture, { ownEffect = false } = {}) {
@@ -45,10 +52,9 @@ export async function serve(capture, { ownEffect = false } = {}) {
   });
   return {
     address,
-    // Effects that are not shipped are drawn in a process of their own.
-    pid: ownEffect
-      ? Number(readFileSync(`/proc/${server.pid}/task/${server.pid}/children`, "utf8").trim().split(" ")[0])
-      : server.pid,
+    pid: server.pid,
+    /** The process that draws, which is another one after it was started again. */
+    drawerPid: () => childrenOf(server.pid)[0],
     end() {
       server.kill("SIGINT");
       rmSync(folder, { recursive: true });

@@ -13,7 +13,7 @@ const ACTIONS = 40, // of a round
   LEAST_ROUNDS = 12,
   minutes = Number(process.argv[2]),
   capture = join(resolve(import.meta.dirname, "../.."), "scenes/starter/capture.json"),
-  { address, pid, end } = await serve(capture, { ownEffect: true }),
+  { address, pid, drawerPid, end } = await serve(capture, { ownEffect: true }),
   headers = { "X-Aftershade-Token": address.hash.slice("#token=".length) },
   next = random(28),
   pick = (list) => list[Math.floor(next() * list.length)];
@@ -71,6 +71,9 @@ async function act() {
   if (!ok) ++counts.refused; // nothing to undo, a look that has faults
 }
 
+const resident_mib = (process) =>
+  Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${process}/status`, "utf8"))[1]) / 1024;
+
 /** The first look and shader again and its pictures: what is held then must not grow. */
 async function settled() {
   await writeShader(tintShader("light"));
@@ -80,8 +83,8 @@ async function settled() {
   const response = await picture("final", frames[0], 1);
   if (!response.ok) throw new Error(`the first look gives no picture: ${await response.text()}`);
   const { gl_objects } = JSON.parse(response.headers.get("X-Aftershade-Times"));
-  const resident_kib = Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${pid}/status`, "utf8"))[1]);
-  return { gl_objects, resident_mib: resident_kib / 1024 };
+  const drawer_mib = resident_mib(drawerPid());
+  return { gl_objects, drawer_mib, resident_mib: resident_mib(pid) + drawer_mib };
 }
 
 const begun = performance.now(),
@@ -102,7 +105,9 @@ const warm = rounds.filter(({ at }) => at >= WARM_UP),
 const early = later.slice(0, quarter),
   late = later.slice(-quarter),
   growth = memory(late) / memory(early) - 1;
-if (process.env.VERBOSE) for (const { at, resident_mib, gl_objects } of rounds) console.log(at.toFixed(3), resident_mib.toFixed(1), gl_objects);
+if (process.env.VERBOSE)
+  for (const { at, resident_mib, drawer_mib, gl_objects } of rounds)
+    console.log(at.toFixed(3), resident_mib.toFixed(1), drawer_mib.toFixed(1), gl_objects);
 console.log(
   `${((performance.now() - begun) / 60_000).toFixed(1)} min, ${rounds.length} rounds, ${counts.actions} actions, ${counts.refused} refused: ` +
     `resident ${memory(early).toFixed(1)} to ${memory(late).toFixed(1)} MiB (${(100 * growth).toFixed(1)} %), ` +

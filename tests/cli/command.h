@@ -70,6 +70,7 @@ public:
     Command(const Command&) = delete;
     Command& operator=(const Command&) = delete;
 
+    pid_t process() const { return process_; }
     void send(int signal) const { kill(process_, signal); }
 
     /// False if the command ended or ten seconds passed before it had printed that many lines to stdout.

@@ -1571,7 +1571,7 @@ async function openShader(page) {
 }
 
 withTint(
-  "starts again where a pass does not end, with the look, its undo and the picture of the text before",
+  "names a pass that does not end, and keeps the look, its undo and the last good picture",
   async (page, { shader, look }) => {
     const before = await textOf(page),
       lines = Array.from({ length: 12_000 }, (_, i) => `light = light * 1.01 + sin(light * ${i}.0);`);
@@ -1592,6 +1592,35 @@ withTint(
   },
   { words: ["--pass-timeout", "4"] },
 );
+
+withTint("names a pass that crashes the driver, and keeps the last good picture until it is mended", async (page, { shader }) => {
+  const shown = () => page.locator(".stage canvas").evaluate((canvas) => canvas.toDataURL());
+  await drawn(page);
+  const before = await textOf(page),
+    good = await shown(),
+    deep = tintShader("F(F(F(F(F(F(F(F(F(light)))))))))").replace("void main", "#define F(x) x*x+x*x\nvoid main");
+  writeFileSync(shader, deep);
+  await page.waitForFunction(() =>
+    window.aftershade.store.state.faults.some(({ message }) => /crashed .*compiling pass 'tint' of step 'tint'/.test(message)),
+  );
+  await page.evaluate(() => window.aftershade.settled());
+  assert.equal(await page.locator(".badge").innerText(), "last good picture: the look has faults");
+  assert.equal(await shown(), good);
+  assert.equal(await textOf(page), before);
+  assert.equal((await state(page)).can_undo, true);
+  await page.reload();
+  await drawn(page);
+  await frame(page);
+  assert.equal(await shown(), good, "for a page that is opened now, too");
+  writeFileSync(shader, tintShader("light * vec4(0.0, 2.0, 0.0, 1.0)"));
+  await page.waitForFunction(() => !window.aftershade.store.state.faults.length);
+  const isGreen = ([red, green]) => green > red,
+    after = await centreOnce(page, isGreen);
+  assert.ok(isGreen(after), `${after}`);
+  await page.keyboard.press("Control+z");
+  await page.waitForFunction((text) => window.aftershade.store.state.text !== text, before);
+  page.faults = page.faults.filter((words) => !words.includes("409")); // Chromium lists the refused picture
+});
 
 withTint("writes a shader by Ctrl+S and shows the picture that `run` then draws", async (page, { shader, files, look }) => {
   const area = await openShader(page),

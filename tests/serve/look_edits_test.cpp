@@ -13,7 +13,6 @@
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
 #include "framework/effect/registry.h"
-#include "framework/serve/handover.h"
 #include "framework/serve/look_model.h"
 #include "tests/temporary_folder.h"
 
@@ -216,45 +215,48 @@ TEST(LookModel, NeverWritesWhereItOnlyReadsNorOverAnotherProgramsChange) {
     EXPECT_EQ(read_text_file(path, ExitCode::usage), "{}");
 }
 
-TEST(LookModel, ContinuesInAnotherProcessWithItsUndoAndWithoutTheTextThatHangs) {
+TEST(LookModel, TakesTheLastDrawnTextInThePlaceOfOneThatCannotBeDrawn) {
     const TemporaryFolder folder;
     const std::filesystem::path path = folder / "look.json";
     write_text_file(path, kLook);
-    LookModel first(path, shipped_effects, false);
-    first.edit(1, Json::parse(R"([{"op": "set", "step": 0, "param": "f_number", "value": 4}])"));
-    const std::string bytes = handover_bytes({4711, "token", first.history(), {first.text(), "it hangs"}});
-    const Handover handover = read_handover(bytes);
-    EXPECT_EQ(handover.port, 4711);
-    EXPECT_EQ(handover.token, "token");
-    LookModel second(path, shipped_effects, false, handover.look, handover.hung);
-    EXPECT_EQ(second.text(), first.text());
-    EXPECT_GT(second.revision(), first.revision());
-    EXPECT_GT(second.effects_revision(), first.effects_revision());
-    const Json state = second.state({});
-    ASSERT_EQ(state["faults"].size(), 1u);
-    EXPECT_EQ(state["faults"][0]["message"], "it hangs");
-    ASSERT_TRUE(second.bound());
-    EXPECT_EQ(second.bound()->text, kLook) << "the picture stays that of the text before";
-    second.undo();
-    EXPECT_TRUE(second.state({})["faults"].empty());
-    EXPECT_EQ(second.text(), kLook);
-    second.redo();
-    EXPECT_EQ(second.state({})["faults"].size(), 1u);
-    second.reload_effects();
-    EXPECT_TRUE(second.state({})["faults"].empty()) << "another shader may come to its end";
+    LookModel model(path, shipped_effects, false);
+    const auto set = [&](int value) {
+        model.edit(model.revision(), {{{"op", "set"}, {"step", 0}, {"param", "f_number"}, {"value", value}}});
+        return model.text();
+    };
+    model.drawn(kLook, 1);
+    set(4);  // replaced before a picture of it came
+    const std::string last = set(8);
+    const auto revision = model.revision();
+    model.give_up(last, 1, {"it crashes", "view_transform"});
+    EXPECT_GT(model.revision(), revision) << "pages read the fault";
+    EXPECT_EQ(model.text(), last);
+    const Json faults = model.state({})["faults"];
+    ASSERT_EQ(faults.size(), 1u);
+    EXPECT_EQ(faults[0]["message"], "it crashes");
+    EXPECT_EQ(faults[0]["line"], 9) << "of the step";
+    ASSERT_TRUE(model.bound());
+    EXPECT_EQ(model.bound()->text, kLook);
+    model.undo();
+    EXPECT_TRUE(model.state({})["faults"].empty());
+    model.redo();
+    EXPECT_EQ(model.state({})["faults"].size(), 1u);
+    model.reload_effects();
+    EXPECT_TRUE(model.state({})["faults"].empty()) << "another shader may be drawn";
 }
 
-TEST(LookModel, IsHandedOverByTheByte) {
-    const LookHistory look{{std::string("\xff\0{", 3), "{}"}, 1, "{ ", 7, 5, 3};
-    const Handover read = read_handover(handover_bytes({1, "t", look, {"", ""}}));
-    EXPECT_EQ(read.look.texts, look.texts);
-    EXPECT_EQ(read.look.at, 1u);
-    EXPECT_EQ(read.look.saved_text, "{ ");
-    EXPECT_EQ(read.look.revision, 7u);
-    EXPECT_EQ(read.look.saved_revision, 5u);
-    EXPECT_EQ(read.look.effects_revision, 3u);
-    EXPECT_THROW(read_handover("no state"), Error);
-    EXPECT_THROW(read_handover(handover_bytes({1, "t", {}, {"", ""}})), Error) << "a model without a text";
+TEST(LookModel, HasNoTextToDrawWhereTheOnlyOneCannotBeDrawn) {
+    const TemporaryFolder folder;
+    const std::filesystem::path path = folder / "look.json";
+    write_text_file(path, kLook);
+    LookModel model(path, shipped_effects, false);
+    model.drawn(kLook, 1);
+    model.reload_effects();
+    model.give_up(kLook, 1, "late");
+    EXPECT_TRUE(model.bound()) << "the effects were read again meanwhile";
+    model.give_up(kLook, model.effects_revision(), {"it crashes"});
+    EXPECT_FALSE(model.bound()) << "the shader that drew it before is no longer there";
+    EXPECT_EQ(model.state({})["faults"].size(), 1u);
 }
 
 TEST(LookModel, KeepsTheLastLookWithoutFaultsAndSaysWhereTheFaultIs) {

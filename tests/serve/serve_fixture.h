@@ -1,6 +1,8 @@
 // `aftershade serve` as a process, over a small capture and a look of two steps.
 #pragma once
 
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <optional>
 #include <string>
@@ -30,12 +32,15 @@ protected:
         SyntheticScene scene{
             .width = 64, .height = 36, .background = {0.1f, 0.2f, 0.4f}, .background_depth_m = 8};
         scene.box = SyntheticBox{4, 6, 16, 12, 5, 2};
-        Capture capture = make_capture(scene, 1);
-        if (has_nan_) capture.images.at(kColorRole).at(3, 2, 1) = std::numeric_limits<float>::quiet_NaN();
-        write_capture(capture, folder_ / "in_0001.exr");
-        write_text(folder_ / "look.json", kLook);
+        for (int frame = 1; frame <= frames_; ++frame) {
+            Capture capture = make_capture(scene, frame);
+            if (has_nan_) capture.images.at(kColorRole).at(3, 2, 1) = std::numeric_limits<float>::quiet_NaN();
+            write_capture(capture, folder_ / ("in_000" + std::to_string(frame) + ".exr"));
+        }
+        write_text(folder_ / "look.json", look_);
         write_text(folder_ / "secret.txt", "secret");
-        std::vector<std::string> words{"serve", "look.json", "in_0001.exr", "--backend", "osmesa"};
+        std::vector<std::string> words{"serve", "look.json", frames_ > 1 ? "in_####.exr" : "in_0001.exr",
+                                       "--backend", "osmesa"};
         words.insert(words.end(), more.begin(), more.end());
         command_.emplace(aftershade_words(words), folder_.path());
         ASSERT_TRUE(command_->wait_for_lines(1)) << command_->wait().err;
@@ -70,6 +75,19 @@ protected:
     Json times(const std::string& query = "") const {
         return Json::parse(get("/api/picture?frame=1" + query).header("X-Aftershade-Times"));
     }
+    /// The process that draws; 0 where there is none.
+    pid_t drawer() const {
+        const std::string tasks = "/proc/" + std::to_string(command_->process()) + "/task";
+        for (const auto& task : std::filesystem::directory_iterator(tasks)) {
+            pid_t child = 0;
+            if (std::ifstream(task.path() / "children") >> child) return child;
+        }
+        return 0;
+    }
+    Answer edit(const Json& edit) const {
+        return post("/api/edit",
+                    Json{{"revision", get("/api/state").json()["revision"]}, {"edits", {edit}}}.dump());
+    }
     int ended_by(int signal) {
         command_->send(signal);
         return command_->wait().exit_code;
@@ -78,6 +96,8 @@ protected:
     TemporaryFolder folder_;
     std::optional<Command> command_;
     bool has_nan_ = false;
+    int frames_ = 1;
+    std::string look_ = kLook;
     int port_ = 0;
     std::string token_;
 };

@@ -1,0 +1,33 @@
+// What the process that speaks HTTP and the one that draws say to each other, over a socket of theirs.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "framework/serve/http_message.h"
+
+namespace aftershade::serve {
+
+/// What is to be drawn, without anything that only one process has.
+struct DrawRequest {
+    enum class Kind { picture, probe, histogram, metrics };
+    Kind kind = Kind::picture;
+    std::string text;  ///< of the look
+    std::uint64_t revision = 0;
+    std::uint64_t effects_revision = 0;
+    int frame = 0;
+    int scale = 1;               ///< the picture has 1/scale of the pixels of each side
+    std::string view = "final";  ///< or before, tap:STEP.TEXTURE, role:NAME, truth:NAME
+    double exposure_ev = 0;
+    int x = 0, y = 0;   ///< of a probe
+    std::string truth;  ///< of metrics
+};
+
+// Each waits until the whole message is through. false or nullopt: the other process is gone.
+bool send_request(int socket, const DrawRequest& request);
+std::optional<DrawRequest> receive_request(int socket);
+bool send_answer(int socket, const Response& answer);
+std::optional<Response> receive_answer(int socket);
+
+}  // namespace aftershade::serve

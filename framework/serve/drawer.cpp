@@ -1,0 +1,105 @@
+#include "framework/serve/drawer.h"
+
+#include <exception>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "framework/core/error.h"
+#include "framework/serve/draw_messages.h"
+#include "framework/serve/drawing_process.h"
+#include "framework/serve/look_model.h"
+#include "framework/serve/picture_maker.h"
+#include "framework/serve/refusal.h"
+#include "framework/serve/serve.h"
+
+namespace aftershade::serve {
+
+namespace {
+
+/// Of what the look, its effects and its capture hold, and not of this machine.
+bool is_of_documents(ExitCode code) {
+    return code == ExitCode::usage || code == ExitCode::capture || code == ExitCode::effect;
+}
+
+/// The looks of requests, bound to effects of this process's own.
+class Looks {
+public:
+    explicit Looks(const ServeOptions& options) : options_(options) {}
+
+    /// Throws Refusal where the effects on disk are no longer those that the look was bound to elsewhere.
+    std::shared_ptr<const BoundText> of(const DrawRequest& request) {
+        if (bound_ && bound_->revision == request.revision &&
+            bound_->effects_revision == request.effects_revision)
+            return bound_;
+        if (!effects_ || effects_revision_ != request.effects_revision) {
+            effects_ = find_effects(options_);
+            effects_revision_ = request.effects_revision;
+        }
+        Diagnostics faults;
+        auto bound = bind_text(request.text, std::filesystem::absolute(options_.look), effects_, faults);
+        if (!bound || faults.has_errors())
+            throw Refusal{409, "the effects on disk are no longer those that the look was bound to"};
+        bound->revision = request.revision;
+        bound->effects_revision = request.effects_revision;
+        bound_ = std::move(bound);
+        return bound_;
+    }
+
+private:
+    const ServeOptions& options_;
+    std::shared_ptr<EffectRegistry> effects_;
+    std::uint64_t effects_revision_ = 0;
+    std::shared_ptr<const BoundText> bound_;  // the last one
+};
+
+Response answer(const DrawRequest& request, Looks& looks, PictureMaker& maker) {
+    const PictureRequest wanted{looks.of(request), request.frame, request.scale, request.view,
+                                request.exposure_ev};
+    switch (request.kind) {
+        case DrawRequest::Kind::probe: return json_response(maker.probe(wanted, request.x, request.y));
+        case DrawRequest::Kind::histogram: return json_response(maker.histogram(wanted));
+        case DrawRequest::Kind::metrics: return json_response(maker.metrics(wanted, request.truth));
+        case DrawRequest::Kind::picture: break;
+    }
+    MadePicture made = maker.make(wanted);
+    return {200,
+            "image/png",
+            std::move(made.png),
+            {{"X-Aftershade-Times", made.times},
+             {"X-Aftershade-Revision", std::to_string(request.revision)}}};
+}
+
+Response answer_or_fault(const DrawRequest& request, Looks& looks, PictureMaker& maker) {
+    try {
+        return answer(request, looks, maker);
+    } catch (const Refusal& refusal) {
+        return error_response(refusal.status, refusal.message);
+    } catch (const Error& error) {
+        return error_response(is_of_documents(error.exit_code()) ? 400 : 500, error.what());
+    } catch (const std::exception& error) {
+        return error_response(500, error.what());
+    }
+}
+
+}  // namespace
+
+void draw_for(const ServeOptions& options, int socket) {
+    StatusWriter status;
+    std::optional<PictureMaker> maker;
+    try {
+        maker.emplace(options.sequence, options.profiles, options.limits, options.backend,
+                      options.data_folder, status);
+    } catch (const Error& error) {
+        send_answer(socket, {500, std::to_string(int(error.exit_code())), error.what()});
+        return;
+    }
+    if (!send_answer(socket, {})) return;
+    Looks looks(options);
+    while (const auto request = receive_request(socket))
+        if (!send_answer(socket, answer_or_fault(*request, looks, *maker))) return;
+}
+
+}  // namespace aftershade::serve

@@ -1,0 +1,71 @@
+// What is to be drawn, one after the other: the newest request for a picture before older ones.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <future>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "framework/serve/drawing_process.h"
+#include "framework/serve/http_message.h"
+#include "framework/serve/look_model.h"
+
+namespace aftershade::serve {
+
+/// [any thread]
+class PictureQueue {
+public:
+    struct Listener {
+        /// A picture of the whole size came.
+        std::function<void(const DrawRequest&)> drawn;
+        /// The process that draws came to its end over this, and over its repetition.
+        std::function<void(const DrawRequest&, const Undrawable& why)> given_up;
+    };
+
+    /// Waits for the context. Throws what DrawingProcess throws. Once `stop` is set, no work begins any more.
+    PictureQueue(RunDrawer run, Listener listener, const std::atomic<bool>& stop);
+    ~PictureQueue();
+    PictureQueue(const PictureQueue&) = delete;
+    PictureQueue& operator=(const PictureQueue&) = delete;
+
+    /// Waits for the answer. A picture of the same view that has not begun is answered with 204 where it is
+    /// of the same scale or of an older revision; so is every request after the end.
+    Response run(DrawRequest request);
+    /// The final picture of the whole size that came last, for where the look cannot be drawn any more.
+    std::optional<Response> last_final() const;
+
+private:
+    struct Task {
+        DrawRequest request;
+        std::promise<Response> answer;
+    };
+    struct GivenUp {
+        std::string text;
+        std::uint64_t effects_revision = 0;
+        std::string reason;
+    };
+    void loop();
+    void drop_older(const DrawRequest& request);
+    std::unique_ptr<Task> next();
+    Response answer(const DrawRequest& request);
+    void note(const DrawRequest& request, const Response& response);
+
+    const Listener listener_;
+    const std::atomic<bool>& stop_;
+    DrawingProcess process_;           // the thread's
+    std::optional<GivenUp> given_up_;  // the thread's
+    mutable std::mutex mutex_;         // of what follows
+    std::optional<Response> last_final_;
+    std::condition_variable waiting_;
+    std::list<std::unique_ptr<Task>> tasks_;
+    bool ends_ = false;
+    std::thread thread_;
+};
+
+}  // namespace aftershade::serve
