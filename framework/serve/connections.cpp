@@ -173,8 +173,8 @@ void Connections::close_beyond_memory() {
     std::size_t held = 0;
     for (const auto& [id, entry] : peers_) held += entry.second.bytes.capacity();
     while (held > limits_.held_bytes && peers_.size() > 1) {
-        const auto oldest = std::ranges::find_if(
-            peers_, [](const auto& peer) { return !peer.second.second.bytes.empty(); });
+        const auto oldest =
+            std::ranges::find_if(peers_, [](const auto& peer) { return !peer.second.second.bytes.empty(); });
         if (oldest == peers_.end() || oldest->first == peers_.rbegin()->first) return;
         held -= oldest->second.second.bytes.capacity();
         close_peer(oldest->first);

@@ -32,7 +32,7 @@ public:
         std::chrono::milliseconds answer{30'000};   ///< for the peer to take it
         int workers = 8;
         /// Of requests that are not whole, and of answers that are not taken; beyond, the oldest are closed.
-        std::size_t held_bytes = std::size_t(32) << 20;
+        std::size_t held_bytes = std::size_t(24) << 20;
         std::size_t waiting_bytes = std::size_t(8) << 20;  ///< of whole requests; beyond, they are refused
     };
     using Handler = std::function<Response(const Request&)>;

@@ -14,8 +14,11 @@ namespace aftershade::serve {
 
 namespace {
 
-/// Enough for a day's work; of a text of 1 MiB it would be 256 MiB, so its bytes are bounded too.
-constexpr std::size_t kMaxTexts = 4096, kMaxTextBytes = std::size_t(32) << 20;
+/// Enough for a day's work; of a text of 1 MiB it would be 4 GiB, so its bytes are bounded too.
+constexpr std::size_t kMaxTexts = 4096, kMaxTextBytes = std::size_t(16) << 20;
+
+/// Drawn where the look has had faults from the start.
+constexpr const char* kNoSteps = R"({ "aftershade": 1, "steps": [] })";
 
 std::size_t bytes_of(const std::vector<std::string>& texts) {
     std::size_t bytes = 0;

@@ -54,6 +54,7 @@ private:
     DrawRequest request_of(const Request& request, DrawRequest::Kind kind) const;
 
     PageSetup setup_;
+    std::mutex bodies_;  // held while one is read
     std::mutex mutex_;   // of what follows
     std::string stamp_;  // of the effects as they were last read
 };
