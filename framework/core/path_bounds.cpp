@@ -25,11 +25,7 @@ namespace {
 
 constexpr const char* kVariable = "AFTERSHADE_ALLOW_PATH";
 
-fs::path resolved(const fs::path& path) {
-    std::error_code failure;
-    const fs::path result = fs::weakly_canonical(fs::absolute(path, failure), failure);
-    return failure ? fs::absolute(path, failure).lexically_normal() : result;
-}
+thread_local FileRule* innermost_rule = nullptr;
 
 /// Both resolved.
 bool lies_in(const fs::path& file, const fs::path& folder) {
@@ -38,11 +34,29 @@ bool lies_in(const fs::path& file, const fs::path& folder) {
 
 }  // namespace
 
+FileRule::FileRule(WhyNot why_not) : why_not_(std::move(why_not)), outer_(innermost_rule) {
+    innermost_rule = this;
+}
+
+FileRule::~FileRule() {
+    innermost_rule = outer_;
+}
+
+std::string FileRule::why_not(const fs::path& file) {
+    return innermost_rule ? innermost_rule->why_not_(file) : "";
+}
+
+fs::path resolved_path(const fs::path& path) {
+    std::error_code failure;
+    const fs::path result = fs::weakly_canonical(fs::absolute(path, failure), failure);
+    return failure ? fs::absolute(path, failure).lexically_normal() : result;
+}
+
 std::string out_of_bounds(const fs::path& file, const fs::path& folder) {
-    const fs::path target = resolved(file);
-    if (lies_in(target, resolved(folder.empty() ? fs::path(".") : folder))) return "";
+    const fs::path target = resolved_path(file);
+    if (lies_in(target, resolved_path(folder.empty() ? fs::path(".") : folder))) return "";
     for (const fs::path& allowed : allowed_folders())
-        if (lies_in(target, resolved(allowed))) return "";
+        if (lies_in(target, resolved_path(allowed))) return "";
     return "leads out of the folder '" + (folder.empty() ? std::string(".") : folder.string()) + "', to " +
            target.string() + " (move it there, or allow its folder with --allow-path)";
 }

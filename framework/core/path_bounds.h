@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +17,28 @@ namespace aftershade {
 /// 'effects/x'
 /// ...".
 std::string out_of_bounds(const std::filesystem::path& file, const std::filesystem::path& folder);
+
+/// While it lives, what this thread reads may name only those files of which `why_not` says "": a rule for
+/// documents that come from elsewhere than the disk. Without one every file may be named.
+class FileRule {
+public:
+    using WhyNot = std::function<std::string(const std::filesystem::path& file)>;
+
+    explicit FileRule(WhyNot why_not);
+    ~FileRule();
+    FileRule(const FileRule&) = delete;
+    FileRule& operator=(const FileRule&) = delete;
+
+    /// Why a document may not name `file`, as a message continues after its name; "" where it may.
+    static std::string why_not(const std::filesystem::path& file);
+
+private:
+    WhyNot why_not_;
+    FileRule* outer_;
+};
+
+/// With links followed as far as there is something.
+std::filesystem::path resolved_path(const std::filesystem::path& path);
 
 /// A regular file that lies in `folder` under the relative path `name` and is reached without following a
 /// link: for untrusted folders. Else nullopt, and `fault` says why, as a message ends.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "framework/core/grammar_reader.h"
+#include "framework/core/path_bounds.h"
 #include "framework/pipeline/look_grammar.h"
 
 namespace aftershade {
@@ -232,6 +233,10 @@ private:
             return;
         }
         if (is_too_large_ || !may_use_another(file, place)) return;
+        if (const std::string reason = FileRule::why_not(path); !reason.empty()) {
+            diagnostics_.error(place, "'" + file + "' " + reason);
+            return;
+        }
         const auto document = read_document(path, diagnostics_);
         if (!document) {
             diagnostics_.error(place, "'" + file + "' cannot be used (see above)");

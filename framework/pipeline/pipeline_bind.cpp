@@ -165,10 +165,16 @@ private:
             (role->type != ComponentType::float32 || (role->channels != 1 && role->kind != RoleKind::other)))
             diagnostics_.error(mask.place, "a mask takes a role of one channel, such as mask or aov:hair; '" +
                                                mask.role + "' is none");
-        std::error_code failure;
-        if (!mask.file.empty() && !std::filesystem::is_regular_file(mask.file, failure))
-            diagnostics_.error(mask.place, "no file '" + mask.file.string() + "'");
+        if (!mask.file.empty()) check_file(mask.file, "", mask.place);
         step.mask = mask;
+    }
+
+    void check_file(const std::filesystem::path& file, const std::string& label, const Place& place) {
+        std::error_code failure;
+        if (const std::string reason = FileRule::why_not(file); !reason.empty())
+            diagnostics_.error(place, label + "'" + file.string() + "' " + reason);
+        else if (!std::filesystem::is_regular_file(file, failure))
+            diagnostics_.error(place, label + "no file '" + file.string() + "'");
     }
 
     /// What each output of a step is mixed with: the input of its role, else the image of that role before
@@ -254,9 +260,7 @@ private:
         const auto complete = [&](ParamValue& file) {
             file = with_file(*spec, std::move(file), folder);
             const auto& path = std::get<std::string>(file);
-            std::error_code failure;
-            if (!path.empty() && !std::filesystem::is_regular_file(path, failure))
-                diagnostics_.error(value.place, step.name + "." + name + ": no file '" + path + "'");
+            if (!path.empty()) check_file(path, step.name + "." + name + ": ", value.place);
         };
         auto* literal = std::get_if<ParamValue>(&*parsed);
         if (is_file_type(spec->type) && literal) complete(*literal);

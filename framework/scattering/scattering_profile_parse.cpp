@@ -5,6 +5,7 @@
 
 #include "framework/core/data_path.h"
 #include "framework/core/grammar_reader.h"
+#include "framework/core/path_bounds.h"
 #include "framework/core/text.h"
 #include "framework/core/units.h"
 #include "framework/scattering/scattering_grammar.h"
@@ -148,6 +149,10 @@ std::optional<ScatteringProfile> parse_scattering_profile(const Node& node, cons
     }
     const bool is_path = node.string.ends_with(".json");
     const fs::path path = is_path ? folder / node.string : shipped_folder() / (node.string + ".json");
+    if (const std::string reason = FileRule::why_not(path); !reason.empty()) {
+        diagnostics.error(node.place, label + ": '" + node.string + "' " + reason);
+        return std::nullopt;
+    }
     std::error_code failure;
     if (!fs::is_regular_file(path, failure)) {
         const auto names = scattering_profile_names();

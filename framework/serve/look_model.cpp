@@ -6,6 +6,7 @@
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
+#include "framework/core/path_bounds.h"
 #include "framework/effect/describe.h"
 #include "framework/serve/look_edits.h"
 #include "framework/serve/look_state.h"
@@ -48,10 +49,12 @@ std::shared_ptr<BoundText> bind_text(const std::string& text, const std::filesys
     return bound;
 }
 
-LookModel::LookModel(std::filesystem::path path, FindEffects find_effects, bool read_only)
+LookModel::LookModel(std::filesystem::path path, FindEffects find_effects, bool read_only,
+                     std::vector<std::filesystem::path> folders)
     : path_(std::move(path)),
       find_effects_(std::move(find_effects)),
       read_only_(read_only),
+      folders_(std::move(folders)),
       effects_(find_effects_()) {
     std::string text = read_text_file(path_, ExitCode::usage);
     if (text.size() > kMaxDocumentBytes)
@@ -127,7 +130,7 @@ std::string LookModel::text() const {
     return texts_[at_];
 }
 
-void LookModel::change(std::string text) {
+void LookModel::change(std::string text, Binding binding) {
     texts_.resize(at_ + 1);
     texts_.push_back(std::move(text));
     ++at_;
@@ -136,7 +139,7 @@ void LookModel::change(std::string text) {
         --at_;
     }
     ++revision_;
-    bind();
+    adopt(std::move(binding));
 }
 
 void LookModel::edit(std::uint64_t revision, const nlohmann::ordered_json& edits) {
@@ -155,7 +158,10 @@ void LookModel::edit(std::uint64_t revision, const nlohmann::ordered_json& edits
         if (text.size() > kMaxDocumentBytes)
             throw Refusal{413, "the look would be longer than 1 MiB, the most that a look may be"};
     }
-    if (text != texts_[at_]) change(std::move(text));
+    if (text == texts_[at_]) return;
+    Binding binding = binding_of(text, Origin::page);
+    if (!binding.refused.empty()) throw Refusal{403, binding.refused};
+    change(std::move(text), std::move(binding));
 }
 
 void LookModel::undo() {
@@ -193,7 +199,8 @@ void LookModel::follow_file() {
     std::string on_disk = read_text_file(path_, failure);
     if (failure || on_disk == saved_text_ || on_disk.size() > kMaxDocumentBytes) return;
     saved_text_ = on_disk;
-    change(std::move(on_disk));
+    Binding binding = binding_of(on_disk, Origin::disk);
+    change(std::move(on_disk), std::move(binding));
 }
 
 std::uint64_t LookModel::revision() const {

@@ -46,8 +46,10 @@ class LookModel {
 public:
     using FindEffects = std::function<std::shared_ptr<EffectRegistry>()>;
 
-    /// Reads the file. Throws Error(ExitCode::usage) where it cannot be read.
-    LookModel(std::filesystem::path path, FindEffects find_effects, bool read_only);
+    /// Reads the file. Throws Error(ExitCode::usage) where it cannot be read. Edits may name files of the
+    /// look's folder, of `folders`, and of those of --allow-path, and each file that the look on disk names.
+    LookModel(std::filesystem::path path, FindEffects find_effects, bool read_only,
+              std::vector<std::filesystem::path> folders = {});
 
     const std::filesystem::path& path() const { return path_; }
     /// Of the last text that had no faults; nullptr before there was one.
@@ -88,14 +90,26 @@ public:
     std::string text() const;
 
 private:
+    struct Binding {
+        std::shared_ptr<BoundText> bound;
+        Diagnostics faults;
+        std::string refused;  ///< the first file that may not be named, and why
+    };
+    enum class Origin { page, disk };
+
+    Binding binding_of(const std::string& text, Origin origin);
+    std::string why_not(const std::filesystem::path& file) const;
+    void adopt(Binding binding);
     void bind();
-    void change(std::string text);
+    void change(std::string text, Binding binding);
 
     std::filesystem::path path_;
     FindEffects find_effects_;
     bool read_only_;
+    std::vector<std::filesystem::path> folders_;
 
-    mutable std::mutex mutex_;  // of what follows
+    mutable std::mutex mutex_;                       // of what follows
+    std::set<std::filesystem::path> named_on_disk_;  // resolved
     std::shared_ptr<EffectRegistry> effects_;
     std::uint64_t effects_revision_ = 1;
     std::vector<std::string> texts_;

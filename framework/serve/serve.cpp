@@ -19,6 +19,20 @@ CaptureHeader first_header(const ServeOptions& options) {
     return reader.read_header(options.sequence.file_number(options.sequence.frames.front()));
 }
 
+/// Besides the look's own.
+std::vector<std::filesystem::path> folders_to_read(const ServeOptions& options) {
+    std::vector<std::filesystem::path> folders = options.effect_folders;
+    folders.push_back(options.data_folder);
+    std::filesystem::path last;
+    for (const int frame : options.sequence.frames) {
+        std::filesystem::path folder =
+            options.sequence.path_of(options.sequence.file_number(frame)).parent_path();
+        if (folder != last || frame == options.sequence.frames.front()) folders.push_back(folder);
+        last = std::move(folder);
+    }
+    return folders;
+}
+
 }  // namespace
 
 std::shared_ptr<EffectRegistry> find_effects(const ServeOptions& options) {
@@ -30,8 +44,9 @@ std::shared_ptr<EffectRegistry> find_effects(const ServeOptions& options) {
 void serve(const ServeOptions& options, const std::atomic<bool>& stop) {
     const auto files = read_page_files(options.data_folder / "page");
     const CaptureHeader header = first_header(options);
-    LookModel look(std::filesystem::absolute(options.look), [&] { return find_effects(options); },
-                   options.read_only);
+    LookModel look(
+        std::filesystem::absolute(options.look), [&] { return find_effects(options); }, options.read_only,
+        folders_to_read(options));
     Connections connections(options.port, {});
     const PictureQueue::Listener listener{
         [&](const DrawRequest& request) { look.drawn(request.text, request.effects_revision); },
