@@ -158,10 +158,11 @@ export class Viewer extends EventTarget {
         name = nameOf(step);
       return [...new Set([...Object.keys(outputs), ...Object.keys(textures)])].map((image) => `tap:${name}.${image}`);
     });
-    const roles = capture.roles.map(({ name }) => `role:${name}`);
+    const truths = [...new Set(Object.values(capture.truths).flat())],
+      roles = capture.roles.map(({ name }) => `role:${name}`);
     const groups = [
       ["Picture", ["final", "before"]],
-      ["Truth", [...new Set(Object.values(capture.truths).flat())].map((name) => `truth:${name}`)],
+      ["Truth", truths.flatMap((name) => [`truth:${name}`, `difference:${name}`])],
       ["Roles of the capture", roles],
       ["Taps", taps],
     ];
@@ -197,7 +198,9 @@ export class Viewer extends EventTarget {
     wanted.forEach((share, i) => (this.marks.children[i].style.left = `${100 * share}%`));
   }
 
-  words = (view) => ({ final: "final", before: "before (no steps)" })[view] ?? view.replace(/^\w+:/, "");
+  words = (view) =>
+    ({ final: "final", before: "before (no steps)" })[view] ??
+    view.replace(/^difference:/, "difference to ").replace(/^\w+:/, "");
 
   refresh() {
     this.viewSelect.value = this.view;

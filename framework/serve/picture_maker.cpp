@@ -24,7 +24,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::string_view kTruthView = "truth:";
+constexpr std::string_view kTruthView = "truth:", kDifferenceView = "difference:";
 
 double ms_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -191,6 +191,8 @@ MadePicture PictureMaker::make(const PictureRequest& request) {
     if (request.view.starts_with(kTruthView)) {
         const Capture& wanted = truth(request.frame, request.view.substr(kTruthView.size()));
         shown = view_picture({"before", request.exposure_ev, scaled.result, wanted});
+    } else if (request.view.starts_with(kDifferenceView)) {
+        shown = difference(request, request.view.substr(kDifferenceView.size()));
     } else if (is_stored_role) {
         const Capture& whole = whole_capture(request.frame);
         shown = view_picture({request.view, request.exposure_ev, scaled.result, whole});
@@ -244,15 +246,29 @@ const Capture& PictureMaker::truth(int frame, const std::string& name) {
     return *truth_;
 }
 
-nlohmann::ordered_json PictureMaker::metrics(const PictureRequest& request, const std::string& name) {
-    const Image& reference = truth(request.frame, name).images.at(kColorRole);
+const Image& PictureMaker::made_color(const PictureRequest& request) {
     PictureRequest full = request;
     full.scale = 1;
     full.view = std::string("role:") + kColorRole;
     const Scaled& scaled = draw(full);
     const auto made = scaled.result.images.find(kColorRole);
-    if (made != scaled.result.images.end()) return metrics_json(name, reference, made->second);
-    return metrics_json(name, reference, whole_capture(request.frame).images.at(kColorRole));
+    if (made != scaled.result.images.end()) return made->second;
+    return whole_capture(request.frame).images.at(kColorRole);
+}
+
+nlohmann::ordered_json PictureMaker::metrics(const PictureRequest& request, const std::string& name) {
+    const Image& reference = truth(request.frame, name).images.at(kColorRole);
+    return metrics_json(name, reference, made_color(request));
+}
+
+/// By channel, in linear light, so that the viewer's exposure makes small ones visible.
+Image PictureMaker::difference(const PictureRequest& request, const std::string& name) {
+    const Capture& reference = truth(request.frame, name);
+    Capture apart;
+    apart.header = reference.header;
+    apart.images.emplace(kColorRole,
+                         absolute_difference(reference.images.at(kColorRole), made_color(request)));
+    return view_picture({"before", request.exposure_ev, {}, apart});
 }
 
 nlohmann::ordered_json PictureMaker::probe(const PictureRequest& request, int x, int y) {

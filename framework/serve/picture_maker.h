@@ -25,7 +25,7 @@ struct PictureRequest {
     std::shared_ptr<const BoundText> look;
     int frame = 0;
     int scale = 1;               ///< the picture has 1/scale of the pixels of each side
-    std::string view = "final";  ///< or before, tap:STEP.TEXTURE, role:NAME, truth:NAME
+    std::string view = "final";  ///< or before, tap:STEP.TEXTURE, role:NAME, truth:NAME, difference:NAME
     double exposure_ev = 0;
 };
 
@@ -78,7 +78,13 @@ private:
     Scaled& draw(const PictureRequest& request);
     void adopt(Scaled& scaled, const PictureRequest& request);
     bool load(Scaled& scaled, const PictureRequest& request);
-    FrameResult draw_frame(Scaled& scaled, const std::vector<std::string>& roles, bool is_same);
+    /// What decides which frame's images a step has besides those of the capture.
+    enum class Start { same_frame, shot, next_frame };
+    FrameResult draw_frame(Scaled& scaled, const std::vector<std::string>& roles, Start start);
+    bool is_next(const Scaled& scaled, int frame) const;
+    /// What the steps make of `color`, at full size.
+    const Image& made_color(const PictureRequest& request);
+    Image difference(const PictureRequest& request, const std::string& truth);
     Image picture(const Scaled& scaled, const PictureRequest& request) const;
     const Capture& whole_capture(int frame);
     const Capture& truth(int frame, const std::string& name);

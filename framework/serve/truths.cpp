@@ -108,6 +108,18 @@ Capture read_truth(const Sequence& sequence, int frame, const std::string& name,
     return truth;
 }
 
+Image absolute_difference(const Image& truth, const Image& test) {
+    Image apart(truth.width(), truth.height(), 4);
+    for (int y = 0; y < truth.height(); ++y)
+        for (int x = 0; x < truth.width(); ++x) {
+            for (int c = 0; c < 3; ++c)
+                apart.at(x, y, c) =
+                    std::abs(test.at(x, y, std::min(c, test.channels() - 1)) - truth.at(x, y, c));
+            apart.at(x, y, 3) = 1;
+        }
+    return apart;
+}
+
 nlohmann::ordered_json metrics_json(const std::string& name, const Image& truth, const Image& color) {
     const Image reference = rgb_of(truth), test = rgb_of(color);
     const double psnr_db = display_psnr_db(reference, test);

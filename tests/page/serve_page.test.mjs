@@ -771,7 +771,14 @@ test("shows the truth beside the frame, and how far the steps' colour is from it
     };
     const final = await bytes();
     await page.getByLabel("View", { exact: true }).selectOption("truth:lens");
-    assert.ok((await bytes()) !== final, "the truth is another picture");
+    const truth = await bytes();
+    assert.ok(truth !== final, "the truth is another picture");
+    await page.getByLabel("View", { exact: true }).selectOption({ label: "difference to lens" });
+    const dark = await bytes();
+    assert.ok(dark !== truth && dark !== final, "so is what they differ by");
+    await page.keyboard.press("]");
+    await page.keyboard.press("]");
+    assert.ok((await bytes()) !== dark, "which the exposure brightens");
     assert.deepEqual(page.faults, []);
     await page.context().close();
   } finally {

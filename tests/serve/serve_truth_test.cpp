@@ -1,9 +1,13 @@
 // The truth that `render --truth` wrote beside a frame: a view, and figures that hold for what `run` makes.
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string>
 
 #include "framework/compare/metrics.h"
 #include "framework/file/exr_file.h"
+#include "framework/file/png_file.h"
+#include "framework/image/srgb.h"
 #include "tests/serve/serve_fixture.h"
 
 namespace aftershade::test {
@@ -43,6 +47,38 @@ TEST_F(Serve, MeasuresTheColourOfItsStepsAgainstTheTruthBesideTheFrame) {
         if (layer["layer"] == "RGB") flip = layer["ldr_flip"]["mean"];
     EXPECT_NEAR(metrics["flip"].get<double>(), flip, 1e-6);
     EXPECT_TRUE(get("/api/picture?frame=1&view=truth:lens%2Bshutter").body.starts_with("\x89PNG"));
+}
+
+TEST_F(Serve, ShowsHowFarEachPixelIsFromTheTruthAsBrightAsTheExposureMakesIt) {
+    start();
+    write_truth(folder_ / "truth_lens_0001.exr");
+    const CommandResult run =
+        run_aftershade({"run", "look.json", "in_0001.exr", "--output-roles", "color", "--pixel-type", "float",
+                        "-o", "out.exr", "--backend", "osmesa"},
+                       folder_.path());
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const Image truth = rgb_in(folder_ / "truth_lens_0001.exr"), made = rgb_in(folder_ / "out.exr");
+    for (const int stops : {0, 3}) {
+        const Answer answer =
+            get("/api/picture?frame=1&view=difference:lens&exposure=" + std::to_string(stops));
+        ASSERT_EQ(answer.status, 200) << answer.body;
+        write_text(folder_ / "shown.png", answer.body);
+        const Image shown = read_png(folder_ / "shown.png");
+        double brightest = 0;
+        for (int y = 0; y < 36; ++y)
+            for (int x = 0; x < 64; ++x)
+                for (int c = 0; c < 3; ++c) {
+                    const double apart = std::abs(double(made.at(x, y, c)) - double(truth.at(x, y, c)));
+                    const double expected = std::clamp(encode_srgb(apart * std::exp2(stops)), 0.0, 1.0);
+                    ASSERT_NEAR(shown.at(x, y, c), expected, 0.6 / 255) << x << " " << y << " " << stops;
+                    brightest = std::max(brightest, expected);
+                }
+        EXPECT_GT(brightest, 0.1);
+    }
+    EXPECT_EQ(get("/api/picture?frame=1&view=difference:lens&scale=4").status, 200);
+    EXPECT_EQ(get("/api/picture?frame=1&view=difference:shutter").status, 404);
+    const Answer again = get("/api/picture?frame=1");
+    EXPECT_EQ(again.status, 200) << again.body;
 }
 
 TEST_F(Serve, TakesATruthFromARegularFileOfTheFramesSizeAlone) {
