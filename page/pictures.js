@@ -12,7 +12,7 @@ export class Pictures extends EventTarget {
   #other = { key: "" };
   #waiting = [];
 
-  /** wish: {revision, frame, view, other, exposure}; `other` is a view to compare with, or "". */
+  /** wish: {revision, frame, view, other, exposure, continues}; `other` is a view to compare with, or "". */
   want(wish) {
     this.#wish = wish;
     this.#stopping?.abort(); // a full picture that is no longer wanted
@@ -56,6 +56,7 @@ export class Pictures extends EventTarget {
       view,
       exposure: wish.exposure,
       format: "png",
+      ...(wish.continues && { continues: 1 }),
     });
     const show = (name, { bitmap, times }, isCoarse, ms) =>
       this.dispatchEvent(new CustomEvent("picture", { detail: { name, bitmap, times, isCoarse, wish, ms } }));

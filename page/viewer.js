@@ -219,8 +219,16 @@ export class Viewer extends EventTarget {
     this.placeWipe();
     const { revision, has_picture } = this.store.state;
     if (!has_picture) return this.setBadge("no picture yet: the look has faults");
-    if (this.store.hasFaults) this.setBadge("last good picture: the look has faults");
-    this.pictures.want({ revision, frame: this.frame, view: this.view, other: this.other, exposure: this.exposure });
+    if (this.store.hasFaults)
+      this.setBadge(`${is_capture_alone ? "capture without steps" : "last good picture"}: the look has faults`);
+    this.pictures.want({
+      revision,
+      frame: this.frame,
+      view: this.view,
+      other: this.other,
+      exposure: this.exposure,
+      continues: this.isPlaying,
+    });
   }
 
   setView(view) {
@@ -272,7 +280,7 @@ export class Viewer extends EventTarget {
     this.placeWipe();
   }
 
-  /** Frame after frame, each drawn in full, so that effects with history see them in order. */
+  /** Frame after frame, each drawn in full behind the one before it, so that effects with history see them in order. */
   async play() {
     this.isPlaying = !this.isPlaying;
     this.playButton.replaceChildren(icon(this.isPlaying ? "pause" : "play"));

@@ -72,6 +72,7 @@ bool send_request(int socket, const DrawRequest& request) {
                          {"scale", request.scale},
                          {"view", request.view},
                          {"exposure_ev", request.exposure_ev},
+                         {"continues", request.continues},
                          {"x", request.x},
                          {"y", request.y},
                          {"truth", request.truth}},
@@ -89,6 +90,7 @@ std::optional<DrawRequest> receive_request(int socket) {
     json->at("scale").get_to(request.scale);
     json->at("view").get_to(request.view);
     json->at("exposure_ev").get_to(request.exposure_ev);
+    json->at("continues").get_to(request.continues);
     json->at("x").get_to(request.x);
     json->at("y").get_to(request.y);
     json->at("truth").get_to(request.truth);

@@ -18,10 +18,11 @@ struct DrawRequest {
     std::uint64_t effects_revision = 0;
     int frame = 0;
     int scale = 1;               ///< the picture has 1/scale of the pixels of each side
-    std::string view = "final";  ///< or before, tap:STEP.TEXTURE, role:NAME, truth:NAME
+    std::string view = "final";  ///< or before, tap:STEP.TEXTURE, role:NAME, truth:NAME, difference:NAME
     double exposure_ev = 0;
-    int x = 0, y = 0;   ///< of a probe
-    std::string truth;  ///< of metrics
+    bool continues = false;  ///< effects with history see the frame before it, where that was drawn last
+    int x = 0, y = 0;        ///< of a probe
+    std::string truth;       ///< of metrics
 };
 
 // Each waits until the whole message is through. false or nullopt: the other process is gone.

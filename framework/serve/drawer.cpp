@@ -56,8 +56,8 @@ private:
 };
 
 Response answer(const DrawRequest& request, Looks& looks, PictureMaker& maker) {
-    const PictureRequest wanted{looks.of(request), request.frame, request.scale, request.view,
-                                request.exposure_ev};
+    const PictureRequest wanted{looks.of(request), request.frame,       request.scale,
+                                request.view,      request.exposure_ev, request.continues};
     switch (request.kind) {
         case DrawRequest::Kind::probe: return json_response(maker.probe(wanted, request.x, request.y));
         case DrawRequest::Kind::histogram: return json_response(maker.histogram(wanted));
@@ -65,11 +65,11 @@ Response answer(const DrawRequest& request, Looks& looks, PictureMaker& maker) {
         case DrawRequest::Kind::picture: break;
     }
     MadePicture made = maker.make(wanted);
-    return {200,
-            "image/png",
-            std::move(made.png),
-            {{"X-Aftershade-Times", made.times},
-             {"X-Aftershade-Revision", std::to_string(request.revision)}}};
+    return {
+        200,
+        "image/png",
+        std::move(made.png),
+        {{"X-Aftershade-Times", made.times}, {"X-Aftershade-Revision", std::to_string(request.revision)}}};
 }
 
 Response answer_or_fault(const DrawRequest& request, Looks& looks, PictureMaker& maker) {

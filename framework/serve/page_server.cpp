@@ -109,6 +109,7 @@ DrawRequest PageServer::request_of(const Request& request, DrawRequest::Kind kin
     wanted.view = request.parameter("view", "final");
     wanted.exposure_ev = number_of(request, "exposure", 0.0);
     if (!(std::abs(wanted.exposure_ev) <= 32)) throw Refusal{400, "'exposure' is from -32 to 32 stops"};
+    wanted.continues = request.parameter("continues") == "1";
     return wanted;
 }
 

@@ -124,13 +124,21 @@ bool PictureMaker::load(Scaled& scaled, const PictureRequest& request) {
     return false;
 }
 
-FrameResult PictureMaker::draw_frame(Scaled& scaled, const std::vector<std::string>& roles, bool is_same) {
+/// Whether the frame follows the one that was drawn last.
+bool PictureMaker::is_next(const Scaled& scaled, int frame) const {
+    if (!scaled.loaded || !scaled.is_current) return false;
+    const auto before = std::ranges::find(sequence_.frames, scaled.loaded->frame);
+    return before != sequence_.frames.end() && before + 1 != sequence_.frames.end() && *(before + 1) == frame;
+}
+
+FrameResult PictureMaker::draw_frame(Scaled& scaled, const std::vector<std::string>& roles, Start start) {
     const Loaded& loaded = *scaled.loaded;
     FrameInputs inputs;
     inputs.subframe_count = int(loaded.captures.size());
     inputs.scale = 1.0 / loaded.run.scale_divisor;
     inputs.fps = sequence_.fps;
-    inputs.begins_shot = true;  // as `run --frames` begins with this frame
+    // Else as `run --frames` begins with this frame.
+    inputs.begins_shot = start != Start::next_frame || loaded.loader->begins_shot(0);
     for (const auto& [offset, capture] : loaded.neighbours) inputs.set(offset, capture.get());
     FrameResult result;
     std::vector<graph::PassTime> times;
@@ -138,8 +146,8 @@ FrameResult PictureMaker::draw_frame(Scaled& scaled, const std::vector<std::stri
         inputs.subframe = i;
         inputs.capture = loaded.captures[std::size_t(i)].get();
         inputs.centre = loaded.captures[std::size_t(std::min(i, inputs.subframe_count / 2))].get();
-        result = is_same ? scaled.renderer->render_again(inputs, roles, true)
-                         : scaled.renderer->render(inputs, roles, true);
+        result = start == Start::same_frame ? scaled.renderer->render_again(inputs, roles, true)
+                                            : scaled.renderer->render(inputs, roles, true);
         times.insert(times.end(), result.times.begin(), result.times.end());
     }
     result.times = std::move(times);
@@ -157,6 +165,7 @@ PictureMaker::Scaled& PictureMaker::draw(const PictureRequest& request) {
         roles.push_back(request.view.substr(5));
     const std::string form_before = scaled.form;
     adopt(scaled, request);
+    const bool follows = request.continues && is_next(scaled, request.frame) && scaled.form == form_before;
     const bool is_same = load(scaled, request);
     const std::string asked = joined_roles(roles);
     drawn_ = 0;
@@ -164,7 +173,10 @@ PictureMaker::Scaled& PictureMaker::draw(const PictureRequest& request) {
                          scaled.roles_asked == asked && scaled.form == form_before;
     if (!is_here) {
         scaled.is_current = false;
-        scaled.result = draw_frame(scaled, roles, is_same);
+        scaled.result = draw_frame(scaled, roles,
+                                   is_same   ? Start::same_frame
+                                   : follows ? Start::next_frame
+                                             : Start::shot);
         drawn_ = scaled.renderer->steps_drawn();
         scaled.is_current = true;
         scaled.revision = request.look->revision;

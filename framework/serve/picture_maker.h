@@ -27,6 +27,7 @@ struct PictureRequest {
     int scale = 1;               ///< the picture has 1/scale of the pixels of each side
     std::string view = "final";  ///< or before, tap:STEP.TEXTURE, role:NAME, truth:NAME, difference:NAME
     double exposure_ev = 0;
+    bool continues = false;  ///< history goes on where the frame before this one was drawn last
 };
 
 struct MadePicture {
@@ -37,7 +38,8 @@ struct MadePicture {
 /// [the context's thread]
 class PictureMaker {
 public:
-    /// Copies the sequence; `status`, which receives the pass at work, must outlive this. Throws Error(ExitCode::gl) without a context.
+    /// Copies the sequence; `status`, which receives the pass at work, must outlive this. Throws
+    /// Error(ExitCode::gl) without a context.
     PictureMaker(Sequence sequence, std::vector<Profile> profiles, ReadLimits limits, gpu::Backend backend,
                  std::filesystem::path data_folder, StatusWriter& status);
     ~PictureMaker();

@@ -140,6 +140,96 @@ TEST_F(Serve, FollowsALookThatAnotherProgramEmptiesAndWritesAgain) {
     EXPECT_EQ(post("/api/save").status, 409);
 }
 
+TEST_F(Serve, ShowsTheCaptureAloneWhileTheLookHasHadFaultsFromTheStart) {
+    look_ = "";
+    start();
+    const Json empty = get("/api/state").json();
+    ASSERT_FALSE(empty["faults"].empty());
+    EXPECT_EQ(empty["is_capture_alone"], true);
+    const Answer picture = get("/api/picture?frame=1");
+    ASSERT_EQ(picture.status, 200) << picture.body;
+    EXPECT_EQ(picture.body, get("/api/picture?frame=1&view=before").body);
+    EXPECT_EQ(get("/api/picture?frame=1&view=role:depth&scale=4").status, 200);
+    EXPECT_EQ(get("/api/histogram?frame=1").status, 200);
+    EXPECT_EQ(get("/api/probe?frame=1&x=1&y=1").status, 200);
+    ASSERT_EQ(edit({{"op", "text"}, {"value", kLook}}).status, 200);
+    const Json filled = get("/api/state").json();
+    EXPECT_TRUE(filled["faults"].empty());
+    EXPECT_EQ(filled["is_capture_alone"], false);
+    EXPECT_NE(get("/api/picture?frame=1").body, picture.body);
+}
+
+TEST_F(Serve, SaysWhereATableNamesAnObjectThatTheCaptureHasNoNamesFor) {
+    start();
+    ASSERT_EQ(edit({{"op", "add"}, {"at", 0}, {"effect", "motion_blur"}}).status, 200);
+    const Json rows = Json::parse(R"({"default": {"scale": 1}, "rows": [{"name": "Lamp", "scale": 0}]})");
+    ASSERT_EQ(edit({{"op", "set"}, {"step", 0}, {"param", "objects"}, {"value", rows}}).status, 200);
+    for (const char* request :
+         {"picture?frame=1", "picture?frame=1&scale=4", "histogram?frame=1", "probe?frame=1&x=1&y=1"}) {
+        const Answer answer = get(std::string("/api/") + request);
+        EXPECT_EQ(answer.status, 400) << request;
+        EXPECT_NE(answer.body.find("'Lamp'"), std::string::npos) << answer.body;
+    }
+    ASSERT_EQ(post("/api/undo").status, 200);
+    EXPECT_EQ(get("/api/picture?frame=1").status, 200);
+}
+
+TEST_F(Serve, PlaysFramesOfAnEffectWithHistoryInTheirOrderAndElseBeginsWithEach) {
+    frames_ = 3;
+    look_ = R"({ "aftershade": 1, "steps": [ { "effect": "trail" }, { "effect": "view_transform" } ] })";
+    std::filesystem::create_directories(folder_ / "effects/trail");
+    write_text(folder_ / "effects/trail/effect.json",
+               R"({ "aftershade": 1, "id": "trail", "version": "1.0.0", "summary": "Blends frames.",
+  "inputs": { "color": { "role": "color", "doc": "Any." } },
+  "outputs": { "color": { "role": "color", "doc": "Half of it is of the frames before." } },
+  "textures": { "kept": { "format": "rgba32f", "history": true, "doc": "The output." } },
+  "passes": [ { "name": "trail", "shader": "trail.frag", "reads": ["color", "kept.prev"],
+                "writes": ["color", "kept"] } ] }
+)");
+    write_text(folder_ / "effects/trail/trail.frag", R"(#version 450 core
+#include <pass>
+
+void main() {
+    ivec2 at = ivec2(gl_FragCoord.xy);
+    vec4 now = texelFetch(color, at, 0);
+    if (frame.history_valid) now = mix(now, texelFetch(kept_prev, at, 0), 0.5);
+    out_color = out_kept = now;
+}
+)");
+    start({"--effect-path", "effects"});
+    const auto shown = [&](int frame, const char* more) {
+        const Answer answer = get("/api/picture?frame=" + std::to_string(frame) + more);
+        EXPECT_EQ(answer.status, 200) << answer.body;
+        write_text(folder_ / "shown.png", answer.body);
+        const Image image = read_png(folder_ / "shown.png");
+        return std::vector<float>(image.floats().begin(), image.floats().end());
+    };
+    const auto run = [&](const std::string& frames) {
+        const CommandResult done =
+            run_aftershade({"run", "look.json", "in_####.exr", "--effect-path", "effects", "--frames", frames,
+                            "-o", "out_####.png", "--overwrite"},
+                           folder_.path());
+        EXPECT_EQ(done.exit_code, 0) << done.err;
+        const Image image = read_png(folder_ / "out_0003.png");
+        return std::vector<float>(image.floats().begin(), image.floats().end());
+    };
+    const std::vector<float> in_order = run("1-3");
+    std::filesystem::remove(folder_ / "out_0003.png");
+    const std::vector<float> alone = run("3");
+    ASSERT_NE(in_order, alone);
+    for (int frame = 1; frame <= 3; ++frame) {
+        const std::vector<float> played = shown(frame, "&continues=1");
+        if (frame == 3) {
+            EXPECT_EQ(played, in_order);
+        }
+    }
+    EXPECT_EQ(shown(3, ""), in_order) << "what is shown stays";
+    shown(1, "");
+    EXPECT_EQ(shown(3, "&continues=1"), alone) << "frame 2 was left out";
+    shown(2, "");
+    EXPECT_EQ(shown(3, ""), alone) << "a frame that is looked up begins with itself";
+}
+
 TEST_F(Serve, CountsTheNanOfTheFinalPicture) {
     has_nan_ = true;
     start();
