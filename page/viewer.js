@@ -217,7 +217,7 @@ export class Viewer extends EventTarget {
     this.exposureSlider.style.setProperty("--fill", `${(100 * (this.exposure + 8)) / 16}%`);
     this.frameField.show(String(this.frame));
     this.placeWipe();
-    const { revision, has_picture } = this.store.state;
+    const { revision, has_picture, is_capture_alone } = this.store.state;
     if (!has_picture) return this.setBadge("no picture yet: the look has faults");
     if (this.store.hasFaults)
       this.setBadge(`${is_capture_alone ? "capture without steps" : "last good picture"}: the look has faults`);

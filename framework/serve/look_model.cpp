@@ -260,6 +260,7 @@ nlohmann::ordered_json LookModel::state(const CaptureHeader& header) const {
     state["text"] = texts_[at_];
     state["faults"] = faults_json(faults_);
     state["has_picture"] = bound_ != nullptr;
+    state["is_capture_alone"] = bound_ && bound_->text == kNoSteps && texts_[at_] != kNoSteps;
     const bool is_bound = bound_ && bound_->revision == revision_;
     state["steps"] = steps_json(texts_[at_], is_bound ? bound_.get() : nullptr, *effects_, header);
     return state;

@@ -1350,7 +1350,8 @@ test("opens a look that is empty, and draws it once another program has written 
   try {
     page = await open(server.address);
     await page.waitForFunction(() => window.aftershade.store.state?.faults.length);
-    assert.match(await page.locator(".badge").innerText(), /no picture yet/);
+    await drawn(page);
+    assert.equal(await page.locator(".badge").innerText(), "capture without steps: the look has faults");
     writeFileSync(server.look, LOOK);
     await drawn(page);
     assert.deepEqual(page.faults, []);
