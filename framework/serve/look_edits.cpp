@@ -203,6 +203,22 @@ void set_param(std::string& text, const SpanNode& step, const Json& edit) {
     if (!value.is_null()) set_member(text, step, "params", Json{{name, value}});
 }
 
+/// A variable of the look; null: it goes, and the list with it where it was the last.
+void set_variable(std::string& text, const SpanNode& root, const Json& edit) {
+    const std::string name = word_of(edit, "name");
+    const Json& value = value_of(edit);
+    const SpanMember* variables = root.find("vars");
+    if (variables) {
+        const bool is_last = variables->value.members.size() == 1 && variables->value.find(name);
+        if (value.is_null() && is_last) set_member(text, root, "vars", nullptr);
+        else set_member(text, variables->value, name, value);
+        return;
+    }
+    if (value.is_null()) return;
+    const auto steps = std::size_t(root.find("steps") - root.members.data());
+    insert_part(text, list_of(root), steps, "\"vars\": " + text_of(Json{{name, value}}));
+}
+
 /// Steps change places; what stands between them stays where it is.
 void move_step(std::string& text, const SpanNode& steps, std::size_t from, std::size_t to) {
     std::vector<std::string> parts;
@@ -244,6 +260,10 @@ std::string edited(const std::string& text, const Json& edit) {
     std::string result = text;
     if (op == "add") {
         add_step(result, steps, edit);
+        return result;
+    }
+    if (op == "var") {
+        set_variable(result, root, edit);
         return result;
     }
     const std::size_t index = index_of(edit, "step", steps.items.size());

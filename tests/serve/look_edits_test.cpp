@@ -85,6 +85,27 @@ TEST(LookEdits, RefuseWhatIsNoEdit) {
         EXPECT_THROW(edited(kLook, edit), Error) << edit;
 }
 
+TEST(LookEdits, AddChangeAndRemoveVariablesBesideTheSteps) {
+    const auto var = [](const char* name, Json value) {
+        return Json{{"op", "var"}, {"name", name}, {"value", std::move(value)}};
+    };
+    const std::string one = edited(kLook, var("far", "6 m"));
+    std::string expected = kLook;
+    const std::string first = R"("vars": { "far": "6 m" },)"
+                              "\n  ";
+    const std::size_t steps = expected.find("\"steps\"");
+    expected.insert(steps, first);
+    EXPECT_EQ(one, expected);
+    const std::string two = edited(one, var("warm", 0.25));
+    EXPECT_EQ(read(two)["vars"], Json::parse(R"({"far": "6 m", "warm": 0.25})"));
+    EXPECT_EQ(edited(two, var("far", "7 m")).size(), two.size());
+    EXPECT_EQ(edited(two, var("warm", nullptr)), one);
+    EXPECT_EQ(edited(one, var("far", nullptr)), kLook) << "the list that the page made goes again";
+    EXPECT_EQ(edited(kLook, var("none", nullptr)), kLook);
+    EXPECT_THROW(edited(kLook, Json::parse(R"({"op": "var", "name": 3, "value": 1})")), Error);
+    EXPECT_THROW(edited(kLook, Json::parse(R"({"op": "var", "name": "a"})")), Error);
+}
+
 /// Makes edits, and makes the same change to a document that has no text.
 class RandomEdits {
 public:
@@ -221,7 +242,8 @@ TEST(LookModel, TakesTheLastDrawnTextInThePlaceOfOneThatCannotBeDrawn) {
     write_text_file(path, kLook);
     LookModel model(path, shipped_effects, false);
     const auto set = [&](int value) {
-        model.edit(model.revision(), {{{"op", "set"}, {"step", 0}, {"param", "f_number"}, {"value", value}}});
+        model.edit(model.revision(),
+                   Json::array({{{"op", "set"}, {"step", 0}, {"param", "f_number"}, {"value", value}}}));
         return model.text();
     };
     model.drawn(kLook, 1);
@@ -252,7 +274,7 @@ TEST(LookModel, HasNoTextToDrawWhereTheOnlyOneCannotBeDrawn) {
     LookModel model(path, shipped_effects, false);
     model.drawn(kLook, 1);
     model.reload_effects();
-    model.give_up(kLook, 1, "late");
+    model.give_up(kLook, 1, {"late"});
     EXPECT_TRUE(model.bound()) << "the effects were read again meanwhile";
     model.give_up(kLook, model.effects_revision(), {"it crashes"});
     EXPECT_FALSE(model.bound()) << "the shader that drew it before is no longer there";
