@@ -45,7 +45,7 @@ public:
     /// The program of a draw or a compute pass. Throws Error(ExitCode::effect) with one line per fault:
     /// "effects/bokeh/coc.frag:6:17: error: 'parm' undeclared   [pass coc, llvmpipe ...]".
     std::shared_ptr<const gpu::Program> get(const ShaderContext& context);
-    /// The texts that get() compiles; what is wrong with them goes to `faults`. They are what make() takes.
+    /// The texts that get() compiles; what is wrong with them goes to `faults`.
     ProgramSources sources_of(const ShaderContext& context, Diagnostics& faults) const;
     std::shared_ptr<const gpu::Program> get(const ShaderContext& context, const ProgramSources& sources,
                                             Diagnostics& faults);

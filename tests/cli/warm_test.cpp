@@ -86,26 +86,27 @@ private:
 
 TEST_F(Warm, ThreadsCompileWhatTheFrameNeedsAndNothingElse) {
     // Mesa's cache has one file for each machine code: a pass that the threads draw in another state than the
-    // frame does would leave one more.
-    const auto names_after_run = [&](const std::string& backend, const std::string& name) {
+    // frame does would leave one more. Its names hang on the number of processors. The second run writes what
+    // the end of the first one may have cut off.
+    const auto files_after_runs = [&](const std::string& backend, const std::string& name) {
         const fs::path cache = folder_ / (backend + name);
-        const CommandResult ran =
-            run({"run", AFTERSHADE_SOURCE_DIR "/scenes/looks/film.json", kWarmCapture, "--frames", "4",
-                 "--backend", backend, "--overwrite", "-o", "o_####.exr"},
-                cache.string());
-        EXPECT_EQ(ran.exit_code, 0) << ran.err;
-        std::set<std::string> names;
-        for (const fs::path& file : files_below(cache)) names.insert(file.filename().string());
-        return names;
+        for (int i = 0; i < 2; ++i) {
+            const CommandResult ran =
+                run({"run", AFTERSHADE_SOURCE_DIR "/scenes/looks/film.json", kWarmCapture, "--frames", "4",
+                     "--backend", backend, "--overwrite", "-o", "o_####.exr"},
+                    cache.string());
+            EXPECT_EQ(ran.exit_code, 0) << ran.err;
+        }
+        return files_below(cache).size();
     };
     for (const char* backend : {"osmesa", "egl-software"}) {
-        std::set<std::string> alone;
+        std::size_t alone = 0;
         {
             const OneProcessor one;
             if (one.processors_found() < 2) GTEST_SKIP() << "SKIPPED: one processor compiles without threads";
-            alone = names_after_run(backend, "alone");
+            alone = files_after_runs(backend, "alone");
         }
-        EXPECT_EQ(names_after_run(backend, "threads"), alone) << backend;
+        EXPECT_EQ(files_after_runs(backend, "threads"), alone) << backend;
     }
 }
 
