@@ -17,9 +17,9 @@ class EveryEffectsRegion : public EveryEffect {};
 INSTANTIATE_TEST_SUITE_P(Effects, EveryEffectsRegion, testing::ValuesIn(registry().ids()),
                          [](const auto& effect) { return effect.param; });
 
-constexpr int kWidth = 420, kHeight = 300;
+constexpr int kWidth = 720, kHeight = 560;
 /// Odd on purpose: no multiple of any tile.
-constexpr Window kRegion{203, 147, 229, 168};
+constexpr Window kRegion{351, 271, 377, 292};
 
 /// Surfaces at many depths, which move in many directions, with lights brighter than white.
 Capture busy_capture(const EffectManifest& manifest) {
@@ -27,8 +27,8 @@ Capture busy_capture(const EffectManifest& manifest) {
                                     .height = kHeight,
                                     .background = {0.1f, 0.2f, 0.3f},
                                     .background_depth_m = 9,
-                                    .sphere = SyntheticSphere{190, 150, 40, 2.0f},
-                                    .box = SyntheticBox{210, 120, 60, 70, 9, -6, 1.2f}});
+                                    .sphere = SyntheticSphere{338, 274, 40, 2.0f},
+                                    .box = SyntheticBox{358, 244, 60, 70, 9, -6, 1.2f}});
     std::uint32_t state = 7;
     const auto random = [&] { return float((state = state * 1664525u + 1013904223u) >> 8) / float(1 << 24); };
     Image &color = capture.images.at("color"), &depth = capture.images.at("depth");
