@@ -1,5 +1,7 @@
 #include "framework/effect/registry.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <system_error>
 #include <utility>
 
@@ -55,14 +57,33 @@ std::vector<std::string> EffectRegistry::ids() const {
     return ids;
 }
 
+namespace {
+
+/// A look that uses a faulty effect twice says so once.
+void add_once(Diagnostics& diagnostics, const Diagnostic& fault) {
+    const auto is_same = [&](const Diagnostic& other) {
+        return other.message == fault.message && to_string(other.place) == to_string(fault.place);
+    };
+    if (std::ranges::any_of(diagnostics.all(), is_same)) return;
+    if (fault.severity == Severity::error) diagnostics.error(fault.place, fault.message);
+    else diagnostics.warning(fault.place, fault.message);
+}
+
+}  // namespace
+
 const EffectManifest* EffectRegistry::find(const std::string& id, Diagnostics& diagnostics) {
     const auto folder = folders_.find(id);
     if (folder == folders_.end()) return nullptr;
     auto manifest = manifests_.find(id);
     if (manifest == manifests_.end()) {
+        const std::size_t before = diagnostics.all().size();
         const auto node = read_document(folder->second / "effect.json", diagnostics);
         auto parsed = node ? parse_manifest(*node, folder->second, diagnostics, glsl_folder_) : std::nullopt;
+        if (!parsed)
+            faults_[id].assign(diagnostics.all().begin() + std::ptrdiff_t(before), diagnostics.all().end());
         manifest = manifests_.emplace(id, std::move(parsed)).first;
+    } else if (!manifest->second) {
+        for (const Diagnostic& fault : faults_[id]) add_once(diagnostics, fault);
     }
     return manifest->second ? &*manifest->second : nullptr;
 }

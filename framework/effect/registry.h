@@ -30,7 +30,8 @@ public:
     void warn_of_unreadable(Diagnostics& diagnostics) const;
     /// A warning for each effect that has the id of one in a later folder, which it hides.
     void warn_of_hidden(Diagnostics& diagnostics) const;
-    /// nullptr after faults in the manifest, which go to `diagnostics` the first time.
+    /// nullptr after faults in the manifest, each of which `diagnostics` gets once, however often it is
+    /// sought.
     const EffectManifest* find(const std::string& id, Diagnostics& diagnostics);
 
 private:
@@ -39,6 +40,7 @@ private:
     std::map<std::filesystem::path, std::string> unreadable_;            // reasons
     std::vector<std::pair<std::string, std::filesystem::path>> hidden_;  // ids and folders
     std::map<std::string, std::optional<EffectManifest>> manifests_;
+    std::map<std::string, std::vector<Diagnostic>> faults_;  // of the manifests that are nullopt
 };
 
 /// Whether the effect is one of those that come with the program; all others are untrusted. Throws as

@@ -74,6 +74,10 @@ TEST(Registry, ReportsTheFaultsOfAManifestOnce) {
               Lines{file + ":1:25: error: the id 'tint' is not the name of its folder, 'tnt'"});
     EXPECT_EQ(effects.find("tnt", diagnostics), nullptr);
     EXPECT_EQ(diagnostics.error_count(), 1);
+    // Whoever asks later with diagnostics of their own, as a page after each edit, is answered too.
+    Diagnostics later;
+    EXPECT_EQ(effects.find("tnt", later), nullptr);
+    EXPECT_EQ(test::lines_of(later), test::lines_of(diagnostics));
 }
 
 TEST(Registry, ReadsOnlyTheManifestsThatAreAskedFor) {
