@@ -30,6 +30,7 @@ float part_of(int which, float coc, bool is_coarse) {
 // Bilinear interpolation between texels of half size widens a blur: at the pixels, all a quarter of a texel off, by a variance of
 // 0.75 px squared along each axis. A hexagon's own is 5 / 24 of its circumradius squared, so that by variance its radius must be 1.8 px
 // squared over the radius less. Nearest to the lens is 1.6 (moving_box). In front of a point the widest blur stands for all.
+// This is for what covers something else; a light on its own surface would become too small.
 #ifdef HALF_SIZE
 float shrink_px(float radius_px) { return 1.6 / max(radius_px, kFullSizePx); }
 #else
@@ -97,7 +98,7 @@ ivec2 texels_of_row(vec2 center, int y, float reach, float radius) {
 void add_taps(inout Sums sums, Point point, int level, bool is_coarse) {
     float texels_per_px = 1.0 / float(1 << level);
     vec2 center = point.center_px * texels_per_px;
-    float front_reach = point.reach_px * texels_per_px + 0.5, radius = (point.radius_px - shrink_px(point.radius_px)) * texels_per_px;
+    float front_reach = point.reach_px * texels_per_px + 0.5, radius = point.radius_px * texels_per_px;
     float shrink = shrink_px(point.reach_px) * texels_per_px;
     float widest = point.widest_px * texels_per_px, reach = max(max(front_reach, radius + 0.5), 0.0);
     Grid grid = grid_of(level);
