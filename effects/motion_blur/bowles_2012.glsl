@@ -1,13 +1,14 @@
 // What is seen at a point at one time of the exposure is what comes there: a pixel whose path leads to it. One is sought
 // from the motion of the furthest moving thing around and one from another (other_guess); the nearer one hides the other.
 const float kInFront = 1.03;  // times the depth of what is in front, from which on another thing is behind it
+const float kSurePx = 0.25;  // between the last two guesses of a place, up to which they are one
 
 struct Found {
     vec2 from;     // where it is at the frame's own time
     float depth_m;
     float share;   // of its pixel
     bool comes;    // its path leads to the point, within a px
-    bool is_sure;  // a second look would find the same
+    bool is_sure;  // where it is, there is no other thing
 };
 
 bool leads_to(vec2 point, vec2 from, vec4 path, float t) {
@@ -20,14 +21,11 @@ Found what_comes(vec2 point, vec4 path, float t) {
     vec4 guess = motion_at(point - way_px(path, t)).path;
     vec2 from = point - way_px(guess, t);
     Motion m = motion_at(from);
-    vec2 at = point - way_px(m.path, t);
-    return Found(at, m.depth_m, m.share, leads_to(point, from, m.path, t), texel_at(at) == texel_at(from));
-}
-
-// The pixel found may be another thing, such as a light at rest in front of what rolls, and not come.
-Found looked_at_again(Found found, vec2 point, float t) {
-    Motion m = motion_at(found.from);
-    return Found(found.from, m.depth_m, m.share, leads_to(point, found.from, m.path, t), true);
+    vec2 at = point - way_px(m.path, t), middle = vec2(texel_at(from)) + 0.5;
+    vec2 inside = clamp(at, middle - 0.499, middle + 0.499);
+    bool is_sure = at == inside || distance(at, from) < kSurePx;
+    if (is_sure) at = inside;
+    return Found(at, m.depth_m, m.share, leads_to(point, from, m.path, t), is_sure);
 }
 
 float amount(vec3 rgb) { return rgb.r + rgb.g + rgb.b; }
@@ -45,7 +43,7 @@ vec4 light_at(vec2 point) {
 
 bool outshines(vec2 place, vec2 other) {
     const float kOutshines = 4.0;
-    return amount(color_at(place).rgb) > kOutshines * amount(color_at(other).rgb);
+    return amount(texelFetch(color, texel_at(place), 0).rgb) > kOutshines * amount(texelFetch(color, texel_at(other), 0).rgb);
 }
 
 // Where a pixel lies that shows what the thing at the point hides: from where it comes, or on its other side. What stands in front of
@@ -77,17 +75,6 @@ Finds in_order(Found a, Found b) {
     return Finds(b, a);
 }
 
-#ifdef KNOWS_LAYERS
-#include "layers.glsl"
-#else
-vec4 seen_at(vec2 point, Finds finds, Motion own, float t) {
-    vec2 beside = beside_at(point, own, t);
-    bool is_found = finds.near.comes || finds.far.comes;
-    vec4 seen = light_at(finds.near.comes ? finds.near.from : finds.far.comes ? finds.far.from : beside);
-    return is_found ? seen : uncovered(point, beside, own, t, seen);
-}
-#endif
-
 // The pixel's own path; or that of the nearest thing around, which moves past what is faster and is found from no other path. The
 // pixel is then found from the furthest path, which its own is more like.
 vec4 other_guess(ivec2 tile, Motion own, vec4 furthest) {
@@ -99,6 +86,20 @@ vec4 other_guess(ivec2 tile, Motion own, vec4 furthest) {
 Finds finds_at(vec2 point, vec4 furthest, vec4 other, float t) {
     return in_order(what_comes(point, furthest, t), what_comes(point, other, t));
 }
+
+#ifdef KNOWS_LAYERS
+#include "layers.glsl"
+#else
+Found first_of(Finds finds) {
+    if (finds.near.comes && finds.near.is_sure) return finds.near;
+    return finds.far;
+}
+
+vec4 seen_at(vec2 point, vec4 furthest, vec4 other, Motion own, float t) {
+    vec2 beside = beside_at(point, own, t);
+    return uncovered(point, beside, own, t, light_at(beside));
+}
+#endif
 
 // Two loops, because most is found at a first look, and the first one's turns are then shorter: software GL takes all branches.
 const int kTimes = 32;  // in one turn: bits of `open`
@@ -112,16 +113,12 @@ vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
         int i = start, end = min(start + kTimes, taps);
         do {
             Finds finds = finds_at(point, furthest, other, tap_time(i, shift, taps));
-            Found seen = finds.near;
-            if (!seen.comes) seen = finds.far;
+            Found seen = first_of(finds);
             if (seen.comes && seen.is_sure && seen.share == 1.0) sum += light_at(seen.from);
             else open |= 1u << uint(i - start);
         } while (++i < end);
         while (open != 0u) {
-            float t = tap_time(start + findLSB(open), shift, taps);
-            Finds finds = finds_at(point, furthest, other, t);
-            finds = in_order(looked_at_again(finds.near, point, t), looked_at_again(finds.far, point, t));
-            sum += seen_at(point, finds, own, t);
+            sum += seen_at(point, furthest, other, own, tap_time(start + findLSB(open), shift, taps));
             open &= open - 1u;
         }
         start = end;

@@ -47,7 +47,20 @@ bool put_hidden(inout Light light, Found found, sampler2D layer, Finds finds) {
     return found.comes;
 }
 
-vec4 seen_at(vec2 point, Finds finds, Motion own, float t) {
+Found first_of(Finds finds) {
+    if (finds.near.comes) return finds.near;
+    return finds.far;
+}
+
+// Where a find is not sure there may be another thing, such as a light at rest in front of what rolls, which does not come.
+Found looked_at_again(Found found, vec2 point, float t) {
+    Motion m = motion_at(found.from);
+    return Found(found.from, m.depth_m, m.share, leads_to(point, found.from, m.path, t), true);
+}
+
+vec4 seen_at(vec2 point, vec4 furthest, vec4 other, Motion own, float t) {
+    Finds finds = finds_at(point, furthest, other, t);
+    finds = in_order(looked_at_again(finds.near, point, t), looked_at_again(finds.far, point, t));
     Light light = Light(vec4(0.0), 1.0);
     put(light, finds.near);
     if (!is_same(finds.near, finds.far)) put(light, finds.far);
