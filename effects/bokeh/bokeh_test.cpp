@@ -112,18 +112,18 @@ TEST(Bokeh, KeepsABulbRoundBesideANearPoleThatLayersHaveTheRestBehind) {
                                     .height = size,
                                     .background_depth_m = far_m,
                                     .points = {{lamp_x, middle, 300}}});
-    Image color(size, size, 4), depth(size, size, 1);
+    Image behind(size, size, 4), behind_m(size, size, 1);
     for (int y = 0; y < size; ++y)
         for (int x = 0; x < size; ++x) {
             const bool is_pole = std::abs(x - middle) <= 1;
-            color.at(x, y, 3) = is_pole ? 1.0f : 0.0f;
-            depth.at(x, y, 0) = is_pole ? far_m : kInfinity;
+            behind.at(x, y, 3) = is_pole ? 1.0f : 0.0f;
+            behind_m.at(x, y, 0) = is_pole ? far_m : kInfinity;
             if (!is_pole) continue;
             for (int c = 0; c < 3; ++c) capture.images["color"].at(x, y, c) = 0.05f;
             capture.images["depth"].at(x, y, 0) = kApertureNearM;
         }
-    capture.images[layer_role(1, "color")] = std::move(color);
-    capture.images[layer_role(1, "depth")] = std::move(depth);
+    capture.images[layer_role(1, "color")] = std::move(behind);
+    capture.images[layer_role(1, "depth")] = std::move(behind_m);
     const Image out = through_aperture("bokeh", capture, radius_px);
     const Image hexagon = coverage(regular_polygon(6, radius_px / 2, 0), size, size, lamp_x, middle);
     EXPECT_GE(shape_iou(out, double(out.at(lamp_x + 3, middle, 0)), hexagon), 0.95);

@@ -73,7 +73,7 @@ TEST(MotionBlur, SoftensRimsAndLeavesLightsAtRestAlone) {
     const ShutterScene toys("toys", 4, 240, 135);
     const double db = toys.psnr_db(blur(toys.capture));
     fmt::print("toys: {:.2f} dB\n", db);
-    EXPECT_GE(db, 33.5);  // measured 34.5
+    EXPECT_GE(db, 35.2);  // measured 35.7
 }
 
 TEST(MotionBlur, OfAMovingCameraIsNearTheTruth) {
