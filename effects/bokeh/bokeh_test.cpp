@@ -102,8 +102,8 @@ TEST(Bokeh, SpreadsANearObjectSoftlyOverWhatIsInFocus) {
     EXPECT_LE(out.at(74, 24, 0), 0.001f);
 }
 
-/// A bulb whose blur is half as wide as that of the near pole beside it. Without layers the pole's columns show
-/// the lamp as widely as they are blurred themselves: a spike.
+/// A bulb whose blur is half as wide as that of the near pole beside it. Without layers the pole's columns
+/// show the lamp as widely as they are blurred themselves: a spike.
 TEST(Bokeh, KeepsABulbRoundBesideANearPoleThatLayersHaveTheRestBehind) {
     constexpr int size = 65, middle = 32, lamp_x = middle + 3;
     constexpr double radius_px = 16;

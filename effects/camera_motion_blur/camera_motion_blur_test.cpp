@@ -154,9 +154,13 @@ Capture strip_before_wall(const CameraPose& pose, int left, int right, float sha
             const bool is_strip = x >= left && x <= right;
             const float alpha = x == left || x == right ? share : 1.0f;
             put(0, x, y, is_strip ? 0.9f : 0.2f, is_strip ? alpha : 1.0f, is_strip ? 3.0f : 6.0f);
-            put(1, x, y, 0.2f, is_strip ? 1.0f : 0.0f, is_strip ? 6.0f : std::numeric_limits<float>::infinity());
-            if (!is_strip) continue;
-            for (int c = 0; c < 3; ++c) capture.images["color"].at(x, y, c) = 0.9f * alpha + 0.2f * (1 - alpha);
+            if (!is_strip) {
+                put(1, x, y, 0, 0, std::numeric_limits<float>::infinity());
+                continue;
+            }
+            put(1, x, y, 0.2f, 1, 6);
+            const float light = 0.9f * alpha + 0.2f * (1 - alpha);
+            for (int c = 0; c < 3; ++c) capture.images["color"].at(x, y, c) = light;
             if (alpha > 0.5f) capture.images["depth"].at(x, y, 0) = 3;
         }
     return capture;

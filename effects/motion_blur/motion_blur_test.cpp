@@ -356,7 +356,8 @@ TEST(MotionBlur, ShowsWhatTheSecondLayerHasOfTheUncovered) {
     EXPECT_GT(guessed, 2 * known);
 }
 
-/// Columns of a capture with layers; the nearest surface first. The flat roles are those of the largest share.
+/// Columns of a capture with layers, the nearest surface first. The flat roles are those of the largest
+/// share.
 struct LayerColumn {
     float light, share, depth_m, velocity_px;  ///< share of what the layers in front leave
 };
@@ -414,7 +415,8 @@ TEST(MotionBlur, MovesWhatHasTwoFifthsOfAPixelByTwoFifths) {
 TEST(MotionBlur, LeavesAPixelOfTwoSurfacesAtRestAlone) {
     Capture capture = layered(160, 2, [](int layer, int x) {
         const LayerColumn wall{0.2f, 1, 5, 0};
-        if (layer == 0) return x == 90 ? LayerColumn{0.9f, 0.4f, 2, 0} : x < 80 ? LayerColumn{0.5f, 1, 3, 20} : wall;
+        if (layer == 0 && x < 80) return LayerColumn{0.5f, 1, 3, 20};
+        if (layer == 0) return x == 90 ? LayerColumn{0.9f, 0.4f, 2, 0} : wall;
         return x == 90 ? wall : kNothing;
     });
     const Image blurred = blur(capture);
