@@ -32,7 +32,7 @@ private:
     }
 
     void read_directive() {
-        const int line = tokens_[at_].place.line;
+        const int line = tokens_[at_].line;
         const std::string kind = at_ + 1 < tokens_.size() ? tokens_[at_ + 1].text : "";
         if (kind == "define" && at_ + 2 < tokens_.size()) macros.insert(tokens_[at_ + 2].text);
         if (kind == "extension") has_extension = true;
@@ -40,7 +40,7 @@ private:
         if (kind.starts_with("if")) depths_.push_back(depth_);
         else if (kind.starts_with("el") && !depths_.empty()) depth_ = depths_.back();
         else if (kind == "endif" && !depths_.empty()) depths_.pop_back();
-        for (; at_ + 1 < tokens_.size() && tokens_[at_ + 1].place.line == line; ++at_)
+        for (; at_ + 1 < tokens_.size() && tokens_[at_ + 1].line == line; ++at_)
             if (kind.starts_with("if") || kind.starts_with("el")) tested.insert(tokens_[at_ + 1].text);
     }
 

@@ -13,20 +13,28 @@ namespace {
 class Tokens {
 public:
     Tokens(const ShaderSource& source, bool all) {
+        constexpr std::size_t kBytesPerToken = 6;  // about, with blanks and comments
+        tokens_.reserve(source.text.size() / kBytesPerToken);
         std::size_t begin = 0;
         for (std::size_t i = 0; i < source.lines.size(); ++i) {
             const SourceLine& line = source.lines[i];
             const std::size_t end = source.text.find('\n', begin);
+            if (all) begin_line("", int(i) + 1);
+            else if (line.file != "<generated>") begin_line(line.file, line.line);
             if (all || line.file != "<generated>")
-                add_line(std::string_view(source.text).substr(begin, end - begin),
-                         all ? SourceLine{"", int(i) + 1} : line);
+                add_line(std::string_view(source.text).substr(begin, end - begin));
             begin = end + 1;
         }
     }
     std::vector<Token> take() { return std::move(tokens_); }
 
 private:
-    void add_line(std::string_view text, const SourceLine& line) {
+    void begin_line(const std::string& file, int line) {
+        if (!file_ || *file_ != file) file_ = std::make_shared<const std::string>(file);
+        line_ = line;
+    }
+
+    void add_line(std::string_view text) {
         for (std::size_t at = 0; at < text.size();) {
             if (in_comment_) {
                 const std::size_t end = text.find("*/", at);
@@ -39,22 +47,24 @@ private:
                 in_comment_ = true;
                 at += 2;
             } else {
-                at = add_token(text, at, line);
+                at = add_token(text, at);
             }
         }
     }
 
-    std::size_t add_token(std::string_view text, std::size_t at, const SourceLine& line) {
+    std::size_t add_token(std::string_view text, std::size_t at) {
         const auto is_part = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
         std::size_t end = at + 1;
         // A number takes its letters along: 1e5, 0xff, 2u.
         while (is_part(text[at]) && end < text.size() && is_part(text[end])) ++end;
         if (!std::isspace(static_cast<unsigned char>(text[at])))
-            tokens_.push_back({std::string(text.substr(at, end - at)), {line.file, line.line, int(at) + 1}});
+            tokens_.push_back({std::string(text.substr(at, end - at)), file_, line_, int(at) + 1});
         return end;
     }
 
     std::vector<Token> tokens_;
+    std::shared_ptr<const std::string> file_;
+    int line_ = 0;
     bool in_comment_ = false;
 };
 
@@ -78,7 +88,7 @@ void check_shader_size(const ShaderSource& source, Diagnostics& diagnostics) {
         else if ((c == ')' || c == ']') && terms.size() > 1) terms.pop_back();
         else if (kEnds.find(c) != std::string_view::npos) terms.back() = 0;
         else if (kOperators.find(c) != std::string_view::npos && ++terms.back() == kMaxShaderTerms)
-            diagnostics.error(tokens[i].place,
+            diagnostics.error(tokens[i].place(),
                               "an expression has more than " + std::to_string(kMaxShaderTerms) +
                                   " operators, which is the limit (write it as a loop, or as "
                                   "several statements)");
@@ -89,10 +99,10 @@ void check_shader_size(const ShaderSource& source, Diagnostics& diagnostics) {
         if (!declares) continue;
         const auto elements = parse_number(tokens[i + 1].text);
         if (elements && *elements > double(kMaxShaderArrayElements))
-            diagnostics.error(tokens[i + 1].place, "an array of " + tokens[i + 1].text +
-                                                       " elements; the limit is " +
-                                                       std::to_string(kMaxShaderArrayElements) +
-                                                       " (declare a buffer or a texture for more)");
+            diagnostics.error(tokens[i + 1].place(), "an array of " + tokens[i + 1].text +
+                                                         " elements; the limit is " +
+                                                         std::to_string(kMaxShaderArrayElements) +
+                                                         " (declare a buffer or a texture for more)");
     }
 }
 

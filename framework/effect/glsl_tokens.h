@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cctype>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,9 @@ namespace aftershade {
 /// A word of a shader, or one character of anything else.
 struct Token {
     std::string text;
-    Place place;
+    std::shared_ptr<const std::string> file;  ///< of its line, which all tokens of a file share
+    int line = 0, column = 0;
+    Place place() const { return {*file, line, column}; }
     bool is_word() const { return std::isalpha(static_cast<unsigned char>(text[0])) || text[0] == '_'; }
 };
 

@@ -112,15 +112,15 @@ private:
             for (std::size_t i = 0; i < tokens.size(); ++i) {
                 const Token& token = tokens[i];
                 // A shared module may hold the curve; using it is what counts.
-                if (token.place.file.starts_with(glsl_folder_.string() + "/")) continue;
+                if (token.file->starts_with(glsl_folder_.string() + "/")) continue;
                 if (token.text == "encode_srgb" && i + 1 < tokens.size() && tokens[i + 1].text == "(" &&
-                    told.insert(to_string(token.place)).second)
-                    diagnostics_.warning(token.place,
+                    told.insert(to_string(token.place())).second)
+                    diagnostics_.warning(token.place(),
                                          "sRGB is encoded, but no output is display: effects "
                                          "work in scene-linear light");
                 if (token.text == "pow" && encodes(tokens, i, exponents) &&
-                    told.insert(to_string(token.place)).second)
-                    diagnostics_.warning(token.place,
+                    told.insert(to_string(token.place())).second)
+                    diagnostics_.warning(token.place(),
                                          "this looks like a gamma of 2.2 or 2.4, but no output is "
                                          "display: effects work in scene-linear light");
             }
@@ -153,7 +153,7 @@ private:
                     if (tokens[at].text == "(") ++depth;
                     if (tokens[at].text == ")" && --depth == 0) break;
                     if (tokens[at].text != "param") continue;
-                    diagnostics_.warning(tokens[i].place,
+                    diagnostics_.warning(tokens[i].place(),
                                          "a parameter bounds this loop; set \"max_iterations\" in pass '" +
                                              pass.name + "': llvmpipe silently ends loops after 65,535");
                     return;

@@ -15,13 +15,15 @@ bool is_sampling(const std::string& word) {
     return word.starts_with(kTexture) && std::isupper(static_cast<unsigned char>(word[kTexture.size()]));
 }
 
+bool is_on_line_of(const Token& token, const Token* directive) {
+    return directive && token.line == directive->line && *token.file == *directive->file;
+}
+
 /// Whether the word at `i` is the name in a declaration: a type stands before it, not the end of a directive.
-bool is_declared_at(const std::vector<Token>& tokens, std::size_t i, const Place& directive) {
+bool is_declared_at(const std::vector<Token>& tokens, std::size_t i, const Token* directive) {
     if (i == 0 || !tokens[i - 1].is_word() || tokens[i - 1].text == "return" || tokens[i - 1].text == "else")
         return false;
-    const Place& before = tokens[i - 1].place;
-    const bool ends_directive = before.line == directive.line && before.file == directive.file;
-    return !ends_directive || tokens[i].place.line == before.line;
+    return !is_on_line_of(tokens[i - 1], directive) || tokens[i].line == tokens[i - 1].line;
 }
 
 /// Parameters of the macro that "#define NAME(a, b) ..." at the "#" at `i` declares.
@@ -33,20 +35,16 @@ std::set<std::string> macro_parameters_at(const std::vector<Token>& tokens, std:
     return names;
 }
 
-bool is_on_line_of(const Token& token, const Place& place) {
-    return token.place.line == place.line && token.place.file == place.file;
-}
-
 }  // namespace
 
 ShaderUses::ShaderUses(const std::vector<Token>& tokens) {
     std::set<std::string> own_outputs, own_samplers, macro_parameters;
-    int branches = 0;  // of #if, around the token
-    Place directive;   // the last before the token
+    int branches = 0;                  // of #if, around the token
+    const Token* directive = nullptr;  // the last before the token
     for (std::size_t i = 0; i < tokens.size(); ++i) {
         const Token& token = tokens[i];
         if (token.text == "#") {
-            directive = token.place;
+            directive = &token;
             macro_parameters = macro_parameters_at(tokens, i);
         }
         if (!token.is_word()) continue;
@@ -57,19 +55,19 @@ ShaderUses::ShaderUses(const std::vector<Token>& tokens) {
         if (is_member) continue;
         if (i + 2 < tokens.size() && tokens[i + 1].text == ".") {
             const std::string& member = tokens[i + 2].text;
-            if (token.text == "param") params.emplace(member, token.place);
-            if (token.text == "native") natives.emplace(member, token.place);
+            if (token.text == "param") params.emplace(member, token.place());
+            if (token.text == "native") natives.emplace(member, token.place());
             if (token.text == "lights" && (member == "count" || member == "light") && !lights)
-                lights = token.place;
+                lights = token.place();
         }
         if (i + 2 < tokens.size() && is_sampling(token.text) && tokens[i + 1].text == "(" &&
             tokens[i + 2].is_word() &&
             !(is_on_line_of(token, directive) && macro_parameters.contains(tokens[i + 2].text))) {
-            samplers.emplace(tokens[i + 2].text, tokens[i + 2].place);
-            if (branches == 0) plain_samplers.emplace(tokens[i + 2].text, tokens[i + 2].place);
+            samplers.emplace(tokens[i + 2].text, tokens[i + 2].place());
+            if (branches == 0) plain_samplers.emplace(tokens[i + 2].text, tokens[i + 2].place());
         }
         if (token.text.ends_with(kSize))
-            sizes.emplace(token.text.substr(0, token.text.size() - kSize.size()), token.place);
+            sizes.emplace(token.text.substr(0, token.text.size() - kSize.size()), token.place());
         // "vec3 out_direction" is the shader's own.
         const bool declares = is_declared_at(tokens, i, directive);
         if (declares) own.insert(token.text);
@@ -77,7 +75,7 @@ ShaderUses::ShaderUses(const std::vector<Token>& tokens) {
             own_samplers.insert(token.text);
         if (!token.text.starts_with(kOut)) continue;
         if (declares) own_outputs.insert(token.text.substr(kOut.size()));
-        else outputs.emplace(token.text.substr(kOut.size()), token.place);
+        else outputs.emplace(token.text.substr(kOut.size()), token.place());
     }
     for (const std::string& name : own_outputs) outputs.erase(name);
     for (const std::string& name : own_samplers) samplers.erase(name);

@@ -32,7 +32,7 @@ struct BoundText {
     std::uint64_t effects_revision = 0;
 };
 
-/// Faults go to `faults`; nullptr where the text is no look. Its revisions are 0.
+/// Faults go to `faults`; nullptr where the text is not a look. Its revisions are 0.
 std::shared_ptr<BoundText> bind_text(const std::string& text, const std::filesystem::path& path,
                                      const std::shared_ptr<EffectRegistry>& effects, Diagnostics& faults);
 

@@ -27,7 +27,7 @@ struct PictureRequest {
     int scale = 1;               ///< the picture has 1/scale of the pixels of each side
     std::string view = "final";  ///< or before, tap:STEP.TEXTURE, role:NAME, truth:NAME, difference:NAME
     double exposure_ev = 0;
-    bool continues = false;  ///< history goes on where the frame before this one was drawn last
+    bool continues = false;  ///< history continues where the frame before this one was drawn last
 };
 
 struct MadePicture {

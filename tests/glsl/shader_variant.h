@@ -137,8 +137,8 @@ private:
         }
         for (Token& token : glsl_tokens(source)) {
             const std::size_t begin =
-                starts[std::size_t(token.place.line - 1)] + std::size_t(token.place.column - 1);
-            if (directives.contains(token.place.line)) {
+                starts[std::size_t(token.line - 1)] + std::size_t(token.column - 1);
+            if (directives.contains(token.line)) {
                 names_of_directives_.insert(token.text);
                 directive_places_.push_back(begin);
             } else {
