@@ -49,7 +49,9 @@ private:
             member.key_span.begin = at_;
             string();
             member.key_span.end = at_;
-            member.key = nlohmann::json::parse(member.key_span.of(text_)).get<std::string>();
+            const auto key = nlohmann::json::parse(member.key_span.of(text_), nullptr, false);
+            if (!key.is_string()) fail();  // a control character, or an escape that is none
+            member.key = key.get<std::string>();
             if (!takes(':')) fail();
             member.value = value(depth + 1);
             node.members.push_back(std::move(member));

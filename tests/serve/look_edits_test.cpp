@@ -85,6 +85,12 @@ TEST(LookEdits, RefuseWhatIsNoEdit) {
         EXPECT_THROW(edited(kLook, edit), Error) << edit;
 }
 
+TEST(LookEdits, OfATextThatIsNotJsonAreRefused) {
+    // A control character in a key, as the Text tab may leave one.
+    const std::string text = "{ \"\x01key\": 5, \"steps\": [ { \"effect\": \"dof\" } ] }";
+    EXPECT_THROW(edited(text, {{"op", "remove"}, {"step", 0}}), Error);
+}
+
 TEST(LookEdits, AddChangeAndRemoveVariablesBesideTheSteps) {
     const auto var = [](const char* name, Json value) {
         return Json{{"op", "var"}, {"name", name}, {"value", std::move(value)}};
