@@ -238,6 +238,7 @@ void add_step(std::string& text, const SpanNode& steps, const Json& edit) {
     std::vector<std::string> names;
     for (const SpanNode& item : steps.items) {
         const Json step = Json::parse(item.span.of(text), nullptr, false, true);
+        if (!step.is_object()) continue;
         const Json& name = step.contains("name") ? step["name"] : step.value("effect", Json());
         if (name.is_string()) names.push_back(name.get<std::string>());
     }

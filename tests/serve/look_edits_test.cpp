@@ -91,6 +91,12 @@ TEST(LookEdits, OfATextThatIsNotJsonAreRefused) {
     EXPECT_THROW(edited(text, {{"op", "remove"}, {"step", 0}}), Error);
 }
 
+TEST(LookEdits, AddAStepBesideOneThatIsNotAnObject) {
+    const std::string text = edited(R"({ "aftershade": 1, "steps": [7] })",
+                                    {{"op", "add"}, {"at", 0}, {"effect", "dof"}});
+    EXPECT_EQ(Json::parse(text)["steps"], Json::parse(R"([{"effect": "dof"}, 7])"));
+}
+
 TEST(LookEdits, AddChangeAndRemoveVariablesBesideTheSteps) {
     const auto var = [](const char* name, Json value) {
         return Json{{"op", "var"}, {"name", name}, {"value", std::move(value)}};

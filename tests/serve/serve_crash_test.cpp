@@ -66,7 +66,7 @@ TEST_F(ServeCrash, CostsNeitherTheSessionNorThePicture) {
 }
 
 TEST_F(ServeCrash, OfTheSameStepAgainIsAFaultThatNamesThePassWithTheLastGoodPicture) {
-#ifdef __SANITIZE_ADDRESS__
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
     GTEST_SKIP() << "the sanitizer reports the driver's crash in its own words";
 #endif
     write_effect_that_crashes("deep");
@@ -96,7 +96,7 @@ TEST_F(ServeCrash, OfTheSameStepAgainIsAFaultThatNamesThePassWithTheLastGoodPict
 }
 
 TEST_F(ServeCrash, OfAShaderThatWasDrawnBeforeIsAFaultUntilTheShaderIsMended) {
-#ifdef __SANITIZE_ADDRESS__
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
     GTEST_SKIP() << "the sanitizer reports the driver's crash in its own words";
 #endif
     write_effect("mine", "c *= 2.0;");
