@@ -170,10 +170,6 @@ void share_one_heap() {
     mallopt(M_ARENA_MAX, 1);
 }
 
-void give_back_free_pages() {
-    malloc_trim(0);
-}
-
 void prepare_for_memory_limit() {
     std::set_terminate(on_terminate);
     const auto limit = address_space_limit();

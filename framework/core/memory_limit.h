@@ -38,7 +38,4 @@ void prepare_for_memory_limit();
 /// threads heaps of their own, and each keeps the most that it ever held. [before the first other thread]
 void share_one_heap();
 
-/// Pages of that heap which hold nothing go back to the system. Takes a few ms where the heap is large.
-void give_back_free_pages();
-
 }  // namespace aftershade

@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/core/error.h"
-#include "framework/core/memory_limit.h"
 #include "framework/serve/draw_messages.h"
 #include "framework/serve/drawing_process.h"
 #include "framework/serve/look_model.h"
@@ -99,12 +98,8 @@ void draw_for(const ServeOptions& options, int socket) {
     }
     if (!send_answer(socket, {})) return;
     Looks looks(options);
-    // What the driver's compiler frees lies between what it keeps, so that the heap's end alone never shrinks.
-    constexpr int kAnswersBetweenTrims = 200;
-    for (int answers = 1; const auto request = receive_request(socket); ++answers) {
+    while (const auto request = receive_request(socket))
         if (!send_answer(socket, answer_or_fault(*request, looks, *maker))) return;
-        if (answers % kAnswersBetweenTrims == 0) give_back_free_pages();
-    }
 }
 
 }  // namespace aftershade::serve
