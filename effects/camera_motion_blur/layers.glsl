@@ -1,21 +1,11 @@
 // With layers, what is seen at a moment is composited, each by its share of its pixel.
-const float kOneSurface = 1.03;  // ratio of depths, up to which two finds at one place are one surface
+#include <composite.glsl>
 
 struct Find {
     vec2 at;      // px from the pixel
     float per_m;  // 1 / depth
     bool agrees;
 };
-
-struct Light {
-    vec4 sum;    // premultiplied
-    float left;  // of what lies behind
-};
-
-void put_behind(inout Light light, vec4 color, float share) {
-    light.sum += light.left * color;
-    light.left *= 1.0 - share;
-}
 
 float share_at(ivec2 texel) {
 #ifdef HAS_SHARE

@@ -1,16 +1,5 @@
 // With layers of the capture, what comes from them is composited, each by its share of its pixel.
-const float kOneSurface = 1.03;  // times the depth of a find, within which another at the same place is the same surface
-
-// What is seen so far of a time.
-struct Light {
-    vec4 sum;    // premultiplied
-    float left;  // of what lies behind
-};
-
-void put_behind(inout Light light, vec4 color, float share) {
-    light.sum += light.left * color;
-    light.left *= 1.0 - share;
-}
+#include <composite.glsl>
 
 bool is_same(Found a, Found b) {
     float nearer_m = min(a.depth_m, b.depth_m), farther_m = max(a.depth_m, b.depth_m);
