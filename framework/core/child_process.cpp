@@ -18,6 +18,12 @@ namespace aftershade {
 
 namespace {
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kLimitsMemory = false;  // sanitizers reserve terabytes of addresses when a process starts
+#else
+constexpr bool kLimitsMemory = true;
+#endif
+
 /// More than any child is given.
 constexpr int kFirstOwnDescriptor = 8;
 
@@ -59,7 +65,8 @@ bool limit(__rlimit_resource_t resource, rlim_t soft, rlim_t hard) {
 
 bool set_limits(const ChildLimits& limits) {
     bool done = limit(RLIMIT_CORE, limits.core_bytes, limits.core_bytes);
-    if (limits.memory_bytes) done = limit(RLIMIT_AS, *limits.memory_bytes, *limits.memory_bytes) && done;
+    if (kLimitsMemory && limits.memory_bytes)
+        done = limit(RLIMIT_AS, *limits.memory_bytes, *limits.memory_bytes) && done;
     // SIGXCPU first, which tells why; SIGKILL a second later for who ignores it.
     if (limits.cpu_seconds) done = limit(RLIMIT_CPU, *limits.cpu_seconds, *limits.cpu_seconds + 1) && done;
     return done;

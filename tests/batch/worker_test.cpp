@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <thread>
@@ -82,6 +83,23 @@ TEST(Worker, DeliversLinesOfBothStreams) {
     EXPECT_EQ(error, std::vector<std::string>{"to stderr"});
 }
 
+TEST(Worker, ReadsTheDescriptorThatIsItsInput) {
+    std::vector<std::string> out;
+    WorkerListener listener;
+    listener.on_stdout = [&](std::string_view line) { out.emplace_back(line); };
+    WorkerCommand command;
+    command.arguments = {"/bin/cat"};
+    EXPECT_TRUE(run_worker(command, listener).succeeded());
+    EXPECT_TRUE(out.empty()) << "without a descriptor its input is empty";
+    Pipe input = make_pipe();
+    ASSERT_EQ(write(input.write.get(), "one\ntwo", 7), 7);
+    input.write.reset();
+    command.input = input.read.get();
+    EXPECT_TRUE(run_worker(command, listener).succeeded());
+    EXPECT_EQ(out, (std::vector<std::string>{"one", "two"}));
+    expect_no_children();
+}
+
 TEST(Worker, EndsWhatUsesUpItsProcessorTime) {
     WorkerCommand command = worker({"--spin"});
     command.limits.cpu_seconds = 1;
@@ -90,8 +108,8 @@ TEST(Worker, EndsWhatUsesUpItsProcessorTime) {
 }
 
 TEST(Worker, LimitsMemory) {
-#ifdef __SANITIZE_ADDRESS__
-    GTEST_SKIP() << "the address sanitizer reserves more address space than any limit";
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "a sanitizer reserves more address space than any limit";
 #endif
     WorkerCommand command = worker({"--allocate"});
     command.limits.memory_bytes = std::uint64_t(1) << 30;

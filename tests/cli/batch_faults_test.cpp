@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 constexpr int kFaultFrames = 4;
 
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kCanLimitMemory = false;  // the sanitizer reserves terabytes of address space
 #else
 constexpr bool kCanLimitMemory = true;

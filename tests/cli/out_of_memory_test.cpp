@@ -6,7 +6,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kCanLimit = false;  // the sanitizer reserves terabytes of address space
 #else
 constexpr bool kCanLimit = true;

@@ -1,6 +1,7 @@
 // Native plug-ins through the command: what they compute is drawn, and what goes wrong in them is told.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 
 #include "framework/file/png_file.h"
@@ -105,6 +106,19 @@ TEST_F(Plugins, ThatHangAreStopped) {
     EXPECT_NE(result.err.find("hangs.so"), std::string::npos) << result.err;
     EXPECT_NE(result.err.find("step 'graded', frame 1"), std::string::npos) << result.err;
     EXPECT_NE(result.err.find("--plugin-timeout"), std::string::npos) << result.err;
+}
+
+// A process that dies before its first word closes its pipe; the time limit of a call, a minute, is not
+// waited for.
+TEST_F(Plugins, WhoseMemoryLimitIsBelowTheirStartEndTheRunAtOnce) {
+    write_effect("older");
+    const auto start = std::chrono::steady_clock::now();
+    const CommandResult result =
+        run({"--effect-path", "effects", "--plugin-path", kCases, "--plugin-memory", "1MB"}, 5);
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+    EXPECT_NE(result.err.find("in the start of its process; give it more memory with --plugin-memory"),
+              std::string::npos)
+        << result.err;
 }
 
 TEST_F(Plugins, ThatExitOrThrowAreErrorsOfTheStep) {

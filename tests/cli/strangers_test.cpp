@@ -98,7 +98,7 @@ void PrintTo(const Behaviour& behaviour, std::ostream* out) {
 class PluginThat : public Strangers, public testing::WithParamInterface<Behaviour> {};
 
 TEST_P(PluginThat, CostsItsFrameAtMost) {
-#ifdef __SANITIZE_ADDRESS__
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
     if (GetParam().what == "memory") GTEST_SKIP() << "the sanitizer needs all of the address space";
 #endif
     const Confinement offered = offered_confinement();
@@ -189,6 +189,9 @@ TEST_F(Strangers, PluginsCannotMakeACheckSucceed) {
 }
 
 TEST_F(Strangers, AWorkerThatEndsWithoutItsLastWordHasFailed) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "a sanitizer must be the first library that is loaded";
+#endif
     write_shader("plain", "");
     for (const std::string code : {"0", "5", "130"}) {
         const CommandResult result = run({}, {{"QUIT", code}, {"LD_PRELOAD", kCases + "/preload/quits.so"}});

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include "aftershade_plugin.h"
+#include "crash.h"
 
 #ifndef CASE_ID
 #define CASE_ID "case"
@@ -19,10 +20,6 @@
 #ifndef CASE_FACTORY
 #define CASE_FACTORY &the_factory
 #endif
-
-/* Read at run time, so that the compiler does not see the fault. */
-extern int *volatile nowhere;
-int *volatile nowhere = 0;
 
 static aftershade_status prepare(const aftershade_instance *instance, const aftershade_frame *frame,
                                  const aftershade_output *output) {

@@ -136,6 +136,9 @@ struct NativeProcess::Impl {
         command.descriptors = {-1, prints.write.get(), prints.write.get(), theirs.get()};
         command.limits.memory_bytes = options.memory_bytes;
         process = spawn_child(command);
+        // While this process holds the child's ends, it cannot see that the child has ended.
+        theirs.reset();
+        prints.write.reset();
         stream = std::move(mine);
         output = std::move(prints.read);
         for (const Descriptor* end : {&stream, &output}) fcntl(end->get(), F_SETFL, O_NONBLOCK);
@@ -246,7 +249,9 @@ struct NativeProcess::Impl {
         if (WIFEXITED(status)) why = "ended the process with code " + std::to_string(WEXITSTATUS(status));
         else if (WTERMSIG(status) == SIGKILL) why = "was killed " + signal_text(SIGKILL);
         else why = "crashed " + signal_text(WTERMSIG(status));
-        throw Error(ExitCode::effect, subject(place) + " " + why + place_text(place));
+        const bool lacks_memory = place.plugin.empty() && options.memory_bytes;
+        throw Error(ExitCode::effect, subject(place) + " " + why + place_text(place) +
+                                          (lacks_memory ? "; give it more memory with --plugin-memory" : ""));
     }
 
     static std::string subject(const WorkStatus& place) {
