@@ -86,6 +86,21 @@ public:
         return false;
     }
 
+    /// False if ten seconds passed before it had a handler of that signal.
+    bool wait_until_it_handles(int signal) const {
+        using namespace std::chrono_literals;
+        const std::string name = "SigCgt:\t";
+        for (auto waited = 0ms; waited < 10s; waited += 2ms) {
+            const std::string status = read_text("/proc/" + std::to_string(process_) + "/status");
+            const auto at = status.find(name);
+            if (at != std::string::npos &&
+                std::stoull(status.substr(at + name.size(), 16), nullptr, 16) >> (signal - 1) & 1)
+                return true;
+            std::this_thread::sleep_for(2ms);
+        }
+        return false;
+    }
+
     /// What it has printed to stdout so far.
     std::string printed() const { return read_text(output_ / "out"); }
 

@@ -194,13 +194,13 @@ TEST_F(GoldenApprove, LeavesOldOrNewFilesWholeWhereverItIsKilled) {
 }
 
 TEST_F(GoldenApprove, WritesNothingWhenItIsInterrupted) {
-    std::string more;  // so many that one at a time is not done in a quarter of a second
+    std::string more;  // so many that one at a time is not done before the signal comes
     for (int i = 0; i < 20; ++i)
         more += R"(, { "name": "more_)" + std::to_string(i) + R"(", "steps": [ { "effect": "vignette" } ],
                      "capture": "in_0001.exr" })";
     write_suite(R"("fail": 0.004)", more);
     Command command(aftershade_words({"golden", "approve", "golden.json", "-j", "1"}), folder_.path());
-    std::this_thread::sleep_for(std::chrono::milliseconds(250));
+    ASSERT_TRUE(command.wait_until_it_handles(SIGTERM));
     command.send(SIGTERM);
     const CommandResult result = command.wait();
     EXPECT_EQ(result.exit_code, 130) << result.err;
