@@ -1,7 +1,9 @@
 // Where the channels of a point land, against the shift that the parameters ask for.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -78,6 +80,64 @@ TEST(ChromaticAberration, LeavesWhatHasNoEdgesWhite) {
     for (int y = 0; y < 36; ++y)
         for (int x = 0; x < 64; ++x)
             for (int c = 0; c < 3; ++c) ASSERT_NEAR(out.at(x, y, c), 0.5, 1e-6);
+}
+
+/// Between the centres of four texels, those beyond the edge as at the edge.
+double between_texels(const Image& image, double x, double y, int channel) {
+    const double column = std::floor(x - 0.5), row = std::floor(y - 0.5);
+    const auto at = [&](double u, double v) {
+        return double(image.at(std::clamp(int(u), 0, image.width() - 1),
+                               std::clamp(int(v), 0, image.height() - 1), channel));
+    };
+    const double right = x - 0.5 - column, below = y - 0.5 - row;
+    return std::lerp(std::lerp(at(column, row), at(column + 1, row), right),
+                     std::lerp(at(column, row + 1), at(column + 1, row + 1), right), below);
+}
+
+/// The mean of all taps in double precision, with falloff 1.
+double mean_of_taps(const Image& image, int x, int y, int channel, double amount_px, int taps) {
+    const double half_width = image.width() / 2.0, half_height = image.height() / 2.0;
+    double red = 0, red_moment = 0;
+    for (int i = 0; i < taps; ++i) {
+        const double place = 2.0 * i / (taps - 1) - 1;
+        red += std::max(place, 0.0);
+        red_moment += std::max(place, 0.0) * place;
+    }
+    double sum = 0, weights = 0;
+    for (int i = 0; i < taps; ++i) {
+        const double place = 2.0 * i / (taps - 1) - 1;
+        const double size = 1 + place * amount_px * red / red_moment / std::hypot(half_width, half_height);
+        const double weight = channel == 3   ? 1
+                              : channel == 1 ? 1 - std::abs(place)
+                                             : std::max(channel == 0 ? place : -place, 0.0);
+        sum += weight * between_texels(image, half_width + (x + 0.5 - half_width) / size,
+                                       half_height + (y + 0.5 - half_height) / size, channel);
+        weights += weight;
+    }
+    return sum / weights;
+}
+
+TEST(ChromaticAberration, IsTheMeanOfAllItsTapsAlsoWhereTheyLieWithinAPixel) {
+    Capture capture = make_capture({.width = 480, .height = 270});
+    Image& noise = capture.images.at("color");
+    std::uint32_t state = 1;
+    for (int y = 0; y < noise.height(); ++y)
+        for (int x = 0; x < noise.width(); ++x)
+            for (int c = 0; c < 4; ++c) {
+                state = state * 1664525U + 1013904223U;
+                noise.at(x, y, c) = float(state >> 8) / float(1 << 24);
+            }
+    // Of the first two, the taps lie within a pixel at the centre, but not at the edges; of the last one, nowhere.
+    const std::pair<double, int> cases[] = {{1, 9}, {-1, 9}, {0.5, 33}, {0.5, 6}, {0.5, 3}, {6, 9}};
+    for (const auto& [amount, taps] : cases) {
+        const Image out = fringed(
+            capture, R"("amount": )" + std::to_string(amount) + R"(, "taps": )" + std::to_string(taps));
+        for (int y = 0; y < noise.height(); ++y)
+            for (int x = y % 3; x < noise.width(); x += 3)
+                for (int c = 0; c < 4; ++c)
+                    ASSERT_NEAR(out.at(x, y, c), mean_of_taps(noise, x, y, c, amount, taps), 2e-4)
+                        << amount << " " << taps << ": " << x << " " << y << " " << c;
+    }
 }
 
 TEST(ChromaticAberration, IsCentredOnTheDisplayWindowWhateverTheCrop) {

@@ -5,17 +5,23 @@
 // much of blue and green. They sum to 1 everywhere, so that white stays white.
 float spectral_place(int tap) { return 2.0 * float(tap) / float(param.taps - 1) - 1.0; }
 
-// Of the places above 0: the first, their sum, and the sum of their squares. Loops test at their end, because llvmpipe runs
-// the body of others once more, with every pixel masked.
+// Of the places above 0: the first, and the sums of their first to third powers. Loops test at their end, because llvmpipe
+// runs the body of others once more, with every pixel masked.
 int first_red() { return (param.taps + 1) / 2; }
-vec2 red_moments() {
-    vec2 sums = vec2(0.0);
+vec3 red_moments() {
+    vec3 sums = vec3(0.0);
     int i = first_red();
     do {
         float place = spectral_place(i);
-        sums += vec2(place, place * place);
+        sums += place * vec3(1.0, place, place * place);
     } while (++i < param.taps);
     return sums;
+}
+
+// Along the ray, light between four texels is a polynomial of degree 2: the pixel itself and the places 0.5 and 1 give the sum
+// over any number of places, weighted so that the sums of their powers 0, 1 and 2 are `moments`.
+vec3 three_places(vec3 moments) {
+    return vec3(moments.x - 3.0 * moments.y + 2.0 * moments.z, 4.0 * (moments.y - moments.z), 2.0 * moments.z - moments.y);
 }
 
 void main() {
@@ -27,22 +33,36 @@ void main() {
     vec2 half_size_px = 0.5 * vec2(frame.display_size);
     vec2 from_centre_px = gl_FragCoord.xy + vec2(frame.origin) - half_size_px;
     float distance_ = length(from_centre_px) / length(half_size_px);
-    vec2 red = red_moments();
+    vec3 red = red_moments();
     // How much larger than green's the picture of the spectrum's place 1 is. The mean place of red is brought to 1, so that
     // `amount` is what is measured between the channels.
     float magnified = param.amount * (red.x / red.y) / length(half_size_px) * pow(distance_, param.falloff - 1.0);
     vec2 centre = (gl_FragCoord.xy - from_centre_px) * color_size.zw, ray = from_centre_px * color_size.zw;
     bool has_middle = (param.taps & 1) == 1;
     vec4 sum = has_middle ? vec4(0.0, own.g, 0.0, own.a) : vec4(0.0);
-    int i = first_red();
+    // All taps of a side lie between the same four texels. The places of a magnified picture are even but for the square of the
+    // magnification, of which 0.005 leaves too little to see.
+    int count = param.taps - first_red();
+    float largest = abs(magnified);
+    vec2 reach_px = abs(from_centre_px) * largest / max(1.0 - largest, 0.1);
+    bool is_within_texels = count > 2 && largest < 0.005 && max(reach_px.x, reach_px.y) <= 1.0;
+    vec3 red_weights = three_places(red), all_weights = three_places(vec3(float(count), red.xy));
+    if (is_within_texels)
+        sum += vec4(red_weights.x, 2.0 * (all_weights.x - red_weights.x), red_weights.x, 2.0 * all_weights.x) * own;
+    int turn = 0, turns = is_within_texels ? 2 : count;
     do {
-        float place = spectral_place(i), larger = place * magnified;
+        float place = is_within_texels ? 0.5 * float(turn + 1) : spectral_place(first_red() + turn);
+        float larger = place * magnified, red_weight = place, weight = 1.0;
+        if (is_within_texels) {
+            red_weight = turn == 0 ? red_weights.y : red_weights.z;
+            weight = turn == 0 ? all_weights.y : all_weights.z;
+        }
         // What a lens magnifies was nearer to the centre. The bound holds off the pole of absurd amounts.
         vec4 outer = textureLod(color, centre + ray / max(1.0 + larger, 0.1), 0.0);
         vec4 inner = textureLod(color, centre + ray / max(1.0 - larger, 0.1), 0.0);
-        sum.r += place * outer.r;
-        sum.b += place * inner.b;
-        sum.ga += vec2(1.0 - place, 1.0) * (outer.ga + inner.ga);
-    } while (++i < param.taps);
+        sum.r += red_weight * outer.r;
+        sum.b += red_weight * inner.b;
+        sum.ga += vec2(weight - red_weight, weight) * (outer.ga + inner.ga);
+    } while (++turn < turns);
     out_color = sum / vec4(red.x, float(param.taps) - 2.0 * red.x, red.x, float(param.taps));
 }

@@ -2,7 +2,7 @@
 #include <pass>
 #include <luminance.glsl>
 #include "grain_place.glsl"
-#include "one_grain.glsl"
+#include "grain_bytes.glsl"
 
 const float kMiddleGrey = 0.18;
 // Luminances between which grain follows the light: a negative's toe and shoulder.
@@ -17,26 +17,20 @@ float bell_at(vec2 away) {
 
 vec3 grain(ivec2 p) {
     vec2 place = grain_place(p);
-    ivec2 nearest = nearest_grain(p), first = first_grain();
-    vec3 sum = vec3(0.0);
-    float squares = 0.0;
+    // The bound is for pictures of four pixels or fewer, whose textures are too small.
+    ivec2 nearest = nearest_grain(p), first = first_grain(), last = ivec2(grains_size.xy) - 1;
+    vec3 high = vec3(0.0), low = vec3(0.0);
+    float weights = 0.0, squares = 0.0;
     for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x) {
-            ivec2 cell = nearest + ivec2(x, y);
-            float weight = bell_at(place - vec2(cell));
-            sum += weight * uintBitsToFloat(texelFetch(grains, cell - first, 0).rgb);
+            float weight = bell_at(place - vec2(nearest + ivec2(x, y)));
+            ivec2 texel = min(nearest + ivec2(x, y) - first, last);
+            high += weight * texelFetch(grains, texel, 0).rgb;
+            low += weight * texelFetch(grains_low, texel, 0).rgb;
+            weights += weight;
             squares += weight * weight;
         }
-    // Grains of a pixel's width reach two columns and rows beyond the texture; there all nine are made once more. The loop
-    // ends after one turn elsewhere.
-    bool is_beyond = any(greaterThanEqual(nearest + 1 - first, frame.size));
-    vec3 made = vec3(0.0);
-    int i = is_beyond ? 0 : 8;
-    do {
-        ivec2 cell = nearest + ivec2(i % 3, i / 3) - 1;
-        made += bell_at(place - vec2(cell)) * one_grain(cell);
-    } while (++i < 9);
-    return (is_beyond ? made : sum) * inversesqrt(squares);
+    return grain_of_bytes(high, low, weights) * inversesqrt(squares);
 }
 
 void main() {
