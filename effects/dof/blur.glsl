@@ -29,9 +29,12 @@ float part_of(int which, float coc, bool is_coarse) {
 
 // Bilinear interpolation between texels of half size widens a blur: at the pixels, all a quarter of a texel off, by a variance of
 // 0.75 px squared along each axis. A hexagon's own is 5 / 24 of its circumradius squared, so that by variance its radius must be 1.8 px
-// squared over the radius less. Nearest to the lens is 1.6 (moving_box). In front of a point the widest blur stands for all.
+// squared over the radius less. Nearest to the lens is 1.6 (moving_box). Texels of a quarter of the size are interpolated twice, first
+// with four times the variance, which makes 8. In front of a point the widest blur stands for all.
 // This is for what covers something else; a light on its own surface would become too small.
-#ifdef HALF_SIZE
+#if defined(QUARTER_SIZE)
+float shrink_px(float radius_px) { return 8.0 / max(radius_px, kHalfSizePx); }
+#elif defined(HALF_SIZE)
 float shrink_px(float radius_px) { return 1.6 / max(radius_px, kFullSizePx); }
 #else
 float shrink_px(float radius_px) { return 0.0; }
@@ -174,4 +177,10 @@ Layer both(Layer a, Layer b) {
     Layer sum = Layer(a.color + b.color, a.opacity + b.opacity, a.hides + b.hides);
     float scale = 1.0 / max(sum.opacity, 1.0);
     return Layer(scale * sum.color, scale * sum.opacity, min(sum.hides, vec2(1.0)));
+}
+
+// Light and opacity must agree to the last bit for what is even to stay even, and opacity is stored as a half.
+Light stored(Layer layer) {
+    float opacity = unpackHalf2x16(packHalf2x16(vec2(layer.opacity))).x;
+    return Light(layer.color * (layer.opacity > 0.0 ? opacity / layer.opacity : 0.0), opacity);
 }

@@ -2,6 +2,7 @@
 #include <pass>
 #define HALF_SIZE
 #include "blur.glsl"
+#include "upsample.glsl"
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
@@ -9,15 +10,17 @@ void main() {
     vec2 center = 2.0 * vec2(p) + 1.0;
     vec4 around_coc = texelFetch(around, min(2 * p, frame.size - 1) / kTile, 0);
     float visible_coc = unpack_light(texelFetch(light, min(p, grid_of(1).last), 1)).coc, reach_px = front_reach_px(around_coc, own.coc, visible_coc);
-    bool is_blurred = abs(own.coc) > kFullSizePx - 1.0, is_reached = reach_px > kFullSizePx;
+    float radius_px = abs(own.coc);
+    bool is_blurred = radius_px > kFullSizePx - 1.0, is_reached = reach_px > kFullSizePx;
     if (is_reached || is_blurred) prepare_outline_at(center);
-    Gathered found = gather(Point(center, own, visible_coc, is_reached ? reach_px : kNotAsked, widest_radius_px(around_coc), kWide,
-                                  is_blurred ? abs(own.coc) : kNotAsked), around_coc);
-    Layer over = found.over;
-    Back surface = found.surface;
-    // Light and opacity must agree to the last bit for what is even to stay even, and opacity is stored as a half.
-    float opacity = unpackHalf2x16(packHalf2x16(vec2(over.opacity))).x;
-    out_front = pack_light(Light(over.color * (over.opacity > 0.0 ? opacity / over.opacity : 0.0), opacity));
+    Coarse coarse = upsampled(p, own.coc, kQuarterAlikePx, ivec2(plate_quarter_size.xy) - 1, front_quarter, back_quarter, hides_quarter, plate_quarter);
+    bool is_found = coarse.likeness >= kLeastLikeness;
+    bool is_over_found = is_found && reach_px > kHalfSizePx, is_back_found = is_found && radius_px > kHalfSizePx;
+    Gathered found = gather(Point(center, own, visible_coc, is_reached && !is_over_found ? reach_px : kNotAsked, widest_radius_px(around_coc), kWide,
+                                  is_blurred && !is_back_found ? radius_px : kNotAsked), around_coc);
+    Layer over = is_over_found ? coarse.over : found.over;
+    Back surface = is_back_found ? coarse.surface : found.surface;
+    out_front = pack_light(stored(over));
     out_back = pack_light(Light(surface.color, surface.share));
     out_hides = over.hides;
 }
