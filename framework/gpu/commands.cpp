@@ -266,8 +266,8 @@ void copy(Context& context, const Texture& from, const Texture& to) {
     assert(from.desc().height == to.desc().height && from.desc().layers == 1 && to.desc().layers == 1);
     context.make_current();
     context.impl().wait_for_draws();
-    context.gl().CopyImageSubData(from.handle(), GL_TEXTURE_2D, 0, 0, 0, 0, to.handle(), GL_TEXTURE_2D, 0, 0, 0,
-                                  0, to.desc().width, to.desc().height, 1);
+    context.gl().CopyImageSubData(from.handle(), GL_TEXTURE_2D, 0, 0, 0, 0, to.handle(), GL_TEXTURE_2D, 0, 0,
+                                  0, 0, to.desc().width, to.desc().height, 1);
     context.check(fmt::format("copying texture '{}' to '{}'", from.label(), to.label()));
 }
 

@@ -38,8 +38,9 @@ double texels_per_px(const EffectManifest& manifest, const ParamReader& params, 
                      int level) {
     const TextureSpec* texture = manifest.find_texture(name);
     if (!texture) return 1;
+    const GridSpec& grid = texture->grid;
     const double scale =
-        texture->grid.kind == GridSpec::Kind::tile ? 1.0 / count_value(texture->grid.tile, params) : texture->grid.scale;
+        grid.kind == GridSpec::Kind::tile ? 1.0 / std::max(1, count_value(grid.tile, params)) : grid.scale;
     return scale / (1 << level);
 }
 

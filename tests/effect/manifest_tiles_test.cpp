@@ -21,7 +21,8 @@ Sections tiled(const std::string& tiles, const std::string& passes, const std::s
     return {{test::kTextures, R"("textures": {
             "marks": {"format": "rg16f", "tile": 8, "when": {"flag": true}, "doc": "."},
             "whole": {"format": "rgba16f", "doc": "."},
-            "half_size": {"format": "rgba16f", "scale": 0.5, "doc": "."})" + (target.empty() ? "" : ", " + target) + "}"},
+            "half_size": {"format": "rgba16f", "scale": 0.5, "doc": "."})" +
+                                 (target.empty() ? "" : ", " + target) + "}"},
             {test::kMore, "\"tiles\": {" + tiles + "}"},
             {test::kPasses, R"("passes": [
             {"name": "mark", "shader": "a.frag", "reads": ["color", "depth"], "writes": ["marks"]},
@@ -157,8 +158,8 @@ TEST(TileLists, ConfineWhatTheirTilesAreMadeOf) {
 }
 
 TEST(TileLists, NeedSomethingAroundTheTiles) {
-    const std::string fault = "pass 'x': draws over parts of 'target' before anything has filled the rest: copy an input to it (a "
-                              "pass of kind copy) or draw all of it in an earlier pass";
+    const std::string fault = "pass 'x': draws over parts of 'target' before anything has filled the rest: "
+                              "copy an input to it (a pass of kind copy) or draw all of it in an earlier pass";
     EXPECT_EQ(faults_of_target(""), Lines{fault + ", or give it 'clear'"});
     EXPECT_EQ(faults_of_target(R"("clear": 0)"), Lines{});
 }

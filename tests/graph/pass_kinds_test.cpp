@@ -274,7 +274,7 @@ TEST_P(PassKindsOn, CopiesEveryBit) {
     graph.keep(out);
     Executor executor(context(), std::move(graph));
     std::vector<std::uint32_t> bits;
-    for (std::uint32_t i = 0; i < std::uint32_t(4 * kWidth * kHeight); ++i) bits.push_back(0x7f800000U + 977 * i);
+    for (int i = 0; i < 4 * kWidth * kHeight; ++i) bits.push_back(0x7f800000U + 977U * std::uint32_t(i));
     executor.texture(source)->upload(bits);
     executor.run(false);
     EXPECT_EQ(executor.texture(out)->read_uints(), bits);

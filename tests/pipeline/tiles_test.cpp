@@ -67,8 +67,10 @@ TEST(TilesOfAPass, LieOnLevelsAndOnBlocksToo) {
     };
     for (int y = 0; y < kTiledHeight; ++y)
         for (int x = 0; x < kTiledWidth; ++x) {
-            ASSERT_EQ(shown.at(x, y, 0), expected(x, y, 2, kTiledWidth / 2, kTiledHeight / 2)) << x << ", " << y;
-            ASSERT_EQ(shown.at(x, y, 1), expected(x, y, 4, kTiledWidth / 4, kTiledHeight / 4)) << x << ", " << y;
+            ASSERT_EQ(shown.at(x, y, 0), expected(x, y, 2, kTiledWidth / 2, kTiledHeight / 2))
+                << x << ", " << y;
+            ASSERT_EQ(shown.at(x, y, 1), expected(x, y, 4, kTiledWidth / 4, kTiledHeight / 4))
+                << x << ", " << y;
             ASSERT_EQ(shown.at(x, y, 2), expected(x, y, 8, 10, 7)) << x << ", " << y;
             ASSERT_EQ(shown.at(x, y, 3), expected(x, y, 1, kTiledWidth, kTiledHeight)) << x << ", " << y;
         }
@@ -109,7 +111,8 @@ TEST(CopyOfAPass, KeepsEveryBitOutsideTheTilesDrawn) {
         for (int x = 0; x < kTiledWidth; ++x)
             for (int c = 0; c < 4; ++c) {
                 const float want = is_of_ones(x, y) ? 1.0f : color.at(x, y, c);
-                ASSERT_EQ(std::bit_cast<std::uint32_t>(result.at(x, y, c)), std::bit_cast<std::uint32_t>(want))
+                ASSERT_EQ(std::bit_cast<std::uint32_t>(result.at(x, y, c)),
+                          std::bit_cast<std::uint32_t>(want))
                     << x << ", " << y << ", " << c;
             }
 }
@@ -122,9 +125,9 @@ TEST(CopyOfAPass, ConvertsWhatAnEarlierStepMadeInAnotherFormat) {
         "textures": { "half": { "format": "rgba16f", "doc": "." } },
         "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color"], "writes": ["color", "half"] } ])",
                 "void main() { out_color = texelFetch(color, ivec2(0), 0); out_half = vec4(1.0 / 3.0); }\n");
-    const Image result =
-        Bench(effects, look_of(R"({"effect": "halves"}, {"effect": "copied", "in": {"color": "halves.half"}})"))
-            .color(tiled_picture());
+    const std::string look =
+        look_of(R"({"effect": "halves"}, {"effect": "copied", "in": {"color": "halves.half"}})");
+    const Image result = Bench(effects, look).color(tiled_picture());
     EXPECT_EQ(result.at(0, 0, 1), 0.333251953125f) << "a third as a half";
     EXPECT_EQ(result.at(kTilePx, kTilePx, 1), 1.0f);
 }

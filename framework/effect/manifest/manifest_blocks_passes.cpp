@@ -190,8 +190,8 @@ Block copy_kind() {
             .keys = {required("from", text({.min_length = 1, .type = "name"}),
                               "Input or texture to copy, bit for bit."),
                      required("to", text({.min_length = 1, .type = "name"}),
-                              "Output or texture of the same size and format to copy to. On software GL a copy "
-                              "takes a third of the time of a draw.")}};
+                              "Output or texture of the same size and format to copy to. On software GL a "
+                              "copy takes a third of the time of a draw.")}};
 }
 
 Block make_pass_block() {

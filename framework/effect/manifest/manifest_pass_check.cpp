@@ -324,8 +324,8 @@ private:
         if (grid_of(from, true) != grid_of(to) || *from_format != *to_format || !plain(to) ||
             (!manifest_.find_input(from) && !plain(from)))
             fault(pass_->place, "copies '" + from + "' to '" + to +
-                                    "', which differ in size or format or have several levels or layers: draw "
-                                    "instead");
+                                    "', which differ in size or format or have several levels or layers: "
+                                    "draw instead");
     }
 
     std::optional<gpu::TextureFormat> format_of(const std::string& name, bool reads) const {

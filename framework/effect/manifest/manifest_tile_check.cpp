@@ -22,7 +22,8 @@ void check_grid(const EffectManifest& manifest, const TileListSpec& list, Diagno
 }
 
 /// Each texel of the target belongs to one tile; "" where all is well.
-std::string fault_of_target(const EffectManifest& manifest, const TileListSpec& list, const WriteSpec& write) {
+std::string fault_of_target(const EffectManifest& manifest, const TileListSpec& list,
+                            const WriteSpec& write) {
     constexpr const char* kScale = "have a 'scale' of the working grid";
     const TextureSpec* texture = manifest.find_texture(write.name);
     if (!texture) return "";
@@ -30,12 +31,13 @@ std::string fault_of_target(const EffectManifest& manifest, const TileListSpec& 
     if (grid.kind == GridSpec::Kind::size || is_pass_index(write.level)) return kScale;
     const bool is_fixed = list.tile.param.empty() && list.on.empty();
     if (grid.kind == GridSpec::Kind::scale && write.level == 0) return "";
-    if (!is_fixed) return std::string(kScale) + ", and be its level 0: the list's tile is no fixed number of px";
+    if (!is_fixed)
+        return std::string(kScale) + ", and be its level 0: the list's tile is no fixed number of px";
     if (grid.kind == GridSpec::Kind::scale)
         return list.tile.number % (1 << write.level) == 0
                    ? ""
-                   : "be of a level whose texels divide the list's tile of " + std::to_string(list.tile.number) +
-                         " px";
+                   : "be of a level whose texels divide the list's tile of " +
+                         std::to_string(list.tile.number) + " px";
     return grid.tile.param.empty() && list.tile.number % grid.tile.number == 0
                ? ""
                : std::string(kScale) + ", or a 'tile' that divides the list's of " +
