@@ -4,19 +4,16 @@
 
 // How many tiles away one may lie that reaches tile p.
 int range_of(ivec2 p) {
-    const int kBlock = kTilesOfBlock * kTile;
-    ivec2 last = ivec2(widest_size.xy) - 1, own = p / kTilesOfBlock;
-    int blocks = int(ceil(param.max_coc_radius / float(kBlock)));
+    int last = int(widest_size.y) - 1, range = int(ceil(param.max_coc_radius / float(kTile)));
     float widest_px = 0.0;
-    for (int y = max(own.y - blocks, 0); y <= min(own.y + blocks, last.y); ++y)
-        for (int x = max(own.x - blocks, 0); x <= min(own.x + blocks, last.x); ++x) widest_px = max(widest_px, texelFetch(widest, ivec2(x, y), 0).r);
-    return int(ceil((widest_px + 1.0) / float(kTile)));
+    for (int y = max(p.y - range, 0); y <= min(p.y + range, last); ++y) widest_px = max(widest_px, texelFetch(widest, ivec2(p.x, y), 0).r);
+    return min(int(ceil((widest_px + 1.0) / float(kTile))), range);
 }
 
 // A tile matters here if the gap between the two tiles is shorter than its largest radius.
 void main() {
     ivec2 last = ivec2(tile_coc_size.xy) - 1, p = ivec2(gl_FragCoord.xy);
-    int range = min(range_of(p), int(ceil(param.max_coc_radius / float(kTile))));
+    int range = range_of(p);
     vec4 own = texelFetch(tile_coc, p, 0);
     float smallest = own.x, largest = own.y, before = own.z;
     for (int y = max(p.y - range, 0); y <= min(p.y + range, last.y); ++y)

@@ -1,7 +1,5 @@
 // Side in px of the tiles of tile_coc and around, as effect.json declares it.
 const int kTile = 16;
-// And of the blocks of widest, in tiles.
-const int kTilesOfBlock = 4;
 
 int tiles_in_a_row() { return (frame.size.x + kTile - 1) / kTile; }
 
