@@ -122,11 +122,11 @@ TEST(CopyOfAPass, ConvertsWhatAnEarlierStepMadeInAnotherFormat) {
     effects.add("copied", kCopied, kCopiedShader);
     effects.add("halves",
                 R"("inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
-        "textures": { "half": { "format": "rgba16f", "doc": "." } },
-        "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color"], "writes": ["color", "half"] } ])",
-                "void main() { out_color = texelFetch(color, ivec2(0), 0); out_half = vec4(1.0 / 3.0); }\n");
+        "textures": { "thirds": { "format": "rgba16f", "doc": "." } },
+        "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color"], "writes": ["color", "thirds"] } ])",
+                "void main() { out_color = texelFetch(color, ivec2(0), 0); out_thirds = vec4(1.0 / 3.0); }\n");
     const std::string look =
-        look_of(R"({"effect": "halves"}, {"effect": "copied", "in": {"color": "halves.half"}})");
+        look_of(R"({"effect": "halves"}, {"effect": "copied", "in": {"color": "halves.thirds"}})");
     const Image result = Bench(effects, look).color(tiled_picture());
     EXPECT_EQ(result.at(0, 0, 1), 0.333251953125f) << "a third as a half";
     EXPECT_EQ(result.at(kTilePx, kTilePx, 1), 1.0f);
