@@ -32,7 +32,7 @@ std::string fault_of_target(const EffectManifest& manifest, const TileListSpec& 
     const bool is_fixed = list.tile.param.empty() && list.on.empty();
     if (grid.kind == GridSpec::Kind::scale && write.level == 0) return "";
     if (!is_fixed)
-        return std::string(kScale) + ", and be its level 0: the list's tile is no fixed number of px";
+        return std::string(kScale) + ", and be its level 0: the list's tile is not a fixed number of px";
     if (grid.kind == GridSpec::Kind::scale)
         return list.tile.number % (1 << write.level) == 0
                    ? ""
