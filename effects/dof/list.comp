@@ -3,10 +3,11 @@
 #include "highlights.glsl"
 #include "tile.glsl"
 
-layout(local_size_x = 1) in;
+layout(local_size_x = 16, local_size_y = 16) in;  // a tile each
 
 void main() {
-    ivec2 tile = ivec2(gl_WorkGroupID.xy), corner = kTile * tile, end = min(corner + kTile, frame.size);
+    ivec2 tile = ivec2(gl_GlobalInvocationID.xy), corner = kTile * tile, end = min(corner + kTile, frame.size);
+    if (any(greaterThanEqual(corner, frame.size))) return;
     int number = tile.y * tiles_in_a_row() + tile.x;
     if (tile_count[number] == 0u) return;
     uint next = tile_first[number];

@@ -1,15 +1,13 @@
 #version 450 core
 #include <pass>
 #include <lens/own.glsl>
-#include "tile.glsl"
 
 float amount(vec4 light) { return dot(light.rgb, vec3(1.0)); }
 
 void main() {
-    int rows = texelFetch(lit, 8 * ivec2(gl_FragCoord.xy) / kTile, 0).r > 0.5 ? 8 : 0;
     ivec2 last = ivec2(color_size.xy) - 1, corner = 8 * ivec2(gl_FragCoord.xy);
     vec2 sum = vec2(0.0);
-    for (int y = 0; y < rows; ++y)
+    for (int y = 0; y < 8; ++y)
         for (int x = 0; x < 8; ++x) {
             ivec2 p = min(corner + ivec2(x, y), last);
             float visible = amount(own_color(p));

@@ -1,12 +1,23 @@
 #version 450 core
 #include <pass>
+#include <lens/highlight.glsl>
 #include "tile.glsl"
 
 void main() {
     ivec2 last = ivec2(coc_size.xy) - 1, corner = kTile * ivec2(gl_FragCoord.xy);
     float smallest = texelFetch(coc, min(corner, last), 0).r, largest = smallest;
-    for (int y = 0; y < kTile; ++y)
-        for (int x = 0; x < kTile; ++x) {
+    int side = kTile;
+#ifdef HAS_COC_STEP
+    // Elsewhere coc is as it was when coc_step was made of it.
+    vec4 unrepaired = texelFetch(coc_step, ivec2(gl_FragCoord.xy), 0);
+    if (!may_be_repaired(unrepaired)) {
+        smallest = unrepaired.b;
+        largest = unrepaired.a;
+        side = 0;
+    }
+#endif
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) {
             float coc_px = texelFetch(coc, min(corner + ivec2(x, y), last), 0).r;
             smallest = min(smallest, coc_px);
             largest = max(largest, coc_px);

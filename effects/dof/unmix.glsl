@@ -18,7 +18,8 @@ const float kSameColor = 0.01;  // squared difference, of the squared one of bot
 const int kTexturePx = 3;
 bool is_texture(ivec2 p, vec3 own, float coc_px, ivec2 to, float length_2) {
     ivec2 side = ivec2(-to.y, to.x);
-    for (int i = 0; i < 9; ++i) {
+    int count = to == ivec2(0) ? 0 : 9;
+    for (int i = 0; i < count; ++i) {
         ivec2 q = p + kTexturePx * (ivec2(i % 3, i / 3) - 1);
         if (i == 4 || is_across(q, coc_px) || is_across(q + to, coc_px) || is_across(q + side, coc_px) || is_across(q - side, coc_px)) continue;
         vec3 off = color_inside(q) - own;
@@ -62,7 +63,11 @@ Unmixed unmixed(ivec2 p, vec3 own, float coc_px) {
     Mixture best = Mixture(own, 0.0, 0.0);
     ivec2 way = ivec2(0);
     float kind = kNoEdge;
-    for (int i = 0; i < 9; ++i) {
+    // Software GL ends a loop once no pixel of a group goes on, but runs what an if leaves out.
+    bool is_at_edge = false;
+    for (int i = 0; i < 9; ++i) is_at_edge = is_at_edge || is_across(p + ivec2(i % 3, i / 3) - 1, coc_px);
+    int count = is_at_edge ? 9 : 0;
+    for (int i = 0; i < count; ++i) {
         ivec2 to = ivec2(i % 3, i / 3) - 1;
         float across_coc = coc_inside(p + to);
         if (abs(across_coc - coc_px) <= kOneSurfacePx || is_across(p - 2 * to, coc_px)) continue;

@@ -123,6 +123,7 @@ std::string shader_text(const EffectManifest& manifest, const PassSpec& pass) {
     const TileListSpec* listed = manifest.find_tile_list(pass.lists);
     if (listed && listed->of) return "tiles where " + listed->of->text() + " > 0";
     if (listed) return "tiles by " + (pass.module.empty() ? "" : pass.module + "/") + pass.shader;
+    if (pass.kind == PassKind::copy) return "copy";
     if (pass.shader.empty()) return "clear";
     return (pass.module.empty() ? "" : pass.module + "/") + pass.shader;
 }

@@ -21,7 +21,7 @@ public:
         for (const InputSpec& input : manifest.inputs) inputs.push_back(input.name);
         Diagnostics faults;
         for (const PassSpec& pass : manifest.passes) {
-            if (pass.kind == PassKind::clear) continue;
+            if (!pass.runs_shader()) continue;
             const ShaderContext context{&manifest, &pass, defaults, inputs, glsl_folder};
             tokens_[pass.name] = glsl_tokens(assemble_shader(context, faults));
         }

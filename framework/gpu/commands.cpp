@@ -1,6 +1,7 @@
 #include "framework/gpu/commands.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include <fmt/format.h>
 
@@ -258,6 +259,16 @@ void draw_instances(Context& context, const Program& program, std::span<const Ta
         gl.DrawArraysIndirect(mode, nullptr);
         gl.BindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
     });
+}
+
+void copy(Context& context, const Texture& from, const Texture& to) {
+    assert(from.desc().format == to.desc().format && from.desc().width == to.desc().width);
+    assert(from.desc().height == to.desc().height && from.desc().layers == 1 && to.desc().layers == 1);
+    context.make_current();
+    context.impl().wait_for_draws();
+    context.gl().CopyImageSubData(from.handle(), GL_TEXTURE_2D, 0, 0, 0, 0, to.handle(), GL_TEXTURE_2D, 0, 0,
+                                  0, 0, to.desc().width, to.desc().height, 1);
+    context.check(fmt::format("copying texture '{}' to '{}'", from.label(), to.label()));
 }
 
 void dispatch(Context& context, const Program& program, int groups_x, int groups_y, int groups_z,

@@ -74,6 +74,10 @@ struct InstanceRange {
 void draw_instances(Context& context, const Program& program, std::span<const Target> targets,
                     const Bindings& bindings, const InstanceRange& instances, Blend blend = Blend::none);
 
+/// Copies level 0 of `from` to level 0 of `to`, bit for bit; both have one size, one format and one layer. On
+/// software GL this takes a third of the time of a draw.
+void copy(Context& context, const Texture& from, const Texture& to);
+
 /// Dispatches groups_x * groups_y * groups_z work groups.
 void dispatch(Context& context, const Program& program, int groups_x, int groups_y, int groups_z,
               const Bindings& bindings);

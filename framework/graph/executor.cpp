@@ -37,7 +37,7 @@ Executor::Executor(gpu::Context& context, FrameGraph graph, bool shares_memory)
     : context_(context), graph_(std::move(graph)), compiled_(graph_.compile(shares_memory)), timer_(context) {
     for (const int index : compiled_.passes) {
         const Pass& pass = graph_.pass(index);
-        if (pass.kind != PassKind::clear && !pass.program)
+        if (pass.kind != PassKind::clear && pass.kind != PassKind::copy && !pass.program)
             throw GraphError(fmt::format("pass '{}' has no program", pass.name));
     }
     allocate();
@@ -194,6 +194,9 @@ void Executor::run_pass(const BoundPass& bound) {
                 gpu::dispatch(context_, *pass.program, x, y, z, bindings);
             }
             break;
+        case PassKind::copy:
+            gpu::copy(context_, *bound.textures.front().texture, *bound.targets.front().texture);
+            break;
         case PassKind::clear:
             for (std::size_t i = 0; i < bound.clear_targets.size(); ++i)
                 bound.clear_targets[i]->clear_to(pass.clear_value, bound.targets[i].level,
@@ -234,7 +237,7 @@ void Executor::set_hooks(PassHooks hooks) {
     hooks_ = std::move(hooks);
     if (!hooks_.storage.buffer) return;
     for (BoundPass& bound : bound_)
-        if (bound.pass->kind != PassKind::clear) bound.storage.push_back(hooks_.storage);
+        if (bound.pass->program) bound.storage.push_back(hooks_.storage);
 }
 
 Executor::History Executor::history() {

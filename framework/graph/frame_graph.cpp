@@ -71,7 +71,8 @@ bool FrameGraph::overwrites(const Pass& pass, const Target& target) const {
     const bool all_levels = texture.desc.mips == 1 || texture.options.auto_mips || target.level < 0;
     const bool all_layers = texture.desc.layers == 1 || target.layer < 0;
     const bool all_texels =
-        pass.kind == PassKind::clear || (pass.kind == PassKind::draw && pass.blend == gpu::Blend::none);
+        pass.kind == PassKind::clear || pass.kind == PassKind::copy ||
+        (pass.kind == PassKind::draw && pass.blend == gpu::Blend::none);
     return all_levels && all_layers && all_texels;
 }
 

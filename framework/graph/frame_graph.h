@@ -69,7 +69,8 @@ struct UniformBlock {
     std::vector<std::byte> bytes;  ///< std140; contents may be replaced before each frame, the size may not
 };
 
-enum class PassKind { draw, instances, compute, clear };
+/// `copy`: level 0 of its read to its target, bit for bit; both have one description.
+enum class PassKind { draw, instances, compute, clear, copy };
 
 /// What `instances` draws: `count` times four vertices of a strip (quads) or one point; or as many as the
 /// buffer says (DrawArraysIndirectCommand).
@@ -92,7 +93,7 @@ enum class Fusing { never, leads, follows };
 struct Pass {
     std::string name;  ///< "bokeh.coc"
     PassKind kind = PassKind::draw;
-    std::shared_ptr<const gpu::Program> program{};  ///< nullptr for a clear
+    std::shared_ptr<const gpu::Program> program{};  ///< nullptr for a clear and a copy
     std::vector<Read> reads{};
     std::vector<Target> targets{};  ///< draw, instances: of one size; clear: what is set to `clear_value`
     std::vector<ImageUse> images{};

@@ -65,10 +65,24 @@ private:
             (pass_.program || !pass_.reads.empty() || !pass_.images.empty() || !pass_.buffers.empty() ||
              !pass_.uniforms.empty()))
             fail("clears, but has more than targets; it runs no program and reads nothing");
+        if (pass_.kind == PassKind::copy) check_copy();
         if (!draws() && pass_.blend != gpu::Blend::none) fail("blends, but draws nothing");
         if (pass_.program && pass_.program->is_compute() != (pass_.kind == PassKind::compute))
             fail(fmt::format("{}, but its program '{}' does the other", draws() ? "draws" : "computes",
                              pass_.program->label()));
+    }
+
+    void check_copy() const {
+        if (pass_.program || pass_.reads.size() != 1 || pass_.targets.size() != 1 || !pass_.images.empty() ||
+            !pass_.buffers.empty() || !pass_.uniforms.empty())
+            fail("copies, but has more or less than one read and one target");
+        const Texture& from = live(graph_, pass_.reads.front().texture, user_);
+        const Texture& to = live(graph_, pass_.targets.front().texture, user_);
+        const gpu::TextureDesc &a = from.desc, &b = to.desc;
+        if (a.width != b.width || a.height != b.height || a.format != b.format || a.layers > 1 ||
+            b.layers > 1)
+            fail(fmt::format("copies '{}' to '{}', which differ in size, format or layers", from.name,
+                             to.name));
     }
 
     void check_counts() const {

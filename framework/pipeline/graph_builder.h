@@ -62,6 +62,7 @@ private:
     void add_pass(StepBuild& build, const PassSpec& spec);
     void add_turn(StepBuild& build, const PassSpec& spec, int turn, int turns);
     void add_clear(StepBuild& build, const PassSpec& spec);
+    void add_copy_pass(StepBuild& build, const PassSpec& spec);
     void add_mix(StepBuild& build);
     graph::TextureHandle mask_of(const StepBuild& build);
     void add_copy(StepBuild& build, const std::string& name, graph::TextureHandle from,

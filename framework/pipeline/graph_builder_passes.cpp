@@ -33,9 +33,15 @@ std::array<float, 4> size_of(const gpu::TextureDesc& desc, int level) {
                                       "', which no pass has written with these parameters");
 }
 
-double scale_of(const EffectManifest& manifest, const std::string& name) {
+/// Texels of a level of a texture or an output per px of the working grid, along a side.
+double texels_per_px(const EffectManifest& manifest, const ParamReader& params, const std::string& name,
+                     int level) {
     const TextureSpec* texture = manifest.find_texture(name);
-    return texture ? texture->grid.scale : 1;
+    if (!texture) return 1;
+    const GridSpec& grid = texture->grid;
+    const double scale =
+        grid.kind == GridSpec::Kind::tile ? 1.0 / std::max(1, count_value(grid.tile, params)) : grid.scale;
+    return scale / (1 << level);
 }
 
 /// Samplers of a pass, and the block of their sizes, which ends with `tile_grid` where the pass has one.
@@ -84,6 +90,7 @@ void GraphBuilder::add_pass(StepBuild& build, const PassSpec& spec) {
     const bool is_native = build.manifest().native.has_value();
     if (is_native && !frame_.native_enabled(build.index, spec.name)) return;
     if (spec.kind == PassKind::clear) return add_clear(build, spec);
+    if (spec.kind == PassKind::copy) return add_copy_pass(build, spec);
     int turns = spec.repeat ? count_value(*spec.repeat, build.params) : 1;
     if (is_native) turns = frame_.native_turns(build.index, spec.name, turns);
     for (int turn = 0; turn < turns; ++turn) add_turn(build, spec, turn, turns);
@@ -115,6 +122,27 @@ void GraphBuilder::add_clear(StepBuild& build, const PassSpec& spec) {
         pass.targets.push_back({build.textures.at(write.name), write.level, write.layer});
     const graph::Written written = graph_.add_pass(std::move(pass));
     for (std::size_t i = 0; i < writes.size(); ++i) build.textures[writes[i].name] = written.targets[i];
+}
+
+/// An input that an earlier step made may have another format than the role: then a draw converts it.
+void GraphBuilder::add_copy_pass(StepBuild& build, const PassSpec& spec) {
+    const graph::TextureHandle from = build.read_handle(spec.reads.front().name);
+    const std::string& name = spec.writes.front().name;
+    const graph::TextureHandle to = build.textures.at(name);
+    const auto& source = graph_.textures()[std::size_t(from.texture)];
+    const gpu::TextureDesc &a = source.desc, &b = graph_.textures()[std::size_t(to.texture)].desc;
+    if (from.version == 0 && !source.options.clear) unwritten(build, spec, spec.reads.front().name);
+    graph::Pass pass;
+    pass.name = build.prefix() + spec.name;
+    pass.reads.push_back({from, 0, gpu::Filter::nearest, gpu::Wrap::clamp, input_level(from)});
+    pass.targets.push_back({to});
+    if (a.format == b.format && a.width == b.width && a.height == b.height && a.layers == 1)
+        pass.kind = graph::PassKind::copy;
+    else
+        pass.program = tools_.programs.host("copy.frag", gpu::is_integer(a.format)
+                                                             ? std::vector<std::string>{"COPY_UINT"}
+                                                             : std::vector<std::string>{});
+    build.textures[name] = graph_.add_pass(std::move(pass)).targets.front();
 }
 
 void GraphBuilder::add_turn(StepBuild& build, const PassSpec& spec, int turn, int turns) {
@@ -158,12 +186,14 @@ std::array<float, 4> GraphBuilder::tile_grid_size(const StepBuild& build, const 
     if (!bindings.has_tile_grid) return {};
     const TileListSpec& list = *build.manifest().find_tile_list(spec.lists.empty() ? spec.over : spec.lists);
     const std::string& on = spec.lists.empty() ? bindings.writes.front().name : list.on;
+    const int level = spec.lists.empty() ? bindings.writes.front().level : 0;
     float width = float(width_), height = float(height_);
     if (!on.empty()) {
         const auto& desc = graph_.textures()[std::size_t(build.textures.at(on).texture)].desc;
-        const double scale = scale_of(build.manifest(), list.on) / scale_of(build.manifest(), on);
-        width = float(desc.width * scale);
-        height = float(desc.height * scale);
+        const double scale = texels_per_px(build.manifest(), build.params, list.on, 0) /
+                             texels_per_px(build.manifest(), build.params, on, level);
+        width = float(std::max(1, desc.width >> level) * scale);
+        height = float(std::max(1, desc.height >> level) * scale);
     }
     return {width, height, 1 / width, 1 / height};
 }

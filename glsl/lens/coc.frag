@@ -2,4 +2,6 @@
 #include <pass>
 #include "lens.glsl"
 
-void main() { out_coc = coc_at(ivec2(gl_FragCoord.xy), lens_at_infinity_px()); }
+layout(location = 0) flat in float at_infinity_px;
+
+void main() { out_coc = coc_at(ivec2(gl_FragCoord.xy), at_infinity_px); }

@@ -5,7 +5,6 @@
 
 ivec2 inside(ivec2 p) { return clamp(p, ivec2(0), ivec2(color_size.xy) - 1); }
 
-const float kOutshinesTile = 3.0;
 const float kLeastShare = 0.02;  // of the light: less of it cannot be seen in a blur
 
 struct Tap {

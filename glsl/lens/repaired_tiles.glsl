@@ -1,3 +1,3 @@
 #include "highlight.glsl"
 
-bool repaired_tiles(ivec2 tile) { return is_repaired(texelFetch(coc_step, tile, 0).r); }
+bool repaired_tiles(ivec2 tile) { return may_be_repaired(texelFetch(coc_step, tile, 0)); }

@@ -118,6 +118,16 @@ TEST(ManifestPasses, KeepComputeAndClear) {
     EXPECT_EQ(clear->clear_value, (std::vector<double>{1, 0.5, 0, 2}));
 }
 
+TEST(ManifestPasses, KeepACopy) {
+    const Made copy(R"({"name": "c", "kind": "copy", "from": "color", "to": "color"})");
+    EXPECT_EQ(copy->kind, PassKind::copy);
+    EXPECT_FALSE(copy->runs_shader());
+    ASSERT_EQ(copy->reads.size(), 1U);
+    ASSERT_EQ(copy->writes.size(), 1U);
+    EXPECT_EQ(copy->reads[0].name, "color");
+    EXPECT_EQ(copy->writes[0].name, "color");
+}
+
 TEST(ManifestPasses, MayReadWhatTheyReplace) {
     const Made again(
         R"({"name": "x", "shader": "b.frag", "repeat": "turns", "reads": ["small"], "writes": ["small"]})");
@@ -140,11 +150,25 @@ void expect_pass_faults(const std::vector<std::pair<std::string, Lines>>& broken
     }
 }
 
+TEST(ManifestPasses, SayWhatIsWrongWithACopy) {
+    const auto copy = [](const std::string& from, const std::string& to) {
+        return R"({"name": "x", "kind": "copy", "from": ")" + from + R"(", "to": ")" + to + "\"}";
+    };
+    const std::string differ = "which differ in size or format or have several levels or layers: draw instead";
+    expect_pass_faults(
+        {{copy("color", "small"), {"pass 'x': copies 'color' to 'small', " + differ}},
+         {copy("depth", "color"), {"pass 'x': copies 'depth' to 'color', " + differ}},
+         {copy("pyramid", "color"), {"pass 'x': copies 'pyramid' to 'color', " + differ}},
+         {copy("colour", "color"),
+          {"pass 'x': reads 'colour', which is neither an input nor a texture; did you mean 'color'?"}},
+         {R"({"name": "x", "kind": "copy", "from": "color"})", {"the copy pass has no 'to'"}}});
+}
+
 TEST(ManifestPasses, SayWhatIsWrongWithADraw) {
     const std::string x = "pass 'x': ";
     expect_pass_faults({
-        {draw(R"("writes": ["small"], "kind": "copy")"),
-         {"'kind' is 'copy' but must be 'draw', 'compute' or 'clear'"}},
+        {draw(R"("writes": ["small"], "kind": "blit")"),
+         {"'kind' is 'blit' but must be 'draw', 'compute', 'clear' or 'copy'"}},
         {draw(R"("writes": ["small"], "dispatch": {"tile": 8})"),
          {"the pass has no key 'dispatch'; it is a key of kind 'compute'"}},
         {draw(R"("writes": ["small"], "blend": "over")"),

@@ -16,11 +16,13 @@ using test::Sections;
 
 const std::filesystem::path kGlsl = std::filesystem::path(AFTERSHADE_SOURCE_DIR) / "glsl";
 
-Sections tiled(const std::string& tiles, const std::string& passes) {
+/// `target`: a texture that one of `passes` writes.
+Sections tiled(const std::string& tiles, const std::string& passes, const std::string& target = "") {
     return {{test::kTextures, R"("textures": {
             "marks": {"format": "rg16f", "tile": 8, "when": {"flag": true}, "doc": "."},
             "whole": {"format": "rgba16f", "doc": "."},
-            "half_size": {"format": "rgba16f", "scale": 0.5, "doc": "."}})"},
+            "half_size": {"format": "rgba16f", "scale": 0.5, "doc": "."})" +
+                                 (target.empty() ? "" : ", " + target) + "}"},
             {test::kMore, "\"tiles\": {" + tiles + "}"},
             {test::kPasses, R"("passes": [
             {"name": "mark", "shader": "a.frag", "reads": ["color", "depth"], "writes": ["marks"]},
@@ -123,16 +125,43 @@ TEST(TileLists, SayWhatIsWrong) {
            {"8: tile list 'far', of: 'marks.b' must end in a channel of 'marks', one of rg: \"marks.r\""});
     expect(R"("far": {"of": "marks.r", "tile": 8, "doc": "."})", over + "\"far\"}",
            {"8: tile list 'far' has no key 'tile' where it has 'of'"});
-    expect(kMarked, R"({"name": "x", "shader": "b.frag", "writes": ["marks"], "over": "marked"})",
-           {"6: pass 'x': runs over tiles, so what it writes, 'marks', must have a 'scale' of the working "
-            "grid, and be "
-            "its level 0"});
     expect(kMarked,
            R"({"name": "x", "shader": "b.frag", "vertex": "d.vert", "writes": ["color"], "over": "marked",
         "instances": {"of": "quads", "count": 1}})",
            {"6: a draw has 'instances' or is 'over' a list of tiles, not both"});
     expect(kMarked, R"({"name": "marked", "shader": "b.frag", "writes": ["color"], "over": "marked"})",
            {"6: pass 'marked': another pass has this name"});
+}
+
+/// The faults of a pass over kMarked, whose tiles have 8 px, that writes "target" with these keys.
+Lines faults_of_target(const std::string& keys, const std::string& write = R"("target")") {
+    const EffectFolder folder(demo_manifest(
+        tiled(kMarked, R"({"name": "x", "shader": "b.frag", "over": "marked", "writes": [)" + write + "]}",
+              R"("target": {"format": "rg16f", "doc": ".")" + (keys.empty() ? "" : ", " + keys) + "}")));
+    Diagnostics diagnostics;
+    (void)folder.manifest(diagnostics);
+    Lines texts;
+    for (const Diagnostic& fault : diagnostics.all()) texts.push_back(fault.message);
+    return texts;
+}
+
+TEST(TileLists, ConfineWhatTheirTilesAreMadeOf) {
+    const std::string must = "pass 'x': runs over tiles, so what it writes, 'target', must ";
+    EXPECT_EQ(faults_of_target(R"("tile": 4, "clear": 0)"), Lines{});
+    EXPECT_EQ(faults_of_target(R"("tile": 12, "clear": 0)"),
+              Lines{must + "have a 'scale' of the working grid, or a 'tile' that divides the list's of 8 px"});
+    EXPECT_EQ(faults_of_target(R"("size": [8, 8], "clear": 0)"),
+              Lines{must + "have a 'scale' of the working grid"});
+    EXPECT_EQ(faults_of_target(R"("mips": 5, "clear": 0)", R"({"target": {"level": 3}})"), Lines{});
+    EXPECT_EQ(faults_of_target(R"("mips": 5, "clear": 0)", R"({"target": {"level": 4}})"),
+              Lines{must + "be of a level whose texels divide the list's tile of 8 px"});
+}
+
+TEST(TileLists, NeedSomethingAroundTheTiles) {
+    const std::string fault = "pass 'x': draws over parts of 'target' before anything has filled the rest: "
+                              "copy an input to it (a pass of kind copy) or draw all of it in an earlier pass";
+    EXPECT_EQ(faults_of_target(""), Lines{fault + ", or give it 'clear'"});
+    EXPECT_EQ(faults_of_target(R"("clear": 0)"), Lines{});
 }
 
 TEST(TileLists, LieOnTexturesByTheirScale) {

@@ -34,7 +34,7 @@ protected:
     void compile_all(const EffectManifest& manifest, ProgramCache& cache) {
         const ParamSet params = defaults_of(manifest);
         for (const PassSpec& pass : manifest.passes) {
-            if (pass.kind == PassKind::clear) continue;
+            if (!pass.runs_shader()) continue;
             const ShaderContext shader{&manifest, &pass, params, inputs_of(manifest), kSource / "glsl"};
             EXPECT_NO_THROW({
                 try {

@@ -185,6 +185,7 @@ TEST(UsageCheck, LooksAtImagesBuffersAndNativeValuesInEitherShader) {
         {test::kMore, R"("buffers": {"list": {"element": "uint", "per": "pixel", "doc": "."}},
             "native": {"uniforms": {"warp": {"type": "vec3", "doc": "."}}, "tables": {"kernel": {"element": "vec2", "count": 64, "doc": "."}}})"},
         {test::kPasses, R"("passes": [
+            {"name": "base", "kind": "copy", "from": "color", "to": "color"},
             {"name": "one", "kind": "compute", "shader": "c.comp", "reads": ["color", "depth"], "images": {"small": "atomic"},
              "buffers": {"list": "write"}, "dispatch": {"tile": 8}},
             {"name": "two", "shader": "b.frag", "vertex": "d.vert", "instances": {"of": "points", "count": 9},

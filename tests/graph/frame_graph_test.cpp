@@ -193,6 +193,10 @@ TEST(FrameGraph, RefusesAPassWhoseKindAndPartsDoNotAgree) {
               "pass 'odd' draws, but has no target");
     EXPECT_EQ(fault(PassKind::clear, [&](Pass& p) { p.reads = {{graph.import_texture("b", kFull)}}; }),
               "pass 'odd' clears, but has more than targets; it runs no program and reads nothing");
+    EXPECT_EQ(fault(PassKind::copy, [](Pass&) {}),
+              "pass 'odd' copies, but has more or less than one read and one target");
+    EXPECT_EQ(fault(PassKind::copy, [&](Pass& p) { p.reads = {{graph.import_texture("small", kHalf)}}; }),
+              "pass 'odd' copies 'small' to 'a', which differ in size, format or layers");
     EXPECT_EQ(fault(PassKind::compute, [](Pass& p) { p.blend = gpu::Blend::max; }),
               "pass 'odd' blends, but draws nothing");
     EXPECT_EQ(fault(PassKind::draw, [](Pass& p) { p.instances.count = 3; }),

@@ -264,6 +264,22 @@ void main() {
     EXPECT_EQ(executor.texture(out)->read_floats(), expected);
 }
 
+TEST_P(PassKindsOn, CopiesEveryBit) {
+    Graph graph;
+    const gpu::TextureDesc desc{.width = kWidth, .height = kHeight, .format = gpu::TextureFormat::rgba32ui};
+    const TextureHandle source = graph.import_texture("source", desc);
+    Pass copy = pass_named("copy", PassKind::copy, {source});
+    copy.targets = {{graph.fresh("copied", desc)}};
+    const TextureHandle out = graph.add_pass(copy).targets[0];
+    graph.keep(out);
+    Executor executor(context(), std::move(graph));
+    std::vector<std::uint32_t> bits;
+    for (int i = 0; i < 4 * kWidth * kHeight; ++i) bits.push_back(0x7f800000U + 977U * std::uint32_t(i));
+    executor.texture(source)->upload(bits);
+    executor.run(false);
+    EXPECT_EQ(executor.texture(out)->read_uints(), bits);
+}
+
 TEST_P(PassKindsOn, ClearsOneLevelOrEveryOne) {
     Graph graph;
     gpu::TextureDesc desc = kTexels;

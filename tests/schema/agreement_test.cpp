@@ -296,7 +296,8 @@ TEST_F(SchemaAgreement, OfAManifestChangedEverywhere) {
              "is not the name of its folder|no file '",  // what lies on the disk
              // Names of what stands elsewhere in the document, and what that is.
              "which is neither |which is not |is not a parameter|is not one of '|does not name an optional",
-             "has no 'history'|has no 'repeat'|no pass (reads|writes|uses|runs) |before any pass has written",
+             "has no 'history'|has no 'repeat'|no pass (reads|writes|uses|runs) |before any pass has written|"
+             "before anything has filled the rest",
              "is not a texture of|must end in a channel|has no '(tile|scale)'|must have a 'scale'",
              "has no key '|is not declared 'indirect'|another pass has this name",
              // One value against another, or their units.
@@ -314,7 +315,8 @@ TEST_F(SchemaAgreement, OfAModuleChangedEverywhere) {
          {
              "is not the name of its folder|no file '",  // what lies on the disk
              "which is neither |which is not |is not a parameter|is not one of '|declared already|GLSL name",
-             "no pass (reads|writes|uses|runs) |before any pass has written it|another pass has this name",
+             "no pass (reads|writes|uses|runs) |before any pass has written it|before anything has filled the rest|"
+             "another pass has this name",
              "is not a texture of|must end in a channel|has no 'tile'|must have a 'scale'",
              "is (above|below) |has a unit, but|must rise|holds|taken already|twice|whole number|words, more "
              "than",

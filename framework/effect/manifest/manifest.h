@@ -202,14 +202,14 @@ struct TileListSpec {
     std::string args() const { return name + "_args"; }  ///< buffer: {vertices, instances, first, base}
 };
 
-enum class PassKind { draw, compute, clear };
+enum class PassKind { draw, compute, clear, copy };
 
 struct PassSpec {
     std::string name;
     PassKind kind = PassKind::draw;
     std::filesystem::path folder;  ///< of its shaders: the effect's, or its module's
     std::string module;            ///< that declares it; "" for the effect itself
-    std::string shader;            ///< file in that folder; "" for a clear
+    std::string shader;            ///< file in that folder; "" for a clear and a copy
     std::string vertex;            ///< draw of instances: its vertex shader; "" for the full screen
     std::string over;              ///< the tile list that the draw is confined to; "" for none
     std::string lists;             ///< the host's own pass that fills this tile list; "" for every other
@@ -229,6 +229,7 @@ struct PassSpec {
     bool infers_reads = false;   ///< the manifest leaves `reads` to the shaders' text
     bool infers_writes = false;  ///< likewise `writes`
     Place place;
+    bool runs_shader() const { return kind == PassKind::draw || kind == PassKind::compute; }
     /// Whether a vertex shader, the pass's own or the host's over tiles, places quads or points.
     bool has_vertex_shader() const { return !vertex.empty() || !over.empty(); }
 };

@@ -74,6 +74,7 @@ private:
     void buffer(const Reader::Named& declared);
     void check_words(const BufferSpec& buffer, const Place& place);
 
+    void copied(const Reader& reader, PassSpec& pass);
     void tile_list(const Reader::Named& declared);
     void tiles_of_texture(const Reader& reader, TileListSpec& list);
     void pass_or_group(const Node& node, const std::vector<WhenSpec>& shared);

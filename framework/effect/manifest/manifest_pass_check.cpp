@@ -58,6 +58,7 @@ public:
             fault(pass.place, "dispatches over '" + pass.dispatch.over + "', which is not a texture" +
                                   did_you_mean(pass.dispatch.over, textures_));
         check_writes();
+        if (pass.kind == PassKind::copy) check_copy();
         check_counts();
         check_conditions(pass.when);
         for (const ReadSpec& read : pass.reads) check_conditions(read.when);
@@ -299,6 +300,7 @@ private:
         if (!texture && !role) return;
         const auto format = texture ? texture->format : texture_format_of_role(output->role);
         check_blend(write, format);
+        check_base(write);
         if (pass_->kind == PassKind::clear) {
             if (const std::string why = why_not_in_format(pass_->clear_value, format); !why.empty())
                 fault(write.place, "'value' " + why);
@@ -308,6 +310,36 @@ private:
         if (grid_of(write.name) != grid_of(first.name) || write.level != first.level)
             fault(write.place, "writes '" + first.name + "' and '" + write.name + "', which differ in size");
         if (texture) check_feedback(write, *texture);
+    }
+
+    /// An input may come from an earlier step in another format: the host then draws.
+    void check_copy() {
+        const std::string &from = pass_->reads.front().name, &to = pass_->writes.front().name;
+        const auto plain = [&](const std::string& name) {
+            const TextureSpec* texture = manifest_.find_texture(name);
+            return !texture || (texture->layers == 1 && texture->mips == 1 && !texture->auto_mips);
+        };
+        const auto from_format = format_of(from, true), to_format = format_of(to, false);
+        if (!from_format || !to_format) return;  // reported, or an image of any format
+        if (grid_of(from, true) != grid_of(to) || *from_format != *to_format || !plain(to) ||
+            (!manifest_.find_input(from) && !plain(from)))
+            fault(pass_->place, "copies '" + from + "' to '" + to +
+                                    "', which differ in size or format or have several levels or layers: "
+                                    "draw instead");
+    }
+
+    std::optional<gpu::TextureFormat> format_of(const std::string& name, bool reads) const {
+        const InputSpec* input = reads ? manifest_.find_input(name) : nullptr;
+        const OutputSpec* output = reads ? nullptr : manifest_.find_output(name);
+        if (const TextureSpec* texture = manifest_.find_texture(name); texture && !input)
+            return texture->format;
+        if (!input && !output) return std::nullopt;
+        const std::string& role = input ? input->role : output->role;
+        return find_role(role) ? std::optional(texture_format_of_role(role)) : std::nullopt;
+    }
+
+    GridSpec grid_of(const std::string& name, bool reads) const {
+        return reads && manifest_.find_input(name) ? GridSpec{} : grid_of(name);
     }
 
     GridSpec grid_of(const std::string& name) const {
@@ -325,6 +357,15 @@ private:
                   "adds into '" + write.name + "', but " + name + " stops at 1; use a float format");
         if (manifest_.find_texture(write.name) && !filled_.contains(write.name))
             fault(write.place, "blends into '" + write.name + "' before any pass has written it");
+    }
+
+    /// Instances and tiles leave the rest of a target as it was, which must be something.
+    void check_base(const WriteSpec& write) {
+        if (!pass_->instances || filled_.contains(write.name)) return;
+        fault(write.place, "draws over parts of '" + write.name +
+                               "' before anything has filled the rest: copy an input to it (a pass of kind "
+                               "copy) or draw all of it in an earlier pass" +
+                               (manifest_.find_texture(write.name) ? ", or give it 'clear'" : ""));
     }
 
     /// A draw sees what a texture was before it, in a copy of the host's; that needs a read and a write that

@@ -34,13 +34,29 @@ PassSpec ManifestParser::pass(const Reader& reader, const std::vector<WhenSpec>&
     if (const Node* name = reader.node().find("name")) pass.name = name->string;
     if (reader.kind() == "compute") pass.kind = PassKind::compute;
     if (reader.kind() == "clear") pass.kind = PassKind::clear;
+    if (reader.kind() == "copy") pass.kind = PassKind::copy;
     pass.when = shared;
     add_conditions(reader, pass.when);
+    if (pass.kind == PassKind::copy) {
+        copied(reader, pass);
+        return pass;
+    }
     if (pass.kind != PassKind::compute)
         pass.infers_writes = read_writes(reader, pass.writes) && pass.kind == PassKind::draw;
     if (pass.kind != PassKind::clear) shaders(reader, pass);
     else if (reader.has("value")) pass.clear_value = reader.numbers("value");
     return pass;
+}
+
+void ManifestParser::copied(const Reader& reader, PassSpec& pass) {
+    ReadSpec from;
+    from.name = reader.text("from");
+    from.place = reader.place("from");
+    pass.reads = {from};
+    WriteSpec to;
+    to.name = reader.text("to");
+    to.place = reader.place("to");
+    pass.writes = {to};
 }
 
 /// What a pass that runs a shader has.

@@ -21,6 +21,29 @@ void check_grid(const EffectManifest& manifest, const TileListSpec& list, Diagno
                                           "', which has no 'scale' of the working grid");
 }
 
+/// Each texel of the target belongs to one tile; "" where all is well.
+std::string fault_of_target(const EffectManifest& manifest, const TileListSpec& list,
+                            const WriteSpec& write) {
+    constexpr const char* kScale = "have a 'scale' of the working grid";
+    const TextureSpec* texture = manifest.find_texture(write.name);
+    if (!texture) return "";
+    const GridSpec& grid = texture->grid;
+    if (grid.kind == GridSpec::Kind::size || is_pass_index(write.level)) return kScale;
+    const bool is_fixed = list.tile.param.empty() && list.on.empty();
+    if (grid.kind == GridSpec::Kind::scale && write.level == 0) return "";
+    if (!is_fixed)
+        return std::string(kScale) + ", and be its level 0: the list's tile is not a fixed number of px";
+    if (grid.kind == GridSpec::Kind::scale)
+        return list.tile.number % (1 << write.level) == 0
+                   ? ""
+                   : "be of a level whose texels divide the list's tile of " +
+                         std::to_string(list.tile.number) + " px";
+    return grid.tile.param.empty() && list.tile.number % grid.tile.number == 0
+               ? ""
+               : std::string(kScale) + ", or a 'tile' that divides the list's of " +
+                     std::to_string(list.tile.number) + " px";
+}
+
 void check_over(const EffectManifest& manifest, const PassSpec& pass, Diagnostics& diagnostics) {
     const std::string label = label_of(manifest, pass) + ": ";
     std::vector<std::string> lists;
@@ -28,11 +51,11 @@ void check_over(const EffectManifest& manifest, const PassSpec& pass, Diagnostic
     if (!manifest.find_tile_list(pass.over))
         diagnostics.error(pass.place, label + "runs over '" + pass.over + "', which is not a tile list" +
                                           did_you_mean(pass.over, lists));
+    const TileListSpec* list = manifest.find_tile_list(pass.over);
     for (const WriteSpec& write : pass.writes)
-        if (!has_scale(manifest, write.name) || write.level != 0)
-            diagnostics.error(write.place,
-                              label + "runs over tiles, so what it writes, '" + write.name +
-                                  "', must have a 'scale' of the working grid, and be its level 0");
+        if (const std::string fault = list ? fault_of_target(manifest, *list, write) : ""; !fault.empty())
+            diagnostics.error(write.place, label + "runs over tiles, so what it writes, '" + write.name +
+                                               "', must " + fault);
 }
 
 }  // namespace

@@ -1,4 +1,0 @@
-#version 450 core
-#include <pass>
-
-void main() { out_color = texelFetch(color, ivec2(gl_FragCoord.xy), 0); }
