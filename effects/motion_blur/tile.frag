@@ -3,32 +3,32 @@
 #include "motion_here.glsl"
 
 // Software GL runs both sides of a branch, but a loop only while some pixel needs it: a tile at rest costs its fetches alone.
-bool is_at_rest(ivec2 corner, ivec2 last) {
-    vec2 most = vec2(0.0);
+bool is_at_rest(ivec2 corner) {
+    uvec2 bits = uvec2(0u);
     for (int y = 0; y < kTile; ++y)
         for (int x = 0; x < kTile; ++x) {
-            ivec2 p = min(corner + ivec2(x, y), last);
-            most = max(most, abs(finite(texelFetch(velocity, p, 0).xy)));
+            vec2 place = (vec2(corner + ivec2(x, y)) + 0.5) * velocity_size.zw;
+            bits |= floatBitsToUint(textureLod(velocity, place, 0.0).xy);
 #if defined(HAS_VELOCITY_NEXT) && CURVE
-            most = max(most, abs(finite(texelFetch(velocity_next, p, 0).xy)));
+            bits |= floatBitsToUint(textureLod(velocity_next, place, 0.0).xy);
 #endif
 #ifdef SHARES_PIXELS
-            most = max(most, abs(finite(texelFetch(first_velocity, p, 0).xy)));
+            bits |= floatBitsToUint(textureLod(first_velocity, place, 0.0).xy);
 #endif
         }
-    return most == vec2(0.0);
+    return ((bits.x | bits.y) & 0x7fffffffu) == 0u;
 }
 
 void main() {
     ivec2 last = frame.size - 1, corner = kTile * ivec2(gl_FragCoord.xy);
-    int side = is_at_rest(corner, last) ? 0 : kTile;
+    int side = is_at_rest(corner) ? 0 : kTile;
     vec4 furthest = vec4(0.0), low = vec4(1e30), high = vec4(-1e30);
     float way = -1.0, near_m = 3e38;
     vec4 near = vec4(0.0);
     for (int y = 0; y < side; ++y)
         for (int x = 0; x < side; ++x) {
             ivec2 p = min(corner + ivec2(x, y), last);
-            Motion m = unpack_motion(pack_motion(motion_here(p)));
+            Motion m = motion_here(p);
             low = min(low, m.path);
             high = max(high, m.path);
 #ifdef SHARES_PIXELS
