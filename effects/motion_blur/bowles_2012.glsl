@@ -1,6 +1,5 @@
 // What is seen at a point at one time of the exposure is what comes there: a pixel whose path leads to it. One is sought
 // from the motion of the furthest moving thing around and one from another (other_guess); the nearer one hides the other.
-const float kInFront = 1.03;  // times the depth of what is in front, from which on another thing is behind it
 const float kSurePx = 0.25;  // between the last two guesses of a place, up to which they are one
 
 struct Found {

@@ -6,6 +6,7 @@ const float kFurthestTime = max(abs(kOpens), abs(kCloses));
 const int kTile = 16;        // side in px of the tiles, as effect.json declares it
 const float kLeastWay = 0.25;  // px; less is no blur
 const float kAlike = 0.5;    // px that paths are apart and still the same motion
+const float kInFront = 1.03;  // times the depth of what is in front, from which on another thing is behind it
 const int kTimes = 32;       // of the exposure that one word has bits for
 
 // What lies behind is in layers of the capture, and which share of a pixel the nearest surface has.
