@@ -1,37 +1,20 @@
 #version 450 core
 #include <pass>
-#include "motion_here.glsl"
-
-// But for the signs.
-bool is_zero(uvec2 bits) { return ((bits.x | bits.y) & 0x7fffffffu) == 0u; }
-
-// Software GL runs both sides of a branch, but a loop only while some pixel needs it: a tile at rest costs its fetches alone.
-bool is_at_rest(ivec2 corner) {
-    uvec2 bits = uvec2(0u);
-    for (int y = 0; y < kTile && is_zero(bits); ++y)
-        for (int x = 0; x < kTile; ++x) {
-            vec2 place = (vec2(corner + ivec2(x, y)) + 0.5) * velocity_size.zw;
-            bits |= floatBitsToUint(textureLod(velocity, place, 0.0).xy);
-#if defined(HAS_VELOCITY_NEXT) && CURVE
-            bits |= floatBitsToUint(textureLod(velocity_next, place, 0.0).xy);
-#endif
+#include "motion.glsl"
 #ifdef SHARES_PIXELS
-            bits |= floatBitsToUint(textureLod(first_velocity, place, 0.0).xy);
+#include "layer_motion.glsl"
 #endif
-        }
-    return is_zero(bits);
-}
 
 void main() {
     ivec2 last = frame.size - 1, corner = kTile * ivec2(gl_FragCoord.xy);
-    int side = is_at_rest(corner) ? 0 : kTile;
+    int side = texelFetch(tile_moves, ivec2(gl_FragCoord.xy), 0).r == 0u ? 0 : kTile;  // a tile at rest takes no turn of the loops
     vec4 furthest = vec4(0.0), low = vec4(1e30), high = vec4(-1e30);
     float way = 0.0, near_m = 3e38, far_m = 0.0;
     vec4 near = vec4(0.0);
     for (int y = 0; y < side; ++y)
         for (int x = 0; x < side; ++x) {
             ivec2 p = min(corner + ivec2(x, y), last);
-            Motion m = motion_here(p);
+            Motion m = unpack_motion(textureLod(motion, (vec2(p) + 0.5) * motion_size.zw, 0.0));
             low = min(low, m.path);
             high = max(high, m.path);
 #ifdef SHARES_PIXELS
