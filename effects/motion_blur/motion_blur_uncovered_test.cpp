@@ -1,4 +1,5 @@
-// What motion_blur shows where a thing has moved away, and where things share a pixel: of the frames beside, and of layers.
+// What motion_blur shows where a thing has moved away, and where things share a pixel: of the frames
+// beside, and of layers.
 #include <algorithm>
 #include <cmath>
 #include <limits>
