@@ -1,6 +1,7 @@
 #version 450 core
 #include <pass>
 #include "motion.glsl"
+#include "tile_kinds.glsl"
 
 // How far the middle of a tile lies from the line between two points, in the norm in which tiles are circles.
 float distance_px(vec2 point, vec2 from, vec2 to) {
@@ -17,9 +18,29 @@ bool passes_over(ivec2 offset, vec4 path) {
     return nearest_px <= float(kTile) + 1.0;
 }
 
+// Where the nearest thing moves past what is further and moves otherwise, it is sought from a path of its own; and where there
+// are more samples than a word has bits.
+bool is_crowded(vec4 furthest, vec4 near, float near_m, float far_m) {
+#if METHOD == METHOD_BOWLES_2012
+    return tap_count(furthest) > kTimes || (kInFront * near_m < far_m && !is_alike(furthest, near));
+#else
+    return false;
+#endif
+}
+
+// Of the longest way nearby, in tiles: how far the search must go.
+int reach_tiles(ivec2 p) {
+    int range = int(ceil(param.max_blur / float(kTile)));
+    float way = 0.0;
+    for (int y = -range; y <= range; ++y)
+        for (int x = -range; x <= range; ++x)
+            way = max(way, textureLod(tile_way, (vec2(p + ivec2(x, y)) + 0.5) * tile_way_size.zw, 0.0).r);
+    return min(int(ceil(way / float(kTile))), range);
+}
+
 void main() {
     ivec2 last = ivec2(tile_path_size.xy) - 1, p = ivec2(gl_FragCoord.xy);
-    int range = int(ceil(param.max_blur / float(kTile)));
+    int range = max(reach_tiles(p), 1);
     vec4 furthest = texelFetch(tile_path, p, 0), low = texelFetch(tile_low, p, 0), high = texelFetch(tile_high, p, 0);
     float way = longest_way_px(furthest), near_m = texelFetch(tile_depth, p, 0).r;
     vec4 near = texelFetch(tile_near, p, 0);
@@ -45,5 +66,6 @@ void main() {
     out_around_path = furthest;
     out_around_near = near;
     out_around_depth = near_m;
-    out_around_way = vec2(way, max(apart.x, apart.y));
+    out_around_kind = way < kLeastWay ? kStill : max(apart.x, apart.y) <= kAlike ? kEven
+                    : is_crowded(furthest, near, near_m, texelFetch(tile_way, p, 0).g) ? kCrowded : kUneven;
 }

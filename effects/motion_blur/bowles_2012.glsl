@@ -1,6 +1,5 @@
 // What is seen at a point at one time of the exposure is what comes there: a pixel whose path leads to it. One is sought
 // from the motion of the furthest moving thing around and one from another (other_guess); the nearer one hides the other.
-const float kInFront = 1.03;  // times the depth of what is in front, from which on another thing is behind it
 const float kSurePx = 0.25;  // between the last two guesses of a place, up to which they are one
 
 struct Found {
@@ -21,11 +20,10 @@ Found what_comes(vec2 point, vec4 path, float t) {
     vec4 guess = motion_at(point - way_px(path, t)).path;
     vec2 from = point - way_px(guess, t);
     Motion m = motion_at(from);
-    vec2 at = point - way_px(m.path, t), middle = vec2(texel_at(from)) + 0.5;
-    vec2 inside = clamp(at, middle - 0.499, middle + 0.499);
-    bool is_sure = at == inside || distance(at, from) < kSurePx;
-    if (is_sure) at = inside;
-    return Found(at, m.depth_m, m.share, leads_to(point, from, m.path, t), is_sure);
+    vec2 at = point - way_px(m.path, t), middle = clamp(floor(from), vec2(0.0), vec2(frame.size - 1)) + 0.5;
+    vec2 off = at - middle, inside = clamp(off, -0.499, 0.499), turn = at - from;
+    bool is_sure = off == inside || dot(turn, turn) < kSurePx * kSurePx;
+    return Found(is_sure ? middle + inside : at, m.depth_m, m.share, dot(off, off) < 1.0, is_sure);
 }
 
 float amount(vec3 rgb) { return rgb.r + rgb.g + rgb.b; }
@@ -96,13 +94,16 @@ Found first_of(Finds finds) {
 }
 
 vec4 seen_at(vec2 point, vec4 furthest, vec4 other, Motion own, float t) {
+    Found seen = first_of(finds_at(point, furthest, other, t));
+    bool is_seen = seen.comes && seen.is_sure;
     vec2 beside = beside_at(point, own, t);
-    return uncovered(point, beside, own, t, light_at(beside));
+    vec4 light = light_at(is_seen ? seen.from : beside);
+    return is_seen ? light : uncovered(point, beside, own, t, light);
 }
 #endif
 
 // Two loops, because most is found at a first look, and the first one's turns are then shorter: software GL takes all branches.
-const int kTimes = 32;  // in one turn: bits of `open`
+#if defined(CROWDED) || defined(KNOWS_LAYERS)
 vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
     int taps = tap_count(furthest);
     float shift = time_shift(furthest, taps);
@@ -125,3 +126,23 @@ vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
     } while (start < taps);
     return sum / float(taps);
 }
+#else
+// The nearest thing around is the furthest moving one, or moves alike. What is found from that path is mostly what the pixel's own path
+// leads to as well; unless it lies behind the pixel's own thing, which may hide it, it is not sought from there.
+vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
+    int taps = tap_count(furthest), i = 0;
+    float shift = time_shift(furthest, taps), hidden_m = kInFront * own.depth_m;
+    vec4 sum = vec4(0.0);
+    uint open = 0u;  // times at which a second look is due
+    do {
+        Found seen = what_comes(point, furthest, tap_time(i, shift, taps));
+        if (seen.comes && seen.is_sure && seen.depth_m <= hidden_m) sum += light_at(seen.from);
+        else open |= 1u << uint(i);
+    } while (++i < taps);
+    while (open != 0u) {
+        sum += seen_at(point, furthest, own.path, own, tap_time(findLSB(open), shift, taps));
+        open &= open - 1u;
+    }
+    return sum / float(taps);
+}
+#endif

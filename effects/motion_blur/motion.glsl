@@ -6,6 +6,8 @@ const float kFurthestTime = max(abs(kOpens), abs(kCloses));
 const int kTile = 16;        // side in px of the tiles, as effect.json declares it
 const float kLeastWay = 0.25;  // px; less is no blur
 const float kAlike = 0.5;    // px that paths are apart and still the same motion
+const float kInFront = 1.03;  // times the depth of what is in front, from which on another thing is behind it
+const int kTimes = 32;       // of the exposure that one word has bits for
 
 // What lies behind is in layers of the capture, and which share of a pixel the nearest surface has.
 #if defined(HAS_SECOND) && defined(HAS_SECOND_VELOCITY)
@@ -27,7 +29,7 @@ float path_range_px() { return 8.0 * param.max_blur; }
 
 // The share is the lowest 8 bits of the way, which are 1/30000 of it.
 uvec4 pack_motion(Motion m) {
-    vec4 part = m.path / path_range_px();
+    vec4 part = m.path * (1.0 / path_range_px());
     uint way = floatBitsToUint(m.way_px);
 #ifdef KNOWS_LAYERS
     way = (way & ~255u) | uint(clamp(m.share, 0.0, 1.0) * 255.0 + 0.5);
@@ -36,12 +38,13 @@ uvec4 pack_motion(Motion m) {
 }
 
 Motion unpack_motion(uvec4 texel) {
-    vec4 part = vec4(unpackSnorm2x16(texel.x), unpackSnorm2x16(texel.y));
+    // Not unpackSnorm2x16, which takes software GL twice as long.
+    ivec4 path = ivec4(int(texel.x) << 16, int(texel.x), int(texel.y) << 16, int(texel.y)) >> 16;
     float share = 1.0;
 #ifdef KNOWS_LAYERS
     share = float(texel.w & 255u) / 255.0;
 #endif
-    return Motion(part * path_range_px(), uintBitsToFloat(texel.z), uintBitsToFloat(texel.w), share);
+    return Motion(vec4(path) * (path_range_px() / 32767.0), uintBitsToFloat(texel.z), uintBitsToFloat(texel.w), share);
 }
 
 // From px per frame since the frame before and to the next; `scale`: a factor of the motion.
@@ -54,3 +57,13 @@ Motion motion_of(vec2 since, vec2 next, float scale, float depth_m) {
     }
     return Motion(path, depth_m, way, 1.0);
 }
+
+bool is_alike(vec4 path, vec4 other) {
+    vec4 apart = abs(path - other);
+    vec2 apart_px = (apart.xy + apart.zw * kFurthestTime) * kFurthestTime;
+    return max(apart_px.x, apart_px.y) <= kAlike;
+}
+
+// One a px of the sweep, at least two: the loops over them test at their end, because llvmpipe runs the body of the others
+// once more, with every pixel masked.
+int tap_count(vec4 path) { return clamp(int(ceil(distance(way_px(path, kOpens), way_px(path, kCloses)))), 2, param.samples); }

@@ -1,4 +1,4 @@
 #version 450 core
 #include <pass>
 
-void main() { out_color = texelFetch(color, ivec2(gl_FragCoord.xy), 0); }
+void main() { out_color = textureLod(color, gl_FragCoord.xy * color_size.zw, 0.0); }

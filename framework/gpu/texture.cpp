@@ -120,13 +120,13 @@ void sub_image(const GladGLContext& gl, const Texture& texture, int layer, int l
     }
 }
 
+/// `values` are value_count() of them.
 template <typename Value>
-std::vector<Value> read_values(Context& context, const Texture& texture, int level, int layer) {
+void read_into(Context& context, const Texture& texture, int level, int layer, std::span<Value> values) {
     const TextureDesc& desc = texture.desc();
     assert(level >= 0 && level < desc.mips && layer >= 0 && layer < desc.layers);
     context.make_current();
     context.impl().wait_for_draws();
-    std::vector<Value> values(value_count(desc, level));
     const int width = level_side(desc.width, level);
     const int height = level_side(desc.height, level);
     const auto row_values =
@@ -142,6 +142,12 @@ std::vector<Value> read_values(Context& context, const Texture& texture, int lev
                                         &values[row_values * static_cast<std::size_t>(row)]);
     }
     context.check(fmt::format("reading texture '{}'", texture.label()));
+}
+
+template <typename Value>
+std::vector<Value> read_values(Context& context, const Texture& texture, int level, int layer) {
+    std::vector<Value> values(value_count(texture.desc(), level));
+    read_into(context, texture, level, layer, std::span(values));
     return values;
 }
 
@@ -196,6 +202,11 @@ std::vector<float> Texture::read_floats(int level, int layer) const {
     const auto bits = read_values<std::uint32_t>(handle_.context(), *this, level, layer);
     const TextureFormat format = desc_.format;
     return converted<float>(std::span(bits), [format](std::uint32_t v) { return from_bits(v, format); });
+}
+
+void Texture::read_floats(std::span<float> values) const {
+    assert(!is_integer(desc_.format) && values.size() == value_count(desc_, 0));
+    read_into(handle_.context(), *this, 0, 0, values);
 }
 
 std::vector<std::uint32_t> Texture::read_uints(int level, int layer) const {

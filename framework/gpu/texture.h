@@ -69,6 +69,8 @@ public:
     void upload(std::span<const float> values, int layer = 0, int level = 0);
     void upload(std::span<const std::uint32_t> values, int layer = 0, int level = 0);
     std::vector<float> read_floats(int level = 0, int layer = 0) const;
+    /// Level 0 of a texture of floats into memory of its size, without a second copy.
+    void read_floats(std::span<float> values) const;
     std::vector<std::uint32_t> read_uints(int level = 0, int layer = 0) const;
 
     /// Every texel, every level and layer.

@@ -22,13 +22,13 @@ Image read_back(const gpu::Texture& texture, int channels) {
         std::copy(values.begin(), values.end(), image.uints().begin());
         return image;
     }
-    const std::vector<float> values = texture.read_floats();
     const int stored = gpu::channel_count(desc.format);
     Image image(desc.width, desc.height, channels);
     if (channels == stored) {
-        std::ranges::copy(values, image.floats().begin());
+        texture.read_floats(image.floats());
         return image;
     }
+    const std::vector<float> values = texture.read_floats();
     for (std::size_t pixel = 0; pixel < values.size() / std::size_t(stored); ++pixel)
         std::copy_n(&values[pixel * std::size_t(stored)], channels,
                     &image.floats()[pixel * std::size_t(channels)]);

@@ -1,48 +1,25 @@
-"""Run inside Blender by tests/bench/motion-against-blender: one EXR through the compositor's Vector Blur node, into another EXR.
+"""Run inside Blender 3.4 by tests/bench/motion-against-blender: one EXR through the compositor's Vector Blur node, into another EXR.
 With `node` for `whole` it writes nothing, and says how long the compositor took with the node and without it.
 
     blender -b --factory-startup --python motion_blender.py -- whole IN.exr OUT.exr SAMPLES WIDTH HEIGHT THREADS
 """
+import pathlib
 import sys
-import time
 
 import bpy
 
-mode, source, target, samples, width, height, threads = sys.argv[sys.argv.index("--") + 1:]
-scene = bpy.context.scene
-render = scene.render
-render.resolution_x, render.resolution_y, render.resolution_percentage = int(width), int(height), 100
-render.threads_mode, render.threads = "FIXED", int(threads)
-render.use_sequencer = False
-scene.use_nodes = True
-scene.view_settings.view_transform = "Raw"
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import vector_blur_settings as settings  # noqa: E402
 
+mode, source, target, samples, width, height, threads = settings.words_after_dashes()
+scene = bpy.context.scene
+settings.set_up_scene(scene, target, width, height, threads)
+scene.use_nodes = True
 tree = scene.node_tree
 tree.nodes.clear()
-image = tree.nodes.new("CompositorNodeImage")
-image.image = bpy.data.images.load(source)
-blur = tree.nodes.new("CompositorNodeVecBlur")
+blur = settings.add_nodes(tree, source)
 blur.samples = int(samples)
 blur.factor = 1  # best against the truth, of those tried
 result = tree.nodes.new("CompositorNodeComposite")
-tree.links.new(image.outputs["Combined"], blur.inputs["Image"])
-tree.links.new(image.outputs["Depth"], blur.inputs["Z"])
-tree.links.new(image.outputs["Vector"], blur.inputs["Speed"])
 tree.links.new(blur.outputs["Image"], result.inputs["Image"])
-
-settings = render.image_settings
-settings.file_format, settings.color_mode, settings.color_depth, settings.exr_codec = "OPEN_EXR", "RGBA", "16", "ZIP"
-render.filepath = target
-render.use_file_extension = False
-
-if mode == "whole":
-    bpy.ops.render.render(write_still=True)
-else:
-    bpy.ops.render.render()  # loads the file
-    spent = []
-    for muted in False, True:
-        blur.mute = muted
-        start = time.monotonic()
-        bpy.ops.render.render()
-        spent.append(time.monotonic() - start)
-    print("compositor: %.3f s with the node, %.3f s without" % tuple(spent))
+settings.run(mode, blur)

@@ -1,0 +1,24 @@
+#version 450 core
+#include <pass>
+#include "motion.glsl"
+
+// But for the signs.
+bool is_zero(uvec2 bits) { return ((bits.x | bits.y) & 0x7fffffffu) == 0u; }
+
+// Software GL ends a loop once no pixel needs it: a tile in motion costs its first row.
+void main() {
+    ivec2 corner = kTile * ivec2(gl_FragCoord.xy);
+    uvec2 bits = uvec2(0u);
+    for (int y = 0; y < kTile && is_zero(bits); ++y)
+        for (int x = 0; x < kTile; ++x) {
+            vec2 place = (vec2(corner + ivec2(x, y)) + 0.5) * velocity_size.zw;
+            bits |= floatBitsToUint(textureLod(velocity, place, 0.0).xy);
+#if defined(HAS_VELOCITY_NEXT) && CURVE
+            bits |= floatBitsToUint(textureLod(velocity_next, place, 0.0).xy);
+#endif
+#ifdef SHARES_PIXELS
+            bits |= floatBitsToUint(textureLod(first_velocity, place, 0.0).xy);
+#endif
+        }
+    out_tile_moves = is_zero(bits) ? 0u : 1u;
+}
