@@ -117,6 +117,7 @@ TEST_P(ProgramCacheOn, CompilesEveryKindOfBinding) {
             {"name": "one", "shader": "a.frag", "repeat": 3,
              "reads": ["color", "color.prev", "accum.prev", "depth", "counts", "stack"],
              "writes": ["accum", "small"], "buffers": {"list": "read"}},
+            {"name": "ground", "kind": "copy", "from": "color", "to": "color"},
             {"name": "two", "shader": "b.frag", "vertex": "d.vert",
              "instances": {"of": "points", "per": "pixel"}, "reads": ["small"], "writes": ["color"]}])"},
          {test::kMore, R"("buffers": {
@@ -183,6 +184,7 @@ void main() { out_color = vec4(shade) * small_size.x + float(MODE); }
 TEST_P(ProgramCacheOn, NamesTheAuthorsLineInEitherShader) {
     const EffectFolder folder(demo_manifest({{test::kPasses, R"("passes": [
         {"name": "one", "shader": "a.frag", "reads": ["color", "depth"], "writes": ["small"]},
+        {"name": "ground", "kind": "copy", "from": "color", "to": "color"},
         {"name": "two", "shader": "b.frag", "vertex": "d.vert", "instances": {"of": "quads", "count": 5},
          "reads": ["small"], "writes": ["color"]}])"}}));
     const EffectManifest manifest = folder.sound_manifest();
@@ -190,7 +192,7 @@ TEST_P(ProgramCacheOn, NamesTheAuthorsLineInEitherShader) {
     ProgramCache programs(context(), kSource / "glsl", ProgramStore());
     const auto fault = [&] {
         return gpu::error_of([&] {
-            programs.get({&manifest, &manifest.passes[1], params, {}, kSource / "glsl"});
+            programs.get({&manifest, &manifest.passes[2], params, {}, kSource / "glsl"});
         });
     };
     folder.write("d.vert", "#version 450 core\n#include <pass>\n\nvoid main() { gl_Position = parm; }\n");

@@ -34,6 +34,7 @@ const test::Sections kEverything = {
          "buffers": {"tile_list": "write", "tile_list.prev": "read", "sums": "atomic"}},
         {"name": "one", "shader": "a.frag", "repeat": 3, "reads": ["depth", "color", "accum.prev", "counts", "offsets"],
          "writes": ["accum", "counts"]},
+        {"name": "ground", "kind": "copy", "from": "color", "to": "color"},
         {"name": "two", "shader": "b.frag", "vertex": "d.vert", "instances": {"of": "points", "per": "pixel"},
          "buffers": {"tile_list": "read"}, "reads": ["small"], "writes": ["color"]},
         {"name": "wipe", "kind": "clear", "writes": ["offsets", "stack"], "value": 0}])"}};
@@ -84,9 +85,9 @@ TEST(ShaderBindings, DeclareStorageBlocks) {
 
 TEST(ShaderBindings, GiveAVertexShaderAllButOutputs) {
     const EffectFolder folder(demo_manifest(kEverything));
-    const Assembly assembly(folder, 2);
+    const Assembly assembly(folder, 3);
     const ShaderContext shader{
-        &assembly.manifest, &assembly.manifest.passes[2], assembly.params, {}, assembly.glsl.path()};
+        &assembly.manifest, &assembly.manifest.passes[3], assembly.params, {}, assembly.glsl.path()};
     const Lines main = lines_of_text(interface_glsl(shader));
     Lines vertex = lines_of_text(interface_glsl(shader, ShaderFile::vertex));
     vertex.push_back("layout(location = 0) out vec4 out_color;");
