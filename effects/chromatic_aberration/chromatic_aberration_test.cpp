@@ -34,20 +34,25 @@ Capture point() {
     return make_capture({.width = 256, .height = 144, .points = {{223, 72, 100}, {223, 71, 100}}});
 }
 
+/// Brings the mean place of red to 1.
+double widening(int taps) {
+    double red = 0, red_moment = 0;
+    for (int i = 0; i < taps; ++i) {
+        const double place = std::max(2.0 * i / (taps - 1) - 1, 0.0);
+        red += place;
+        red_moment += place * place;
+    }
+    return red / red_moment;
+}
+
 /// Mean of a channel's images, px right of the centre: each tap makes one of 1 + m times the size, which has
 /// (1 + m)^2 times the light. `side` is 1 for red, 0 for green, -1 for blue.
 double expected_x(double x, double amount_px, int taps, int side) {
-    double red = 0, red_moment = 0;
-    for (int i = 0; i < taps; ++i) {
-        const double place = 2.0 * i / (taps - 1) - 1;
-        red += std::max(place, 0.0);
-        red_moment += std::max(place, 0.0) * place;
-    }
     double light = 0, moment = 0;
     for (int i = 0; i < taps; ++i) {
         const double place = 2.0 * i / (taps - 1) - 1;
         const double weight = side == 0 ? 1 - std::abs(place) : std::max(side * place, 0.0);
-        const double size = 1 + place * amount_px * red / red_moment / std::hypot(128, 72);
+        const double size = 1 + place * amount_px * widening(taps) / std::hypot(128, 72);
         light += weight * size * size;
         moment += weight * size * size * size * x;
     }
@@ -97,16 +102,10 @@ double between_texels(const Image& image, double x, double y, int channel) {
 /// The mean of all taps in double precision, with falloff 1.
 double mean_of_taps(const Image& image, int x, int y, int channel, double amount_px, int taps) {
     const double half_width = image.width() / 2.0, half_height = image.height() / 2.0;
-    double red = 0, red_moment = 0;
-    for (int i = 0; i < taps; ++i) {
-        const double place = 2.0 * i / (taps - 1) - 1;
-        red += std::max(place, 0.0);
-        red_moment += std::max(place, 0.0) * place;
-    }
     double sum = 0, weights = 0;
     for (int i = 0; i < taps; ++i) {
         const double place = 2.0 * i / (taps - 1) - 1;
-        const double size = 1 + place * amount_px * red / red_moment / std::hypot(half_width, half_height);
+        const double size = 1 + place * amount_px * widening(taps) / std::hypot(half_width, half_height);
         const double weight = channel == 3   ? 1
                               : channel == 1 ? 1 - std::abs(place)
                                              : std::max(channel == 0 ? place : -place, 0.0);
@@ -127,7 +126,8 @@ TEST(ChromaticAberration, IsTheMeanOfAllItsTapsAlsoWhereTheyLieWithinAPixel) {
                 state = state * 1664525U + 1013904223U;
                 noise.at(x, y, c) = float(state >> 8) / float(1 << 24);
             }
-    // Of the first two, the taps lie within a pixel at the centre, but not at the edges; of the last one, nowhere.
+    // Of the first two, the taps lie within a pixel at the centre, but not at the edges; of the last one,
+    // nowhere.
     const std::pair<double, int> cases[] = {{1, 9}, {-1, 9}, {0.5, 33}, {0.5, 6}, {0.5, 3}, {6, 9}};
     for (const auto& [amount, taps] : cases) {
         const Image out = fringed(

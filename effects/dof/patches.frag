@@ -17,14 +17,12 @@ void main() {
     if (!may_hide(p, own.coc)) return;
     Patch hidden = patch_at(vec2(p) + 0.5, own);
 #ifdef KNOWS_LAYERS
-    float share;
-    Known known = known_patch(p, own.coc, hidden.is_there ? hidden.mean.light.coc : kHalfInfinity, share);
-    if (known.is_there) {
+    LayeredPatch layered = layered_patch(p, own.coc, hidden.is_there ? hidden.mean.light.coc : kHalfInfinity);
+    if (layered.is_there) {
 #ifdef FINDS_HIGHLIGHTS
-        out_hidden_highlight = vec4(share * known.light.color.rgb, share > 0.0 ? 1.0 : 0.0);
+        out_hidden_highlight = layered.highlight;
 #endif
-        known.light.color.rgb *= 1.0 - share;
-        out_patches = pack_light(known.light);
+        out_patches = layered.texel;
         return;
     }
 #endif
