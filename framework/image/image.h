@@ -4,7 +4,10 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
+#include <new>
 #include <span>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -24,6 +27,31 @@ struct Window {
     bool operator==(const Window&) const = default;
 };
 
+/// Gives memory that is zero without being written: the system makes its pages where they are first touched,
+/// so the threads that fill an image make them, not its constructor.
+template <typename Value>
+struct ZeroedMemory {
+    using value_type = Value;
+
+    ZeroedMemory() = default;
+    template <typename Other>
+    explicit ZeroedMemory(const ZeroedMemory<Other>&) noexcept {}
+
+    Value* allocate(std::size_t count) {
+        if (void* const memory = std::calloc(count, sizeof(Value))) return static_cast<Value*>(memory);
+        throw std::bad_alloc();
+    }
+    void deallocate(Value* memory, std::size_t) noexcept { std::free(memory); }
+    /// Of vector(count): zero already.
+    template <typename Made>
+    void construct(Made*) noexcept {}
+    template <typename Made, typename... From>
+    void construct(Made* at, From&&... from) {
+        ::new (static_cast<void*>(at)) Made(std::forward<From>(from)...);
+    }
+    bool operator==(const ZeroedMemory&) const = default;
+};
+
 /// [value type: safe to read from several threads]
 class Image {
 public:
@@ -32,8 +60,8 @@ public:
     Image(int width, int height, int channels, ComponentType type = ComponentType::float32)
         : width_(width), height_(height), channels_(channels) {
         const std::size_t count = std::size_t(width) * std::size_t(height) * std::size_t(channels);
-        if (type == ComponentType::float32) values_ = std::vector<float>(count);
-        else values_ = std::vector<std::uint32_t>(count);
+        if (type == ComponentType::float32) values_ = Values<float>(count);
+        else values_ = Values<std::uint32_t>(count);
     }
 
     int width() const { return width_; }
@@ -57,6 +85,9 @@ public:
     }
 
 private:
+    template <typename Value>
+    using Values = std::vector<Value, ZeroedMemory<Value>>;
+
     std::size_t index(int x, int y, int channel) const {
         assert(x >= 0 && x < width_ && y >= 0 && y < height_ && channel >= 0 && channel < channels_);
         return (std::size_t(y) * std::size_t(width_) + std::size_t(x)) * std::size_t(channels_) +
@@ -65,7 +96,7 @@ private:
     int width_ = 0;
     int height_ = 0;
     int channels_ = 0;
-    std::variant<std::vector<float>, std::vector<std::uint32_t>> values_;
+    std::variant<Values<float>, Values<std::uint32_t>> values_;
 };
 
 }  // namespace aftershade

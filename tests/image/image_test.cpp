@@ -1,0 +1,36 @@
+#include "framework/image/image.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace aftershade {
+namespace {
+
+TEST(AnImage, IsZeroAlsoInMemoryThatHeldAnother) {
+    // Of a size that the allocator keeps for the next one, and of one that it gives back to the system.
+    for (const int side : {8, 700})
+        for (int turn = 0; turn < 3; ++turn) {
+            Image floats(side, side, 3), uints(side, side, 1, ComponentType::uint32);
+            EXPECT_TRUE(std::ranges::all_of(floats.floats(), [](float value) { return value == 0; }));
+            EXPECT_TRUE(std::ranges::all_of(uints.uints(), [](std::uint32_t value) { return value == 0; }));
+            std::ranges::fill(floats.floats(), 1.5f);
+            std::ranges::fill(uints.uints(), 7u);
+        }
+}
+
+TEST(AnImage, IsCopiedWithItsValuesAndMovedWithItsMemory) {
+    Image image(3, 2, 2);
+    for (std::size_t i = 0; i < image.floats().size(); ++i) image.floats()[i] = float(i) + 0.25f;
+    const Image copy = image;
+    const float* const memory = image.floats().data();
+    image.at(0, 0, 0) = -1;
+    EXPECT_EQ(copy.at(0, 0, 0), 0.25f);
+    EXPECT_EQ(copy.at(2, 1, 1), 11.25f);
+    const Image moved = std::move(image);
+    EXPECT_EQ(moved.floats().data(), memory);
+}
+
+}  // namespace
+}  // namespace aftershade
