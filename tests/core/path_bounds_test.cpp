@@ -29,6 +29,21 @@ TEST(PathBounds, HoldWithLinksFollowed) {
     EXPECT_EQ(out_of_bounds(fs::current_path() / "f", ""), "") << "the working folder";
 }
 
+TEST(PathBounds, HoldAFileToItsOwnFolderWhereverThatLeads) {
+    const TemporaryFolder folder;
+    fs::create_directories(folder / "real/below");
+    fs::create_directory(folder / "links");
+    fs::create_directory_symlink("../real", folder / "links/own");
+    write_text(folder / "real/file", "");
+    write_text(folder / "secret", "");
+    fs::create_symlink("../secret", folder / "real/link");
+    fs::create_symlink("file", folder / "real/same");
+    const fs::path own = folder / "links/own";
+    for (const char* name : {"file", "same", "below", "absent", "."})
+        EXPECT_EQ(out_of_bounds(own / name, own), "") << name;
+    for (const char* name : {"link", ".."}) EXPECT_NE(out_of_bounds(own / name, own), "") << name;
+}
+
 TEST(PathBounds, AreWidenedByFoldersThatTheUserAllows) {
     const TemporaryFolder folder;
     fs::create_directory(folder / "own");
