@@ -1,5 +1,6 @@
 #include "framework/capture/decode.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -94,10 +95,81 @@ VelocityFactor velocity_factor(const RoleDecoding& decoding, const DecodeContext
             float(unit_y * decoding.velocity_scale[1] * per_frame * (decoding.y_axis_up ? -1 : 1))};
 }
 
+/// Values that are looked at together, so that those without a fault are decoded without a branch.
+constexpr std::size_t kRun = 1024;
+
+/// Whether none is marked or not finite, nor an y as large as a mark: NaN compares true with no limit.
+bool has_motion(std::span<const float> values, const RoleDecoding& decoding) {
+    constexpr float kLargest = std::numeric_limits<float>::max();
+    const float high = std::min(kLargest, decoding.no_motion_above.value_or(kLargest));
+    const float low = std::max(-kLargest, decoding.no_motion_below.value_or(-kLargest));
+    unsigned outside = 0;
+    for (const float value : values) outside |= unsigned(!(value >= low)) | unsigned(!(value <= high));
+    return outside == 0;
+}
+
+void scale_vectors(std::span<float> values, float bias, const VelocityFactor& factor) {
+    for (std::size_t i = 0; i + 1 < values.size(); i += 2) {
+        values[i] = (values[i] - bias) * factor.x;
+        values[i + 1] = (values[i + 1] - bias) * factor.y;
+    }
+}
+
 /// By which a premultiplied vector is divided.
 float vector_alpha(std::size_t pixel, const RoleDecoding& decoding, const DecodeContext& context) {
     const float alpha = decoding.premultiplied && context.color ? context.color->floats()[4 * pixel + 3] : 1;
     return alpha > 0 ? alpha : 1;
+}
+
+/// Whether all are whole numbers from 0 to below 2^24, which `ids` then has.
+bool are_small_ids(std::span<const float> values, std::span<std::uint32_t> ids) {
+    constexpr float kEnd = 1 << 24;
+    unsigned others = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const float value = values[i];
+        const bool is_near = value >= 0 && value < kEnd;
+        const std::int32_t whole = std::int32_t(is_near ? value : 0);
+        others |= unsigned(float(whole) != value);
+        ids[i] = std::uint32_t(whole);
+    }
+    return others == 0;
+}
+
+constexpr float kLargestId = 4294967040.0f;  // the last float below 2^32
+
+bool is_id(float value) {
+    return value >= 0 && value <= kLargestId && value == std::floor(value);
+}
+
+[[noreturn]] void refuse_id(float value, std::size_t pixel, std::size_t width, const std::string& file) {
+    constexpr const char* kRemedyOfMeanIds =
+        "; ids that are averaged over samples name no object (render them with one sample a pixel and "
+        "without a filter, or render a Cryptomatte)";
+    const bool is_between = std::isfinite(value) && value > 0 && value <= kLargestId;
+    throw Error(ExitCode::capture, file + ": object id " + std::to_string(value) + " at pixel (" +
+                                       std::to_string(pixel % width) + ", " + std::to_string(pixel / width) +
+                                       ") is not a whole number from 0 to 4294967040" +
+                                       (is_between ? kRemedyOfMeanIds : ""));
+}
+
+/// Pixels from `first` on. Those without motion become 0 and are listed.
+void decode_vectors(std::span<float> values, std::size_t first, const RoleDecoding& decoding,
+                    const DecodeContext& context, const VelocityFactor& factor,
+                    std::vector<std::size_t>& without_motion) {
+    for (std::size_t i = 0; i + 1 < values.size(); i += 2) {
+        float& x = values[i];
+        float& y = values[i + 1];
+        const bool marked = (decoding.no_motion_above && x > *decoding.no_motion_above) ||
+                            (decoding.no_motion_below && x < *decoding.no_motion_below);
+        if (marked || !std::isfinite(x) || !std::isfinite(y)) {
+            x = y = 0;
+            without_motion.push_back(first + i / 2);
+            continue;
+        }
+        const float alpha = vector_alpha(first + i / 2, decoding, context);
+        x = (x / alpha - decoding.bias) * factor.x;
+        y = (y / alpha - decoding.bias) * factor.y;
+    }
 }
 
 }  // namespace
@@ -139,19 +211,10 @@ std::vector<std::size_t> decode_velocity(Image& velocity, const RoleDecoding& de
     const VelocityFactor factor = velocity_factor(decoding, context);
     std::vector<std::size_t> without_motion;
     const std::span<float> values = velocity.floats();
-    for (std::size_t pixel = 0; 2 * pixel + 1 < values.size(); ++pixel) {
-        float& x = values[2 * pixel];
-        float& y = values[2 * pixel + 1];
-        const bool marked = (decoding.no_motion_above && x > *decoding.no_motion_above) ||
-                            (decoding.no_motion_below && x < *decoding.no_motion_below);
-        if (marked || !std::isfinite(x) || !std::isfinite(y)) {
-            x = y = 0;
-            without_motion.push_back(pixel);
-            continue;
-        }
-        const float alpha = vector_alpha(pixel, decoding, context);
-        x = (x / alpha - decoding.bias) * factor.x;
-        y = (y / alpha - decoding.bias) * factor.y;
+    for (std::size_t first = 0; first < values.size(); first += kRun) {
+        const std::span<float> run = values.subspan(first, std::min(kRun, values.size() - first));
+        if (!decoding.premultiplied && has_motion(run, decoding)) scale_vectors(run, decoding.bias, factor);
+        else decode_vectors(run, first / 2, decoding, context, factor, without_motion);
     }
     return without_motion;
 }
@@ -167,23 +230,16 @@ void encode_velocity(Image& velocity, const RoleDecoding& decoding, const Decode
 }
 
 Image decode_ids(const Image& stored, const std::string& file) {
-    constexpr const char* kRemedyOfMeanIds =
-        "; ids that are averaged over samples name no object (render them with one sample a pixel and "
-        "without a filter, or render a Cryptomatte)";
-    constexpr float kLargest = 4294967040.0f;  // the last float below 2^32
     Image ids(stored.width(), stored.height(), 1, ComponentType::uint32);
     const std::span<const float> values = stored.floats();
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        const float id = values[i];
-        if (!(id >= 0 && id <= kLargest) || id != std::floor(id)) {
-            const std::size_t width = std::size_t(stored.width());
-            const bool is_between = std::isfinite(id) && id > 0 && id <= kLargest;
-            throw Error(ExitCode::capture, file + ": object id " + std::to_string(id) + " at pixel (" +
-                                               std::to_string(i % width) + ", " + std::to_string(i / width) +
-                                               ") is not a whole number from 0 to 4294967040" +
-                                               (is_between ? kRemedyOfMeanIds : ""));
+    for (std::size_t first = 0; first < values.size(); first += kRun) {
+        const std::size_t end = std::min(first + kRun, values.size());
+        if (are_small_ids(values.subspan(first, end - first), ids.uints().subspan(first, end - first)))
+            continue;
+        for (std::size_t i = first; i < end; ++i) {
+            if (!is_id(values[i])) refuse_id(values[i], i, std::size_t(stored.width()), file);
+            ids.uints()[i] = std::uint32_t(values[i]);
         }
-        ids.uints()[i] = std::uint32_t(id);
     }
     return ids;
 }

@@ -53,6 +53,23 @@ TEST(DecodeVelocity, PutsNoMotionWhereTheFileHasNoNumber) {
     EXPECT_EQ(floats_of(image), (std::vector<float>{0, 0, 0, 0, 1, -4}));
 }
 
+TEST(DecodeVelocity, FindsPixelsWithoutMotionWhereverTheyStand) {
+    // More pixels than are looked at together, and a last few that are fewer.
+    constexpr std::size_t kPixels = 1541;
+    const std::string way = R"({"channels": ["V.u", "V.v"], "delta": "prev-cur", "no_motion_above": 900})";
+    for (const std::size_t odd : {std::size_t(0), std::size_t(511), std::size_t(512), kPixels - 1}) {
+        std::vector<float> u(kPixels, 3), v(kPixels, 2000), expected;
+        for (std::size_t i = 0; i < kPixels; ++i) v[i] = float(i);
+        u[odd] = 901;
+        if (odd > 0) v[odd - 1] = kNan;
+        for (std::size_t i = 0; i < kPixels; ++i) {
+            const bool moves = u[i] == 3 && v[i] == v[i];
+            expected.insert(expected.end(), {moves ? -u[i] : 0, moves ? -v[i] : 0});
+        }
+        EXPECT_EQ(floats_of(decoded("velocity", way, {{"V.u", u}, {"V.v", v}})), expected) << odd;
+    }
+}
+
 TEST(DecodeDepth, ScalesToMetresAndKeepsNothingHitInfinite) {
     const Image image = decoded("depth", R"({"channels": ["D"], "scale": 0.01, "no_hit": 1e10})",
                                 {{"D", {250, 1e-3f, 1e10f, 2e10f, kInf, 9.9e9f}}});
@@ -97,6 +114,20 @@ TEST(DecodeIds, ThatAreNotWholeNumbersNameValueAndPixel) {
         EXPECT_NE(message(bad).find("f.exr: "), std::string::npos) << message(bad);
     }
     EXPECT_NE(message(1.5f).find("object id 1.5"), std::string::npos) << message(1.5f);
+}
+
+TEST(DecodeIds, AreTheSameBesideSmallAndLargeOnes) {
+    std::vector<float> stored(3000, 7);
+    stored[1023] = 16777216;
+    stored[1024] = 4294967040.0f;
+    stored[2500] = -0.0f;
+    const Image image = decoded("object_id", R"({"channels": ["id"]})", {{"id", stored}});
+    for (std::size_t i = 0; i < stored.size(); ++i)
+        ASSERT_EQ(image.uints()[i], std::uint32_t(double(stored[i]))) << i;
+    stored[2999] = 0.5f;
+    const std::string message = test::capture_error(
+        [&] { decoded("object_id", R"({"channels": ["id"]})", {{"id", stored}}, 100); });
+    EXPECT_NE(message.find("object id 0.500000 at pixel (99, 29)"), std::string::npos) << message;
 }
 
 TEST(DecodeRole, AddsUpTheLayersOfASum) {
