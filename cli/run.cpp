@@ -4,6 +4,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
+#include <thread>
 #include <vector>
 
 #include "cli/bound_look.h"
@@ -151,8 +153,10 @@ ExitCode run_here(const RunArguments& options, CheckedRun& run, const CaptureRea
     run.settings.compile_threads = cores - 1;
     StatusWriter status;
     NativeRegistry natives = native_registry(options.plugins, &status);
-    gpu::Context context(chosen_backend(options.backend));
-    run.outputs.renderer = context.info().renderer;
+    std::optional<gpu::Context> made;
+    const auto context = [&]() -> gpu::Context& {
+        return made ? *made : made.emplace(chosen_backend(options.backend));
+    };
     run.settings.natives = {&natives, &status};
     const Pipeline& pipeline = run.bound->pipeline;
     if (run.settings.warmup_frames == 0 && !options.jobs.is_worker())
@@ -173,9 +177,20 @@ ExitCode run_here(const RunArguments& options, CheckedRun& run, const CaptureRea
     return watch(session, std::move(*run.watched), stop);
 }
 
+/// No thread where the system starts none.
+std::jthread load_library_ahead(gpu::Backend backend) {
+    try {
+        return std::jthread([backend] { gpu::load_ahead(backend); });
+    } catch (const std::system_error&) {
+        return {};
+    }
+}
+
 ExitCode run(const RunArguments& options) {
     const std::atomic<bool>& stop = watch_for_interrupt();
-    chosen_backend(options.backend);
+    const gpu::Backend backend = chosen_backend(options.backend);
+    const bool draws = !options.explain && !options.stream.print_ffmpeg && !options.jobs.wants_workers();
+    const std::jthread library = draws ? load_library_ahead(backend) : std::jthread();
     const ProgressStyle progress = parse_progress(options.progress);
     CheckedRun run = checked_run(options);
     const auto profile_documents = documents_of(run.profiles, run.sequence);

@@ -97,13 +97,13 @@ ExitCode render(const RunSession& session, const RunOptions& run, const Pipeline
     const RunReport report = report_file.run({session.context, pipeline, session.sequence, session.reader,
                                               settings, session.outputs, data_path(), hooks},
                                              reporter.observer(), stop);
-    const gpu::ContextInfo& gl = session.context.info();
+    const gpu::ContextInfo& gl = session.context().info();
     if (session.progress == ProgressStyle::plain || session.progress == ProgressStyle::terminal)
         std::cerr << gpu::backend_name(gl.backend) << ": " << gl.renderer << ", " << gl.version << "\n";
     // Of several workers each sees only a part of the frames.
     if (!session.arguments.jobs.is_worker())
         for (const std::string& warning : report.objects_unmatched) reporter.warn(warning);
-    reporter.print_summary(report, gpu::Timer::clock_name(session.context));
+    reporter.print_summary(report, gpu::Timer::clock_name(session.context()));
     if (session.outputs.stream && !report.failures.empty())
         std::cerr
             << "-o -: the stream ends before frame " << report.failures.front().frame
@@ -149,7 +149,7 @@ std::vector<int> current_frames(const ResumableRun& resumable, const RunSession&
 
 ExitCode render_stale(const RunSession& session, const BoundLook& bound, const std::atomic<bool>& stop) {
     const RunArguments& arguments = session.arguments;
-    const gpu::ContextInfo& gl = session.context.info();
+    const gpu::ContextInfo& gl = session.context().info();
     const FingerprintSource source{*bound.look,          bound.pipeline,
                                    session.sequence,     session.run,
                                    session.outputs,      capture_document(arguments.capture.capture),

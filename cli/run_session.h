@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -32,7 +33,7 @@ struct RunSession {
     StatusWriter& status;
     Sequence& sequence;
     const CaptureReader& reader;
-    gpu::Context& context;
+    std::function<gpu::Context&()> context;  ///< makes it at the first call
     RunOptions run;
     OutputOptions outputs;
     ProgressStyle progress;

@@ -236,7 +236,28 @@ void dispatch_with(Context& context, const Program& program, const Bindings& bin
     context.check(program.label());
 }
 
+void dispatch_from(Context& context, const Program& program, const Buffer& groups, const Bindings& bindings) {
+    dispatch_with(context, program, bindings, [&](const GladGLContext& gl) {
+        gl.BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, groups.handle());
+        gl.DispatchComputeIndirect(0);
+        gl.BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, 0);
+    });
+}
+
 }  // namespace
+
+NothingToDo::NothingToDo(Context& context)
+    : context_(context), no_groups_(context, 3 * sizeof(std::uint32_t), "no work groups") {
+    no_groups_.clear(0);
+    context_.impl().nothing = &no_groups_;
+    context_.gl().Scissor(0, 0, 0, 0);
+    context_.gl().Enable(GL_SCISSOR_TEST);
+}
+
+NothingToDo::~NothingToDo() {
+    context_.impl().nothing = nullptr;
+    if (context_.impl().try_make_current()) context_.gl().Disable(GL_SCISSOR_TEST);
+}
 
 void draw(Context& context, const Program& program, std::span<const Target> targets, const Bindings& bindings,
           Blend blend) {
@@ -251,8 +272,10 @@ void draw_instances(Context& context, const Program& program, std::span<const Ta
     const bool quads = instances.primitive == Primitive::quads;
     const GLenum mode = quads ? GL_TRIANGLE_STRIP : GL_POINTS;
     draw_with(context, program, targets, bindings, blend, [&](const GladGLContext& gl) {
-        if (!instances.indirect) {
-            gl.DrawArraysInstanced(mode, 0, quads ? 4 : 1, instances.count);
+        // Without an instance, the driver would not look at the program.
+        const bool draws_nothing = context.impl().nothing != nullptr;
+        if (!instances.indirect || draws_nothing) {
+            gl.DrawArraysInstanced(mode, 0, quads ? 4 : 1, draws_nothing ? 1 : instances.count);
             return;
         }
         gl.BindBuffer(GL_DRAW_INDIRECT_BUFFER, instances.indirect->handle());
@@ -273,6 +296,9 @@ void copy(Context& context, const Texture& from, const Texture& to) {
 
 void dispatch(Context& context, const Program& program, int groups_x, int groups_y, int groups_z,
               const Bindings& bindings) {
+    // Only of a command that lies in a buffer does the driver not know beforehand that it is for no group.
+    if (const Buffer* const nothing = context.impl().nothing)
+        return dispatch_from(context, program, *nothing, bindings);
     dispatch_with(context, program, bindings, [&](const GladGLContext& gl) {
         gl.DispatchCompute(static_cast<GLuint>(groups_x), static_cast<GLuint>(groups_y),
                            static_cast<GLuint>(groups_z));
@@ -283,11 +309,8 @@ void dispatch_indirect(Context& context, const Program& program, const Buffer& g
                        const Bindings& bindings) {
     constexpr std::size_t kCommandBytes = 12;
     check_indirect(program, groups, kCommandBytes);
-    dispatch_with(context, program, bindings, [&](const GladGLContext& gl) {
-        gl.BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, groups.handle());
-        gl.DispatchComputeIndirect(0);
-        gl.BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, 0);
-    });
+    const Buffer* const nothing = context.impl().nothing;
+    dispatch_from(context, program, nothing ? *nothing : groups, bindings);
 }
 
 }  // namespace aftershade::gpu

@@ -74,6 +74,20 @@ struct InstanceRange {
 void draw_instances(Context& context, const Program& program, std::span<const Target> targets,
                     const Bindings& bindings, const InstanceRange& instances, Blend blend = Blend::none);
 
+/// While it lives, draws and dispatches of the context draw nothing and dispatch no group, whatever their
+/// arguments; the driver makes a program's machine code all the same. [the context's thread; one at a time]
+class NothingToDo {
+public:
+    explicit NothingToDo(Context& context);
+    ~NothingToDo();
+    NothingToDo(const NothingToDo&) = delete;
+    NothingToDo& operator=(const NothingToDo&) = delete;
+
+private:
+    Context& context_;
+    Buffer no_groups_;
+};
+
 /// Copies level 0 of `from` to level 0 of `to`, bit for bit; both have one size, one format and one layer. On
 /// software GL this takes a third of the time of a draw.
 void copy(Context& context, const Texture& from, const Texture& to);

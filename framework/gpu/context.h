@@ -56,6 +56,10 @@ struct ObjectCounts {
     std::size_t total() const { return buffers + textures + programs + framebuffers + views; }
 };
 
+/// Loads OSMesa's library, where that is the backend: a thread may while the caller reads its documents. What
+/// fails here fails again, and says why, where the context is made. [any thread]
+void load_ahead(Backend backend) noexcept;
+
 /// Owns the GL context and its function table. Objects made from it keep a reference and must die first.
 /// Construction draws a known colour into a float framebuffer and reads it back; a context that cannot is
 /// refused. [one thread: the one that made it; several contexts may exist in one process, make_current()

@@ -52,6 +52,7 @@ struct Context::Impl {
     std::unique_ptr<ObjectCache> cache;
     ObjectCounts handles;  ///< of Handle alone
     bool abandoned = false;
+    const Buffer* nothing = nullptr;  ///< of NothingToDo: zero work groups
 
 private:
     void start();

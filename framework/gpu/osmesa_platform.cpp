@@ -114,6 +114,10 @@ private:
 
 }  // namespace
 
+void load_osmesa() {
+    osmesa_library();
+}
+
 std::unique_ptr<Platform> make_osmesa_platform() {
     auto platform = std::make_unique<OsmesaPlatform>();
     platform->make_current();

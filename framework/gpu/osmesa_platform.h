@@ -9,5 +9,7 @@ namespace aftershade::gpu {
 
 /// Throws Error(ExitCode::gl) whose message is the reason alone.
 std::unique_ptr<Platform> make_osmesa_platform();
+/// Throws Error(ExitCode::gl).
+void load_osmesa();
 
 }  // namespace aftershade::gpu

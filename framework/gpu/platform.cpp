@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "framework/core/error.h"
+#include "framework/core/memory_limit.h"
 #include "framework/core/text.h"
 #include "framework/gpu/egl_platform.h"
 #include "framework/gpu/osmesa_platform.h"
@@ -16,6 +17,15 @@ namespace aftershade::gpu {
 std::unique_ptr<Platform> make_platform(Backend backend) {
     if (backend == Backend::osmesa) return make_osmesa_platform();
     return make_egl_platform(backend == Backend::egl_software ? Renderer::software : Renderer::hardware);
+}
+
+void load_ahead(Backend backend) noexcept {
+    // Its size would count against what a context requires.
+    if (backend != Backend::osmesa || address_space_left()) return;
+    try {
+        load_osmesa();
+    } catch (const std::exception&) {
+    }
 }
 
 bool is_software_renderer(std::string_view renderer) {

@@ -174,7 +174,7 @@ void Executor::run_clears(const Clears& clears) {
     }
 }
 
-void Executor::run_pass(const BoundPass& bound) {
+void Executor::run_program(const BoundPass& bound) {
     const Pass& pass = *bound.pass;
     const gpu::Bindings bindings{.textures = bound.textures,
                                  .images = bound.images,
@@ -195,6 +195,17 @@ void Executor::run_pass(const BoundPass& bound) {
             }
             break;
         case PassKind::copy:
+        case PassKind::clear: break;
+    }
+}
+
+void Executor::run_pass(const BoundPass& bound) {
+    const Pass& pass = *bound.pass;
+    switch (pass.kind) {
+        case PassKind::draw:
+        case PassKind::instances:
+        case PassKind::compute: run_program(bound); break;
+        case PassKind::copy:
             gpu::copy(context_, *bound.textures.front().texture, *bound.targets.front().texture);
             break;
         case PassKind::clear:
@@ -204,6 +215,13 @@ void Executor::run_pass(const BoundPass& bound) {
             break;
     }
     for (gpu::Texture* const texture : bound.mips) texture->generate_mips();
+}
+
+void Executor::prime() {
+    if (!context_.info().software) return;
+    const gpu::NothingToDo scope(context_);
+    for (const BoundPass& bound : bound_)
+        if (bound.pass->program) run_program(bound);
 }
 
 std::vector<PassTime> Executor::run(bool timed, const PassObserver& observer, PassRange range) {

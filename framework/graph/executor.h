@@ -63,6 +63,10 @@ public:
     /// Once, before the first run. The buffer must outlive this.
     void set_hooks(PassHooks hooks);
 
+    /// Has a driver that makes machine code at a program's first draw or dispatch make it now: gives it each
+    /// pass with nothing to do. Does nothing on hardware.
+    void prime();
+
     /// Runs every pass. With `timed`, waits for each and returns its milliseconds (see gpu::Timer); else
     /// returns {}. `observer`, if any, sees each target right after its pass; its time counts for no pass.
     /// At the end, each history that was written becomes what the next run reads as its `previous`. `range`:
@@ -129,6 +133,7 @@ private:
     BoundPass bind(int index);
     void run_clears(const Clears& clears);
     void run_pass(const BoundPass& bound);
+    void run_program(const BoundPass& bound);
 
     gpu::Context& context_;
     FrameGraph graph_;

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "framework/capture/capture_window.h"
+#include "framework/core/error.h"
+#include "framework/image/role.h"
 #include "framework/pipeline/nan_policy.h"
 
 namespace aftershade {
@@ -95,10 +97,31 @@ Capture FrameLoader::read(int file) const {
         const TraceScope scan(run_.trace, "scan", "file " + std::to_string(file));
         apply_nan_policy(run_.on_nan, capture);  // before scaling, which spreads NaN
     }
+    place(capture, file);
+    return capture;
+}
+
+void FrameLoader::place(Capture& capture, int file) const {
     if (run_.region) crop_capture(capture, region_with_margin(run_, region_needs_, capture.header));
     scale_capture(capture, run_.scale_divisor);
     const int subframe = (file % sequence_.subframes + sequence_.subframes) % sequence_.subframes;
     capture.header.frame = (file - subframe) / sequence_.subframes;
+}
+
+std::optional<Capture> FrameLoader::outline(std::size_t index) const {
+    if (is_missing(index) || subframe_count() > 1 || !pipeline_.neighbour_offsets().empty())
+        return std::nullopt;
+    Capture capture;
+    try {
+        const int file = files_.number(run_.frames[index], 0);
+        capture.header = reader_.read_header(file);
+        place(capture, file);
+    } catch (const Error&) {
+        return std::nullopt;  // take() says why
+    }
+    const auto& there = capture.header.roles;
+    for (const std::string& role : roles_)
+        if (is_coverage_role(role) || std::ranges::find(there, role) != there.end()) capture.images[role];
     return capture;
 }
 

@@ -33,6 +33,9 @@ public:
     /// 1, or as many as the sequence has where some effect accumulates them.
     int subframe_count() const { return files_.subframe_count(); }
 
+    /// The frame as take() will give it, as far as its header says: images of roles that will be there are
+    /// empty. nullopt where the file cannot be read, or more than one makes the frame.
+    std::optional<Capture> outline(std::size_t index) const;
     /// One sub-frame with its neighbours; its number is the frame's. Throws what reading threw.
     CapturePointer take(std::size_t index, int subframe);
     using Neighbours = std::map<int, CapturePointer>;  ///< by offset
@@ -48,6 +51,8 @@ private:
     void request(int file);
     CapturePointer get(int file);
     Capture read(int file) const;
+    /// Region, scale and number of the frame.
+    void place(Capture& capture, int file) const;
     CapturePointer held(std::size_t index) const;
 
     const Sequence& sequence_;

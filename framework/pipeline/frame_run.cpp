@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <utility>
 
 #include "framework/capture/capture_window.h"
@@ -39,13 +40,27 @@ void note_non_finite(int frame, RunReport& report) {
     if (std::ranges::find(frames, frame) == frames.end()) frames.push_back(frame);
 }
 
-FrameRun::Rendered FrameRun::render(std::size_t index, const std::vector<std::string>& roles,
-                                    RunReport& report, const RunObserver& observer) {
+FrameInputs FrameRun::inputs_of(std::size_t index) const {
     FrameInputs inputs;
     inputs.subframe_count = loader_.subframe_count();
     inputs.scale = 1.0 / run_.scale_divisor;
     inputs.fps = sequence_.fps;
     inputs.begins_shot = loader_.begins_shot(index);
+    return inputs;
+}
+
+void FrameRun::build_ahead(std::size_t index, const std::vector<std::string>& roles) {
+    if (!renderer_.can_build_ahead()) return;
+    const std::optional<Capture> outline = loader_.outline(index);
+    if (!outline) return;
+    FrameInputs inputs = inputs_of(index);
+    inputs.capture = inputs.centre = &*outline;
+    renderer_.build_ahead(inputs, roles);
+}
+
+FrameRun::Rendered FrameRun::render(std::size_t index, const std::vector<std::string>& roles,
+                                    RunReport& report, const RunObserver& observer) {
+    FrameInputs inputs = inputs_of(index);
     const auto neighbours = timed_read(report, [&] { return loader_.neighbours(index); });
     for (const auto& [offset, capture] : neighbours) inputs.set(offset, capture.get());
     std::shared_ptr<const Capture> current, centre;

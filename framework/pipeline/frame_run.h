@@ -25,11 +25,15 @@ public:
         std::vector<NonFiniteOutput> non_finite;
     };
 
+    /// While the frame is read: builds its graph by what its header says, if that is enough. Faults are left
+    /// to render(), which meets them in their order.
+    void build_ahead(std::size_t index, const std::vector<std::string>& roles);
     /// Reading's faults come as Error(ExitCode::capture), and so do pixels that NanPolicy::fail refuses.
     Rendered render(std::size_t index, const std::vector<std::string>& roles, RunReport& report,
                     const RunObserver& observer);
 
 private:
+    FrameInputs inputs_of(std::size_t index) const;
     void meet_non_finite(const Capture& capture, RunReport& report, const RunObserver& observer) const;
     Rendered finished(std::shared_ptr<const Capture> capture, FrameResult result) const;
 

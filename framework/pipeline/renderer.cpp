@@ -109,12 +109,38 @@ void PipelineRenderer::prepare(const FrameInputs& frame, const std::vector<std::
     // The old textures go before the new ones come, unless what they hold lives on.
     std::unique_ptr<BuiltGraph> old = std::move(built_);
     if (!pipeline_.has_history()) old.reset();
+    build(frame, roles);
+    if (old) built_->executor->take_history_from(*old->executor);
+}
+
+void PipelineRenderer::build(const FrameInputs& frame, const std::vector<std::string>& roles) {
     built_ = build_graph({context_, *programs_, files_, telemetry_, status_, keeps_steps_,
                           fuses_passes_ && !keeps_steps_ && !audit_, compile_threads_},
-                         graph_frame);
+                         {pipeline_, frame, params_, natives_, roles});
     ++graphs_built_;
     set_hooks();
-    if (old) built_->executor->take_history_from(*old->executor);
+}
+
+bool PipelineRenderer::can_build_ahead() const {
+    const bool reports = status_ && status_->active();
+    return !built_ && !reports && std::ranges::none_of(pipeline_.steps, [](const PipelineStep& step) {
+        return step.manifest->native || std::ranges::any_of(step.values, [](const auto& value) {
+                   return !roles_of(value.second).empty();
+               });
+    });
+}
+
+void PipelineRenderer::build_ahead(const FrameInputs& frame, const std::vector<std::string>& roles) {
+    if (!can_build_ahead()) return;
+    try {
+        resolve(frame);
+        build(frame, roles);
+        // Where threads compile, they draw each pass as well.
+        if (!built_->ahead) built_->executor->prime();
+    } catch (const Error& error) {
+        built_.reset();
+        if (error.exit_code() == ExitCode::memory) throw;
+    }
 }
 
 double PipelineRenderer::feed(const FrameInputs& frame, const std::vector<std::string>& roles,

@@ -50,6 +50,13 @@ public:
                      NativeSources natives = {});
     ~PipelineRenderer();
 
+    /// Builds the first frame's graph and has the driver make its programs, before the frame's pixels are
+    /// known: images of `frame` are empty. What render() finds different then, it builds again, and what fails
+    /// here, fails there. Does nothing unless can_build_ahead(). Throws Error(ExitCode::memory).
+    void build_ahead(const FrameInputs& frame, const std::vector<std::string>& roles);
+    /// Whether there is no graph yet, and no step needs more than a frame's header: native code is called once
+    /// a frame, and values may be measured in the pixels.
+    bool can_build_ahead() const;
     /// Renders one frame; of sub-frames, give each in turn. Steps up to the last one that accumulates run for
     /// each sub-frame; the others run once, with the last, over `frame.centre`. `roles` are read back where a
     /// step makes them; of sub-frames before the last the result is empty. Frames follow each other in
@@ -115,6 +122,7 @@ private:
     int first_changed_step(const std::vector<ParamSet>& before, const std::vector<std::string>& mixes) const;
     std::vector<std::string> mixes() const;
     void prepare(const FrameInputs& frame, const std::vector<std::string>& roles);
+    void build(const FrameInputs& frame, const std::vector<std::string>& roles);
     std::string history_fault(const FrameInputs& frame) const;
     double feed(const FrameInputs& frame, const std::vector<std::string>& roles, const FrameBefore& before,
                 int first_pass);

@@ -150,18 +150,20 @@ bool accept_outputs(const FrameRun::Rendered& frame, NanPolicy policy, RunReport
 /// The frames of a run, one after the other.
 class FrameLoop {
 public:
-    FrameLoop(const RunSetup& setup, PipelineRenderer& renderer, const RunObserver& observer)
+    FrameLoop(const RunSetup& setup, const gpu::Context& context, PipelineRenderer& renderer,
+              FrameLoader& loader, const RunObserver& observer)
         : setup_(setup),
+          context_(context),
           renderer_(renderer),
           observer_(observer),
-          loader_(setup.sequence, setup.reader, setup.pipeline, setup.options,
-                  roles_to_read(setup.pipeline, setup.outputs)),
+          loader_(loader),
           frame_run_(renderer, loader_, setup.sequence, setup.options),
           outcomes_(report_, observer) {}
 
     RunReport run(const std::atomic<bool>& stop) {
         const auto start = Clock::now();
         const RunOptions& run = setup_.options;
+        if (!run.frames.empty()) frame_run_.build_ahead(0, wanted());
         for (std::size_t i = 0; i < run.frames.size(); ++i) {
             report_.interrupted = stop;
             if (report_.interrupted || (run.stop_on_error && !report_.failures.empty())) {
@@ -185,6 +187,9 @@ public:
     }
 
 private:
+    std::vector<std::string> wanted() const {
+        return wanted_roles(setup_.outputs, setup_.pipeline.writes_role(kDisplayRole));
+    }
     bool warms_up(std::size_t index) const { return index < std::size_t(setup_.options.warmup_frames); }
 
     void frame(std::size_t index) {
@@ -198,9 +203,7 @@ private:
         if (hooks.before_frame) hooks.before_frame(number, renderer_);
         FrameRun::Rendered frame;
         try {
-            frame = frame_run_.render(index,
-                                      wanted_roles(setup_.outputs, setup_.pipeline.writes_role(kDisplayRole)),
-                                      report_, observer_);
+            frame = frame_run_.render(index, wanted(), report_, observer_);
         } catch (const Error& error) {
             if (error.exit_code() != ExitCode::memory) finish_write();
             if (error.exit_code() != ExitCode::capture) throw;
@@ -234,6 +237,7 @@ private:
     /// The files of the frame are written while the next one is rendered.
     void write_later(const FrameRun::Rendered& frame, int number, Clock::time_point begin) {
         OutputOptions outputs = setup_.outputs;
+        outputs.renderer = context_.info().renderer;
         if (setup_.hooks.fingerprint) outputs.fingerprint = setup_.hooks.fingerprint(number);
         const auto write = [frame, number, begin, outputs = std::move(outputs), &setup = setup_] {
             Written written = write_frame(setup, outputs, *frame.result, *frame.capture);
@@ -257,10 +261,11 @@ private:
     }
 
     const RunSetup& setup_;
+    const gpu::Context& context_;
     PipelineRenderer& renderer_;
     const RunObserver& observer_;
     RunReport report_;
-    FrameLoader loader_;
+    FrameLoader& loader_;
     FrameRun frame_run_;
     Outcomes outcomes_;
     PendingWrite pending_;
@@ -270,16 +275,21 @@ private:
 }  // namespace
 
 RunReport run_frames(const RunSetup& setup, const RunObserver& observer, const std::atomic<bool>& stop) {
-    PipelineRenderer renderer(setup.context, setup.pipeline, setup.data_folder, setup.options.natives);
+    // Under a limit OpenGL comes before frames: it says how much it needs.
+    if (address_space_left()) setup.context();
+    FrameLoader loader(setup.sequence, setup.reader, setup.pipeline, setup.options,
+                       roles_to_read(setup.pipeline, setup.outputs));
+    gpu::Context& context = setup.context();
+    PipelineRenderer renderer(context, setup.pipeline, setup.data_folder, setup.options.natives);
     renderer.set_audit(setup.options.audit);
     renderer.fuse_passes(setup.options.fuse_passes);
     renderer.compile_on_threads(setup.options.compile_threads);
     renderer.set_telemetry(setup.options.telemetry);
     try {
         if (!setup.options.history_in.empty()) renderer.load_history(setup.options.history_in);
-        return FrameLoop(setup, renderer, observer).run(stop);
+        return FrameLoop(setup, context, renderer, loader, observer).run(stop);
     } catch (const std::exception& error) {
-        if (is_out_of_memory(error)) setup.context.abandon();  // before the renderer goes
+        if (is_out_of_memory(error)) context.abandon();  // before the renderer goes
         throw;
     }
 }

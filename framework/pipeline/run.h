@@ -36,7 +36,8 @@ struct RunHooks {
 
 /// What a run works with. [refers to what the caller keeps]
 struct RunSetup {
-    gpu::Context& context;
+    /// The same each time. First called when a frame is being read already, so it may make the context then.
+    std::function<gpu::Context&()> context;
     const Pipeline& pipeline;
     const Sequence& sequence;
     const CaptureReader& reader;

@@ -84,5 +84,15 @@ TEST_F(Progress, ATraceHasEachFrameItsFilesAndItsPassesWithoutOverlapInARow) {
     }
 }
 
+TEST_F(Progress, TheFirstFileIsReadWhileTheContextAndTheGraphAreMade) {
+    sequence({"--trace", "run.json"});
+    const json trace = json::parse(read_text(folder_ / "run.json"));
+    std::map<std::string, double> first_us;
+    for (const json& event : trace.at("traceEvents"))
+        if (event.at("ph") == "X")
+            first_us.try_emplace(event.at("cat").get<std::string>(), event.at("ts").get<double>());
+    EXPECT_LT(first_us.at("decode"), first_us.at("frames"));
+}
+
 }  // namespace
 }  // namespace aftershade::test

@@ -126,6 +126,38 @@ void main() { atomicAdd(total, 1u); }
     EXPECT_EQ(counter.read(), words({3 * 2 * 4 * 5}).read());
 }
 
+TEST_P(InstancesOn, WithNothingToDoNoCommandWritesAnything) {
+    const Program strips = quads();
+    const Program full = fragment("layout(location = 0) out float c; void main() { c = 9.0; }");
+    const Buffer counter = words({7}), three = words({3, 1, 1}), five_quads = words({4, 5, 0, 0});
+    const Program counts = Program::compute(context(), R"(#version 450 core
+layout(local_size_x = 5) in;
+layout(std430, binding = 0) buffer Counter { uint total; };
+void main() { atomicAdd(total, 1u); }
+)",
+                                            "count");
+    Texture target = texture(kWidth, kHeight, TextureFormat::r32f);
+    target.clear(2.0F);
+    const Target targets[] = {{.texture = &target}};
+    const BufferBinding storage[] = {{&counter, 0}};
+    const auto run_all = [&] {
+        draw(context(), full, targets, {});
+        draw_instances(context(), strips, targets, {}, {.count = 3});
+        draw_instances(context(), strips, targets, {}, {.indirect = &five_quads});
+        dispatch(context(), counts, 2, 1, 1, {.storage = storage});
+        dispatch_indirect(context(), counts, three, {.storage = storage});
+    };
+    {
+        const NothingToDo scope(context());
+        run_all();
+    }
+    EXPECT_EQ(target.read_floats(), Floats(kWidth * kHeight, 2.0F));
+    EXPECT_EQ(counter.read(), words({7}).read());
+    run_all();
+    EXPECT_NE(target.read_floats(), Floats(kWidth * kHeight, 2.0F));
+    EXPECT_EQ(counter.read(), words({7 + 5 * 5}).read());
+}
+
 TEST_P(InstancesOn, RefusesABufferTooShortForItsCommand) {
     const Buffer words_two = words({1, 1});
     EXPECT_EQ(error_of([&] { added(quads(), {.indirect = &words_two}); }),

@@ -31,6 +31,29 @@ TEST_P(ExecutorOn, RunsAChainInSharedMemory) {
     }
 }
 
+TEST_P(ExecutorOn, PrimesItsProgramsAndChangesNothing) {
+    const gpu::Program program = draws("result = texelFetch(source, p, 0).r + 1.0;");
+    const gpu::Program counts = computes(R"(layout(local_size_x = 2) in;
+layout(std430, binding = 0) buffer Counter { uint total; };)",
+                                         "    atomicAdd(total, 1u);");
+    Graph graph;
+    Pass counting = with(pass_named("counts", PassKind::compute), counts);
+    counting.buffers = {{graph.create_buffer("total", {16}, {{5, 0, 0, 0}}), 0, gpu::Access::read_write}};
+    counting.groups.count = {3, 1, 1};
+    const BufferHandle total = graph.add_pass(counting).buffers[0];
+    graph.keep(total);
+    const TextureHistory sum = graph.create_history("sum", kSmall);
+    graph.keep(graph.add_pass(draw_of("add", program, {sum.previous}, sum.current)).targets[0]);
+    Executor executor(context(), std::move(graph));
+    for (int frame = 1; frame <= 2; ++frame) {
+        executor.prime();
+        executor.run(false);
+        EXPECT_EQ(executor.history().textures.at("sum")->read_floats(),
+                  Floats(kWidth * kHeight, float(frame)));
+        EXPECT_EQ(words_of(*executor.buffer(total))[0], 5u + 6u);
+    }
+}
+
 TEST_P(ExecutorOn, KeepsATapWholeWhileLaterPassesRun) {
     const gpu::Program program = twice_plus();
     Graph graph;

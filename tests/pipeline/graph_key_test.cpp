@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "framework/capture/cryptomatte.h"
+#include "framework/core/error.h"
 #include "tests/pipeline/effect_fixture.h"
 
 namespace aftershade::test {
@@ -145,6 +146,65 @@ TEST_F(GraphKeys, GiveEachFrameWhatAGraphOfItsOwnGives) {
             std::ranges::equal(used.color(capture_of(9)).floats(), fresh.color(capture_of(9)).floats()))
             << params;
     }
+}
+
+/// As a frame's header tells of it.
+Capture outline_of(const Capture& capture) {
+    Capture outline;
+    outline.header = capture.header;
+    for (const auto& [role, image] : capture.images) outline.images[role];
+    return outline;
+}
+
+TEST_F(GraphKeys, HoldOfAGraphThatWasBuiltBeforeThePixelsWereKnown) {
+    const std::string look = look_of(R"({ "effect": "shaped", "params": { "mode": "soft" } })");
+    const Image expected = Bench(effects_, look).color(capture_of(1));
+    for (const auto backend : {gpu::Backend::osmesa, gpu::Backend::egl_software}) {
+        Bench bench(effects_, look, {}, backend);
+        const Capture outline = outline_of(capture_of(1));
+        FrameInputs frame;
+        frame.capture = &outline;
+        bench.renderer().build_ahead(frame, {"color", "display"});
+        EXPECT_EQ(bench.renderer().graphs_built(), 1);
+        EXPECT_TRUE(std::ranges::equal(bench.color(capture_of(1)).floats(), expected.floats()));
+        EXPECT_EQ(bench.renderer().graphs_built(), 1);
+        EXPECT_FALSE(bench.renderer().can_build_ahead()) << "after a frame";
+    }
+}
+
+TEST_F(GraphKeys, DoNotHoldWhereTheHeaderToldAnotherStory) {
+    const std::string look = look_of(R"({ "effect": "shaped" })");
+    Capture wide = make_capture({.width = 9, .height = 5, .background_depth_m = 4}), flat = capture_of(1);
+    wide.header.frame = 1;
+    flat.images.erase("depth");
+    for (const Capture* told : {&wide, &flat}) {
+        Bench bench(effects_, look);
+        const Capture outline = outline_of(*told);
+        FrameInputs frame;
+        frame.capture = &outline;
+        bench.renderer().build_ahead(frame, {"color", "display"});
+        EXPECT_TRUE(std::ranges::equal(bench.color(capture_of(1)).floats(),
+                                       Bench(effects_, look).color(capture_of(1)).floats()));
+        EXPECT_EQ(bench.renderer().graphs_built(), 2);
+    }
+}
+
+TEST_F(GraphKeys, LeaveTheFaultsOfAnEarlyBuildToTheFrame) {
+    effects_.add_color("broken", "source * undeclared");
+    Bench bench(effects_, look_of(R"({ "effect": "broken" })"));
+    const Capture capture = capture_of(1);
+    FrameInputs frame;
+    frame.capture = &capture;
+    EXPECT_NO_THROW(bench.renderer().build_ahead(frame, {"color"}));
+    EXPECT_EQ(bench.renderer().graphs_built(), 0);
+    EXPECT_THROW(bench.run(capture), Error);
+}
+
+TEST_F(GraphKeys, WaitForThePixelsWhereAValueIsMeasuredInThem) {
+    const std::string measured = R"("reach": { "from": "depth", "uv": [0.5, 0.5] })";
+    Bench bench(effects_, look_of(R"({ "effect": "shaped", "params": { )" + measured + " } }"));
+    EXPECT_FALSE(bench.renderer().can_build_ahead());
+    EXPECT_TRUE(Bench(effects_, look_of(R"({ "effect": "shaped" })")).renderer().can_build_ahead());
 }
 
 // Where names take their ids out of ranges, and of several names, none shares an id with another.
