@@ -1,7 +1,7 @@
 // Gathers at one point what the lens spreads over it, from `light` or a coarse level of it. Lengths in px of that level; CoC differences
 // in px at full size. SILHOUETTES: in tiles where a surface lies clearly in front of another; elsewhere nothing is hidden, and software
 // GL, which runs both sides of a branch, is spared what follows from it.
-#include "taps.glsl"
+#include "loads.glsl"
 #include "plate.glsl"
 #include "levels.glsl"
 
