@@ -25,8 +25,7 @@ void main() {
     if (radius_px >= kLeastBlurPx || reach_px >= kLeastBlurPx) prepare_outline_at(center);
     bool is_own = radius_px >= kLeastBlurPx && (radius_px < kFullSizePx || is_lost);
     bool is_all = reach_px >= kLeastBlurPx && (!is_reached_far || is_lost), is_narrow = is_reached_far && !is_all && texelFetch(lit, p / kTile, 0).g > 0.5;
-    Gathered found = gather(Point(center, own, visible_coc, is_all ? reach_px : is_narrow ? kFullSizePx : kNotAsked,
-                                  is_narrow ? kFullSizePx : widest_radius_px(around_coc), is_narrow ? kNarrow : kAll,
+    Gathered found = gather(Point(center, own, visible_coc, is_all ? reach_px : is_narrow ? kFullSizePx : kNotAsked, is_narrow ? kNarrow : kAll,
                                   is_own ? radius_px : kNotAsked), around_coc);
     Back surface = found.surface;
     if (is_wide && !is_lost) {

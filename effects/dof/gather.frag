@@ -20,7 +20,7 @@ void main() {
     Coarse coarse = upsampled(p, own.coc, kQuarterAlikePx, imageSize(plate_quarter) - 1);
     bool is_found = coarse.likeness >= kLeastLikeness;
     bool is_over_found = is_found && reach_px > kHalfSizePx, is_back_found = is_found && radius_px > kHalfSizePx;
-    Gathered found = gather(Point(center, own, visible_coc, is_reached && !is_over_found ? reach_px : kNotAsked, widest_radius_px(around_coc), kWide,
+    Gathered found = gather(Point(center, own, visible_coc, is_reached && !is_over_found ? reach_px : kNotAsked, kWide,
                                   is_blurred && !is_back_found ? radius_px : kNotAsked), around_coc);
     Layer over = is_over_found ? coarse.over : found.over;
     Back surface = is_back_found ? coarse.surface : found.surface;

@@ -13,7 +13,7 @@ void main() {
     float radius_px = abs(own.coc);
     bool is_blurred = radius_px > kHalfSizePx - kQuarterAlikePx, is_reached = reach_px > kFullSizePx;
     if (is_reached || is_blurred) prepare_outline_at(center);
-    Gathered found = gather(Point(center, own, visible_coc, is_reached ? reach_px : kNotAsked, widest_radius_px(around_coc), kWide,
+    Gathered found = gather(Point(center, own, visible_coc, is_reached ? reach_px : kNotAsked, kWide,
                                   is_blurred ? radius_px : kNotAsked), around_coc);
     out_front_quarter = pack_light(stored(found.over));
     out_back_quarter = pack_light(Light(found.surface.color, found.surface.share));
