@@ -5,6 +5,7 @@
 #define LOWER_BACK back
 #define LOWER_HIDES hides
 #define LOWER_PLATE plate_half
+#define LOWER_LEVEL 1
 #include "upsample.glsl"
 
 void main() {
@@ -19,7 +20,7 @@ void main() {
     float visible_coc = tap_light(p).coc, radius_px = abs(own.coc);
     float reach_px = front_reach_px(around_coc, own.coc, visible_coc);
     bool is_wide = radius_px > kFullSizePx - 1.0, is_reached_far = reach_px > kFullSizePx;
-    Coarse coarse = upsampled(p, own.coc, kHalfAlikePx, (frame.size + 1) / 2 - 1);
+    Coarse coarse = upsampled(p, own.coc, visible_coc, kHalfAlikePx, kFullSizePx, (frame.size + 1) / 2 - 1);
     bool is_lost = coarse.likeness < kLeastLikeness;
 
     if (radius_px >= kLeastBlurPx || reach_px >= kLeastBlurPx) prepare_outline_at(center);

@@ -6,6 +6,7 @@
 #define LOWER_BACK back_quarter
 #define LOWER_HIDES hides_quarter
 #define LOWER_PLATE plate_quarter
+#define LOWER_LEVEL 2
 #include "upsample.glsl"
 
 void main() {
@@ -17,7 +18,7 @@ void main() {
     float radius_px = abs(own.coc);
     bool is_blurred = radius_px > kFullSizePx - 1.0, is_reached = reach_px > kFullSizePx;
     if (is_reached || is_blurred) prepare_outline_at(center);
-    Coarse coarse = upsampled(p, own.coc, kQuarterAlikePx, imageSize(plate_quarter) - 1);
+    Coarse coarse = upsampled(p, own.coc, visible_coc, kQuarterAlikePx, kHalfSizePx, imageSize(plate_quarter) - 1);
     bool is_found = coarse.likeness >= kLeastLikeness;
     bool is_over_found = is_found && reach_px > kHalfSizePx, is_back_found = is_found && radius_px > kHalfSizePx;
     Gathered found = gather(Point(center, own, visible_coc, is_reached && !is_over_found ? reach_px : kNotAsked, kWide,
