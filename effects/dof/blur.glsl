@@ -1,7 +1,7 @@
 // Gathers at one point what the lens spreads over it, from `light` or a coarse level of it. Lengths in px of that level; CoC differences
 // in px at full size. SILHOUETTES: in tiles where a surface lies clearly in front of another; elsewhere nothing is hidden, and software
 // GL, which runs both sides of a branch, is spared what follows from it.
-#include "taps.glsl"
+#include "loads.glsl"
 #include "plate.glsl"
 #include "levels.glsl"
 
@@ -21,10 +21,11 @@ struct Back {
 // Which taps count in front of a point: blurs too narrow for half size, the wider ones, or all.
 const int kNarrow = 0, kWide = 1, kAll = 2;
 
-// In a coarse level, what is in focus would leak into the texel beside it.
-float part_of(int which, float coc, bool is_coarse) {
-    float wide = clamp(abs(coc) - kFullSizePx + 1.0, 0.0, 1.0), blurred = is_coarse ? clamp(2.0 * abs(coc) - 1.0, 0.0, 1.0) : 1.0;
-    return which == kAll ? blurred : which == kWide ? wide : 1.0 - wide;
+// The part of a tap that counts, as a line over its CoC radius in px, cut to 0 and 1: slope and value at 0. In a coarse level, what is in
+// focus would leak into the texel beside it.
+vec2 part_of(int which, bool is_coarse) {
+    vec2 wide = vec2(1.0, 1.0 - kFullSizePx), narrow = vec2(-1.0, kFullSizePx), all = is_coarse ? vec2(2.0, -1.0) : vec2(0.0, 1.0);
+    return which == kAll ? all : which == kWide ? wide : narrow;
 }
 
 // Bilinear interpolation between texels of half size widens a blur: at the pixels, all a quarter of a texel off, by a variance of
@@ -46,7 +47,6 @@ struct Point {
     Light own;
     float visible_coc;  // of the surface that the point shows
     float reach_px;     // how far what is in front of it may reach it; negative: not asked for
-    float widest_px;    // CoC radius of what may
     int which;
     float radius_px;    // of its own aperture; negative: not asked for
 };
@@ -62,64 +62,102 @@ struct Sums {
     float weight, behind;
 };
 
+// A point as the texels of one level see it; apothems in texels. What is not asked for has values by which its weights are 0.
+struct Aim {
+    vec2 center;
+    float reach;                       // of all that is taken
+    float apothem_per_px, shrink;      // of a tap, by its CoC radius
+    vec2 part;                         // of a tap, by its CoC radius: slope and value at 0
+    float front_coc, visible_coc;      // what lies in front of them counts
+    float own_apothem, seen_apothem;   // of the apertures of the point's own and its visible surface
+};
+
+const float kBehindNothing = -10000.0;  // px
+
+Aim aim_at(Point point, int level, bool is_coarse) {
+    float texels_per_px = 1.0 / float(1 << level), apothem_per_px = aperture.inradius * texels_per_px;
+    bool asks_front = point.reach_px >= 0.0;
+    Aim aim;
+    aim.center = point.center_px * texels_per_px;
+    aim.reach = max(max(point.reach_px, point.radius_px), 0.0) * texels_per_px;
+    aim.apothem_per_px = apothem_per_px;
+    aim.shrink = shrink_px(point.reach_px) * apothem_per_px;
+    aim.part = part_of(point.which, is_coarse);
+    aim.front_coc = asks_front ? point.own.coc : kBehindNothing;
+    aim.visible_coc = asks_front ? point.visible_coc : kBehindNothing;
+    aim.own_apothem = point.radius_px * apothem_per_px;
+    aim.seen_apothem = asks_front ? abs(point.visible_coc) * apothem_per_px - aim.shrink : -1.0;
+    return aim;
+}
+
+float cover_apothem(float apothem, float gauge) { return clamp(apothem + 0.5 - gauge, 0.0, 1.0); }
+
 // In front of a point, by its own CoC.
-void add_front(inout Sums sums, Point point, Light tap, vec2 offset, float texels_per_px, float shrink, bool is_coarse, bool is_reached) {
-    float radius = abs(tap.coc) * texels_per_px - shrink, part = is_reached ? part_of(point.which, tap.coc, is_coarse) : 0.0;
-    float spread = part * cover(radius, gauge(offset, tap.coc)) / spread_area(radius);
-    float weight = in_front(tap.coc, point.own.coc) * spread;
+void add_front(inout Sums sums, Aim aim, Light tap, GaugeRow row, float dx) {
+    float apothem = abs(tap.coc) * aim.apothem_per_px - aim.shrink, part = clamp(abs(tap.coc) * aim.part.x + aim.part.y, 0.0, 1.0);
+    float spread = part * cover_apothem(apothem, gauge_apothem(row, dx, tap.coc)) / spread_area_apothem(apothem);
+    float before = in_front(tap.coc, aim.front_coc), weight = before * spread;
     sums.front += weight * tap.color;
     sums.opacity += weight;
 #ifdef SILHOUETTES
-    float visible_coc = point.visible_coc;
-    sums.hides += spread * vec2(in_front(tap.coc, visible_coc), in_front(tap.coc, min(visible_coc + 2.0 * kClear, point.own.coc)));
-    float seen = is_reached ? cover(abs(visible_coc) * texels_per_px - shrink, gauge(offset, visible_coc)) : 0.0;
+    float visible_coc = aim.visible_coc;
+    sums.hides += spread * vec2(in_front(tap.coc, visible_coc), in_front(tap.coc, min(visible_coc + 2.0 * kClear, aim.front_coc)));
+    float seen = cover_apothem(aim.seen_apothem, gauge_apothem(row, dx, visible_coc));
     sums.aperture += seen;
-    sums.own += seen * part * in_front(tap.coc, point.own.coc);
+    sums.own += seen * part * before;
 #endif
 }
 
 // The point's own surface and what is behind it, each seen through the point's own aperture.
-void add_back(inout Sums sums, Point point, Light tap, vec2 offset, float radius) {
-    float weight = cover(radius, gauge(offset, point.own.coc));
-    sums.behind += weight * in_front(point.own.coc, tap.coc);
-    weight *= 1.0 - in_front(tap.coc, point.own.coc);
+void add_back(inout Sums sums, Aim aim, float own_coc, Light tap, GaugeRow row, float dx) {
+    float weight = cover_apothem(aim.own_apothem, gauge_apothem(row, dx, own_coc));
+    sums.behind += weight * in_front(own_coc, tap.coc);
+    weight *= 1.0 - in_front(tap.coc, own_coc);
     sums.color += weight * tap.color;
     sums.weight += weight;
 }
 
-// First and last texel of a row that an outline of this radius may cover, and no further than `reach`. Empty where there is none.
-ivec2 texels_of_row(vec2 center, int y, float reach, float radius) {
-    float dy = float(y) + 0.5 - center.y;
-    int half_width = int(ceil(sqrt(max(reach * reach - dy * dy, 0.0)))), middle = int(floor(center.x));
-    vec2 covered = center.x - 0.5 + columns(radius, dy);
-    bool is_in = y >= int(floor(center.y - reach)) && y <= int(floor(center.y + reach));
-    return is_in ? ivec2(max(middle - half_width, int(ceil(covered.x))), min(middle + half_width, int(floor(covered.y)))) : ivec2(1 << 20, -(1 << 20));
+// A row of texels: y in `light` or `coarse`, and in the clean plate of that level.
+struct TapRow {
+    int y, plate_y;
+    GaugeRow gauge;
+};
+
+TapRow tap_row(int y, vec2 center, int level, bool is_coarse, Grid grid) {
+    int inside = clamp(y, 0, grid.last.y);
+    return TapRow(is_coarse ? inside + grid.origin.y : inside, is_coarse ? plate_row(inside, level) : inside, gauge_row(center.y - float(y) - 0.5));
 }
 
-// The loops over a disk test at their end: llvmpipe runs the body of the others once more, with every pixel masked. One texel is
+void add_tap(inout Sums sums, Aim aim, float own_coc, int x, TapRow row, int level, bool is_coarse, Grid grid) {
+    int inside = clamp(x, 0, grid.last.x);
+    Light tap = unpack_light(is_coarse ? imageLoad(coarse, ivec2(inside + grid.origin.x, row.y)) : imageLoad(light, ivec2(inside, row.y)));
+    float dx = aim.center.x - float(x) - 0.5;
+    add_front(sums, aim, tap, row.gauge, dx);
+#ifdef SILHOUETTES
+    // The plate in place of what hides the point's surface and those behind it.
+    Light patched = is_coarse ? plate_coarse(inside, row.plate_y, level) : plate_fine(inside, row.plate_y, tap);
+    if (tap.coc < own_coc - kClear) tap = patched;
+#endif
+    add_back(sums, aim, own_coc, tap, row.gauge, dx);
+}
+
+// Two rows a turn. The loops test at their end: llvmpipe runs the body of the others once more, with every pixel masked. One texel is
 // taken at least.
 void add_taps(inout Sums sums, Point point, int level, bool is_coarse) {
-    float texels_per_px = 1.0 / float(1 << level);
-    vec2 center = point.center_px * texels_per_px;
-    float front_reach = point.reach_px * texels_per_px + 0.5, radius = point.radius_px * texels_per_px;
-    float shrink = shrink_px(point.reach_px) * texels_per_px;
-    float widest = point.widest_px * texels_per_px, reach = max(max(front_reach, radius + 0.5), 0.0);
+    Aim aim = aim_at(point, level, is_coarse);
     Grid grid = grid_of(level);
-    int y = int(floor(center.y - reach)), last = int(floor(center.y + reach));
+    int y = int(floor(aim.center.y - aim.reach - 0.5)), last = int(floor(aim.center.y + aim.reach + 0.5));
     do {
-        ivec2 reached = texels_of_row(center, y, front_reach, widest), seen = texels_of_row(center, y, radius + 0.5, radius);
-        int x = min(reached.x, seen.x), end = max(reached.y, seen.y);
+        TapRow a = tap_row(y, aim.center, level, is_coarse, grid), b = tap_row(y + 1, aim.center, level, is_coarse, grid);
+        vec2 columns_a = columns(aim.reach, -a.gauge.dy), columns_b = columns(aim.reach, -b.gauge.dy);
+        float middle = aim.center.x - 0.5;
+        int x = int(ceil(middle + min(columns_a.x, columns_b.x))), end = int(floor(middle + max(columns_a.y, columns_b.y)));
         do {
-            Light tap = is_coarse ? tap_coarse(ivec2(x, y), grid) : tap_light(ivec2(x, y));
-            vec2 offset = center - vec2(x, y) - 0.5;
-            add_front(sums, point, tap, offset, texels_per_px, shrink, is_coarse, x >= reached.x && x <= reached.y);
-#ifdef SILHOUETTES
-            // The plate in place of what hides the point's surface and those behind it.
-            if (tap.coc < point.own.coc - kClear) tap = is_coarse ? plate_coarse(ivec2(x, y), level, grid) : plate_tap(ivec2(x, y), tap);
-#endif
-            add_back(sums, point, tap, offset, radius);
+            add_tap(sums, aim, point.own.coc, x, a, level, is_coarse, grid);
+            add_tap(sums, aim, point.own.coc, x, b, level, is_coarse, grid);
         } while (++x <= end);
-    } while (++y <= last);
+        y += 2;
+    } while (y <= last);
 }
 
 // What lies in front of CoC radius `own.coc` spreads over the point as far as its own CoC reaches, thinned by that area. Where the
@@ -152,9 +190,6 @@ Gathered gather(Point point, vec4 around_coc) {
     int front_level = level_for(max(point.reach_px, 1.0), around_coc), back_level = level_for(max(point.radius_px, 1.0), around_coc);
     if (!asks_back) back_level = front_level;
     if (!asks_front) front_level = back_level;
-#ifdef SILHOUETTES
-    if (point.visible_coc < point.own.coc - kClear) point.widest_px = max(point.widest_px, abs(point.visible_coc));
-#endif
     // One loop serves both where their levels are the same. Of two loops one takes its taps from level 0 alone.
     int turn = 0, turns = front_level == back_level ? 1 : 2;
     if (asks_front || asks_back) do {

@@ -1,5 +1,5 @@
 #include <lens/highlight.glsl>
-#include "taps.glsl"
+#include "loads.glsl"
 #include <lens/neighbours.glsl>
 
 // What lies behind a surface near its silhouette, continued from both ends of chords through the pixel. Chords whose ends are
@@ -39,7 +39,8 @@ void step_on(inout Walk walk, float tap_coc, bool is_outside, float own_coc, flo
     walk.is_over = walk.is_over || is_outside || is_found;
 }
 
-float coc_near(ivec2 p) { return as_half(texelFetch(coc, p, 0).r); }
+float coc_near(ivec2 p) { return as_half(imageLoad(coc, p).r); }
+float coarse_coc_at(ivec2 texel, Grid grid) { return imageLoad(coarse_coc, clamp(texel, ivec2(0), grid.last) + grid.origin).r; }
 
 struct Walks { Walk a, b; };
 
@@ -78,7 +79,8 @@ struct End {
 End end_at(vec2 center, vec2 direction, float distance_px) {
     int level = level_of(distance_px);
     vec2 q = center + max(distance_px, 0.0) * direction;
-    Light found = unpack_light(texelFetch(light, clamp(ivec2(q) >> level, ivec2(0), grid_of(level).last), level));
+    ivec2 texel = ivec2(q) >> level;
+    Light found = level == 0 ? tap_light(texel) : tap_coarse(texel, grid_of(level));
 #ifdef SEES_NEIGHBOURS
     End end = End(found, vec4(0.0), 0.0, distance_px);
     ivec2 last = frame.size - 1;

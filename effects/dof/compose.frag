@@ -1,6 +1,11 @@
 #version 450 core
 #include <pass>
 #include "blur.glsl"
+#define LOWER_FRONT front
+#define LOWER_BACK back
+#define LOWER_HIDES hides
+#define LOWER_PLATE plate_half
+#define LOWER_LEVEL 1
 #include "upsample.glsl"
 
 void main() {
@@ -11,18 +16,17 @@ void main() {
     Light own = tap_light(p);
 #endif
     vec2 center = vec2(p) + 0.5;
-    vec4 around_coc = texelFetch(around, p / kTile, 0);
+    vec4 around_coc = imageLoad(around, p / kTile);
     float visible_coc = tap_light(p).coc, radius_px = abs(own.coc);
     float reach_px = front_reach_px(around_coc, own.coc, visible_coc);
     bool is_wide = radius_px > kFullSizePx - 1.0, is_reached_far = reach_px > kFullSizePx;
-    Coarse coarse = upsampled(p, own.coc, kHalfAlikePx, (frame.size + 1) / 2 - 1, front, back, hides, plate_half);
+    Coarse coarse = upsampled(p, own.coc, visible_coc, kHalfAlikePx, kFullSizePx, (frame.size + 1) / 2 - 1);
     bool is_lost = coarse.likeness < kLeastLikeness;
 
     if (radius_px >= kLeastBlurPx || reach_px >= kLeastBlurPx) prepare_outline_at(center);
     bool is_own = radius_px >= kLeastBlurPx && (radius_px < kFullSizePx || is_lost);
     bool is_all = reach_px >= kLeastBlurPx && (!is_reached_far || is_lost), is_narrow = is_reached_far && !is_all && texelFetch(lit, p / kTile, 0).g > 0.5;
-    Gathered found = gather(Point(center, own, visible_coc, is_all ? reach_px : is_narrow ? kFullSizePx : kNotAsked,
-                                  is_narrow ? kFullSizePx : widest_radius_px(around_coc), is_narrow ? kNarrow : kAll,
+    Gathered found = gather(Point(center, own, visible_coc, is_all ? reach_px : is_narrow ? kFullSizePx : kNotAsked, is_narrow ? kNarrow : kAll,
                                   is_own ? radius_px : kNotAsked), around_coc);
     Back surface = found.surface;
     if (is_wide && !is_lost) {

@@ -2,21 +2,26 @@
 #include <pass>
 #define HALF_SIZE
 #include "blur.glsl"
+#define LOWER_FRONT front_quarter
+#define LOWER_BACK back_quarter
+#define LOWER_HIDES hides_quarter
+#define LOWER_PLATE plate_quarter
+#define LOWER_LEVEL 2
 #include "upsample.glsl"
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
-    Light own = unpack_light(texelFetch(plate_half, p, 0));
+    Light own = unpack_light(imageLoad(plate_half, p));
     vec2 center = 2.0 * vec2(p) + 1.0;
     vec4 around_coc = texelFetch(around, min(2 * p, frame.size - 1) / kTile, 0);
-    float visible_coc = unpack_light(texelFetch(light, min(p, grid_of(1).last), 1)).coc, reach_px = front_reach_px(around_coc, own.coc, visible_coc);
+    float visible_coc = tap_coarse(p, grid_of(1)).coc, reach_px = front_reach_px(around_coc, own.coc, visible_coc);
     float radius_px = abs(own.coc);
     bool is_blurred = radius_px > kFullSizePx - 1.0, is_reached = reach_px > kFullSizePx;
     if (is_reached || is_blurred) prepare_outline_at(center);
-    Coarse coarse = upsampled(p, own.coc, kQuarterAlikePx, ivec2(plate_quarter_size.xy) - 1, front_quarter, back_quarter, hides_quarter, plate_quarter);
+    Coarse coarse = upsampled(p, own.coc, visible_coc, kQuarterAlikePx, kHalfSizePx, imageSize(plate_quarter) - 1);
     bool is_found = coarse.likeness >= kLeastLikeness;
     bool is_over_found = is_found && reach_px > kHalfSizePx, is_back_found = is_found && radius_px > kHalfSizePx;
-    Gathered found = gather(Point(center, own, visible_coc, is_reached && !is_over_found ? reach_px : kNotAsked, widest_radius_px(around_coc), kWide,
+    Gathered found = gather(Point(center, own, visible_coc, is_reached && !is_over_found ? reach_px : kNotAsked, kWide,
                                   is_blurred && !is_back_found ? radius_px : kNotAsked), around_coc);
     Layer over = is_over_found ? coarse.over : found.over;
     Back surface = is_back_found ? coarse.surface : found.surface;

@@ -58,12 +58,41 @@ float gauge(vec2 offset, float coc) {
     return outline;
 }
 
+// The gauge in apothems, at places of a row: in these units cover() has a slope of 1 px. What the row shares stands once.
+const bool kIsEvenPolygon = BLADES >= 4 && BLADES % 2 == 0 && CURVATURE == 0.0 && CAT_EYE == 0.0;
+struct GaugeRow {
+    float dy;
+    float along[max(kNormals, 1)];
+};
+
+GaugeRow gauge_row(float dy) {
+    GaugeRow row;
+    row.dy = dy;
+#if BLADES >= 3
+    for (int i = 0; i < kNormals; ++i) row.along[i] = aperture.inradius * edge_normals[i].y * dy;
+#endif
+    return row;
+}
+
+float gauge_apothem(GaugeRow row, float dx, float coc) {
+#if BLADES >= 3
+    if (kIsEvenPolygon) {
+        float straight = 0.0;
+        for (int i = 0; i < kNormals; ++i) straight = max(straight, abs(aperture.inradius * edge_normals[i].x * dx + row.along[i]));
+        return straight;
+    }
+#endif
+    return aperture.inradius * gauge(vec2(dx, row.dy), coc);
+}
+
 // Sum of cover() over the pixels that a light of this CoC radius reaches, at least one: the aperture's area in px, and what the rim's
 // slope of 1 px adds to it.
 float spread_area(float radius_px) {
     float slope = 1.0 / (12.0 * aperture.inradius * aperture.inradius);
     return max(open_area * (radius_px * radius_px + slope), 1.0);
 }
+
+float spread_area_apothem(float apothem) { return max(open_area / (aperture.inradius * aperture.inradius) * (apothem * apothem + 1.0 / 12.0), 1.0); }
 
 // Coverage of a pixel whose gauge is this by the outline of this radius: 1 inside, half on the outline.
 float cover(float radius_px, float gauge_px) {

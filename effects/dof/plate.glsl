@@ -1,11 +1,9 @@
 #include "plate_at.glsl"
 
-// What plate_at gives, for a texel that shows `visible`: of level 0, and of a coarse one.
-Light plate_tap(ivec2 texel, Light visible) {
-    Light patched = unpack_light(texelFetch(plate, clamp(texel, ivec2(0), frame.size - 1), 0));
+// What plate_at gives, for a texel that shows `visible`: of level 0, and of a coarse one, which lies within the level.
+Light plate_fine(int x, int y, Light visible) {
+    Light patched = unpack_light(imageLoad(plate, ivec2(x, y)));
     return is_patch(patched) ? patched : visible;
 }
-Light plate_coarse(ivec2 texel, int level, Grid grid) {
-    texel = clamp(texel, ivec2(0), grid.last) << (level - 1);
-    return unpack_light(texelFetch(plate_half, min(texel, (frame.size + 1) / 2 - 1), 0));
-}
+int plate_row(int y, int level) { return min(y << (level - 1), (frame.size.y + 1) / 2 - 1); }
+Light plate_coarse(int x, int row, int level) { return unpack_light(imageLoad(plate_half, ivec2(min(x << (level - 1), (frame.size.x + 1) / 2 - 1), row))); }

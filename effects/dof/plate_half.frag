@@ -1,6 +1,6 @@
 #version 450 core
 #include <pass>
-#include "taps.glsl"
+#include "loads.glsl"
 #include "plate_at.glsl"
 #include "majority.glsl"
 

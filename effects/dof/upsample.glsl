@@ -2,34 +2,41 @@
 struct Coarse {
     Layer over;
     Back surface;
-    float likeness;  // share of the texels, by bilinear weight, that show the surface
+    float likeness;  // share of the texels, by bilinear weight, that show the surface or stand for it
 };
 
 // Where a thin thing is lost at the lower resolution, its texels are gathered one by one.
 const float kLeastLikeness = 0.6;
 
-// p: at twice the resolution; alike_px: a difference of CoC radii of two surfaces.
-Coarse upsampled(ivec2 p, float coc, float alike_px, ivec2 last, usampler2D fronts, usampler2D backs, sampler2D hidden, usampler2D owns) {
+// p: at twice the resolution of LOWER_FRONT, LOWER_BACK, LOWER_HIDES, LOWER_PLATE and LOWER_LEVEL of `coarse`; alike_px: a difference of
+// CoC radii of two surfaces. Texels that show the visible surface count too: where its clean plate ends, one texel has the plate below
+// it and the next has not, but both make the same picture. What a surface adds to that is weighted by how much of it is seen.
+Coarse upsampled(ivec2 p, float coc, float visible_coc, float alike_px, float least_px, ivec2 last) {
+    Grid grid = grid_of(LOWER_LEVEL);
+    float seen = 0.0;
     vec2 at = 0.5 * (vec2(p) + 0.5) - 0.5;
     ivec2 corner = ivec2(floor(at));
     vec2 part = at - vec2(corner);
     Coarse coarse = Coarse(kNothing, Back(vec4(0.0), 0.0), 0.0);
     for (int i = 0; i < 4; ++i) {
         ivec2 to = ivec2(i & 1, i >> 1), texel = clamp(corner + to, ivec2(0), last);
-        Light b = unpack_light(texelFetch(backs, texel, 0)), f = unpack_light(texelFetch(fronts, texel, 0));
+        Light b = unpack_light(imageLoad(LOWER_BACK, texel)), f = unpack_light(imageLoad(LOWER_FRONT, texel));
         if (b.coc < 0.0) continue;  // of a tile that is not blurred so far
         vec2 linear = mix(1.0 - part, part, vec2(to));
-        float texel_coc = unpack_light(texelFetch(owns, texel, 0)).coc;
-        float weight = linear.x * linear.y * max(1.0 - abs(texel_coc - coc) / alike_px, 0.0);
+        float texel_coc = unpack_light(imageLoad(LOWER_PLATE, texel)).coc, unlike_px = abs(texel_coc - coc);
+        float visible_unlike_px = abs(texelFetch(coarse_coc, min(texel, grid.last) + grid.origin, 0).r - visible_coc);
+        if (min(abs(texel_coc), abs(coc)) > least_px) unlike_px = min(unlike_px, visible_unlike_px);
+        float weight = linear.x * linear.y * max(1.0 - unlike_px / alike_px, 0.0), uncovered = weight * max(1.0 - f.coc, 1e-3);
         coarse.likeness += weight;
-        coarse.surface.color += weight * b.color;
-        coarse.surface.share += weight * b.coc;
+        seen += uncovered;
+        coarse.surface.color += uncovered * b.color;
+        coarse.surface.share += uncovered * b.coc;
         coarse.over.color += weight * f.color;
         coarse.over.opacity += weight * f.coc;
-        coarse.over.hides += weight * texelFetch(hidden, texel, 0).rg;
+        coarse.over.hides += weight * imageLoad(LOWER_HIDES, texel).rg;
     }
-    float scale = 1.0 / max(coarse.likeness, 1e-6);
+    float scale = 1.0 / max(coarse.likeness, 1e-6), surface_scale = 1.0 / max(seen, 1e-9);
     coarse.over = Layer(coarse.over.color * scale, coarse.over.opacity * scale, coarse.over.hides * scale);
-    coarse.surface = Back(coarse.surface.color * scale, coarse.surface.share * scale);
+    coarse.surface = Back(coarse.surface.color * surface_scale, coarse.surface.share * surface_scale);
     return coarse;
 }
