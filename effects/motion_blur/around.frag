@@ -28,13 +28,54 @@ bool is_crowded(vec4 furthest, vec4 near, float near_m, float far_m) {
 #endif
 }
 
+// What moves by less than a cell's side comes over the tile from the cells beside it alone. Not with layers: a pixel that surfaces
+// share has light of those beside it.
+bool is_from_beside(float way) {
+#ifdef KNOWS_LAYERS
+    return false;
+#else
+    return way > 0.0 && way < float(kCell - 1);
+#endif
+}
+
+void take_nearest_cells(ivec2 tile, float way, inout vec4 low, inout vec4 high) {
+    const int kSide = kTile / kCell;
+    ivec2 last_cell = ivec2(cell_range_size.xy) - 1;
+    int last = is_from_beside(way) ? kSide : -2;  // other tiles take no turn of the loops
+    vec4 least = vec4(1e30), most = vec4(-1e30);
+    for (int y = -1; y <= last; ++y)
+        for (int x = -1; x <= last; ++x) {
+            ivec2 cell = clamp(kSide * tile + ivec2(x, y), ivec2(0), last_cell);
+            uvec4 range = texelFetch(cell_range, cell, 0);
+            least = min(least, unpack_path(range.xy));
+            most = max(most, unpack_path(range.zw));
+        }
+    low = last < 0 ? low : least;
+    high = last < 0 ? high : most;
+}
+
+// Alike within the distance of two samples of a long blur.
+bool is_even(vec4 furthest, vec4 low, vec4 high) {
+    vec4 spread = high - low;
+    vec2 apart = (spread.xy + spread.zw * kFurthestTime) * kFurthestTime;
+    return max(apart.x, apart.y) <= max(kAlike, sweep_px(furthest) / float(kTimes));
+}
+
+bool is_still(vec4 low, vec4 high) {
+    vec4 most = max(abs(low), abs(high));
+    vec2 way = (most.xy + most.zw * kFurthestTime) * kFurthestTime;
+    return dot(way, way) < kLeastWay * kLeastWay;
+}
+
 // Of the longest way nearby, in tiles: how far the search must go.
 int reach_tiles(ivec2 p) {
     int range = int(ceil(param.max_blur / float(kTile)));
     float way = 0.0;
-    for (int y = -range; y <= range; ++y)
-        for (int x = -range; x <= range; ++x)
-            way = max(way, textureLod(tile_way, (vec2(p + ivec2(x, y)) + 0.5) * tile_way_size.zw, 0.0).r);
+    for (int y = -range; y <= range; y += 2)
+        for (int x = -range; x <= range; x += 2) {
+            vec4 four = textureGather(tile_way, vec2(p + ivec2(x, y) + 1) * tile_way_size.zw);
+            way = max(way, max(max(four.x, four.y), max(four.z, four.w)));
+        }
     return min(int(ceil(way / float(kTile))), range);
 }
 
@@ -61,11 +102,10 @@ void main() {
             furthest = its_way > way ? path : furthest;
             way = max(way, its_way);
         }
-    vec4 spread = high - low;
-    vec2 apart = (spread.xy + spread.zw * kFurthestTime) * kFurthestTime;
+    take_nearest_cells(p, way, low, high);
     out_around_path = furthest;
     out_around_near = near;
     out_around_depth = near_m;
-    out_around_kind = way < kLeastWay ? kStill : max(apart.x, apart.y) <= kAlike ? kEven
+    out_around_kind = way < kLeastWay || is_still(low, high) ? kStill : is_even(furthest, low, high) ? kEven
                     : is_crowded(furthest, near, near_m, texelFetch(tile_way, p, 0).g) ? kCrowded : kUneven;
 }

@@ -30,14 +30,16 @@ float amount(vec3 rgb) { return rgb.r + rgb.g + rgb.b; }
 
 // The light at a place between pixels; that of the nearest one where the others outshine it or it outshines them: a light beside a
 // thing has a path of its own, and would be dragged along.
-vec4 light_at(vec2 point) {
+vec4 light_at(vec2 point, ivec2 texel) {
     const float kOutshines = 8.0;
-    vec4 mixed = color_at(point), nearest = texelFetch(color, texel_at(point), 0);
+    vec4 mixed = color_at(point), nearest = texelFetch(color, texel, 0);
     vec2 weight = 1.0 - abs(fract(point) - 0.5);
     float share = weight.x * weight.y, own = amount(nearest.rgb);
     float others = max(amount(mixed.rgb) - share * own, 0.0) / max(1.0 - share, 1e-3);
     return max(own, others) > kOutshines * min(own, others) ? nearest : mixed;
 }
+
+vec4 light_at(vec2 point) { return light_at(point, texel_at(point)); }
 
 bool outshines(vec2 place, vec2 other) {
     const float kOutshines = 4.0;
@@ -93,12 +95,16 @@ Found first_of(Finds finds) {
     return finds.far;
 }
 
-vec4 seen_at(vec2 point, vec4 furthest, vec4 other, Motion own, float t) {
-    Found seen = first_of(finds_at(point, furthest, other, t));
+// Of what comes, or of what lies behind the pixel's own thing.
+vec4 light_of(Found seen, vec2 point, Motion own, float t) {
     bool is_seen = seen.comes && seen.is_sure;
     vec2 beside = beside_at(point, own, t);
     vec4 light = light_at(is_seen ? seen.from : beside);
     return is_seen ? light : uncovered(point, beside, own, t, light);
+}
+
+vec4 seen_at(vec2 point, vec4 furthest, vec4 other, Motion own, float t) {
+    return light_of(first_of(finds_at(point, furthest, other, t)), point, own, t);
 }
 #endif
 
@@ -134,15 +140,24 @@ vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
     float shift = time_shift(furthest, taps), hidden_m = kInFront * own.depth_m;
     vec4 sum = vec4(0.0);
     uint open = 0u;  // times at which a second look is due
+    float apart = 1.0 / float(taps), t = kOpens + (0.5 + shift) * apart;
     do {
-        Found seen = what_comes(point, furthest, tap_time(i, shift, taps));
-        if (seen.comes && seen.is_sure && seen.depth_m <= hidden_m) sum += light_at(seen.from);
+        Found seen = what_comes(point, furthest, t);
+        t += apart;
+        if (seen.comes && seen.is_sure && seen.depth_m <= hidden_m) sum += light_at(seen.from, ivec2(seen.from));
         else open |= 1u << uint(i);
     } while (++i < taps);
-    while (open != 0u) {
-        sum += seen_at(point, furthest, own.path, own, tap_time(findLSB(open), shift, taps));
-        open &= open - 1u;
-    }
+    // Between the times of one slice its own thing moves by at most a px: one look does for all of them that are open. Tested at the
+    // end, as the loops over taps are.
+    int own_taps = min(tap_count(own.path), taps);
+    do {
+        int first = findLSB(open), slice = first * own_taps / taps, end = ((slice + 1) * taps + own_taps - 1) / own_taps;
+        uint now = open & (0xffffffffu >> uint(32 - end));
+        float at = kOpens + (0.5 * float(first + findMSB(now)) + 0.5 + shift) / float(taps);
+        vec4 light = light_of(what_comes(point, own.path, at), point, own, at);
+        sum += now == 0u ? vec4(0.0) : float(bitCount(now)) * light;
+        open &= ~now;
+    } while (open != 0u);
     return sum / float(taps);
 }
 #endif

@@ -4,6 +4,7 @@
 const float kFurthestTime = max(abs(kOpens), abs(kCloses));
 
 const int kTile = 16;        // side in px of the tiles, as effect.json declares it
+const int kCell = 8;         // side in px of a quarter of a tile, likewise
 const float kLeastWay = 0.25;  // px; less is no blur
 const float kAlike = 0.5;    // px that paths are apart and still the same motion
 const float kInFront = 1.03;  // times the depth of what is in front, from which on another thing is behind it
@@ -27,24 +28,32 @@ struct Motion {
 // The numbers of a path whose longest way is max_blur are at most 6 times as large. 16 bits keep them to 1/4000 of max_blur.
 float path_range_px() { return 8.0 * param.max_blur; }
 
+uvec2 pack_path(vec4 path) {
+    vec4 part = path * (1.0 / path_range_px());
+    return uvec2(packSnorm2x16(part.xy), packSnorm2x16(part.zw));
+}
+
+vec4 unpack_path(uvec2 words) {
+    // Not unpackSnorm2x16, which takes software GL twice as long.
+    ivec4 path = ivec4(int(words.x) << 16, int(words.x), int(words.y) << 16, int(words.y)) >> 16;
+    return vec4(path) * (path_range_px() / 32767.0);
+}
+
 // The share is the lowest 8 bits of the way, which are 1/30000 of it.
 uvec4 pack_motion(Motion m) {
-    vec4 part = m.path * (1.0 / path_range_px());
     uint way = floatBitsToUint(m.way_px);
 #ifdef KNOWS_LAYERS
     way = (way & ~255u) | uint(clamp(m.share, 0.0, 1.0) * 255.0 + 0.5);
 #endif
-    return uvec4(packSnorm2x16(part.xy), packSnorm2x16(part.zw), floatBitsToUint(m.depth_m), way);
+    return uvec4(pack_path(m.path), floatBitsToUint(m.depth_m), way);
 }
 
 Motion unpack_motion(uvec4 texel) {
-    // Not unpackSnorm2x16, which takes software GL twice as long.
-    ivec4 path = ivec4(int(texel.x) << 16, int(texel.x), int(texel.y) << 16, int(texel.y)) >> 16;
     float share = 1.0;
 #ifdef KNOWS_LAYERS
     share = float(texel.w & 255u) / 255.0;
 #endif
-    return Motion(vec4(path) * (path_range_px() / 32767.0), uintBitsToFloat(texel.z), uintBitsToFloat(texel.w), share);
+    return Motion(unpack_path(texel.xy), uintBitsToFloat(texel.z), uintBitsToFloat(texel.w), share);
 }
 
 // From px per frame since the frame before and to the next; `scale`: a factor of the motion.
@@ -64,6 +73,8 @@ bool is_alike(vec4 path, vec4 other) {
     return max(apart_px.x, apart_px.y) <= kAlike;
 }
 
+float sweep_px(vec4 path) { return distance(way_px(path, kOpens), way_px(path, kCloses)); }
+
 // One a px of the sweep, at least two: the loops over them test at their end, because llvmpipe runs the body of the others
 // once more, with every pixel masked.
-int tap_count(vec4 path) { return clamp(int(ceil(distance(way_px(path, kOpens), way_px(path, kCloses)))), 2, param.samples); }
+int tap_count(vec4 path) { return clamp(int(ceil(sweep_px(path))), 2, param.samples); }

@@ -11,6 +11,13 @@
 namespace aftershade::test::motion_blur {
 namespace {
 
+/// A box of 16 px, 56 to 72, that moves right by 24 px a frame: 12 px while the shutter is open.
+Capture box_that_moves_12_px() {
+    SyntheticScene scene{.width = 128, .height = 32, .background_depth_m = 5};
+    scene.box = SyntheticBox{.x = 32, .y = 0, .width = 16, .height = 32, .velocity_x = 24, .depth_m = 2};
+    return make_capture(scene, 1);
+}
+
 /// A small light at rest in front of a plane that moves: its own pixels show it, and a px around, which is
 /// how near a path must lead.
 TEST(MotionBlur, DoesNotDragALightAtRestAlongWhatMovesBehindIt) {
@@ -115,11 +122,28 @@ TEST(MotionBlur, SpreadsASlowThingOverTheFasterBackgroundBesideIt) {
     }
 }
 
+/// Wherever its edge lies in a tile of 16 px: tiles that nothing comes over are left as they are.
+TEST(MotionBlur, SpreadsWhatMovesByAFewPxOverTheTilesBesideIt) {
+    for (int left = 60; left < 76; left += 3)
+        for (const float way_px : {2.f, 6.f, 12.f}) {
+            Capture capture = stripes(160, 32);
+            Image& color = capture.images["color"];
+            each_pixel(color, [&](int x, int y) {
+                const bool is_thing = x >= left && x < left + 40;
+                for (int c = 0; c < 3; ++c) color.at(x, y, c) = is_thing ? 0.9f : 0.1f;
+                if (!is_thing) return;
+                capture.images["depth"].at(x, y, 0) = 2;
+                set_velocity(capture, x, y, way_px / float(kExposure), 0);
+            });
+            const Image blurred = blur(capture);
+            for (int x = left - 16; x < left + 56; ++x)
+                EXPECT_NEAR(blurred.at(x, 16, 0), 0.1 + 0.8 * coverage(x, left, left + 40, way_px), 0.06)
+                    << x << " from " << left << ", " << way_px << " px";
+        }
+}
+
 TEST(MotionBlur, OpensAtTheFramesTimeOrClosesThen) {
-    // A box of 16 px that moves right by 24 px a frame: 12 px while the shutter is open.
-    SyntheticScene scene{.width = 128, .height = 32, .background_depth_m = 5};
-    scene.box = SyntheticBox{.x = 32, .y = 0, .width = 16, .height = 32, .velocity_x = 24, .depth_m = 2};
-    const Capture capture = make_capture(scene, 1);  // from 56 to 72
+    const Capture capture = box_that_moves_12_px();
     const auto middle_px = [&](const char* phase) {
         const Image blurred = blur(capture, fmt::format(R"("shutter_phase": "{}")", phase));
         double sum = 0, moment = 0;
@@ -133,9 +157,7 @@ TEST(MotionBlur, OpensAtTheFramesTimeOrClosesThen) {
 }
 
 TEST(MotionBlur, IsScaledByObject) {
-    SyntheticScene scene{.width = 128, .height = 32, .background_depth_m = 5};
-    scene.box = SyntheticBox{.x = 32, .y = 0, .width = 16, .height = 32, .velocity_x = 24, .depth_m = 2};
-    const Capture capture = make_capture(scene, 1);
+    const Capture capture = box_that_moves_12_px();
     const auto rows = [](double scale) {
         return fmt::format(R"("objects": {{"rows": [{{"object": 2, "scale": {}}}]}})", scale);
     };

@@ -4,10 +4,10 @@
 const int kBlock = 4;
 
 bool moving_blocks(ivec2 block) {
-    ivec2 last = ivec2(tile_moves_size.xy) - 1, corner = kBlock * block;
+    ivec2 corner = kBlock * block;
     int range = int(ceil(param.max_blur / float(kTile))) + 1;
-    for (int y = max(corner.y - range, 0); y <= min(corner.y + kBlock - 1 + range, last.y); ++y)
-        for (int x = max(corner.x - range, 0); x <= min(corner.x + kBlock - 1 + range, last.x); ++x)
-            if (texelFetch(tile_moves, ivec2(x, y), 0).r != 0u) return true;
+    for (int y = corner.y - range; y < corner.y + kBlock + range; y += 2)
+        for (int x = corner.x - range; x < corner.x + kBlock + range; x += 2)
+            if (any(notEqual(textureGather(tile_moves, vec2(x + 1, y + 1) * tile_moves_size.zw), uvec4(0u)))) return true;
     return false;
 }
