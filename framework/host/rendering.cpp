@@ -98,10 +98,8 @@ PipelineRenderer& Rendering::renderer() {
     if (!renderer_) {
         renderer_ = std::make_shared<PipelineRenderer>(context, look_->pipeline, host_->programs(),
                                                        NativeSources{host_->natives.get(), nullptr});
-        // What threads compile reaches this one through the cache. Which threads use the display of a shared
-        // context is for the calling program to say.
-        if (!host_->options.cache.empty() && !host_->options.share)
-            renderer_->compile_on_threads(allotted_cores() - 1);
+        // Which threads use the display of a shared context is for the calling program to say.
+        if (!host_->options.share) renderer_->compile_on_threads(allotted_cores() - 1);
         form_ = look_->form;
         telemetry_ = false;
         const std::lock_guard lock(host_->mutex);
