@@ -76,6 +76,25 @@ TEST(Bloom, RadiusIsTheStandardDeviationOfTheWidestBlur) {
     }
 }
 
+/// What effect.json declares as its reach: level n of the pyramid is read up to 2^n < 1.64 radius + 2, and each
+/// of its texels within 6 times 2^n px.
+TEST(Bloom, GivesNoLightToPixelsBeyondTenTimesItsRadius) {
+    for (const int radius : {1, 5, 20}) {
+        const std::string params = R"("fireflies": "keep", "scatter": 1, "intensity": 1, "radius": )";
+        LookRunner runner(look_of_step("bloom", params + std::to_string(radius)), gpu::Backend::osmesa);
+        for (const int x : {383, 384, 389, 511, 512}) {
+            const Image image = runner.color(point(x, 7, 1e6f, 896, 16));
+            const int reach = 10 * radius + 12;
+            EXPECT_GT(image.at(x + radius, 7, 0), 0) << radius << ", " << x;
+            for (int y = 0; y < 16; ++y)
+                for (int there = 0; there < 896; ++there) {
+                    if (std::abs(there - x) <= reach) continue;
+                    ASSERT_EQ(image.at(there, y, 0), 0) << radius << ", " << x;
+                }
+        }
+    }
+}
+
 TEST(Bloom, IsTheMirrorImageOfTheMirrorImagesBloom) {
     Capture capture = make_capture({.width = 64, .height = 64}), mirrored = capture;
     for (int y = 0; y < 64; ++y)

@@ -87,6 +87,26 @@ TEST(Sanitize, DimsAFireflyToItsFactorOfTheMedian) {
     EXPECT_EQ(reported.taps.at("sanitize.faults").at(4, 4, 3), 1);
 }
 
+TEST(Sanitize, CountsTheFaultsOfEachKind) {
+    Capture capture = ramp();
+    Image& color = capture.images["color"];
+    for (const int x : {1, 4, 7}) color.at(x, 2, 0) = kNan;
+    for (const int x : {2, 8}) color.at(x, 6, 1) = kInfinity;
+    color.at(12, 4, 2) = -1;
+    host::Host host({.data = AFTERSHADE_SOURCE_DIR, .backend = host::Backend(int(gpu::Backend::osmesa))});
+    host::Session session =
+        host.parse_look(R"({"aftershade": 1, "steps": [{"effect": "sanitize"}]})").session();
+    const FrameResult frame = host::Access::frame(session.render(
+        host::Access::capture({capture, {}, 1}), {.telemetry = true, .non_finite = host::NonFinite::ignore}));
+    const auto& told = frame.telemetry->steps.at("sanitize");
+    const double pixels = 16 * 9;
+    EXPECT_EQ(told.at("nan").sum, 3);
+    EXPECT_DOUBLE_EQ(told.at("nan").mean, 3 / pixels);
+    EXPECT_EQ(told.at("infinite").sum, 2);
+    EXPECT_EQ(told.at("negative").sum, 1);
+    EXPECT_EQ(told.at("fireflies").sum, 0);
+}
+
 TEST(Sanitize, WorksInTheCornerWhereNeighboursAreFew) {
     Capture capture = ramp();
     capture.images["color"].at(0, 0, 0) = kNan;

@@ -33,15 +33,15 @@ private:
 
     void read_directive() {
         const int line = tokens_[at_].line;
-        const std::string kind = at_ + 1 < tokens_.size() ? tokens_[at_ + 1].text : "";
-        if (kind == "define" && at_ + 2 < tokens_.size()) macros.insert(tokens_[at_ + 2].text);
+        const std::string_view kind = at_ + 1 < tokens_.size() ? tokens_[at_ + 1].text : "";
+        if (kind == "define" && at_ + 2 < tokens_.size()) macros.emplace(tokens_[at_ + 2].text);
         if (kind == "extension") has_extension = true;
         // The branches of an #if may each begin what follows all of them.
         if (kind.starts_with("if")) depths_.push_back(depth_);
         else if (kind.starts_with("el") && !depths_.empty()) depth_ = depths_.back();
         else if (kind == "endif" && !depths_.empty()) depths_.pop_back();
         for (; at_ + 1 < tokens_.size() && tokens_[at_ + 1].line == line; ++at_)
-            if (kind.starts_with("if") || kind.starts_with("el")) tested.insert(tokens_[at_ + 1].text);
+            if (kind.starts_with("if") || kind.starts_with("el")) tested.emplace(tokens_[at_ + 1].text);
     }
 
     void read_token() {
@@ -57,7 +57,7 @@ private:
         if (nested_ > 0) return;
         if (token.text == "uniform" || token.text == "buffer") is_interface_ = true;
         if (token.is_word() && (depth_ == 0 ? is_name() : depth_ == 1 && is_block_ && is_member()))
-            declared.insert(token.text);
+            declared.emplace(token.text);
     }
 
     /// "float x;", "float x = 1, y = 2;", "vec4 f(", "struct S {", "} param;".
@@ -150,7 +150,8 @@ private:
     void add_part(int index) {
         const FusedShader& part = program_.parts[std::size_t(index)];
         ShaderSource text = text_of(part.shader, part.part, diagnostics_);
-        const GlobalNames names(all_glsl_tokens(text));
+        const std::vector<Token> tokens = all_glsl_tokens(text);
+        const GlobalNames names(tokens);
         for (const std::string& name : names.declared)
             if (!names.macros.contains(name)) add("#define " + name + " " + prefix(index) + name);
         // Its version stands at the top already.
@@ -177,7 +178,8 @@ private:
 
 std::string fault_of_fusing(const ShaderContext& shader) {
     Diagnostics faults;
-    const std::vector<Token> tokens = all_glsl_tokens(text_of(shader, {}, faults));
+    const ShaderSource source = text_of(shader, {}, faults);
+    const std::vector<Token> tokens = all_glsl_tokens(source);
     if (faults.has_errors()) return "its shader has faults";
     const GlobalNames names(tokens);
     if (names.has_extension) return "its shader has an #extension";
@@ -193,9 +195,10 @@ std::string fault_of_fusing(const ShaderContext& shader) {
 
 std::vector<int> unused_blocks(const ShaderContext& shader) {
     Diagnostics faults;
-    std::set<std::string> named, sizes;
+    std::set<std::string_view> named, sizes;
     int at = 0;
-    const std::vector<Token> tokens = all_glsl_tokens(text_of(shader, {}, faults));
+    const ShaderSource source = text_of(shader, {}, faults);
+    const std::vector<Token> tokens = all_glsl_tokens(source);
     for (const Token& token : tokens) {
         const bool is_used = std::size_t(++at) < tokens.size() && tokens[std::size_t(at)].text == ".";
         if (is_used) named.insert(token.text);

@@ -1,6 +1,6 @@
 #include "framework/effect/glsl_tokens.h"
 
-#include <cctype>
+#include <array>
 #include <string_view>
 #include <utility>
 
@@ -9,6 +9,22 @@
 namespace aftershade {
 
 namespace {
+
+enum class CharKind : unsigned char { other, space, word };
+
+constexpr std::array<CharKind, 256> kCharKinds = [] {
+    std::array<CharKind, 256> kinds{};
+    for (const unsigned char c : std::string_view(" \t\n\v\f\r")) kinds[c] = CharKind::space;
+    for (int c = '0'; c <= '9'; ++c) kinds[std::size_t(c)] = CharKind::word;
+    for (int c = 'a'; c <= 'z'; ++c)
+        kinds[std::size_t(c)] = kinds[std::size_t(c - 'a' + 'A')] = CharKind::word;
+    kinds['_'] = CharKind::word;
+    return kinds;
+}();
+
+CharKind char_kind(char c) {
+    return kCharKinds[static_cast<unsigned char>(c)];
+}
 
 class Tokens {
 public:
@@ -19,31 +35,28 @@ public:
         for (std::size_t i = 0; i < source.lines.size(); ++i) {
             const SourceLine& line = source.lines[i];
             const std::size_t end = source.text.find('\n', begin);
-            if (all) begin_line("", int(i) + 1);
-            else if (line.file != "<generated>") begin_line(line.file, line.line);
-            if (all || line.file != "<generated>")
+            if (all || line.file != "<generated>") {
+                file_ = all ? &kNoFile : &line.file;
+                line_ = all ? int(i) + 1 : line.line;
                 add_line(std::string_view(source.text).substr(begin, end - begin));
+            }
             begin = end + 1;
         }
     }
     std::vector<Token> take() { return std::move(tokens_); }
 
 private:
-    void begin_line(const std::string& file, int line) {
-        if (!file_ || *file_ != file) file_ = std::make_shared<const std::string>(file);
-        line_ = line;
-    }
-
     void add_line(std::string_view text) {
         for (std::size_t at = 0; at < text.size();) {
+            const char next = at + 1 < text.size() ? text[at + 1] : ' ';
             if (in_comment_) {
                 const std::size_t end = text.find("*/", at);
                 if (end == std::string_view::npos) return;
                 in_comment_ = false;
                 at = end + 2;
-            } else if (text.substr(at, 2) == "//") {
+            } else if (text[at] == '/' && next == '/') {
                 return;
-            } else if (text.substr(at, 2) == "/*") {
+            } else if (text[at] == '/' && next == '*') {
                 in_comment_ = true;
                 at += 2;
             } else {
@@ -53,17 +66,19 @@ private:
     }
 
     std::size_t add_token(std::string_view text, std::size_t at) {
-        const auto is_part = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+        const CharKind kind = char_kind(text[at]);
         std::size_t end = at + 1;
         // A number takes its letters along: 1e5, 0xff, 2u.
-        while (is_part(text[at]) && end < text.size() && is_part(text[end])) ++end;
-        if (!std::isspace(static_cast<unsigned char>(text[at])))
-            tokens_.push_back({std::string(text.substr(at, end - at)), file_, line_, int(at) + 1});
+        while (kind == CharKind::word && end < text.size() && char_kind(text[end]) == kind) ++end;
+        if (kind != CharKind::space)
+            tokens_.push_back({text.substr(at, end - at), file_, line_, int(at) + 1});
         return end;
     }
 
+    static inline const std::string kNoFile;
+
     std::vector<Token> tokens_;
-    std::shared_ptr<const std::string> file_;
+    const std::string* file_ = nullptr;
     int line_ = 0;
     bool in_comment_ = false;
 };
@@ -97,10 +112,10 @@ void check_shader_size(const ShaderSource& source, Diagnostics& diagnostics) {
                               tokens[i - 1].is_word() && tokens[i - 2].is_word() &&
                               tokens[i - 2].text != "return";
         if (!declares) continue;
-        const auto elements = parse_number(tokens[i + 1].text);
+        const std::string number(tokens[i + 1].text);
+        const auto elements = parse_number(number);
         if (elements && *elements > double(kMaxShaderArrayElements))
-            diagnostics.error(tokens[i + 1].place(), "an array of " + tokens[i + 1].text +
-                                                         " elements; the limit is " +
+            diagnostics.error(tokens[i + 1].place(), "an array of " + number + " elements; the limit is " +
                                                          std::to_string(kMaxShaderArrayElements) +
                                                          " (declare a buffer or a texture for more)");
     }

@@ -2,18 +2,18 @@
 #pragma once
 
 #include <cctype>
-#include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "framework/effect/shader_source.h"
 
 namespace aftershade {
 
-/// A word of a shader, or one character of anything else.
+/// A word of a shader, or one character of anything else: a view of a source, which must outlive it.
 struct Token {
-    std::string text;
-    std::shared_ptr<const std::string> file;  ///< of its line, which all tokens of a file share
+    std::string_view text;
+    const std::string* file = nullptr;  ///< of its line
     int line = 0, column = 0;
     Place place() const { return {*file, line, column}; }
     bool is_word() const { return std::isalpha(static_cast<unsigned char>(text[0])) || text[0] == '_'; }
@@ -21,8 +21,10 @@ struct Token {
 
 /// What the author wrote, without comments and without the host's own lines.
 std::vector<Token> glsl_tokens(const ShaderSource& source);
+std::vector<Token> glsl_tokens(ShaderSource&&) = delete;
 /// The same with the host's own lines; every token's place is its line in the source's text.
 std::vector<Token> all_glsl_tokens(const ShaderSource& source);
+std::vector<Token> all_glsl_tokens(ShaderSource&&) = delete;
 
 /// Holds what the author wrote against kMaxShaderTerms and kMaxShaderArrayElements. What macros make of it is
 /// not seen here.

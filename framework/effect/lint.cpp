@@ -23,7 +23,8 @@ public:
         for (const PassSpec& pass : manifest.passes) {
             if (!pass.runs_shader()) continue;
             const ShaderContext context{&manifest, &pass, defaults, inputs, glsl_folder};
-            tokens_[pass.name] = glsl_tokens(assemble_shader(context, faults));
+            const ShaderSource& source = sources_[pass.name] = assemble_shader(context, faults);
+            tokens_[pass.name] = glsl_tokens(source);
         }
     }
 
@@ -51,8 +52,10 @@ private:
             };
             if (std::none_of(manifest_.passes.begin(), manifest_.passes.end(), reads) &&
                 std::none_of(manifest_.telemetry.begin(), manifest_.telemetry.end(), tells))
-                diagnostics_.warning(texture.place, "no pass reads the texture '" + texture.name +
-                                                        "'; it is written only for a tap");
+                diagnostics_.warning(texture.place,
+                                     "no pass reads the texture '" + texture.name +
+                                         "'; it is written only for a tap (let a statistic under 'telemetry' "
+                                         "measure it, or remove it)");
         }
     }
 
@@ -133,9 +136,10 @@ private:
         for (std::size_t at = i + 1; at < tokens.size(); ++at) {
             if (tokens[at].text == "(") ++depth;
             if (tokens[at].text == ")" && --depth == 0) return false;
-            std::string number = tokens[at].text;
+            std::string number(tokens[at].text);
             // A number is one token up to its point.
-            if (at + 2 < tokens.size() && tokens[at + 1].text == ".") number += "." + tokens[at + 2].text;
+            if (at + 2 < tokens.size() && tokens[at + 1].text == ".")
+                number.append(".").append(tokens[at + 2].text);
             if (exponents.contains(number)) return true;
         }
         return false;
@@ -165,7 +169,8 @@ private:
     const EffectManifest& manifest_;
     const std::filesystem::path& glsl_folder_;
     Diagnostics& diagnostics_;
-    std::map<std::string, std::vector<Token>> tokens_;  // by pass
+    std::map<std::string, ShaderSource> sources_;       // by pass
+    std::map<std::string, std::vector<Token>> tokens_;  // by pass, views of the sources
 };
 
 }  // namespace

@@ -72,7 +72,8 @@ private:
                                    " bytes, which is the limit (split the work into several passes)");
             return;
         }
-        source_.text += text + "\n";
+        source_.text += text;
+        source_.text += '\n';
         source_.lines.push_back({file, line});
     }
 
@@ -96,26 +97,27 @@ private:
             return;
         }
         ++depth_;
+        const std::string name = file.string();
         std::string line;
         for (int number = 1; std::getline(in, line) && !is_too_large_; ++number) {
             if (line.ends_with('\r')) line.pop_back();
-            add_source_line(line, {file.string(), number, 1});
+            add_source_line(line, name, number);
         }
         --depth_;
     }
 
-    void add_source_line(const std::string& line, const Place& place) {
+    void add_source_line(const std::string& line, const std::string& file, int number) {
         if (const auto include = parse_include(line)) {
-            add_include(include->is_shared, include->name, place);
-        } else if (is_version_directive(line)) {
+            add_include(include->is_shared, include->name, {file, number, 1});
+            return;
+        }
+        if (is_version_directive(line)) {
             if (source_.lines.empty() && line == "#version 450 core") has_version_ = true;
             else
-                diagnostics_.error(place,
+                diagnostics_.error({file, number, 1},
                                    "'#version 450 core' must appear once, as the first line of a shader");
-            add_line(line, place.file, place.line);
-        } else {
-            add_line(line, place.file, place.line);
         }
+        add_line(line, file, number);
     }
 
     void add_include(bool shared, const std::string& name, const Place& place) {

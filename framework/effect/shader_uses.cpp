@@ -1,6 +1,7 @@
 #include "framework/effect/shader_uses.h"
 
 #include <cctype>
+#include <utility>
 
 namespace aftershade {
 
@@ -8,11 +9,20 @@ namespace {
 
 constexpr std::string_view kSize = "_size";
 
+bool is_char(const Token& token, char c) {
+    return token.text[0] == c;  // only words have more than one character
+}
+
 /// GLSL's functions whose first argument is a sampler: texture, textureLod, textureSize, texelFetch, ...
-bool is_sampling(const std::string& word) {
+bool is_sampling(std::string_view word) {
     constexpr std::string_view kTexture = "texture";
+    if (word[0] != 't') return false;
     if (word == "texelFetch" || word == "texelFetchOffset" || word == kTexture) return true;
     return word.starts_with(kTexture) && std::isupper(static_cast<unsigned char>(word[kTexture.size()]));
+}
+
+void add_first(ShaderUses::Uses& uses, std::string_view name, const Token& token) {
+    if (!uses.contains(name)) uses.emplace(name, token.place());
 }
 
 bool is_on_line_of(const Token& token, const Token* directive) {
@@ -27,58 +37,61 @@ bool is_declared_at(const std::vector<Token>& tokens, std::size_t i, const Token
 }
 
 /// Parameters of the macro that "#define NAME(a, b) ..." at the "#" at `i` declares.
-std::set<std::string> macro_parameters_at(const std::vector<Token>& tokens, std::size_t i) {
-    std::set<std::string> names;
-    if (i + 3 >= tokens.size() || tokens[i + 1].text != "define" || tokens[i + 3].text != "(") return names;
-    for (i += 4; i < tokens.size() && tokens[i].text != ")"; ++i)
+ShaderUses::Words macro_parameters_at(const std::vector<Token>& tokens, std::size_t i) {
+    ShaderUses::Words names;
+    if (i + 3 >= tokens.size() || tokens[i + 1].text != "define" || !is_char(tokens[i + 3], '('))
+        return names;
+    for (i += 4; i < tokens.size() && !is_char(tokens[i], ')'); ++i)
         if (tokens[i].is_word()) names.insert(tokens[i].text);
     return names;
 }
 
 }  // namespace
 
-ShaderUses::ShaderUses(const std::vector<Token>& tokens) {
-    std::set<std::string> own_outputs, own_samplers, macro_parameters;
+ShaderUses::ShaderUses(ShaderSource source)
+    : source_(std::make_unique<const ShaderSource>(std::move(source))) {
+    const std::vector<Token> tokens = glsl_tokens(*source_);
+    Words own_outputs, own_samplers, macro_parameters;
     int branches = 0;                  // of #if, around the token
     const Token* directive = nullptr;  // the last before the token
     for (std::size_t i = 0; i < tokens.size(); ++i) {
         const Token& token = tokens[i];
-        if (token.text == "#") {
+        if (is_char(token, '#')) {
             directive = &token;
             macro_parameters = macro_parameters_at(tokens, i);
         }
         if (!token.is_word()) continue;
         words.insert(token.text);
-        if (i > 0 && tokens[i - 1].text == "#")
+        if (i > 0 && is_char(tokens[i - 1], '#'))
             branches += token.text == "endif" ? -1 : token.text.starts_with("if") ? 1 : 0;
-        const bool is_member = i > 0 && tokens[i - 1].text == ".";
+        const bool is_member = i > 0 && is_char(tokens[i - 1], '.');
         if (is_member) continue;
-        if (i + 2 < tokens.size() && tokens[i + 1].text == ".") {
-            const std::string& member = tokens[i + 2].text;
-            if (token.text == "param") params.emplace(member, token.place());
-            if (token.text == "native") natives.emplace(member, token.place());
+        if (i + 2 < tokens.size() && is_char(tokens[i + 1], '.')) {
+            const std::string_view member = tokens[i + 2].text;
+            if (token.text == "param") add_first(params, member, token);
+            if (token.text == "native") add_first(natives, member, token);
             if (token.text == "lights" && (member == "count" || member == "light") && !lights)
                 lights = token.place();
         }
-        if (i + 2 < tokens.size() && is_sampling(token.text) && tokens[i + 1].text == "(" &&
+        if (i + 2 < tokens.size() && is_sampling(token.text) && is_char(tokens[i + 1], '(') &&
             tokens[i + 2].is_word() &&
             !(is_on_line_of(token, directive) && macro_parameters.contains(tokens[i + 2].text))) {
-            samplers.emplace(tokens[i + 2].text, tokens[i + 2].place());
-            if (branches == 0) plain_samplers.emplace(tokens[i + 2].text, tokens[i + 2].place());
+            add_first(samplers, tokens[i + 2].text, tokens[i + 2]);
+            if (branches == 0) add_first(plain_samplers, tokens[i + 2].text, tokens[i + 2]);
         }
         if (token.text.ends_with(kSize))
-            sizes.emplace(token.text.substr(0, token.text.size() - kSize.size()), token.place());
+            add_first(sizes, token.text.substr(0, token.text.size() - kSize.size()), token);
         // "vec3 out_direction" is the shader's own.
         const bool declares = is_declared_at(tokens, i, directive);
         if (declares) own.insert(token.text);
-        if (declares && tokens[i - 1].text.find("sampler") != std::string::npos)
+        if (declares && tokens[i - 1].text.find("sampler") != std::string_view::npos)
             own_samplers.insert(token.text);
         if (!token.text.starts_with(kOut)) continue;
         if (declares) own_outputs.insert(token.text.substr(kOut.size()));
-        else outputs.emplace(token.text.substr(kOut.size()), token.place());
+        else add_first(outputs, token.text.substr(kOut.size()), token);
     }
-    for (const std::string& name : own_outputs) outputs.erase(name);
-    for (const std::string& name : own_samplers) samplers.erase(name);
+    std::erase_if(outputs, [&](const auto& use) { return own_outputs.contains(use.first); });
+    std::erase_if(samplers, [&](const auto& use) { return own_samplers.contains(use.first); });
     std::erase_if(sizes, [&](const auto& use) { return own.contains(use.first + std::string(kSize)); });
 }
 

@@ -56,8 +56,7 @@ private:
         if (shaders_.contains(file)) return;
         const ShaderContext context{&manifest_, &pass, defaults_, inputs_, glsl_folder_};
         const auto which = file == pass.folder / pass.shader ? ShaderFile::main : ShaderFile::vertex;
-        const ShaderSource source = assemble_shader(context, diagnostics_, which);
-        shaders_.emplace(file, ShaderUses(glsl_tokens(source)));
+        shaders_.emplace(file, ShaderUses(assemble_shader(context, diagnostics_, which)));
     }
 
     bool pass_has(const PassSpec& pass, const std::string& word) const {
@@ -116,10 +115,13 @@ private:
                                       "' by the pixel: it is the texel itself, no sampler; write '" +
                                       read.glsl_name() + "', or read it without \"pixel\"");
         if (std::none_of(pass.reads.begin(), pass.reads.end(), reads_pixel)) return;
-        for (const std::string& word : uses.words)
+        std::set<std::string> looking;
+        for (const std::string_view word : uses.words)
             if (word.starts_with("dFd") || word.starts_with("fwidth") || word.starts_with("aftershade_"))
-                once(pass.place, "pass '" + pass.name + "' reads by the pixel, but its shader has '" + word +
-                                     "', by which it could see other pixels");
+                looking.emplace(word);
+        for (const std::string& word : looking)
+            once(pass.place, "pass '" + pass.name + "' reads by the pixel, but its shader has '" + word +
+                                 "', by which it could see other pixels");
     }
 
     /// Passes may share a shader, whose #if branches then use what only one of them declares.
@@ -198,7 +200,7 @@ private:
     /// A curve, file or table is used by its own name or by functions that begin with it.
     bool any_begins(const std::string& name) const {
         for (const auto& [file, uses] : shaders_)
-            for (const std::string& word : uses.words)
+            for (const std::string_view word : uses.words)
                 if (word == name || word.starts_with(name + "_")) return true;
         return false;
     }

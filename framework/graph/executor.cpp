@@ -37,7 +37,7 @@ Executor::Executor(gpu::Context& context, FrameGraph graph, bool shares_memory)
     : context_(context), graph_(std::move(graph)), compiled_(graph_.compile(shares_memory)), timer_(context) {
     for (const int index : compiled_.passes) {
         const Pass& pass = graph_.pass(index);
-        if (pass.kind != PassKind::clear && pass.kind != PassKind::copy && !pass.program)
+        if (runs_program(pass.kind) && !pass.program)
             throw GraphError(fmt::format("pass '{}' has no program", pass.name));
     }
     allocate();

@@ -71,6 +71,9 @@ struct UniformBlock {
 
 /// `copy`: level 0 of its read to its target, bit for bit; both have one description.
 enum class PassKind { draw, instances, compute, clear, copy };
+constexpr bool runs_program(PassKind kind) {
+    return kind != PassKind::clear && kind != PassKind::copy;
+}
 
 /// What `instances` draws: `count` times four vertices of a strip (quads) or one point; or as many as the
 /// buffer says (DrawArraysIndirectCommand).
@@ -93,7 +96,7 @@ enum class Fusing { never, leads, follows };
 struct Pass {
     std::string name;  ///< "bokeh.coc"
     PassKind kind = PassKind::draw;
-    std::shared_ptr<const gpu::Program> program{};  ///< nullptr for a clear and a copy
+    std::shared_ptr<const gpu::Program> program{};  ///< nullptr where the kind runs none
     std::vector<Read> reads{};
     std::vector<Target> targets{};  ///< draw, instances: of one size; clear: what is set to `clear_value`
     std::vector<ImageUse> images{};

@@ -76,7 +76,7 @@ PassShape shape_of(const FrameGraph& graph, const Pass& pass) {
 }
 
 void rehearse(gpu::Context& context, const gpu::Program& program, const PassShape& shape) {
-    if (shape.kind == PassKind::clear || shape.kind == PassKind::copy) return;
+    if (!runs_program(shape.kind)) return;
     SmallMemory memory(context);
     std::vector<gpu::SampledTexture> textures;
     for (const PassShape::Sampled& read : shape.reads)

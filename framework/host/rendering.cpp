@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/cores.h"
 #include "framework/core/text.h"
 #include "framework/gpu/external_texture.h"
 #include "framework/host/non_finite.h"
@@ -97,6 +98,8 @@ PipelineRenderer& Rendering::renderer() {
     if (!renderer_) {
         renderer_ = std::make_shared<PipelineRenderer>(context, look_->pipeline, host_->programs(),
                                                        NativeSources{host_->natives.get(), nullptr});
+        // Which threads use the display of a shared context is for the calling program to say.
+        if (!host_->options.share) renderer_->compile_on_threads(allotted_cores() - 1);
         form_ = look_->form;
         telemetry_ = false;
         const std::lock_guard lock(host_->mutex);

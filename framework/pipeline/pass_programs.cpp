@@ -186,10 +186,12 @@ std::map<int, PassPrograms::Assembled> PassPrograms::assemble_others(
 }
 
 /// Another thread's crash would be blamed on the pass that this one is at, so passes of foreign effects are
-/// not among them.
+/// not among them. Without a store nothing reaches this thread, which would compile all of it once more.
 void PassPrograms::compile_ahead(const graph::FrameGraph& graph, const std::vector<FusedAssembled>& fusions,
                                  const std::map<int, Assembled>& others) {
-    if (tools_.compile_threads < 1 || tools_.programs.is_guarding_loops()) return;
+    if (tools_.compile_threads < 1 || !tools_.programs.store().is_on() ||
+        tools_.programs.is_guarding_loops())
+        return;
     const std::vector<int> needed = graph.compile().passes;
     std::map<int, PassToCompile> missing;  // in the order of the passes
     const auto add = [&](int pass, const Assembled& texts, const graph::Pass& shape) {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/capture/capture_window.h"
+#include "framework/core/cores.h"
 #include "framework/core/error.h"
 #include "framework/effect/pass_program.h"
 #include "framework/effect/program_store.h"
@@ -88,6 +89,7 @@ void PictureMaker::adopt(Scaled& scaled, const PictureRequest& request) {
         scaled.renderer = std::make_unique<PipelineRenderer>(context_, *scaled.pipeline, programs_,
                                                              NativeSources{nullptr, &status_});
         scaled.renderer->keep_steps();
+        scaled.renderer->compile_on_threads(allotted_cores() - 1);
     } else if (has_changed) {
         scaled.renderer->pipeline_changed();
     }

@@ -107,8 +107,10 @@ public:
     }
 
 private:
-    struct Word : Token {
+    struct Word {
+        std::string text;
         std::size_t begin = 0, end = 0;  ///< in the text
+        bool is_word() const { return Token{text}.is_word(); }
     };
     struct Function {
         std::string type, name;
@@ -135,15 +137,15 @@ private:
                 directives.insert(int(i) + 1);
             continues = directives.contains(int(i) + 1) && line.ends_with('\\');
         }
-        for (Token& token : glsl_tokens(source)) {
+        for (const Token& token : glsl_tokens(source)) {
             const std::size_t begin =
                 starts[std::size_t(token.line - 1)] + std::size_t(token.column - 1);
             if (directives.contains(token.line)) {
-                names_of_directives_.insert(token.text);
+                names_of_directives_.emplace(token.text);
                 directive_places_.push_back(begin);
             } else {
                 const std::size_t end = begin + token.text.size();
-                tokens_.push_back({std::move(token), begin, end});
+                tokens_.push_back({std::string(token.text), begin, end});
             }
         }
     }

@@ -1,6 +1,7 @@
 // Sessions keep what effects remember; looks by themselves do not.
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -80,6 +81,21 @@ TEST(HostSession, PlaysASequenceAsTheProgramRunsIt) {
                                   .read_floats(0, channels);
         EXPECT_TRUE(std::ranges::equal(image.floats(), expected.floats())) << frame;
     }
+}
+
+/// With a cache, threads compile what the first frame draws with.
+TEST(HostLook, DrawsTheSameBitsWithAnEmptyCacheAFilledOneAndNone) {
+    const TemporaryFolder folder;
+    const auto color = [](const HostOptions& options) {
+        Host host(options);
+        return host.parse_look(kBlurLook).render(small_capture()).image("color");
+    };
+    HostOptions cached = osmesa();
+    cached.cache = folder.path() / "cache";
+    const Image alone = color(osmesa()), first = color(cached), second = color(cached);
+    EXPECT_TRUE(same_bits(alone, first));
+    EXPECT_TRUE(same_bits(alone, second));
+    EXPECT_FALSE(std::filesystem::is_empty(cached.cache));
 }
 
 TEST(HostLook, GivesItsParametersAndTakesNewValues) {

@@ -14,14 +14,16 @@ namespace {
 
 const std::filesystem::path kData = AFTERSHADE_SOURCE_DIR;
 
-/// A renderer whose programs lie in an empty folder.
+/// A renderer whose programs lie in an empty folder, or in none.
 class Fresh {
 public:
-    Fresh(const EffectFolder& effects, const std::string& steps, gpu::Backend backend, int threads)
+    Fresh(const EffectFolder& effects, const std::string& steps, gpu::Backend backend, int threads,
+          bool has_store = true)
         : bound_(effects, look_of(steps)),
           context_(backend),
           renderer_(context_, bound_.pipeline(),
-                    std::make_shared<ProgramCache>(context_, kData / "glsl", ProgramStore(folder_.path()))) {
+                    std::make_shared<ProgramCache>(
+                        context_, kData / "glsl", has_store ? ProgramStore(folder_.path()) : ProgramStore())) {
         EXPECT_EQ(bound_.faults().find("error"), std::string::npos) << bound_.faults();
         renderer_.compile_on_threads(threads);
     }
@@ -70,6 +72,12 @@ TEST_P(CompileAheadOn, GivesTheBitsOfOneThread) {
         }
         EXPECT_GT(fresh.renderer().programs_compiled_ahead(), 0) << threads << " threads";
     }
+}
+
+TEST_P(CompileAheadOn, CompilesNothingThatCouldNotReachTheCaller) {
+    Fresh fresh(none_, kLongLook, GetParam(), 2, false);
+    fresh.run(capture());
+    EXPECT_EQ(fresh.renderer().programs_compiled_ahead(), 0);
 }
 
 TEST_P(CompileAheadOn, ReportsTheFaultThatOneThreadMeetsFirst) {

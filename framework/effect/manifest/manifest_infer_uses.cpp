@@ -48,8 +48,8 @@ private:
         const std::pair path(shader_path(*pass_, file, glsl_folder_), pass_->folder / pass_->shader);
         const auto found = uses_.find(path);
         if (found != uses_.end()) return found->second;
-        const ShaderSource text = author_text(manifest_, *pass_, glsl_folder_, diagnostics_, file);
-        return uses_.emplace(path, ShaderUses(glsl_tokens(text))).first->second;
+        ShaderUses uses(author_text(manifest_, *pass_, glsl_folder_, diagnostics_, file));
+        return uses_.emplace(path, std::move(uses)).first->second;
     }
 
     /// Where the text uses a name, by itself or as the value of one of the pass's defines.
