@@ -63,14 +63,15 @@ Unmixed unmixed(ivec2 p, vec3 own, float coc_px) {
     Mixture best = Mixture(own, 0.0, 0.0);
     ivec2 way = ivec2(0);
     float kind = kNoEdge;
-    // Software GL ends a loop once no pixel of a group goes on, but runs what an if leaves out.
-    bool is_at_edge = false;
-    for (int i = 0; i < 9; ++i) is_at_edge = is_at_edge || is_across(p + ivec2(i % 3, i / 3) - 1, coc_px);
-    int count = is_at_edge ? 9 : 0;
-    for (int i = 0; i < count; ++i) {
+    // Software GL ends a loop once no pixel of a group goes on, but runs what an if leaves out: so each takes its own neighbours in turn.
+    uint across_edge = 0u;
+    for (int i = 0; i < 9; ++i)
+        if (is_across(p + ivec2(i % 3, i / 3) - 1, coc_px)) across_edge |= 1u << i;
+    for (; across_edge != 0u; across_edge &= across_edge - 1u) {
+        int i = findLSB(across_edge);
         ivec2 to = ivec2(i % 3, i / 3) - 1;
         float across_coc = coc_inside(p + to);
-        if (abs(across_coc - coc_px) <= kOneSurfacePx || is_across(p - 2 * to, coc_px)) continue;
+        if (is_across(p - 2 * to, coc_px)) continue;
         if (abs(min(across_coc, coc_px)) < kLeastBlurredPx) continue;  // a nearer one in focus keeps its antialiasing
         vec3 self = color_inside(p - 2 * to), across = color_inside(p + to);
         if (abs(coc_inside(p + 2 * to) - across_coc) <= kOneSurfacePx) {

@@ -131,10 +131,21 @@ void ProgramCache::drop_idle() {
     programs_.erase(oldest);
 }
 
+std::string ProgramCache::host_vertex(const std::string& file) const {
+    std::istringstream lines(read_text_file(glsl_folder_ / "host" / file, ExitCode::effect));
+    std::string text, line;
+    while (std::getline(lines, line)) {
+        const std::optional<ShaderInclude> include = parse_include(line);
+        text += include ? read_text_file(glsl_folder_ / include->name, ExitCode::effect) : line + "\n";
+    }
+    return text;
+}
+
 std::shared_ptr<const gpu::Program> ProgramCache::host(const std::string& file,
-                                                       const std::vector<std::string>& defines) {
+                                                       const std::vector<std::string>& defines,
+                                                       const std::string& vertex) {
     ProgramSources sources;
-    sources.vertex = full_screen_;
+    sources.vertex = vertex.empty() ? full_screen_ : host_vertex(vertex);
     sources.main.text = read_text_file(glsl_folder_ / "host" / file, ExitCode::effect);
     std::string symbols;
     for (const std::string& define : defines) symbols += "#define " + define + " 1\n";

@@ -56,8 +56,9 @@ public:
     /// Whether a program is there already, or on disk.
     bool has(const ProgramSources& sources) const;
     /// A full-screen shader of the host's own, glsl/host/<file>, with symbols defined after its first line.
-    std::shared_ptr<const gpu::Program> host(const std::string& file,
-                                             const std::vector<std::string>& defines);
+    /// `vertex`: likewise, empty: over the full screen.
+    std::shared_ptr<const gpu::Program> host(const std::string& file, const std::vector<std::string>& defines,
+                                             const std::string& vertex = "");
     /// Programs made from now on report into a storage block whether llvmpipe ended one of their loops.
     /// [before the first program]
     void guard_loops() { guards_loops_ = true; }
@@ -72,6 +73,7 @@ private:
         std::shared_ptr<const gpu::Program> program;
         std::uint64_t last_use = 0;
     };
+    std::string host_vertex(const std::string& file) const;  // with what it includes
     void drop_idle();
     gpu::Program make(const ProgramSources& sources, const std::string& key);
     std::string key_of(const ProgramSources& sources) const;

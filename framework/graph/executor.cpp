@@ -44,6 +44,7 @@ Executor::Executor(gpu::Context& context, FrameGraph graph, bool shares_memory)
     find_histories();
     clear_history();
     bind_clears();
+    sparse_ = std::make_unique<SparseClears>(context_, graph_, compiled_, slots_, buffer_slots_);
     for (const int index : compiled_.passes) bound_.push_back(bind(index));
 }
 
@@ -101,7 +102,8 @@ void Executor::bind_clears() {
         const int position = compiled_.texture_cleared_before[i];
         if (position < 0) continue;
         clears_[std::size_t(position)].textures.push_back(
-            {in_slot(slots_, compiled_.slot_of_texture, int(i)), *graph_.textures()[i].options.clear});
+            {int(i), in_slot(slots_, compiled_.slot_of_texture, int(i)),
+             *graph_.textures()[i].options.clear});
     }
     for (std::size_t i = 0; i < graph_.buffers().size(); ++i) {
         const int position = compiled_.buffer_cleared_before[i];
@@ -166,7 +168,8 @@ void Executor::set_uniforms(int pass, int binding, std::vector<std::byte> bytes)
 }
 
 void Executor::run_clears(const Clears& clears) {
-    for (const auto& [texture, value] : clears.textures) texture->clear_to(value);
+    for (const auto& [index, texture, value] : clears.textures)
+        if (!sparse_->is_clear(index)) texture->clear_to(value);
     for (const auto& [buffer, words] : clears.buffers) {
         const auto bytes = std::as_bytes(words);
         if (bytes.size() < buffer->size()) buffer->clear(0);
@@ -232,12 +235,14 @@ std::vector<PassTime> Executor::run(bool timed, const PassObserver& observer, Pa
             if (range.contains(history.written_by)) act(history);
     };
     for_written([](auto& history) { history.advance(); });
+    sparse_->begin(range);
     std::vector<PassTime> times;
     if (timed) times.reserve(bound_.size());
     for (std::size_t i = 0; i < bound_.size(); ++i) {
         if (!range.contains(compiled_.passes[i])) continue;
         if (hooks_.begins) hooks_.begins(bound_[i].pass->name);
         if (timed) timer_.start();
+        sparse_->wipe_before(compiled_.passes[i]);
         run_clears(clears_[i]);
         run_pass(bound_[i]);
         if (timed) times.push_back({bound_[i].pass->name, timer_.stop_ms()});

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -14,19 +15,14 @@
 #include "framework/gpu/texture.h"
 #include "framework/gpu/timer.h"
 #include "framework/graph/frame_graph.h"
+#include "framework/graph/pass_range.h"
+#include "framework/graph/sparse_clears.h"
 
 namespace aftershade::graph {
 
 struct PassTime {
     std::string pass;
     double milliseconds = 0;
-};
-
-/// Passes begin .. end - 1 by their index in the graph; end -1: to the last.
-struct PassRange {
-    int begin = 0;
-    int end = -1;
-    bool contains(int pass) const { return pass >= begin && (end < 0 || pass < end); }
 };
 
 /// [the context's thread]
@@ -109,7 +105,12 @@ private:
     };
     /// What is set to its `clear` before a pass.
     struct Clears {
-        std::vector<std::pair<gpu::Texture*, std::array<double, 4>>> textures;
+        struct OfTexture {
+            int index = 0;  // in the graph
+            gpu::Texture* texture = nullptr;
+            std::array<double, 4> value{};
+        };
+        std::vector<OfTexture> textures;
         std::vector<std::pair<gpu::Buffer*, std::span<const std::uint32_t>>> buffers;
     };
     template <typename Memory>
@@ -145,6 +146,7 @@ private:
     std::vector<HistorySlots<gpu::Buffer>> buffer_histories_;
     std::vector<BoundPass> bound_;  // as compiled_.passes
     std::vector<Clears> clears_;    // one more than passes: what is cleared at the end
+    std::unique_ptr<SparseClears> sparse_;
     gpu::Timer timer_;
     PassHooks hooks_;
 };

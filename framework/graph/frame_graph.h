@@ -89,6 +89,14 @@ struct Groups {
     std::optional<BufferHandle> indirect{};
 };
 
+/// How one target of instances becomes its texture's `clear` again: the same instances once more, with a
+/// program whose colour is that value. The pass's own textures and blocks are not bound.
+struct Wipe {
+    std::shared_ptr<const gpu::Program> program{};
+    UniformBlock uniforms{};
+    BufferUse places{};  ///< says where the instances lie; read by the pass too
+};
+
 /// Whether a pass may be one part of a fused pass (framework/graph/fusion.h): not at all, the first, or one
 /// that begins with what others make.
 enum class Fusing { never, leads, follows };
@@ -104,6 +112,7 @@ struct Pass {
     std::vector<UniformBlock> uniforms{};
     gpu::Blend blend = gpu::Blend::none;
     Instances instances{};
+    std::vector<std::optional<Wipe>> wipes{};  ///< of instances: none, or one for each of `targets`
     Groups groups{};
     std::array<double, 4> clear_value = {0, 0, 0, 0};
     Fusing fusing = Fusing::never;
@@ -138,6 +147,19 @@ struct BufferHistory {
     BufferHandle current;
 };
 
+/// A cleared texture that passes draw to in places only, and that can be wiped there instead of cleared as a
+/// whole in the next frame. It shares its memory with nothing, nor do the buffers that say where.
+struct SparseTexture {
+    struct Place {
+        int pass = 0;    ///< by its index in the graph
+        int target = 0;  ///< of the pass
+    };
+    int texture = 0;
+    std::vector<Place> places{};  ///< of all draws to it
+    int first = 0;                ///< the first pass that uses it or says where it is drawn to, and the last,
+    int last = 0;                 ///< by their indices in the graph
+};
+
 /// A graph made ready to run: which passes, in which order, and which texture lies in which memory.
 struct CompiledGraph {
     std::vector<int> passes;           ///< indices of the passes that something kept depends on, in order
@@ -150,6 +172,7 @@ struct CompiledGraph {
     /// passes.size() for the end of the frame; -1 where nothing would see it.
     std::vector<int> texture_cleared_before;
     std::vector<int> buffer_cleared_before;
+    std::vector<SparseTexture> sparse;
     std::uint64_t bytes = 0;            ///< of all slots
     std::uint64_t bytes_unaliased = 0;  ///< what one texture per handle would take
 };

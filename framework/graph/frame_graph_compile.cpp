@@ -41,7 +41,8 @@ namespace {
 /// What a texture and a buffer have in common here.
 struct Resource {
     bool kept = false;
-    bool alone = false;  ///< imports and histories share their memory with nothing
+    bool alone = false;  ///< imports, histories and sparse textures share their memory with nothing
+    bool is_history = false;
     bool cleared = false;
     int previous_of = -1;  ///< a resource
     int version = 0;       ///< the last one
@@ -58,19 +59,22 @@ public:
     Compiler(const FrameGraph& graph, bool shares_memory)
         : graph_(graph), shares_memory_(shares_memory), buffers_(graph.textures().size()) {
         for (const FrameGraph::Texture& t : graph.textures())
-            resources_.push_back({t.kept, t.imported, t.options.clear.has_value(), t.previous_of, t.version});
+            resources_.push_back(
+                {t.kept, t.imported, false, t.options.clear.has_value(), t.previous_of, t.version});
         for (const FrameGraph::Buffer& b : graph.buffers())
-            resources_.push_back({b.kept, b.imported, b.clear.has_value(),
+            resources_.push_back({b.kept, b.imported, false, b.clear.has_value(),
                                   b.previous_of < 0 ? -1 : b.previous_of + int(buffers_), b.version});
         for (Resource& resource : resources_) {
             if (resource.previous_of < 0) continue;
-            resource.alone = resources_[std::size_t(resource.previous_of)].alone = true;
+            Resource& current = resources_[std::size_t(resource.previous_of)];
+            resource.alone = current.alone = resource.is_history = current.is_history = true;
         }
         for (int i = 0; i < graph.pass_count(); ++i) uses_.push_back(uses_of(graph, i));
     }
 
     CompiledGraph run() {
         cull();
+        find_sparse();
         find_lifetimes();
         const auto bytes_of_buffer = [](const BufferDesc& desc) { return std::uint64_t(desc.bytes); };
         assign(graph_.textures(), 0, compiled_.slots, compiled_.slot_of_texture, gpu::byte_size);
@@ -122,6 +126,67 @@ private:
         }
         for (std::size_t i = 0; i < runs_.size(); ++i)
             if (runs_[i]) compiled_.passes.push_back(int(i));
+    }
+
+    /// Textures without a history that tell where all draws to them lie, by buffers that are written once.
+    void find_sparse() {
+        std::vector<SparseTexture> found(buffers_);
+        std::vector<bool> is_drawn_elsewhere(buffers_);
+        for (std::size_t i = 0; i < buffers_; ++i) {
+            const FrameGraph::Texture& texture = graph_.textures()[i];
+            found[i].texture = int(i);
+            is_drawn_elsewhere[i] = !texture.options.clear || resources_[i].alone || !needed_[i][0] ||
+                                    texture.options.auto_mips || texture.desc.layers > 1;
+        }
+        for (const int index : compiled_.passes) {
+            const Pass& pass = graph_.pass(index);
+            for (const ImageUse& use : pass.images)
+                if (use.access != gpu::Access::read)
+                    is_drawn_elsewhere[std::size_t(use.texture.texture)] = true;
+            for (std::size_t i = 0; i < pass.targets.size(); ++i) {
+                const auto texture = std::size_t(pass.targets[i].texture.texture);
+                if (tells_where(pass, i)) found[texture].places.push_back({index, int(i)});
+                else is_drawn_elsewhere[texture] = true;
+            }
+        }
+        for (std::size_t i = 0; i < buffers_; ++i)
+            if (!is_drawn_elsewhere[i] && !found[i].places.empty()) add_sparse(std::move(found[i]));
+    }
+
+    bool tells_where(const Pass& pass, std::size_t target) const {
+        if (pass.wipes.empty() || !pass.wipes[target]) return false;
+        // Imports get other content between frames, and those of a history change places.
+        const auto stays = [&](BufferHandle handle) {
+            const FrameGraph::Buffer& buffer = graph_.buffers()[std::size_t(handle.buffer)];
+            return handle.version == buffer.version && !buffer.imported &&
+                   !resources_[resource_of(handle)].is_history;
+        };
+        return stays(pass.wipes[target]->places.buffer) &&
+               (!pass.instances.indirect || stays(*pass.instances.indirect));
+    }
+
+    std::size_t resource_of(BufferHandle handle) const { return buffers_ + std::size_t(handle.buffer); }
+
+    void add_sparse(SparseTexture sparse) {
+        std::vector<std::size_t> resources = {std::size_t(sparse.texture)};
+        for (const SparseTexture::Place& place : sparse.places) {
+            const Pass& pass = graph_.pass(place.pass);
+            resources.push_back(resource_of(pass.wipes[std::size_t(place.target)]->places.buffer));
+            if (pass.instances.indirect) resources.push_back(resource_of(*pass.instances.indirect));
+        }
+        for (const std::size_t resource : resources) resources_[resource].alone = true;
+        sparse.first = sparse.last = sparse.places.front().pass;
+        for (const int index : compiled_.passes) {
+            const PassUses& uses = uses_[std::size_t(index)];
+            const auto is_of_it = [&](const Version& version) {
+                return std::ranges::find(resources, std::size_t(version.resource)) != resources.end();
+            };
+            if (std::ranges::none_of(uses.needs, is_of_it) && std::ranges::none_of(uses.makes, is_of_it))
+                continue;
+            sparse.first = std::min(sparse.first, index);
+            sparse.last = std::max(sparse.last, index);
+        }
+        compiled_.sparse.push_back(std::move(sparse));
     }
 
     void find_lifetimes() {

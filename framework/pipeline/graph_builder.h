@@ -72,6 +72,9 @@ private:
                                         const PassBindings& bindings) const;
     graph::TextureHandle write_target(const StepBuild& build, const PassBindings& bindings,
                                       const std::string& name, const std::string& pass);
+    /// Says how the targets that are cleared become so again where a pass over tiles has drawn.
+    void add_wipes(const StepBuild& build, const PassSpec& spec, const PassBindings& bindings,
+                   graph::Pass& pass);
     void set_kind(const StepBuild& build, const PassSpec& spec, graph::Pass& pass) const;
     /// Gives the pass that is added next a block that is filled for each frame.
     void bind_block(const StepBuild& build, BlockKind kind, graph::Pass& pass);

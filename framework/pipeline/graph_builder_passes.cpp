@@ -169,6 +169,7 @@ void GraphBuilder::add_turn(StepBuild& build, const PassSpec& spec, int turn, in
         pass.targets.push_back({write_target(build, bindings, write.name, pass.name),
                                 level_in_turn(write.level, turn), level_in_turn(write.layer, turn)});
     set_kind(build, spec, pass);
+    add_wipes(build, spec, bindings, pass);
     pass.fusing = fusing_of(spec, pass);
     programs_.add(graph_.pass_count(), shader, build.step);
     const graph::Written written = graph_.add_pass(std::move(pass));

@@ -11,13 +11,14 @@ void main() {
     ivec2 tiles = (ivec2(tile_grid_size.xy) + TILE_SIDE - 1) / TILE_SIDE;
     ivec2 tile = ivec2(16 * gl_WorkGroupID.x, gl_GlobalInvocationID.y);
     if (tile.y >= tiles.y) return;
-    int end = min(tile.x + 16, tiles.x), first = -1;
-    for (int x = tile.x; x <= end; ++x) {
-        bool goes_on = x < end && is_listed(ivec2(min(x, tiles.x - 1), tile.y));
-        if (goes_on && first < 0) first = x;
-        if (!goes_on && first >= 0) {
-            TILE_RUNS[atomicAdd(TILE_ARGS[1], 1u)] = uvec4(first, tile.y, x, 0);
-            first = -1;
-        }
+    uint listed = 0u;
+    int count = min(16, tiles.x - tile.x);
+    for (int i = 0; i < count; ++i)
+        if (is_listed(tile + ivec2(i, 0))) listed |= 1u << i;
+    // Software GL steps over an atomic that no tile needs as slowly as over one that all do, unless a loop ends before it.
+    while (listed != 0u) {
+        int first = findLSB(listed), end = first + findLSB(~(listed >> first));
+        TILE_RUNS[atomicAdd(TILE_ARGS[1], 1u)] = uvec4(tile.x + first, tile.y, tile.x + end, 0);
+        listed &= ~0u << end;
     }
 }

@@ -7,23 +7,35 @@ const int kSide = kRepairTile + 2;  // with 1 px around
 
 ivec2 inside(ivec2 p) { return clamp(p, ivec2(0), ivec2(coc_size.xy) - 1); }
 
-// Columns x to x + 3 of a row.
-vec4 four(ivec2 p) {
-    return vec4(texelFetch(coc, inside(p), 0).r, texelFetch(coc, inside(p + ivec2(1, 0)), 0).r, texelFetch(coc, inside(p + ivec2(2, 0)), 0).r,
-                texelFetch(coc, inside(p + ivec2(3, 0)), 0).r);
-}
-
 float smallest_of(vec4 v) { return min(min(v.x, v.y), min(v.z, v.w)); }
 float largest_of(vec4 v) { return max(max(v.x, v.y), max(v.z, v.w)); }
 
-// A row of the tile, with 1 px to its left and 2 px to its right, in registers: each texel is fetched once.
+// Two rows of the tile, with 1 px to their left and 2 px to their right, in registers: each texel is fetched once, with the three beside
+// it, which takes software GL little longer.
 struct Row { vec4 a, b, c, d, e; };
+struct Rows { Row upper, lower; };
 
-Row row_at(ivec2 p) {
-    Row row = Row(four(p), four(p + ivec2(4, 0)), four(p + ivec2(8, 0)), four(p + ivec2(12, 0)), vec4(0.0));
-    for (int i = 0; i < 3; ++i) row.e[i] = texelFetch(coc, inside(p + ivec2(16 + i, 0)), 0).r;
-    row.e.w = row.e.z;
-    return row;
+// 2 x 2 texels: lower left, lower right, upper right, upper left.
+vec4 block(ivec2 p) { return textureGather(coc, vec2(p + 1) * coc_size.zw); }
+
+Rows rows_at(ivec2 p) {
+    Rows rows;
+    vec4 l = block(p), r = block(p + ivec2(2, 0));
+    rows.upper.a = vec4(l.wz, r.wz);
+    rows.lower.a = vec4(l.xy, r.xy);
+    l = block(p + ivec2(4, 0)), r = block(p + ivec2(6, 0));
+    rows.upper.b = vec4(l.wz, r.wz);
+    rows.lower.b = vec4(l.xy, r.xy);
+    l = block(p + ivec2(8, 0)), r = block(p + ivec2(10, 0));
+    rows.upper.c = vec4(l.wz, r.wz);
+    rows.lower.c = vec4(l.xy, r.xy);
+    l = block(p + ivec2(12, 0)), r = block(p + ivec2(14, 0));
+    rows.upper.d = vec4(l.wz, r.wz);
+    rows.lower.d = vec4(l.xy, r.xy);
+    l = block(p + ivec2(16, 0)), r = block(p + ivec2(17, 0));
+    rows.upper.e = vec4(l.wz, r.zz);
+    rows.lower.e = vec4(l.xy, r.yy);
+    return rows;
 }
 
 float step_along(Row row) {
@@ -38,19 +50,29 @@ float step_across(Row row, Row above) {
     return max(largest_of(max(ab, cd)), largest_of(abs(row.e - above.e)));
 }
 
+// Of the tile's own columns.
+float smallest_own(Row row) {
+    return min(min(smallest_of(min(row.b, row.c)), smallest_of(row.d)), min(min(row.a.y, row.a.z), min(row.a.w, row.e.x)));
+}
+float largest_own(Row row) {
+    return max(max(largest_of(max(row.b, row.c)), largest_of(row.d)), max(max(row.a.y, row.a.z), max(row.a.w, row.e.x)));
+}
+
 void main() {
     ivec2 corner = kRepairTile * ivec2(gl_FragCoord.xy) - 1;
-    Row above = row_at(corner);
-    float step_px = step_along(above), smallest = above.a.y, greatest = smallest;
-    for (int y = 1; y < kSide; ++y) {
-        Row row = row_at(corner + ivec2(0, y));
-        step_px = max(step_px, max(step_along(row), step_across(row, above)));
-        float low = min(min(smallest_of(min(row.b, row.c)), smallest_of(row.d)), min(min(row.a.y, row.a.z), min(row.a.w, row.e.x)));
-        float high = max(max(largest_of(max(row.b, row.c)), largest_of(row.d)), max(max(row.a.y, row.a.z), max(row.a.w, row.e.x)));
-        bool is_own = y <= kRepairTile;
-        smallest = y == 1 ? low : is_own ? min(smallest, low) : smallest;
-        greatest = y == 1 ? high : is_own ? max(greatest, high) : greatest;
-        above = row;
+    Rows rows = rows_at(corner);
+    float step_px = max(max(step_along(rows.upper), step_along(rows.lower)), step_across(rows.lower, rows.upper));
+    float smallest = smallest_own(rows.lower), greatest = largest_own(rows.lower);
+    for (int y = 2; y < kSide; y += 2) {
+        Row above = rows.lower;
+        rows = rows_at(corner + ivec2(0, y));
+        step_px = max(step_px, max(step_across(rows.upper, above), step_across(rows.lower, rows.upper)));
+        step_px = max(step_px, max(step_along(rows.upper), step_along(rows.lower)));
+        smallest = min(smallest, smallest_own(rows.upper));
+        greatest = max(greatest, largest_own(rows.upper));
+        if (y == kRepairTile) continue;
+        smallest = min(smallest, smallest_own(rows.lower));
+        greatest = max(greatest, largest_own(rows.lower));
     }
     out_coc_step = vec4(step_px, 0.0, smallest, greatest);
     if (!is_repaired(step_px)) return;

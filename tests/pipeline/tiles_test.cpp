@@ -76,6 +76,24 @@ TEST(TilesOfAPass, LieOnLevelsAndOnBlocksToo) {
         }
 }
 
+/// As kTiled, but which tiles of three are chosen depends on the picture's red.
+TEST(TilesOfAPass, LeaveNothingBehindForTheNextFrame) {
+    EffectFolder effects;
+    std::string shader = kTiledShader;
+    const std::string chosen = "(p.x + p.y) % 2 == 0";
+    shader.replace(shader.find(chosen), chosen.size(),
+                   "(p.x + p.y) % 3 == int(texelFetch(color, ivec2(0), 0).r)");
+    effects.add("tiled", kTiled, shader);
+    const std::string look = look_of(R"({"effect": "tiled"})");
+    Bench bench(effects, look);
+    for (const float red : {0.0f, 2.0f, 3.0f, 1.0f, 1.0f}) {  // 3: no tile
+        const Capture picture = make_capture(
+            {.width = kTiledWidth, .height = kTiledHeight, .background = {red, 0.25f, 1}});
+        const Image first_frame = Bench(effects, look).color(picture), shown = bench.color(picture);
+        ASSERT_TRUE(std::ranges::equal(shown.floats(), first_frame.floats())) << red;
+    }
+}
+
 const char* const kCopied = R"("inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
     "textures": { "marks": { "format": "r8", "tile": 16, "doc": "." } },
     "tiles": { "chosen": { "of": "marks.r", "doc": "." } },

@@ -1,3 +1,0 @@
-#include "wide.glsl"
-
-bool wide_silhouette_tiles(ivec2 tile) { return is_blurred(tile) && is_wide(tile) && is_plated(tile); }

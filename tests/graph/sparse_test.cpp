@@ -1,0 +1,276 @@
+// Textures that are cleared only where the frame before drew, against what a clear of every texel leaves.
+#include <initializer_list>
+#include <memory>
+#include <utility>
+
+#include "tests/graph/executor_test.h"
+
+namespace aftershade::graph {
+namespace {
+
+constexpr float kClear = 7;
+constexpr int kNowhere = 100;  // a column outside the picture
+
+/// Draws `value + column` to a column of a cleared texture, and copies what is there then.
+class SparseOn : public GraphOn {
+protected:
+    struct Columns {
+        Graph graph;
+        TextureHandle sparse, copy;
+        std::vector<int> listing;  ///< passes that say which column
+    };
+
+    void SetUp() override {
+        GraphOn::SetUp();
+        if (IsSkipped()) return;
+        list_ = shared(computes(R"(layout(local_size_x = 1) in;
+layout(std140, binding = 1) uniform Block { float column; };
+layout(std430, binding = 0) writeonly buffer Places { uvec4 place[]; };)",
+                                "    place[0] = uvec4(uint(column));"));
+        draw_ = shared(columns("float(column) + 1000.0"));
+        wipe_ = shared(columns("7.0"));
+        copy_ = shared(draws("result = texelFetch(source, p, 0).r;"));
+    }
+
+    using Shared = std::shared_ptr<const gpu::Program>;
+    static Shared shared(gpu::Program program) {
+        return std::make_shared<const gpu::Program>(std::move(program));
+    }
+
+    gpu::Program columns(const std::string& value) {
+        return gpu::Program::draw(context(), R"(#version 450 core
+layout(std430, binding = 0) readonly buffer Places { uvec4 place[]; };
+flat out uint column;
+void main() {
+    column = place[0].x;
+    vec2 texel = vec2(float(column) + float(gl_VertexID & 1), 3.0 * float(gl_VertexID >> 1));
+    gl_Position = vec4(texel / vec2(5.0, 3.0) * vec2(2.0, -2.0) + vec2(-1.0, 1.0), 0.0, 1.0);
+})",
+                                  R"(#version 450 core
+flat in uint column;
+layout(std140, binding = 0) uniform Block { vec4 unused; };
+layout(location = 0) out float result;
+void main() { result = )" + value + "; }",
+                                  "columns");
+    }
+
+    BufferHandle add_list(Columns& columns, BufferHandle places) {
+        Pass pass = with(pass_named("list", PassKind::compute), *list_);
+        pass.buffers = {{places, 0, gpu::Access::write}};
+        pass.uniforms = {{1, block_of(0)}};
+        columns.listing.push_back(columns.graph.pass_count());
+        return columns.graph.add_pass(pass).buffers.front();
+    }
+
+    Pass column_pass(TextureHandle target, BufferHandle places, bool wipes = true) {
+        Pass pass = with(pass_named("column", PassKind::instances), *draw_);
+        pass.targets = {{target}};
+        pass.instances.count = 1;
+        pass.buffers = {{places, 0, gpu::Access::read}};
+        if (wipes)
+            pass.wipes = {Wipe{wipe_, {0, block_of(0)}, {places, 0, gpu::Access::read}}};
+        return pass;
+    }
+
+    static TextureHandle cleared(Graph& graph, const std::string& name = "sparse") {
+        TextureOptions options;
+        options.clear = {kClear, kClear, kClear, kClear};
+        return graph.create_texture(name, kSmall, options);
+    }
+
+    /// `lists` draws, each of its own column.
+    Columns columns_of(int lists = 1) {
+        Columns columns;
+        columns.sparse = cleared(columns.graph);
+        for (int i = 0; i < lists; ++i) {
+            const BufferHandle places = add_list(columns, columns.graph.create_buffer("places", {16}));
+            columns.sparse = columns.graph.add_pass(column_pass(columns.sparse, places)).targets.front();
+        }
+        columns.copy = columns.graph
+                           .add_pass(draw_of("copy", *copy_, {columns.sparse},
+                                             columns.graph.fresh("copy", kSmall)))
+                           .targets.front();
+        columns.graph.keep(columns.copy);
+        return columns;
+    }
+
+    static Floats expected(std::initializer_list<int> columns) {
+        Floats values(kWidth * kHeight, kClear);
+        for (const int column : columns)
+            for (int y = 0; y < kHeight && column < kWidth; ++y)
+                values[std::size_t(y * kWidth + column)] = float(column) + 1000;
+        return values;
+    }
+
+    static void set_columns(Executor& executor, const Columns& of, std::initializer_list<int> columns) {
+        std::size_t i = 0;
+        for (const int column : columns)
+            executor.set_uniforms(of.listing[i++], 1, block_of(float(column)));
+    }
+
+    Shared list_, draw_, wipe_, copy_;
+
+    static void poke(gpu::Texture& texture, int column, float value) {
+        Floats values = texture.read_floats();
+        values[std::size_t(column)] = value;
+        texture.upload(values);
+    }
+};
+ON_SOFTWARE_BACKENDS(SparseOn);
+
+TEST_P(SparseOn, HoldsItsClearValueWhereTheFrameDoesNotDraw) {
+    const Columns columns = columns_of(2);
+    Executor executor(context(), columns.graph);
+    ASSERT_EQ(executor.compiled().sparse.size(), 1u);
+    EXPECT_EQ(executor.compiled().sparse.front().places.size(), 2u);
+    for (const auto& [a, b] : {std::pair(0, 3), {3, 0}, {kNowhere, 1}, {kNowhere, kNowhere}, {4, 4}}) {
+        set_columns(executor, columns, {a, b});
+        executor.run(false);
+        EXPECT_EQ(executor.texture(columns.copy)->read_floats(), expected({a, b})) << a << ", " << b;
+    }
+}
+
+TEST_P(SparseOn, IsClearedAsAWholeOnceAndThenOnlyWhereAPassDrew) {
+    const Columns columns = columns_of();
+    Executor executor(context(), columns.graph);
+    set_columns(executor, columns, {1});
+    executor.run(false);
+    // What no pass has drawn shows what no clear has touched.
+    gpu::Texture& memory = *executor.texture(columns.sparse);
+    poke(memory, 1, -1);
+    poke(memory, 2, -2);
+    set_columns(executor, columns, {4});
+    executor.run(false);
+    Floats want = expected({4});
+    want[2] = -2;
+    EXPECT_EQ(executor.texture(columns.copy)->read_floats(), want);
+}
+
+TEST_P(SparseOn, IsClearedAsAWholeAfterAFrameOfWhichAPartRanTwice) {
+    const Columns columns = columns_of();
+    Executor executor(context(), columns.graph);
+    const int copy = columns.graph.pass_count() - 1;
+    for (int frame = 0; frame < 3; ++frame) {
+        for (const int column : {0, 2}) {  // sub-frames, each with a column of its own
+            set_columns(executor, columns, {column});
+            executor.run(false, {}, {0, copy});
+        }
+        executor.run(false, {}, {copy, -1});
+        EXPECT_EQ(executor.texture(columns.copy)->read_floats(), expected({2})) << frame;
+        set_columns(executor, columns, {frame});
+        executor.run(false);
+        EXPECT_EQ(executor.texture(columns.copy)->read_floats(), expected({frame})) << frame;
+    }
+}
+
+TEST_P(SparseOn, StaysAsItIsWhereLaterPassesAloneRunAgain) {
+    Columns columns = columns_of();
+    columns.graph.keep(columns.sparse);
+    Executor executor(context(), columns.graph, false);
+    const int copy = columns.graph.pass_count() - 1;
+    set_columns(executor, columns, {1});
+    executor.run(false);
+    for (int again = 0; again < 2; ++again) {
+        executor.run(false, {}, {copy, -1});
+        EXPECT_EQ(executor.texture(columns.copy)->read_floats(), expected({1}));
+        EXPECT_EQ(executor.texture(columns.sparse)->read_floats(), expected({1}));
+    }
+    set_columns(executor, columns, {3});
+    executor.run(false);
+    EXPECT_EQ(executor.texture(columns.copy)->read_floats(), expected({3}));
+}
+
+TEST_P(SparseOn, SharesItsMemoryWithNothing) {
+    Columns columns = columns_of();
+    Graph& graph = columns.graph;
+    TextureHandle last = columns.copy;
+    for (int i = 0; i < 3; ++i)
+        last = graph.add_pass(draw_of("later", *copy_, {last}, graph.fresh("later", kSmall))).targets.front();
+    const BufferHandle unused = add_list(columns, graph.create_buffer("unused", {16}));
+    (void)graph.add_pass(column_pass(cleared(graph, "unused"), unused));
+    graph.keep(last);
+    Executor executor(context(), graph);
+    const CompiledGraph& compiled = executor.compiled();
+    ASSERT_EQ(compiled.sparse.size(), 1u);
+    for (std::size_t i = 0; i < graph.textures().size(); ++i)
+        if (int(i) != columns.sparse.texture) {
+            EXPECT_NE(compiled.slot_of_texture[i], slot(compiled, columns.sparse)) << i;
+        }
+    for (const int column : {2, 0, 1}) {
+        set_columns(executor, columns, {column});
+        executor.run(false);
+        EXPECT_EQ(executor.texture(last)->read_floats(), expected({column}));
+    }
+}
+
+TEST_P(SparseOn, NeedsAWipeForEveryDraw) {
+    const auto sparse_count = [&](const auto& add) {
+        Columns columns;
+        TextureHandle target = cleared(columns.graph);
+        const BufferHandle places = add_list(columns, columns.graph.create_buffer("places", {16}));
+        target = columns.graph.add_pass(column_pass(target, places)).targets.front();
+        columns.graph.keep(add(columns, target, places));
+        return columns.graph.compile().sparse.size();
+    };
+    EXPECT_EQ(sparse_count([](Columns&, TextureHandle target, BufferHandle) { return target; }), 1u);
+    EXPECT_EQ(sparse_count([&](Columns& columns, TextureHandle target, BufferHandle places) {
+                  return columns.graph.add_pass(column_pass(target, places, false)).targets.front();
+              }),
+              0u);
+    EXPECT_EQ(sparse_count([](Columns& columns, TextureHandle target, BufferHandle) {
+                  return columns.graph.blend("whole", {}, target);
+              }),
+              0u);
+    EXPECT_EQ(sparse_count([](Columns& columns, TextureHandle target, BufferHandle) {
+                  return columns.graph.store("image", {}, target);
+              }),
+              0u);
+    EXPECT_EQ(sparse_count([](Columns& columns, TextureHandle target, BufferHandle) {
+                  return columns.graph.clear("clear", {target});
+              }),
+              0u);
+    // Afterwards nothing says where the first column was.
+    EXPECT_EQ(sparse_count([&](Columns& columns, TextureHandle target, BufferHandle places) {
+                  return columns.graph.add_pass(column_pass(target, add_list(columns, places)))
+                      .targets.front();
+              }),
+              0u);
+}
+
+TEST_P(SparseOn, IsNoHistoryAndHasNoPlacesFromOutside) {
+    TextureOptions options;
+    options.clear = {kClear};
+    Columns columns;
+    const BufferHandle places = add_list(columns, columns.graph.create_buffer("places", {16}));
+    const TextureHistory history = columns.graph.create_history("history", kSmall, options);
+    Graph& graph = columns.graph;
+    const TextureHandle current = graph.add_pass(column_pass(history.current, places)).targets.front();
+    graph.keep(graph.draw("out", {history.previous, current}, graph.fresh("out", kSmall)));
+    const BufferHandle outside = graph.import_buffer("outside", {16});
+    graph.keep(graph.add_pass(column_pass(cleared(graph), outside)).targets.front());
+    EXPECT_TRUE(graph.compile().sparse.empty());
+}
+
+TEST_P(SparseOn, RefusesWipesThatCannotWork) {
+    Columns columns;
+    Graph& graph = columns.graph;
+    const BufferHandle places = add_list(columns, graph.create_buffer("places", {16}));
+    const BufferHandle others = add_list(columns, graph.create_buffer("others", {16}));
+    Pass pass = column_pass(graph.cleared("a", kSmall), places);
+    pass.wipes[0]->places.buffer = others;
+    EXPECT_EQ(fault_of([&] { (void)graph.add_pass(pass); }),
+              "pass 'column' wipes 'a' where a buffer says that the pass does not read");
+    pass = column_pass(graph.cleared("b", kSmall), places);
+    pass.wipes[0]->program = nullptr;
+    EXPECT_EQ(fault_of([&] { (void)graph.add_pass(pass); }),
+              "pass 'column' wipes 'b' without a program that draws, or without its block");
+    pass.wipes.emplace_back();
+    EXPECT_EQ(fault_of([&] { (void)graph.add_pass(pass); }),
+              "pass 'column' has 2 wipes for 1 targets, or does not draw instances");
+    const TextureHandle filled = graph.draw("fill", {}, graph.fresh("d", kSmall));
+    EXPECT_EQ(fault_of([&] { (void)graph.add_pass(column_pass(filled, places)); }),
+              "pass 'column' wipes 'd', which is not cleared");
+}
+
+}  // namespace
+}  // namespace aftershade::graph
