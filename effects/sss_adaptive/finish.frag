@@ -2,9 +2,7 @@
 #include <pass>
 #include <scattering/filled.glsl>
 #include <scattering/result.glsl>
-#ifdef HAS_BLURRED
 #include "hybrid_result.glsl"
-#endif
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
@@ -13,8 +11,5 @@ void main() {
 #else
     vec3 drawn = texelFetch(estimate, p, 0).rgb;
 #endif
-#ifdef HAS_BLURRED
-    drawn = hybrid_result(p, drawn);
-#endif
-    out_irradiance = scattered_result(p, drawn);
+    out_irradiance = scattered_result(p, hybrid_result(p, drawn));
 }

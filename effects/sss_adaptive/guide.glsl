@@ -36,27 +36,30 @@ bool same_light(vec4 now, vec4 then, float near_now, float near_then, out vec3 t
 // What a pixel that scatters comes to after this frame.
 struct Guided {
     vec4 light;   // the texture guided
-    vec4 share;   // the texture guided_share
+    vec3 share;
     vec4 lit;
     float lit_near;
 };
 
 // `now` is the frame's light, filled by its share. Light before that and shares are averaged apart: of a share that samples
-// made noisy, filled() of each frame would be brighter in the mean. was_seen: whether the frame before showed this surface.
-Guided guided_light(vec3 now, vec3 share_now, Facet here, bool was_seen) {
-    ivec2 q;
+// made noisy, filled() of each frame would be brighter in the mean. q: where the pixel was, if was_seen, in the frame before.
+Guided guided_light(ViewLines lines, vec3 now, vec3 share_now, Facet here, ivec2 q, bool was_seen) {
     vec3 times;
-    bool inside = past_pixel(q);
     float near_now;
-    vec4 lit_now = light_around(view_lines(), here, near_now);
-    vec4 past = texelFetch(guided_prev, q, 0);
-    bool known = inside && past.a > 0.0 && was_seen &&
-        same_light(lit_now, texelFetch(lit_prev, q, 0), near_now, texelFetch(lit_near_prev, q, 0).r, times);
+    vec4 lit_now = light_around(lines, here, near_now);
+    vec4 past = texelFetch(guided_prev, q, 0), past_share = texelFetch(guided_share_prev, q, 0);
+    bool known = was_seen && past.a > 0.0 && same_light(lit_now, texelFetch(lit_prev, q, 0), near_now, past_share.a, times);
     // Frames count alike until the newest would count less than its weight.
     float frames = known ? past.a + 1.0 : 1.0;
     float weight = max(1.0 / frames, param.guiding_weight);
     vec3 sum = now * filling(share_now);
     vec3 light = known ? mix(past.rgb * times, sum, weight) : sum;
-    vec3 share = known ? mix(texelFetch(guided_share_prev, q, 0).rgb, share_now, weight) : share_now;
-    return Guided(vec4(light, 1.0 / weight), vec4(share, 0.0), lit_now, near_now);
+    vec3 share = known ? mix(past_share.rgb, share_now, weight) : share_now;
+    return Guided(vec4(light, 1.0 / weight), share, lit_now, near_now);
+}
+
+void keep_average(Guided now) {
+    out_guided = now.light;
+    out_guided_share = vec4(now.share, now.lit_near);
+    out_lit = now.lit;
 }
