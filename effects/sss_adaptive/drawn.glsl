@@ -16,17 +16,8 @@ vec3 light_of_sample(Facet there, vec2 place, float area_px) {
 
 #include <scattering/gather.glsl>
 
-struct Drawn {
-    vec3 light;   // scattered; the pixel's own where it takes no sample
-    float count;
-    vec3 share;   // of the profile, that was found
-};
-
-// `each`: of the texture epoch. scattered: share of the scattered light in the result.
-Drawn drawn_light(ViewLines lines, ivec2 p, Facet here, float count, float each, float scattered) {
-    Drawn drawn = Drawn(here.light, count, vec3(1.0));
-    if (count < 0.5) return drawn;
-    vec3 gathered = gathered_light(lines, p, here, first_point(each), int(count), drawn.share);
-    drawn.light = mix(here.light, gathered, scattered);
-    return drawn;
+// `each`: of the texture epoch. A pixel that takes no sample keeps its light.
+Gathered drawn(ViewLines lines, ivec2 p, Facet here, float count, float each) {
+    if (count < 0.5) return Gathered(here.light, vec3(1.0), vec3(1.0));
+    return gathered(lines, p, here, first_point(each), int(count));
 }

@@ -8,7 +8,11 @@ void main() {
     Facet here = read_facet(lines, p);
     vec4 plan_here = texelFetch(plan, p, 0);
     float count = here.key == 0u ? 0.0 : plan_here.x;
-    Drawn drawn = drawn_light(lines, p, here, count, texelFetch(epoch, p, 0).r, plan_here.z);
-    out_estimate = vec4(drawn.light, drawn.count);
-    out_share = vec4(drawn.share, 0.0);
+    Gathered sums = drawn(lines, p, here, count, texelFetch(epoch, p, 0).r);
+    out_estimate = vec4(mix(here.light, filled(sums), plan_here.z), count);
+#if HYBRID != HYBRID_OFF
+    out_sum = vec4(sums.light, 0.0);
+    out_share = vec4(sums.share, 0.0);
+    out_whole = vec4(sums.whole, 0.0);
+#endif
 }

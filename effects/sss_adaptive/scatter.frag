@@ -15,21 +15,19 @@ void main() {
     ViewLines lines = view_lines();
     Facet here = read_facet(lines, p);
     keep_nothing();
-    out_epoch = 0.0;
-    out_samples = 0.0;
+    out_epoch = vec2(0.0);
     out_irradiance = texelFetch(irradiance, p, 0);
     if (here.key == 0u) return;
     vec4 past = texelFetch(history_prev, q, 0);
     Plan plan_here = planned(lines, here, inside, past, texelFetch(epoch_prev, q, 0).r);
-    Drawn drawn = drawn_light(lines, p, here, plan_here.count, plan_here.each, plan_here.scattered);
-    out_epoch = plan_here.each;
-    out_samples = drawn.count;
-    keep_moments(here, q, past, plan_here.known && past.x >= 0.0, true, drawn.count, exposed(drawn.light));
-    vec3 scattered = drawn.light;
+    Gathered sums = drawn(lines, p, here, plan_here.count, plan_here.each);
+    vec3 scattered = mix(here.light, filled(sums), plan_here.scattered);
+    out_epoch = vec2(plan_here.each, plan_here.count);
+    keep_moments(here, q, past, plan_here.known && past.x >= 0.0, true, plan_here.count, exposed(scattered));
 #if GUIDING
-    Guided now = guided_light(lines, drawn.light, drawn.share, here, q, plan_here.known);
+    Guided now = guided_light(lines, sums, here, q, plan_here.known);
     keep_average(now);
-    scattered = filled(now.light.rgb, now.share);
+    scattered = mix(here.light, filled(now.sums), plan_here.scattered);
 #endif
     out_irradiance = mixed_result(p, here.key, scattered);
 }

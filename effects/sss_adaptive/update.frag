@@ -16,11 +16,12 @@ void main() {
     bool known = plan_here.y > 0.0 && past.x >= 0.0, followed = plan_here.y >= 0.0;
     keep_moments(here, q, past, known, followed, drawn.a, exposed(drawn.rgb));
 #if GUIDING
-    Guided now = guided_light(lines, drawn.rgb, texelFetch(share, p, 0).rgb, here, q, plan_here.y > 0.0);
+    Gathered sums = Gathered(texelFetch(sum, p, 0).rgb, texelFetch(share, p, 0).rgb, texelFetch(whole, p, 0).rgb);
+    Guided now = guided_light(lines, sums, here, q, plan_here.y > 0.0);
     // What is blurred has no noise: samples that come to it later go on from there.
     if (texelFetch(sampled, p, 0).r == 0.0) {
-        now.light = vec4(texelFetch(blurred, p, 0).rgb, 1.0 / param.guiding_weight);
-        now.share = vec3(1.0);
+        now.sums = Gathered(texelFetch(blurred, p, 0).rgb, vec3(1.0), vec3(1.0));
+        now.frames = 1.0 / param.guiding_weight;
     }
     keep_average(now);
 #endif

@@ -30,6 +30,6 @@ void keep_nothing() {
     out_covariance = vec4(0.0);
 #endif
 #if GUIDING
-    out_guided = out_guided_share = out_lit = vec4(0.0);
+    out_guided = out_guided_share = out_guided_whole = out_lit = vec4(0.0);
 #endif
 }
