@@ -1,20 +1,16 @@
 #version 450 core
 #include <pass>
-#include <scattering/filled.glsl>
+#include <scattering/gathered.glsl>
 #include <scattering/result.glsl>
-#ifdef HAS_BLURRED
 #include "hybrid_result.glsl"
-#endif
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
 #ifdef HAS_GUIDED
-    vec3 drawn = filled(texelFetch(guided, p, 0).rgb, texelFetch(guided_share, p, 0).rgb);
+    Gathered sums = Gathered(texelFetch(guided, p, 0).rgb, texelFetch(guided_share, p, 0).rgb, texelFetch(guided_whole, p, 0).rgb);
+    vec3 drawn = mix(texelFetch(surface, p, 0).rgb, filled(sums), texelFetch(plan, p, 0).z);
 #else
     vec3 drawn = texelFetch(estimate, p, 0).rgb;
 #endif
-#ifdef HAS_BLURRED
-    drawn = hybrid_result(p, drawn);
-#endif
-    out_irradiance = scattered_result(p, drawn);
+    out_irradiance = scattered_result(p, hybrid_result(p, drawn));
 }

@@ -1,6 +1,6 @@
 // The average over frames within the step.
 #include <scattering/facet.glsl>
-#include <scattering/filled.glsl>
+#include <scattering/gathered.glsl>
 #include <burley.glsl>
 #include <luminance.glsl>
 #include "mip_level.glsl"
@@ -35,28 +35,31 @@ bool same_light(vec4 now, vec4 then, float near_now, float near_then, out vec3 t
 
 // What a pixel that scatters comes to after this frame.
 struct Guided {
-    vec4 light;   // the texture guided
-    vec4 share;   // the texture guided_share
+    Gathered sums;
+    float frames;   // how many they are of
     vec4 lit;
     float lit_near;
 };
 
-// `now` is the frame's light, filled by its share. Light before that and shares are averaged apart: of a share that samples
-// made noisy, filled() of each frame would be brighter in the mean. was_seen: whether the frame before showed this surface.
-Guided guided_light(vec3 now, vec3 share_now, Facet here, bool was_seen) {
-    ivec2 q;
+// `now`: of the frame. q: where the pixel was, if was_seen, in the frame before. Sums are averaged apart: a ratio of few samples
+// is off in the mean, that of the averages less.
+Guided guided_light(ViewLines lines, Gathered now, Facet here, ivec2 q, bool was_seen) {
     vec3 times;
-    bool inside = past_pixel(q);
     float near_now;
-    vec4 lit_now = light_around(view_lines(), here, near_now);
-    vec4 past = texelFetch(guided_prev, q, 0);
-    bool known = inside && past.a > 0.0 && was_seen &&
-        same_light(lit_now, texelFetch(lit_prev, q, 0), near_now, texelFetch(lit_near_prev, q, 0).r, times);
+    vec4 lit_now = light_around(lines, here, near_now);
+    vec4 light = texelFetch(guided_prev, q, 0), share = texelFetch(guided_share_prev, q, 0);
+    vec3 whole = texelFetch(guided_whole_prev, q, 0).rgb;
+    if (!was_seen || light.a == 0.0 || !same_light(lit_now, texelFetch(lit_prev, q, 0), near_now, share.a, times))
+        return Guided(now, 1.0, lit_now, near_now);
     // Frames count alike until the newest would count less than its weight.
-    float frames = known ? past.a + 1.0 : 1.0;
-    float weight = max(1.0 / frames, param.guiding_weight);
-    vec3 sum = now * filling(share_now);
-    vec3 light = known ? mix(past.rgb * times, sum, weight) : sum;
-    vec3 share = known ? mix(texelFetch(guided_share_prev, q, 0).rgb, share_now, weight) : share_now;
-    return Guided(vec4(light, 1.0 / weight), vec4(share, 0.0), lit_now, near_now);
+    float weight = max(1.0 / (light.a + 1.0), param.guiding_weight);
+    Gathered sums = Gathered(mix(light.rgb * times, now.light, weight), mix(share.rgb, now.share, weight), mix(whole, now.whole, weight));
+    return Guided(sums, 1.0 / weight, lit_now, near_now);
+}
+
+void keep_average(Guided now) {
+    out_guided = vec4(now.sums.light, now.frames);
+    out_guided_share = vec4(now.sums.share, now.lit_near);
+    out_guided_whole = vec4(now.sums.whole, 0.0);
+    out_lit = now.lit;
 }

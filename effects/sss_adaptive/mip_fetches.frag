@@ -2,8 +2,8 @@
 #include <pass>
 #include <scattering/facet.glsl>
 #include <scattering/sampling.glsl>
-#include <scattering/start.glsl>
 #include <sequence.glsl>
+#include "epoch.glsl"
 #include "mip_level.glsl"
 
 // What gather.frag fetches of the texture light, without fetching it. A sample between two levels takes of both.
@@ -18,7 +18,7 @@ void main() {
     vec3 d = scattering_profile(here.key - 1u).d;
     float per_mm = pixels_per_mm(lines, here.depth_m);
     vec3 beyond_inner = max(burley_beyond(0.5 / per_mm, d), 1e-30);
-    uvec2 start = samples_start(param.seed);
+    uvec2 start = first_point(texelFetch(epoch, p, 0).r);
     float fetches[6] = float[6](0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     for (int i = 0; i < count; ++i) {
         Sample drawn = draw_sample(d, beyond_inner, r2_point(start, uint(i)).y);

@@ -17,16 +17,21 @@ float range_around() {
 #endif
 
 void main() {
+    ivec2 p = ivec2(gl_FragCoord.xy), q;
+    bool inside = past_pixel(q);
     ViewLines lines = view_lines();
-    Facet here = read_facet(lines, ivec2(gl_FragCoord.xy));
-#if HYBRID == HYBRID_OFF
-    out_plan = here.key == 0u ? vec4(0.0) : planned(lines, here);
-#else
+    Facet here = read_facet(lines, p);
     out_plan = vec4(0.0);
+#if HYBRID != HYBRID_OFF
+    out_epoch = vec2(0.0);
     out_sampled = 0.0;
+#endif
     if (here.key == 0u) return;
-    out_plan = planned(lines, here);
+    Plan now = planned(lines, here, inside, texelFetch(history_prev, q, 0), texelFetch(epoch_prev, q, 0).r);
+    out_plan = vec4(now.count, now.known ? 1.0 : 0.0, now.scattered, now.wanted);
+#if HYBRID != HYBRID_OFF
     out_sampled = sampled_ids(here.key - 1u) ? share_of_range(range_around()) : 0.0;
     if (out_sampled == 0.0) out_plan = vec4(0.0, -1.0, out_plan.zw);
+    out_epoch = vec2(now.each, out_plan.x);
 #endif
 }

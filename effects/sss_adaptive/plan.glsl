@@ -1,7 +1,7 @@
 // How many samples a pixel takes.
 #include <burley.glsl>
 #include <scattering/facet.glsl>
-#include <hash.glsl>
+#include "epoch.glsl"
 #include "past.glsl"
 
 const float kProbeChance = 0.125;
@@ -19,11 +19,17 @@ float wanted_samples(float mean_count, float variance) {
 #endif
 }
 
-// The texture plan's texel of a pixel that scatters.
-vec4 planned(ViewLines lines, Facet here) {
-    ivec2 q;
-    bool inside = past_pixel(q);
-    vec4 past = texelFetch(history_prev, q, 0);
+// What is decided of a pixel before it is sampled.
+struct Plan {
+    float count;      // samples to take
+    bool known;       // whether the frame before showed this surface
+    float scattered;  // share of the scattered light in the result
+    float wanted;     // samples wanted, before rounding and the limits
+    float each;       // the texture epoch
+};
+
+// Of a pixel that scatters, whose history is `past` if it is `inside`; past_each: of the texture epoch.
+Plan planned(ViewLines lines, Facet here, bool inside, vec4 past, float past_each) {
     bool known = inside && past.a == key_of(here.key);
     float most = float(param.max_samples), least = min(float(param.min_samples), most);
     // Without history the wanted variance is taken to be met.
@@ -32,10 +38,10 @@ vec4 planned(ViewLines lines, Facet here) {
     float variance = counted ? past.y * past.y : param.target_variance;
     // A count of 0 would stay 0, whatever the variance.
     float wanted = wanted_samples(max(mean_count, 0.5), variance);
-    // One of 4 x 4 px, which a processor draws together: all wait for the one that takes most.
-    uvec2 block = uvec2(floor((gl_FragCoord.xy + vec2(frame.origin)) / frame.scale)) / 4u;
-    uvec3 hash = pcg3d(uvec3(block, pcg3d(uvec3(frame.number, frame.step_seed, param.seed + 65536)).x));
+    float each = !counted ? 0.0 : frame_of_epoch() == 0 ? max(clamp(wanted, least, most), 1e-6) : past_each;
+    uvec3 hash = block_hash(uint(frame.number));
     float count = floor(clamp(wanted, least, most) + unit_float(hash.x));
+    if (each > 0.0) count = taken_before(each, frame_of_epoch() + 1) - taken_before(each, frame_of_epoch());
 #if CONTROL_VARIATE != CONTROL_VARIATE_NONE
     // A pixel that takes none learns nothing of what changed.
     if (count < 0.5 && unit_float(hash.y) < kProbeChance) count = float(kProbeSamples);
@@ -48,5 +54,5 @@ vec4 planned(ViewLines lines, Facet here) {
     float scattered = leaving > param.distant_share ? 1.0 : 0.0;
 #endif
     if (param.distant_share == 0.0) scattered = 1.0;
-    return vec4(scattered > 0.0 ? min(count, most) : 0.0, known ? 1.0 : 0.0, scattered, wanted);
+    return Plan(scattered > 0.0 ? min(count, most) : 0.0, known, scattered, wanted, each);
 }

@@ -150,6 +150,27 @@ double mean_count(const FrameResult& result) {
     return sum / (kWidth * kHeight);
 }
 
+/// Frames 8 to 15 are one epoch, in which a pixel goes on along one sequence; frames 8, 16, 24, ... are of epochs of
+/// their own. Both are means of 8 frames of 4 samples.
+TEST(SssAdaptive, ComesNearerByFramesOfOneEpochThanByAsManyOfDifferentOnes) {
+    const Image exact = scattered(scattering_step("sss_exact", profile(), ""), shadow_edge(1));
+    LookRunner look = runner(R"("guiding": false, "min_samples": 4, "max_samples": 4)");
+    std::vector<double> together(std::size_t(kWidth) * kHeight), apart(together.size());
+    for (int frame = 1; frame <= 64; ++frame) {
+        const Image image = look.run(shadow_edge(frame)).images.at("irradiance");
+        for (std::size_t i = 0; i < apart.size(); ++i) {
+            const double error = double(image.at(int(i) % kWidth, int(i) / kWidth, 0)) -
+                                 exact.at(int(i) % kWidth, int(i) / kWidth, 0);
+            if (frame >= 8 && frame < 16) together[i] += error / 8;
+            if (frame % 8 == 0) apart[i] += error / 8;
+        }
+    }
+    const auto squares = [](const std::vector<double>& errors) {
+        return std::inner_product(errors.begin(), errors.end(), errors.begin(), 0.0);
+    };
+    EXPECT_LT(squares(together), 0.6 * squares(apart));
+}
+
 /// Light that falls to a tenth and comes back: without a control variate all of that looks like noise.
 TEST(SssAdaptive, StaysCalmUnderLightThatChangesByItsControlVariate) {
     std::vector<double> peaks;

@@ -13,7 +13,6 @@ void main() {
     Facet here = read_facet(lines, p);
     out_irradiance = texelFetch(irradiance, p, 0);
     if (here.key == 0u) return;
-    vec3 share;
-    vec3 scattered = gathered_light(lines, p, here, samples_start(param.seed), param.samples, share);
-    out_irradiance = scattered_result(p, scattered);
+    Gathered sums = gathered(lines, p, here, samples_start(param.seed, uint(frame.number)), param.samples);
+    out_irradiance = scattered_result(p, filled(sums));
 }

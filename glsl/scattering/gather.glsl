@@ -2,20 +2,19 @@
 //     vec3 light_of_sample(Facet there, vec2 place, float area_px)
 // the light that a sample at a place in px brings, which stands for so much of the picture; and the parameters sampling,
 // geometry and normalize.
-#include <scattering/filled.glsl>
+#include <scattering/gathered.glsl>
 #include <scattering/sampling.glsl>
 #include <scattering/share.glsl>
 #include <scattering/start.glsl>
 #include <sequence.glsl>
 
-// `share`: of the profile, how much was found for each channel. Each sample falls on the plane and counts for the pixel that it falls on, as far as that pixel's facet gives its light here:
+// Each sample falls on the plane and counts for the pixel that it falls on, as far as that pixel's facet gives its light here:
 // the mean over all samples is the sum over all facets.
-vec3 gathered_light(ViewLines lines, ivec2 p, Facet here, uvec2 start, int count, out vec3 share) {
+Gathered gathered(ViewLines lines, ivec2 p, Facet here, uvec2 start, int count) {
     ScatteringProfileRow profile = scattering_profile(here.key - 1u);
     float per_mm = pixels_per_mm(lines, here.depth_m), inner = 0.5 / per_mm;
     vec3 beyond_inner = max(burley_beyond(inner, profile.d), 1e-30);
-    share = own_share(profile, here);
-    vec3 sum = share * here.light, whole = share;
+    vec3 share = own_share(profile, here), sum = share * here.light, whole = share;
     for (int i = 0; i < count; ++i) {
         vec2 u = r2_point(start, uint(i));
         Sample drawn = draw_sample(profile.d, beyond_inner, u.y);
@@ -33,10 +32,8 @@ vec3 gathered_light(ViewLines lines, ivec2 p, Facet here, uvec2 start, int count
         sum += weight * light_of_sample(there, place, area_px);
         share += weight;
     }
-#if NORMALIZE == NORMALIZE_MISSING
-    // The same samples on a plane would have found the whole profile, but for their noise.
-    sum /= whole;
-    share /= whole;
+#if NORMALIZE != NORMALIZE_MISSING
+    whole = vec3(1.0);
 #endif
-    return filled(sum, share);
+    return Gathered(sum, share, whole);
 }

@@ -23,9 +23,9 @@ FIXED = {"min_samples": 64, "max_samples": 64, "distant_share": 0}
 # Name, effect, shader, where it is traced by the preprocessor, parameters, frames before.
 WAYS = [
     ("fixed, 64 samples", "sss_burley", [("gather.frag", "1")], {"samples": 64}, 1),
-    ("fixed, 64 samples, mip levels", "sss_adaptive", [("gather.frag", "1")], FIXED | LEVELS, 3),
-    ("adaptive, 8 to 64", "sss_adaptive", [("gather.frag", "1")], {}, SETTLED),
-    ("adaptive, 8 to 64, mip levels", "sss_adaptive", [("gather.frag", "1")], LEVELS, SETTLED),
+    ("fixed, 64 samples, mip levels", "sss_adaptive", [("scatter.frag", "1")], FIXED | LEVELS, 3),
+    ("adaptive, 8 to 64", "sss_adaptive", [("scatter.frag", "1")], {}, SETTLED),
+    ("adaptive, 8 to 64, mip levels", "sss_adaptive", [("scatter.frag", "1")], LEVELS, SETTLED),
     ("separable, 25 taps twice", "sss_separable", [("blur.frag", "ALONG_ROWS"), ("blur.frag", "!ALONG_ROWS")], {}, 1),
 ]
 SHORT = ["fixed", "fixed,\nmips", "adaptive", "adaptive,\nmips", "separable"]

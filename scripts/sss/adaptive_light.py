@@ -46,7 +46,7 @@ def samples_of(told):
 
 
 def sampling_ms(told):
-    return [frame["passes_ms"]["sss_adaptive.gather"] for frame in told]
+    return [frame["passes_ms"]["sss_adaptive.scatter"] for frame in told]
 
 
 def rows_of(scene, told, db):

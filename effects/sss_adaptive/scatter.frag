@@ -1,0 +1,33 @@
+#version 450 core
+#include <pass>
+#include "drawn.glsl"
+#include "plan.glsl"
+#include "update.glsl"
+#if GUIDING
+#include "guide.glsl"
+#endif
+#include <scattering/mixed.glsl>
+
+// All that a pixel needs in one pass, which writes neither plan nor estimate.
+void main() {
+    ivec2 p = ivec2(gl_FragCoord.xy), q;
+    bool inside = past_pixel(q);
+    ViewLines lines = view_lines();
+    Facet here = read_facet(lines, p);
+    keep_nothing();
+    out_epoch = vec2(0.0);
+    out_irradiance = texelFetch(irradiance, p, 0);
+    if (here.key == 0u) return;
+    vec4 past = texelFetch(history_prev, q, 0);
+    Plan plan_here = planned(lines, here, inside, past, texelFetch(epoch_prev, q, 0).r);
+    Gathered sums = drawn(lines, p, here, plan_here.count, plan_here.each);
+    vec3 scattered = mix(here.light, filled(sums), plan_here.scattered);
+    out_epoch = vec2(plan_here.each, plan_here.count);
+    keep_moments(here, q, past, plan_here.known && past.x >= 0.0, true, plan_here.count, exposed(scattered));
+#if GUIDING
+    Guided now = guided_light(lines, sums, here, q, plan_here.known);
+    keep_average(now);
+    scattered = mix(here.light, filled(now.sums), plan_here.scattered);
+#endif
+    out_irradiance = mixed_result(p, here.key, scattered);
+}
