@@ -5,17 +5,15 @@
 // much of blue and green. They sum to 1 everywhere, so that white stays white.
 float spectral_place(int tap) { return 2.0 * float(tap) / float(param.taps - 1) - 1.0; }
 
-// Of the places above 0: the first, and the sums of their first to third powers. Loops test at their end, because llvmpipe
-// runs the body of others once more, with every pixel masked.
 int first_red() { return (param.taps + 1) / 2; }
+
+// Of the places above 0 the sums of their first to third powers, in closed form: they are 1/m, 2/m, ... 1 where one place is 0, else
+// 1/d, 3/d, ... 1 with d = 2 m - 1.
 vec3 red_moments() {
-    vec3 sums = vec3(0.0);
-    int i = first_red();
-    do {
-        float place = spectral_place(i);
-        sums += place * vec3(1.0, place, place * place);
-    } while (++i < param.taps);
-    return sums;
+    float m = float(param.taps - first_red()), d = 2.0 * m - 1.0;
+    vec3 whole = (m + 1.0) / m * vec3(0.5 * m, (2.0 * m + 1.0) / 6.0, 0.25 * (m + 1.0));
+    vec3 odd = m / d * vec3(m, (2.0 * m + 1.0) / 3.0, m * (2.0 * m * m - 1.0) / (d * d));
+    return (param.taps & 1) == 1 ? whole : odd;
 }
 
 // Along the ray, light between four texels is a polynomial of degree 2: the pixel itself and the places 0.5 and 1 give the sum
@@ -32,11 +30,12 @@ void main() {
     }
     vec2 half_size_px = 0.5 * vec2(frame.display_size);
     vec2 from_centre_px = gl_FragCoord.xy + vec2(frame.origin) - half_size_px;
-    float distance_ = length(from_centre_px) / length(half_size_px);
+    // Squared, of the distance to a corner.
+    float distance2 = dot(from_centre_px, from_centre_px) / dot(half_size_px, half_size_px);
     vec3 red = red_moments();
     // How much larger than green's the picture of the spectrum's place 1 is. The mean place of red is brought to 1, so that
     // `amount` is what is measured between the channels.
-    float magnified = param.amount * (red.x / red.y) / length(half_size_px) * pow(distance_, param.falloff - 1.0);
+    float magnified = param.amount * (red.x / red.y) / length(half_size_px) * pow(distance2, 0.5 * (param.falloff - 1.0));
     vec2 centre = (gl_FragCoord.xy - from_centre_px) * color_size.zw, ray = from_centre_px * color_size.zw;
     bool has_middle = (param.taps & 1) == 1;
     vec4 sum = has_middle ? vec4(0.0, own.g, 0.0, own.a) : vec4(0.0);

@@ -2,7 +2,7 @@
 #include <pass>
 #include <luminance.glsl>
 #include "grain_place.glsl"
-#include "grain_bytes.glsl"
+#include "grain_bits.glsl"
 
 const float kMiddleGrey = 0.18;
 // Luminances between which grain follows the light: a negative's toe and shoulder.
@@ -15,22 +15,29 @@ float bell_at(vec2 away) {
     return bell * bell * bell * bell;
 }
 
+// The sampler takes the texel whose centre a place is, or the edge's, which pictures of four pixels or fewer need, whose textures are
+// too small: on llvmpipe faster than texelFetch() with a bound.
+uvec2 bits_at(vec2 place) {
+#if MONOCHROME
+    return uvec2(textureLod(grains, place, 0.0).r, 0);
+#else
+    return uvec2(textureLod(grains, place, 0.0).r, textureLod(grains_blue, place, 0.0).r);
+#endif
+}
+
 vec3 grain(ivec2 p) {
-    vec2 place = grain_place(p);
-    // The bound is for pictures of four pixels or fewer, whose textures are too small.
-    ivec2 nearest = nearest_grain(p), first = first_grain(), last = ivec2(grains_size.xy) - 1;
-    vec3 high = vec3(0.0), low = vec3(0.0);
+    ivec2 nearest = nearest_grain(p);
+    vec2 away = grain_place(p) - vec2(nearest), centre = vec2(nearest - first_grain()) + 0.5;
+    vec3 codes = vec3(0.0);
     float weights = 0.0, squares = 0.0;
     for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x) {
-            float weight = bell_at(place - vec2(nearest + ivec2(x, y)));
-            ivec2 texel = min(nearest + ivec2(x, y) - first, last);
-            high += weight * texelFetch(grains, texel, 0).rgb;
-            low += weight * texelFetch(grains_low, texel, 0).rgb;
+            float weight = bell_at(away - vec2(x, y));
+            codes += weight * grain_codes(bits_at((centre + vec2(x, y)) * grains_size.zw));
             weights += weight;
             squares += weight * weight;
         }
-    return grain_of_bytes(high, low, weights) * inversesqrt(squares);
+    return grain_of_codes(codes, weights) * inversesqrt(squares);
 }
 
 void main() {

@@ -1,8 +1,10 @@
 #include <hash.glsl>
 
+// Of the frame and the step.
+uvec3 grain_key() { return pcg3d(uvec3(uint(frame.number), frame.step_seed, uint(param.seed))); }
+
 // Standard normal numbers of one grain, which has its place in the display window.
-vec3 one_grain(ivec2 cell) {
-    uvec3 key = pcg3d(uvec3(uint(frame.number), frame.step_seed, uint(param.seed)));
+vec3 one_grain(ivec2 cell, uvec3 key) {
     uvec3 a = pcg3d(uvec3(uvec2(cell), key.x));
 #if MONOCHROME
     return vec3(normal_pair(a.x, a.y).x);

@@ -1,6 +1,7 @@
 // History between pixels, by single texels: where nothing moves it is the pixel's own, bit for bit.
 
-vec4 kept_at(ivec2 p) { return texelFetch(kept_prev, clamp(p, ivec2(0), ivec2(kept_prev_size.xy) - 1), 0); }
+// The sampler takes the texel whose centre this is, or the edge's: on llvmpipe faster than texelFetch() with a clamp.
+vec4 kept_at(ivec2 p) { return textureLod(kept_prev, (vec2(p) + 0.5) * kept_prev_size.zw, 0.0); }
 
 #if HISTORY_FILTER == HISTORY_FILTER_BILINEAR
 vec4 history_at(vec2 px) {

@@ -9,9 +9,11 @@ const float kMostLight = 1e15;
 // What differs by this part of the luma is the same: rounding shall not drop history.
 const float kSlack = 1.0 / 1024.0;
 
-// Asked in so many words: compilers may turn comparisons around as if there was no NaN.
+// By the bits, whose order is that of floats: what is no number has greater ones than any that is. Compilers may turn comparisons
+// of floats around as if there was no NaN.
 bool is_light(vec4 texel) {
-    return !any(isnan(texel)) && !any(isinf(texel)) && all(lessThan(abs(texel), vec4(kMostLight)));
+    ivec4 size = floatBitsToInt(texel) & 0x7FFFFFFF;
+    return max(max(size.r, size.g), max(size.b, size.a)) < floatBitsToInt(kMostLight);
 }
 
 struct Samples {
@@ -19,11 +21,11 @@ struct Samples {
     bool usable[9];
 };
 
-Samples samples_around(ivec2 p) {
+// The sampler takes the texel whose centre a place is, or the edge's: on llvmpipe faster than texelFetch() with a clamp.
+Samples samples_around(vec2 centre) {
     Samples samples;
     for (int i = 0; i < 9; ++i) {
-        ivec2 at = clamp(p + ivec2(i % 3, i / 3) - 1, ivec2(0), ivec2(color_size.xy) - 1);
-        samples.light[i] = texelFetch(color, at, 0);
+        samples.light[i] = textureLod(color, (centre + vec2(i % 3, i / 3) - 1.0) * color_size.zw, 0.0);
         samples.usable[i] = is_light(samples.light[i]);
     }
     return samples;
@@ -134,7 +136,7 @@ vec4 held(vec4 history, Box box, float least_weight, out float part) {
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
-    Samples samples = samples_around(p);
+    Samples samples = samples_around(gl_FragCoord.xy);
     vec4 current;
     bool has_current = current_light(samples, current);
     vec4 reprojected = texelFetch(motion, p, 0);

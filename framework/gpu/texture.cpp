@@ -108,6 +108,16 @@ GLuint make_texture(const GladGLContext& gl, const TextureDesc& desc, const std:
     return handle;
 }
 
+GLuint make_view(const GladGLContext& gl, unsigned int of, const TextureDesc& desc, const std::string& label) {
+    GLuint handle = 0;
+    gl.GenTextures(1, &handle);
+    const GLenum target = desc.layers > 1 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
+    gl.TextureView(handle, target, of, gl_format(desc.format).internal, 0, static_cast<GLuint>(desc.mips), 0,
+                   static_cast<GLuint>(desc.layers));
+    set_label(gl, GL_TEXTURE, handle, label);
+    return handle;
+}
+
 void sub_image(const GladGLContext& gl, const Texture& texture, int layer, int level, const void* values) {
     const TextureDesc& desc = texture.desc();
     const int width = level_side(desc.width, level), height = level_side(desc.height, level);
@@ -167,6 +177,18 @@ Texture::Texture(Context& context, const TextureDesc& desc, std::string label)
     handle_ = Handle<ObjectKind::texture>(context, make_texture(context.gl(), desc_, label_));
     context.check(fmt::format("texture '{}', {}x{} {}, {} MiB", label_, desc_.width, desc_.height,
                               texture_format_name(desc_.format), byte_size(desc_) >> 20));
+}
+
+Texture::Texture(const Texture& other, TextureFormat format, std::string label)
+    : desc_(other.desc_), label_(std::move(label)) {
+    desc_.format = format;
+    assert(may_share_memory(desc_, other.desc_));
+    Context& context = other.handle_.context();
+    context.make_current();
+    handle_ =
+        Handle<ObjectKind::texture>(context, make_view(context.gl(), other.handle(), desc_, label_));
+    context.check(fmt::format("texture '{}', a view of '{}' as {}", label_, other.label_,
+                              texture_format_name(format)));
 }
 
 void Texture::upload(std::span<const float> values, int layer, int level) {

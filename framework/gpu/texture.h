@@ -49,6 +49,10 @@ struct TextureDesc {
     bool operator==(const TextureDesc&) const = default;
 };
 
+/// Whether one may be a view of the other's memory: they differ by no more than a format of as many bytes a
+/// texel. GL's classes of view-compatible formats are those of equal size, for the formats above.
+bool may_share_memory(const TextureDesc& a, const TextureDesc& b);
+
 /// Bytes that the texture's texels take, all layers and levels.
 std::uint64_t byte_size(const TextureDesc& desc);
 
@@ -57,6 +61,9 @@ class Texture {
 public:
     /// Throws Error(ExitCode::effect) when GL has no memory for it or a side exceeds GL_MAX_TEXTURE_SIZE.
     Texture(Context& context, const TextureDesc& desc, std::string label);
+    /// The memory of `other` under a format with as many bytes a texel (asserted): each reads as bits what the
+    /// other wrote. GL keeps the memory as long as one of them lives.
+    Texture(const Texture& other, TextureFormat format, std::string label);
 
     const TextureDesc& desc() const { return desc_; }
     const std::string& label() const { return label_; }

@@ -57,6 +57,12 @@ void Executor::allocate() {
     slots_.reserve(labels.size());
     for (std::size_t i = 0; i < labels.size(); ++i)
         slots_.emplace_back(context_, compiled_.slots[i], labels[i]);
+    for (std::size_t i = 0; i < graph_.textures().size(); ++i) {
+        const int slot = compiled_.slot_of_texture[i];
+        const gpu::TextureFormat format = graph_.textures()[i].desc.format;
+        if (slot < 0 || format == compiled_.slots[std::size_t(slot)].format) continue;
+        views_.try_emplace({slot, format}, slots_[std::size_t(slot)], format, labels[std::size_t(slot)]);
+    }
     const auto buffer_labels =
         slot_labels(graph_.buffers(), compiled_.slot_of_buffer, compiled_.buffer_slots.size());
     buffer_slots_.reserve(buffer_labels.size());
@@ -102,8 +108,7 @@ void Executor::bind_clears() {
         const int position = compiled_.texture_cleared_before[i];
         if (position < 0) continue;
         clears_[std::size_t(position)].textures.push_back(
-            {int(i), in_slot(slots_, compiled_.slot_of_texture, int(i)),
-             *graph_.textures()[i].options.clear});
+            {int(i), texture({int(i)}), *graph_.textures()[i].options.clear});
     }
     for (std::size_t i = 0; i < graph_.buffers().size(); ++i) {
         const int position = compiled_.buffer_cleared_before[i];
@@ -146,7 +151,10 @@ Executor::BoundPass Executor::bind(int index) {
 }
 
 gpu::Texture* Executor::texture(TextureHandle handle) {
-    return in_slot(slots_, compiled_.slot_of_texture, handle.texture);
+    const int slot = compiled_.slot_of_texture.at(std::size_t(handle.texture));
+    if (slot < 0) return nullptr;
+    const auto view = views_.find({slot, graph_.textures()[std::size_t(handle.texture)].desc.format});
+    return view == views_.end() ? &slots_[std::size_t(slot)] : &view->second;
 }
 
 gpu::Buffer* Executor::buffer(BufferHandle handle) {

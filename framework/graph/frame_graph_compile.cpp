@@ -1,5 +1,6 @@
 // Culling by version, and sharing of memory between lifetimes that do not meet.
 #include <algorithm>
+#include <functional>
 #include <optional>
 #include <span>
 
@@ -77,8 +78,10 @@ public:
         find_sparse();
         find_lifetimes();
         const auto bytes_of_buffer = [](const BufferDesc& desc) { return std::uint64_t(desc.bytes); };
-        assign(graph_.textures(), 0, compiled_.slots, compiled_.slot_of_texture, gpu::byte_size);
-        assign(graph_.buffers(), buffers_, compiled_.buffer_slots, compiled_.slot_of_buffer, bytes_of_buffer);
+        assign(graph_.textures(), 0, compiled_.slots, compiled_.slot_of_texture, gpu::byte_size,
+               gpu::may_share_memory);
+        assign(graph_.buffers(), buffers_, compiled_.buffer_slots, compiled_.slot_of_buffer, bytes_of_buffer,
+               std::equal_to());
         for (std::size_t i = 0; i < resources_.size(); ++i) {
             auto& cleared = i < buffers_ ? compiled_.texture_cleared_before : compiled_.buffer_cleared_before;
             const bool is_seen = resources_[i].cleared && lifetimes_[i] && needed_[i][0];
@@ -209,11 +212,11 @@ private:
         }
     }
 
-    /// By first use, each into the first slot of its description that is free by then: as many slots as live
-    /// at once, since the lifetimes are intervals.
-    template <typename Node, typename Desc, typename ByteSize>
+    /// By first use, each into the first slot that suits its description and is free by then: as many slots as
+    /// live at once, since the lifetimes are intervals.
+    template <typename Node, typename Desc, typename ByteSize, typename Suits>
     void assign(const std::vector<Node>& nodes, std::size_t offset, std::vector<Desc>& slots,
-                std::vector<int>& slot_of, ByteSize byte_size) {
+                std::vector<int>& slot_of, ByteSize byte_size, Suits suits) {
         slot_of.assign(nodes.size(), -1);
         std::vector<std::size_t> order;
         for (std::size_t i = 0; i < nodes.size(); ++i)
@@ -226,7 +229,7 @@ private:
             const Lifetime life = *lifetimes_[offset + i];
             const Desc& desc = nodes[i].desc;
             std::size_t slot = 0;
-            while (slot < slots.size() && !(slots[slot] == desc && busy_until[slot] < life.first)) ++slot;
+            while (slot < slots.size() && !(suits(slots[slot], desc) && busy_until[slot] < life.first)) ++slot;
             if (slot == slots.size()) {
                 slots.push_back(desc);
                 busy_until.push_back(0);

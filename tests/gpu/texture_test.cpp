@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <type_traits>
 
 #include "framework/core/error.h"
@@ -150,6 +151,107 @@ TEST(TextureDesc, CountsTheBytesOfAllLevelsAndLayers) {
     EXPECT_EQ(byte_size({.width = 4, .height = 2, .format = TextureFormat::r16f, .layers = 2, .mips = 3}),
               44U);
     EXPECT_EQ(byte_size({.width = 16384, .height = 16384, .format = TextureFormat::rgba32f}), 4294967296U);
+}
+
+// ---- views ----
+
+/// Numbers whose bits every format keeps as they are: no NaN, no half or float below the normal ones.
+std::vector<std::uint32_t> words(std::size_t count) {
+    std::vector<std::uint32_t> result(count);
+    for (std::size_t i = 0; i < count; ++i) result[i] = 0x40803C01U + static_cast<std::uint32_t>(i % 7) * 0x00110010U;
+    return result;
+}
+
+std::vector<std::uint32_t> bits_of(const std::vector<float>& values) {
+    std::vector<std::uint32_t> result;
+    for (const float value : values) result.push_back(std::bit_cast<std::uint32_t>(value));
+    return result;
+}
+
+struct WordFormats {
+    TextureFormat floats, integers;
+};
+constexpr WordFormats kWordFormats[] = {{TextureFormat::r32f, TextureFormat::r32ui},
+                                        {TextureFormat::rg32f, TextureFormat::rg32ui},
+                                        {TextureFormat::rgba32f, TextureFormat::rgba32ui}};
+
+TEST_P(TextureOn, AViewReadsTheBitsOfItsMemoryAndWritesThem) {
+    for (const auto& [floats, integers] : kWordFormats) {
+        const Texture memory = make({.width = 6, .height = 4, .format = floats});
+        Texture view(memory, integers, "view");
+        const std::vector<std::uint32_t> content = words(24U * static_cast<unsigned>(channel_count(floats)));
+        view.upload(content);
+        EXPECT_EQ(bits_of(memory.read_floats()), content) << texture_format_name(floats);
+        EXPECT_EQ(view.read_uints(), content);
+        view.clear_to({double(0x3F800000U), 0, 0, 0});
+        EXPECT_EQ(memory.read_floats().front(), 1.0F);
+    }
+}
+
+TEST_P(TextureOn, ClearsAViewOfEverySizeToItsOwnValues) {
+    for (const TextureFormat memory_format : all_formats())
+        for (const TextureFormat format : all_formats()) {
+            const TextureDesc desc{.width = 5, .height = 3, .format = memory_format};
+            TextureDesc other = desc;
+            other.format = format;
+            if (!may_share_memory(desc, other)) continue;
+            const Texture memory = make(desc);
+            Texture view(memory, format, "view");
+            view.clear_to({1, 0, 1, 0});
+            const std::vector<float> got = view.read_floats();
+            for (std::size_t i = 0; i < got.size(); ++i) {
+                const std::size_t channel = i % static_cast<std::size_t>(channel_count(format));
+                ASSERT_EQ(got[i], channel % 2 == 0 ? 1.0F : 0.0F)
+                    << texture_format_name(memory_format) << " as " << texture_format_name(format);
+            }
+        }
+}
+
+TEST_P(TextureOn, DrawsIntoAViewAndFetchesFromIt) {
+    const Program numbers = fragment(R"(layout(location = 0) out uvec4 c;
+void main() { c = uvec4(gl_FragCoord.x, gl_FragCoord.y, 7u, 0xFFFFFFFFu); })");
+    const Program twice = fragment(R"(layout(binding = 0) uniform usampler2D source;
+layout(location = 0) out vec4 c;
+void main() { c = 2.0 * vec4(texelFetch(source, ivec2(gl_FragCoord.xy), 0).xyz, 0.5); })");
+    const Texture memory = make({.width = 6, .height = 4, .format = TextureFormat::rgba32f});
+    const Texture view(memory, TextureFormat::rgba32ui, "view"), copied(make(memory.desc()), TextureFormat::rgba32ui, "copy");
+    const Target targets[] = {{.texture = &view}};
+    draw(context(), numbers, targets, {});
+    copy(context(), view, copied);
+    EXPECT_EQ(copied.read_uints(), view.read_uints());
+    EXPECT_EQ(bits_of(memory.read_floats()), view.read_uints());
+    const SampledTexture textures[] = {{.texture = &copied}};
+    const std::vector<float> got = drawn(twice, 6, 4, {.textures = textures});
+    for (std::size_t y = 0; y < 4; ++y)
+        for (std::size_t x = 0; x < 6; ++x) {
+            const float* const texel = &got[4 * (6 * y + x)];
+            EXPECT_EQ(texel[0], 2 * x);
+            EXPECT_EQ(texel[1], 2 * y);
+            EXPECT_EQ(texel[2], 14);
+        }
+}
+
+TEST_P(TextureOn, AViewOutlivesTheTextureItWasMadeOf) {
+    std::optional<Texture> memory = make({.width = 2, .height = 2, .format = TextureFormat::r32f});
+    memory->clear(1);
+    const Texture view(*memory, TextureFormat::r32ui, "view");
+    memory.reset();
+    EXPECT_EQ(view.read_uints(), std::vector<std::uint32_t>(4, 0x3F800000U));
+}
+
+TEST(TextureDescs, ShareMemoryWhereNothingButAFormatOfTheSameBytesDiffers) {
+    const TextureDesc desc{.width = 8, .height = 4, .format = TextureFormat::rgba8, .layers = 2, .mips = 2};
+    const auto with = [&](const auto& change) {
+        TextureDesc other = desc;
+        change(other);
+        return may_share_memory(desc, other);
+    };
+    for (const TextureFormat format : all_formats())
+        EXPECT_EQ(with([&](TextureDesc& other) { other.format = format; }), bytes_per_texel(format) == 4);
+    EXPECT_FALSE(with([](TextureDesc& other) { other.width = 4; }));
+    EXPECT_FALSE(with([](TextureDesc& other) { other.height = 8; }));
+    EXPECT_FALSE(with([](TextureDesc& other) { other.layers = 1; }));
+    EXPECT_FALSE(with([](TextureDesc& other) { other.mips = 1; }));
 }
 
 }  // namespace

@@ -85,6 +85,20 @@ TEST(Aliasing, DoesNotShareMemoryBetweenTwoDescriptions) {
     }
 }
 
+TEST(Aliasing, SharesMemoryBetweenFormatsOfAsManyBytes) {
+    const gpu::TextureDesc words{.width = 64, .height = 36, .format = gpu::TextureFormat::rgba32ui};
+    Graph graph;
+    const TextureHandle a = graph.draw("a", {}, graph.fresh("a"));
+    const TextureHandle b = graph.draw("b", {a}, graph.fresh("b", kOneChannel));
+    const TextureHandle c = graph.draw("c", {b}, graph.fresh("c", words));
+    const TextureHandle d = graph.draw("d", {c}, graph.fresh("d", kIds));
+    graph.keep(d);
+    const CompiledGraph compiled = graph.compile();
+    EXPECT_EQ(slot(compiled, a), slot(compiled, c));
+    EXPECT_EQ(slot(compiled, b), slot(compiled, d));
+    EXPECT_EQ(compiled.bytes, kFullBytes + kFullBytes / 4);
+}
+
 TEST(Aliasing, GivesAllVersionsOfATextureOneMemory) {
     Graph graph;
     const TextureHandle once = graph.draw("once", {}, graph.fresh("a"));

@@ -1,6 +1,8 @@
 // Frames of draws: memory, uniforms, timing, observers.
 #include "framework/graph/executor.h"
 
+#include <cmath>
+
 #include "tests/graph/executor_test.h"
 
 namespace aftershade::graph {
@@ -52,6 +54,35 @@ layout(std430, binding = 0) buffer Counter { uint total; };)",
                   Floats(kWidth * kHeight, float(frame)));
         EXPECT_EQ(words_of(*executor.buffer(total))[0], 5u + 6u);
     }
+}
+
+TEST_P(ExecutorOn, RunsAChainOfFloatsAndIntegersInSharedMemory) {
+    const gpu::Program halves = draws("result = texelFetch(source, p, 0).r * 0.5;"), more = fragment(R"(
+layout(binding = 0) uniform sampler2D source;
+layout(location = 0) out uint result;
+void main() { result = uint(texelFetch(source, ivec2(gl_FragCoord.xy), 0).r) + 3u; })"),
+                       to_float = fragment(R"(
+layout(binding = 0) uniform usampler2D source;
+layout(location = 0) out float result;
+void main() { result = float(texelFetch(source, ivec2(gl_FragCoord.xy), 0).r); })");
+    const gpu::TextureDesc ids{.width = kWidth, .height = kHeight, .format = gpu::TextureFormat::r32ui};
+    Graph graph;
+    const TextureHandle input = graph.import_texture("input", kSmall);
+    TextureHandle last = input;
+    for (int i = 0; i < 3; ++i) {
+        last = graph.add_pass(draw_of("halves", halves, {last}, graph.fresh("half", kSmall))).targets[0];
+        last = graph.add_pass(draw_of("more", more, {last}, graph.fresh("more", ids))).targets[0];
+        last = graph.add_pass(draw_of("float", to_float, {last}, graph.fresh("float", kSmall))).targets[0];
+    }
+    graph.keep(last);
+    Executor executor(context(), std::move(graph));
+    EXPECT_EQ(executor.compiled().slots.size(), 3u);
+    executor.texture(input)->upload(ramp(64));
+    executor.run(false);
+    Floats expected = ramp(64);
+    for (float& value : expected)
+        for (int i = 0; i < 3; ++i) value = std::floor(value / 2) + 3;
+    EXPECT_EQ(executor.texture(last)->read_floats(), expected);
 }
 
 TEST_P(ExecutorOn, KeepsATapWholeWhileLaterPassesRun) {
