@@ -46,10 +46,9 @@ double render_s(gpu::Backend backend, const Pipeline& pipeline, const Sequence& 
     const std::atomic<bool> stop = false;
     const auto begin = std::chrono::steady_clock::now();
     gpu::Context context(backend);
-    const RunReport report =
-        run_frames({[&]() -> gpu::Context& { return context; }, pipeline, sequence, reader, run, outputs,
-                    data_path()},
-                   {}, stop);
+    const RunReport report = run_frames(
+        {[&]() -> gpu::Context& { return context; }, pipeline, sequence, reader, run, outputs, data_path()},
+        {}, stop);
     if (!report.failures.empty()) throw Error(ExitCode::capture, report.failures.front().message);
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }

@@ -76,8 +76,8 @@ TEST(Bloom, RadiusIsTheStandardDeviationOfTheWidestBlur) {
     }
 }
 
-/// What effect.json declares as its reach: level n of the pyramid is read up to 2^n < 1.64 radius + 2, and each
-/// of its texels within 6 times 2^n px.
+/// What effect.json declares as its reach: level n of the pyramid is read up to 2^n < 1.64 radius + 2, and
+/// each of its texels within 6 times 2^n px.
 TEST(Bloom, GivesNoLightToPixelsBeyondTenTimesItsRadius) {
     for (const int radius : {1, 5, 20}) {
         const std::string params = R"("fireflies": "keep", "scatter": 1, "intensity": 1, "radius": )";

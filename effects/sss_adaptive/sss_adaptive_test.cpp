@@ -150,8 +150,8 @@ double mean_count(const FrameResult& result) {
     return sum / (kWidth * kHeight);
 }
 
-/// Frames 8 to 15 are one epoch, in which a pixel goes on along one sequence; frames 8, 16, 24, ... are of epochs of
-/// their own. Both are means of 8 frames of 4 samples.
+/// Frames 8 to 15 are one epoch, in which a pixel goes on along one sequence; frames 8, 16, 24, ... are of
+/// epochs of their own. Both are means of 8 frames of 4 samples.
 TEST(SssAdaptive, ComesNearerByFramesOfOneEpochThanByAsManyOfDifferentOnes) {
     const Image exact = scattered(scattering_step("sss_exact", profile(), ""), shadow_edge(1));
     LookRunner look = runner(R"("guiding": false, "min_samples": 4, "max_samples": 4)");

@@ -108,7 +108,8 @@ GLuint make_texture(const GladGLContext& gl, const TextureDesc& desc, const std:
     return handle;
 }
 
-GLuint make_view(const GladGLContext& gl, unsigned int of, const TextureDesc& desc, const std::string& label) {
+GLuint make_view(const GladGLContext& gl, unsigned int of, const TextureDesc& desc,
+                 const std::string& label) {
     GLuint handle = 0;
     gl.GenTextures(1, &handle);
     const GLenum target = desc.layers > 1 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
@@ -185,10 +186,9 @@ Texture::Texture(const Texture& other, TextureFormat format, std::string label)
     assert(may_share_memory(desc_, other.desc_));
     Context& context = other.handle_.context();
     context.make_current();
-    handle_ =
-        Handle<ObjectKind::texture>(context, make_view(context.gl(), other.handle(), desc_, label_));
-    context.check(fmt::format("texture '{}', a view of '{}' as {}", label_, other.label_,
-                              texture_format_name(format)));
+    handle_ = Handle<ObjectKind::texture>(context, make_view(context.gl(), other.handle(), desc_, label_));
+    context.check(
+        fmt::format("texture '{}', a view of '{}' as {}", label_, other.label_, texture_format_name(format)));
 }
 
 void Texture::upload(std::span<const float> values, int layer, int level) {

@@ -140,7 +140,8 @@ private:
     FrameGraph graph_;
     CompiledGraph compiled_;
     std::vector<gpu::Texture> slots_;
-    std::map<std::pair<int, gpu::TextureFormat>, gpu::Texture> views_;  // slots under other formats than theirs
+    std::map<std::pair<int, gpu::TextureFormat>, gpu::Texture>
+        views_;  // slots under other formats than theirs
     std::vector<gpu::Buffer> buffer_slots_;
     std::map<std::pair<int, int>, gpu::Buffer> uniforms_;  // by pass and binding
     std::vector<HistorySlots<gpu::Texture>> texture_histories_;

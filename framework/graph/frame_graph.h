@@ -162,10 +162,10 @@ struct SparseTexture {
 
 /// A graph made ready to run: which passes, in which order, and which texture lies in which memory.
 struct CompiledGraph {
-    std::vector<int> passes;           ///< indices of the passes that something kept depends on, in order
-    std::vector<int> slot_of_texture;  ///< per texture: index into slots, -1 for one that is not needed
-    std::vector<gpu::TextureDesc>
-        slots;  ///< memory; textures whose lifetimes do not meet and that gpu::may_share_memory() share a slot
+    std::vector<int> passes;              ///< indices of the passes that something kept depends on, in order
+    std::vector<int> slot_of_texture;     ///< per texture: index into slots, -1 for one that is not needed
+    std::vector<gpu::TextureDesc> slots;  ///< memory; textures whose lifetimes do not meet and that
+                                          ///< gpu::may_share_memory() share a slot
     std::vector<int> slot_of_buffer;
     std::vector<BufferDesc> buffer_slots;
     /// Per texture and per buffer: position in `passes` of the pass before which it is set to its `clear`,

@@ -212,8 +212,8 @@ private:
         }
     }
 
-    /// By first use, each into the first slot that suits its description and is free by then: as many slots as
-    /// live at once, since the lifetimes are intervals.
+    /// By first use, each into the first slot that suits its description and is free by then: as many slots
+    /// as live at once, since the lifetimes are intervals.
     template <typename Node, typename Desc, typename ByteSize, typename Suits>
     void assign(const std::vector<Node>& nodes, std::size_t offset, std::vector<Desc>& slots,
                 std::vector<int>& slot_of, ByteSize byte_size, Suits suits) {
@@ -229,7 +229,8 @@ private:
             const Lifetime life = *lifetimes_[offset + i];
             const Desc& desc = nodes[i].desc;
             std::size_t slot = 0;
-            while (slot < slots.size() && !(suits(slots[slot], desc) && busy_until[slot] < life.first)) ++slot;
+            while (slot < slots.size() && !(suits(slots[slot], desc) && busy_until[slot] < life.first))
+                ++slot;
             if (slot == slots.size()) {
                 slots.push_back(desc);
                 busy_until.push_back(0);

@@ -22,11 +22,12 @@ SparseClears::SparseClears(gpu::Context& context, const FrameGraph& graph, const
             const Wipe& wipe = *pass.wipes[std::size_t(place.target)];
             gpu::Buffer uniforms(context, wipe.uniforms.bytes.size(), pass.name + ".wipe");
             uniforms.write(wipe.uniforms.bytes);
-            tracked.wipes.push_back(
-                {&wipe, std::move(uniforms), buffer(wipe.places.buffer),
-                 {&memory, target.level, target.layer},
-                 {pass.instances.primitive, pass.instances.count,
-                  pass.instances.indirect ? buffer(*pass.instances.indirect) : nullptr}});
+            tracked.wipes.push_back({&wipe,
+                                     std::move(uniforms),
+                                     buffer(wipe.places.buffer),
+                                     {&memory, target.level, target.layer},
+                                     {pass.instances.primitive, pass.instances.count,
+                                      pass.instances.indirect ? buffer(*pass.instances.indirect) : nullptr}});
         }
         tracked_.push_back(std::move(tracked));
     }
@@ -61,8 +62,8 @@ void SparseClears::draw(const BoundWipe& bound) {
 }
 
 bool SparseClears::is_clear(int texture) {
-    const auto found = std::ranges::find(
-        tracked_, texture, [](const Tracked& tracked) { return tracked.texture->texture; });
+    const auto found =
+        std::ranges::find(tracked_, texture, [](const Tracked& tracked) { return tracked.texture->texture; });
     if (found == tracked_.end()) return false;
     return std::exchange(found->state, State::drawn_once) == State::clear;
 }

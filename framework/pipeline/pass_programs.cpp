@@ -189,8 +189,7 @@ std::map<int, PassPrograms::Assembled> PassPrograms::assemble_others(
 /// not among them. Without a store nothing reaches this thread, which would compile all of it once more.
 void PassPrograms::compile_ahead(const graph::FrameGraph& graph, const std::vector<FusedAssembled>& fusions,
                                  const std::map<int, Assembled>& others) {
-    if (tools_.compile_threads < 1 || !tools_.programs.store().is_on() ||
-        tools_.programs.is_guarding_loops())
+    if (tools_.compile_threads < 1 || !tools_.programs.store().is_on() || tools_.programs.is_guarding_loops())
         return;
     const std::vector<int> needed = graph.compile().passes;
     std::map<int, PassToCompile> missing;  // in the order of the passes

@@ -51,11 +51,11 @@ public:
     ~PipelineRenderer();
 
     /// Builds the first frame's graph and has the driver make its programs, before the frame's pixels are
-    /// known: images of `frame` are empty. What render() finds different then, it builds again, and what fails
-    /// here, fails there. Does nothing unless can_build_ahead(). Throws Error(ExitCode::memory).
+    /// known: images of `frame` are empty. What render() finds different then, it builds again, and what
+    /// fails here, fails there. Does nothing unless can_build_ahead(). Throws Error(ExitCode::memory).
     void build_ahead(const FrameInputs& frame, const std::vector<std::string>& roles);
-    /// Whether there is no graph yet, and no step needs more than a frame's header: native code is called once
-    /// a frame, and values may be measured in the pixels.
+    /// Whether there is no graph yet, and no step needs more than a frame's header: native code is called
+    /// once a frame, and values may be measured in the pixels.
     bool can_build_ahead() const;
     /// Renders one frame; of sub-frames, give each in turn. Steps up to the last one that accumulates run for
     /// each sub-frame; the others run once, with the last, over `frame.centre`. `roles` are read back where a

@@ -125,8 +125,9 @@ TEST(DecodeIds, AreTheSameBesideSmallAndLargeOnes) {
     for (std::size_t i = 0; i < stored.size(); ++i)
         ASSERT_EQ(image.uints()[i], std::uint32_t(double(stored[i]))) << i;
     stored[2999] = 0.5f;
-    const std::string message = test::capture_error(
-        [&] { decoded("object_id", R"({"channels": ["id"]})", {{"id", stored}}, 100); });
+    const std::string message = test::capture_error([&] {
+        decoded("object_id", R"({"channels": ["id"]})", {{"id", stored}}, 100);
+    });
     EXPECT_NE(message.find("object id 0.500000 at pixel (99, 29)"), std::string::npos) << message;
 }
 

@@ -138,8 +138,7 @@ private:
             continues = directives.contains(int(i) + 1) && line.ends_with('\\');
         }
         for (const Token& token : glsl_tokens(source)) {
-            const std::size_t begin =
-                starts[std::size_t(token.line - 1)] + std::size_t(token.column - 1);
+            const std::size_t begin = starts[std::size_t(token.line - 1)] + std::size_t(token.column - 1);
             if (directives.contains(token.line)) {
                 names_of_directives_.emplace(token.text);
                 directive_places_.push_back(begin);

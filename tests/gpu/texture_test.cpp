@@ -158,7 +158,8 @@ TEST(TextureDesc, CountsTheBytesOfAllLevelsAndLayers) {
 /// Numbers whose bits every format keeps as they are: no NaN, no half or float below the normal ones.
 std::vector<std::uint32_t> words(std::size_t count) {
     std::vector<std::uint32_t> result(count);
-    for (std::size_t i = 0; i < count; ++i) result[i] = 0x40803C01U + static_cast<std::uint32_t>(i % 7) * 0x00110010U;
+    for (std::size_t i = 0; i < count; ++i)
+        result[i] = 0x40803C01U + static_cast<std::uint32_t>(i % 7) * 0x00110010U;
     return result;
 }
 
@@ -214,7 +215,8 @@ void main() { c = uvec4(gl_FragCoord.x, gl_FragCoord.y, 7u, 0xFFFFFFFFu); })");
 layout(location = 0) out vec4 c;
 void main() { c = 2.0 * vec4(texelFetch(source, ivec2(gl_FragCoord.xy), 0).xyz, 0.5); })");
     const Texture memory = make({.width = 6, .height = 4, .format = TextureFormat::rgba32f});
-    const Texture view(memory, TextureFormat::rgba32ui, "view"), copied(make(memory.desc()), TextureFormat::rgba32ui, "copy");
+    const Texture view(memory, TextureFormat::rgba32ui, "view"),
+        copied(make(memory.desc()), TextureFormat::rgba32ui, "copy");
     const Target targets[] = {{.texture = &view}};
     draw(context(), numbers, targets, {});
     copy(context(), view, copied);

@@ -67,8 +67,7 @@ void main() { result = )" + value + "; }",
         pass.targets = {{target}};
         pass.instances.count = 1;
         pass.buffers = {{places, 0, gpu::Access::read}};
-        if (wipes)
-            pass.wipes = {Wipe{wipe_, {0, block_of(0)}, {places, 0, gpu::Access::read}}};
+        if (wipes) pass.wipes = {Wipe{wipe_, {0, block_of(0)}, {places, 0, gpu::Access::read}}};
         return pass;
     }
 
@@ -86,10 +85,10 @@ void main() { result = )" + value + "; }",
             const BufferHandle places = add_list(columns, columns.graph.create_buffer("places", {16}));
             columns.sparse = columns.graph.add_pass(column_pass(columns.sparse, places)).targets.front();
         }
-        columns.copy = columns.graph
-                           .add_pass(draw_of("copy", *copy_, {columns.sparse},
-                                             columns.graph.fresh("copy", kSmall)))
-                           .targets.front();
+        columns.copy =
+            columns.graph
+                .add_pass(draw_of("copy", *copy_, {columns.sparse}, columns.graph.fresh("copy", kSmall)))
+                .targets.front();
         columns.graph.keep(columns.copy);
         return columns;
     }
@@ -104,8 +103,7 @@ void main() { result = )" + value + "; }",
 
     static void set_columns(Executor& executor, const Columns& of, std::initializer_list<int> columns) {
         std::size_t i = 0;
-        for (const int column : columns)
-            executor.set_uniforms(of.listing[i++], 1, block_of(float(column)));
+        for (const int column : columns) executor.set_uniforms(of.listing[i++], 1, block_of(float(column)));
     }
 
     Shared list_, draw_, wipe_, copy_;
@@ -230,11 +228,11 @@ TEST_P(SparseOn, NeedsAWipeForEveryDraw) {
               }),
               0u);
     // Afterwards nothing says where the first column was.
-    EXPECT_EQ(sparse_count([&](Columns& columns, TextureHandle target, BufferHandle places) {
-                  return columns.graph.add_pass(column_pass(target, add_list(columns, places)))
-                      .targets.front();
-              }),
-              0u);
+    EXPECT_EQ(
+        sparse_count([&](Columns& columns, TextureHandle target, BufferHandle places) {
+            return columns.graph.add_pass(column_pass(target, add_list(columns, places))).targets.front();
+        }),
+        0u);
 }
 
 TEST_P(SparseOn, IsNoHistoryAndHasNoPlacesFromOutside) {

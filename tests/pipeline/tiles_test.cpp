@@ -27,7 +27,8 @@ bool is_chosen_tile(int tile_x, int tile_y) {
 
 /// Lists every other tile, draws a number for each texel over them and shows what then is at a pixel: red at
 /// level 1, green at level 2, blue in blocks of 8 px, alpha at full size.
-const char* const kTiled = R"("inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
+const char* const kTiled =
+    R"("inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
     "textures": { "marks": { "format": "r8", "tile": 16, "doc": "." },
                   "levels": { "format": "r32f", "mips": 3, "clear": -1, "doc": "." },
                   "blocks": { "format": "r32f", "tile": 8, "clear": -1, "doc": "." },
@@ -87,14 +88,15 @@ TEST(TilesOfAPass, LeaveNothingBehindForTheNextFrame) {
     const std::string look = look_of(R"({"effect": "tiled"})");
     Bench bench(effects, look);
     for (const float red : {0.0f, 2.0f, 3.0f, 1.0f, 1.0f}) {  // 3: no tile
-        const Capture picture = make_capture(
-            {.width = kTiledWidth, .height = kTiledHeight, .background = {red, 0.25f, 1}});
+        const Capture picture =
+            make_capture({.width = kTiledWidth, .height = kTiledHeight, .background = {red, 0.25f, 1}});
         const Image first_frame = Bench(effects, look).color(picture), shown = bench.color(picture);
         ASSERT_TRUE(std::ranges::equal(shown.floats(), first_frame.floats())) << red;
     }
 }
 
-const char* const kCopied = R"("inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
+const char* const kCopied =
+    R"("inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
     "textures": { "marks": { "format": "r8", "tile": 16, "doc": "." } },
     "tiles": { "chosen": { "of": "marks.r", "doc": "." } },
     "passes": [
@@ -138,11 +140,12 @@ TEST(CopyOfAPass, KeepsEveryBitOutsideTheTilesDrawn) {
 TEST(CopyOfAPass, ConvertsWhatAnEarlierStepMadeInAnotherFormat) {
     EffectFolder effects;
     effects.add("copied", kCopied, kCopiedShader);
-    effects.add("halves",
-                R"("inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
+    effects.add(
+        "halves",
+        R"("inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
         "textures": { "thirds": { "format": "rgba16f", "doc": "." } },
         "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color"], "writes": ["color", "thirds"] } ])",
-                "void main() { out_color = texelFetch(color, ivec2(0), 0); out_thirds = vec4(1.0 / 3.0); }\n");
+        "void main() { out_color = texelFetch(color, ivec2(0), 0); out_thirds = vec4(1.0 / 3.0); }\n");
     const std::string look =
         look_of(R"({"effect": "halves"}, {"effect": "copied", "in": {"color": "halves.thirds"}})");
     const Image result = Bench(effects, look).color(tiled_picture());
