@@ -42,7 +42,7 @@ namespace {
 /// What a texture and a buffer have in common here.
 struct Resource {
     bool kept = false;
-    bool alone = false;  ///< imports, histories and sparse textures share their memory with nothing
+    bool alone = false;  ///< imports and histories share their memory with nothing
     bool is_history = false;
     bool cleared = false;
     int previous_of = -1;  ///< a resource
@@ -75,11 +75,11 @@ public:
 
     CompiledGraph run() {
         cull();
-        find_sparse();
         find_lifetimes();
         const auto bytes_of_buffer = [](const BufferDesc& desc) { return std::uint64_t(desc.bytes); };
         assign(graph_.textures(), 0, compiled_.slots, compiled_.slot_of_texture, gpu::byte_size,
                gpu::may_share_memory);
+        find_sparse();
         assign(graph_.buffers(), buffers_, compiled_.buffer_slots, compiled_.slot_of_buffer, bytes_of_buffer,
                std::equal_to());
         for (std::size_t i = 0; i < resources_.size(); ++i) {
@@ -132,14 +132,20 @@ private:
     }
 
     /// Textures without a history that tell where all draws to them lie, by buffers that are written once.
+    /// Only those that found nothing to share memory with, so that none takes more for it.
     void find_sparse() {
+        std::vector<int> textures_in(compiled_.slots.size());
+        for (const int slot : compiled_.slot_of_texture)
+            if (slot >= 0) ++textures_in[std::size_t(slot)];
         std::vector<SparseTexture> found(buffers_);
         std::vector<bool> is_drawn_elsewhere(buffers_);
         for (std::size_t i = 0; i < buffers_; ++i) {
             const FrameGraph::Texture& texture = graph_.textures()[i];
             found[i].texture = int(i);
+            const int slot = compiled_.slot_of_texture[i];
             is_drawn_elsewhere[i] = !texture.options.clear || resources_[i].alone || !needed_[i][0] ||
-                                    texture.options.auto_mips || texture.desc.layers > 1;
+                                    texture.options.auto_mips || texture.desc.layers > 1 || slot < 0 ||
+                                    textures_in[std::size_t(slot)] > 1;
         }
         for (const int index : compiled_.passes) {
             const Pass& pass = graph_.pass(index);
@@ -177,7 +183,9 @@ private:
             resources.push_back(resource_of(pass.wipes[std::size_t(place.target)]->places.buffer));
             if (pass.instances.indirect) resources.push_back(resource_of(*pass.instances.indirect));
         }
-        for (const std::size_t resource : resources) resources_[resource].alone = true;
+        // What a frame leaves in them, the next one reads.
+        for (const std::size_t resource : resources)
+            lifetimes_[resource] = {-1, int(compiled_.passes.size())};
         sparse.first = sparse.last = sparse.places.front().pass;
         for (const int index : compiled_.passes) {
             const PassUses& uses = uses_[std::size_t(index)];

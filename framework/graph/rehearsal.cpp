@@ -31,8 +31,12 @@ class SmallMemory {
 public:
     explicit SmallMemory(gpu::Context& context) : context_(context) {}
 
-    gpu::Texture* texture(const gpu::TextureDesc& desc) {
-        return &textures_.emplace_back(context_, desc, "rehearsal");
+    gpu::Texture* texture(const PassShape::Texels& texels) {
+        gpu::TextureDesc desc = texels.desc;
+        desc.format = texels.memory;
+        const gpu::Texture& memory = textures_.emplace_back(context_, desc, "rehearsal");
+        if (texels.memory == texels.desc.format) return &textures_.back();
+        return &textures_.emplace_back(memory, texels.desc.format, "rehearsal");
     }
     gpu::Buffer* buffer(std::size_t bytes) { return &buffers_.emplace_back(context_, bytes, "rehearsal"); }
 
@@ -44,28 +48,33 @@ private:
 
 }  // namespace
 
-PassShape shape_of(const FrameGraph& graph, const Pass& pass) {
+PassShape shape_of(const FrameGraph& graph, const CompiledGraph& compiled, const Pass& pass) {
     const auto texture = [&](TextureHandle handle) -> const FrameGraph::Texture& {
         return graph.textures()[std::size_t(handle.texture)];
+    };
+    const auto texels = [&](TextureHandle handle) {
+        const gpu::TextureDesc desc = small(texture(handle).desc);
+        const int slot = compiled.slot_of_texture[std::size_t(handle.texture)];
+        return PassShape::Texels{desc, slot < 0 ? desc.format : compiled.slots[std::size_t(slot)].format};
     };
     PassShape shape;
     shape.kind = pass.kind;
     shape.blend = pass.blend;
     shape.primitive = pass.instances.primitive;
     for (const Read& read : pass.reads) {
-        const gpu::TextureDesc desc = small(texture(read.texture).desc);
+        const PassShape::Texels read_from = texels(read.texture);
         shape.reads.push_back(
-            {desc, read.binding, read.filter, read.wrap, std::min(read.level, desc.mips - 1)});
+            {read_from, read.binding, read.filter, read.wrap, std::min(read.level, read_from.desc.mips - 1)});
     }
     for (const Target& target : pass.targets) {
         const FrameGraph::Texture& drawn = texture(target.texture);
-        const gpu::TextureDesc desc = small(drawn.desc);
-        shape.targets.push_back({desc, std::min(target.level, desc.mips - 1),
-                                 std::min(target.layer, desc.layers - 1),
-                                 drawn.options.auto_mips && desc.mips > 1});
+        const PassShape::Texels to = texels(target.texture);
+        shape.targets.push_back({to, std::min(target.level, to.desc.mips - 1),
+                                 std::min(target.layer, to.desc.layers - 1),
+                                 drawn.options.auto_mips && to.desc.mips > 1});
     }
     for (const ImageUse& use : pass.images)
-        shape.images.push_back({small(texture(use.texture).desc), use.binding, use.access});
+        shape.images.push_back({texels(use.texture), use.binding, use.access});
     for (const BufferUse& use : pass.buffers)
         shape.buffers.push_back(
             {std::min(graph.buffers()[std::size_t(use.buffer.buffer)].desc.bytes, kMostBufferBytes),

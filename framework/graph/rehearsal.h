@@ -12,21 +12,26 @@ namespace aftershade::graph {
 /// What a pass binds, without what it holds: textures of a few texels whose sides are powers of two where
 /// those of the graph are, since the code that fetches from them differs.
 struct PassShape {
+    /// `memory`: the format of the memory, of which the texture is a view where its own differs.
+    struct Texels {
+        gpu::TextureDesc desc;
+        gpu::TextureFormat memory;
+    };
     struct Sampled {
-        gpu::TextureDesc texture;
+        Texels texture;
         int binding = 0;
         gpu::Filter filter = gpu::Filter::nearest;
         gpu::Wrap wrap = gpu::Wrap::clamp;
         int level = -1;
     };
     struct Drawn {
-        gpu::TextureDesc texture;
+        Texels texture;
         int level = 0;
         int layer = 0;
         bool fills_mips = false;  ///< levels 1.. are filled after the pass
     };
     struct Image {
-        gpu::TextureDesc texture;
+        Texels texture;
         int binding = 0;
         gpu::Access access = gpu::Access::read;
     };
@@ -44,7 +49,8 @@ struct PassShape {
     gpu::Primitive primitive = gpu::Primitive::quads;
 };
 
-PassShape shape_of(const FrameGraph& graph, const Pass& pass);
+/// `compiled`: the graph's memory.
+PassShape shape_of(const FrameGraph& graph, const CompiledGraph& compiled, const Pass& pass);
 
 /// Draws or dispatches once over memory that holds zeros. Nothing for a clear. Throws what gpu::draw() does.
 /// [the context's thread]

@@ -72,7 +72,8 @@ GraphBuilder::GraphBuilder(const GraphTools& tools, const GraphFrame& frame)
       pipeline_(frame.pipeline),
       width_(frame_.width_px()),
       height_(frame_.height_px()),
-      programs_({tools.context, tools.programs, tools.status, tools.fuses_passes, tools.compile_threads}),
+      programs_({tools.context, tools.programs, tools.status, tools.fuses_passes, !tools.keeps_steps,
+                 tools.compile_threads}),
       built_(std::make_unique<BuiltGraph>()) {}
 
 std::unique_ptr<BuiltGraph> GraphBuilder::build() {

@@ -191,14 +191,18 @@ void PassPrograms::compile_ahead(const graph::FrameGraph& graph, const std::vect
                                  const std::map<int, Assembled>& others) {
     if (tools_.compile_threads < 1 || !tools_.programs.store().is_on() || tools_.programs.is_guarding_loops())
         return;
-    const std::vector<int> needed = graph.compile().passes;
+    graph::FrameGraph with_fusions = graph;
+    for (const FusedAssembled& fused : fusions)
+        if (!fused.texts.faults.has_errors())
+            with_fusions.fuse(fused.passes(), fused.maker.pass(), fused.maker.fusion().targets);
+    const graph::CompiledGraph compiled = with_fusions.compile(tools_.shares_memory);
     std::map<int, PassToCompile> missing;  // in the order of the passes
     const auto add = [&](int pass, const Assembled& texts, const graph::Pass& shape) {
         if (texts.faults.has_errors() || added_.at(pass).step->is_foreign ||
             tools_.programs.has(*texts.sources))
             return;
-        missing[pass] = {shape.name, texts.sources, graph::shape_of(graph, shape),
-                         std::ranges::binary_search(needed, pass)};
+        missing[pass] = {shape.name, texts.sources, graph::shape_of(with_fusions, compiled, shape),
+                         std::ranges::binary_search(compiled.passes, pass)};
     };
     for (const FusedAssembled& fused : fusions) add(fused.passes().back(), fused.texts, fused.maker.pass());
     for (const auto& [pass, texts] : others) add(pass, texts, graph.pass(pass));

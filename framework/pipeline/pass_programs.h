@@ -28,7 +28,8 @@ public:
         ProgramCache& programs;
         StatusWriter* status = nullptr;  ///< receives which pass is compiled; may be null
         bool fuses = true;
-        int compile_threads = 0;  ///< beside the caller's
+        bool shares_memory = true;  ///< among the graph's textures
+        int compile_threads = 0;    ///< beside the caller's
     };
     explicit PassPrograms(const Tools& tools) : tools_(tools) {}
 

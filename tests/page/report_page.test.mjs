@@ -101,6 +101,7 @@ inPage("takes names and messages as text", async (page) => {
   assert.match(await page.title(), /suite$/);
   const skipped = page.locator("#case-absent");
   await skipped.locator("summary").click();
+  await skipped.locator(".details").waitFor();
   assert.match(await skipped.innerText(), /<img src=x onerror/);
   assert.equal(await skipped.locator("img").count(), 0);
   assert.match(await page.locator("#case-lens .facts").last().innerText(), /<b>bold<\/b>/);

@@ -108,7 +108,8 @@ std::vector<PassToCompile> passes_to_compile(int count, const std::string& fault
         sources.main.text = "#version 450 core\nlayout(location = 0) out vec4 c;\nvoid main() { c = vec4(" +
                             std::to_string(i) + ".5); " + (i == count / 2 ? faulty : "") + " }\n";
         PassToCompile pass{"pass " + std::to_string(i), std::make_shared<const ProgramSources>(sources)};
-        pass.shape.targets.push_back({{4, 4, gpu::TextureFormat::rgba32f}});
+        constexpr auto kFormat = gpu::TextureFormat::rgba32f;
+        pass.shape.targets.push_back({{{4, 4, kFormat}, kFormat}});
         passes.push_back(std::move(pass));
     }
     return passes;
