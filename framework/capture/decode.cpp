@@ -98,7 +98,8 @@ VelocityFactor velocity_factor(const RoleDecoding& decoding, const DecodeContext
 /// Values that are looked at together, so that those without a fault are decoded without a branch.
 constexpr std::size_t kRun = 1024;
 
-/// Whether none is marked or not finite, nor an y as large as a mark: NaN compares true with no limit.
+/// Whether all lie between the marks and are finite; a NaN compares true with no limit. Marks are of x alone,
+/// so a y beyond them only sends the run to the slow path.
 bool has_motion(std::span<const float> values, const RoleDecoding& decoding) {
     constexpr float kLargest = std::numeric_limits<float>::max();
     const float high = std::min(kLargest, decoding.no_motion_above.value_or(kLargest));

@@ -131,7 +131,7 @@ private:
             if (runs_[i]) compiled_.passes.push_back(int(i));
     }
 
-    /// Textures without a history that tell where all draws to them lie, by buffers that are written once.
+    /// Textures without a history of which buffers, written once, say where all draws lie.
     /// Only those that found nothing to share memory with, so that none takes more for it.
     void find_sparse() {
         std::vector<int> textures_in(compiled_.slots.size());
@@ -154,7 +154,7 @@ private:
                     is_drawn_elsewhere[std::size_t(use.texture.texture)] = true;
             for (std::size_t i = 0; i < pass.targets.size(); ++i) {
                 const auto texture = std::size_t(pass.targets[i].texture.texture);
-                if (tells_where(pass, i)) found[texture].places.push_back({index, int(i)});
+                if (places_are_kept(pass, i)) found[texture].places.push_back({index, int(i)});
                 else is_drawn_elsewhere[texture] = true;
             }
         }
@@ -162,7 +162,7 @@ private:
             if (!is_drawn_elsewhere[i] && !found[i].places.empty()) add_sparse(std::move(found[i]));
     }
 
-    bool tells_where(const Pass& pass, std::size_t target) const {
+    bool places_are_kept(const Pass& pass, std::size_t target) const {
         if (pass.wipes.empty() || !pass.wipes[target]) return false;
         // Imports get other content between frames, and those of a history change places.
         const auto stays = [&](BufferHandle handle) {
