@@ -112,15 +112,19 @@ void main() {
     EXPECT_EQ(added(quads(), {.primitive = Primitive::quads, .indirect = &command}), expected_quads(6));
 }
 
-TEST_P(InstancesOn, DispatchesTheGroupsThatABufferSays) {
-    const Buffer groups = words({3, 2, 4});
-    const Buffer counter(context(), 4, "counter");
-    const Program program = Program::compute(context(), R"(#version 450 core
+Program counts_in_groups_of_5(Context& context) {
+    return Program::compute(context, R"(#version 450 core
 layout(local_size_x = 5) in;
 layout(std430, binding = 0) buffer Counter { uint total; };
 void main() { atomicAdd(total, 1u); }
 )",
-                                             "count");
+                            "count");
+}
+
+TEST_P(InstancesOn, DispatchesTheGroupsThatABufferSays) {
+    const Buffer groups = words({3, 2, 4});
+    const Buffer counter(context(), 4, "counter");
+    const Program program = counts_in_groups_of_5(context());
     const BufferBinding storage[] = {{&counter, 0}};
     dispatch_indirect(context(), program, groups, {.storage = storage});
     EXPECT_EQ(counter.read(), words({3 * 2 * 4 * 5}).read());
@@ -130,12 +134,7 @@ TEST_P(InstancesOn, WithNothingToDoNoCommandWritesAnything) {
     const Program strips = quads();
     const Program full = fragment("layout(location = 0) out float c; void main() { c = 9.0; }");
     const Buffer counter = words({7}), three = words({3, 1, 1}), five_quads = words({4, 5, 0, 0});
-    const Program counts = Program::compute(context(), R"(#version 450 core
-layout(local_size_x = 5) in;
-layout(std430, binding = 0) buffer Counter { uint total; };
-void main() { atomicAdd(total, 1u); }
-)",
-                                            "count");
+    const Program counts = counts_in_groups_of_5(context());
     Texture target = texture(kWidth, kHeight, TextureFormat::r32f);
     target.clear(2.0F);
     const Target targets[] = {{.texture = &target}};

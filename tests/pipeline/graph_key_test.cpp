@@ -148,7 +148,7 @@ TEST_F(GraphKeys, GiveEachFrameWhatAGraphOfItsOwnGives) {
     }
 }
 
-/// As a frame's header tells of it.
+/// A frame as far as its header says: images without pixels.
 Capture outline_of(const Capture& capture) {
     Capture outline;
     outline.header = capture.header;
