@@ -65,7 +65,7 @@ std::string slug(const std::string& text) {
 
 std::optional<GoldenSidecar> read_sidecar(const fs::path& image, std::optional<SidecarFault>& fault) {
     const fs::path file = sidecar_path(image);
-    constexpr const char* kRemedy = " (golden approve --renew-sidecars writes it again)";
+    constexpr const char* kRemedy = " (golden approve writes it again)";
     std::error_code failure;
     if (!fs::exists(file, failure) && !fs::is_symlink(file, failure)) return std::nullopt;
     std::string unreadable;

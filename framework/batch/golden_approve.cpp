@@ -42,10 +42,11 @@ std::vector<ApprovedImage> approved_of(const GoldenCase& test, const GoldenEnvir
 /// Files beside their goldens under other names, until all are renamed.
 class Staging {
 public:
-    void add(const fs::path& target, const fs::path& image, GoldenSidecar sidecar) {
-        stage_copy(image, target);
-        sidecar.image_hash = file_hash(image);
-        add_text(sidecar_path(target), sidecar_text(sidecar));
+    void add_image(const fs::path& target, const fs::path& image) {
+        AtomicFile& file = files_.emplace_back(target);
+        std::error_code failure;
+        fs::copy_file(image, file.temporary_path(), fs::copy_options::overwrite_existing, failure);
+        if (failure) throw Error(ExitCode::output, target.string() + ": " + failure.message());
     }
     void add_text(const fs::path& target, const std::string& text) {
         AtomicFile& file = files_.emplace_back(target);
@@ -59,13 +60,6 @@ public:
     }
 
 private:
-    void stage_copy(const fs::path& from, const fs::path& target) {
-        AtomicFile& file = files_.emplace_back(target);
-        std::error_code failure;
-        fs::copy_file(from, file.temporary_path(), fs::copy_options::overwrite_existing, failure);
-        if (failure) throw Error(ExitCode::output, target.string() + ": " + failure.message());
-    }
-
     std::list<AtomicFile> files_;
 };
 
@@ -92,20 +86,33 @@ private:
             approved, [&](const ApprovedImage& other) { return same_bits(other.file, image.file); });
         if (equal != approved.end()) {
             ++approval_.unchanged;
-            if (options_.renew_sidecars) renew(*equal, sidecar);
+            // A sidecar of another image is what a kill between the two renames leaves.
+            if (equal->sidecar_fault) {
+                approve(equal->file, equal->file, sidecar);
+                approval_.renewed.push_back(sidecar_path(equal->file));
+            } else if (options_.renew_sidecars) {
+                renew(*equal, sidecar);
+            }
             return;
         }
         const fs::path target = target_of(test, image, approved);
         if (const auto input = inputs_.replaced_by(target))
             throw Error(ExitCode::usage, target.string() + ": would replace the input " + input->string() +
                                              " (choose another folder for 'goldens')");
-        sidecar.approver = options_.approver;
-        sidecar.approved = options_.approved;
-        staging_.add(target, image.file, sidecar);
+        staging_.add_image(target, image.file);
+        approve(target, image.file, sidecar);
         approval_.written.push_back(target);
         for (const ApprovedImage& other : approved)
             if (other.file != target && (!other.sidecar || other.sidecar->look_hash != look_hash))
                 approval_.outdated.push_back(other.file);
+    }
+
+    /// The sidecar of a golden whose bytes are those of `image`.
+    void approve(const fs::path& golden, const fs::path& image, GoldenSidecar sidecar) {
+        sidecar.image_hash = file_hash(image);
+        sidecar.approver = options_.approver;
+        sidecar.approved = options_.approved;
+        staging_.add_text(sidecar_path(golden), sidecar_text(sidecar));
     }
 
     void renew(const ApprovedImage& approved, GoldenSidecar sidecar) {

@@ -203,7 +203,7 @@ TEST_F(GoldenRun, HoldsAGoldenThatWasCopiedByHandToItsToleranceAlone) {
     const CommandResult over = run();
     EXPECT_EQ(over.exit_code, 1) << over.err;
     EXPECT_NE(over.err.find("goldens/corner.color.0001.json: is of another image than "
-                            "corner.color.0001.exr (golden approve --renew-sidecars writes it again)"),
+                            "corner.color.0001.exr (golden approve writes it again)"),
               std::string::npos)
         << over.err;
 }
