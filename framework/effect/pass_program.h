@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "framework/effect/fused_shader.h"
+#include "framework/effect/image_loads.h"
 #include "framework/effect/program_store.h"
 #include "framework/effect/shader_source.h"
 #include "framework/gpu/program.h"

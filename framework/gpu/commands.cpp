@@ -65,7 +65,11 @@ public:
     PassScope(const PassScope&) = delete;
     PassScope& operator=(const PassScope&) = delete;
 
-    bool writes_memory() const { return !bindings_.images.empty() || !bindings_.storage.empty(); }
+    bool writes_memory() const {
+        return !bindings_.storage.empty() ||
+               std::ranges::any_of(bindings_.images,
+                                   [](const ImageBinding& image) { return image.access != Access::read; });
+    }
 
 private:
     static GLuint unit(int binding) { return static_cast<GLuint>(binding); }

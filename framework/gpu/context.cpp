@@ -304,6 +304,7 @@ void Context::Impl::set_state() {
     gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &limits.texture_size);
     gl.GetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &limits.array_layers);
     gl.GetIntegerv(GL_MAX_COLOR_ATTACHMENTS, &limits.colour_attachments);
+    if (info.software) gl.GetIntegerv(GL_MAX_FRAGMENT_IMAGE_UNIFORMS, &info.load_units);
     gl.GetInteger64v(GL_MAX_UNIFORM_BLOCK_SIZE, &limits.uniform_block_bytes);
     gl.GetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &limits.storage_block_bytes);
 }

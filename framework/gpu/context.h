@@ -25,6 +25,7 @@ struct ContextInfo {
     std::string version;                   ///< GL_VERSION
     std::string vendor;                    ///< GL_VENDOR
     bool software = false;                 ///< a CPU rasteriser (llvmpipe, softpipe, swrast)
+    int load_units = 0;  ///< images of a shader where a load costs less than a texelFetch (llvmpipe), else 0
 };
 
 /// One row of `aftershade doctor`.

@@ -44,6 +44,7 @@ public:
     const FusedProgram& program() const { return program_; }
     /// Without its program.
     const graph::Pass& pass() const { return fused_; }
+    graph::Pass& pass() { return fused_; }
     const graph::Fusion& fusion() const { return fusion_; }
 
 private:
@@ -161,15 +162,30 @@ std::vector<PassPrograms::FusedAssembled> PassPrograms::assemble_fusions(const g
             fused.names += (fused.names.empty() ? "" : "+") + added_.at(pass).shader.pass->name;
         }
         fused.maker.add_targets();
-        fused.texts.sources = std::make_shared<const ProgramSources>(
-            tools_.programs.sources_of(fused.maker.program(), fused.texts.faults));
+        ProgramSources sources = tools_.programs.sources_of(fused.maker.program(), fused.texts.faults);
+        load_images(graph, fused.maker.pass(), sources.main);
+        fused.texts.sources = std::make_shared<const ProgramSources>(std::move(sources));
         fusions.push_back(std::move(fused));
     }
     return fusions;
 }
 
+/// Where that is the faster way, the pass loads from images what its text fetches.
+void PassPrograms::load_images(const graph::FrameGraph& graph, graph::Pass& pass,
+                               ShaderSource& source) const {
+    const int units = tools_.context.info().load_units;
+    if (units == 0) return;
+    std::map<int, gpu::TextureFormat> formats;
+    for (const graph::Read& read : pass.reads)
+        formats[read.binding] = graph.textures()[std::size_t(read.texture.texture)].desc.format;
+    for (const ImageLoad& load : load_as_images(source, formats, int(pass.images.size()), units)) {
+        const auto read = std::ranges::find(pass.reads, load.sampler, &graph::Read::binding);
+        pass.images.push_back({read->texture, load.unit, gpu::Access::read, std::max(0, read->level)});
+    }
+}
+
 std::map<int, PassPrograms::Assembled> PassPrograms::assemble_others(
-    const graph::FrameGraph& graph, const std::vector<FusedAssembled>& fusions) const {
+    graph::FrameGraph& graph, const std::vector<FusedAssembled>& fusions) const {
     std::map<int, Assembled> others;
     const auto is_fused = [&](int pass) {
         return std::ranges::any_of(fusions, [&](const FusedAssembled& fused) {
@@ -179,8 +195,9 @@ std::map<int, PassPrograms::Assembled> PassPrograms::assemble_others(
     for (const auto& [pass, added] : added_) {
         if (is_fused(pass) || graph.pass(pass).program) continue;
         Assembled& texts = others[pass];
-        texts.sources =
-            std::make_shared<const ProgramSources>(tools_.programs.sources_of(added.shader, texts.faults));
+        ProgramSources sources = tools_.programs.sources_of(added.shader, texts.faults);
+        if (!texts.faults.has_errors()) load_images(graph, graph.pass(pass), sources.main);
+        texts.sources = std::make_shared<const ProgramSources>(std::move(sources));
     }
     return others;
 }

@@ -50,8 +50,9 @@ private:
     struct Assembled;
     struct FusedAssembled;
     std::vector<FusedAssembled> assemble_fusions(const graph::FrameGraph& graph, int divide_at);
-    std::map<int, Assembled> assemble_others(const graph::FrameGraph& graph,
+    std::map<int, Assembled> assemble_others(graph::FrameGraph& graph,
                                              const std::vector<FusedAssembled>& fusions) const;
+    void load_images(const graph::FrameGraph& graph, graph::Pass& pass, ShaderSource& source) const;
     void compile_ahead(const graph::FrameGraph& graph, const std::vector<FusedAssembled>& fusions,
                        const std::map<int, Assembled>& others);
     void fuse(graph::FrameGraph& graph, FusedAssembled& fused, std::vector<BlockBinding>& blocks);

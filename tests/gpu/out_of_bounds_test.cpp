@@ -1,5 +1,6 @@
-// Shaders that reach outside what is bound. Mesa's software drivers return zero and drop the write; a driver with robust
-// access may return another value of the same texture or buffer. None may touch what lies beside it.
+// Shaders that reach outside what is bound. Mesa's software drivers return zero and drop the write; a driver
+// with robust access may return another value of the same texture or buffer. None may touch what lies beside
+// it.
 #include <cstdint>
 #include <cstring>
 #include <span>
@@ -43,6 +44,34 @@ void main() {
     for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(got[4 * i], 0.0F) << i;
     // The shader itself has run: places within the texture give its texels.
     EXPECT_EQ(got[1], 6.0F);
+}
+
+/// The host puts one in the place of the other (framework/effect/image_loads.h).
+TEST_P(OutOfBoundsOn, LoadsGiveWhatFetchesGive) {
+    for (const std::string_view name : texture_format_names()) {
+        const TextureFormat format = *parse_texture_format(name);
+        Texture image = texture(2, 2, format);
+        if (is_integer(format)) image.upload(std::vector<std::uint32_t>(std::size_t(4 * channel_count(format)), 7));
+        else image.upload(std::vector<float>(std::size_t(4 * channel_count(format)), 0.5F));
+        const std::string prefix = !is_integer(format) ? "" : is_signed_integer(format) ? "i" : "u";
+        std::string text = R"(layout(binding = 0) uniform $sampler2D sampled;
+layout(binding = 0, $name) restrict readonly uniform $image2D image;
+layout(location = 0) out vec4 c;
+void main() {
+    const ivec2 places[] = ivec2[](ivec2(1, 1), ivec2(-1, 0), ivec2(2, 0), ivec2(0, 1 << 20));
+    const ivec2 place = places[int(gl_FragCoord.x)];
+    c = gl_FragCoord.y < 1.0 ? vec4(texelFetch(sampled, place, 0)) : vec4(imageLoad(image, place));
+})";
+        for (std::size_t at; (at = text.find("$name")) != text.npos;) text.replace(at, 5, name);
+        for (std::size_t at; (at = text.find('$')) != text.npos;) text.replace(at, 1, prefix);
+        const Program program = fragment(text);
+        const SampledTexture textures[] = {{.texture = &image}};
+        const ImageBinding images[] = {{.texture = &image, .access = Access::read}};
+        const std::vector<float> got = drawn(program, 4, 2, {.textures = textures, .images = images});
+        const std::vector<float> fetched(got.begin(), got.begin() + 16), loaded(got.begin() + 16, got.end());
+        EXPECT_EQ(loaded, fetched) << name;
+        EXPECT_EQ(fetched[0], is_integer(format) ? 7.0F : fetched[0]) << name;
+    }
 }
 
 TEST_P(OutOfBoundsOn, ImageLoadsAreZeroAndStoresAreDropped) {
