@@ -2,8 +2,18 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
+#include <utility>
 
 namespace aftershade {
+
+namespace {
+
+// Bounds of what a stranger's shader may cost; beyond them it keeps its samplers.
+constexpr int kMaxDepth = 64;      // of brackets
+constexpr int kMaxOverloads = 16;  // definitions and declarations of one name
+
+}  // namespace
 
 std::optional<SamplerType> sampler_type(std::string_view word) {
     const std::size_t at = word.find("sampler2D");
@@ -32,12 +42,19 @@ SamplerUses::SamplerUses(const std::vector<Token>& tokens) : tokens_(tokens) {
         else if (text == ";" || text == "{" || text == "}") calls_.clear();
         else if (tokens_[at].is_word()) read_word(at);
     }
+    for (int i = 0; i < int(variables_.size()); ++i) root_of(i);
+}
+
+int SamplerUses::root_of(int variable) {
+    int root = variable;
+    while (variables_[std::size_t(root)].linked_to >= 0) root = variables_[std::size_t(root)].linked_to;
+    while (variable != root) variable = std::exchange(variables_[std::size_t(variable)].linked_to, root);
+    return root;
 }
 
 int SamplerUses::set_of(int variable) const {
-    while (variables_[std::size_t(variable)].linked_to >= 0)
-        variable = variables_[std::size_t(variable)].linked_to;
-    return variable;
+    const int root = variables_[std::size_t(variable)].linked_to;
+    return root < 0 ? variable : root;
 }
 
 bool SamplerUses::is_only_fetched(int set) const {
@@ -53,19 +70,20 @@ bool SamplerUses::is(std::size_t at, std::string_view text) const {
 }
 
 void SamplerUses::link(int a, int b) {
-    a = set_of(a);
-    b = set_of(b);
+    a = root_of(a);
+    b = root_of(b);
     if (a != b) variables_[std::size_t(a)].linked_to = b;
 }
 
-/// The bracket that closes the one at `open`; nullopt where a statement ends before.
+/// The bracket that closes the one at `open`; nullopt where a statement ends before, or where brackets lie so
+/// deep that looking for the end of each would take long.
 std::optional<std::size_t> SamplerUses::closing(std::size_t open) const {
     int depth = 0;
     for (std::size_t at = open; at < tokens_.size(); ++at) {
         const std::string_view text = tokens_[at].text;
-        if (text == "(") ++depth;
-        else if (text == ")" && --depth == 0) return at;
-        else if (text == ";" || text == "{" || text == "#") return std::nullopt;
+        if (text == "(" && ++depth > kMaxDepth) return std::nullopt;
+        if (text == ")" && --depth == 0) return at;
+        if (text == ";" || text == "{" || text == "#") return std::nullopt;
     }
     return std::nullopt;
 }
@@ -114,13 +132,19 @@ std::size_t SamplerUses::read_function(std::size_t name) {
         type = 0;
     }
     const auto [from, to] = functions_by_name_.equal_range(tokens_[name].text);
+    const bool is_one_too_many = std::distance(from, to) >= kMaxOverloads;
     for (auto other = from; other != to; ++other) {
         const auto& its = functions_[other->second].parameters;
         for (std::size_t i = 0; i < std::min(its.size(), function.parameters.size()); ++i)
             if (its[i].variable >= 0 && function.parameters[i].variable >= 0)
                 link(its[i].variable, function.parameters[i].variable);
     }
-    functions_by_name_.emplace(tokens_[name].text, functions_.size());
+    if (is_one_too_many)
+        for (const auto* parameters : {&function.parameters, &functions_[from->second].parameters})
+            for (const Parameter& parameter : *parameters)
+                if (parameter.variable >= 0)
+                    variables_[std::size_t(parameter.variable)].is_only_fetched = false;
+    if (!is_one_too_many) functions_by_name_.emplace(tokens_[name].text, functions_.size());
     functions_.push_back(std::move(function));
     return *end;
 }

@@ -77,6 +77,7 @@ private:
     bool is_sampler_or_absent(std::size_t at) const;
     int resolve(std::size_t at) const;
     void link(int a, int b);
+    int root_of(int variable);
 
     const std::vector<Token>& tokens_;
     std::vector<SamplerVariable> variables_;

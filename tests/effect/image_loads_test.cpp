@@ -1,4 +1,6 @@
 // Fetches of single texels become loads from images, and nothing else does.
+#include <chrono>
+
 #include <gtest/gtest.h>
 
 #include "framework/effect/image_loads.h"
@@ -149,6 +151,28 @@ TEST(ImageLoads, TakeThoseWithMostFetchesWhereUnitsAreFew) {
     EXPECT_EQ(one.loads[0].sampler, 1);
     EXPECT_EQ(one.loads[0].unit, 7);
     EXPECT_EQ(Rewritten(text, 8, 8).loads.size(), 0U);
+}
+
+/// Each within a second on a slow machine: a stranger's shader of the largest size.
+TEST(ImageLoads, TakeNoLongForAStrangersShader) {
+    const auto repeated = [](const std::string& text) {
+        std::string all;
+        while (all.size() + text.size() < kMaxShaderBytes / 2) all += text;
+        return all;
+    };
+    const std::string f = "vec4 f(sampler2D a) { return texelFetch(a, p, 0); }\n";
+    std::string chain = "vec4 f0(sampler2D a) { return texelFetch(a, p, 0); }\n";
+    for (int i = 1; chain.size() < kMaxShaderBytes / 2; ++i)
+        chain +=
+            "vec4 f" + std::to_string(i) + "(sampler2D a) { return f" + std::to_string(i - 1) + "(a); }\n";
+    for (const std::string& text :
+         {f + "void main() { " + repeated("f("), f + "void main() { " + repeated("texelFetch(light, "),
+          repeated(f) + repeated("f(light)"), f + "void main() { f(" + repeated("light,"), chain,
+          repeated("#define F light\n"), repeated("(")}) {
+        const auto begin = std::chrono::steady_clock::now();
+        const Rewritten shader(text);
+        EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5)) << text.substr(0, 100);
+    }
 }
 
 }  // namespace

@@ -25,6 +25,7 @@
 #include "framework/core/memory_limit.h"
 #include "framework/core/text.h"
 #include "framework/effect/glsl_tokens.h"
+#include "framework/effect/image_loads.h"
 #include "framework/effect/native/native_wire.h"
 #include "framework/effect/registry.h"
 #include "framework/effect/usage_check.h"
@@ -275,6 +276,10 @@ void glsl(std::string_view bytes) {
             broken("a shader is no larger than its limits");
         check_shader_size(source, faults);
         glsl_tokens(source);
+        ShaderSource loads = source;
+        load_as_images(loads, {{0, gpu::TextureFormat::rgba32f}, {1, gpu::TextureFormat::r32ui}}, 0, 4);
+        if (std::ranges::count(loads.text, '\n') != std::ranges::count(source.text, '\n'))
+            broken("a shader whose fetches become loads keeps its lines");
     });
 }
 
