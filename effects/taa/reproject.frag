@@ -22,20 +22,19 @@ struct Surroundings {
 Surroundings surroundings(ivec2 p) {
     Surroundings found = Surroundings(p, texelFetch(depth, p, 0).r, 0.0, 0xffffffffu, 0u);
     found.far_m = found.near_m;
+    ivec2 last = ivec2(depth_size.xy) - 1;
     for (int i = 0; i < 9; ++i) {
-        // The sampler takes the texel whose centre this is, or the edge's: on llvmpipe faster than texelFetch() with a clamp.
-        vec2 at = (gl_FragCoord.xy + vec2(i % 3, i / 3) - 1.0) * depth_size.zw;
-        float depth_m = textureLod(depth, at, 0.0).r;
-        if (depth_m < found.near_m) found.closest = p + ivec2(i % 3, i / 3) - 1;
+        ivec2 at = clamp(p + ivec2(i % 3, i / 3) - 1, ivec2(0), last);
+        float depth_m = texelFetch(depth, at, 0).r;
+        if (depth_m < found.near_m) found.closest = at;
         found.near_m = min(found.near_m, depth_m);
         found.far_m = max(found.far_m, depth_m);
 #if defined(HAS_OBJECT_ID) && DISOCCLUSION == DISOCCLUSION_DEPTH_AND_ID
-        uint id = textureLod(object_id, at, 0.0).r;
+        uint id = texelFetch(object_id, at, 0).r;
         found.least_id = min(found.least_id, id);
         found.greatest_id = max(found.greatest_id, id);
 #endif
     }
-    found.closest = clamp(found.closest, ivec2(0), ivec2(depth_size.xy) - 1);
     return found;
 }
 
