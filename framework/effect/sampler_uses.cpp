@@ -166,15 +166,11 @@ void SamplerUses::read_directive(std::size_t& at) {
     if (const auto old = named_.find(macro);
         old != named_.end() && variables_[std::size_t(old->second)].is_uniform())
         variables_[std::size_t(old->second)].is_redefined = true;
-    const int aliased = name + 2 == end && tokens_[name + 1].is_word() ? resolve(name + 1) : -1;
     at = name;
-    if (aliased >= 0) {
-        const auto [alias, is_new] = named_.try_emplace(macro, int(variables_.size()));
-        unknown_.erase(macro);
-        if (is_new) variables_.push_back({variables_[std::size_t(aliased)].type});
-        link(alias->second, aliased);
-        variables_[std::size_t(aliased)].handed_on.push_back(name + 1);
+    if (name + 2 == end && tokens_[name + 1].is_word()) {
         at = name + 1;
+        if (const int aliased = resolve(at); aliased >= 0) alias(at, aliased);
+        else early_aliases_.emplace(tokens_[at].text, at);  // a manifest's defines stand before its samplers
     } else if (name + 1 < end && is(name + 1, "(") &&
                tokens_[name + 1].column == tokens_[name].column + int(macro.size())) {
         const auto close = closing(name + 1);
@@ -183,6 +179,16 @@ void SamplerUses::read_directive(std::size_t& at) {
         at = close && *close < end ? *close : end - 1;
     }
     calls_.clear();
+}
+
+/// "#define FROM light", by the token of what it stands for.
+void SamplerUses::alias(std::size_t meaning, int variable) {
+    const std::string_view macro = tokens_[meaning - 1].text;
+    const auto [named, is_new] = named_.try_emplace(macro, int(variables_.size()));
+    unknown_.erase(macro);
+    if (is_new) variables_.push_back({variables_[std::size_t(variable)].type});
+    link(named->second, variable);
+    variables_[std::size_t(variable)].handed_on.push_back(meaning);
 }
 
 void SamplerUses::read_word(std::size_t at) {
@@ -216,6 +222,8 @@ bool SamplerUses::declare_uniform(std::size_t at) {
     // Of a fused program's parts, each has its own of a name.
     named_[tokens_[at + 1].text] = int(variables_.size());
     variables_.push_back({*type, binding, at + 2});
+    const auto [from, to] = early_aliases_.equal_range(tokens_[at + 1].text);
+    for (auto early = from; early != to; ++early) alias(early->second, named_.at(tokens_[at + 1].text));
     return true;
 }
 

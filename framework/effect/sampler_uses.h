@@ -69,6 +69,7 @@ private:
     std::size_t read_function(std::size_t name);
     std::optional<std::size_t> closing(std::size_t open) const;
     void read_directive(std::size_t& at);
+    void alias(std::size_t meaning, int variable);
     void read_word(std::size_t at);
     bool declare_uniform(std::size_t at);
     void use(std::size_t at, int variable);
@@ -83,9 +84,10 @@ private:
     std::vector<SamplerVariable> variables_;
     std::vector<Function> functions_;
     std::multimap<std::string_view, std::size_t> functions_by_name_;
-    std::map<std::string_view, int> named_;  // uniforms and macros
-    std::set<std::string_view> shadows_;     // of the function at hand
-    std::set<std::string_view> unknown_;     // macros and samplers that no variable stands for
+    std::map<std::string_view, int> named_;                       // uniforms and macros
+    std::multimap<std::string_view, std::size_t> early_aliases_;  // tokens of what macros stand for, by name
+    std::set<std::string_view> shadows_;                          // of the function at hand
+    std::set<std::string_view> unknown_;  // macros and samplers that no variable stands for
     const Function* function_ = nullptr;
     std::vector<Call> calls_;
 };

@@ -124,6 +124,24 @@ TEST(ImageLoads, FollowTheMacroThatNamesASampler) {
     EXPECT_EQ(Rewritten(other).author(), lines_of_text(other));
 }
 
+/// As the defines of a manifest's pass do.
+TEST(ImageLoads, FollowAMacroThatStandsBeforeItsSampler) {
+    ShaderSource source{
+        "#define FROM light\n"
+        "layout(binding = 2) uniform sampler2D light;\n"
+        "vec4 at(sampler2D image) { return texelFetch(image, p, 0); }\n"
+        "void main() { out_a = at(FROM) + texelFetch(FROM, p, 0); }\n",
+        {4, {"a.frag", 1}}};
+    EXPECT_EQ(load_as_images(source, {{2, TextureFormat::r32f}}, 0, 8).size(), 1U);
+    EXPECT_EQ(lines_of_text(source.text),
+              (Lines{"#define FROM aftershade_image_0",
+                     "layout(binding = 2) uniform sampler2D light; layout(binding = 0, r32f) restrict "
+                     "readonly uniform "
+                     "image2D aftershade_image_0;",
+                     "vec4 at(restrict readonly image2D image) { return imageLoad(image, p ); }",
+                     "void main() { out_a = at(FROM) + imageLoad(FROM, p ); }"}));
+}
+
 TEST(ImageLoads, AreNotMadeOfNamesThatMeanSomethingElse) {
     for (const std::string text :
          {"vec4 f(sampler2D light) { return texelFetch(light, p, 0); }\nvoid main() { f(other.light); }\n",
