@@ -79,6 +79,7 @@ public:
         const auto bytes_of_buffer = [](const BufferDesc& desc) { return std::uint64_t(desc.bytes); };
         assign(graph_.textures(), 0, compiled_.slots, compiled_.slot_of_texture, gpu::byte_size,
                gpu::may_share_memory);
+        set_formats_for_copies();
         find_sparse();
         assign(graph_.buffers(), buffers_, compiled_.buffer_slots, compiled_.slot_of_buffer, bytes_of_buffer,
                std::equal_to());
@@ -129,6 +130,20 @@ private:
         }
         for (std::size_t i = 0; i < runs_.size(); ++i)
             if (runs_[i]) compiled_.passes.push_back(int(i));
+    }
+
+    /// Software GL copies memory only between textures of one format, and a view has that of its slot: between
+    /// others it draws, which takes three times as long.
+    void set_formats_for_copies() {
+        for (const int index : compiled_.passes) {
+            const Pass& pass = graph_.pass(index);
+            if (pass.kind != PassKind::copy) continue;
+            for (const TextureHandle handle : {pass.reads.front().texture, pass.targets.front().texture}) {
+                const auto texture = std::size_t(handle.texture);
+                compiled_.slots[std::size_t(compiled_.slot_of_texture[texture])].format =
+                    graph_.textures()[texture].desc.format;
+            }
+        }
     }
 
     /// Textures without a history of which buffers, written once, say where all draws lie.
