@@ -1,4 +1,5 @@
 #include "loads.glsl"
+#include "near_tile.glsl"
 
 struct Hidden {
     Light light;
@@ -16,7 +17,8 @@ Hidden hidden_at(ivec2 p, float coc_px) {
     for (int i = 0; i < 4; ++i) {
         ivec2 to = ivec2(i & 1, i >> 1), texel = clamp(corner + to, ivec2(0), last);
         vec2 linear = abs(vec2(1 - to) - 0.25 - 0.5 * vec2(to_nearest)), unlike_px = abs(imageLoad(guessed_of, texel).rg - coc_px);
-        uvec4 near = imageLoad(guessed, texel), far = imageLoad(guessed_far, texel);
+        bool is_drawn = is_near(2 * texel / kTile);
+        uvec4 near = is_drawn ? imageLoad(guessed, texel) : kNoPatch, far = is_drawn ? imageLoad(guessed_far, texel) : kNoPatch;
         taps[i] = unpack_light(unlike_px.x <= unlike_px.y ? near : far);
         weights[i] = max(1.0 - 0.5 * min(unlike_px.x, unlike_px.y), kLeastLikeness) * linear.x * linear.y;
         all += weights[i];

@@ -2,6 +2,7 @@
 #include <pass>
 #include "taps.glsl"
 #include "known.glsl"
+#include "near_tile.glsl"
 
 // Neighbouring pixels may have taken different chords: the mean of 3 x 3 patches of one surface hides where.
 void main() {
@@ -20,8 +21,9 @@ void main() {
     float coc = 0.0, sum = 0.0;
     for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x) {
-            Light tap = unpack_light(imageLoad(patches, clamp(p + ivec2(x, y), ivec2(0), last)));
-            if (!is_patch(tap) || abs(tap.coc - own.coc) > 1.0) continue;
+            ivec2 q = clamp(p + ivec2(x, y), ivec2(0), last);
+            Light tap = unpack_light(imageLoad(patches, q));
+            if (!is_near(q / kTile) || !is_patch(tap) || abs(tap.coc - own.coc) > 1.0) continue;
             float weight = 1.0 / float(1 << (abs(x) + abs(y)));
             color += weight * tap.color;
             coc += weight * tap.coc;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <utility>
 
@@ -194,6 +195,14 @@ int GraphBuilder::input_level(graph::TextureHandle handle) const {
     return graph_.textures()[std::size_t(handle.texture)].desc.mips > 1 ? 0 : -1;
 }
 
+/// Whether somebody may look at texels that no pass has drawn. As floats, their bits are not a number, so that
+/// an audit finds a pass that reads them.
+bool GraphBuilder::shows_undrawn(const StepBuild& build, const TextureSpec& spec) const {
+    return tools_.marks_undrawn || std::ranges::any_of(pipeline_.taps, [&](const Tap& tap) {
+               return tap.step == build.step.name && tap.texture == spec.name;
+           });
+}
+
 void GraphBuilder::declare_texture(StepBuild& build, const TextureSpec& spec) {
     const std::string name = build.prefix() + spec.name;
     const auto [width, height] = grid_size(spec.grid, build.params, width_, height_);
@@ -202,7 +211,12 @@ void GraphBuilder::declare_texture(StepBuild& build, const TextureSpec& spec) {
     const gpu::TextureDesc desc{width, height, spec.format, spec.layers, mips};
     graph::TextureOptions options;
     options.auto_mips = spec.auto_mips;
+    options.partial = spec.partial;
     if (spec.clear) options.clear = four_values(*spec.clear);
+    if (spec.partial && shows_undrawn(build, spec)) {
+        const double all_bits = gpu::is_signed_integer(spec.format) ? -1.0 : double(UINT32_MAX);
+        options.clear = {all_bits, all_bits, all_bits, all_bits};
+    }
     if (!spec.history) {
         build.textures[spec.name] = graph_.create_texture(name, desc, options);
         return;

@@ -31,6 +31,7 @@ struct GraphTools {
     bool keeps_steps = false;        ///< each texture has memory of its own
     bool fuses_passes = true;        ///< passes that can run as one do
     int compile_threads = 0;         ///< beside the caller's
+    bool marks_undrawn = false;      ///< partial textures have every bit set where no pass draws
 };
 
 /// Throws Error(ExitCode::effect) where a pass reads, or a step outputs, what no pass has written with these
@@ -55,6 +56,7 @@ private:
     void require_written(const StepBuild& build, const InputSpec& input, graph::TextureHandle handle) const;
     /// An input is level 0 of a texture that has more.
     int input_level(graph::TextureHandle handle) const;
+    bool shows_undrawn(const StepBuild& build, const TextureSpec& spec) const;
     void declare_texture(StepBuild& build, const TextureSpec& spec);
     void declare_buffer(StepBuild& build, const BufferSpec& spec);
     void declare_params(StepBuild& build);

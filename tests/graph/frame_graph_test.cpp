@@ -75,6 +75,8 @@ TEST(FrameGraph, RefusesToBlendOrToDrawInstancesOntoNothing) {
     splats.targets = {{graph.fresh("splats")}};
     EXPECT_EQ(fault_of([&] { (void)graph.add_pass(splats); }),
               "pass 'splats' draws over parts of 'splats' before any write");
+    splats.targets = {{graph.create_texture("partial", kFull, {.partial = true})}};
+    EXPECT_EQ(fault_of([&] { (void)graph.add_pass(splats); }), "");
     EXPECT_EQ(fault_of([&] { (void)graph.blend("sum", {}, graph.cleared("sum")); }), "");
     const TextureHandle zero = graph.clear("zero", {graph.fresh("by_pass")});
     EXPECT_EQ(fault_of([&] { (void)graph.blend("sum", {}, zero); }), "");

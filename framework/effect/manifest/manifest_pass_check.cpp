@@ -361,11 +361,12 @@ private:
 
     /// Instances and tiles leave the rest of a target as it was, which must be something.
     void check_base(const WriteSpec& write) {
-        if (!pass_->instances || filled_.contains(write.name)) return;
+        const TextureSpec* texture = manifest_.find_texture(write.name);
+        if (!pass_->instances || filled_.contains(write.name) || (texture && texture->partial)) return;
         fault(write.place, "draws over parts of '" + write.name +
                                "' before anything has filled the rest: copy an input to it (a pass of kind "
                                "copy) or draw all of it in an earlier pass" +
-                               (manifest_.find_texture(write.name) ? ", or give it 'clear'" : ""));
+                               (texture ? ", or give it 'clear'" : ""));
     }
 
     /// A draw sees what a texture was before it, in a copy of the host's; that needs a read and a write that

@@ -116,6 +116,13 @@ void ManifestParser::texture(const Reader::Named& declared) {
             fault(reader.place("clear"), "'clear' " + why);
     }
     texture.history = reader.boolean("history");
+    texture.partial = reader.boolean("partial");
+    if (texture.partial && (texture.clear || texture.history))
+        fault(reader.place("partial"),
+              "a 'partial' texture has no 'clear' and no 'history': leave out one or the other");
+    if (texture.partial && format && !gpu::is_integer(*format))
+        fault(reader.place("partial"), "a 'partial' texture has an integer format, such as rgba32ui; " +
+                                           reader.text("format") + " needs 'clear'");
     add_conditions(reader, texture.when);
     manifest_.textures.push_back(std::move(texture));
 }

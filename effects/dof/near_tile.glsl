@@ -1,0 +1,4 @@
+#include "tile.glsl"
+
+// Whether passes over near tiles draw in this one: elsewhere their textures hold what was in the memory before.
+bool is_near(ivec2 tile) { return imageLoad(near_tile, tile).r > 0.5; }
