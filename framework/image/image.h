@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
+#include <memory>
 #include <new>
 #include <span>
 #include <utility>
@@ -27,29 +29,46 @@ struct Window {
     bool operator==(const Window&) const = default;
 };
 
-/// Gives memory that is zero without being written: the system makes its pages where they are first touched,
-/// so the threads that fill an image make them, not its constructor.
+/// Numbers in memory that is zero without being written: the system makes its pages where they are first touched,
+/// so the threads that fill an image make them, not its constructor. A std::vector would walk over all numbers
+/// where it begins and ends.
 template <typename Value>
-struct ZeroedMemory {
-    using value_type = Value;
-
-    ZeroedMemory() = default;
-    template <typename Other>
-    explicit ZeroedMemory(const ZeroedMemory<Other>&) noexcept {}
-
-    Value* allocate(std::size_t count) {
-        if (void* const memory = std::calloc(count, sizeof(Value))) return static_cast<Value*>(memory);
-        throw std::bad_alloc();
+class PixelValues {
+public:
+    PixelValues() = default;
+    explicit PixelValues(std::size_t count)
+        : PixelValues(count, static_cast<Value*>(std::calloc(count, sizeof(Value)))) {}
+    static PixelValues unfilled(std::size_t count) {
+        return {count, static_cast<Value*>(std::malloc(count * sizeof(Value)))};
     }
-    void deallocate(Value* memory, std::size_t) noexcept { std::free(memory); }
-    /// Of vector(count): zero already.
-    template <typename Made>
-    void construct(Made*) noexcept {}
-    template <typename Made, typename... From>
-    void construct(Made* at, From&&... from) {
-        ::new (static_cast<void*>(at)) Made(std::forward<From>(from)...);
+    PixelValues(const PixelValues& other) : PixelValues(unfilled(other.size_)) {
+        if (size_ > 0) std::memcpy(memory_.get(), other.memory_.get(), size_ * sizeof(Value));
     }
-    bool operator==(const ZeroedMemory&) const = default;
+    PixelValues(PixelValues&& other) noexcept
+        : size_(std::exchange(other.size_, 0)), memory_(std::move(other.memory_)) {}
+    PixelValues& operator=(PixelValues other) noexcept {
+        std::swap(size_, other.size_);
+        std::swap(memory_, other.memory_);
+        return *this;
+    }
+    ~PixelValues() = default;
+
+    Value* begin() { return memory_.get(); }
+    const Value* begin() const { return memory_.get(); }
+    Value* end() { return memory_.get() + size_; }
+    const Value* end() const { return memory_.get() + size_; }
+    Value& operator[](std::size_t index) { return memory_.get()[index]; }
+    const Value& operator[](std::size_t index) const { return memory_.get()[index]; }
+
+private:
+    PixelValues(std::size_t count, Value* memory) : size_(count), memory_(memory) {
+        if (count > 0 && !memory) throw std::bad_alloc();
+    }
+    struct Free {
+        void operator()(Value* memory) const noexcept { std::free(memory); }
+    };
+    std::size_t size_ = 0;
+    std::unique_ptr<Value, Free> memory_;
 };
 
 /// [value type: safe to read from several threads]
@@ -60,8 +79,17 @@ public:
     Image(int width, int height, int channels, ComponentType type = ComponentType::float32)
         : width_(width), height_(height), channels_(channels) {
         const std::size_t count = std::size_t(width) * std::size_t(height) * std::size_t(channels);
-        if (type == ComponentType::float32) values_ = Values<float>(count);
-        else values_ = Values<std::uint32_t>(count);
+        if (type == ComponentType::float32) values_ = PixelValues<float>(count);
+        else values_ = PixelValues<std::uint32_t>(count);
+    }
+    /// Floats for who writes every one of them.
+    static Image unfilled(int width, int height, int channels) {
+        Image image;
+        image.width_ = width;
+        image.height_ = height;
+        image.channels_ = channels;
+        image.values_ = PixelValues<float>::unfilled(std::size_t(width) * std::size_t(height) * std::size_t(channels));
+        return image;
     }
 
     int width() const { return width_; }
@@ -85,9 +113,6 @@ public:
     }
 
 private:
-    template <typename Value>
-    using Values = std::vector<Value, ZeroedMemory<Value>>;
-
     std::size_t index(int x, int y, int channel) const {
         assert(x >= 0 && x < width_ && y >= 0 && y < height_ && channel >= 0 && channel < channels_);
         return (std::size_t(y) * std::size_t(width_) + std::size_t(x)) * std::size_t(channels_) +
@@ -96,7 +121,7 @@ private:
     int width_ = 0;
     int height_ = 0;
     int channels_ = 0;
-    std::variant<Values<float>, Values<std::uint32_t>> values_;
+    std::variant<PixelValues<float>, PixelValues<std::uint32_t>> values_;
 };
 
 }  // namespace aftershade

@@ -13,27 +13,31 @@ namespace aftershade {
 
 namespace {
 
-/// Whether any value is NaN or infinite: those have every bit of the exponent set (IEEE 754 binary32), so
-/// that adding 1 to the exponent carries into the place of the sign. Two values at a time, without a branch.
-bool any_non_finite(std::span<const float> values) {
-    constexpr std::uint64_t kExponents = 0x7f800000'7f800000, kOnes = 0x00800000'00800000,
-                            kSigns = 0x80000000'80000000;
-    std::uint64_t found = 0;
-    std::size_t i = 0;
-    for (; i + 1 < values.size(); i += 2) {
-        std::uint64_t two = 0;
-        std::memcpy(&two, &values[i], sizeof two);
-        found |= (two & kExponents) + kOnes;
-    }
-    return (found & kSigns) != 0 || (i < values.size() && !std::isfinite(values[i]));
-}
-
 class FaultFinder {
 public:
     explicit FaultFinder(bool infinity_allowed) : infinity_allowed_(infinity_allowed) {}
 
     bool is_fault(float value) const {
         return !std::isfinite(value) && !(infinity_allowed_ && std::isinf(value) && value > 0);
+    }
+
+    /// NaN and infinity have every bit of the exponent set (IEEE 754 binary32), so that adding 1 to the exponent
+    /// carries into the place of the sign; for NaN, the largest mantissa added does. Two values at a time,
+    /// without a branch.
+    bool any_fault(std::span<const float> values) const {
+        constexpr std::uint64_t kSigns = 0x80000000'80000000, kOnes = 0x00800000'00800000,
+                                kMantissas = 0x007fffff'007fffff;
+        std::uint64_t non_finite = 0, nan_or_negative = 0;
+        std::size_t i = 0;
+        for (; i + 1 < values.size(); i += 2) {
+            std::uint64_t two = 0;
+            std::memcpy(&two, &values[i], sizeof two);
+            const std::uint64_t amounts = two & ~kSigns, carried = amounts + kOnes;
+            non_finite |= carried;
+            nan_or_negative |= (amounts + kMantissas) | (carried & two);
+        }
+        const std::uint64_t found = infinity_allowed_ ? nan_or_negative : non_finite;
+        return (found & kSigns) != 0 || (i < values.size() && is_fault(values[i]));
     }
 
     std::span<const float> row(const Image& image, int y) const {
@@ -81,7 +85,7 @@ NonFinitePixels find_non_finite(const Image& image, bool infinity_allowed) {
     if (image.type() != ComponentType::float32 || image.empty()) return found;
     const FaultFinder finder(infinity_allowed);
     for (int y = 0; y < image.height(); ++y)
-        if (any_non_finite(finder.row(image, y))) finder.count_row(image, y, found);
+        if (finder.any_fault(finder.row(image, y))) finder.count_row(image, y, found);
     return found;
 }
 

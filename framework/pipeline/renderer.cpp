@@ -23,7 +23,7 @@ Image read_back(const gpu::Texture& texture, int channels) {
         return image;
     }
     const int stored = gpu::channel_count(desc.format);
-    Image image(desc.width, desc.height, channels);
+    Image image = Image::unfilled(desc.width, desc.height, channels);
     if (channels == stored) {
         texture.read_floats(image.floats());
         return image;

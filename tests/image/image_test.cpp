@@ -28,8 +28,20 @@ TEST(AnImage, IsCopiedWithItsValuesAndMovedWithItsMemory) {
     image.at(0, 0, 0) = -1;
     EXPECT_EQ(copy.at(0, 0, 0), 0.25f);
     EXPECT_EQ(copy.at(2, 1, 1), 11.25f);
-    const Image moved = std::move(image);
+    Image moved = std::move(image);
     EXPECT_EQ(moved.floats().data(), memory);
+    Image assigned(1, 1, 1, ComponentType::uint32);
+    assigned = moved;
+    EXPECT_NE(assigned.floats().data(), memory);
+    EXPECT_TRUE(std::ranges::equal(assigned.floats(), moved.floats()));
+    assigned = std::move(moved);
+    EXPECT_EQ(assigned.floats().data(), memory);
+}
+
+TEST(AnImage, MayHoldNothing) {
+    const Image none, copy = none, flat(0, 5, 3);
+    EXPECT_TRUE(none.empty() && copy.empty() && flat.empty());
+    EXPECT_TRUE(copy.floats().empty() && Image(flat).floats().empty());
 }
 
 }  // namespace

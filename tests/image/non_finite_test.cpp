@@ -59,6 +59,31 @@ TEST(NonFinite, InfiniteDepthIsSoundAndMinusInfinityIsNot) {
     EXPECT_EQ(find_non_finite(depth, true).infinite, 1u);
 }
 
+TEST(NonFinite, EveryKindOfValueIsJudgedWhereverItStands) {
+    const std::vector<float> sound = {0.0f, -0.0f, 1e-45f, -1e-45f, 3.4028235e38f, -3.4028235e38f, -2.0f};
+    const std::vector<float> faults = {kNan, -kNan, std::bit_cast<float>(0x7f800001u), std::bit_cast<float>(0xff800001u),
+                                       std::bit_cast<float>(0x7fffffffu), std::bit_cast<float>(0xffffffffu), -kInf};
+    for (int x = 0; x < 5; ++x) {  // an odd row: the last value stands alone
+        for (const float value : faults) {
+            Image image(5, 1, 1);
+            image.at(x, 0, 0) = value;
+            for (const bool infinity_allowed : {false, true})
+                EXPECT_EQ(find_non_finite(image, infinity_allowed).count(), 1u) << x << ", " << value;
+        }
+        for (const float value : sound) {
+            Image image(5, 1, 1);
+            image.at(x, 0, 0) = value;
+            for (const bool infinity_allowed : {false, true})
+                EXPECT_FALSE(find_non_finite(image, infinity_allowed)) << x << ", " << value;
+        }
+        Image image(5, 1, 1);
+        for (float& value : image.floats()) value = -1.0f;
+        image.at(x, 0, 0) = kInf;
+        EXPECT_FALSE(find_non_finite(image, true)) << x;
+        EXPECT_EQ(find_non_finite(image, false).infinite, 1u) << x;
+    }
+}
+
 TEST(NonFinite, IntegersHaveNone) {
     Image ids(3, 3, 1, ComponentType::uint32);
     for (std::uint32_t& id : ids.uints()) id = 0x7fc00000;  // the bits of a NaN
