@@ -2,23 +2,32 @@
 #include <pass>
 #include <predicate>
 
-// Lists runs of tiles in a row for which is_listed() holds, for draws over them: see tile_runs.glsl.
+// Lists rectangles of tiles for which is_listed() holds, for draws over them: see tile_runs.glsl.
 layout(local_size_x = 1, local_size_y = 16) in;
 
-// Each invocation takes 16 tiles of a row. The order of the runs differs from time to time, the picture does not: no two of their
-// quads touch a texel.
+shared uint rows[16];  // a bit for each tile that is listed
+
+// Each invocation takes 16 tiles of a row. Runs of tiles that begin and end alike in rows below each other become one rectangle, which
+// the topmost row lists. The order of the rectangles differs from time to time, the picture does not: no two of them touch a texel.
 void main() {
     ivec2 tiles = (ivec2(tile_grid_size.xy) + TILE_SIDE - 1) / TILE_SIDE;
     ivec2 tile = ivec2(16 * gl_WorkGroupID.x, gl_GlobalInvocationID.y);
-    if (tile.y >= tiles.y) return;
+    int row = int(gl_LocalInvocationID.y);
     uint listed = 0u;
-    int count = min(16, tiles.x - tile.x);
+    int count = tile.y < tiles.y ? min(16, tiles.x - tile.x) : 0;
     for (int i = 0; i < count; ++i)
         if (is_listed(tile + ivec2(i, 0))) listed |= 1u << i;
+    rows[row] = listed;
+    barrier();
+    uint above = row > 0 ? rows[row - 1] : 0u;
     // Software GL steps over an atomic that no tile needs as slowly as over one that all do, unless a loop ends before it.
     while (listed != 0u) {
         int first = findLSB(listed), end = first + findLSB(~(listed >> first));
-        TILE_RUNS[atomicAdd(TILE_ARGS[1], 1u)] = uvec4(tile.x + first, tile.y, tile.x + end, 0);
+        uint run = (1u << end) - (1u << first), around = run | run << 1 | run >> 1;
         listed &= ~0u << end;
+        if ((above & around) == run) continue;
+        int last = row;
+        while (last < 15 && (rows[last + 1] & around) == run) ++last;
+        TILE_RUNS[atomicAdd(TILE_ARGS[1], 1u)] = uvec4(tile.x + first, tile.y, tile.x + end, tile.y + last - row + 1);
     }
 }
