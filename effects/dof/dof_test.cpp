@@ -1,4 +1,5 @@
 // What dof must do, against closed forms and against a renderer's own lens.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -197,6 +198,24 @@ TEST(Dof, ShowsTheBlurOfALightInTheOverscan) {
     capture.header.display_window = {8, 0, 95, 47};
     const Image out = LookRunner(Lens{12, 88}.look("dof"), gpu::Backend::osmesa).color(capture);
     EXPECT_NEAR(out.at(10, 24, 0), 1000 / (2.598 * 12 * 12), 0.1);
+}
+
+TEST(Dof, LeavesNothingOfAFrameInTheNextOne) {
+    const auto box_at = [](int x, float depth_m) {
+        SyntheticScene scene{.width = 200, .height = 120, .background = {0.2f, 0.3f, 0.4f}, .background_depth_m = kFocusM};
+        scene.box = SyntheticBox{.x = x, .y = 30, .width = 40, .height = 50, .depth_m = depth_m};
+        scene.points = {{x + 9, 45, 300}, {150, 100, 20}};
+        return make_capture(scene);
+    };
+    for (const std::string more : {"", R"("quality": "fast")", R"("background": "neighbours", "highlights": "gather")"}) {
+        const std::string look = Lens{20, 200}.look("dof", more);
+        LookRunner runner(look, gpu::Backend::osmesa);
+        for (const Capture& capture : {box_at(20, kFocusM / 2), box_at(130, kFocusM / 2), box_at(60, kInfinity),
+                                       box_at(60, kFocusM), box_at(10, kFocusM / 2)}) {
+            const Image shown = runner.color(capture), first = LookRunner(look, gpu::Backend::osmesa).color(capture);
+            ASSERT_TRUE(std::ranges::equal(shown.floats(), first.floats())) << more;
+        }
+    }
 }
 
 TEST(Dof, GivesTheSameBitsOnBothSoftwareBackends) {

@@ -27,7 +27,8 @@ TEST(ManifestResources, KeepsAllThatTheySay) {
          {kTextures, R"("textures": {
             "small": {"format": "rgba16f", "tile": "tile", "doc": "d"},
             "pyramid": {"format": "r16f", "mips": "auto", "clear": 0.5, "history": true, "doc": "."},
-            "steps": {"format": "r32ui", "size": [256, 16], "mips": 5, "layers": 7, "clear": [1, 2, 3, 4], "doc": "."}})"},
+            "steps": {"format": "r32ui", "size": [256, 16], "mips": 5, "layers": 7, "clear": [1, 2, 3, 4], "doc": "."},
+            "parts": {"format": "r32ui", "partial": true, "doc": "."}})"},
          {kMore, R"("buffers": {
             "list": {"element": "uvec2", "per": {"tile": "tile"}, "count": 3, "history": true, "doc": "b"},
             "args": {"element": "uint", "count": 4, "indirect": true, "clear": [4, 0, 0, 0], "doc": "."},
@@ -41,7 +42,8 @@ TEST(ManifestResources, KeepsAllThatTheySay) {
              "buffers": {"list": "write", "list.prev": "read", "args": "atomic", "sums": "read"},
              "writes": ["small"]},
             {"name": "two", "shader": "a.frag", "writes": ["pyramid", "color"]},
-            {"name": "wipe", "kind": "clear", "writes": ["steps"], "value": 9}])"}}));
+            {"name": "wipe", "kind": "clear", "writes": ["steps"], "value": 9},
+            {"name": "part", "shader": "a.frag", "writes": ["parts"]}])"}}));
     const EffectManifest manifest = folder.sound_manifest();
     ASSERT_EQ(manifest.inputs.size(), 4U);
     EXPECT_TRUE(manifest.find_input("color")->history);
@@ -52,7 +54,7 @@ TEST(ManifestResources, KeepsAllThatTheySay) {
     EXPECT_TRUE(manifest.accumulates_subframes);
     EXPECT_TRUE(manifest.has_history());
 
-    ASSERT_EQ(manifest.textures.size(), 3U);
+    ASSERT_EQ(manifest.textures.size(), 4U);
     const GridSpec& small = manifest.textures[0].grid;
     EXPECT_EQ(small.kind, GridSpec::Kind::tile);
     EXPECT_EQ(small.tile, (CountSpec{1, "tile"}));
@@ -68,6 +70,8 @@ TEST(ManifestResources, KeepsAllThatTheySay) {
     EXPECT_EQ(steps.layers, 7);
     EXPECT_EQ(steps.mips, 5);
     EXPECT_EQ(steps.clear, (std::vector<double>{1, 2, 3, 4}));
+    EXPECT_FALSE(steps.partial);
+    EXPECT_TRUE(manifest.textures[3].partial);
 
     ASSERT_EQ(manifest.buffers.size(), 3U);
     const BufferSpec& list = *manifest.find_buffer("list");
@@ -128,6 +132,10 @@ TEST(ManifestResources, SayWhatIsWrongWithATexture) {
         {R"("format": "r8", "history": 1)", {"5: 'history' must be true or false, not an integer"}},
         {R"("format": "r8", "history": true)",
          {"5: the texture 'small' has 'history', but no pass reads 'small.prev'"}},
+        {R"("format": "r8", "partial": true)",
+         {"5: a 'partial' texture has an integer format, such as rgba32ui; r8 needs 'clear'"}},
+        {R"("format": "r32ui", "partial": true, "clear": 0)",
+         {"5: a 'partial' texture has no 'clear' and no 'history': leave out one or the other"}},
         {R"("format": "r8", "layer": 2)", {"5: texture 'small' has no key 'layer'; did you mean 'layers'?"}},
     };
     for (const auto& [fields, messages] : broken)

@@ -134,10 +134,11 @@ TEST(TileLists, SayWhatIsWrong) {
 }
 
 /// The faults of a pass over kMarked, whose tiles have 8 px, that writes "target" with these keys.
-Lines faults_of_target(const std::string& keys, const std::string& write = R"("target")") {
+Lines faults_of_target(const std::string& keys, const std::string& write = R"("target")",
+                       const std::string& format = "rg16f") {
     const EffectFolder folder(demo_manifest(
         tiled(kMarked, R"({"name": "x", "shader": "b.frag", "over": "marked", "writes": [)" + write + "]}",
-              R"("target": {"format": "rg16f", "doc": ".")" + (keys.empty() ? "" : ", " + keys) + "}")));
+              R"("target": {"doc": ".", "format": ")" + format + "\"" + (keys.empty() ? "" : ", " + keys) + "}")));
     Diagnostics diagnostics;
     (void)folder.manifest(diagnostics);
     Lines texts;
@@ -162,6 +163,9 @@ TEST(TileLists, NeedSomethingAroundTheTiles) {
                               "copy an input to it (a pass of kind copy) or draw all of it in an earlier pass";
     EXPECT_EQ(faults_of_target(""), Lines{fault + ", or give it 'clear'"});
     EXPECT_EQ(faults_of_target(R"("clear": 0)"), Lines{});
+    EXPECT_EQ(faults_of_target(R"("partial": true)", R"("target")", "r32ui"), Lines{});
+    EXPECT_EQ(faults_of_target(R"("partial": false)", R"("target")", "r32ui"),
+              Lines{fault + ", or give it 'clear'"});
 }
 
 TEST(TileLists, LieOnTexturesByTheirScale) {

@@ -280,6 +280,40 @@ TEST_P(PassKindsOn, CopiesEveryBit) {
     EXPECT_EQ(executor.texture(out)->read_uints(), bits);
 }
 
+// A copy between two formats is a draw on software GL.
+TEST_P(PassKindsOn, CopiesIntoMemoryOfOneFormatWhateverLayThereBefore) {
+    Graph graph;
+    gpu::TextureDesc integers = kSmall;
+    integers.format = gpu::TextureFormat::r32ui;
+    const gpu::Program count = fragment(R"(
+layout(location = 0) out uint result;
+void main() { result = uint(gl_FragCoord.x) + 10u * uint(gl_FragCoord.y); })");
+    const gpu::Program convert = fragment(R"(
+layout(binding = 0) uniform usampler2D source;
+layout(location = 0) out float result;
+void main() { result = float(texelFetch(source, ivec2(gl_FragCoord.xy), 0).r); })");
+    const TextureHandle source = graph.import_texture("source", kSmall);
+    const TextureHandle counted = graph.add_pass(draw_of("count", count, {}, graph.fresh("counted", integers))).targets[0];
+    const TextureHandle converted =
+        graph.add_pass(draw_of("convert", convert, {counted}, graph.fresh("converted", kSmall))).targets[0];
+    Pass copy = pass_named("copy", PassKind::copy, {source});
+    copy.targets = {{graph.fresh("copied", kSmall)}};
+    const TextureHandle copied = graph.add_pass(copy).targets[0];
+    graph.keep(converted);
+    graph.keep(copied);
+    Executor executor(context(), std::move(graph));
+    const CompiledGraph& compiled = executor.compiled();
+    ASSERT_EQ(slot(compiled, copied), slot(compiled, counted));
+    EXPECT_EQ(compiled.slots[std::size_t(slot(compiled, copied))].format, gpu::TextureFormat::r32f);
+    executor.texture(source)->upload(ramp(0.5f));
+    for (int frame = 0; frame < 2; ++frame) {
+        executor.run(false);
+        EXPECT_EQ(executor.texture(copied)->read_floats(), ramp(0.5f));
+        for (int i = 0; i < kWidth * kHeight; ++i)
+            EXPECT_EQ(executor.texture(converted)->read_floats()[std::size_t(i)], float(i % kWidth + 10 * (i / kWidth)));
+    }
+}
+
 TEST_P(PassKindsOn, ClearsOneLevelOrEveryOne) {
     Graph graph;
     gpu::TextureDesc desc = kTexels;

@@ -95,6 +95,83 @@ TEST(TilesOfAPass, LeaveNothingBehindForTheNextFrame) {
     }
 }
 
+/// Draws a picture's red to the tiles of one row, which depends on its green, and shows them elsewhere zero. With PEEK the last
+/// pass looks at a texel that none drew.
+const char* const kPartial =
+    R"("inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
+    "textures": { "marks": { "format": "r8", "tile": 16, "doc": "." },
+                  "before": { "format": "rgba32ui", "doc": "." }, "counted": { "format": "r32f", "doc": "." },
+                  "bits": { "format": "rgba32ui", "partial": true, "doc": "." } },
+    "tiles": { "chosen": { "of": "marks.r", "doc": "." } },
+    "passes": [
+        { "name": "mark", "shader": "main.frag", "reads": ["color"], "writes": ["marks"], "defines": { "MARK": 1 } },
+        { "name": "fill", "shader": "main.frag", "reads": ["color"], "writes": ["before"], "defines": { "FILL": 1 } },
+        { "name": "count", "shader": "main.frag", "reads": ["before"], "writes": ["counted"], "defines": { "COUNT": 1 } },
+        { "name": "draw", "shader": "main.frag", "reads": ["color"], "writes": ["bits"], "over": "chosen", "defines": { "DRAW": 1 } },
+        { "name": "show", "shader": "main.frag", "reads": ["bits", "marks", "counted"], "writes": ["color"] } ])";
+
+const char* const kPartialShader = R"(
+void main() {
+    ivec2 p = ivec2(gl_FragCoord.xy);
+#if defined(MARK)
+    out_marks = p.y == int(texelFetch(color, ivec2(0), 0).g) ? 1.0 : 0.0;
+#elif defined(FILL)
+    out_before = floatBitsToUint(texelFetch(color, p, 0)) ^ 0x5555u;
+#elif defined(COUNT)
+    out_counted = texelFetch(before, p, 0).a == 0u ? 0.0 : 1.0;
+#elif defined(DRAW)
+    out_bits = floatBitsToUint(texelFetch(color, p, 0));
+#else
+    bool is_drawn = texelFetch(marks, p / 16, 0).r > 0.5 || PEEKS;
+    out_color = is_drawn ? uintBitsToFloat(texelFetch(bits, p, 0)) : vec4(0.0, 0.0, 0.0, texelFetch(counted, p, 0).r);
+#endif
+}
+)";
+
+std::string partial_shader(bool peeks) {
+    return std::string("\nconst bool PEEKS = ") + (peeks ? "true" : "false") + ";" + kPartialShader;
+}
+
+Capture picture_of_row(int row) {
+    return make_capture({.width = kTiledWidth, .height = kTiledHeight, .background = {0.5f, float(row), 1}});
+}
+
+TEST(PartialTextures, ShowTheSameWhateverLayInTheirMemory) {
+    EffectFolder effects;
+    effects.add("partial", kPartial, partial_shader(false));
+    const std::string look = look_of(R"({"effect": "partial"})");
+    Bench bench(effects, look);
+    for (const int row : {0, 2, 99, 1, 1}) {  // 99: no tile
+        const Image shown = bench.color(picture_of_row(row)), first = Bench(effects, look).color(picture_of_row(row));
+        ASSERT_TRUE(std::ranges::equal(shown.floats(), first.floats())) << row;
+        for (int y = 0; y < kTiledHeight; ++y)
+            ASSERT_EQ(shown.at(3, y, 0), y / kTilePx == row ? 0.5f : 0.0f) << row << ", " << y;
+    }
+}
+
+TEST(PartialTextures, HaveEveryBitSetWhereATapShowsWhatNoPassDrew) {
+    EffectFolder effects;
+    effects.add("partial", kPartial, partial_shader(false));
+    Bench bench(effects, look_of(R"({"effect": "partial"})"), {.taps = {"partial.bits"}});
+    for (const int row : {1, 0}) {
+        const Image bits = bench.run(picture_of_row(row)).taps.at("partial.bits");
+        for (int y = 0; y < kTiledHeight; ++y)
+            ASSERT_EQ(bits.uint_at(5, y, 0), y / kTilePx == row ? std::bit_cast<std::uint32_t>(0.5f) : UINT32_MAX) << y;
+    }
+}
+
+TEST(PartialTextures, LetAnAuditFindThePassThatReadsWhatNoneDrew) {
+    for (const bool peeks : {false, true}) {
+        EffectFolder effects;
+        effects.add("partial", kPartial, partial_shader(peeks));
+        Bench bench(effects, look_of(R"({"effect": "partial"})"));
+        bench.renderer().set_audit(true);
+        const std::vector<AuditFinding> found = bench.run(picture_of_row(1)).audit;
+        ASSERT_EQ(found.empty(), !peeks);
+        if (peeks) EXPECT_EQ(found.front().pass, "partial.show");
+    }
+}
+
 const char* const kCopied =
     R"("inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
     "textures": { "marks": { "format": "r8", "tile": 16, "doc": "." } },
