@@ -199,7 +199,7 @@ struct TileListSpec {
     std::string module;            ///< that declares it; "" for the effect itself
     std::string doc;
     Place place;
-    std::string runs() const { return name + "_runs"; }  ///< buffer: first tile, its row, end, 0
+    std::string runs() const { return name + "_runs"; }  ///< buffer: first tile, its row, what follows the last
     std::string args() const { return name + "_args"; }  ///< buffer: {vertices, instances, first, base}
 };
 
