@@ -202,17 +202,20 @@ TEST(Dof, ShowsTheBlurOfALightInTheOverscan) {
 
 TEST(Dof, LeavesNothingOfAFrameInTheNextOne) {
     const auto box_at = [](int x, float depth_m) {
-        SyntheticScene scene{.width = 200, .height = 120, .background = {0.2f, 0.3f, 0.4f}, .background_depth_m = kFocusM};
+        SyntheticScene scene{
+            .width = 200, .height = 120, .background = {0.2f, 0.3f, 0.4f}, .background_depth_m = kFocusM};
         scene.box = SyntheticBox{.x = x, .y = 30, .width = 40, .height = 50, .depth_m = depth_m};
         scene.points = {{x + 9, 45, 300}, {150, 100, 20}};
         return make_capture(scene);
     };
-    for (const std::string more : {"", R"("quality": "fast")", R"("background": "neighbours", "highlights": "gather")"}) {
+    for (const std::string more :
+         {"", R"("quality": "fast")", R"("background": "neighbours", "highlights": "gather")"}) {
         const std::string look = Lens{20, 200}.look("dof", more);
         LookRunner runner(look, gpu::Backend::osmesa);
-        for (const Capture& capture : {box_at(20, kFocusM / 2), box_at(130, kFocusM / 2), box_at(60, kInfinity),
-                                       box_at(60, kFocusM), box_at(10, kFocusM / 2)}) {
-            const Image shown = runner.color(capture), first = LookRunner(look, gpu::Backend::osmesa).color(capture);
+        for (const Capture& capture : {box_at(20, kFocusM / 2), box_at(130, kFocusM / 2),
+                                       box_at(60, kInfinity), box_at(60, kFocusM), box_at(10, kFocusM / 2)}) {
+            const Image shown = runner.color(capture),
+                        first = LookRunner(look, gpu::Backend::osmesa).color(capture);
             ASSERT_TRUE(std::ranges::equal(shown.floats(), first.floats())) << more;
         }
     }

@@ -129,7 +129,7 @@ struct Written {
 struct TextureOptions {
     bool auto_mips = false;  ///< levels 1.. are filled from level 0 after each pass that writes the texture
     std::optional<std::array<double, 4>> clear{};  ///< content before the first write of each frame
-    bool partial = false;  ///< no pass reads a texel that none has drawn
+    bool partial = false;                          ///< no pass reads a texel that none has drawn
 };
 
 struct BufferDesc {

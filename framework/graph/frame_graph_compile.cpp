@@ -132,8 +132,8 @@ private:
             if (runs_[i]) compiled_.passes.push_back(int(i));
     }
 
-    /// Software GL copies memory only between textures of one format, and a view has that of its slot: between
-    /// others it draws, which takes three times as long.
+    /// Software GL copies memory only between textures of one format, and a view has that of its slot:
+    /// between others it draws, which takes three times as long.
     void set_formats_for_copies() {
         for (const int index : compiled_.passes) {
             const Pass& pass = graph_.pass(index);

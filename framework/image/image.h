@@ -29,9 +29,9 @@ struct Window {
     bool operator==(const Window&) const = default;
 };
 
-/// Numbers in memory that is zero without being written: the system makes its pages where they are first touched,
-/// so the threads that fill an image make them, not its constructor. A std::vector would walk over all numbers
-/// where it begins and ends.
+/// Numbers in memory that is zero without being written: the system makes its pages where they are first
+/// touched, so the threads that fill an image make them, not its constructor. A std::vector would walk over
+/// all numbers where it begins and ends.
 template <typename Value>
 class PixelValues {
 public:
@@ -88,7 +88,8 @@ public:
         image.width_ = width;
         image.height_ = height;
         image.channels_ = channels;
-        image.values_ = PixelValues<float>::unfilled(std::size_t(width) * std::size_t(height) * std::size_t(channels));
+        image.values_ =
+            PixelValues<float>::unfilled(std::size_t(width) * std::size_t(height) * std::size_t(channels));
         return image;
     }
 

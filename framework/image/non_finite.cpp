@@ -21,9 +21,9 @@ public:
         return !std::isfinite(value) && !(infinity_allowed_ && std::isinf(value) && value > 0);
     }
 
-    /// NaN and infinity have every bit of the exponent set (IEEE 754 binary32), so that adding 1 to the exponent
-    /// carries into the place of the sign; for NaN, the largest mantissa added does. Two values at a time,
-    /// without a branch.
+    /// NaN and infinity have every bit of the exponent set (IEEE 754 binary32), so that adding 1 to the
+    /// exponent carries into the place of the sign; for NaN, the largest mantissa added does. Two values at a
+    /// time, without a branch.
     bool any_fault(std::span<const float> values) const {
         constexpr std::uint64_t kSigns = 0x80000000'80000000, kOnes = 0x00800000'00800000,
                                 kMantissas = 0x007fffff'007fffff;

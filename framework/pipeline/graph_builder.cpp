@@ -195,8 +195,8 @@ int GraphBuilder::input_level(graph::TextureHandle handle) const {
     return graph_.textures()[std::size_t(handle.texture)].desc.mips > 1 ? 0 : -1;
 }
 
-/// Whether somebody may look at texels that no pass has drawn. As floats, their bits are not a number, so that
-/// an audit finds a pass that reads them.
+/// Whether somebody may look at texels that no pass has drawn. As floats, their bits are not a number, so
+/// that an audit finds a pass that reads them.
 bool GraphBuilder::shows_undrawn(const StepBuild& build, const TextureSpec& spec) const {
     return tools_.marks_undrawn || std::ranges::any_of(pipeline_.taps, [&](const Tap& tap) {
                return tap.step == build.step.name && tap.texture == spec.name;

@@ -114,10 +114,10 @@ void PipelineRenderer::prepare(const FrameInputs& frame, const std::vector<std::
 }
 
 void PipelineRenderer::build(const FrameInputs& frame, const std::vector<std::string>& roles) {
-    built_ = build_graph({context_, *programs_, files_, telemetry_, status_, keeps_steps_,
-                          fuses_passes_ && !keeps_steps_ && !audit_, compile_threads_,
-                          keeps_steps_ || audit_},
-                         {pipeline_, frame, params_, natives_, roles});
+    built_ =
+        build_graph({context_, *programs_, files_, telemetry_, status_, keeps_steps_,
+                     fuses_passes_ && !keeps_steps_ && !audit_, compile_threads_, keeps_steps_ || audit_},
+                    {pipeline_, frame, params_, natives_, roles});
     ++graphs_built_;
     set_hooks();
 }

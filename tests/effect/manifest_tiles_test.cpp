@@ -22,7 +22,7 @@ Sections tiled(const std::string& tiles, const std::string& passes, const std::s
             "marks": {"format": "rg16f", "tile": 8, "when": {"flag": true}, "doc": "."},
             "whole": {"format": "rgba16f", "doc": "."},
             "half_size": {"format": "rgba16f", "scale": 0.5, "doc": "."})" +
-                                 (target.empty() ? "" : ", " + target) + "}"},
+                                  (target.empty() ? "" : ", " + target) + "}"},
             {test::kMore, "\"tiles\": {" + tiles + "}"},
             {test::kPasses, R"("passes": [
             {"name": "mark", "shader": "a.frag", "reads": ["color", "depth"], "writes": ["marks"]},
@@ -136,9 +136,9 @@ TEST(TileLists, SayWhatIsWrong) {
 /// The faults of a pass over kMarked, whose tiles have 8 px, that writes "target" with these keys.
 Lines faults_of_target(const std::string& keys, const std::string& write = R"("target")",
                        const std::string& format = "rg16f") {
-    const EffectFolder folder(demo_manifest(
-        tiled(kMarked, R"({"name": "x", "shader": "b.frag", "over": "marked", "writes": [)" + write + "]}",
-              R"("target": {"doc": ".", "format": ")" + format + "\"" + (keys.empty() ? "" : ", " + keys) + "}")));
+    const EffectFolder folder(demo_manifest(tiled(
+        kMarked, R"({"name": "x", "shader": "b.frag", "over": "marked", "writes": [)" + write + "]}",
+        R"("target": {"doc": ".", "format": ")" + format + "\"" + (keys.empty() ? "" : ", " + keys) + "}")));
     Diagnostics diagnostics;
     (void)folder.manifest(diagnostics);
     Lines texts;
@@ -149,8 +149,9 @@ Lines faults_of_target(const std::string& keys, const std::string& write = R"("t
 TEST(TileLists, ConfineWhatTheirTilesAreMadeOf) {
     const std::string must = "pass 'x': runs over tiles, so what it writes, 'target', must ";
     EXPECT_EQ(faults_of_target(R"("tile": 4, "clear": 0)"), Lines{});
-    EXPECT_EQ(faults_of_target(R"("tile": 12, "clear": 0)"),
-              Lines{must + "have a 'scale' of the working grid, or a 'tile' that divides the list's of 8 px"});
+    EXPECT_EQ(
+        faults_of_target(R"("tile": 12, "clear": 0)"),
+        Lines{must + "have a 'scale' of the working grid, or a 'tile' that divides the list's of 8 px"});
     EXPECT_EQ(faults_of_target(R"("size": [8, 8], "clear": 0)"),
               Lines{must + "have a 'scale' of the working grid"});
     EXPECT_EQ(faults_of_target(R"("mips": 5, "clear": 0)", R"({"target": {"level": 3}})"), Lines{});
@@ -159,8 +160,9 @@ TEST(TileLists, ConfineWhatTheirTilesAreMadeOf) {
 }
 
 TEST(TileLists, NeedSomethingAroundTheTiles) {
-    const std::string fault = "pass 'x': draws over parts of 'target' before anything has filled the rest: "
-                              "copy an input to it (a pass of kind copy) or draw all of it in an earlier pass";
+    const std::string fault =
+        "pass 'x': draws over parts of 'target' before anything has filled the rest: "
+        "copy an input to it (a pass of kind copy) or draw all of it in an earlier pass";
     EXPECT_EQ(faults_of_target(""), Lines{fault + ", or give it 'clear'"});
     EXPECT_EQ(faults_of_target(R"("clear": 0)"), Lines{});
     EXPECT_EQ(faults_of_target(R"("partial": true)", R"("target")", "r32ui"), Lines{});

@@ -293,7 +293,8 @@ layout(binding = 0) uniform usampler2D source;
 layout(location = 0) out float result;
 void main() { result = float(texelFetch(source, ivec2(gl_FragCoord.xy), 0).r); })");
     const TextureHandle source = graph.import_texture("source", kSmall);
-    const TextureHandle counted = graph.add_pass(draw_of("count", count, {}, graph.fresh("counted", integers))).targets[0];
+    const TextureHandle counted =
+        graph.add_pass(draw_of("count", count, {}, graph.fresh("counted", integers))).targets[0];
     const TextureHandle converted =
         graph.add_pass(draw_of("convert", convert, {counted}, graph.fresh("converted", kSmall))).targets[0];
     Pass copy = pass_named("copy", PassKind::copy, {source});
@@ -310,7 +311,8 @@ void main() { result = float(texelFetch(source, ivec2(gl_FragCoord.xy), 0).r); }
         executor.run(false);
         EXPECT_EQ(executor.texture(copied)->read_floats(), ramp(0.5f));
         for (int i = 0; i < kWidth * kHeight; ++i)
-            EXPECT_EQ(executor.texture(converted)->read_floats()[std::size_t(i)], float(i % kWidth + 10 * (i / kWidth)));
+            EXPECT_EQ(executor.texture(converted)->read_floats()[std::size_t(i)],
+                      float(i % kWidth + 10 * (i / kWidth)));
     }
 }
 

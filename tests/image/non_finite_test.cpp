@@ -61,8 +61,13 @@ TEST(NonFinite, InfiniteDepthIsSoundAndMinusInfinityIsNot) {
 
 TEST(NonFinite, EveryKindOfValueIsJudgedWhereverItStands) {
     const std::vector<float> sound = {0.0f, -0.0f, 1e-45f, -1e-45f, 3.4028235e38f, -3.4028235e38f, -2.0f};
-    const std::vector<float> faults = {kNan, -kNan, std::bit_cast<float>(0x7f800001u), std::bit_cast<float>(0xff800001u),
-                                       std::bit_cast<float>(0x7fffffffu), std::bit_cast<float>(0xffffffffu), -kInf};
+    const std::vector<float> faults = {kNan,
+                                       -kNan,
+                                       std::bit_cast<float>(0x7f800001u),
+                                       std::bit_cast<float>(0xff800001u),
+                                       std::bit_cast<float>(0x7fffffffu),
+                                       std::bit_cast<float>(0xffffffffu),
+                                       -kInf};
     for (int x = 0; x < 5; ++x) {  // an odd row: the last value stands alone
         for (const float value : faults) {
             Image image(5, 1, 1);

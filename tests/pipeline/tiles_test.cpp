@@ -95,8 +95,8 @@ TEST(TilesOfAPass, LeaveNothingBehindForTheNextFrame) {
     }
 }
 
-/// Draws a picture's red to the tiles of one row, which depends on its green, and shows them elsewhere zero. With PEEK the last
-/// pass looks at a texel that none drew.
+/// Draws a picture's red to the tiles of one row, which depends on its green, and shows them elsewhere zero.
+/// With PEEK the last pass looks at a texel that none drew.
 const char* const kPartial =
     R"("inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
     "textures": { "marks": { "format": "r8", "tile": 16, "doc": "." },
@@ -142,7 +142,8 @@ TEST(PartialTextures, ShowTheSameWhateverLayInTheirMemory) {
     const std::string look = look_of(R"({"effect": "partial"})");
     Bench bench(effects, look);
     for (const int row : {0, 2, 99, 1, 1}) {  // 99: no tile
-        const Image shown = bench.color(picture_of_row(row)), first = Bench(effects, look).color(picture_of_row(row));
+        const Image shown = bench.color(picture_of_row(row)),
+                    first = Bench(effects, look).color(picture_of_row(row));
         ASSERT_TRUE(std::ranges::equal(shown.floats(), first.floats())) << row;
         for (int y = 0; y < kTiledHeight; ++y)
             ASSERT_EQ(shown.at(3, y, 0), y / kTilePx == row ? 0.5f : 0.0f) << row << ", " << y;
@@ -158,7 +159,9 @@ TEST(PartialTextures, HaveEveryBitSetWhereATapShowsWhatNoPassDrew) {
     for (const int row : {1, 0}) {
         const Image bits = bench.run(picture_of_row(row)).taps.at("partial.bits");
         for (int y = 0; y < kTiledHeight; ++y)
-            ASSERT_EQ(bits.uint_at(5, y, 0), y / kTilePx == row ? std::bit_cast<std::uint32_t>(0.5f) : UINT32_MAX) << y;
+            ASSERT_EQ(bits.uint_at(5, y, 0),
+                      y / kTilePx == row ? std::bit_cast<std::uint32_t>(0.5f) : UINT32_MAX)
+                << y;
     }
 }
 

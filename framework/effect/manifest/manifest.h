@@ -78,8 +78,8 @@ struct TextureSpec {
     bool auto_mips =
         false;  ///< the host fills levels 1.. with a box filter after each pass that writes level 0
     std::optional<std::vector<double>> clear;  ///< set to this at the beginning of each frame; 1 or 4 numbers
-    bool history = false;  ///< survives into the next frame, where "<name>.prev" reads it
-    bool partial = false;  ///< no pass reads a texel that none has drawn in this frame
+    bool history = false;                      ///< survives into the next frame, where "<name>.prev" reads it
+    bool partial = false;                      ///< no pass reads a texel that none has drawn in this frame
     /// All must hold, or every read, write and image of it is absent.
     std::vector<WhenSpec> when;
     std::string doc;  ///< one sentence with the unit
@@ -199,7 +199,9 @@ struct TileListSpec {
     std::string module;            ///< that declares it; "" for the effect itself
     std::string doc;
     Place place;
-    std::string runs() const { return name + "_runs"; }  ///< buffer: first tile, its row, what follows the last
+    std::string runs() const {
+        return name + "_runs";
+    }  ///< buffer: first tile, its row, what follows the last
     std::string args() const { return name + "_args"; }  ///< buffer: {vertices, instances, first, base}
 };
 

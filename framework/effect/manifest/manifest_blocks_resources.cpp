@@ -65,10 +65,11 @@ Block make_texture_block() {
                           "Keeps the texture for the next frame, where `name.prev` reads it; zero if there "
                           "was none (`frame.history_valid`).",
                           "false"),
-                 optional("partial", boolean(),
-                          "No pass reads a texel that none has drawn in this frame, so the host fills nothing; "
-                          "for integer formats, without `clear` and `history`.",
-                          "false"),
+                 optional(
+                     "partial", boolean(),
+                     "No pass reads a texel that none has drawn in this frame, so the host fills nothing; "
+                     "for integer formats, without `clear` and `history`.",
+                     "false"),
                  when_key("If they do not hold, every read and write of it is absent.")},
         .rules = {grammar::at_most_one_of({"scale", "tile", "size"})}};
 }
