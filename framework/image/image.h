@@ -5,11 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
+#include <memory>
 #include <new>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <variant>
-#include <vector>
 
 namespace aftershade {
 
@@ -27,29 +29,46 @@ struct Window {
     bool operator==(const Window&) const = default;
 };
 
-/// Gives memory that is zero without being written: the system makes its pages where they are first touched,
-/// so the threads that fill an image make them, not its constructor.
+/// Numbers in memory that is zero without being written: the system makes its pages where they are first
+/// touched, so the threads that fill an image make them, not its constructor. Not a vector, which goes through
+/// the elements one by one to make, copy and end them, however little there is to do for each.
+/// [value type: safe to read from several threads]
 template <typename Value>
-struct ZeroedMemory {
-    using value_type = Value;
-
-    ZeroedMemory() = default;
-    template <typename Other>
-    explicit ZeroedMemory(const ZeroedMemory<Other>&) noexcept {}
-
-    Value* allocate(std::size_t count) {
-        if (void* const memory = std::calloc(count, sizeof(Value))) return static_cast<Value*>(memory);
-        throw std::bad_alloc();
+    requires std::is_arithmetic_v<Value>
+class ZeroedArray {
+public:
+    ZeroedArray() = default;
+    explicit ZeroedArray(std::size_t count)
+        : values_(taken(std::calloc(count, sizeof(Value)), count)), count_(count) {}
+    ZeroedArray(const ZeroedArray& other)
+        : values_(taken(std::malloc(other.count_ * sizeof(Value)), other.count_)), count_(other.count_) {
+        if (count_ > 0) std::memcpy(values_.get(), other.values_.get(), count_ * sizeof(Value));
     }
-    void deallocate(Value* memory, std::size_t) noexcept { std::free(memory); }
-    /// Of vector(count): zero already.
-    template <typename Made>
-    void construct(Made*) noexcept {}
-    template <typename Made, typename... From>
-    void construct(Made* at, From&&... from) {
-        ::new (static_cast<void*>(at)) Made(std::forward<From>(from)...);
+    ZeroedArray(ZeroedArray&& other) noexcept
+        : values_(std::move(other.values_)), count_(std::exchange(other.count_, 0)) {}
+    ZeroedArray& operator=(ZeroedArray other) noexcept {
+        std::swap(values_, other.values_);
+        std::swap(count_, other.count_);
+        return *this;
     }
-    bool operator==(const ZeroedMemory&) const = default;
+    ~ZeroedArray() = default;
+
+    std::span<Value> values() { return {values_.get(), count_}; }
+    std::span<const Value> values() const { return {values_.get(), count_}; }
+
+private:
+    struct Free {
+        void operator()(Value* memory) const noexcept { std::free(memory); }
+    };
+    using Memory = std::unique_ptr<Value[], Free>;
+
+    static Memory taken(void* memory, std::size_t count) {
+        if (!memory && count > 0) throw std::bad_alloc();
+        return Memory(static_cast<Value*>(memory));
+    }
+
+    Memory values_;
+    std::size_t count_ = 0;
 };
 
 /// [value type: safe to read from several threads]
@@ -60,8 +79,8 @@ public:
     Image(int width, int height, int channels, ComponentType type = ComponentType::float32)
         : width_(width), height_(height), channels_(channels) {
         const std::size_t count = std::size_t(width) * std::size_t(height) * std::size_t(channels);
-        if (type == ComponentType::float32) values_ = Values<float>(count);
-        else values_ = Values<std::uint32_t>(count);
+        if (type == ComponentType::float32) values_ = ZeroedArray<float>(count);
+        else values_ = ZeroedArray<std::uint32_t>(count);
     }
 
     int width() const { return width_; }
@@ -72,22 +91,17 @@ public:
         return values_.index() == 0 ? ComponentType::float32 : ComponentType::uint32;
     }
 
-    std::span<float> floats() { return std::get<0>(values_); }
-    std::span<const float> floats() const { return std::get<0>(values_); }
-    std::span<std::uint32_t> uints() { return std::get<1>(values_); }
-    std::span<const std::uint32_t> uints() const { return std::get<1>(values_); }
+    std::span<float> floats() { return std::get<0>(values_).values(); }
+    std::span<const float> floats() const { return std::get<0>(values_).values(); }
+    std::span<std::uint32_t> uints() { return std::get<1>(values_).values(); }
+    std::span<const std::uint32_t> uints() const { return std::get<1>(values_).values(); }
 
-    float& at(int x, int y, int channel) { return std::get<0>(values_)[index(x, y, channel)]; }
-    float at(int x, int y, int channel) const { return std::get<0>(values_)[index(x, y, channel)]; }
-    std::uint32_t& uint_at(int x, int y, int channel) { return std::get<1>(values_)[index(x, y, channel)]; }
-    std::uint32_t uint_at(int x, int y, int channel) const {
-        return std::get<1>(values_)[index(x, y, channel)];
-    }
+    float& at(int x, int y, int channel) { return floats()[index(x, y, channel)]; }
+    float at(int x, int y, int channel) const { return floats()[index(x, y, channel)]; }
+    std::uint32_t& uint_at(int x, int y, int channel) { return uints()[index(x, y, channel)]; }
+    std::uint32_t uint_at(int x, int y, int channel) const { return uints()[index(x, y, channel)]; }
 
 private:
-    template <typename Value>
-    using Values = std::vector<Value, ZeroedMemory<Value>>;
-
     std::size_t index(int x, int y, int channel) const {
         assert(x >= 0 && x < width_ && y >= 0 && y < height_ && channel >= 0 && channel < channels_);
         return (std::size_t(y) * std::size_t(width_) + std::size_t(x)) * std::size_t(channels_) +
@@ -96,7 +110,7 @@ private:
     int width_ = 0;
     int height_ = 0;
     int channels_ = 0;
-    std::variant<Values<float>, Values<std::uint32_t>> values_;
+    std::variant<ZeroedArray<float>, ZeroedArray<std::uint32_t>> values_;
 };
 
 }  // namespace aftershade
