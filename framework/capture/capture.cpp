@@ -244,8 +244,8 @@ void CaptureReader::read_motion(const OpenFrame& open, const std::string& role, 
                                 const Image* color, Capture& capture) const {
     const CaptureHeader& header = open.header;
     const RoleSource& source = open.roles.at(role);
-    const DecodeContext context{header.path.string(), header.data_window, header.display_window,
-                                header.camera,        color,              exr_threads()};
+    const DecodeContext context{
+        header.path.string(), header.data_window, header.display_window, header.camera, color, exr_threads()};
     const std::vector<std::size_t> missing = decode_velocity(velocity, source.decoding, context);
     if (find_role(role)->to_next || missing.empty()) return;
     const auto& cuts = sequence_.cuts;
@@ -293,10 +293,9 @@ Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, c
                       : file.read_luminance_chroma(source.luminance, header.data_window);
     if (source.decoding.is_mean) repair_means(image);
     if (role.kind == RoleKind::distance)
-        decode_depth(
-            image, source.decoding,
-            {file.path().string(), header.data_window, header.display_window, header.camera, nullptr,
-             exr_threads()});
+        decode_depth(image, source.decoding,
+                     {file.path().string(), header.data_window, header.display_window, header.camera, nullptr,
+                      exr_threads()});
     if (role.kind == RoleKind::motion) read_motion(open, name, image, color, capture);
     // Beside tristimulus values, what is called R, G and B has primaries that no attribute names.
     const bool has_primaries = !open.color_is_tristimulus || name == kColorRole;

@@ -131,7 +131,8 @@ void sub_image(const GladGLContext& gl, const Texture& texture, int layer, int l
     }
 }
 
-/// Whether a draw stores the bits that a clear of memory does: what is no half, llvmpipe rounds to another one.
+/// Whether a draw stores the bits that a clear of memory does: what is no half, llvmpipe rounds to another
+/// one.
 bool is_stored_alike(const TextureDesc& desc, const std::array<double, 4>& value) {
     return bytes_per_texel(desc.format) == 4 * channel_count(desc.format) ||
            std::ranges::all_of(value, [](double v) { return v == 0.0 || v == 1.0; });

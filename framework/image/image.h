@@ -30,11 +30,11 @@ struct Window {
 };
 
 /// Numbers in memory that is zero without being written: the system makes its pages where they are first
-/// touched, so the threads that fill an image make them, not its constructor. Not a vector, which goes through
-/// the elements one by one to make, copy and end them, however little there is to do for each.
-/// [value type: safe to read from several threads]
+/// touched, so the threads that fill an image make them, not its constructor. Not a vector, which goes
+/// through the elements one by one to make, copy and end them, however little there is to do for each. [value
+/// type: safe to read from several threads]
 template <typename Value>
-    requires std::is_arithmetic_v<Value>
+requires std::is_arithmetic_v<Value>
 class ZeroedArray {
 public:
     ZeroedArray() = default;

@@ -71,7 +71,8 @@ std::vector<NonFiniteOutput> apply_nan_policy(NanPolicy policy, FrameResult& res
         if (const NonFinitePixels found = check_image(policy, image, may_be_infinite(role)))
             outputs.push_back({role, found});
     for (const auto& [tap, image] : result.taps)
-        if (const NonFinitePixels found = find_non_finite(image, true, exr_threads())) outputs.push_back({tap, found});
+        if (const NonFinitePixels found = find_non_finite(image, true, exr_threads()))
+            outputs.push_back({tap, found});
     return outputs;
 }
 

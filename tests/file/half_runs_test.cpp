@@ -10,8 +10,8 @@
 namespace aftershade::exr {
 namespace {
 
-/// Compares runs with Imath's halfs, one value at a time. What is beyond halfs, or no number, has a run of its
-/// own: else it would hide its neighbours.
+/// Compares runs with Imath's halfs, one value at a time. What is beyond halfs, or no number, has a run of
+/// its own: else it would hide its neighbours.
 class Comparison {
 public:
     void add(float value) {
