@@ -165,8 +165,10 @@ ExitCode run_here(const RunArguments& options, CheckedRun& run, const CaptureRea
     if (!options.jobs.is_worker())
         for (const std::string& stale : stale_layers_texts(pipeline, run.sequence, reader))
             std::cerr << "aftershade: warning: " << printable(stale) << "\n";
-    const RunSession session{options,          status,       run.sequence, reader,
-                             context,          run.settings, run.outputs,  parse_progress(options.progress),
+    const auto end_context = options.watch ? std::function<void()>() : [&] { made.reset(); };
+    const RunSession session{options,          status,      run.sequence,
+                             reader,           context,     end_context,
+                             run.settings,     run.outputs, parse_progress(options.progress),
                              profile_documents};
     const bool resumes =
         !options.watch && !stream && options.resume.keeps_journal(run.settings.frames.size());

@@ -34,6 +34,7 @@ struct RunSession {
     Sequence& sequence;
     const CaptureReader& reader;
     std::function<gpu::Context&()> context;  ///< makes it at the first call
+    std::function<void()> end_context;       ///< none: it is used again
     RunOptions run;
     OutputOptions outputs;
     ProgressStyle progress;

@@ -79,7 +79,7 @@ void read_alpha(Image& color, bool is_opaque, CaptureHeader& header) {
     if (color.channels() != 4) return;
     const std::span<float> values = color.floats();
     bool has_alpha = false, has_light = false;
-    for (std::size_t i = 0; i < values.size(); i += 4) {
+    for (std::size_t i = 0; i < values.size() && (is_opaque || !has_alpha || !has_light); i += 4) {
         if (is_opaque) values[i + 3] = 1;
         has_alpha = has_alpha || values[i + 3] != 0;
         has_light = has_light || values[i] != 0 || values[i + 1] != 0 || values[i + 2] != 0;
@@ -244,8 +244,8 @@ void CaptureReader::read_motion(const OpenFrame& open, const std::string& role, 
                                 const Image* color, Capture& capture) const {
     const CaptureHeader& header = open.header;
     const RoleSource& source = open.roles.at(role);
-    const DecodeContext context{header.path.string(), header.data_window, header.display_window,
-                                header.camera, color};
+    const DecodeContext context{
+        header.path.string(), header.data_window, header.display_window, header.camera, color, exr_threads()};
     const std::vector<std::size_t> missing = decode_velocity(velocity, source.decoding, context);
     if (find_role(role)->to_next || missing.empty()) return;
     const auto& cuts = sequence_.cuts;
@@ -273,7 +273,7 @@ Image CaptureReader::read_ids(const RoleSource& source, const Window& grid, int 
     if (file.type_of(source.channels[0][0]) == PixelType::uint32)
         return file.read_uints(source.channels[0], grid, how);
     return decode_ids(file.read_floats(source.channels[0], grid, 0, how),
-                      file.path().string() + ": " + source.channels[0][0]);
+                      file.path().string() + ": " + source.channels[0][0], exr_threads());
 }
 
 Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, const Image* color,
@@ -293,9 +293,9 @@ Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, c
                       : file.read_luminance_chroma(source.luminance, header.data_window);
     if (source.decoding.is_mean) repair_means(image);
     if (role.kind == RoleKind::distance)
-        decode_depth(
-            image, source.decoding,
-            {file.path().string(), header.data_window, header.display_window, header.camera, nullptr});
+        decode_depth(image, source.decoding,
+                     {file.path().string(), header.data_window, header.display_window, header.camera, nullptr,
+                      exr_threads()});
     if (role.kind == RoleKind::motion) read_motion(open, name, image, color, capture);
     // Beside tristimulus values, what is called R, G and B has primaries that no attribute names.
     const bool has_primaries = !open.color_is_tristimulus || name == kColorRole;

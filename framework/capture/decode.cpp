@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "framework/core/error.h"
+#include "framework/core/parallel.h"
 
 namespace aftershade {
 
@@ -178,14 +180,20 @@ void decode_vectors(std::span<float> values, std::size_t first, const RoleDecodi
 void decode_depth(Image& depth, const RoleDecoding& decoding, const DecodeContext& context) {
     const bool ranged = is_ranged(decoding);
     const DepthRange range = ranged ? depth_range(decoding, context) : DepthRange{};
-    for (float& z : depth.floats()) {
-        // Written so that NaN is nothing hit too: effects never see one.
-        const bool nothing_hit = !(z < decoding.no_hit) || (decoding.zero_is_no_hit && z == 0);
-        if (nothing_hit) z = kNothingHit;
-        else if (ranged) z = ranged_depth(z, decoding, range) * decoding.scale;
-        else if (decoding.encoding == DepthEncoding::inverse) z = z == 0 ? kNothingHit : decoding.scale / z;
-        else z *= decoding.scale;
-    }
+    const std::span<float> values = depth.floats();
+    const auto decode = [&](const Part& part) {
+        for (float& z : values.subspan(part.begin, part.end - part.begin)) {
+            // Written so that NaN is nothing hit too: effects never see one.
+            const bool nothing_hit = !(z < decoding.no_hit) || (decoding.zero_is_no_hit && z == 0);
+            if (nothing_hit) z = kNothingHit;
+            else if (ranged) z = ranged_depth(z, decoding, range) * decoding.scale;
+            else if (decoding.encoding == DepthEncoding::inverse)
+                z = z == 0 ? kNothingHit : decoding.scale / z;
+            else z *= decoding.scale;
+        }
+        return true;
+    };
+    for_each_part(parts_for_threads(values.size(), kRun, context.threads), decode);
     if (decoding.radial) scale_by_cosine(depth, context, RayScale::to_axis);
     if (decoding.offset_m != 0)
         for (float& z : depth.floats()) z = float(z + decoding.offset_m);
@@ -210,14 +218,21 @@ void encode_depth(Image& depth, const RoleDecoding& decoding, const DecodeContex
 std::vector<std::size_t> decode_velocity(Image& velocity, const RoleDecoding& decoding,
                                          const DecodeContext& context) {
     const VelocityFactor factor = velocity_factor(decoding, context);
-    std::vector<std::size_t> without_motion;
     const std::span<float> values = velocity.floats();
-    for (std::size_t first = 0; first < values.size(); first += kRun) {
-        const std::span<float> run = values.subspan(first, std::min(kRun, values.size() - first));
-        if (!decoding.premultiplied && has_motion(run, decoding)) scale_vectors(run, decoding.bias, factor);
-        else decode_vectors(run, first / 2, decoding, context, factor, without_motion);
-    }
-    return without_motion;
+    const auto decode = [&](const Part& part) {
+        std::vector<std::size_t> without_motion;
+        for (std::size_t first = part.begin; first < part.end; first += kRun) {
+            const std::span<float> run = values.subspan(first, std::min(kRun, part.end - first));
+            if (!decoding.premultiplied && has_motion(run, decoding))
+                scale_vectors(run, decoding.bias, factor);
+            else decode_vectors(run, first / 2, decoding, context, factor, without_motion);
+        }
+        return without_motion;
+    };
+    std::vector<std::size_t> all;
+    for (const auto& found : for_each_part(parts_for_threads(values.size(), kRun, context.threads), decode))
+        all.insert(all.end(), found.begin(), found.end());
+    return all;
 }
 
 void encode_velocity(Image& velocity, const RoleDecoding& decoding, const DecodeContext& context) {
@@ -230,18 +245,23 @@ void encode_velocity(Image& velocity, const RoleDecoding& decoding, const Decode
     }
 }
 
-Image decode_ids(const Image& stored, const std::string& file) {
+Image decode_ids(const Image& stored, const std::string& file, int threads) {
     Image ids(stored.width(), stored.height(), 1, ComponentType::uint32);
     const std::span<const float> values = stored.floats();
-    for (std::size_t first = 0; first < values.size(); first += kRun) {
-        const std::size_t end = std::min(first + kRun, values.size());
-        if (are_small_ids(values.subspan(first, end - first), ids.uints().subspan(first, end - first)))
-            continue;
-        for (std::size_t i = first; i < end; ++i) {
-            if (!is_id(values[i])) refuse_id(values[i], i, std::size_t(stored.width()), file);
-            ids.uints()[i] = std::uint32_t(values[i]);
+    const std::span<std::uint32_t> made = ids.uints();
+    const auto decode = [&](const Part& part) -> std::optional<std::size_t> {
+        for (std::size_t first = part.begin; first < part.end; first += kRun) {
+            const std::size_t end = std::min(first + kRun, part.end);
+            if (are_small_ids(values.subspan(first, end - first), made.subspan(first, end - first))) continue;
+            for (std::size_t i = first; i < end; ++i) {
+                if (!is_id(values[i])) return i;
+                made[i] = std::uint32_t(values[i]);
+            }
         }
-    }
+        return std::nullopt;
+    };
+    for (const auto& fault : for_each_part(parts_for_threads(values.size(), kRun, threads), decode))
+        if (fault) refuse_id(values[*fault], *fault, std::size_t(stored.width()), file);
     return ids;
 }
 

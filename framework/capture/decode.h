@@ -18,6 +18,7 @@ struct DecodeContext {
     Window display;
     Camera camera;
     const Image* color = nullptr;  ///< RGBA of the same grid, for premultiplied vectors
+    int threads = 1;               ///< that may work on the image at a time
 };
 
 /// Depth in m along the view axis; +inf where nothing was hit. Throws Error(ExitCode::capture) where near and
@@ -38,6 +39,6 @@ void encode_velocity(Image& velocity, const RoleDecoding& decoding, const Decode
 
 /// Floats as unsigned integers. Throws Error(ExitCode::capture) naming the first pixel that is not a whole
 /// number.
-Image decode_ids(const Image& stored, const std::string& file);
+Image decode_ids(const Image& stored, const std::string& file, int threads = 1);
 
 }  // namespace aftershade

@@ -1,8 +1,9 @@
-// The rows of a picture on all cores.
+// The rows or values of a picture on all cores.
 #pragma once
 
 #include <algorithm>
 #include <atomic>
+#include <cstddef>
 #include <exception>
 #include <mutex>
 #include <system_error>
@@ -39,6 +40,34 @@ void for_each_row(int rows, int threads, const Work& work) {
     run();
     others.clear();
     if (failure) std::rethrow_exception(failure);
+}
+
+/// Values from `begin` to before `end`.
+struct Part {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+};
+
+/// `count` values in parts that follow each other, one for each thread, or a single one where they are too
+/// few to be worth a thread. Each begins at a multiple of `step`.
+inline std::vector<Part> parts_for_threads(std::size_t count, std::size_t step, int threads) {
+    constexpr std::size_t kWorthwhile = 1
+                                        << 18;  // what a core decodes in the time that a thread's start takes
+    const std::size_t most = std::max<std::size_t>(1, std::min(std::size_t(threads), count / kWorthwhile));
+    const std::size_t steps = (count + step - 1) / step;
+    std::vector<Part> parts;
+    for (std::size_t i = 0; i < most; ++i)
+        parts.push_back({steps * i / most * step, std::min(count, steps * (i + 1) / most * step)});
+    return parts;
+}
+
+/// What work(part) returns for each of the parts, in their order.
+template <class Work>
+auto for_each_part(const std::vector<Part>& parts, const Work& work) {
+    std::vector<decltype(work(Part()))> results(parts.size());
+    for_each_row(int(parts.size()), int(parts.size()),
+                 [&](int i) { results[std::size_t(i)] = work(parts[std::size_t(i)]); });
+    return results;
 }
 
 }  // namespace aftershade

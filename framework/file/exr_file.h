@@ -180,5 +180,7 @@ std::string exr_flatten_remedy(const std::filesystem::path& path);
 
 /// Threads that OpenEXR uses for compression, process-wide; 0 does the work on the caller's thread.
 void set_exr_threads(int count);
+/// The same threads, or 1 for the caller's own: for work on what they have just read or will write.
+int exr_threads();
 
 }  // namespace aftershade

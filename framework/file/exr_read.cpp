@@ -328,4 +328,8 @@ void set_exr_threads(int count) {
     Imf::setGlobalThreadCount(count);
 }
 
+int exr_threads() {
+    return std::max(1, Imf::globalThreadCount());
+}
+
 }  // namespace aftershade

@@ -3,6 +3,7 @@
 #include "framework/file/deflate.h"
 #include "framework/file/exr_internal.h"
 #include "framework/file/exr_zip.h"
+#include "framework/file/half_runs.h"
 
 #include <Imath/half.h>
 #include <OpenEXR/ImfChannelList.h>
@@ -25,10 +26,13 @@ void append_halfs(const ExrOutputChannel& channel, std::size_t first, std::size_
                   std::size_t& overflows) {
     const auto stride = std::size_t(channel.image->channels());
     const float* from = channel.image->floats().data() + first * stride + std::size_t(channel.component);
-    for (std::size_t x = 0; x < count; ++x, from += stride, to += sizeof(half)) {
-        const half value(*from);
-        if (value.isInfinity() && std::isfinite(*from)) ++overflows;
-        std::memcpy(to, &value, sizeof value);
+    std::array<float, kHalfRun> values = {};
+    std::array<std::uint16_t, kHalfRun> halfs = {};
+    for (std::size_t x = 0; x < count; x += kHalfRun) {
+        const std::size_t run = std::min(kHalfRun, count - x);
+        for (std::size_t i = 0; i < run; ++i, from += stride) values[i] = *from;
+        if (!to_plain_halfs(values, halfs)) overflows += to_halfs(std::span(values).first(run), halfs);
+        std::memcpy(to + x * sizeof halfs[0], halfs.data(), run * sizeof halfs[0]);
     }
 }
 

@@ -131,6 +131,27 @@ void sub_image(const GladGLContext& gl, const Texture& texture, int layer, int l
     }
 }
 
+/// Whether a draw stores the bits that a clear of memory does: what is no half, llvmpipe rounds to another
+/// one.
+bool is_stored_alike(const TextureDesc& desc, const std::array<double, 4>& value) {
+    return bytes_per_texel(desc.format) == 4 * channel_count(desc.format) ||
+           std::ranges::all_of(value, [](double v) { return v == 0.0 || v == 1.0; });
+}
+
+/// Clears as a draw, in order with the other draws.
+void clear_drawn(const GladGLContext& gl, GLuint framebuffer, const TextureDesc& desc,
+                 const std::array<std::uint32_t, 4>& texel) {
+    if (!is_integer(desc.format)) {
+        const auto values = std::bit_cast<std::array<GLfloat, 4>>(texel);
+        gl.ClearNamedFramebufferfv(framebuffer, GL_COLOR, 0, values.data());
+    } else if (is_signed_integer(desc.format)) {
+        const auto values = std::bit_cast<std::array<GLint, 4>>(texel);
+        gl.ClearNamedFramebufferiv(framebuffer, GL_COLOR, 0, values.data());
+    } else {
+        gl.ClearNamedFramebufferuiv(framebuffer, GL_COLOR, 0, texel.data());
+    }
+}
+
 /// `values` are value_count() of them.
 template <typename Value>
 void read_into(Context& context, const Texture& texture, int level, int layer, std::span<Value> values) {
@@ -256,13 +277,21 @@ void Texture::clear_to(const std::array<double, 4>& value) {
 void Texture::clear_to(const std::array<double, 4>& value, int level, int layer) {
     assert(level < desc_.mips && layer < desc_.layers);
     handle_.context().make_current();
-    handle_.context().impl().wait_for_draws();
-    const GladGLContext& gl = handle_.context().gl();
+    const Context::Impl& impl = handle_.context().impl();
+    const GladGLContext& gl = impl.gl;
     const std::array<std::uint32_t, 4> texel = clear_texel(value, desc_.format);
     const GLenum pixel = gl_format(desc_.format).pixel;
     const int first = level < 0 ? 0 : level;
     const int last = level < 0 ? desc_.mips - 1 : level;
+    // llvmpipe clears a texture on the caller's thread, and what is drawn to on all of its own.
+    const bool draws = impl.info.software && desc_.layers == 1 && is_stored_alike(desc_, value);
+    if (!draws) impl.wait_for_draws();
     for (int i = first; i <= last; ++i) {
+        if (draws) {
+            const Target target{.texture = this, .level = i};
+            clear_drawn(gl, impl.cache->framebuffer({&target, 1}), desc_, texel);
+            continue;
+        }
         if (layer < 0) {
             gl.ClearTexImage(handle(), i, pixel, value_type(desc_), texel.data());
         } else {

@@ -9,9 +9,9 @@
 #include <memory>
 #include <new>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <variant>
-#include <vector>
 
 namespace aftershade {
 
@@ -30,45 +30,45 @@ struct Window {
 };
 
 /// Numbers in memory that is zero without being written: the system makes its pages where they are first
-/// touched, so the threads that fill an image make them, not its constructor. A std::vector would walk over
-/// all numbers where it begins and ends.
+/// touched, so the threads that fill an image make them, not its constructor. Not a vector, which goes
+/// through the elements one by one to make, copy and end them, however little there is to do for each. [value
+/// type: safe to read from several threads]
 template <typename Value>
-class PixelValues {
+requires std::is_arithmetic_v<Value>
+class ZeroedArray {
 public:
-    PixelValues() = default;
-    explicit PixelValues(std::size_t count)
-        : PixelValues(count, static_cast<Value*>(std::calloc(count, sizeof(Value)))) {}
-    static PixelValues unfilled(std::size_t count) {
-        return {count, static_cast<Value*>(std::malloc(count * sizeof(Value)))};
+    ZeroedArray() = default;
+    explicit ZeroedArray(std::size_t count)
+        : values_(taken(std::calloc(count, sizeof(Value)), count)), count_(count) {}
+    ZeroedArray(const ZeroedArray& other)
+        : values_(taken(std::malloc(other.count_ * sizeof(Value)), other.count_)), count_(other.count_) {
+        if (count_ > 0) std::memcpy(values_.get(), other.values_.get(), count_ * sizeof(Value));
     }
-    PixelValues(const PixelValues& other) : PixelValues(unfilled(other.size_)) {
-        if (size_ > 0) std::memcpy(memory_.get(), other.memory_.get(), size_ * sizeof(Value));
-    }
-    PixelValues(PixelValues&& other) noexcept
-        : size_(std::exchange(other.size_, 0)), memory_(std::move(other.memory_)) {}
-    PixelValues& operator=(PixelValues other) noexcept {
-        std::swap(size_, other.size_);
-        std::swap(memory_, other.memory_);
+    ZeroedArray(ZeroedArray&& other) noexcept
+        : values_(std::move(other.values_)), count_(std::exchange(other.count_, 0)) {}
+    ZeroedArray& operator=(ZeroedArray other) noexcept {
+        std::swap(values_, other.values_);
+        std::swap(count_, other.count_);
         return *this;
     }
-    ~PixelValues() = default;
+    ~ZeroedArray() = default;
 
-    Value* begin() { return memory_.get(); }
-    const Value* begin() const { return memory_.get(); }
-    Value* end() { return memory_.get() + size_; }
-    const Value* end() const { return memory_.get() + size_; }
-    Value& operator[](std::size_t index) { return memory_.get()[index]; }
-    const Value& operator[](std::size_t index) const { return memory_.get()[index]; }
+    std::span<Value> values() { return {values_.get(), count_}; }
+    std::span<const Value> values() const { return {values_.get(), count_}; }
 
 private:
-    PixelValues(std::size_t count, Value* memory) : size_(count), memory_(memory) {
-        if (count > 0 && !memory) throw std::bad_alloc();
-    }
     struct Free {
         void operator()(Value* memory) const noexcept { std::free(memory); }
     };
-    std::size_t size_ = 0;
-    std::unique_ptr<Value, Free> memory_;
+    using Memory = std::unique_ptr<Value[], Free>;
+
+    static Memory taken(void* memory, std::size_t count) {
+        if (!memory && count > 0) throw std::bad_alloc();
+        return Memory(static_cast<Value*>(memory));
+    }
+
+    Memory values_;
+    std::size_t count_ = 0;
 };
 
 /// [value type: safe to read from several threads]
@@ -79,18 +79,8 @@ public:
     Image(int width, int height, int channels, ComponentType type = ComponentType::float32)
         : width_(width), height_(height), channels_(channels) {
         const std::size_t count = std::size_t(width) * std::size_t(height) * std::size_t(channels);
-        if (type == ComponentType::float32) values_ = PixelValues<float>(count);
-        else values_ = PixelValues<std::uint32_t>(count);
-    }
-    /// Floats for who writes every one of them.
-    static Image unfilled(int width, int height, int channels) {
-        Image image;
-        image.width_ = width;
-        image.height_ = height;
-        image.channels_ = channels;
-        image.values_ =
-            PixelValues<float>::unfilled(std::size_t(width) * std::size_t(height) * std::size_t(channels));
-        return image;
+        if (type == ComponentType::float32) values_ = ZeroedArray<float>(count);
+        else values_ = ZeroedArray<std::uint32_t>(count);
     }
 
     int width() const { return width_; }
@@ -101,17 +91,15 @@ public:
         return values_.index() == 0 ? ComponentType::float32 : ComponentType::uint32;
     }
 
-    std::span<float> floats() { return std::get<0>(values_); }
-    std::span<const float> floats() const { return std::get<0>(values_); }
-    std::span<std::uint32_t> uints() { return std::get<1>(values_); }
-    std::span<const std::uint32_t> uints() const { return std::get<1>(values_); }
+    std::span<float> floats() { return std::get<0>(values_).values(); }
+    std::span<const float> floats() const { return std::get<0>(values_).values(); }
+    std::span<std::uint32_t> uints() { return std::get<1>(values_).values(); }
+    std::span<const std::uint32_t> uints() const { return std::get<1>(values_).values(); }
 
-    float& at(int x, int y, int channel) { return std::get<0>(values_)[index(x, y, channel)]; }
-    float at(int x, int y, int channel) const { return std::get<0>(values_)[index(x, y, channel)]; }
-    std::uint32_t& uint_at(int x, int y, int channel) { return std::get<1>(values_)[index(x, y, channel)]; }
-    std::uint32_t uint_at(int x, int y, int channel) const {
-        return std::get<1>(values_)[index(x, y, channel)];
-    }
+    float& at(int x, int y, int channel) { return floats()[index(x, y, channel)]; }
+    float at(int x, int y, int channel) const { return floats()[index(x, y, channel)]; }
+    std::uint32_t& uint_at(int x, int y, int channel) { return uints()[index(x, y, channel)]; }
+    std::uint32_t uint_at(int x, int y, int channel) const { return uints()[index(x, y, channel)]; }
 
 private:
     std::size_t index(int x, int y, int channel) const {
@@ -122,7 +110,7 @@ private:
     int width_ = 0;
     int height_ = 0;
     int channels_ = 0;
-    std::variant<PixelValues<float>, PixelValues<std::uint32_t>> values_;
+    std::variant<ZeroedArray<float>, ZeroedArray<std::uint32_t>> values_;
 };
 
 }  // namespace aftershade

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "framework/core/parallel.h"
+
 namespace aftershade {
 
 namespace {
@@ -80,17 +82,28 @@ struct Replacement {
 
 }  // namespace
 
-NonFinitePixels find_non_finite(const Image& image, bool infinity_allowed) {
-    NonFinitePixels found;
-    if (image.type() != ComponentType::float32 || image.empty()) return found;
+NonFinitePixels find_non_finite(const Image& image, bool infinity_allowed, int threads) {
+    NonFinitePixels all;
+    if (image.type() != ComponentType::float32 || image.empty()) return all;
     const FaultFinder finder(infinity_allowed);
-    for (int y = 0; y < image.height(); ++y)
-        if (finder.any_fault(finder.row(image, y))) finder.count_row(image, y, found);
-    return found;
+    const std::size_t row_values = image.floats().size() / std::size_t(image.height());
+    const auto look = [&](const Part& part) {
+        NonFinitePixels found;
+        for (int y = int(part.begin / row_values); y < int(part.end / row_values); ++y)
+            if (finder.any_fault(finder.row(image, y))) finder.count_row(image, y, found);
+        return found;
+    };
+    for (const NonFinitePixels& found :
+         for_each_part(parts_for_threads(image.floats().size(), row_values, threads), look)) {
+        if (!all) all.x = found.x, all.y = found.y;
+        all.nan += found.nan;
+        all.infinite += found.infinite;
+    }
+    return all;
 }
 
-NonFinitePixels mend_non_finite(Image& image, bool infinity_allowed) {
-    NonFinitePixels found = find_non_finite(image, infinity_allowed);
+NonFinitePixels mend_non_finite(Image& image, bool infinity_allowed, int threads) {
+    NonFinitePixels found = find_non_finite(image, infinity_allowed, threads);
     if (!found) return found;
     const FaultFinder finder(infinity_allowed);
     std::vector<Replacement> replacements;

@@ -22,7 +22,8 @@ struct NonFinitePixels {
 
 /// `infinity_allowed` is for depth, where +inf means that nothing was hit; -inf is never right. An image of
 /// integers has no such pixels. A sound image costs one read of its memory.
-NonFinitePixels find_non_finite(const Image& image, bool infinity_allowed);
+/// `threads` may look at a time.
+NonFinitePixels find_non_finite(const Image& image, bool infinity_allowed, int threads = 1);
 
 /// Half the side of the largest neighbourhood that mend_non_finite() looks at, px.
 inline constexpr int kMendRadius_px = 3;
@@ -30,6 +31,6 @@ inline constexpr int kMendRadius_px = 3;
 /// Replaces each value at fault by the mean of its channel's finite values in the 3 x 3 pixels around it,
 /// else in the 5 x 5, else in the 7 x 7, else by 0. Means are of values as they were, so no order matters.
 /// Other values keep their bits.
-NonFinitePixels mend_non_finite(Image& image, bool infinity_allowed);
+NonFinitePixels mend_non_finite(Image& image, bool infinity_allowed, int threads = 1);
 
 }  // namespace aftershade

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "framework/core/diagnostics.h"
+#include "framework/file/exr_file.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
@@ -15,8 +16,8 @@ bool may_be_infinite(const std::string& role) {
 }
 
 NonFinitePixels check_image(NanPolicy policy, Image& image, bool infinity_allowed) {
-    return policy == NanPolicy::mend ? mend_non_finite(image, infinity_allowed)
-                                     : find_non_finite(image, infinity_allowed);
+    return policy == NanPolicy::mend ? mend_non_finite(image, infinity_allowed, exr_threads())
+                                     : find_non_finite(image, infinity_allowed, exr_threads());
 }
 
 /// "12 NaN and 3 infinite pixels, the first at (30, 17)".
@@ -70,7 +71,8 @@ std::vector<NonFiniteOutput> apply_nan_policy(NanPolicy policy, FrameResult& res
         if (const NonFinitePixels found = check_image(policy, image, may_be_infinite(role)))
             outputs.push_back({role, found});
     for (const auto& [tap, image] : result.taps)
-        if (const NonFinitePixels found = find_non_finite(image, true)) outputs.push_back({tap, found});
+        if (const NonFinitePixels found = find_non_finite(image, true, exr_threads()))
+            outputs.push_back({tap, found});
     return outputs;
 }
 

@@ -14,27 +14,6 @@ namespace aftershade {
 
 namespace {
 
-Image read_back(const gpu::Texture& texture, int channels) {
-    const gpu::TextureDesc& desc = texture.desc();
-    if (gpu::is_integer(desc.format)) {
-        Image image(desc.width, desc.height, gpu::channel_count(desc.format), ComponentType::uint32);
-        const auto values = texture.read_uints();
-        std::copy(values.begin(), values.end(), image.uints().begin());
-        return image;
-    }
-    const int stored = gpu::channel_count(desc.format);
-    Image image = Image::unfilled(desc.width, desc.height, channels);
-    if (channels == stored) {
-        texture.read_floats(image.floats());
-        return image;
-    }
-    const std::vector<float> values = texture.read_floats();
-    for (std::size_t pixel = 0; pixel < values.size() / std::size_t(stored); ++pixel)
-        std::copy_n(&values[pixel * std::size_t(stored)], channels,
-                    &image.floats()[pixel * std::size_t(channels)]);
-    return image;
-}
-
 bool infinity_allowed(const std::string& role) {
     return std::isinf(find_role(role)->outside);
 }
@@ -80,18 +59,6 @@ PipelineRenderer::PipelineRenderer(gpu::Context& context, const Pipeline& pipeli
       natives_(natives) {}
 
 PipelineRenderer::~PipelineRenderer() = default;
-
-std::string PipelineRenderer::history_fault(const FrameInputs& frame) const {
-    const CaptureHeader& header = frame.capture->header;
-    if (!last_) return "the first frame";
-    if (frame.begins_shot) return "a cut";
-    if (is_partial_) return "frame " + std::to_string(last_->frame) + " lacks sub-frames";
-    if (!(last_->window == header.data_window)) return "another data window";
-    if (header.frame != last_->frame + 1)
-        return "it follows frame " + std::to_string(last_->frame) + ", not " +
-               std::to_string(header.frame - 1);
-    return "";
-}
 
 void PipelineRenderer::resolve(const FrameInputs& frame) {
     params_.clear();
@@ -316,107 +283,6 @@ FrameResult PipelineRenderer::render_again(const FrameInputs& frame, const std::
     steps_drawn_ = int(pipeline_.steps.size()) - first;
     mixes_drawn_ = mixes();
     return result;
-}
-
-FrameTelemetry PipelineRenderer::read_telemetry(int frame) const {
-    FrameTelemetry telemetry;
-    telemetry.frame = frame;
-    graph::Executor& executor = *built_->executor;
-    std::map<std::pair<int, int>, Image> read;  // by handle
-    const auto image = [&](const graph::TextureHandle& handle) -> const Image& {
-        const auto [found, is_new] = read.try_emplace({handle.texture, handle.version});
-        const gpu::Texture& texture = *executor.texture(handle);
-        if (is_new) found->second = read_back(texture, gpu::channel_count(texture.desc().format));
-        return found->second;
-    };
-    for (std::size_t i = 0; i < pipeline_.steps.size(); ++i)
-        for (const TelemetrySpec& spec : pipeline_.steps[i].manifest->telemetry)
-            if (const auto textures = find_textures(built_->textures[i], spec))
-                telemetry.steps[pipeline_.steps[i].name][spec.name] = statistic_of(
-                    spec, image(textures->of), textures->where ? &image(*textures->where) : nullptr);
-    const graph::CompiledGraph& compiled = executor.compiled();
-    for (const gpu::TextureDesc& slot : compiled.slots) {
-        FormatMemory& format = telemetry.textures[std::string(gpu::texture_format_name(slot.format))];
-        ++format.textures;
-        format.bytes += gpu::byte_size(slot);
-    }
-    for (const graph::BufferDesc& slot : compiled.buffer_slots) telemetry.buffer_bytes += slot.bytes;
-    telemetry.bytes = compiled.bytes;
-    telemetry.bytes_unaliased = compiled.bytes_unaliased;
-    return telemetry;
-}
-
-void PipelineRenderer::read_results(const std::vector<std::string>& roles, bool timed, FrameResult& result) {
-    gpu::Timer timer(context_);
-    timer.start();
-    graph::Executor& executor = *built_->executor;
-    const auto is_kept = [&](const std::string& role) {
-        return std::find(kept_on_gpu_.begin(), kept_on_gpu_.end(), role) != kept_on_gpu_.end();
-    };
-    for (const std::string& role : roles)
-        if (const auto handle = built_->results.find(role); handle != built_->results.end() && !is_kept(role))
-            result.images[role] = read_back(*executor.texture(handle->second), find_role(role)->channels);
-    for (const Tap& tap : pipeline_.taps)
-        for (std::size_t i = 0; i < pipeline_.steps.size(); ++i)
-            if (pipeline_.steps[i].name == tap.step) {
-                const gpu::Texture& texture = *executor.texture(built_->textures[i].at(tap.texture));
-                result.taps[tap.text()] = read_back(texture, gpu::channel_count(texture.desc().format));
-            }
-    if (timed) result.times.push_back({"readback", timer.stop_ms()});
-}
-
-const gpu::Texture* PipelineRenderer::result_texture(const std::string& role) const {
-    if (!built_) return nullptr;
-    const auto handle = built_->results.find(role);
-    return handle == built_->results.end() ? nullptr : built_->executor->texture(handle->second);
-}
-
-void PipelineRenderer::save_history(const std::filesystem::path& path, const std::string& fingerprint) {
-    SavedHistory saved;
-    saved.fingerprint = fingerprint;
-    saved.look = history_identity(pipeline_);
-    if (last_) {
-        saved.frame = last_->frame;
-        saved.window = last_->window;
-        saved.camera = last_->camera;
-    }
-    if (built_) saved.take_from(built_->executor->history());
-    write_history(path, saved);
-}
-
-void PipelineRenderer::load_history(const std::filesystem::path& path) {
-    saved_ = std::make_unique<SavedHistory>(read_history(path));
-    const std::string identity = history_identity(pipeline_);
-    if (saved_->look == identity) return;
-    throw Error(ExitCode::usage, path.string() + ": this history is of another look or effect version\n" +
-                                     difference_of_identities(saved_->look, identity));
-}
-
-void PipelineRenderer::drop_loaded_history() {
-    saved_.reset();
-}
-
-void PipelineRenderer::begin_from_saved(const FrameInputs& frame) {
-    const CaptureHeader& header = frame.capture->header;
-    const std::string file = saved_->path.string();
-    if (header.frame != saved_->frame + 1)
-        throw Error(ExitCode::usage, file + ": this history is of frame " + std::to_string(saved_->frame) +
-                                         "; it continues with frame " + std::to_string(saved_->frame + 1) +
-                                         ", not with " + std::to_string(header.frame));
-    if (!(header.data_window == saved_->window))
-        throw Error(ExitCode::usage, file + ": this history is of another size: its window is " +
-                                         window_text(saved_->window) + ", that of frame " +
-                                         std::to_string(header.frame) + " is " +
-                                         window_text(header.data_window));
-    last_ = {saved_->frame, saved_->window, saved_->camera};
-    camera_before_ = saved_->camera;
-}
-
-void PipelineRenderer::restore(const SavedHistory& saved) {
-    const std::string missing = saved.give_to(built_->executor->history());
-    if (!missing.empty())
-        throw Error(ExitCode::usage, saved.path.string() + ": this history has no '" + missing +
-                                         "' of the size that this frame needs");
 }
 
 std::string PipelineRenderer::graph_dot() const {

@@ -4,13 +4,16 @@
 #include <chrono>
 #include <cstddef>
 #include <exception>
+#include <functional>
 #include <future>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
 
 #include "framework/core/memory_limit.h"
+#include "framework/gpu/timer.h"
 #include "framework/pipeline/frame_loader.h"
 #include "framework/pipeline/frame_run.h"
 #include "framework/pipeline/nan_policy.h"
@@ -150,15 +153,19 @@ bool accept_outputs(const FrameRun::Rendered& frame, NanPolicy policy, RunReport
 /// The frames of a run, one after the other.
 class FrameLoop {
 public:
+    /// `end_gl` ends the renderer, and the context if nobody needs it any longer.
     FrameLoop(const RunSetup& setup, const gpu::Context& context, PipelineRenderer& renderer,
-              FrameLoader& loader, const RunObserver& observer)
+              FrameLoader& loader, const RunObserver& observer, std::function<void()> end_gl)
         : setup_(setup),
-          context_(context),
           renderer_(renderer),
           observer_(observer),
           loader_(loader),
           frame_run_(renderer, loader_, setup.sequence, setup.options),
-          outcomes_(report_, observer) {}
+          outcomes_(report_, observer),
+          end_gl_(std::move(end_gl)) {
+        report_.gl = context.info();
+        report_.clock = gpu::Timer::clock_name(context);
+    }
 
     RunReport run(const std::atomic<bool>& stop) {
         const auto start = Clock::now();
@@ -172,16 +179,18 @@ public:
             }
             frame(i);
         }
-        finish_write();
+        report_.graph_dot = renderer_.graph_dot();
+        std::tie(report_.bytes, report_.bytes_unaliased) = renderer_.graph_bytes();
         report_.history_saved = !run.history_out.empty() && any_rendered_;
+        // Frees memory while the last files are packed; a history is saved once they are there.
+        if (!report_.history_saved) end_gl_();
+        finish_write();
         if (report_.history_saved)
             renderer_.save_history(run.history_out,
                                    setup_.hooks.last_fingerprint ? setup_.hooks.last_fingerprint() : "");
         report_.objects_unmatched = loader_.objects().unmatched();
         std::ranges::sort(report_.frames_non_finite);
         report_.decode_ms = loader_.busy_ms();
-        report_.graph_dot = renderer_.graph_dot();
-        std::tie(report_.bytes, report_.bytes_unaliased) = renderer_.graph_bytes();
         report_.wall_ms = milliseconds_since(start);
         return std::move(report_);
     }
@@ -237,7 +246,7 @@ private:
     /// The files of the frame are written while the next one is rendered.
     void write_later(const FrameRun::Rendered& frame, int number, Clock::time_point begin) {
         OutputOptions outputs = setup_.outputs;
-        outputs.renderer = context_.info().renderer;
+        outputs.renderer = report_.gl.renderer;
         if (setup_.hooks.fingerprint) outputs.fingerprint = setup_.hooks.fingerprint(number);
         const auto write = [frame, number, begin, outputs = std::move(outputs), &setup = setup_] {
             Written written = write_frame(setup, outputs, *frame.result, *frame.capture);
@@ -261,13 +270,13 @@ private:
     }
 
     const RunSetup& setup_;
-    const gpu::Context& context_;
     PipelineRenderer& renderer_;
     const RunObserver& observer_;
     RunReport report_;
     FrameLoader& loader_;
     FrameRun frame_run_;
     Outcomes outcomes_;
+    std::function<void()> end_gl_;
     PendingWrite pending_;
     bool any_rendered_ = false;
 };
@@ -280,16 +289,21 @@ RunReport run_frames(const RunSetup& setup, const RunObserver& observer, const s
     FrameLoader loader(setup.sequence, setup.reader, setup.pipeline, setup.options,
                        roles_to_read(setup.pipeline, setup.outputs));
     gpu::Context& context = setup.context();
-    PipelineRenderer renderer(context, setup.pipeline, setup.data_folder, setup.options.natives);
-    renderer.set_audit(setup.options.audit);
-    renderer.fuse_passes(setup.options.fuse_passes);
-    renderer.compile_on_threads(setup.options.compile_threads);
-    renderer.set_telemetry(setup.options.telemetry);
+    std::optional<PipelineRenderer> renderer(std::in_place, context, setup.pipeline, setup.data_folder,
+                                             setup.options.natives);
+    renderer->set_audit(setup.options.audit);
+    renderer->fuse_passes(setup.options.fuse_passes);
+    renderer->compile_on_threads(setup.options.compile_threads);
+    renderer->set_telemetry(setup.options.telemetry);
+    const auto end_gl = [&] {
+        renderer.reset();
+        if (setup.end_context) setup.end_context();
+    };
     try {
-        if (!setup.options.history_in.empty()) renderer.load_history(setup.options.history_in);
-        return FrameLoop(setup, context, renderer, loader, observer).run(stop);
+        if (!setup.options.history_in.empty()) renderer->load_history(setup.options.history_in);
+        return FrameLoop(setup, context, *renderer, loader, observer, end_gl).run(stop);
     } catch (const std::exception& error) {
-        if (is_out_of_memory(error)) context.abandon();  // before the renderer goes
+        if (renderer && is_out_of_memory(error)) context.abandon();  // before the renderer goes
         throw;
     }
 }

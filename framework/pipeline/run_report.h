@@ -11,6 +11,7 @@
 #include "framework/capture/capture.h"
 #include "framework/core/error.h"
 #include "framework/core/status.h"
+#include "framework/gpu/context.h"
 #include "framework/pipeline/audit.h"
 #include "framework/pipeline/telemetry.h"
 
@@ -59,6 +60,8 @@ struct RunReport {
     double encode_ms = 0;                ///< encoding and writing, on its thread
     double wall_ms = 0;
     bool interrupted = false;
+    gpu::ContextInfo gl;                    ///< of what the frames were drawn on
+    std::string clock;                      ///< gpu::Timer::clock_name()
     std::vector<FrameTelemetry> telemetry;  ///< of every frame, where it was requested
     std::string graph_dot;                  ///< of the last frame, in Graphviz's language
     std::uint64_t bytes = 0;                ///< of its textures and buffers

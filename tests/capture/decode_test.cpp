@@ -2,7 +2,9 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 
+#include "framework/core/error.h"
 #include "tests/capture/capture_files.h"
 
 namespace aftershade {
@@ -166,6 +168,49 @@ TEST(DecodeRole, TakesHalfsAsTheFloatsTheyAre) {
     const Image image =
         decoded("mask", R"({"channels": ["m"]})", {{"m", {0.333251953125f, 65504, -0.0f}, PixelType::half}});
     EXPECT_EQ(floats_of(image), (std::vector<float>{0.333251953125f, 65504, 0}));
+}
+
+TEST(DecodeRole, IsTheSameOnSeveralThreads) {
+    constexpr int kColumns = 1000, kRows = 900;
+    Image vectors(kColumns, kRows, 2), depth(kColumns, kRows, 1);
+    for (std::size_t i = 0; i < depth.floats().size(); ++i) {
+        vectors.floats()[2 * i] = float(i % 977) - 300;
+        vectors.floats()[2 * i + 1] = i % 70001 == 13 ? kNan : float(i % 31);
+        depth.floats()[i] = i % 3001 == 0 ? kInf : float(i % 5003) / 10;
+    }
+    RoleDecoding decoding;
+    decoding.velocity_scale = {0.25, -2};
+    decoding.no_motion_above = 670;
+    decoding.encoding = DepthEncoding::inverse;
+    decoding.scale = 3;
+    DecodeContext one, four;
+    four.threads = 4;
+    Image vectors_of_one = vectors, depth_of_one = depth;
+    EXPECT_EQ(decode_velocity(vectors, decoding, four), decode_velocity(vectors_of_one, decoding, one));
+    EXPECT_EQ(floats_of(vectors), floats_of(vectors_of_one));
+    decode_depth(depth, decoding, four);
+    decode_depth(depth_of_one, decoding, one);
+    EXPECT_EQ(floats_of(depth), floats_of(depth_of_one));
+}
+
+TEST(DecodeRole, NamesTheFirstIdThatIsNoneOnAnyNumberOfThreads) {
+    constexpr int kColumns = 1000, kRows = 900;
+    Image ids(kColumns, kRows, 1);
+    for (std::size_t i = 0; i < ids.floats().size(); ++i) ids.floats()[i] = float(i);
+    const Image decoded = decode_ids(ids, "f.exr", 4);
+    for (std::size_t i = 0; i < ids.floats().size(); ++i) ASSERT_EQ(decoded.uints()[i], i);
+    // The later one is met first where each thread has a part of its own.
+    ids.at(7, 220, 0) = 1.5f;
+    ids.at(0, 450, 0) = 2.5f;
+    for (const int threads : {1, 2, 4}) {
+        try {
+            decode_ids(ids, "f.exr", threads);
+            ADD_FAILURE() << threads << " threads took an id of 1.5";
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find("1.500000 at pixel (7, 220)"), std::string::npos)
+                << error.what();
+        }
+    }
 }
 
 }  // namespace

@@ -1,8 +1,11 @@
 // Single levels and layers: drawn to, read, cleared, stored to.
+#include <array>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
 #include "framework/core/error.h"
+#include "framework/gpu/texture.h"
 #include "tests/gpu/gpu_test.h"
 
 namespace aftershade::gpu {
@@ -157,6 +160,38 @@ TEST_P(LevelsOn, ClearsToAValueForEachChannelRoundedIntoIntegers) {
     Texture number = texture(1, 1, TextureFormat::r32i);
     number.clear_to({-2147483648.0, 0, 0, 0});
     EXPECT_EQ(number.read_uints(), (std::vector<std::uint32_t>{0x80000000U}));
+}
+
+/// Arrays are cleared in memory, textures of one layer by a draw where that is faster.
+TEST_P(LevelsOn, ClearsATextureToTheBitsThatItClearsAnArrayTo) {
+    const double inf = std::numeric_limits<double>::infinity();
+    const std::vector<std::array<double, 4>> colours = {
+        {0, 0, 0, 0},          {1, 0.5, 0.25, 1},         {0.1, 0.7, 1.0 / 3, 254.5 / 255},
+        {-1, 2, 65504, 65519}, {1e-8, -6e-8, 1e-40, 1e9}, {inf, -inf, std::nan(""), -0.0}};
+    for (const std::string_view name : texture_format_names()) {
+        const TextureFormat format = *parse_texture_format(name);
+        Texture array(context(), {.width = 70, .height = 65, .format = format, .layers = 2}, "array");
+        Texture single(context(), {.width = 70, .height = 65, .format = format}, "single");
+        for (const auto& colour : colours) {
+            array.clear_to(colour);
+            single.clear_to(colour);
+            const Floats a = array.read_floats(0, 1), b = single.read_floats();
+            EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]), 0)
+                << name << ": " << a[0] << ", " << b[0];
+        }
+    }
+}
+
+TEST_P(LevelsOn, ClearsBetweenTheDrawsAroundIt) {
+    Texture target(context(), {.width = 70, .height = 65, .format = TextureFormat::r32f}, "target");
+    draw_to(constant("7.0"), {&target, 0, 0});
+    target.clear(2.0F);
+    Texture copied(context(), {.width = 70, .height = 65, .format = TextureFormat::r32f}, "copied");
+    copied.clear(5.0F);
+    copy(context(), target, copied);
+    target.clear(3.0F);
+    EXPECT_EQ(copied.read_floats(), Floats(70 * 65, 2.0F));
+    EXPECT_EQ(target.read_floats(), Floats(70 * 65, 3.0F));
 }
 
 TEST_P(LevelsOn, ClearsOneLevelThatWasDrawnToAndReadBefore) {

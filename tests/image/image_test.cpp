@@ -44,5 +44,22 @@ TEST(AnImage, MayHoldNothing) {
     EXPECT_TRUE(copy.floats().empty() && Image(flat).floats().empty());
 }
 
+TEST(AnImage, TakesTheValuesOfAnotherOfAnotherSizeAndTypeAndOfItself) {
+    Image image(4, 4, 1), ids(2, 1, 1, ComponentType::uint32);
+    ids.uint_at(1, 0, 0) = 9;
+    image = ids;
+    ids.uint_at(1, 0, 0) = 4;
+    EXPECT_EQ(image.type(), ComponentType::uint32);
+    EXPECT_EQ(image.uint_at(1, 0, 0), 9u);
+    EXPECT_EQ(image.uints().size(), 2u);
+    const Image& same = image;
+    image = same;
+    EXPECT_EQ(image.uint_at(1, 0, 0), 9u);
+    image = Image();
+    EXPECT_TRUE(image.empty());
+    const Image none = image;
+    EXPECT_TRUE(none.floats().empty());
+}
+
 }  // namespace
 }  // namespace aftershade

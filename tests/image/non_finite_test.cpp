@@ -137,5 +137,22 @@ TEST(NonFinite, SoundValuesKeepTheirBits) {
             << i;
 }
 
+TEST(NonFinite, SeveralThreadsFindWhatOneDoes) {
+    Image image = ramp(1000, 700, 3);
+    for (const int y : {120, 121, 350, 698}) {  // of the first part of two, of both, and of the last
+        image.at(998 - y, y, 1) = kNan;
+        image.at(3, y, 2) = kInf;
+    }
+    const NonFinitePixels one = find_non_finite(image, false), four = find_non_finite(image, false, 4);
+    EXPECT_EQ(four.nan, 4u);
+    EXPECT_EQ(four.infinite, 4u);
+    EXPECT_EQ(four.x, 3);
+    EXPECT_EQ(four.y, 120);
+    EXPECT_EQ(one.x, four.x);
+    EXPECT_EQ(one.y, four.y);
+    EXPECT_EQ(mend_non_finite(image, false, 4).mended, 8u);
+    EXPECT_FALSE(find_non_finite(image, false, 4));
+}
+
 }  // namespace
 }  // namespace aftershade
