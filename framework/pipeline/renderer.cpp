@@ -412,7 +412,7 @@ void PipelineRenderer::begin_from_saved(const FrameInputs& frame) {
 }
 
 void PipelineRenderer::restore(const SavedHistory& saved) {
-    const std::string missing = saved.give_to(built_->executor->history());
+    const std::string missing = saved.give_to(built_->executor->history_to_write());
     if (!missing.empty())
         throw Error(ExitCode::usage, saved.path.string() + ": this history has no '" + missing +
                                          "' of the size that this frame needs");
