@@ -14,10 +14,11 @@ const float kMostChange = 64.0;  // of what an average can be made brighter or d
 vec4 light_around(ViewLines lines, Facet here, out float near) {
     vec3 d = scattering_profile(here.key - 1u).d;
     float radius_px = 2.5 * max(d.r, max(d.g, d.b)) * pixels_per_mm(lines, here.depth_m);
-    float level = clamp(log2(max(2.0 * radius_px, 1.0)), 0.0, kMostLevel);
-    vec2 place = gl_FragCoord.xy * light_size.zw;
-    near = luminance(textureLod(light, place, max(level - 2.0, 0.0)).rgb);
-    return textureLod(light, place, level);
+    // A texel of level 0 is the mean of 2 x 2 px.
+    float level = clamp(log2(max(radius_px, 1.0)), 0.0, kMostLevel - 1.0);
+    vec2 place = 0.5 * gl_FragCoord.xy * light_means_size.zw;
+    near = luminance(textureLod(light_means, place, max(level - 2.0, 0.0)).rgb);
+    return textureLod(light_means, place, level);
 }
 
 // Whether `now` is `then` but for kLightChange.

@@ -149,7 +149,8 @@ std::shared_ptr<const gpu::Program> ProgramCache::host(const std::string& file,
     sources.main.text = read_text_file(glsl_folder_ / "host" / file, ExitCode::effect);
     std::string symbols;
     for (const std::string& define : defines) symbols += "#define " + define + " 1\n";
-    sources.main.text.insert(sources.main.text.find('\n') + 1, symbols);
+    for (std::string* const text : {&sources.main.text, &sources.vertex})
+        if (text != &sources.vertex || !vertex.empty()) text->insert(text->find('\n') + 1, symbols);
     sources.label = "host." + file;
     return get(sources);
 }

@@ -42,9 +42,9 @@ Executor::Executor(gpu::Context& context, FrameGraph graph, bool shares_memory)
     }
     allocate();
     find_histories();
+    sparse_ = std::make_unique<SparseClears>(context_, graph_, compiled_, slots_, buffer_slots_);
     clear_history();
     bind_clears();
-    sparse_ = std::make_unique<SparseClears>(context_, graph_, compiled_, slots_, buffer_slots_);
     for (const int index : compiled_.passes) bound_.push_back(bind(index));
 }
 
@@ -177,7 +177,7 @@ void Executor::set_uniforms(int pass, int binding, std::vector<std::byte> bytes)
 
 void Executor::run_clears(const Clears& clears) {
     for (const auto& [index, texture, value] : clears.textures)
-        if (!sparse_->is_clear(index)) texture->clear_to(value);
+        if (!sparse_->wipe(index)) texture->clear_to(value);
     for (const auto& [buffer, words] : clears.buffers) {
         const auto bytes = std::as_bytes(words);
         if (bytes.size() < buffer->size()) buffer->clear(0);
@@ -250,9 +250,9 @@ std::vector<PassTime> Executor::run(bool timed, const PassObserver& observer, Pa
         if (!range.contains(compiled_.passes[i])) continue;
         if (hooks_.begins) hooks_.begins(bound_[i].pass->name);
         if (timed) timer_.start();
-        sparse_->wipe_before(compiled_.passes[i]);
         run_clears(clears_[i]);
         run_pass(bound_[i]);
+        sparse_->note_places(compiled_.passes[i]);
         if (timed) times.push_back({bound_[i].pass->name, timer_.stop_ms()});
         if (observer)
             for (const BoundPass::Observed& written : bound_[i].observed)
@@ -278,7 +278,13 @@ Executor::History Executor::history() {
     return result;
 }
 
+Executor::History Executor::history_to_write() {
+    sparse_->forget();
+    return history();
+}
+
 void Executor::clear_history() {
+    sparse_->forget();
     for (auto& history : texture_histories_) {
         history.current_is_newer = false;
         history.previous->clear_to({0, 0, 0, 0});
@@ -291,6 +297,8 @@ void Executor::clear_history() {
 
 std::vector<std::string> Executor::take_history_from(Executor& other) {
     assert(&context_ == &other.context_ && this != &other);
+    sparse_->forget();
+    other.sparse_->forget();
     std::vector<std::string> missing;
     const auto take = [&](auto& mine, auto& theirs, const auto& same) {
         for (auto& history : mine) {

@@ -69,13 +69,15 @@ public:
     /// only these, so that some passes may run several times in a frame; what was written before stays.
     std::vector<PassTime> run(bool timed, const PassObserver& observer = {}, PassRange range = {});
 
-    /// What the next run will read as `previous`, by the history's name; only those that some pass reads.
-    /// The pointers hold until the next run.
+    /// What the next run will read as `previous`, by the history's name; only those that some pass reads. To be
+    /// read; the pointers hold until the next run.
     struct History {
         std::map<std::string, gpu::Texture*> textures;
         std::map<std::string, gpu::Buffer*> buffers;
     };
     History history();
+    /// The same, to be given other content.
+    History history_to_write();
     /// Sets every `previous` to zero: a cut, a gap, the first frame.
     void clear_history();
     /// Takes the histories over whose name and description are those of `other`, for a graph that was rebuilt

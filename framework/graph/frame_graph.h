@@ -95,6 +95,9 @@ struct Wipe {
     std::shared_ptr<const gpu::Program> program{};
     UniformBlock uniforms{};
     BufferUse places{};  ///< says where the instances lie; read by the pass too
+    /// Where the pass gives all pixels of its instances another colour: binding of the same buffer as it is
+    /// before the pass draws, so that the program can leave out what the pass will draw over.
+    std::optional<int> next_places{};
 };
 
 /// Whether a pass may be one part of a fused pass (framework/graph/fusion.h): not at all, the first, or one
@@ -149,7 +152,7 @@ struct BufferHistory {
 };
 
 /// A cleared texture that passes draw to in places only, and that can be wiped there instead of cleared as a
-/// whole in the next frame. It shares its memory with nothing, nor do the buffers that say where.
+/// whole when it is next drawn to. It shares its memory with nothing.
 struct SparseTexture {
     struct Place {
         int pass = 0;    ///< by its index in the graph
@@ -157,8 +160,8 @@ struct SparseTexture {
     };
     int texture = 0;
     std::vector<Place> places{};  ///< of all draws to it
-    int first = 0;                ///< the first pass that uses it or says where it is drawn to, and the last,
-    int last = 0;                 ///< by their indices in the graph
+    int first = 0;                ///< the first pass that uses it, and the last, by their indices in the graph
+    int last = 0;
 };
 
 /// A graph made ready to run: which passes, in which order, and which texture lies in which memory.

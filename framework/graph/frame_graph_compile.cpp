@@ -146,8 +146,8 @@ private:
         }
     }
 
-    /// Textures without a history of which buffers, written once, say where all draws lie.
-    /// Only those that found nothing to share memory with, so that none takes more for it.
+    /// Textures of which buffers say where all draws lie. Only those that found nothing to share memory with, so
+    /// that none takes more for it.
     void find_sparse() {
         std::vector<int> textures_in(compiled_.slots.size());
         for (const int slot : compiled_.slot_of_texture)
@@ -158,9 +158,8 @@ private:
             const FrameGraph::Texture& texture = graph_.textures()[i];
             found[i].texture = int(i);
             const int slot = compiled_.slot_of_texture[i];
-            is_drawn_elsewhere[i] = !texture.options.clear || resources_[i].alone || !needed_[i][0] ||
-                                    texture.options.auto_mips || texture.desc.layers > 1 || slot < 0 ||
-                                    textures_in[std::size_t(slot)] > 1;
+            is_drawn_elsewhere[i] = !texture.options.clear || !needed_[i][0] || texture.options.auto_mips ||
+                                    texture.desc.layers > 1 || slot < 0 || textures_in[std::size_t(slot)] > 1;
         }
         for (const int index : compiled_.passes) {
             const Pass& pass = graph_.pass(index);
@@ -169,7 +168,7 @@ private:
                     is_drawn_elsewhere[std::size_t(use.texture.texture)] = true;
             for (std::size_t i = 0; i < pass.targets.size(); ++i) {
                 const auto texture = std::size_t(pass.targets[i].texture.texture);
-                if (places_are_kept(pass, i)) found[texture].places.push_back({index, int(i)});
+                if (!pass.wipes.empty() && pass.wipes[i]) found[texture].places.push_back({index, int(i)});
                 else is_drawn_elsewhere[texture] = true;
             }
         }
@@ -177,36 +176,11 @@ private:
             if (!is_drawn_elsewhere[i] && !found[i].places.empty()) add_sparse(std::move(found[i]));
     }
 
-    bool places_are_kept(const Pass& pass, std::size_t target) const {
-        if (pass.wipes.empty() || !pass.wipes[target]) return false;
-        // Imports get other content between frames, and those of a history change places.
-        const auto stays = [&](BufferHandle handle) {
-            const FrameGraph::Buffer& buffer = graph_.buffers()[std::size_t(handle.buffer)];
-            return handle.version == buffer.version && !buffer.imported &&
-                   !resources_[resource_of(handle)].is_history;
-        };
-        return stays(pass.wipes[target]->places.buffer) &&
-               (!pass.instances.indirect || stays(*pass.instances.indirect));
-    }
-
-    std::size_t resource_of(BufferHandle handle) const { return buffers_ + std::size_t(handle.buffer); }
-
     void add_sparse(SparseTexture sparse) {
-        std::vector<std::size_t> resources = {std::size_t(sparse.texture)};
-        for (const SparseTexture::Place& place : sparse.places) {
-            const Pass& pass = graph_.pass(place.pass);
-            resources.push_back(resource_of(pass.wipes[std::size_t(place.target)]->places.buffer));
-            if (pass.instances.indirect) resources.push_back(resource_of(*pass.instances.indirect));
-        }
-        // What a frame leaves in them, the next one reads.
-        for (const std::size_t resource : resources)
-            lifetimes_[resource] = {-1, int(compiled_.passes.size())};
         sparse.first = sparse.last = sparse.places.front().pass;
+        const auto is_of_it = [&](const Version& version) { return version.resource == sparse.texture; };
         for (const int index : compiled_.passes) {
             const PassUses& uses = uses_[std::size_t(index)];
-            const auto is_of_it = [&](const Version& version) {
-                return std::ranges::find(resources, std::size_t(version.resource)) != resources.end();
-            };
             if (std::ranges::none_of(uses.needs, is_of_it) && std::ranges::none_of(uses.makes, is_of_it))
                 continue;
             sparse.first = std::min(sparse.first, index);

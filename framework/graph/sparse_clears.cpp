@@ -13,59 +13,99 @@ SparseClears::SparseClears(gpu::Context& context, const FrameGraph& graph, const
         return &buffer_slots[std::size_t(compiled.slot_of_buffer[std::size_t(handle.buffer)])];
     };
     for (const SparseTexture& sparse : compiled.sparse) {
-        gpu::Texture& memory = slots[std::size_t(compiled.slot_of_texture[std::size_t(sparse.texture)])];
-        Tracked tracked;
+        Tracked& tracked = tracked_.emplace_back();
         tracked.texture = &sparse;
+        gpu::Texture& slot = slots[std::size_t(compiled.slot_of_texture[std::size_t(sparse.texture)])];
+        tracked.slot = &slot;
+        // A later pass's list is not made yet when the texture is wiped, nor where another one reads it first.
+        const bool is_drawn_first = sparse.places.size() == 1 && sparse.first == sparse.places.front().pass;
         for (const SparseTexture::Place& place : sparse.places) {
             const Pass& pass = graph.pass(place.pass);
             const Target& target = pass.targets[std::size_t(place.target)];
             const Wipe& wipe = *pass.wipes[std::size_t(place.target)];
             gpu::Buffer uniforms(context, wipe.uniforms.bytes.size(), pass.name + ".wipe");
             uniforms.write(wipe.uniforms.bytes);
+            const gpu::Buffer* const places = buffer(wipe.places.buffer);
+            std::optional<gpu::Buffer> no_places;
+            if (wipe.next_places && !is_drawn_first)
+                no_places.emplace(context, places->size(), pass.name + ".no places");
             tracked.wipes.push_back({&wipe,
+                                     place.pass,
                                      std::move(uniforms),
-                                     buffer(wipe.places.buffer),
-                                     {&memory, target.level, target.layer},
+                                     places,
+                                     std::move(no_places),
+                                     {&slot, target.level, target.layer},
                                      {pass.instances.primitive, pass.instances.count,
                                       pass.instances.indirect ? buffer(*pass.instances.indirect) : nullptr}});
         }
-        tracked_.push_back(std::move(tracked));
     }
+}
+
+SparseClears::Memory& SparseClears::memory_of(Tracked& tracked) {
+    const unsigned int handle = tracked.slot->handle();
+    const auto found = std::ranges::find(tracked.memories, handle, &Memory::handle);
+    if (found != tracked.memories.end()) return *found;
+    Memory& memory = tracked.memories.emplace_back();
+    memory.handle = handle;
+    for (const BoundWipe& bound : tracked.wipes) {
+        std::optional<gpu::Buffer> instances;
+        if (bound.instances.indirect)
+            instances.emplace(context_, bound.instances.indirect->size(), "instances drawn");
+        memory.drawn.push_back({{context_, bound.places->size(), "places drawn"}, std::move(instances)});
+    }
+    return memory;
 }
 
 void SparseClears::begin(PassRange range) {
     for (Tracked& tracked : tracked_) {
         const int first = tracked.texture->first, last = tracked.texture->last;
-        tracked.is_due = range.contains(first) && range.contains(last) && tracked.state == State::drawn_once;
-        const bool meets = first <= last && (range.end < 0 || first < range.end) && last >= range.begin;
-        if (meets && !tracked.is_due) tracked.state = State::unknown;
+        tracked.is_due = range.contains(first) && range.contains(last);
+        tracked.is_fresh = false;
+        const bool meets = (range.end < 0 || first < range.end) && last >= range.begin;
+        if (meets && !tracked.is_due) memory_of(tracked).is_known = false;
     }
 }
 
-void SparseClears::wipe_before(int pass) {
-    for (Tracked& tracked : tracked_) {
-        if (!tracked.is_due || tracked.texture->first != pass) continue;
-        tracked.is_due = false;
-        // Where a draw throws, nothing is known.
-        tracked.state = State::unknown;
-        for (const BoundWipe& bound : tracked.wipes) draw(bound);
-        tracked.state = State::clear;
-    }
-}
-
-void SparseClears::draw(const BoundWipe& bound) {
-    const std::array<gpu::Target, 1> targets = {bound.target};
-    const std::array<gpu::BufferBinding, 1> uniforms = {{{&bound.uniforms, bound.wipe->uniforms.binding}}};
-    const std::array<gpu::BufferBinding, 1> storage = {{{bound.places, bound.wipe->places.binding}}};
-    gpu::draw_instances(context_, *bound.wipe->program, targets, {.uniforms = uniforms, .storage = storage},
-                        bound.instances);
-}
-
-bool SparseClears::is_clear(int texture) {
+bool SparseClears::wipe(int texture) {
     const auto found =
         std::ranges::find(tracked_, texture, [](const Tracked& tracked) { return tracked.texture->texture; });
-    if (found == tracked_.end()) return false;
-    return std::exchange(found->state, State::drawn_once) == State::clear;
+    if (found == tracked_.end() || !std::exchange(found->is_due, false)) return false;
+    Memory& memory = memory_of(*found);
+    // Where a draw throws, nothing is known.
+    const bool wipes = std::exchange(memory.is_known, false);
+    if (wipes)
+        for (std::size_t i = 0; i < found->wipes.size(); ++i) draw(found->wipes[i], memory.drawn[i]);
+    found->is_fresh = true;
+    return wipes;
+}
+
+void SparseClears::note_places(int pass) {
+    for (Tracked& tracked : tracked_)
+        for (std::size_t i = 0; i < tracked.wipes.size(); ++i) {
+            const BoundWipe& bound = tracked.wipes[i];
+            if (bound.pass != pass) continue;
+            Memory& memory = memory_of(tracked);
+            memory.drawn[i].places.copy_from(*bound.places);
+            if (memory.drawn[i].instances) memory.drawn[i].instances->copy_from(*bound.instances.indirect);
+            if (i + 1 == tracked.wipes.size()) memory.is_known = std::exchange(tracked.is_fresh, false);
+        }
+}
+
+void SparseClears::forget() {
+    for (Tracked& tracked : tracked_)
+        for (Memory& memory : tracked.memories) memory.is_known = false;
+}
+
+void SparseClears::draw(const BoundWipe& bound, const Drawn& drawn) {
+    const std::array<gpu::Target, 1> targets = {bound.target};
+    const std::array<gpu::BufferBinding, 1> uniforms = {{{&bound.uniforms, bound.wipe->uniforms.binding}}};
+    std::vector<gpu::BufferBinding> storage = {{&drawn.places, bound.wipe->places.binding}};
+    if (bound.wipe->next_places)
+        storage.push_back({bound.no_places ? &*bound.no_places : bound.places, *bound.wipe->next_places});
+    gpu::InstanceRange instances = bound.instances;
+    if (drawn.instances) instances.indirect = &*drawn.instances;
+    gpu::draw_instances(context_, *bound.wipe->program, targets, {.uniforms = uniforms, .storage = storage},
+                        instances);
 }
 
 }  // namespace aftershade::graph

@@ -1,6 +1,7 @@
-// Clears textures only where the frame before drew to them. Internal to framework/graph.
+// Clears textures only where they were drawn to before. Internal to framework/graph.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "framework/gpu/buffer.h"
@@ -21,33 +22,46 @@ public:
     /// These passes run next. A texture of which they are a part alone is cleared as a whole from then on
     /// until all its passes run at once.
     void begin(PassRange range);
-    /// Wipes what is due before this pass, which may overwrite where the frame before drew.
-    void wipe_before(int pass);
-    /// The texture's first use: whether it holds its clear value already. From then on passes draw to it.
-    bool is_clear(int texture);
+    /// At the texture's first use in these passes, before which it is to be cleared: whether wiping did that.
+    /// From then on passes draw to it.
+    bool wipe(int texture);
+    /// The pass has run: notes where it drew.
+    void note_places(int pass);
+    /// Something else than the passes has changed textures.
+    void forget();
 
 private:
-    /// Of a texture's content.
-    enum class State {
-        unknown,
-        drawn_once,  ///< its clear value but for what each of its passes last drew
-        clear
+    /// Where a pass drew to a texture last.
+    struct Drawn {
+        gpu::Buffer places;
+        std::optional<gpu::Buffer> instances;
+    };
+    /// One memory of a texture; that of a history has two, which change places.
+    struct Memory {
+        unsigned int handle = 0;
+        bool is_known = false;  ///< it holds its clear value but for what each of its passes last drew
+        std::vector<Drawn> drawn{};  ///< as SparseTexture::places
     };
     struct BoundWipe {
         const Wipe* wipe = nullptr;
+        int pass = 0;
         gpu::Buffer uniforms;
         const gpu::Buffer* places = nullptr;
+        std::optional<gpu::Buffer> no_places{};  ///< in place of next_places where those are not known in time
         gpu::Target target;
         gpu::InstanceRange instances;
     };
     struct Tracked {
         const SparseTexture* texture = nullptr;
-        State state = State::unknown;
-        bool is_due = false;
-        std::vector<BoundWipe> wipes;
+        const gpu::Texture* slot = nullptr;
+        bool is_due = false;   // to be cleared in these passes, which are all that use it
+        bool is_fresh = false;  // cleared, and not all of its passes have drawn yet
+        std::vector<BoundWipe> wipes{};
+        std::vector<Memory> memories{};
     };
 
-    void draw(const BoundWipe& bound);
+    Memory& memory_of(Tracked& tracked);
+    void draw(const BoundWipe& bound, const Drawn& drawn);
 
     gpu::Context& context_;
     std::vector<Tracked> tracked_;

@@ -181,6 +181,13 @@ void GraphBuilder::add_turn(StepBuild& build, const PassSpec& spec, int turn, in
         if (!bindings.buffers[i].previous) build.buffers[bindings.buffers[i].name] = written.buffers[i];
 }
 
+/// Of the grid that a tile list divides, texels.
+std::array<float, 2> GraphBuilder::listed_size(const StepBuild& build, const TileListSpec& list) const {
+    if (list.on.empty()) return {float(width_), float(height_)};
+    const auto& desc = graph_.textures()[std::size_t(build.textures.at(list.on).texture)].desc;
+    return {float(desc.width), float(desc.height)};
+}
+
 /// How many texels of the tile list's grid there are: on a target of another scale as many as it covers.
 std::array<float, 4> GraphBuilder::tile_grid_size(const StepBuild& build, const PassSpec& spec,
                                                   const PassBindings& bindings) const {

@@ -3,11 +3,14 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "framework/effect/glsl_tokens.h"
+#include "framework/effect/shader_source.h"
 #include "framework/effect/std140.h"
 #include "framework/pipeline/graph_builder.h"
 #include "framework/pipeline/step_build.h"
@@ -19,6 +22,7 @@ namespace {
 /// Of glsl/host/wipe.vert and wipe.frag.
 constexpr int kWipeBinding = 0;
 constexpr int kPlacesBinding = 0;
+constexpr int kNextPlacesBinding = 1;
 
 /// The four channels as a shader writes them, bit for bit. nullopt: a clear and a shader may round the value
 /// differently, or the format has no wipe.
@@ -36,6 +40,16 @@ std::optional<std::array<std::uint32_t, 4>> wipe_bits(const std::array<double, 4
     return bits;
 }
 
+/// Whether every pixel of the pass's tiles gets what the shader makes.
+bool overwrites_tiles(const EffectManifest& manifest, const PassSpec& spec, const std::filesystem::path& glsl_folder) {
+    if (spec.blend != gpu::Blend::none) return false;
+    Diagnostics faults;  // said where the program is made
+    const ShaderSource source = author_text(manifest, spec, glsl_folder, faults, ShaderFile::main);
+    return !faults.has_errors() && std::ranges::none_of(glsl_tokens(source), [](const Token& token) {
+        return token.text == "discard";
+    });
+}
+
 }  // namespace
 
 /// Only on software GL, where a clear takes a pass over all texels. A vertex shader of the effect's own may
@@ -46,6 +60,8 @@ void GraphBuilder::add_wipes(const StepBuild& build, const PassSpec& spec, const
     const TileListSpec& list = *build.manifest().find_tile_list(spec.over);
     const auto runs = std::ranges::find(bindings.buffers, list.runs(), &AccessSpec::name);
     const auto& places = pass.buffers[std::size_t(runs - bindings.buffers.begin())];
+    const bool overwrites = overwrites_tiles(build.manifest(), spec, tools_.programs.glsl_folder());
+    const int tile = count_value(list.tile, build.params);
     for (std::size_t i = 0; i < pass.targets.size(); ++i) {
         std::optional<graph::Wipe>& wipe = pass.wipes.emplace_back();
         const auto& texture = graph_.textures()[std::size_t(pass.targets[i].texture.texture)];
@@ -58,12 +74,15 @@ void GraphBuilder::add_wipes(const StepBuild& build, const PassSpec& spec, const
         Std140Writer block;
         block.add(std::span<const float>(grid));
         for (const std::uint32_t word : *bits) block.add(word);
-        block.add(std::int32_t(count_value(list.tile, build.params)));
-        const bool is_integer = gpu::is_integer(texture.desc.format);
-        const std::vector<std::string> defines(is_integer ? 1 : 0, "WIPE_UINT");
+        block.add(std::int32_t(tile));
+        block.add(std::int32_t((int(listed_size(build, list)[0]) + tile - 1) / tile));
+        std::vector<std::string> defines;
+        if (gpu::is_integer(texture.desc.format)) defines.push_back("WIPE_UINT");
+        if (overwrites) defines.push_back("WIPE_REST");
         wipe = graph::Wipe{tools_.programs.host("wipe.frag", defines, "wipe.vert"),
                            {kWipeBinding, block.finish()},
-                           {places.buffer, kPlacesBinding, gpu::Access::read}};
+                           {places.buffer, kPlacesBinding, gpu::Access::read},
+                           overwrites ? std::optional(kNextPlacesBinding) : std::nullopt};
     }
 }
 

@@ -1,8 +1,10 @@
 #version 450 core
 #include <pass>
 #include <predicate>
+#include <tile_groups.glsl>
 
-// Lists rectangles of tiles for which is_listed() holds, for draws over them: see tile_runs.glsl.
+// Lists rectangles of tiles for which is_listed() holds, for draws over them: see tile_runs.glsl. The fourth words have nothing to do
+// with the rectangles: they hold the tiles of each group, bit by bit, for wipe.vert.
 layout(local_size_x = 1, local_size_y = 16) in;
 
 shared uint rows[16];  // a bit for each tile that is listed
@@ -17,6 +19,7 @@ void main() {
     int count = tile.y < tiles.y ? min(16, tiles.x - tile.x) : 0;
     for (int i = 0; i < count; ++i)
         if (is_listed(tile + ivec2(i, 0))) listed |= 1u << i;
+    if (tile.y < tiles.y) TILE_RUNS[tile_group(tile, tiles.x)].w = listed;
     rows[row] = listed;
     barrier();
     uint above = row > 0 ? rows[row - 1] : 0u;
@@ -28,6 +31,9 @@ void main() {
         if ((above & around) == run) continue;
         int last = row;
         while (last < 15 && (rows[last + 1] & around) == run) ++last;
-        TILE_RUNS[atomicAdd(TILE_ARGS[1], 1u)] = uvec4(tile.x + first, tile.y, tile.x + end, tile.y + last - row + 1);
+        uint rectangle = atomicAdd(TILE_ARGS[1], 1u);
+        TILE_RUNS[rectangle].x = uint(tile.x + first);
+        TILE_RUNS[rectangle].y = uint(tile.y);
+        TILE_RUNS[rectangle].z = uint(tile.x + end) | uint(tile.y + last - row + 1) << 16;
     }
 }

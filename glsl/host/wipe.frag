@@ -4,6 +4,7 @@ layout(std140, binding = 0) uniform WipeBlock {
     vec4 tile_grid_size;
     uvec4 value;
     int tile_side;
+    int tiles_in_a_row;
 };
 #ifdef WIPE_UINT
 layout(location = 0) out uvec4 result;

@@ -9,13 +9,15 @@
 #include <sequence.glsl>
 
 // Each sample falls on the plane and counts for the pixel that it falls on, as far as that pixel's facet gives its light here:
-// the mean over all samples is the sum over all facets.
+// the mean over all samples is the sum over all facets. `count` is at least 1: a loop that tests before its first turn takes one more
+// on llvmpipe.
 Gathered gathered(ViewLines lines, ivec2 p, Facet here, uvec2 start, int count) {
     ScatteringProfileRow profile = scattering_profile(here.key - 1u);
     float per_mm = pixels_per_mm(lines, here.depth_m), inner = 0.5 / per_mm;
     vec3 beyond_inner = max(burley_beyond(inner, profile.d), 1e-30);
     vec3 share = own_share(profile, here), sum = share * here.light, whole = share;
-    for (int i = 0; i < count; ++i) {
+    int i = 0;
+    do {
         vec2 u = r2_point(start, uint(i));
         Sample drawn = draw_sample(profile.d, beyond_inner, u.y);
         float angle_rad = 2.0 * kBurleyPi * u.x;
@@ -31,7 +33,7 @@ Gathered gathered(ViewLines lines, ivec2 p, Facet here, uvec2 start, int count) 
         if (!inside || there.key != here.key || q == p) continue;
         sum += weight * light_of_sample(there, place, area_px);
         share += weight;
-    }
+    } while (++i < count);
 #if NORMALIZE != NORMALIZE_MISSING
     whole = vec3(1.0);
 #endif

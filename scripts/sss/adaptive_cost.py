@@ -12,7 +12,7 @@ SCENE, SIZE = "skin_front", os.environ.get("SIZE", "1920x1080")
 FRAMES, SETTLED = 32, 24  # times are the least of the frames after SETTLED
 COLUMNS = {"setup": ["scatters", "scattering_tiles", "surface", "plan", "kernel", "tile_light", "tile_range", "tile_class", "tile_rows",
                      "sampled_tiles", "row_tiles", "blurred_tiles"],
-           "pre-filtering": ["light"],
+           "pre-filtering": ["light", "light_means"],
            "sampling": ["scatter", "gather", "gather_hybrid", "lit_pixels", "rows", "columns"],
            "update": ["update"],
            "combine": ["unscattered", "finish"]}

@@ -201,7 +201,7 @@ struct TileListSpec {
     Place place;
     std::string runs() const {
         return name + "_runs";
-    }  ///< buffer: first tile, its row, what follows the last
+    }  ///< buffer: see glsl/tile_runs.glsl
     std::string args() const { return name + "_args"; }  ///< buffer: {vertices, instances, first, base}
 };
 
