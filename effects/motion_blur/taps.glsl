@@ -1,6 +1,6 @@
 // When a pixel looks, and where.
 #include <shutter/random_phase.glsl>
-#include "motion.glsl"
+#include "packed_motion.glsl"
 
 // How far this pixel's times are moved, in their distance: nothing where there is a time for each px.
 float time_shift(vec4 path, int taps) {
@@ -12,7 +12,6 @@ float tap_time(int i, float shift, int taps) { return kOpens + (float(i) + 0.5 +
 
 vec4 color_at(vec2 point) { return textureLod(color, point * color_size.zw, 0.0); }
 
-ivec2 texel_at(vec2 point) { return clamp(ivec2(floor(point)), ivec2(0), frame.size - 1); }
+ivec2 texel_at(vec2 point) { return ivec2(clamp(point, vec2(0.0), vec2(frame.size) - 0.5)); }
 
-// By the sampler's nearest filter, which takes software GL half as long as texelFetch with the place clamped before.
-Motion motion_at(vec2 point) { return unpack_motion(textureLod(motion, point * motion_size.zw, 0.0)); }
+Motion motion_at(vec2 point) { return packed_motion(texel_at(point)); }
