@@ -12,6 +12,6 @@ float tap_time(int i, float shift, int taps) { return kOpens + (float(i) + 0.5 +
 
 vec4 color_at(vec2 point) { return textureLod(color, point * color_size.zw, 0.0); }
 
-ivec2 texel_at(vec2 point) { return ivec2(clamp(point, vec2(0.0), vec2(frame.size) - 0.5)); }
+ivec2 texel_at(vec2 point) { return clamp(ivec2(floor(point)), ivec2(0), frame.size - 1); }
 
 Motion motion_at(vec2 point) { return packed_motion(texel_at(point)); }
