@@ -1,6 +1,6 @@
 #version 450 core
 #include <pass>
-#include "motion.glsl"
+#include "packed_motion.glsl"
 #ifdef SHARES_PIXELS
 #include "layer_motion.glsl"
 #endif
@@ -14,7 +14,8 @@ void main() {
     for (int y = 0; y < side; ++y)
         for (int x = 0; x < side; ++x) {
             ivec2 p = min(corner + ivec2(x, y), last);
-            Motion m = unpack_motion(textureLod(motion, (vec2(p) + 0.5) * motion_size.zw, 0.0));
+            Motion m = packed_motion(p);
+            float its_way = longest_way_px(m.path);
             low = min(low, m.path);
             high = max(high, m.path);
 #ifdef SHARES_PIXELS
@@ -27,8 +28,8 @@ void main() {
             near = m.depth_m < near_m ? m.path : near;
             near_m = min(near_m, m.depth_m);
             far_m = max(far_m, m.depth_m);
-            furthest = m.way_px > way ? m.path : furthest;
-            way = max(way, m.way_px);
+            furthest = its_way > way ? m.path : furthest;
+            way = max(way, its_way);
         }
     if (side == 0) low = high = vec4(0.0);
     out_cell_paths = uvec4(pack_path(furthest), pack_path(near));

@@ -21,8 +21,7 @@ const int kTimes = 32;       // of the exposure that one word has bits for
 struct Motion {
     vec4 path;
     float depth_m;
-    float way_px;  // the longest
-    float share;   // of the pixel
+    float share;  // of the pixel
 };
 
 // The numbers of a path whose longest way is max_blur are at most 6 times as large. 16 bits keep them to 1/4000 of max_blur.
@@ -39,32 +38,19 @@ vec4 unpack_path(uvec2 words) {
     return vec4(path) * (path_range_px() / 32767.0);
 }
 
-// The share is the lowest 8 bits of the way, which are 1/30000 of it.
-uvec4 pack_motion(Motion m) {
-    uint way = floatBitsToUint(m.way_px);
-#ifdef KNOWS_LAYERS
-    way = (way & ~255u) | uint(clamp(m.share, 0.0, 1.0) * 255.0 + 0.5);
-#endif
-    return uvec4(pack_path(m.path), floatBitsToUint(m.depth_m), way);
-}
+uvec4 pack_motion(Motion m) { return uvec4(pack_path(m.path), floatBitsToUint(vec2(m.depth_m, m.share))); }
 
 Motion unpack_motion(uvec4 texel) {
-    float share = 1.0;
-#ifdef KNOWS_LAYERS
-    share = float(texel.w & 255u) / 255.0;
-#endif
-    return Motion(unpack_path(texel.xy), uintBitsToFloat(texel.z), uintBitsToFloat(texel.w), share);
+    vec2 depth_share = uintBitsToFloat(texel.zw);
+    return Motion(unpack_path(texel.xy), depth_share.x, depth_share.y);
 }
 
 // From px per frame since the frame before and to the next; `scale`: a factor of the motion.
 Motion motion_of(vec2 since, vec2 next, float scale, float depth_m) {
     vec4 path = path_through(since, next, scale);
     float way = longest_way_px(path);
-    if (way > param.max_blur) {
-        path *= param.max_blur / way;
-        way = param.max_blur;
-    }
-    return Motion(path, depth_m, way, 1.0);
+    if (way > param.max_blur) path *= param.max_blur / way;
+    return Motion(path, depth_m, 1.0);
 }
 
 bool is_alike(vec4 path, vec4 other) {

@@ -1,16 +1,16 @@
 #include "motion.glsl"
 
-// Motion of a pixel of the picture by the capture. By the sampler's nearest filter, which takes software GL half as long as texelFetch.
+// Motion of a pixel of the picture by the capture.
 Motion flat_motion(ivec2 p) {
-    vec2 place = (vec2(p) + 0.5) * velocity_size.zw, since = finite(textureLod(velocity, place, 0.0).xy), next = since;
+    vec2 since = finite(texelFetch(velocity, p, 0).xy), next = since;
 #if defined(HAS_VELOCITY_NEXT) && CURVE
-    next = finite(textureLod(velocity_next, place, 0.0).xy);
+    next = finite(texelFetch(velocity_next, p, 0).xy);
 #endif
     float scale = 1.0;
 #ifdef HAS_OBJECT_ID
-    scale = objects(textureLod(object_id, place, 0.0).r).scale;
+    scale = objects(texelFetch(object_id, p, 0).r).scale;
 #endif
-    return motion_of(since, next, scale, textureLod(depth, place, 0.0).r);
+    return motion_of(since, next, scale, texelFetch(depth, p, 0).r);
 }
 
 #ifdef SHARES_PIXELS

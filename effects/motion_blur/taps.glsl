@@ -1,6 +1,6 @@
 // When a pixel looks, and where.
 #include <shutter/random_phase.glsl>
-#include "motion.glsl"
+#include "packed_motion.glsl"
 
 // How far this pixel's times are moved, in their distance: nothing where there is a time for each px.
 float time_shift(vec4 path, int taps) {
@@ -14,5 +14,4 @@ vec4 color_at(vec2 point) { return textureLod(color, point * color_size.zw, 0.0)
 
 ivec2 texel_at(vec2 point) { return clamp(ivec2(floor(point)), ivec2(0), frame.size - 1); }
 
-// By the sampler's nearest filter, which takes software GL half as long as texelFetch with the place clamped before.
-Motion motion_at(vec2 point) { return unpack_motion(textureLod(motion, point * motion_size.zw, 0.0)); }
+Motion motion_at(vec2 point) { return packed_motion(texel_at(point)); }

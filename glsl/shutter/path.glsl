@@ -19,7 +19,11 @@ float longest_way_px(vec4 path) {
     return sqrt(max(max(dot(opens, opens), dot(closes, closes)), dot(middle, middle)));
 }
 
-vec2 finite(vec2 v) { return any(isnan(v)) || any(isinf(v)) ? vec2(0.0) : v; }
+// By the bits: isnan and isinf take software GL twice as long.
+vec2 finite(vec2 v) {
+    ivec2 magnitude = floatBitsToInt(v) & 0x7fffffff;
+    return max(magnitude.x, magnitude.y) < 0x7f800000 ? v : vec2(0.0);
+}
 
 // From px per frame since the frame before and to the next, through -since, 0 and next at the times -1, 0 and 1; `scale`: a
 // factor of the motion.
