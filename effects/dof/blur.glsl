@@ -130,7 +130,7 @@ TapRow tap_row(int y, vec2 center, int level, bool is_coarse, Grid grid) {
 
 void add_tap(inout Sums sums, Aim aim, float own_coc, int x, TapRow row, int level, bool is_coarse, Grid grid) {
     int inside = clamp(x, 0, grid.last.x);
-    Light tap = unpack_light(is_coarse ? imageLoad(coarse, ivec2(inside + grid.origin.x, row.y)) : imageLoad(light, ivec2(inside, row.y)));
+    Light tap = unpack_light(is_coarse ? texelFetch(coarse, ivec2(inside + grid.origin.x, row.y), 0) : texelFetch(light, ivec2(inside, row.y), 0));
     float dx = aim.center.x - float(x) - 0.5;
     add_front(sums, aim, tap, row.gauge, dx);
 #ifdef SILHOUETTES

@@ -16,7 +16,7 @@ void main() {
     Light own = tap_light(p);
 #endif
     vec2 center = vec2(p) + 0.5;
-    vec4 around_coc = imageLoad(around, p / kTile);
+    vec4 around_coc = texelFetch(around, p / kTile, 0);
     float visible_coc = tap_light(p).coc, radius_px = abs(own.coc);
     float reach_px = front_reach_px(around_coc, own.coc, visible_coc);
     bool is_wide = radius_px > kFullSizePx - 1.0, is_reached_far = reach_px > kFullSizePx;

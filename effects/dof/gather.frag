@@ -11,14 +11,14 @@
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
-    Light own = unpack_light(imageLoad(plate_half, p));
+    Light own = unpack_light(texelFetch(plate_half, p, 0));
     vec2 center = 2.0 * vec2(p) + 1.0;
     vec4 around_coc = texelFetch(around, min(2 * p, frame.size - 1) / kTile, 0);
     float visible_coc = tap_coarse(p, grid_of(1)).coc, reach_px = front_reach_px(around_coc, own.coc, visible_coc);
     float radius_px = abs(own.coc);
     bool is_blurred = radius_px > kFullSizePx - 1.0, is_reached = reach_px > kFullSizePx;
     if (is_reached || is_blurred) prepare_outline_at(center);
-    Coarse coarse = upsampled(p, own.coc, visible_coc, kQuarterAlikePx, kHalfSizePx, imageSize(plate_quarter) - 1);
+    Coarse coarse = upsampled(p, own.coc, visible_coc, kQuarterAlikePx, kHalfSizePx, textureSize(plate_quarter, 0) - 1);
     bool is_found = coarse.likeness >= kLeastLikeness;
     bool is_over_found = is_found && reach_px > kHalfSizePx, is_back_found = is_found && radius_px > kHalfSizePx;
     Gathered found = gather(Point(center, own, visible_coc, is_reached && !is_over_found ? reach_px : kNotAsked, kWide,

@@ -13,14 +13,14 @@
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     vec4 texel = own_color(p);
-    float coc_px = imageLoad(coc, p).r;
+    float coc_px = texelFetch(coc, p, 0).r;
 #ifdef SILHOUETTES
     Unmixed alone = unmixed(p, texel.rgb, coc_px);
     texel.rgb = alone.color;
     out_mixture = alone.kind;
 #endif
 #ifdef HAS_SURROUND
-    vec2 around_amount = imageLoad(surround, p / 8).rg;
+    vec2 around_amount = texelFetch(surround, p / 8, 0).rg;
     float share = highlight_share(dot(texel.rgb, vec3(1.0)), around_amount, abs(coc_px), vec2(p) + 0.5);
     out_is_highlight = share > 0.0 ? 1.0 : 0.0;
     texel.rgb *= 1.0 - share;

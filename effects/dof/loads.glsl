@@ -3,5 +3,5 @@
 #include "taps.glsl"
 #include "coarse.glsl"
 
-Light tap_light(ivec2 texel) { return unpack_light(imageLoad(light, clamp(texel, ivec2(0), frame.size - 1))); }
-Light tap_coarse(ivec2 texel, Grid grid) { return unpack_light(imageLoad(coarse, clamp(texel, ivec2(0), grid.last) + grid.origin)); }
+Light tap_light(ivec2 texel) { return unpack_light(texelFetch(light, clamp(texel, ivec2(0), frame.size - 1), 0)); }
+Light tap_coarse(ivec2 texel, Grid grid) { return unpack_light(texelFetch(coarse, clamp(texel, ivec2(0), grid.last) + grid.origin, 0)); }

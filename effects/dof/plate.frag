@@ -7,7 +7,7 @@
 // Neighbouring pixels may have taken different chords: the mean of 3 x 3 patches of one surface hides where.
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy), last = frame.size - 1;
-    out_plate = imageLoad(patches, p);
+    out_plate = texelFetch(patches, p, 0);
     Light own = unpack_light(out_plate);
     if (!is_patch(own)) return;
 #ifdef KNOWS_LAYERS
@@ -22,7 +22,7 @@ void main() {
     for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x) {
             ivec2 q = clamp(p + ivec2(x, y), ivec2(0), last);
-            Light tap = unpack_light(imageLoad(patches, q));
+            Light tap = unpack_light(texelFetch(patches, q, 0));
             if (!is_near(q / kTile) || !is_patch(tap) || abs(tap.coc - own.coc) > 1.0) continue;
             float weight = 1.0 / float(1 << (abs(x) + abs(y)));
             color += weight * tap.color;

@@ -4,8 +4,8 @@
 #include "majority.glsl"
 
 void main() {
-    ivec2 p = ivec2(gl_FragCoord.xy), last = imageSize(plate_half) - 1;
+    ivec2 p = ivec2(gl_FragCoord.xy), last = textureSize(plate_half, 0) - 1;
     Light texels[4];
-    for (int i = 0; i < 4; ++i) texels[i] = unpack_light(imageLoad(plate_half, min(2 * p + ivec2(i & 1, i >> 1), last)));
+    for (int i = 0; i < 4; ++i) texels[i] = unpack_light(texelFetch(plate_half, min(2 * p + ivec2(i & 1, i >> 1), last), 0));
     out_plate_quarter = pack_light(majority(texels, p));
 }

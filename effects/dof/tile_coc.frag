@@ -5,7 +5,7 @@
 
 void main() {
     ivec2 last = frame.size - 1, corner = kTile * ivec2(gl_FragCoord.xy);
-    float smallest = imageLoad(coc, min(corner, last)).r, largest = smallest;
+    float smallest = texelFetch(coc, min(corner, last), 0).r, largest = smallest;
     int side = kTile;
 #ifdef HAS_COC_STEP
     // Elsewhere coc is as it was when coc_step was made of it.
@@ -18,7 +18,7 @@ void main() {
 #endif
     for (int y = 0; y < side; ++y)
         for (int x = 0; x < side; ++x) {
-            float coc_px = imageLoad(coc, min(corner + ivec2(x, y), last)).r;
+            float coc_px = texelFetch(coc, min(corner + ivec2(x, y), last), 0).r;
             smallest = min(smallest, coc_px);
             largest = max(largest, coc_px);
         }
@@ -26,7 +26,7 @@ void main() {
     if (smallest < largest - kClear)
         for (int y = 0; y < kTile; ++y)
             for (int x = 0; x < kTile; ++x) {
-                float coc_px = imageLoad(coc, min(corner + ivec2(x, y), last)).r;
+                float coc_px = texelFetch(coc, min(corner + ivec2(x, y), last), 0).r;
                 if (coc_px < largest - kClear) before = max(before, coc_px);
             }
     out_tile_coc = vec4(smallest, largest, before, 0.0);

@@ -20,10 +20,10 @@ Coarse upsampled(ivec2 p, float coc, float visible_coc, float alike_px, float le
     Coarse coarse = Coarse(kNothing, Back(vec4(0.0), 0.0), 0.0);
     for (int i = 0; i < 4; ++i) {
         ivec2 to = ivec2(i & 1, i >> 1), texel = clamp(corner + to, ivec2(0), last);
-        Light b = unpack_light(imageLoad(LOWER_BACK, texel)), f = unpack_light(imageLoad(LOWER_FRONT, texel));
+        Light b = unpack_light(texelFetch(LOWER_BACK, texel, 0)), f = unpack_light(texelFetch(LOWER_FRONT, texel, 0));
         if (b.coc < 0.0) continue;  // of a tile that is not blurred so far
         vec2 linear = mix(1.0 - part, part, vec2(to));
-        float texel_coc = unpack_light(imageLoad(LOWER_PLATE, texel)).coc, unlike_px = abs(texel_coc - coc);
+        float texel_coc = unpack_light(texelFetch(LOWER_PLATE, texel, 0)).coc, unlike_px = abs(texel_coc - coc);
         float visible_unlike_px = abs(texelFetch(coarse_coc, min(texel, grid.last) + grid.origin, 0).r - visible_coc);
         if (min(abs(texel_coc), abs(coc)) > least_px) unlike_px = min(unlike_px, visible_unlike_px);
         float weight = linear.x * linear.y * max(1.0 - unlike_px / alike_px, 0.0), uncovered = weight * max(1.0 - f.coc, 1e-3);
@@ -33,7 +33,7 @@ Coarse upsampled(ivec2 p, float coc, float visible_coc, float alike_px, float le
         coarse.surface.share += uncovered * b.coc;
         coarse.over.color += weight * f.color;
         coarse.over.opacity += weight * f.coc;
-        coarse.over.hides += weight * imageLoad(LOWER_HIDES, texel).rg;
+        coarse.over.hides += weight * texelFetch(LOWER_HIDES, texel, 0).rg;
     }
     float scale = 1.0 / max(coarse.likeness, 1e-6), surface_scale = 1.0 / max(seen, 1e-9);
     coarse.over = Layer(coarse.over.color * scale, coarse.over.opacity * scale, coarse.over.hides * scale);
