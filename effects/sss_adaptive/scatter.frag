@@ -27,7 +27,7 @@ void main() {
 #if GUIDING
     Guided now = guided_light(lines, sums, here, q, plan_here.known);
     keep_average(now);
-    scattered = mix(here.light, filled(now.sums), plan_here.scattered);
+    scattered = in_part(here.light, filled(now.sums), plan_here.scattered);
 #endif
     out_irradiance = mixed_result(p, here.key, scattered);
 }
