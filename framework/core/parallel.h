@@ -51,8 +51,8 @@ struct Part {
 /// `count` values in parts that follow each other, one for each thread, or a single one where they are too
 /// few to be worth a thread. Each begins at a multiple of `step`.
 inline std::vector<Part> parts_for_threads(std::size_t count, std::size_t step, int threads) {
-    constexpr std::size_t kWorthwhile = 1
-                                        << 18;  // what a core decodes in the time that a thread's start takes
+    // What a core decodes in the time that a thread's start takes.
+    constexpr std::size_t kWorthwhile = 262'144;
     const std::size_t most = std::max<std::size_t>(1, std::min(std::size_t(threads), count / kWorthwhile));
     const std::size_t steps = (count + step - 1) / step;
     std::vector<Part> parts;

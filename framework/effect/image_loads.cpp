@@ -1,6 +1,8 @@
 #include "framework/effect/image_loads.h"
 
 #include <algorithm>
+#include <functional>
+#include <set>
 #include <string>
 #include <utility>
 

@@ -69,8 +69,8 @@ public:
     /// only these, so that some passes may run several times in a frame; what was written before stays.
     std::vector<PassTime> run(bool timed, const PassObserver& observer = {}, PassRange range = {});
 
-    /// What the next run will read as `previous`, by the history's name; only those that some pass reads. To be
-    /// read; the pointers hold until the next run.
+    /// What the next run will read as `previous`, by the history's name; only those that some pass reads. To
+    /// be read; the pointers hold until the next run.
     struct History {
         std::map<std::string, gpu::Texture*> textures;
         std::map<std::string, gpu::Buffer*> buffers;

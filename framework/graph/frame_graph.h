@@ -160,7 +160,7 @@ struct SparseTexture {
     };
     int texture = 0;
     std::vector<Place> places{};  ///< of all draws to it
-    int first = 0;                ///< the first pass that uses it, and the last, by their indices in the graph
+    int first = 0;  ///< the first pass that uses it, and the last, by their indices in the graph
     int last = 0;
 };
 

@@ -146,8 +146,8 @@ private:
         }
     }
 
-    /// Textures of which buffers say where all draws lie. Only those that found nothing to share memory with, so
-    /// that none takes more for it.
+    /// Textures of which buffers say where all draws lie. Only those that found nothing to share memory with,
+    /// so that none takes more for it.
     void find_sparse() {
         std::vector<int> textures_in(compiled_.slots.size());
         for (const int slot : compiled_.slot_of_texture)

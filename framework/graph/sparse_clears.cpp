@@ -17,7 +17,8 @@ SparseClears::SparseClears(gpu::Context& context, const FrameGraph& graph, const
         tracked.texture = &sparse;
         gpu::Texture& slot = slots[std::size_t(compiled.slot_of_texture[std::size_t(sparse.texture)])];
         tracked.slot = &slot;
-        // A later pass's list is not made yet when the texture is wiped, nor where another one reads it first.
+        // A later pass's list is not made yet when the texture is wiped, nor where another one reads it
+        // first.
         const bool is_drawn_first = sparse.places.size() == 1 && sparse.first == sparse.places.front().pass;
         for (const SparseTexture::Place& place : sparse.places) {
             const Pass& pass = graph.pass(place.pass);

@@ -39,7 +39,7 @@ private:
     /// One memory of a texture; that of a history has two, which change places.
     struct Memory {
         unsigned int handle = 0;
-        bool is_known = false;  ///< it holds its clear value but for what each of its passes last drew
+        bool is_known = false;       ///< it holds its clear value but for what each of its passes last drew
         std::vector<Drawn> drawn{};  ///< as SparseTexture::places
     };
     struct BoundWipe {
@@ -47,14 +47,15 @@ private:
         int pass = 0;
         gpu::Buffer uniforms;
         const gpu::Buffer* places = nullptr;
-        std::optional<gpu::Buffer> no_places{};  ///< in place of next_places where those are not known in time
+        std::optional<gpu::Buffer>
+            no_places{};  ///< in place of next_places where those are not known in time
         gpu::Target target;
         gpu::InstanceRange instances;
     };
     struct Tracked {
         const SparseTexture* texture = nullptr;
         const gpu::Texture* slot = nullptr;
-        bool is_due = false;   // to be cleared in these passes, which are all that use it
+        bool is_due = false;    // to be cleared in these passes, which are all that use it
         bool is_fresh = false;  // cleared, and not all of its passes have drawn yet
         std::vector<BoundWipe> wipes{};
         std::vector<Memory> memories{};

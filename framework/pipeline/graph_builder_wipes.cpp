@@ -41,7 +41,8 @@ std::optional<std::array<std::uint32_t, 4>> wipe_bits(const std::array<double, 4
 }
 
 /// Whether every pixel of the pass's tiles gets what the shader makes.
-bool overwrites_tiles(const EffectManifest& manifest, const PassSpec& spec, const std::filesystem::path& glsl_folder) {
+bool overwrites_tiles(const EffectManifest& manifest, const PassSpec& spec,
+                      const std::filesystem::path& glsl_folder) {
     if (spec.blend != gpu::Blend::none) return false;
     Diagnostics faults;  // said where the program is made
     const ShaderSource source = author_text(manifest, spec, glsl_folder, faults, ShaderFile::main);

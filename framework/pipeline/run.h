@@ -45,8 +45,8 @@ struct RunSetup {
     const OutputOptions& outputs;
     std::filesystem::path data_folder;
     RunHooks hooks{};
-    /// Where nothing is drawn after the run: ends what context() made, after the last frame and while its files
-    /// are written. Not called where a history is saved, or where a frame ends the run by an error.
+    /// Where nothing is drawn after the run: ends what context() made, after the last frame and while its
+    /// files are written. Not called where a history is saved, or where a frame ends the run by an error.
     std::function<void()> end_context{};
 };
 

@@ -51,7 +51,8 @@ TEST_P(OutOfBoundsOn, LoadsGiveWhatFetchesGive) {
     for (const std::string_view name : texture_format_names()) {
         const TextureFormat format = *parse_texture_format(name);
         Texture image = texture(2, 2, format);
-        if (is_integer(format)) image.upload(std::vector<std::uint32_t>(std::size_t(4 * channel_count(format)), 7));
+        if (is_integer(format))
+            image.upload(std::vector<std::uint32_t>(std::size_t(4 * channel_count(format)), 7));
         else image.upload(std::vector<float>(std::size_t(4 * channel_count(format)), 0.5F));
         const std::string prefix = !is_integer(format) ? "" : is_signed_integer(format) ? "i" : "u";
         std::string text = R"(layout(binding = 0) uniform $sampler2D sampled;

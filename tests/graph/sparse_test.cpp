@@ -268,7 +268,8 @@ TEST_P(SparseOn, IsAHistoryToo) {
     const BufferHandle places = add_list(columns, graph.create_buffer("places", {16}));
     const TextureHistory history = graph.create_history("history", kSmall, options);
     const TextureHandle before =
-        graph.add_pass(draw_of("before", *copy_, {history.previous}, graph.fresh("before", kSmall))).targets.front();
+        graph.add_pass(draw_of("before", *copy_, {history.previous}, graph.fresh("before", kSmall)))
+            .targets.front();
     const TextureHandle current = graph.add_pass(column_pass(history.current, places)).targets.front();
     const TextureHandle now =
         graph.add_pass(draw_of("now", *copy_, {current}, graph.fresh("now", kSmall))).targets.front();

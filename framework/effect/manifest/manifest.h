@@ -199,9 +199,7 @@ struct TileListSpec {
     std::string module;            ///< that declares it; "" for the effect itself
     std::string doc;
     Place place;
-    std::string runs() const {
-        return name + "_runs";
-    }  ///< buffer: see glsl/tile_runs.glsl
+    std::string runs() const { return name + "_runs"; }  ///< buffer: see glsl/tile_runs.glsl
     std::string args() const { return name + "_args"; }  ///< buffer: {vertices, instances, first, base}
 };
 
