@@ -109,8 +109,7 @@ void check_shader_size(const ShaderSource& source, Diagnostics& diagnostics) {
                                   "several statements)");
         // "float v[9]": an index of a buffer may be as large as it likes.
         const bool declares = c == '[' && i > 1 && i + 2 < tokens.size() && tokens[i + 2].text == "]" &&
-                              tokens[i - 1].is_word() && tokens[i - 2].is_word() &&
-                              tokens[i - 2].text != "return";
+                              tokens[i - 1].is_word() && tokens[i - 2].may_be_type();
         if (!declares) continue;
         const std::string number(tokens[i + 1].text);
         const auto elements = parse_number(number);

@@ -17,6 +17,8 @@ struct Token {
     int line = 0, column = 0;
     Place place() const { return {*file, line, column}; }
     bool is_word() const { return std::isalpha(static_cast<unsigned char>(text[0])) || text[0] == '_'; }
+    /// Whether a name behind it may be declared, as in "float x": a word, and none that a statement follows.
+    bool may_be_type() const { return is_word() && text != "return" && text != "else" && text != "do"; }
 };
 
 /// What the author wrote, without comments and without the host's own lines.

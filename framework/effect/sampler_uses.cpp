@@ -197,8 +197,8 @@ void SamplerUses::read_word(std::size_t at) {
     if (is(at + 1, "(") && functions_by_name_.contains(tokens_[at].text)) return check_arguments(at);
     const int variable = resolve(at);
     if (variable < 0) return;
-    const bool is_declared = at > 0 && tokens_[at - 1].is_word() && tokens_[at - 1].text != "return" &&
-                             tokens_[at - 1].line == tokens_[at].line;
+    const bool is_declared =
+        at > 0 && tokens_[at - 1].may_be_type() && tokens_[at - 1].line == tokens_[at].line;
     if (is_declared && !function_) return;
     if (is_declared) {
         shadows_.insert(tokens_[at].text);

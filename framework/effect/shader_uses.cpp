@@ -31,8 +31,7 @@ bool is_on_line_of(const Token& token, const Token* directive) {
 
 /// Whether the word at `i` is the name in a declaration: a type stands before it, not the end of a directive.
 bool is_declared_at(const std::vector<Token>& tokens, std::size_t i, const Token* directive) {
-    if (i == 0 || !tokens[i - 1].is_word() || tokens[i - 1].text == "return" || tokens[i - 1].text == "else")
-        return false;
+    if (i == 0 || !tokens[i - 1].may_be_type()) return false;
     return !is_on_line_of(tokens[i - 1], directive) || tokens[i].line == tokens[i - 1].line;
 }
 

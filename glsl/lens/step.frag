@@ -77,12 +77,17 @@ void main() {
     out_coc_step = vec4(step_px, 0.0, smallest, greatest);
     if (!is_repaired(step_px)) return;
     float sum = 0.0, brightest = 0.0;
-    for (int y = 0; y < kSide; ++y)
-        for (int x = 0; x < kSide; ++x) {
-            float light = amount(texelFetch(color, inside(corner + ivec2(x, y)), 0).rgb);
+    // From a place that varies, so that a compiler does not unroll it.
+    ivec2 p = corner;
+    do {
+        p.x = corner.x;
+        do {
+            float light = amount(texelFetch(color, inside(p), 0).rgb);
             brightest = max(brightest, light);
-            if (x > 0 && x <= kRepairTile && y > 0 && y <= kRepairTile) sum += max(light, 0.0);
-        }
+            ivec2 own = p - corner;
+            if (own.x > 0 && own.x <= kRepairTile && own.y > 0 && own.y <= kRepairTile) sum += max(light, 0.0);
+        } while (++p.x < corner.x + kSide);
+    } while (++p.y < corner.y + kSide);
     out_coc_step.g = sum / float(kRepairTile * kRepairTile);
 #ifndef SHARES_PIXELS
     if (brightest <= kOutshinesTile * out_coc_step.g) out_coc_step.g = kNothingOutshines;

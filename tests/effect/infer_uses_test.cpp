@@ -65,6 +65,15 @@ TEST(InferredUses, MayStandAfterADirective) {
     EXPECT_EQ(flow_of(folder), " -> color thin");
 }
 
+TEST(InferredUses, MayStandBehindTheWordThatTheirStatementFollows) {
+    const EffectFolder folder(manifest_with(R"("shader": "a.frag")"));
+    folder.write("a.frag",
+                 kHead +
+                     "void main() {\n    int i = 0;\n    do out_thin += vec4(1);\n    while (++i < 9);\n"
+                     "    if (i < 3) out_color = vec4(0);\n    else out_wide = vec4(0);\n}\n");
+    EXPECT_EQ(flow_of(folder), " -> color wide thin");
+}
+
 TEST(InferredUses, ComeFromDefinesAndBothShaders) {
     const EffectFolder folder(
         manifest_with(R"("shader": "a.frag", "vertex": "d.vert", "instances": {"of": "points", "count": 9},
