@@ -9,6 +9,7 @@
 #include "framework/image/display.h"
 #include "framework/image/role.h"
 #include "framework/inspect/frame_sheet.h"
+#include "framework/pipeline/pipeline.h"
 
 namespace aftershade::cli {
 
@@ -29,6 +30,8 @@ Image read_display(const Sequence& sequence, const CaptureReader& reader, int fr
     if (const auto path = sequence.path_of(file); path.extension() == ".png") return as_rgb(read_png(path));
     Capture capture = reader.read(file, std::vector{std::string(kColorRole)});
     const CaptureHeader& header = capture.header;
+    if (!capture.images.contains(kColorRole))
+        throw missing_role({"a thumbnail", kColorRole}, header, &reader);
     return cropped_display(display_of_color(std::move(capture.images.at(kColorRole)), header.primaries),
                            header.data_window, header.display_window);
 }

@@ -221,16 +221,19 @@ std::string remedies(const std::string& role, const CaptureHeader& header, const
 
 }  // namespace
 
+Error missing_role(const MissingRole& missing, const CaptureHeader& header, const CaptureReader* reader) {
+    return Error(ExitCode::capture,
+                 header.path.string() + ": " + missing.who + " needs the role '" + missing.role +
+                     "', which the profile '" + header.profile + "' does not find among the channels " +
+                     list_channels(header.channels) +
+                     (header.layer.empty() ? "" : ", in the layer '" + header.layer + "'") + " (" +
+                     remedies(missing.role, header, reader) + ")");
+}
+
 void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header,
                            const CaptureReader* reader) {
-    const auto missing = find_missing_role(pipeline, header.roles);
-    if (!missing) return;
-    throw Error(ExitCode::capture, header.path.string() + ": " + missing->who + " needs the role '" +
-                                       missing->role + "', which the profile '" + header.profile +
-                                       "' does not find among the channels " +
-                                       list_channels(header.channels) +
-                                       (header.layer.empty() ? "" : ", in the layer '" + header.layer + "'") +
-                                       " (" + remedies(missing->role, header, reader) + ")");
+    if (const auto missing = find_missing_role(pipeline, header.roles))
+        throw missing_role(*missing, header, reader);
 }
 
 namespace {

@@ -136,6 +136,9 @@ struct MissingRole {
 /// `roles`: those that the capture has.
 std::optional<MissingRole> find_missing_role(const Pipeline& pipeline, const std::vector<std::string>& roles);
 
+/// With the remedies; `reader` may be null.
+Error missing_role(const MissingRole& missing, const CaptureHeader& header, const CaptureReader* reader);
+
 /// A step that reads the color of layers behind the picture, and earlier steps that change the picture's
 /// color, which changes no layer.
 struct StaleLayers {

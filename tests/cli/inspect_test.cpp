@@ -236,6 +236,24 @@ TEST_F(Inspect, PutsTheFramesOfASequenceOnAContactSheet) {
               std::string::npos);
 }
 
+TEST_F(Inspect, SaysThatThumbnailsNeedAColorWhereACaptureHasNone) {
+    const Image ids(64, 36, 1);
+    ExrWriteOptions options;
+    options.data_window = options.display_window = {0, 0, 63, 35};
+    const std::vector<ExrOutputChannel> channels = {{"object_id.I", PixelType::float32, &ids, 0}};
+    write_exr(folder_ / "a_1.exr", channels, options);
+    const std::string error =
+        inspect({"a_1.exr", "--profile", "native", "--frames", "1", "--contact-sheet", "a.png"},
+                ExitCode::capture)
+            .err;
+    EXPECT_NE(
+        error.find(
+            "a_1.exr: a thumbnail needs the role 'color', which the profile 'native' does not find among the "
+            "channels object_id.I (--role color=FILE reads it"),
+        std::string::npos)
+        << error;
+}
+
 TEST_F(Inspect, ShowsTheOtherRolesWhereOneCannotBeDecoded) {
     Image ids(64, 4, 1);
     std::fill(ids.floats().begin(), ids.floats().end(), 1.5f);  // no whole number
