@@ -36,10 +36,7 @@ private:
         const std::string_view kind = at_ + 1 < tokens_.size() ? tokens_[at_ + 1].text : "";
         if (kind == "define" && at_ + 2 < tokens_.size()) macros.emplace(tokens_[at_ + 2].text);
         if (kind == "extension") has_extension = true;
-        // The branches of an #if may each begin what follows all of them.
-        if (kind.starts_with("if")) depths_.push_back(depth_);
-        else if (kind.starts_with("el") && !depths_.empty()) depth_ = depths_.back();
-        else if (kind == "endif" && !depths_.empty()) depths_.pop_back();
+        braces_.pass_directive(kind);
         for (; at_ + 1 < tokens_.size() && tokens_[at_ + 1].line == line; ++at_)
             if (kind.starts_with("if") || kind.starts_with("el")) tested.emplace(tokens_[at_ + 1].text);
     }
@@ -49,14 +46,16 @@ private:
         if (token.text == "(" || token.text == "[") ++nested_;
         else if (token.text == ")" || token.text == "]") --nested_;
         else if (token.text == "{") {
-            if (depth_++ == 0) is_block_ = is_interface_;
+            if (braces_.value() == 0) is_block_ = is_interface_;
+            braces_.open();
         } else if (token.text == "}") {
-            --depth_;
+            braces_.close();
         }
         if (token.text == ";" || token.text == "}") is_interface_ = false;
         if (nested_ > 0) return;
         if (token.text == "uniform" || token.text == "buffer") is_interface_ = true;
-        if (token.is_word() && (depth_ == 0 ? is_name() : depth_ == 1 && is_block_ && is_member()))
+        if (token.is_word() &&
+            (braces_.value() == 0 ? is_name() : braces_.value() == 1 && is_block_ && is_member()))
             declared.emplace(token.text);
     }
 
@@ -76,10 +75,10 @@ private:
 
     const std::vector<Token>& tokens_;
     std::size_t at_ = 0;
-    int depth_ = 0, nested_ = 0;
+    BraceDepth braces_;
+    int nested_ = 0;             // in other brackets
     bool is_interface_ = false;  // the statement at hand declares a uniform or a buffer
     bool is_block_ = false;      // the braces that are open are such a block's
-    std::vector<int> depths_;    // at each open #if
 };
 
 /// "xyz", "rgba", "st": what may follow the dot of a vector, which a macro would change.

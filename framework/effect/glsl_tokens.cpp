@@ -93,6 +93,12 @@ std::vector<Token> all_glsl_tokens(const ShaderSource& source) {
     return Tokens(source, true).take();
 }
 
+void BraceDepth::pass_directive(std::string_view kind) {
+    if (kind.starts_with("if")) at_ifs_.push_back(depth_);
+    else if (kind.starts_with("el") && !at_ifs_.empty()) depth_ = at_ifs_.back();
+    else if (kind == "endif" && !at_ifs_.empty()) at_ifs_.pop_back();
+}
+
 void check_shader_size(const ShaderSource& source, Diagnostics& diagnostics) {
     constexpr std::string_view kOperators = "+-*/%<>=&|^?!", kEnds = ",;{}";
     std::vector<std::size_t> terms = {0};  // of each open bracket, outermost first

@@ -28,6 +28,21 @@ std::vector<Token> glsl_tokens(ShaderSource&&) = delete;
 std::vector<Token> all_glsl_tokens(const ShaderSource& source);
 std::vector<Token> all_glsl_tokens(ShaderSource&&) = delete;
 
+/// How many braces are open, for a walk from token to token. The branches of an #if may each open what is
+/// closed behind all of them.
+class BraceDepth {
+public:
+    int value() const { return depth_; }
+    void open() { ++depth_; }
+    void close() { --depth_; }
+    /// The word behind a "#".
+    void pass_directive(std::string_view kind);
+
+private:
+    int depth_ = 0;
+    std::vector<int> at_ifs_;  // at each open #if
+};
+
 /// Holds what the author wrote against kMaxShaderTerms and kMaxShaderArrayElements. What macros make of it is
 /// not seen here.
 void check_shader_size(const ShaderSource& source, Diagnostics& diagnostics);

@@ -88,25 +88,21 @@ std::optional<std::size_t> SamplerUses::closing(std::size_t open) const {
     return std::nullopt;
 }
 
-/// Outside of braces, "vec4 blur(usampler2D image, ivec2 p) {" or the same with a semicolon. The branches of
-/// an #if may each begin what follows all of them.
+/// Outside of braces, "vec4 blur(usampler2D image, ivec2 p) {" or the same with a semicolon.
 void SamplerUses::find_functions() {
-    int depth = 0;
-    std::vector<int> depths;
+    BraceDepth braces;
     for (std::size_t at = 0; at < tokens_.size(); ++at) {
         const std::string_view text = tokens_[at].text;
         if (text == "#") {
-            const std::string_view kind = at + 1 < tokens_.size() ? tokens_[at + 1].text : "";
-            if (kind.starts_with("if")) depths.push_back(depth);
-            else if (kind.starts_with("el") && !depths.empty()) depth = depths.back();
-            else if (kind == "endif" && !depths.empty()) depths.pop_back();
+            braces.pass_directive(at + 1 < tokens_.size() ? tokens_[at + 1].text : "");
             while (at + 1 < tokens_.size() && tokens_[at + 1].line == tokens_[at].line) ++at;
         } else if (text == "{") {
-            ++depth;
+            braces.open();
         } else if (text == "}") {
-            if (--depth == 0 && !functions_.empty() && functions_.back().end == tokens_.size())
+            braces.close();
+            if (braces.value() == 0 && !functions_.empty() && functions_.back().end == tokens_.size())
                 functions_.back().end = at;
-        } else if (depth == 0 && text == "(" && at > 1 && tokens_[at - 1].is_word() &&
+        } else if (braces.value() == 0 && text == "(" && at > 1 && tokens_[at - 1].is_word() &&
                    tokens_[at - 2].is_word()) {
             at = read_function(at - 1);
         }
