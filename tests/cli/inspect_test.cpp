@@ -243,7 +243,7 @@ TEST_F(Inspect, SaysThatThumbnailsNeedAColorWhereACaptureHasNone) {
     const std::vector<ExrOutputChannel> channels = {{"object_id.I", PixelType::float32, &ids, 0}};
     write_exr(folder_ / "a_1.exr", channels, options);
     const std::string error =
-        inspect({"a_1.exr", "--profile", "native", "--frames", "1", "--contact-sheet", "a.png"},
+        inspect({"a_1.exr", "--profile", "native", "--contact-sheet", "a.png", "--columns", "1"},
                 ExitCode::capture)
             .err;
     EXPECT_NE(
