@@ -60,20 +60,25 @@ float largest_own(Row row) {
 
 void main() {
     ivec2 corner = kRepairTile * ivec2(gl_FragCoord.xy) - 1;
-    Rows rows = rows_at(corner);
-    float step_px = max(max(step_along(rows.upper), step_along(rows.lower)), step_across(rows.lower, rows.upper));
-    float smallest = smallest_own(rows.lower), greatest = largest_own(rows.lower);
-    for (int y = 2; y < kSide; y += 2) {
-        Row above = rows.lower;
-        rows = rows_at(corner + ivec2(0, y));
-        step_px = max(step_px, max(step_across(rows.upper, above), step_across(rows.lower, rows.upper)));
-        step_px = max(step_px, max(step_along(rows.upper), step_along(rows.lower)));
-        smallest = min(smallest, smallest_own(rows.upper));
-        greatest = max(greatest, largest_own(rows.upper));
-        if (y == kRepairTile) continue;
-        smallest = min(smallest, smallest_own(rows.lower));
-        greatest = max(greatest, largest_own(rows.lower));
-    }
+    float step_px = 0.0, smallest = 1e30, greatest = -1e30;
+    const vec4 kNone = vec4(0.0);
+    Row above = Row(kNone, kNone, kNone, kNone, kNone);
+    int y = 0;
+    do {
+        Rows rows = rows_at(corner + ivec2(0, y));
+        float across = step_across(rows.lower, rows.upper);
+        if (y > 0) across = max(across, step_across(rows.upper, above));
+        step_px = max(max(step_px, across), max(step_along(rows.upper), step_along(rows.lower)));
+        if (y > 0) {
+            smallest = min(smallest, smallest_own(rows.upper));
+            greatest = max(greatest, largest_own(rows.upper));
+        }
+        if (y < kRepairTile) {
+            smallest = min(smallest, smallest_own(rows.lower));
+            greatest = max(greatest, largest_own(rows.lower));
+        }
+        above = rows.lower;
+    } while ((y += 2) < kSide);
     out_coc_step = vec4(step_px, 0.0, smallest, greatest);
     if (!is_repaired(step_px)) return;
     float sum = 0.0, brightest = 0.0;
