@@ -114,7 +114,7 @@ Context::Context(const SharedEglContext& shared) {
 Context::Context(SiblingOf other) {
     if (current) current->release();
     const Impl& sibling = *other.context.impl_;
-    impl_ = std::make_unique<Impl>(sibling, sibling.platform->sibling());
+    impl_ = std::make_unique<Impl>(sibling, sibling.platform->sibling(other.shares_objects));
 }
 
 Context::Context(Backend backend) {
