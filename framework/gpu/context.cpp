@@ -15,6 +15,7 @@
 #include "framework/gpu/egl_platform.h"
 #include "framework/gpu/foreign_context.h"
 #include "framework/gpu/handle.h"
+#include "framework/gpu/rasterizer_threads.h"
 #include "framework/gpu/self_test.h"
 
 namespace aftershade::gpu {
@@ -126,6 +127,7 @@ Context::Context(Backend backend) {
         try {
             impl_ = std::make_unique<Impl>(candidate);
             self_test(*this);
+            if (impl_->info.software) spread_rasterizer_threads();
             return;
         } catch (const Error& error) {
             impl_.reset();
