@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <functional>
 #include <numeric>
 #include <system_error>
 #include <utility>
@@ -25,7 +26,8 @@ bool TexturesAhead::is_useful(const Context& context, const std::vector<TextureD
 }
 
 TexturesAhead::TexturesAhead(Context& context, std::vector<TextureDesc> descs) : context_(context) {
-    for (TextureDesc& desc : descs) textures_.push_back({std::move(desc)});
+    std::ranges::stable_sort(descs, std::greater(), byte_size);
+    for (const TextureDesc& desc : descs) textures_.push_back({desc});
     try {
         thread_ = std::thread([this] { work(); });
     } catch (const std::system_error&) {
@@ -60,21 +62,20 @@ std::size_t TexturesAhead::textures_made() const {
     return std::size_t(std::ranges::count_if(textures_, [](const Made& made) { return made.handle != 0; }));
 }
 
-/// The last one that nobody has taken or begun; nullptr: there is nothing to do.
-TexturesAhead::Made* TexturesAhead::begin_last() {
+/// The largest that nobody has taken or begun; nullptr: there is nothing to do.
+TexturesAhead::Made* TexturesAhead::begin_largest() {
     const std::lock_guard lock(mutex_);
-    for (auto made = textures_.rbegin(); !stops_ && made != textures_.rend(); ++made) {
-        if (made->is_taken || made->is_begun) continue;
-        made->is_begun = true;
-        return &*made;
-    }
-    return nullptr;
+    const auto found =
+        std::ranges::find_if(textures_, [](const Made& made) { return !made.is_taken && !made.is_begun; });
+    if (stops_ || found == textures_.end()) return nullptr;
+    found->is_begun = true;
+    return &*found;
 }
 
 void TexturesAhead::work() {
     try {
         Context context(SiblingOf{context_, true});
-        while (Made* const made = begin_last()) {
+        while (Made* const made = begin_largest()) {
             const unsigned int handle = make_texture(context, made->desc, "made ahead");
             context.finish();
             const std::lock_guard lock(mutex_);

@@ -15,9 +15,9 @@ namespace aftershade::gpu {
 
 /// llvmpipe fills a texture's memory with zeros when it makes it, and the system makes the memory's pages
 /// then: at 1080p that takes a quarter of the time that a first frame's passes do. A thread with a context of
-/// its own that shares its objects does it while the caller loads programs: from the last to the first, so
-/// that the caller can meet it. What the thread cannot make, the caller does, who then meets the fault. [the
-/// context's thread; a thread of its own]
+/// its own that shares its objects does it while the caller loads programs. It begins with the largest, so
+/// that what is left when the caller meets it is soon made. What the thread cannot make, the caller does, who
+/// then meets the fault. [the context's thread; a thread of its own]
 class TexturesAhead {
 public:
     /// Whether a thread is worth it for textures of that description: none is where a driver does not take
@@ -47,7 +47,7 @@ private:
     };
 
     void work();
-    Made* begin_last();
+    Made* begin_largest();
 
     Context& context_;
     mutable std::mutex mutex_;
