@@ -108,7 +108,7 @@ WorkStatus status_of_pass(const PipelineStep& step, const std::string& pass, con
 }
 
 void PassPrograms::add(int pass, const ShaderContext& shader, const PipelineStep& step) {
-    added_.emplace(pass, Added{shader, &step});
+    added_.emplace(pass, Added{shader, &step}).first->second.shader.texts = &texts_;
 }
 
 WorkStatus PassPrograms::compiling(const Added& added, const std::string& pass) const {

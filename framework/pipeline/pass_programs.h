@@ -34,6 +34,8 @@ public:
     };
     explicit PassPrograms(const Tools& tools) : tools_(tools) {}
 
+    /// What is read of shaders' files.
+    ShaderTexts& texts() { return texts_; }
     /// The pass that will have this index in the graph.
     void add(int pass, const ShaderContext& shader, const PipelineStep& step);
     /// Gives the graph's passes their programs. Fused ones take the place of the last of theirs, and `blocks`
@@ -68,6 +70,7 @@ private:
     WorkStatus compiling(const Added& added, const std::string& pass) const;
 
     Tools tools_;
+    ShaderTexts texts_;                       // of all passes
     std::map<int, Added> added_;              // by pass
     std::map<int, std::vector<int>> unused_;  // uniform blocks, by pass
     std::map<int, int> block_counts_;         // likewise
