@@ -1,5 +1,6 @@
 #include "framework/effect/shader_source.h"
 
+#include <algorithm>
 #include <cctype>
 #include <set>
 #include <sstream>
@@ -40,7 +41,10 @@ bool is_version_directive(std::string_view line) {
 class Assembler {
 public:
     Assembler(const ShaderContext& context, Diagnostics& diagnostics, ShaderFile file)
-        : context_(context), diagnostics_(diagnostics), file_(file) {}
+        : context_(context),
+          diagnostics_(diagnostics),
+          file_(file),
+          texts_(context.texts ? *context.texts : own_texts_) {}
 
     ShaderSource assemble() {
         const fs::path file = shader_path(*context_.pass, file_, context_.glsl_folder);
@@ -79,9 +83,9 @@ private:
 
     void add_file(const fs::path& file, const Place& from) {
         if (!included_.insert(file).second) return;
-        // The name is plain, but a link may lead anywhere.
-        if (const std::string why = out_of_bounds(file, file.parent_path()); !why.empty()) {
-            diagnostics_.error(from, file.string() + " " + why);
+        const ShaderTexts::File& read = texts_.of(file);
+        if (!read.out_of_bounds.empty()) {
+            diagnostics_.error(from, file.string() + " " + read.out_of_bounds);
             return;
         }
         if (depth_ == kMaxIncludeDepth) {
@@ -89,19 +93,20 @@ private:
                                          " files, which is the limit (include from fewer files)");
             return;
         }
-        std::string fault;
-        std::istringstream in(read_regular_file(file, kMaxShaderFileBytes, fault));
-        if (!fault.empty()) {
-            diagnostics_.error(
-                from, "cannot read " + file.string() + (fault == "no such file" ? "" : ": " + fault));
+        if (!read.fault.empty()) {
+            diagnostics_.error(from, "cannot read " + file.string() +
+                                         (read.fault == "no such file" ? "" : ": " + read.fault));
             return;
         }
         ++depth_;
         const std::string name = file.string();
-        std::string line;
-        for (int number = 1; std::getline(in, line) && !is_too_large_; ++number) {
+        std::size_t at = 0;
+        for (int number = 1; at < read.text.size() && !is_too_large_; ++number) {
+            const std::size_t end = std::min(read.text.find('\n', at), read.text.size());
+            std::string line = read.text.substr(at, end - at);
             if (line.ends_with('\r')) line.pop_back();
             add_source_line(line, name, number);
+            at = end + 1;
         }
         --depth_;
     }
@@ -161,6 +166,8 @@ private:
     const ShaderContext& context_;
     Diagnostics& diagnostics_;
     const ShaderFile file_;
+    ShaderTexts own_texts_;
+    ShaderTexts& texts_;
     ShaderSource source_;
     std::set<fs::path> included_;
     int depth_ = 0;
@@ -171,6 +178,16 @@ private:
 };
 
 }  // namespace
+
+const ShaderTexts::File& ShaderTexts::of(const fs::path& file) {
+    const auto [found, is_new] = files_.try_emplace(file.string());
+    File& read = found->second;
+    if (!is_new) return read;
+    // The name is plain, but a link may lead anywhere.
+    read.out_of_bounds = out_of_bounds(file, file.parent_path());
+    if (read.out_of_bounds.empty()) read.text = read_regular_file(file, kMaxShaderFileBytes, read.fault);
+    return read;
+}
 
 std::optional<ShaderInclude> parse_include(std::string_view line) {
     if (!take_directive(line, "include")) return std::nullopt;
@@ -195,8 +212,8 @@ ShaderSource assemble_shader(const ShaderContext& context, Diagnostics& diagnost
 }
 
 ShaderSource author_text(const EffectManifest& manifest, const PassSpec& pass, const fs::path& glsl_folder,
-                         Diagnostics& diagnostics, ShaderFile file) {
-    const ShaderContext context{&manifest, &pass, {}, {}, glsl_folder};
+                         Diagnostics& diagnostics, ShaderFile file, ShaderTexts* texts) {
+    const ShaderContext context{&manifest, &pass, {}, {}, glsl_folder, nullptr, nullptr, texts};
     return Assembler(context, diagnostics, file).author_text();
 }
 

@@ -50,6 +50,20 @@ struct FusedPart {
     }
 };
 
+/// Files of shaders, each read once: most passes include the same ones. [one thread]
+class ShaderTexts {
+public:
+    struct File {
+        std::string text;
+        std::string out_of_bounds;  ///< why it may not be read; empty where it may
+        std::string fault;          ///< why it could not be read
+    };
+    const File& of(const std::filesystem::path& file);
+
+private:
+    std::map<std::string, File> files_;
+};
+
 /// What one pass sees, resolved for one set of parameters and inputs.
 struct ShaderContext {
     const EffectManifest* manifest = nullptr;
@@ -60,6 +74,7 @@ struct ShaderContext {
     /// What the paths of file parameters hold, by parameter; nullptr or no entry: none has a file.
     const std::map<std::string, ParamFile>* files = nullptr;
     const FusedPart* part = nullptr;  ///< nullptr: the pass is a program by itself
+    ShaderTexts* texts = nullptr;     ///< of several passes; nullptr: reads the pass's files itself
 
     const ParamFile& file_of(const std::string& param) const;
 };
@@ -130,9 +145,10 @@ ShaderSource assemble_shader(const ShaderContext& context, Diagnostics& diagnost
                              ShaderFile file = ShaderFile::main);
 
 /// The text that authors wrote, with its includes and without what the host generates; the pass need not be
-/// sound. A missing include goes to `diagnostics`.
+/// sound. A missing include goes to `diagnostics`. `texts` as in ShaderContext.
 ShaderSource author_text(const EffectManifest& manifest, const PassSpec& pass,
-                         const std::filesystem::path& glsl_folder, Diagnostics& diagnostics, ShaderFile file);
+                         const std::filesystem::path& glsl_folder, Diagnostics& diagnostics, ShaderFile file,
+                         ShaderTexts* texts = nullptr);
 
 /// What `#include <pass>` stands for; a vertex shader's has no outputs.
 std::string interface_glsl(const ShaderContext& context, ShaderFile file = ShaderFile::main);

@@ -150,8 +150,8 @@ std::vector<HalfOverflow> write_scan_lines(Imf::OStream& stream, const Imf::Head
                                            std::span<const ExrOutputChannel> channels);
 std::uint64_t scan_line_blocks(const Imf::Header& header);
 
-/// Runs `work`, which shares the jobs out among its calls and does not throw, on up to this many of the
-/// library's threads; below two on the caller's.
+/// Runs `work`, which shares the jobs out among its calls and does not throw, on this thread and as many of
+/// the library's as make up to `threads`.
 void run_on_threads(int threads, std::size_t jobs, const std::function<void()>& work);
 
 /// An open file and what is known of it, for reading a deep part. [refers to the reader's]

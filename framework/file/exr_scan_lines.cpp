@@ -187,8 +187,8 @@ struct BlockQueue {
     }
 };
 
-/// Work of several threads of the pool. `order` repeats the pool's own ordering where a thread sanitizer sees it: the
-/// library's locks are in code that is not instrumented.
+/// Work of several threads of the pool. `order` repeats the pool's own ordering where a thread sanitizer sees
+/// it: the library's locks are in code that is not instrumented.
 struct SharedWork {
     const std::function<void()>& run;
     std::atomic<int> order = 0;
@@ -215,8 +215,10 @@ void run_on_threads(int threads, std::size_t jobs, const std::function<void()>& 
     shared.order.store(1, std::memory_order_release);
     {
         IlmThread::TaskGroup group;  // whose end is that of its tasks
-        for (std::size_t i = 0; i < std::min(std::size_t(threads), jobs); ++i)
+        // This thread works too: of two that it woke, Linux leaves both on one core for a while.
+        for (std::size_t i = 1; i < std::min(std::size_t(threads), jobs); ++i)
             IlmThread::ThreadPool::addGlobalTask(new SharedTask(&group, shared));
+        work();
     }
     shared.order.load(std::memory_order_acquire);
 }

@@ -15,6 +15,7 @@
 #include "framework/gpu/egl_platform.h"
 #include "framework/gpu/foreign_context.h"
 #include "framework/gpu/handle.h"
+#include "framework/gpu/rasterizer_threads.h"
 #include "framework/gpu/self_test.h"
 
 namespace aftershade::gpu {
@@ -114,7 +115,7 @@ Context::Context(const SharedEglContext& shared) {
 Context::Context(SiblingOf other) {
     if (current) current->release();
     const Impl& sibling = *other.context.impl_;
-    impl_ = std::make_unique<Impl>(sibling, sibling.platform->sibling());
+    impl_ = std::make_unique<Impl>(sibling, sibling.platform->sibling(other.shares_objects));
 }
 
 Context::Context(Backend backend) {
@@ -126,6 +127,7 @@ Context::Context(Backend backend) {
         try {
             impl_ = std::make_unique<Impl>(candidate);
             self_test(*this);
+            if (impl_->info.software) spread_rasterizer_threads();
             return;
         } catch (const Error& error) {
             impl_.reset();

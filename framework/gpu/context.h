@@ -48,6 +48,7 @@ struct SharedEglContext {
 /// A context whose renderer another one is to have.
 struct SiblingOf {
     const class Context& context;
+    bool shares_objects = false;  ///< textures, buffers and programs; what a thread changes, it finishes
 };
 
 /// GL objects that are alive.
@@ -73,8 +74,8 @@ public:
     /// On EGL, sharing textures, buffers and fences with a context of the caller's, which must outlive this
     /// one. Throws as the other.
     explicit Context(const SharedEglContext& shared);
-    /// Of the renderer of one that works, so without a self-test. They share no object: each may work in a
-    /// thread of its own. Throws Error(ExitCode::gl). [any thread]
+    /// Of the renderer of one that works, so without a self-test. Each may work in a thread of its own.
+    /// Throws Error(ExitCode::gl). [any thread]
     explicit Context(SiblingOf other);
     ~Context();
     Context(const Context&) = delete;

@@ -145,8 +145,9 @@ public:
         open_context(shared.context);
     }
 
-    std::unique_ptr<Platform> sibling() const override {
-        auto made = std::unique_ptr<EglPlatform>(new EglPlatform(egl_, name_, display_));
+    std::unique_ptr<Platform> sibling(bool shares_objects) const override {
+        auto made = std::unique_ptr<EglPlatform>(
+            new EglPlatform(egl_, name_, display_, shares_objects ? context_ : EGL_NO_CONTEXT));
         made->make_current();
         return made;
     }
@@ -170,9 +171,9 @@ public:
 
 private:
     /// On a display that is initialised.
-    EglPlatform(const EglApi& egl, std::string name, EGLDisplay display)
+    EglPlatform(const EglApi& egl, std::string name, EGLDisplay display, EGLContext shared)
         : egl_(egl), name_(std::move(name)), display_(display) {
-        open_context(EGL_NO_CONTEXT);
+        open_context(shared);
     }
 
     void open_context(EGLContext shared) {

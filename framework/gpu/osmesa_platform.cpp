@@ -52,9 +52,12 @@ std::mutex& osmesa_mutex() {
     return mutex;
 }
 
+std::unique_ptr<Platform> made_current(OsmesaContext shared);
+
 class OsmesaPlatform : public Platform {
 public:
-    OsmesaPlatform()
+    /// `shared`: whose objects it has; null: its own.
+    explicit OsmesaPlatform(OsmesaContext shared)
         : destroy_(symbol<void (*)(OsmesaContext)>("OSMesaDestroyContext")),
           make_current_(symbol<MakeCurrent>("OSMesaMakeCurrent")),
           get_current_(symbol<OsmesaContext (*)()>("OSMesaGetCurrentContext")),
@@ -71,7 +74,7 @@ public:
                                   5,
                                   0};
         const std::lock_guard lock(osmesa_mutex());
-        context_ = create(attributes, nullptr);
+        context_ = create(attributes, shared);
         if (!context_)
             throw Error(ExitCode::gl, "OSMesa makes no GL 4.5 core context; install Mesa 22 or later");
     }
@@ -97,7 +100,9 @@ public:
         make_current_(nullptr, nullptr, 0, 0, 0);
     }
 
-    std::unique_ptr<Platform> sibling() const override { return make_osmesa_platform(); }
+    std::unique_ptr<Platform> sibling(bool shares_objects) const override {
+        return made_current(shares_objects ? context_ : nullptr);
+    }
 
     Proc proc(const char* name) const override { return get_proc_(name); }
 
@@ -112,6 +117,16 @@ private:
     std::array<unsigned char, 4 * kBufferSide * kBufferSide> buffer_{};
 };
 
+std::unique_ptr<Platform> made_current(OsmesaContext shared) {
+    auto platform = std::make_unique<OsmesaPlatform>(shared);
+    platform->make_current();
+    if (gl_string(*platform, kGlVersion).empty()) {
+        platform->release();
+        throw Error(ExitCode::gl, "OSMesaMakeCurrent succeeded but there is no GL (GL_VERSION is null)");
+    }
+    return platform;
+}
+
 }  // namespace
 
 void load_osmesa() {
@@ -119,13 +134,7 @@ void load_osmesa() {
 }
 
 std::unique_ptr<Platform> make_osmesa_platform() {
-    auto platform = std::make_unique<OsmesaPlatform>();
-    platform->make_current();
-    if (gl_string(*platform, kGlVersion).empty()) {
-        platform->release();
-        throw Error(ExitCode::gl, "OSMesaMakeCurrent succeeded but there is no GL (GL_VERSION is null)");
-    }
-    return platform;
+    return made_current(nullptr);
 }
 
 }  // namespace aftershade::gpu

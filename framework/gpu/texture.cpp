@@ -94,7 +94,7 @@ void check_desc(const Limits& limits, const TextureDesc& desc, const std::string
     }
 }
 
-GLuint make_texture(const GladGLContext& gl, const TextureDesc& desc, const std::string& label) {
+GLuint make_storage(const GladGLContext& gl, const TextureDesc& desc) {
     GLuint handle = 0;
     const GLenum internal = gl_format(desc.format).internal;
     if (desc.layers > 1) {
@@ -104,7 +104,6 @@ GLuint make_texture(const GladGLContext& gl, const TextureDesc& desc, const std:
         gl.CreateTextures(GL_TEXTURE_2D, 1, &handle);
         gl.TextureStorage2D(handle, desc.mips, internal, desc.width, desc.height);
     }
-    set_label(gl, GL_TEXTURE, handle, label);
     return handle;
 }
 
@@ -192,13 +191,26 @@ void Handle<ObjectKind::texture>::remove(Context& context, unsigned int name) no
     context.gl().DeleteTextures(1, &name);
 }
 
-Texture::Texture(Context& context, const TextureDesc& desc, std::string label)
-    : desc_(desc), label_(std::move(label)) {
+unsigned int make_texture(Context& context, const TextureDesc& desc, const std::string& label) {
     context.make_current();
-    check_desc(context.impl().limits, desc_, label_);
-    handle_ = Handle<ObjectKind::texture>(context, make_texture(context.gl(), desc_, label_));
-    context.check(fmt::format("texture '{}', {}x{} {}, {} MiB", label_, desc_.width, desc_.height,
-                              texture_format_name(desc_.format), byte_size(desc_) >> 20));
+    check_desc(context.impl().limits, desc, label);
+    const GLuint name = make_storage(context.gl(), desc);
+    try {
+        context.check(fmt::format("texture '{}', {}x{} {}, {} MiB", label, desc.width, desc.height,
+                                  texture_format_name(desc.format), byte_size(desc) >> 20));
+    } catch (const Error&) {
+        if (context.impl().try_make_current()) context.gl().DeleteTextures(1, &name);
+        throw;
+    }
+    return name;
+}
+
+Texture::Texture(Context& context, const TextureDesc& desc, std::string label)
+    : Texture(context, desc, label, make_texture(context, desc, label)) {}
+
+Texture::Texture(Context& context, const TextureDesc& desc, std::string label, unsigned int handle)
+    : handle_(context, handle), desc_(desc), label_(std::move(label)) {
+    set_label(context.gl(), GL_TEXTURE, handle, label_);
 }
 
 Texture::Texture(const Texture& other, TextureFormat format, std::string label)

@@ -56,6 +56,9 @@ bool may_share_memory(const TextureDesc& a, const TextureDesc& b);
 /// Bytes that the texture's texels take, all layers and levels.
 std::uint64_t byte_size(const TextureDesc& desc);
 
+/// The name of a texture that nobody owns yet. Throws what Texture's constructor does.
+unsigned int make_texture(Context& context, const TextureDesc& desc, const std::string& label);
+
 /// [the context's thread]
 class Texture {
 public:
@@ -93,6 +96,10 @@ public:
     unsigned int handle() const { return handle_.name(); }  ///< for framework/gpu
 
 private:
+    friend class TexturesAhead;
+    /// Of a name that another context made, which shares its objects with this one.
+    Texture(Context& context, const TextureDesc& desc, std::string label, unsigned int handle);
+
     Handle<ObjectKind::texture> handle_;
     TextureDesc desc_;
     std::string label_;

@@ -13,6 +13,7 @@
 
 #include "framework/gpu/buffer.h"
 #include "framework/gpu/texture.h"
+#include "framework/gpu/textures_ahead.h"
 #include "framework/gpu/timer.h"
 #include "framework/graph/frame_graph.h"
 #include "framework/graph/pass_range.h"
@@ -30,8 +31,10 @@ class Executor {
 public:
     /// Allocates every texture and buffer; histories begin as zero. Throws Error(ExitCode::effect) when GL
     /// has no memory for them, GraphError if a pass that is not culled lacks its program. Without
-    /// `shares_memory` the last passes may run again over what the others made (run(), `range`).
-    Executor(gpu::Context& context, FrameGraph graph, bool shares_memory = true);
+    /// `shares_memory` the last passes may run again over what the others made (run(), `range`). `ahead`: the
+    /// textures that are made already, of which it takes those that it needs; may be null.
+    Executor(gpu::Context& context, FrameGraph graph, bool shares_memory = true,
+             gpu::TexturesAhead* ahead = nullptr);
     Executor(const Executor&) = delete;
     Executor& operator=(const Executor&) = delete;
 
@@ -58,10 +61,6 @@ public:
     };
     /// Once, before the first run. The buffer must outlive this.
     void set_hooks(PassHooks hooks);
-
-    /// Has a driver that makes machine code at a program's first draw or dispatch make it now: gives it each
-    /// pass with nothing to do. Does nothing on hardware.
-    void prime();
 
     /// Runs every pass. With `timed`, waits for each and returns its milliseconds (see gpu::Timer); else
     /// returns {}. `observer`, if any, sees each target right after its pass; its time counts for no pass.
@@ -130,7 +129,7 @@ private:
         }
     };
 
-    void allocate();
+    void allocate(gpu::TexturesAhead* ahead);
     void find_histories();
     void bind_clears();
     BoundPass bind(int index);

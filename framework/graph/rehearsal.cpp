@@ -114,4 +114,13 @@ void rehearse(gpu::Context& context, const gpu::Program& program, const PassShap
     for (gpu::Texture* const texture : with_mips) texture->generate_mips();
 }
 
+void prime(gpu::Context& context, const FrameGraph& graph, const CompiledGraph& compiled) {
+    if (!context.info().software) return;
+    const gpu::NothingToDo scope(context);
+    for (const int index : compiled.passes) {
+        const Pass& pass = graph.pass(index);
+        if (pass.program) rehearse(context, *pass.program, shape_of(graph, compiled, pass));
+    }
+}
+
 }  // namespace aftershade::graph

@@ -56,4 +56,9 @@ PassShape shape_of(const FrameGraph& graph, const CompiledGraph& compiled, const
 /// [the context's thread]
 void rehearse(gpu::Context& context, const gpu::Program& program, const PassShape& shape);
 
+/// Has a driver that makes machine code at a program's first draw or dispatch make it now, for each pass that
+/// `compiled` does not cull: rehearses it with nothing to do. Does nothing on hardware. [the context's
+/// thread]
+void prime(gpu::Context& context, const FrameGraph& graph, const CompiledGraph& compiled);
+
 }  // namespace aftershade::graph

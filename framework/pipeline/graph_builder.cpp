@@ -9,6 +9,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/param_type.h"
+#include "framework/graph/rehearsal.h"
 #include "framework/image/role.h"
 #include "framework/pipeline/step_build.h"
 
@@ -97,8 +98,12 @@ std::unique_ptr<BuiltGraph> GraphBuilder::build() {
     for (BlockBinding& binding : blocks_) bindings.emplace_back(std::move(binding));
     built_->ahead = programs_.take_ahead();
     built_->key = frame_.key();
-    built_->executor =
-        std::make_unique<graph::Executor>(tools_.context, std::move(graph_), !tools_.keeps_steps);
+    // Where threads compile, they draw each pass as well.
+    if (tools_.primes && !built_->ahead)
+        graph::prime(tools_.context, graph_, graph_.compile(!tools_.keeps_steps));
+    const std::unique_ptr<gpu::TexturesAhead> textures = programs_.take_textures();
+    built_->executor = std::make_unique<graph::Executor>(tools_.context, std::move(graph_),
+                                                         !tools_.keeps_steps, textures.get());
     return std::move(built_);
 }
 

@@ -30,8 +30,9 @@ struct GraphTools {
     StatusWriter* status = nullptr;  ///< receives which pass is compiled; may be null
     bool keeps_steps = false;        ///< each texture has memory of its own
     bool fuses_passes = true;        ///< passes that can run as one do
-    int compile_threads = 0;         ///< beside the caller's
+    int compile_threads = 0;         ///< beside the caller's; with one, another makes textures
     bool marks_undrawn = false;      ///< partial textures have every bit set where no pass draws
+    bool primes = false;             ///< what the first draws compile is made before them
 };
 
 /// Throws Error(ExitCode::effect) where a pass reads, or a step outputs, what no pass has written with these

@@ -42,13 +42,16 @@ std::optional<std::array<std::uint32_t, 4>> wipe_bits(const std::array<double, 4
 
 /// Whether every pixel of the pass's tiles gets what the shader makes.
 bool overwrites_tiles(const EffectManifest& manifest, const PassSpec& spec,
-                      const std::filesystem::path& glsl_folder) {
+                      const std::filesystem::path& glsl_folder, ShaderTexts& texts) {
     if (spec.blend != gpu::Blend::none) return false;
     Diagnostics faults;  // said where the program is made
-    const ShaderSource source = author_text(manifest, spec, glsl_folder, faults, ShaderFile::main);
-    return !faults.has_errors() && std::ranges::none_of(glsl_tokens(source), [](const Token& token) {
-        return token.text == "discard";
-    });
+    const ShaderSource source = author_text(manifest, spec, glsl_folder, faults, ShaderFile::main, &texts);
+    if (faults.has_errors()) return false;
+    // A backslash may divide a word.
+    if (source.text.find("discard") == std::string::npos && source.text.find('\\') == std::string::npos)
+        return true;
+    return std::ranges::none_of(glsl_tokens(source),
+                                [](const Token& token) { return token.text == "discard"; });
 }
 
 }  // namespace
@@ -61,7 +64,8 @@ void GraphBuilder::add_wipes(const StepBuild& build, const PassSpec& spec, const
     const TileListSpec& list = *build.manifest().find_tile_list(spec.over);
     const auto runs = std::ranges::find(bindings.buffers, list.runs(), &AccessSpec::name);
     const auto& places = pass.buffers[std::size_t(runs - bindings.buffers.begin())];
-    const bool overwrites = overwrites_tiles(build.manifest(), spec, tools_.programs.glsl_folder());
+    const bool overwrites =
+        overwrites_tiles(build.manifest(), spec, tools_.programs.glsl_folder(), programs_.texts());
     const int tile = count_value(list.tile, build.params);
     for (std::size_t i = 0; i < pass.targets.size(); ++i) {
         std::optional<graph::Wipe>& wipe = pass.wipes.emplace_back();

@@ -76,15 +76,15 @@ void PipelineRenderer::prepare(const FrameInputs& frame, const std::vector<std::
     // The old textures go before the new ones come, unless what they hold lives on.
     std::unique_ptr<BuiltGraph> old = std::move(built_);
     if (!pipeline_.has_history()) old.reset();
-    build(frame, roles);
+    build(frame, roles, false);
     if (old) built_->executor->take_history_from(*old->executor);
 }
 
-void PipelineRenderer::build(const FrameInputs& frame, const std::vector<std::string>& roles) {
-    built_ =
-        build_graph({context_, *programs_, files_, telemetry_, status_, keeps_steps_,
-                     fuses_passes_ && !keeps_steps_ && !audit_, compile_threads_, keeps_steps_ || audit_},
-                    {pipeline_, frame, params_, natives_, roles});
+void PipelineRenderer::build(const FrameInputs& frame, const std::vector<std::string>& roles, bool primes) {
+    built_ = build_graph(
+        {context_, *programs_, files_, telemetry_, status_, keeps_steps_,
+         fuses_passes_ && !keeps_steps_ && !audit_, compile_threads_, keeps_steps_ || audit_, primes},
+        {pipeline_, frame, params_, natives_, roles});
     ++graphs_built_;
     set_hooks();
 }
@@ -102,9 +102,7 @@ void PipelineRenderer::build_ahead(const FrameInputs& frame, const std::vector<s
     if (!can_build_ahead()) return;
     try {
         resolve(frame);
-        build(frame, roles);
-        // Where threads compile, they draw each pass as well.
-        if (!built_->ahead) built_->executor->prime();
+        build(frame, roles, true);
     } catch (const Error& error) {
         built_.reset();
         if (error.exit_code() == ExitCode::memory) throw;

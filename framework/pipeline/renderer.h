@@ -122,7 +122,7 @@ private:
     int first_changed_step(const std::vector<ParamSet>& before, const std::vector<std::string>& mixes) const;
     std::vector<std::string> mixes() const;
     void prepare(const FrameInputs& frame, const std::vector<std::string>& roles);
-    void build(const FrameInputs& frame, const std::vector<std::string>& roles);
+    void build(const FrameInputs& frame, const std::vector<std::string>& roles, bool primes);
     std::string history_fault(const FrameInputs& frame) const;
     double feed(const FrameInputs& frame, const std::vector<std::string>& roles, const FrameBefore& before,
                 int first_pass);

@@ -80,6 +80,36 @@ TEST(ShaderInterface, DeclaresWhatThePassSees) {
     EXPECT_EQ(lines_of_text(assembly.sound().text), expected);
 }
 
+TEST(ShaderTexts, AreReadOnceAndKeepTheirFaults) {
+    const EffectFolder folder;
+    folder.write("a.frag", "#version 450 core\n#include <pass>\n#include \"half.glsl\"\r\nlast");
+    folder.write("half.glsl", "first\n\n");
+    const EffectManifest manifest = folder.sound_manifest();
+    ShaderTexts texts;
+    const auto text_of_a = [&](Diagnostics& faults) {
+        return author_text(manifest, manifest.passes[0], folder.path(), faults, ShaderFile::main, &texts)
+            .text;
+    };
+    Diagnostics faults;
+    EXPECT_EQ(text_of_a(faults), "#version 450 core\nfirst\n\nlast\n");
+    folder.write("half.glsl", "second\n");
+    EXPECT_EQ(text_of_a(faults), "#version 450 core\nfirst\n\nlast\n");
+    EXPECT_EQ(test::lines_of(faults), Lines{});
+    texts = {};
+    EXPECT_EQ(text_of_a(faults), "#version 450 core\nsecond\nlast\n");
+
+    // One that is not there is missed by each shader that includes it.
+    texts = {};
+    std::filesystem::remove(folder.path() / "half.glsl");
+    for (int turn = 0; turn < 2; ++turn) {
+        Diagnostics missed;
+        text_of_a(missed);
+        EXPECT_EQ(test::lines_of(missed),
+                  Lines{(folder.path() / "a.frag").string() + ":3:1: error: cannot read " +
+                        (folder.path() / "half.glsl").string()});
+    }
+}
+
 TEST(ShaderInterface, LeavesOutAnOptionalInputThatIsAbsent) {
     const EffectFolder folder;
     const ShaderSource source = Assembly(folder).sound();

@@ -45,10 +45,11 @@ private:
     /// Passes of one shader with different defines share its text. A tile list's shader includes its
     /// predicate.
     const ShaderUses& uses_of(ShaderFile file) {
-        const std::pair path(shader_path(*pass_, file, glsl_folder_), pass_->folder / pass_->shader);
+        const std::pair path(shader_path(*pass_, file, glsl_folder_).string(),
+                             (pass_->folder / pass_->shader).string());
         const auto found = uses_.find(path);
         if (found != uses_.end()) return found->second;
-        ShaderUses uses(author_text(manifest_, *pass_, glsl_folder_, diagnostics_, file));
+        ShaderUses uses(author_text(manifest_, *pass_, glsl_folder_, diagnostics_, file, &texts_));
         return uses_.emplace(path, std::move(uses)).first->second;
     }
 
@@ -156,7 +157,8 @@ private:
     const EffectManifest& manifest_;
     const fs::path glsl_folder_;
     Diagnostics& diagnostics_;
-    std::map<std::pair<fs::path, fs::path>, ShaderUses> uses_;
+    ShaderTexts texts_;
+    std::map<std::pair<std::string, std::string>, ShaderUses> uses_;
     PassSpec* pass_ = nullptr;  // whose uses are inferred
     std::set<std::string> told_;
 };
