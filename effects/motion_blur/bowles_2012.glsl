@@ -20,7 +20,7 @@ Found what_comes(vec2 point, vec4 path, float t) {
     vec4 guess = motion_at(point - way_px(path, t)).path;
     vec2 from = point - way_px(guess, t);
     Motion m = motion_at(from);
-    vec2 at = point - way_px(m.path, t), middle = clamp(floor(from), vec2(0.0), vec2(frame.size - 1)) + 0.5;
+    vec2 at = point - way_px(m.path, t), middle = vec2(texel_at(from)) + 0.5;
     vec2 off = at - middle, inside = clamp(off, -0.499, 0.499), turn = at - from;
     bool is_sure = off == inside || dot(turn, turn) < kSurePx * kSurePx;
     return Found(is_sure ? middle + inside : at, m.depth_m, m.share, dot(off, off) < 1.0, is_sure);
@@ -34,8 +34,8 @@ vec4 light_at(vec2 point, ivec2 texel) {
     const float kOutshines = 8.0;
     vec4 mixed = color_at(point), nearest = texelFetch(color, texel, 0);
     vec2 weight = 1.0 - abs(fract(point) - 0.5);
-    float share = weight.x * weight.y, own = amount(nearest.rgb);
-    float others = max(amount(mixed.rgb) - share * own, 0.0) / max(1.0 - share, 1e-3);
+    float share = weight.x * weight.y, all = amount(nearest.rgb);
+    float own = all * max(1.0 - share, 1e-3), others = max(amount(mixed.rgb) - share * all, 0.0);  // times the others' share
     return max(own, others) > kOutshines * min(own, others) ? nearest : mixed;
 }
 

@@ -4,7 +4,7 @@
 
 // How far this pixel's times are moved, in their distance: nothing where there is a time for each px.
 float time_shift(vec4 path, int taps) {
-    float apart_px = distance(way_px(path, kOpens), way_px(path, kCloses)) / float(taps);
+    float apart_px = sweep_px(path) / float(taps);
     return (random_phase() - 0.5) * param.jitter * clamp(apart_px - 1.0, 0.0, 1.0);
 }
 
@@ -12,6 +12,7 @@ float tap_time(int i, float shift, int taps) { return kOpens + (float(i) + 0.5 +
 
 vec4 color_at(vec2 point) { return textureLod(color, point * color_size.zw, 0.0); }
 
-ivec2 texel_at(vec2 point) { return clamp(ivec2(floor(point)), ivec2(0), frame.size - 1); }
+// The conversion rounds down, as nothing is below 0 here.
+ivec2 texel_at(vec2 point) { return ivec2(clamp(point, vec2(0.0), vec2(frame.size - 1))); }
 
 Motion motion_at(vec2 point) { return packed_motion(texel_at(point)); }
