@@ -41,22 +41,22 @@ vec4 light_at(vec2 point, ivec2 texel) {
 
 vec4 light_at(vec2 point) { return light_at(point, texel_at(point)); }
 
-bool outshines(vec2 place, vec2 other) {
-    const float kOutshines = 4.0;
-    return amount(texelFetch(color, texel_at(place), 0).rgb) > kOutshines * amount(texelFetch(color, texel_at(other), 0).rgb);
-}
+float amount_at(vec2 point) { return amount(texelFetch(color, texel_at(point), 0).rgb); }
 
 // Where a pixel lies that shows what the thing at the point hides: from where it comes, or on its other side. What stands in front of
 // the thing is not behind it, and a light that is seen on one side, or at the very edge, does not go on behind the thing.
 vec2 beside_at(vec2 point, Motion own, float t) {
-    const float kBeyondPx = 6.0;
+    const float kBeyondPx = 6.0, kOutshines = 4.0;
     vec2 way = way_px(own.path, t), here = point - way, there = point - way_px(own.path, -t);
-    float here_m = motion_at(here).depth_m, there_m = motion_at(there).depth_m, behind_m = kInFront * own.depth_m;
-    if (here_m <= behind_m && there_m <= behind_m) return kInFront * here_m < own.depth_m || outshines(here, point) ? point : here;
-    bool is_there = there_m > here_m;
-    if (here_m > behind_m && there_m > behind_m) is_there = outshines(here, there);
+    float here_m = depth_at(here), there_m = depth_at(there), behind_m = kInFront * own.depth_m;
+    float here_amount = amount_at(here), there_amount = amount_at(there);
+    bool is_here_behind = here_m > behind_m, is_there_behind = there_m > behind_m;
+    bool is_there = is_here_behind && is_there_behind ? here_amount > kOutshines * there_amount : there_m > here_m;
     vec2 place = is_there ? there : here, beyond = place + (is_there ? way : -way) * kBeyondPx / max(length(way), 1e-3);
-    return motion_at(beyond).depth_m > behind_m && outshines(place, beyond) ? beyond : place;
+    bool is_lone = depth_at(beyond) > behind_m && (is_there ? there_amount : here_amount) > kOutshines * amount_at(beyond);
+    bool is_in_front = kInFront * here_m < own.depth_m || here_amount > kOutshines * amount_at(point);
+    vec2 nowhere = is_in_front ? point : here;
+    return is_here_behind || is_there_behind ? (is_lone ? beyond : place) : nowhere;
 }
 
 // What lies behind the thing at the point. `beside` is where the pixel comes from that shows what is behind it now.
