@@ -33,11 +33,10 @@ uvec2 pack_path(vec4 path) {
     return uvec2((part.xz & 0xffff) | part.yw << 16);
 }
 
-vec4 unpack_path(uvec2 words) {
-    // Not unpackSnorm2x16, which takes software GL twice as long. The numbers stay in the upper half of a word.
-    ivec4 path = ivec4(uvec4(words.x << 16, words.x & 0xffff0000u, words.y << 16, words.y & 0xffff0000u));
-    return vec4(path) * (path_range_px() / (65536.0 * 32767.0));
-}
+// Each in the upper half of a word. Not unpackSnorm2x16, which takes software GL twice as long.
+ivec4 packed_numbers(uvec2 words) { return ivec4(words.x << 16, words.x & 0xffff0000u, words.y << 16, words.y & 0xffff0000u); }
+
+vec4 unpack_path(uvec2 words) { return vec4(packed_numbers(words)) * (path_range_px() / (65536.0 * 32767.0)); }
 
 uvec4 pack_motion(Motion m) { return uvec4(pack_path(m.path), floatBitsToUint(vec2(m.depth_m, m.share))); }
 
