@@ -16,6 +16,7 @@
 #include "framework/gpu/foreign_context.h"
 #include "framework/gpu/handle.h"
 #include "framework/gpu/self_test.h"
+#include "framework/gpu/thread_placement.h"
 
 namespace aftershade::gpu {
 namespace {
@@ -126,6 +127,7 @@ Context::Context(Backend backend) {
         try {
             impl_ = std::make_unique<Impl>(candidate);
             self_test(*this);
+            spread_software_threads();
             return;
         } catch (const Error& error) {
             impl_.reset();
