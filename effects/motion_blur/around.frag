@@ -54,11 +54,11 @@ void take_nearest_cells(ivec2 tile, float way, inout vec4 low, inout vec4 high) 
     high = last < 0 ? high : most;
 }
 
-// Alike within the distance of two samples of a long blur.
+// Alike within a tenth of the sweep.
 bool is_even(vec4 furthest, vec4 low, vec4 high) {
     vec4 spread = high - low;
     vec2 apart = (spread.xy + spread.zw * kFurthestTime) * kFurthestTime;
-    return max(apart.x, apart.y) <= max(kAlike, sweep_px(furthest) / float(kTimes));
+    return max(apart.x, apart.y) <= max(kAlike, 0.1 * sweep_px(furthest));
 }
 
 bool is_still(vec4 low, vec4 high) {

@@ -16,15 +16,18 @@ bool leads_to(vec2 point, vec2 from, vec4 path, float t) {
 
 // `path`: a first guess of its path. The motion found there is the next guess, and once more: where motion differs from point to
 // point, as on what rolls, the first guess misses its rim.
-Found what_comes(vec2 point, vec4 path, float t) {
-    vec4 guess = motion_at(point - way_px(path, t)).path;
+Found what_comes_by(vec2 point, vec4 guess, float t) {
     vec2 from = point - way_px(guess, t);
     Motion m = motion_at(from);
-    vec2 at = point - way_px(m.path, t), middle = clamp(floor(from), vec2(0.0), vec2(frame.size - 1)) + 0.5;
+    vec2 at = point - way_px(m.path, t), middle = vec2(texel_at(from)) + 0.5;
     vec2 off = at - middle, inside = clamp(off, -0.499, 0.499), turn = at - from;
     bool is_sure = off == inside || dot(turn, turn) < kSurePx * kSurePx;
     return Found(is_sure ? middle + inside : at, m.depth_m, m.share, dot(off, off) < 1.0, is_sure);
 }
+
+vec4 guess_of(vec2 point, vec4 path, float t) { return motion_at(point - way_px(path, t)).path; }
+
+Found what_comes(vec2 point, vec4 path, float t) { return what_comes_by(point, guess_of(point, path, t), t); }
 
 float amount(vec3 rgb) { return rgb.r + rgb.g + rgb.b; }
 
@@ -34,29 +37,42 @@ vec4 light_at(vec2 point, ivec2 texel) {
     const float kOutshines = 8.0;
     vec4 mixed = color_at(point), nearest = texelFetch(color, texel, 0);
     vec2 weight = 1.0 - abs(fract(point) - 0.5);
-    float share = weight.x * weight.y, own = amount(nearest.rgb);
-    float others = max(amount(mixed.rgb) - share * own, 0.0) / max(1.0 - share, 1e-3);
+    float share = weight.x * weight.y, all = amount(nearest.rgb);
+    float own = all * max(1.0 - share, 1e-3), others = max(amount(mixed.rgb) - share * all, 0.0);  // times the others' share
     return max(own, others) > kOutshines * min(own, others) ? nearest : mixed;
 }
 
 vec4 light_at(vec2 point) { return light_at(point, texel_at(point)); }
 
-bool outshines(vec2 place, vec2 other) {
-    const float kOutshines = 4.0;
-    return amount(texelFetch(color, texel_at(place), 0).rgb) > kOutshines * amount(texelFetch(color, texel_at(other), 0).rgb);
+// The mean light of two places, or of one; `share`: of the second. As light_at, and that of the nearest pixels where the places are not beside
+// each other.
+vec4 light_of_two(vec2 a, vec2 b, float share) {
+    const float kOutshines = 8.0, kApartPx = 1.5;
+    vec2 middle = mix(a, b, share);
+    ivec2 a_texel = texel_at(a), b_texel = texel_at(b);
+    vec4 mixed = color_at(middle), own = mix(texelFetch(color, a_texel, 0), texelFetch(color, b_texel, 0), share);
+    vec2 by_a = max(1.0 - abs(middle - 0.5 - vec2(a_texel)), 0.0), by_b = max(1.0 - abs(middle - 0.5 - vec2(b_texel)), 0.0);
+    float known = by_a.x * by_a.y + (a_texel == b_texel ? 0.0 : by_b.x * by_b.y), amount_known = amount(own.rgb);
+    float here = amount_known * max(1.0 - known, 1e-3), others = max(amount(mixed.rgb) - known * amount_known, 0.0);
+    return dot(a - b, a - b) > kApartPx * kApartPx || max(here, others) > kOutshines * min(here, others) ? own : mixed;
 }
+
+float amount_at(vec2 point) { return amount(texelFetch(color, texel_at(point), 0).rgb); }
 
 // Where a pixel lies that shows what the thing at the point hides: from where it comes, or on its other side. What stands in front of
 // the thing is not behind it, and a light that is seen on one side, or at the very edge, does not go on behind the thing.
 vec2 beside_at(vec2 point, Motion own, float t) {
-    const float kBeyondPx = 6.0;
+    const float kBeyondPx = 6.0, kOutshines = 4.0;
     vec2 way = way_px(own.path, t), here = point - way, there = point - way_px(own.path, -t);
-    float here_m = motion_at(here).depth_m, there_m = motion_at(there).depth_m, behind_m = kInFront * own.depth_m;
-    if (here_m <= behind_m && there_m <= behind_m) return kInFront * here_m < own.depth_m || outshines(here, point) ? point : here;
-    bool is_there = there_m > here_m;
-    if (here_m > behind_m && there_m > behind_m) is_there = outshines(here, there);
+    float here_m = depth_at(here), there_m = depth_at(there), behind_m = kInFront * own.depth_m;
+    float here_amount = amount_at(here), there_amount = amount_at(there);
+    bool is_here_behind = here_m > behind_m, is_there_behind = there_m > behind_m;
+    bool is_there = is_here_behind && is_there_behind ? here_amount > kOutshines * there_amount : there_m > here_m;
     vec2 place = is_there ? there : here, beyond = place + (is_there ? way : -way) * kBeyondPx / max(length(way), 1e-3);
-    return motion_at(beyond).depth_m > behind_m && outshines(place, beyond) ? beyond : place;
+    bool is_lone = depth_at(beyond) > behind_m && (is_there ? there_amount : here_amount) > kOutshines * amount_at(beyond);
+    bool is_in_front = kInFront * here_m < own.depth_m || here_amount > kOutshines * amount_at(point);
+    vec2 nowhere = is_in_front ? point : here;
+    return is_here_behind || is_there_behind ? (is_lone ? beyond : place) : nowhere;
 }
 
 // What lies behind the thing at the point. `beside` is where the pixel comes from that shows what is behind it now.
@@ -136,28 +152,41 @@ vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
 // The nearest thing around is the furthest moving one, or moves alike. What is found from that path is mostly what the pixel's own path
 // leads to as well; unless it lies behind the pixel's own thing, which may hide it, it is not sought from there.
 vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
-    int taps = tap_count(furthest), i = 0;
-    float shift = time_shift(furthest, taps), hidden_m = kInFront * own.depth_m;
+    Parts parts = parts_of(furthest, min(param.samples, kTimes));
+    float hidden_m = kInFront * own.depth_m, from_px = parts.first_px;
     vec4 sum = vec4(0.0);
-    uint open = 0u;  // times at which a second look is due
-    float apart = 1.0 / float(taps), t = kOpens + (0.5 + shift) * apart;
+    uint open = 0u;  // parts for which a second look is due
+    int i = 0, count = int(ceil((parts.length_px - parts.first_px) / parts.step_px));
     do {
-        Found seen = what_comes(point, furthest, t);
-        t += apart;
-        if (seen.comes && seen.is_sure && seen.depth_m <= hidden_m) sum += light_at(seen.from, ivec2(seen.from));
-        else open |= 1u << uint(i);
-    } while (++i < taps);
+        float border_px = from_px + parts.step_px, to_px = border_px + parts.step_px;
+        float a_from_px = max(from_px, 0.0), a_to_px = min(border_px, parts.length_px), b_to_px = min(to_px, parts.length_px);
+        float a_t = part_time(parts, 0.5 * (a_from_px + a_to_px)), b_t = part_time(parts, 0.5 * (border_px + b_to_px));
+        Found a = what_comes(point, furthest, a_t), b = what_comes(point, furthest, b_t);
+        bool has_b = i + 1 < count;
+        bool is_a = a.comes && a.is_sure && a.depth_m <= hidden_m, is_b = has_b && b.comes && b.is_sure && b.depth_m <= hidden_m;
+        float a_px = is_a ? a_to_px - a_from_px : 0.0, b_px = is_b ? b_to_px - border_px : 0.0, both_px = a_px + b_px;
+        sum += both_px * light_of_two(is_a ? a.from : b.from, is_b ? b.from : a.from, b_px / max(both_px, 1e-6));
+        open |= (uint(!is_a) | uint(has_b && !is_b) << 1) << uint(i);
+        from_px = to_px;
+        i += 2;
+    } while (i < count);
     // Between the times of one slice its own thing moves by at most a px: one look does for all of them that are open. Tested at the
-    // end, as the loops over taps are.
-    int own_taps = min(tap_count(own.path), taps);
+    // end, as the loops over parts are. In floats, because software GL divides whole numbers lane by lane.
+    float slices_per_part = float(min(tap_count(own.path), count)) / float(count), parts_per_slice = 1.0 / slices_per_part;
+    float last_lacks_px = parts.first_px + float(count) * parts.step_px - parts.length_px;
     do {
-        int first = findLSB(open), slice = first * own_taps / taps, end = ((slice + 1) * taps + own_taps - 1) / own_taps;
+        const float kRounding = 1e-3;
+        int first = findLSB(open);
+        float slice = floor(float(first) * slices_per_part + kRounding);
+        int end = int(ceil((slice + 1.0) * parts_per_slice - kRounding));
         uint now = open & (0xffffffffu >> uint(32 - end));
-        float at = kOpens + (0.5 * float(first + findMSB(now)) + 0.5 + shift) / float(taps);
+        float middle_px = parts.first_px + (0.5 * float(first + findMSB(now)) + 0.5) * parts.step_px;
+        float at = part_time(parts, middle_px);
         vec4 light = light_of(what_comes(point, own.path, at), point, own, at);
-        sum += now == 0u ? vec4(0.0) : float(bitCount(now)) * light;
+        float share = float(bitCount(now)) * parts.step_px + float(now & 1u) * parts.first_px - float(now >> uint(count - 1) & 1u) * last_lacks_px;
+        sum += now == 0u ? vec4(0.0) : share * light;
         open &= ~now;
     } while (open != 0u);
-    return sum / float(taps);
+    return sum * parts.each_px;
 }
 #endif

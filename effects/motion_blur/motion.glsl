@@ -28,15 +28,15 @@ struct Motion {
 float path_range_px() { return 8.0 * param.max_blur; }
 
 uvec2 pack_path(vec4 path) {
-    vec4 part = path * (1.0 / path_range_px());
-    return uvec2(packSnorm2x16(part.xy), packSnorm2x16(part.zw));
+    // Not packSnorm2x16, which clamps what is within the range already.
+    ivec4 part = ivec4(roundEven(path * (32767.0 / path_range_px())));
+    return uvec2((part.xz & 0xffff) | part.yw << 16);
 }
 
-vec4 unpack_path(uvec2 words) {
-    // Not unpackSnorm2x16, which takes software GL twice as long.
-    ivec4 path = ivec4(int(words.x) << 16, int(words.x), int(words.y) << 16, int(words.y)) >> 16;
-    return vec4(path) * (path_range_px() / 32767.0);
-}
+// Each in the upper half of a word. Not unpackSnorm2x16, which takes software GL twice as long.
+ivec4 packed_numbers(uvec2 words) { return ivec4(words.x << 16, words.x & 0xffff0000u, words.y << 16, words.y & 0xffff0000u); }
+
+vec4 unpack_path(uvec2 words) { return vec4(packed_numbers(words)) * (path_range_px() / (65536.0 * 32767.0)); }
 
 uvec4 pack_motion(Motion m) { return uvec4(pack_path(m.path), floatBitsToUint(vec2(m.depth_m, m.share))); }
 
@@ -48,9 +48,7 @@ Motion unpack_motion(uvec4 texel) {
 // From px per frame since the frame before and to the next; `scale`: a factor of the motion.
 Motion motion_of(vec2 since, vec2 next, float scale, float depth_m) {
     vec4 path = path_through(since, next, scale);
-    float way = longest_way_px(path);
-    if (way > param.max_blur) path *= param.max_blur / way;
-    return Motion(path, depth_m, 1.0);
+    return Motion(path * (param.max_blur / max(longest_way_px(path), param.max_blur)), depth_m, 1.0);
 }
 
 bool is_alike(vec4 path, vec4 other) {
@@ -59,7 +57,8 @@ bool is_alike(vec4 path, vec4 other) {
     return max(apart_px.x, apart_px.y) <= kAlike;
 }
 
-float sweep_px(vec4 path) { return distance(way_px(path, kOpens), way_px(path, kCloses)); }
+// From where it opens to where it closes, an exposure later.
+float sweep_px(vec4 path) { return length(path.xy + path.zw * (kOpens + kCloses)); }
 
 // One a px of the sweep, at least two: the loops over them test at their end, because llvmpipe runs the body of the others
 // once more, with every pixel masked.

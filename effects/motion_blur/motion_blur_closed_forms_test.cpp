@@ -73,18 +73,21 @@ TEST(MotionBlur, DoesNotScatterALightAtRestOverWhatTurnsBehindIt) {
 }
 
 TEST(MotionBlur, OfAPictureThatMovesAsOneIsABoxAlongItsWay) {
-    const int speed_px =
-        20;  // 10 px while the shutter is open: as many samples, at the middles of pixels' tenths
-    Capture capture = stripes(128, 32);
-    const Image& color = capture.images["color"];
-    each_pixel(color, [&](int x, int y) { set_velocity(capture, x, y, speed_px, 0); });
-    const Image blurred = blur(capture);
-    for (int x = 16; x < 112; ++x) {
-        // The integral of the picture, read linearly, from -5 to +5 px, by its trapezoids.
-        double expected = 0;
-        for (int i = -5; i <= 5; ++i)
-            expected += (std::abs(i) == 5 ? 0.5 : 1.0) * color.at(x + i, 16, 0) / 10;
-        EXPECT_NEAR(blurred.at(x, 16, 0), expected, 0.002) << x;
+    // 10 px while the shutter is open, and 50: more than the 32 samples, each of which is the mean of two
+    // pixels.
+    for (int way_px : {10, 50}) {
+        Capture capture = stripes(192, 32);
+        const Image& color = capture.images["color"];
+        each_pixel(color, [&](int x, int y) { set_velocity(capture, x, y, float(2 * way_px), 0); });
+        const Image blurred = blur(capture);
+        const int half_px = way_px / 2;
+        for (int x = 40; x < 152; ++x) {
+            // The integral of the picture, read linearly, by its trapezoids.
+            double expected = 0;
+            for (int i = -half_px; i <= half_px; ++i)
+                expected += (std::abs(i) == half_px ? 0.5 : 1.0) * color.at(x + i, 16, 0) / way_px;
+            EXPECT_NEAR(blurred.at(x, 16, 0), expected, 0.002) << way_px << " px, " << x;
+        }
     }
 }
 

@@ -9,6 +9,8 @@ vec2 depth_and_share(ivec2 p) { return texelFetch(motion_share, p, 0).xy; }
 vec2 depth_and_share(ivec2 p) { return vec2(texelFetch(depth, p, 0).r, 1.0); }
 #endif
 
+float depth_of(ivec2 p) { return depth_and_share(p).x; }
+
 Motion packed_motion(ivec2 p) {
     vec2 known = depth_and_share(p);
     return Motion(path_of(p), known.x, known.y);

@@ -11,13 +11,13 @@ void main() {
     uvec2 bits = uvec2(0u);
     for (int y = 0; y < kTile && is_zero(bits); ++y)
         for (int x = 0; x < kTile; ++x) {
-            vec2 place = (vec2(corner + ivec2(x, y)) + 0.5) * velocity_size.zw;
-            bits |= floatBitsToUint(textureLod(velocity, place, 0.0).xy);
+            ivec2 p = min(corner + ivec2(x, y), frame.size - 1);
+            bits |= floatBitsToUint(texelFetch(velocity, p, 0).xy);
 #if defined(HAS_VELOCITY_NEXT) && CURVE
-            bits |= floatBitsToUint(textureLod(velocity_next, place, 0.0).xy);
+            bits |= floatBitsToUint(texelFetch(velocity_next, p, 0).xy);
 #endif
 #ifdef SHARES_PIXELS
-            bits |= floatBitsToUint(textureLod(first_velocity, place, 0.0).xy);
+            bits |= floatBitsToUint(texelFetch(first_velocity, p, 0).xy);
 #endif
         }
     out_tile_moves = is_zero(bits) ? 0u : 1u;
