@@ -256,8 +256,8 @@ TEST(DofFocus, IsTheSameByANumberADepthAnObjectTheCameraOrAKey) {
 
 // ---- CoC by tiles ----
 
-/// Left half in focus, with an edge of less than a pixel; on the right a slope, something in front, and a light
-/// at its edge beside which a pixel has some of its light but the depth of the slope.
+/// Left half in focus, with an edge of less than a pixel; on the right a slope, something in front, and a
+/// light at its edge beside which a pixel has some of its light but the depth of the slope.
 Capture in_focus_in_part(int width, int height) {
     Capture capture = make_capture({.width = width, .height = height, .background_depth_m = kFocusM});
     Image& depth = capture.images.at("depth");
