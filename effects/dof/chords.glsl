@@ -39,7 +39,7 @@ void step_on(inout Walk walk, float tap_coc, bool is_outside, float own_coc, flo
     walk.is_over = walk.is_over || is_outside || is_found;
 }
 
-float coc_near(ivec2 p) { return as_half(texelFetch(coc, p, 0).r); }
+float coc_near(ivec2 p) { return as_half(texelFetch(lit_coc, p, 0).r); }
 float coarse_coc_at(ivec2 texel, Grid grid) { return texelFetch(coarse_coc, clamp(texel, ivec2(0), grid.last) + grid.origin, 0).r; }
 
 struct Walks { Walk a, b; };

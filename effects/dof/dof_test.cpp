@@ -254,6 +254,68 @@ TEST(DofFocus, IsTheSameByANumberADepthAnObjectTheCameraOrAKey) {
     EXPECT_FALSE(std::equal(expected.floats().begin(), expected.floats().end(), elsewhere.floats().begin()));
 }
 
+// ---- CoC by tiles ----
+
+/// Left half in focus, with an edge of less than a pixel; on the right a slope, something in front, and a
+/// light at its edge beside which a pixel has some of its light but the depth of the slope.
+Capture in_focus_in_part(int width, int height) {
+    Capture capture = make_capture({.width = width, .height = height, .background_depth_m = kFocusM});
+    Image& depth = capture.images.at("depth");
+    Image& color = capture.images.at("color");
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            color.at(x, y, 0) = 0.1f * float((x * 7 + y * 3) % 11);
+            if (x < width / 2) depth.at(x, y, 0) = x < 40 ? kFocusM * 0.97f : kFocusM * 1.03f;
+            else if (x > width * 3 / 4) depth.at(x, y, 0) = y > height / 2 ? kInfinity : kFocusM * 0.6f;
+            else depth.at(x, y, 0) = kFocusM + 0.02f * float(x - width / 2);
+        }
+    for (int c = 0; c < 3; ++c) {
+        color.at(width * 3 / 4 + 1, height / 3, c) = 900;
+        color.at(width * 3 / 4, height / 3, c) = 450;
+    }
+    return capture;
+}
+
+/// The module's textures, which a tap asks for, against those that the effect makes of some tiles alone.
+TEST(DofTiles, HaveTheModulesCocWhereABlurTakesLight) {
+    const Capture capture = in_focus_in_part(320, 100);
+    for (const bool repairs : {true, false}) {
+        std::vector<std::string> taps = {"dof.coc", "dof.lit_coc", "dof.lit", "dof.tile_step"};
+        if (repairs) taps.emplace_back("dof.coc_step");
+        LookRunner runner(Lens{12, 320}.look(kEffect, repairs ? "" : R"("highlight_repair": false)"),
+                          gpu::Backend::osmesa, taps);
+        FrameResult result = runner.run(capture);
+        const Image &coc = result.taps.at("dof.coc"), &lit_coc = result.taps.at("dof.lit_coc"),
+                    &lit = result.taps.at("dof.lit"), &steps = result.taps.at("dof.tile_step");
+        int left_out = 0, repaired = 0;
+        for (int y = 0; y < 100; ++y)
+            for (int x = 0; x < 320; ++x) {
+                const bool is_made = lit_coc.at(x, y, 0) == coc.at(x, y, 0);
+                if (lit.at(x / 16, y / 16, 0) > 0.5f) ASSERT_TRUE(is_made) << x << ", " << y;
+                else left_out += !is_made && lit_coc.at(x, y, 0) == 0;
+                const double depth_m = capture.images.at("depth").at(x, y, 0);
+                repaired += std::abs(coc.at(x, y, 0) - 12 * (1 - kFocusM / depth_m)) > 1;
+            }
+        EXPECT_GT(left_out, 320 * 100 / 4) << repairs;
+        EXPECT_EQ(repaired > 0, repairs);
+        for (int ty = 0; ty < steps.height(); ++ty)
+            for (int tx = 0; tx < steps.width(); ++tx) {
+                float smallest = kInfinity, largest = -kInfinity;
+                for (int y = 16 * ty; y < std::min(16 * ty + 16, 100); ++y)
+                    for (int x = 16 * tx; x < 16 * tx + 16; ++x) {
+                        const double depth_m = capture.images.at("depth").at(x, y, 0);
+                        smallest = std::min(smallest, float(12 * (1 - kFocusM / depth_m)));
+                        largest = std::max(largest, float(12 * (1 - kFocusM / depth_m)));
+                    }
+                EXPECT_NEAR(steps.at(tx, ty, 2), smallest, 1e-4) << tx << ", " << ty;
+                EXPECT_NEAR(steps.at(tx, ty, 3), largest, 1e-4) << tx << ", " << ty;
+                for (int c = 0; repairs && c < 4; ++c)
+                    EXPECT_EQ(steps.at(tx, ty, c), result.taps.at("dof.coc_step").at(tx, ty, c))
+                        << tx << ", " << ty;
+            }
+    }
+}
+
 // ---- against a renderer's lens ----
 
 /// The sharp input has 21.7 dB.

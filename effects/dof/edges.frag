@@ -11,8 +11,8 @@ void main() {
     for (int y = -1; y < side; ++y)
         for (int x = -1; x < side; ++x) {
             ivec2 p = clamp(corner + ivec2(x, y), ivec2(0), last);
-            float own = texelFetch(coc, p, 0).r;
-            float right = texelFetch(coc, min(p + ivec2(1, 0), last), 0).r, below = texelFetch(coc, min(p + ivec2(0, 1), last), 0).r;
+            float own = texelFetch(lit_coc, p, 0).r;
+            float right = texelFetch(lit_coc, min(p + ivec2(1, 0), last), 0).r, below = texelFetch(lit_coc, min(p + ivec2(0, 1), last), 0).r;
             out_edges = max(out_edges, max(behind_edge(own, right), behind_edge(own, below)));
         }
 }

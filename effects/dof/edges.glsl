@@ -10,9 +10,5 @@ const float kBehindPx = 0.5 * kClear;
 
 // A difference of CoC radii between neighbours from which on there is an edge; a slope, however long, hides nothing.
 bool has_edges(ivec2 tile) {
-#ifdef HAS_COC_STEP
-    return is_repaired(texelFetch(coc_step, tile, 0).r);
-#else
-    return true;
-#endif
+    return is_repaired(texelFetch(tile_step, tile, 0).r);
 }

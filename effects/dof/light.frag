@@ -13,7 +13,7 @@
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     vec4 texel = own_color(p);
-    float coc_px = texelFetch(coc, p, 0).r;
+    float coc_px = texelFetch(lit_coc, p, 0).r;
 #ifdef SILHOUETTES
     Unmixed alone = unmixed(p, texel.rgb, coc_px);
     texel.rgb = alone.color;

@@ -9,7 +9,7 @@ layout(location = 2) flat in float source_coc;
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     prepare_outline_at(source);
-    float pixel_coc = texelFetch(coc, p, 0).r, radius_px = abs(source_coc);
+    float pixel_coc = texelFetch(lit_coc, p, 0).r, radius_px = abs(source_coc);
     vec2 seen = texelFetch(veil, p, 0).rg;
     float front = clamp(pixel_coc - source_coc, 0.0, 1.0), behind = clamp(source_coc - pixel_coc, 0.0, 1.0);
     float through = front + (1.0 - front - behind) * seen.x + behind * seen.y;

@@ -15,7 +15,7 @@ vec2 middle_of_light(ivec2 p, float coc_px) {
     vec2 side = vec2(0.0);
     for (int i = 0; i < 9; ++i) {
         ivec2 to = ivec2(i % 3, i / 3) - 1, q = clamp(p + to, ivec2(0), frame.size - 1);
-        if (abs(texelFetch(coc, q, 0).r - coc_px) > 1.0) continue;
+        if (abs(texelFetch(lit_coc, q, 0).r - coc_px) > 1.0) continue;
         float amount = dot(own_color(q).rgb, vec3(1.0));
         brightest = max(brightest, amount);
         side += amount * vec2(to);
@@ -27,7 +27,7 @@ void main() {
     uint place = highlight_list[gl_InstanceID];
     ivec2 p = highlight_place(place);
     source = vec2(p) + 0.5;
-    source_coc = texelFetch(coc, p, 0).r;
+    source_coc = texelFetch(lit_coc, p, 0).r;
     source += middle_of_light(p, source_coc);
     highlight = own_color(p).rgb - unpack_light(texelFetch(light, p, 0)).color.rgb;
 #ifdef HAS_HIDDEN_HIGHLIGHT

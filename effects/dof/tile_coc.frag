@@ -5,20 +5,18 @@
 
 void main() {
     ivec2 last = frame.size - 1, corner = kTile * ivec2(gl_FragCoord.xy);
-    float smallest = texelFetch(coc, min(corner, last), 0).r, largest = smallest;
+    float smallest = texelFetch(lit_coc, min(corner, last), 0).r, largest = smallest;
     int side = kTile;
-#ifdef HAS_COC_STEP
-    // Elsewhere coc is as it was when coc_step was made of it.
-    vec4 unrepaired = texelFetch(coc_step, ivec2(gl_FragCoord.xy), 0);
+    // Elsewhere tile_step has the range.
+    vec4 unrepaired = texelFetch(tile_step, ivec2(gl_FragCoord.xy), 0);
     if (!may_be_repaired(unrepaired)) {
         smallest = unrepaired.b;
         largest = unrepaired.a;
         side = 0;
     }
-#endif
     for (int y = 0; y < side; ++y)
         for (int x = 0; x < side; ++x) {
-            float coc_px = texelFetch(coc, min(corner + ivec2(x, y), last), 0).r;
+            float coc_px = texelFetch(lit_coc, min(corner + ivec2(x, y), last), 0).r;
             smallest = min(smallest, coc_px);
             largest = max(largest, coc_px);
         }
@@ -26,7 +24,7 @@ void main() {
     if (smallest < largest - kClear)
         for (int y = 0; y < kTile; ++y)
             for (int x = 0; x < kTile; ++x) {
-                float coc_px = texelFetch(coc, min(corner + ivec2(x, y), last), 0).r;
+                float coc_px = texelFetch(lit_coc, min(corner + ivec2(x, y), last), 0).r;
                 if (coc_px < largest - kClear) before = max(before, coc_px);
             }
     out_tile_coc = vec4(smallest, largest, before, 0.0);

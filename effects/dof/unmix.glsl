@@ -2,7 +2,7 @@
 // where the nearer surface's blur dissolves.
 #include <lens/highlight.glsl>
 
-float coc_inside(ivec2 p) { return texelFetch(coc, clamp(p, ivec2(0), frame.size - 1), 0).r; }
+float coc_inside(ivec2 p) { return texelFetch(lit_coc, clamp(p, ivec2(0), frame.size - 1), 0).r; }
 vec3 color_inside(ivec2 p) { return texelFetch(color, clamp(p, ivec2(0), frame.size - 1), 0).rgb; }
 
 const float kLeastShare = 0.1, kMostShare = 0.7;

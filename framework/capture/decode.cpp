@@ -100,6 +100,15 @@ VelocityFactor velocity_factor(const RoleDecoding& decoding, const DecodeContext
 /// Values that are looked at together, so that those without a fault are decoded without a branch.
 constexpr std::size_t kRun = 1024;
 
+/// Whether each is the depth of something. Written so that NaN is nothing hit too: effects never see one.
+bool has_hits(std::span<const float> values, const RoleDecoding& decoding) {
+    const unsigned zero_is_no_hit = decoding.zero_is_no_hit;
+    unsigned nothing_hit = 0;
+    for (const float z : values)
+        nothing_hit |= unsigned(!(z < decoding.no_hit)) | (zero_is_no_hit & unsigned(z == 0));
+    return nothing_hit == 0;
+}
+
 /// Whether all lie between the marks and are finite; a NaN compares true with no limit. Marks are of x alone,
 /// so a y beyond them only sends the run to the slow path.
 bool has_motion(std::span<const float> values, const RoleDecoding& decoding) {
@@ -181,15 +190,23 @@ void decode_depth(Image& depth, const RoleDecoding& decoding, const DecodeContex
     const bool ranged = is_ranged(decoding);
     const DepthRange range = ranged ? depth_range(decoding, context) : DepthRange{};
     const std::span<float> values = depth.floats();
+    const bool is_scaled_alone = !ranged && decoding.encoding != DepthEncoding::inverse;
     const auto decode = [&](const Part& part) {
-        for (float& z : values.subspan(part.begin, part.end - part.begin)) {
-            // Written so that NaN is nothing hit too: effects never see one.
-            const bool nothing_hit = !(z < decoding.no_hit) || (decoding.zero_is_no_hit && z == 0);
-            if (nothing_hit) z = kNothingHit;
-            else if (ranged) z = ranged_depth(z, decoding, range) * decoding.scale;
-            else if (decoding.encoding == DepthEncoding::inverse)
-                z = z == 0 ? kNothingHit : decoding.scale / z;
-            else z *= decoding.scale;
+        for (std::size_t first = part.begin; first < part.end; first += kRun) {
+            const std::span<float> run = values.subspan(first, std::min(kRun, part.end - first));
+            if (is_scaled_alone && has_hits(run, decoding)) {
+                // Without a write, the memory need not be written back.
+                if (decoding.scale != 1)
+                    for (float& z : run) z *= decoding.scale;
+                continue;
+            }
+            for (float& z : run) {
+                if (!has_hits({&z, 1}, decoding)) z = kNothingHit;
+                else if (ranged) z = ranged_depth(z, decoding, range) * decoding.scale;
+                else if (decoding.encoding == DepthEncoding::inverse)
+                    z = z == 0 ? kNothingHit : decoding.scale / z;
+                else z *= decoding.scale;
+            }
         }
         return true;
     };

@@ -17,6 +17,8 @@ namespace aftershade::gpu {
 namespace {
 
 constexpr std::size_t kMaxReadBytes = std::size_t{1} << 30;
+/// Less than a core's second cache has.
+constexpr std::size_t kCachedReadBytes = std::size_t{1} << 19;
 
 /// The nearest integer that Integer holds; 0 for NaN.
 template <typename Integer>
@@ -151,9 +153,10 @@ void clear_drawn(const GladGLContext& gl, GLuint framebuffer, const TextureDesc&
     }
 }
 
-/// `values` are value_count() of them.
-template <typename Value>
-void read_into(Context& context, const Texture& texture, int level, int layer, std::span<Value> values) {
+/// `values` are value_count() of them. `band_read` gets each band of at most `band_bytes`.
+template <typename Value, typename BandRead>
+void read_into(Context& context, const Texture& texture, int level, int layer, std::span<Value> values,
+               std::size_t band_bytes, const BandRead& band_read) {
     const TextureDesc& desc = texture.desc();
     assert(level >= 0 && level < desc.mips && layer >= 0 && layer < desc.layers);
     context.make_current();
@@ -162,8 +165,9 @@ void read_into(Context& context, const Texture& texture, int level, int layer, s
     const int height = level_side(desc.height, level);
     const auto row_values =
         static_cast<std::size_t>(width) * static_cast<std::size_t>(channel_count(desc.format));
-    // In bands, because GL counts the bytes of one call in a signed 32-bit integer.
-    const int band = static_cast<int>(kMaxReadBytes / (row_values * sizeof(Value)));
+    // GL counts the bytes of one call in a signed 32-bit integer.
+    const int band =
+        std::max(1, static_cast<int>(std::min(band_bytes, kMaxReadBytes) / (row_values * sizeof(Value))));
     for (int row = 0; row < height; row += band) {
         const int rows = std::min(band, height - row);
         const std::size_t bytes = row_values * static_cast<std::size_t>(rows) * sizeof(Value);
@@ -171,6 +175,7 @@ void read_into(Context& context, const Texture& texture, int level, int layer, s
                                         gl_format(desc.format).pixel, value_type(desc),
                                         static_cast<GLsizei>(bytes),
                                         &values[row_values * static_cast<std::size_t>(row)]);
+        band_read(values.subspan(row_values * static_cast<std::size_t>(row), bytes / sizeof(Value)));
     }
     context.check(fmt::format("reading texture '{}'", texture.label()));
 }
@@ -178,7 +183,8 @@ void read_into(Context& context, const Texture& texture, int level, int layer, s
 template <typename Value>
 std::vector<Value> read_values(Context& context, const Texture& texture, int level, int layer) {
     std::vector<Value> values(value_count(texture.desc(), level));
-    read_into(context, texture, level, layer, std::span(values));
+    read_into(context, texture, level, layer, std::span(values), kMaxReadBytes,
+              [](std::span<const Value>) {});
     return values;
 }
 
@@ -259,9 +265,12 @@ std::vector<float> Texture::read_floats(int level, int layer) const {
     return converted<float>(std::span(bits), [format](std::uint32_t v) { return from_bits(v, format); });
 }
 
-void Texture::read_floats(std::span<float> values) const {
+void Texture::read_floats(std::span<float> values, const Reader& reader) const {
     assert(!is_integer(desc_.format) && values.size() == value_count(desc_, 0));
-    read_into(handle_.context(), *this, 0, 0, values);
+    read_into(handle_.context(), *this, 0, 0, values, reader ? kCachedReadBytes : kMaxReadBytes,
+              [&](std::span<const float> band) {
+                  if (reader) reader(band);
+              });
 }
 
 std::vector<std::uint32_t> Texture::read_uints(int level, int layer) const {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -79,8 +80,11 @@ public:
     void upload(std::span<const float> values, int layer = 0, int level = 0);
     void upload(std::span<const std::uint32_t> values, int layer = 0, int level = 0);
     std::vector<float> read_floats(int level = 0, int layer = 0) const;
-    /// Level 0 of a texture of floats into memory of its size, without a second copy.
-    void read_floats(std::span<float> values) const;
+    /// Looks at values that were just read and are still in the processor's cache.
+    using Reader = std::function<void(std::span<const float>)>;
+    /// Level 0 of a texture of floats into memory of its size, without a second copy. `reader` gets all rows
+    /// in turn, some at a time.
+    void read_floats(std::span<float> values, const Reader& reader = {}) const;
     std::vector<std::uint32_t> read_uints(int level = 0, int layer = 0) const;
 
     /// Every texel, every level and layer.

@@ -82,6 +82,10 @@ struct Replacement {
 
 }  // namespace
 
+bool are_finite(std::span<const float> values) {
+    return !FaultFinder(false).any_fault(values);
+}
+
 NonFinitePixels find_non_finite(const Image& image, bool infinity_allowed, int threads) {
     NonFinitePixels all;
     if (image.type() != ComponentType::float32 || image.empty()) return all;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 
 #include "framework/image/image.h"
 
@@ -24,6 +25,9 @@ struct NonFinitePixels {
 /// integers has no such pixels. A sound image costs one read of its memory.
 /// `threads` may look at a time.
 NonFinitePixels find_non_finite(const Image& image, bool infinity_allowed, int threads = 1);
+
+/// Whether none of them is NaN or infinite.
+bool are_finite(std::span<const float> values);
 
 /// Half the side of the largest neighbourhood that mend_non_finite() looks at, px.
 inline constexpr int kMendRadius_px = 3;

@@ -67,9 +67,11 @@ void apply_nan_policy(NanPolicy policy, Capture& capture) {
 
 std::vector<NonFiniteOutput> apply_nan_policy(NanPolicy policy, FrameResult& result) {
     std::vector<NonFiniteOutput> outputs;
-    for (auto& [role, image] : result.images)
+    for (auto& [role, image] : result.images) {
+        if (result.finite_roles.contains(role)) continue;
         if (const NonFinitePixels found = check_image(policy, image, may_be_infinite(role)))
             outputs.push_back({role, found});
+    }
     for (const auto& [tap, image] : result.taps)
         if (const NonFinitePixels found = find_non_finite(image, true, exr_threads()))
             outputs.push_back({tap, found});

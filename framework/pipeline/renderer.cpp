@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "framework/core/error.h"
+#include "framework/core/spare_memory.h"
 #include "framework/gpu/timer.h"
 #include "framework/image/role.h"
 #include "framework/pipeline/graph_builder.h"
@@ -58,7 +59,9 @@ PipelineRenderer::PipelineRenderer(gpu::Context& context, const Pipeline& pipeli
       status_(natives.status),
       natives_(natives) {}
 
-PipelineRenderer::~PipelineRenderer() = default;
+PipelineRenderer::~PipelineRenderer() {
+    drop_spare_memory();
+}
 
 void PipelineRenderer::resolve(const FrameInputs& frame) {
     params_.clear();

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,6 +25,7 @@ namespace aftershade {
 
 struct FrameResult {
     std::map<std::string, Image> images;      ///< by role: what the steps made of the roles asked for
+    std::set<std::string> finite_roles;       ///< of images that were seen to hold no NaN and no infinity
     std::map<std::string, Image> taps;        ///< by "step.texture"
     std::vector<graph::PassTime> times;       ///< upload, each pass, readback; empty unless timed
     std::vector<AuditFinding> audit;          ///< in the order of the passes; empty unless audited

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "framework/core/memory_pages.h"
 #include "framework/file/exr_file.h"
 #include "framework/gpu/timer.h"
+#include "framework/image/non_finite.h"
 #include "framework/image/role.h"
 #include "framework/pipeline/built_graph.h"
 #include "framework/pipeline/renderer.h"
@@ -17,26 +17,38 @@ namespace aftershade {
 
 namespace {
 
-Image read_back(const gpu::Texture& texture, int channels) {
+struct ReadImage {
+    Image image;
+    bool is_finite = false;  ///< seen to be
+};
+
+/// Floats of a texture that has as many channels.
+ReadImage read_floats(const gpu::Texture& texture) {
     const gpu::TextureDesc& desc = texture.desc();
+    ReadImage read{Image::unset(desc.width, desc.height, gpu::channel_count(desc.format), exr_threads()),
+                   true};
+    texture.read_floats(read.image.floats(), [&](std::span<const float> values) {
+        read.is_finite = read.is_finite && are_finite(values);
+    });
+    return read;
+}
+
+ReadImage read_back(const gpu::Texture& texture, int channels) {
+    const gpu::TextureDesc& desc = texture.desc();
+    const int stored = gpu::channel_count(desc.format);
     if (gpu::is_integer(desc.format)) {
-        Image image(desc.width, desc.height, gpu::channel_count(desc.format), ComponentType::uint32);
+        Image image(desc.width, desc.height, stored, ComponentType::uint32);
         const auto values = texture.read_uints();
         std::copy(values.begin(), values.end(), image.uints().begin());
-        return image;
+        return {std::move(image)};
     }
-    const int stored = gpu::channel_count(desc.format);
+    if (channels == stored) return read_floats(texture);
     Image image(desc.width, desc.height, channels);
-    if (channels == stored) {
-        make_pages(std::as_writable_bytes(image.floats()), exr_threads());
-        texture.read_floats(image.floats());
-        return image;
-    }
     const std::vector<float> values = texture.read_floats();
     for (std::size_t pixel = 0; pixel < values.size() / std::size_t(stored); ++pixel)
         std::copy_n(&values[pixel * std::size_t(stored)], channels,
                     &image.floats()[pixel * std::size_t(channels)]);
-    return image;
+    return {std::move(image)};
 }
 
 }  // namespace
@@ -49,7 +61,7 @@ FrameTelemetry PipelineRenderer::read_telemetry(int frame) const {
     const auto image = [&](const graph::TextureHandle& handle) -> const Image& {
         const auto [found, is_new] = read.try_emplace({handle.texture, handle.version});
         const gpu::Texture& texture = *executor.texture(handle);
-        if (is_new) found->second = read_back(texture, gpu::channel_count(texture.desc().format));
+        if (is_new) found->second = read_back(texture, gpu::channel_count(texture.desc().format)).image;
         return found->second;
     };
     for (std::size_t i = 0; i < pipeline_.steps.size(); ++i)
@@ -76,14 +88,18 @@ void PipelineRenderer::read_results(const std::vector<std::string>& roles, bool 
     const auto is_kept = [&](const std::string& role) {
         return std::find(kept_on_gpu_.begin(), kept_on_gpu_.end(), role) != kept_on_gpu_.end();
     };
-    for (const std::string& role : roles)
-        if (const auto handle = built_->results.find(role); handle != built_->results.end() && !is_kept(role))
-            result.images[role] = read_back(*executor.texture(handle->second), find_role(role)->channels);
+    for (const std::string& role : roles) {
+        const auto handle = built_->results.find(role);
+        if (handle == built_->results.end() || is_kept(role)) continue;
+        ReadImage read = read_back(*executor.texture(handle->second), find_role(role)->channels);
+        result.images[role] = std::move(read.image);
+        if (read.is_finite) result.finite_roles.insert(role);
+    }
     for (const Tap& tap : pipeline_.taps)
         for (std::size_t i = 0; i < pipeline_.steps.size(); ++i)
             if (pipeline_.steps[i].name == tap.step) {
                 const gpu::Texture& texture = *executor.texture(built_->textures[i].at(tap.texture));
-                result.taps[tap.text()] = read_back(texture, gpu::channel_count(texture.desc().format));
+                result.taps[tap.text()] = read_back(texture, gpu::channel_count(texture.desc().format)).image;
             }
     if (timed) result.times.push_back({"readback", timer.stop_ms()});
 }

@@ -193,6 +193,27 @@ TEST(DecodeRole, IsTheSameOnSeveralThreads) {
     EXPECT_EQ(floats_of(depth), floats_of(depth_of_one));
 }
 
+TEST(DecodeRole, JudgesEachDepthOfARunByItself) {
+    // Runs in which all hit something take a shorter way than those in which one did not.
+    for (const bool zero_is_no_hit : {false, true})
+        for (const double scale : {1.0, 0.5}) {
+            RoleDecoding decoding;
+            decoding.zero_is_no_hit = zero_is_no_hit;
+            decoding.scale = float(scale);
+            decoding.no_hit = 1000;
+            Image depth(5000, 1, 1);
+            for (std::size_t i = 0; i < depth.floats().size(); ++i) depth.floats()[i] = float(i % 900) + 1;
+            const std::vector<std::pair<std::size_t, float>> odd = {
+                {0, 0.0f}, {1500, kNan}, {1501, 1000.0f}, {3072, -2.0f}, {4999, kInf}};
+            for (const auto& [at, z] : odd) depth.floats()[at] = z;
+            std::vector<float> expected(depth.floats().begin(), depth.floats().end());
+            for (float& z : expected)
+                z = std::isnan(z) || z >= 1000 || (zero_is_no_hit && z == 0) ? kInf : z * float(scale);
+            decode_depth(depth, decoding, {});
+            EXPECT_EQ(floats_of(depth), expected) << zero_is_no_hit << scale;
+        }
+}
+
 TEST(DecodeRole, NamesTheFirstIdThatIsNoneOnAnyNumberOfThreads) {
     constexpr int kColumns = 1000, kRows = 900;
     Image ids(kColumns, kRows, 1);

@@ -63,6 +63,23 @@ TEST_P(TextureOn, GivesBackTheIntegersThatWereUploadedInEveryFormat) {
     }
 }
 
+TEST_P(TextureOn, ShowsEachRowThatWasReadOnce) {
+    // More than a processor's cache has, and a height that bands do not divide.
+    Texture texture = make({.width = 1000, .height = 331});
+    std::vector<float> values(4U * 1000U * 331U);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i);
+    texture.upload(values);
+    std::vector<float> got(values.size()), shown;
+    int bands = 0;
+    texture.read_floats(std::span(got), [&](std::span<const float> band) {
+        shown.insert(shown.end(), band.begin(), band.end());
+        ++bands;
+    });
+    EXPECT_EQ(got, values);
+    EXPECT_EQ(shown, values);
+    EXPECT_GT(bands, 5);
+}
+
 TEST_P(TextureOn, KeepsEveryBitOfAFloat) {
     Texture texture = make({.width = 2, .height = 2});
     const float inf = std::numeric_limits<float>::infinity();

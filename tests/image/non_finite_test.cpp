@@ -89,6 +89,18 @@ TEST(NonFinite, EveryKindOfValueIsJudgedWhereverItStands) {
     }
 }
 
+TEST(NonFinite, ValuesAreFiniteIfNoneIsNanOrInfinite) {
+    std::vector<float> values(37, 1.5f);
+    EXPECT_TRUE(are_finite(values));
+    EXPECT_TRUE(are_finite({}));
+    for (std::size_t i = 0; i < values.size(); ++i)
+        for (const float fault : {std::nanf(""), kInf, -kInf}) {
+            values[i] = fault;
+            EXPECT_FALSE(are_finite(values)) << i << " " << fault;
+            values[i] = 1.5f;
+        }
+}
+
 TEST(NonFinite, IntegersHaveNone) {
     Image ids(3, 3, 1, ComponentType::uint32);
     for (std::uint32_t& id : ids.uints()) id = 0x7fc00000;  // the bits of a NaN

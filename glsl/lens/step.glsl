@@ -1,0 +1,97 @@
+// Where surfaces end, by tiles, for shaders that give block(p): the CoC radii of 2 x 2 texels as textureGather orders them, lower left,
+// lower right, upper right, upper left. Needs highlight.glsl.
+
+const int kSide = kRepairTile + 2;  // with 1 px around
+
+ivec2 inside(ivec2 p) { return clamp(p, ivec2(0), ivec2(color_size.xy) - 1); }
+
+float smallest_of(vec4 v) { return min(min(v.x, v.y), min(v.z, v.w)); }
+float largest_of(vec4 v) { return max(max(v.x, v.y), max(v.z, v.w)); }
+
+// Two rows of the tile, with 1 px to their left and 2 px to their right, in registers: each texel is fetched once, with the three beside
+// it, which takes software GL little longer.
+struct Row { vec4 a, b, c, d, e; };
+struct Rows { Row upper, lower; };
+
+Rows rows_at(ivec2 p) {
+    Rows rows;
+    vec4 l = block(p), r = block(p + ivec2(2, 0));
+    rows.upper.a = vec4(l.wz, r.wz);
+    rows.lower.a = vec4(l.xy, r.xy);
+    l = block(p + ivec2(4, 0)), r = block(p + ivec2(6, 0));
+    rows.upper.b = vec4(l.wz, r.wz);
+    rows.lower.b = vec4(l.xy, r.xy);
+    l = block(p + ivec2(8, 0)), r = block(p + ivec2(10, 0));
+    rows.upper.c = vec4(l.wz, r.wz);
+    rows.lower.c = vec4(l.xy, r.xy);
+    l = block(p + ivec2(12, 0)), r = block(p + ivec2(14, 0));
+    rows.upper.d = vec4(l.wz, r.wz);
+    rows.lower.d = vec4(l.xy, r.xy);
+    l = block(p + ivec2(16, 0)), r = block(p + ivec2(17, 0));
+    rows.upper.e = vec4(l.wz, r.zz);
+    rows.lower.e = vec4(l.xy, r.yy);
+    return rows;
+}
+
+float step_along(Row row) {
+    vec4 ab = abs(row.a - vec4(row.a.yzw, row.b.x)), bc = abs(row.b - vec4(row.b.yzw, row.c.x));
+    vec4 cd = abs(row.c - vec4(row.c.yzw, row.d.x)), de = abs(row.d - vec4(row.d.yzw, row.e.x));
+    vec2 e = abs(row.e.xy - row.e.yz);
+    return max(max(largest_of(max(ab, bc)), largest_of(max(cd, de))), max(e.x, e.y));
+}
+
+float step_across(Row row, Row above) {
+    vec4 ab = max(abs(row.a - above.a), abs(row.b - above.b)), cd = max(abs(row.c - above.c), abs(row.d - above.d));
+    return max(largest_of(max(ab, cd)), largest_of(abs(row.e - above.e)));
+}
+
+// Of the tile's own columns.
+float smallest_own(Row row) {
+    return min(min(smallest_of(min(row.b, row.c)), smallest_of(row.d)), min(min(row.a.y, row.a.z), min(row.a.w, row.e.x)));
+}
+float largest_own(Row row) {
+    return max(max(largest_of(max(row.b, row.c)), largest_of(row.d)), max(max(row.a.y, row.a.z), max(row.a.w, row.e.x)));
+}
+
+// As coc_step holds it.
+vec4 step_of(ivec2 tile) {
+    ivec2 corner = kRepairTile * tile - 1;
+    float step_px = 0.0, smallest = 1e30, greatest = -1e30;
+    const vec4 kNone = vec4(0.0);
+    Row above = Row(kNone, kNone, kNone, kNone, kNone);
+    int y = 0;
+    do {
+        Rows rows = rows_at(corner + ivec2(0, y));
+        float across = step_across(rows.lower, rows.upper);
+        if (y > 0) across = max(across, step_across(rows.upper, above));
+        step_px = max(max(step_px, across), max(step_along(rows.upper), step_along(rows.lower)));
+        if (y > 0) {
+            smallest = min(smallest, smallest_own(rows.upper));
+            greatest = max(greatest, largest_own(rows.upper));
+        }
+        if (y < kRepairTile) {
+            smallest = min(smallest, smallest_own(rows.lower));
+            greatest = max(greatest, largest_own(rows.lower));
+        }
+        above = rows.lower;
+    } while ((y += 2) < kSide);
+    vec4 found = vec4(step_px, 0.0, smallest, greatest);
+    if (!is_repaired(step_px)) return found;
+    float sum = 0.0, brightest = 0.0;
+    // From a place that varies, so that a compiler does not unroll it.
+    ivec2 p = corner;
+    do {
+        p.x = corner.x;
+        do {
+            float light = amount(texelFetch(color, inside(p), 0).rgb);
+            brightest = max(brightest, light);
+            ivec2 own = p - corner;
+            if (own.x > 0 && own.x <= kRepairTile && own.y > 0 && own.y <= kRepairTile) sum += max(light, 0.0);
+        } while (++p.x < corner.x + kSide);
+    } while (++p.y < corner.y + kSide);
+    found.g = sum / float(kRepairTile * kRepairTile);
+#ifndef SHARES_PIXELS
+    if (brightest <= kOutshinesTile * found.g) found.g = kNothingOutshines;
+#endif
+    return found;
+}
