@@ -16,7 +16,8 @@ bool leads_to(vec2 point, vec2 from, vec4 path, float t) {
 
 // `path`: a first guess of its path. The motion found there is the next guess, and once more: where motion differs from point to
 // point, as on what rolls, the first guess misses its rim.
-Found what_comes_by(vec2 point, vec4 guess, float t) {
+Found what_comes(vec2 point, vec4 path, float t) {
+    vec4 guess = motion_at(point - way_px(path, t)).path;
     vec2 from = point - way_px(guess, t);
     Motion m = motion_at(from);
     vec2 at = point - way_px(m.path, t), middle = vec2(texel_at(from)) + 0.5;
@@ -24,10 +25,6 @@ Found what_comes_by(vec2 point, vec4 guess, float t) {
     bool is_sure = off == inside || dot(turn, turn) < kSurePx * kSurePx;
     return Found(is_sure ? middle + inside : at, m.depth_m, m.share, dot(off, off) < 1.0, is_sure);
 }
-
-vec4 guess_of(vec2 point, vec4 path, float t) { return motion_at(point - way_px(path, t)).path; }
-
-Found what_comes(vec2 point, vec4 path, float t) { return what_comes_by(point, guess_of(point, path, t), t); }
 
 float amount(vec3 rgb) { return rgb.r + rgb.g + rgb.b; }
 
