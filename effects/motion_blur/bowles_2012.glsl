@@ -180,7 +180,8 @@ vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
         float middle_px = parts.first_px + (0.5 * float(first + findMSB(now)) + 0.5) * parts.step_px;
         float at = part_time(parts, middle_px);
         vec4 light = light_of(what_comes(point, own.path, at), point, own, at);
-        float share = float(bitCount(now)) * parts.step_px + float(now & 1u) * parts.first_px - float(now >> uint(count - 1) & 1u) * last_lacks_px;
+        float lacks_px = float(now >> uint(count - 1) & 1u) * last_lacks_px - float(now & 1u) * parts.first_px;
+        float share = float(bitCount(now)) * parts.step_px - lacks_px;
         sum += now == 0u ? vec4(0.0) : share * light;
         open &= ~now;
     } while (open != 0u);
