@@ -16,7 +16,8 @@ bool leads_to(vec2 point, vec2 from, vec4 path, float t) {
 
 // `path`: a first guess of its path. The motion found there is the next guess, and once more: where motion differs from point to
 // point, as on what rolls, the first guess misses its rim.
-Found what_comes_by(vec2 point, vec4 guess, float t) {
+Found what_comes(vec2 point, vec4 path, float t) {
+    vec4 guess = motion_at(point - way_px(path, t)).path;
     vec2 from = point - way_px(guess, t);
     Motion m = motion_at(from);
     vec2 at = point - way_px(m.path, t), middle = vec2(texel_at(from)) + 0.5;
@@ -24,10 +25,6 @@ Found what_comes_by(vec2 point, vec4 guess, float t) {
     bool is_sure = off == inside || dot(turn, turn) < kSurePx * kSurePx;
     return Found(is_sure ? middle + inside : at, m.depth_m, m.share, dot(off, off) < 1.0, is_sure);
 }
-
-vec4 guess_of(vec2 point, vec4 path, float t) { return motion_at(point - way_px(path, t)).path; }
-
-Found what_comes(vec2 point, vec4 path, float t) { return what_comes_by(point, guess_of(point, path, t), t); }
 
 float amount(vec3 rgb) { return rgb.r + rgb.g + rgb.b; }
 
@@ -183,7 +180,8 @@ vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
         float middle_px = parts.first_px + (0.5 * float(first + findMSB(now)) + 0.5) * parts.step_px;
         float at = part_time(parts, middle_px);
         vec4 light = light_of(what_comes(point, own.path, at), point, own, at);
-        float share = float(bitCount(now)) * parts.step_px + float(now & 1u) * parts.first_px - float(now >> uint(count - 1) & 1u) * last_lacks_px;
+        float lacks_px = float(now >> uint(count - 1) & 1u) * last_lacks_px - float(now & 1u) * parts.first_px;
+        float share = float(bitCount(now)) * parts.step_px - lacks_px;
         sum += now == 0u ? vec4(0.0) : share * light;
         open &= ~now;
     } while (open != 0u);

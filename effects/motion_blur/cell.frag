@@ -17,7 +17,7 @@ void main() {
     for (int y = 0; y < side; ++y)
         for (int x = 0; x < side; ++x) {
             ivec2 p = min(corner + ivec2(x, y), last);
-            uvec2 words = texelFetch(motion, p, 0).xy;
+            uvec2 words = packed_path_at(p);
             vec2 known = depth_and_share(p);
             ivec4 numbers = packed_numbers(words);
             float its_way = longest_way_px(vec4(numbers));

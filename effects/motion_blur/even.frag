@@ -13,9 +13,9 @@ void main() {
     do {
         float to_px = min(border_px + parts.step_px, parts.length_px), all_px = to_px - from_px, cut_px = min(border_px, to_px);
         float place_px = border_px + 0.5 * parts.step_px * (to_px + from_px - 2.0 * cut_px) / all_px;
-        sum += all_px * parts.each_px * color_at(point - way_px(path, part_time(parts, place_px)));
+        sum += all_px * color_at(point - way_px(path, part_time(parts, place_px)));
         from_px = to_px;
         border_px += 2.0 * parts.step_px;
     } while (from_px < parts.length_px);
-    out_color = sum;
+    out_color = sum * parts.each_px;
 }

@@ -1,7 +1,9 @@
 // Motion of the picture's pixels, which the pass motion has packed.
 #include "motion.glsl"
 
-vec4 path_of(ivec2 p) { return unpack_path(texelFetch(motion, p, 0).xy); }
+uvec2 packed_path_at(ivec2 p) { return texelFetch(motion, p, 0).xy; }
+
+vec4 path_of(ivec2 p) { return unpack_path(packed_path_at(p)); }
 
 #ifdef SHARES_PIXELS
 vec2 depth_and_share(ivec2 p) { return texelFetch(motion_share, p, 0).xy; }

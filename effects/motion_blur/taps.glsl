@@ -22,7 +22,10 @@ Parts parts_of(vec4 path, int most) {
     return Parts(length_px, -fract(0.5 + (along < 0.0 ? -start : start)), step_px, tap_shift(step_px) * step_px, 1.0 / length_px);
 }
 
-float part_time(Parts parts, float place_px) { return kOpens + (place_px + parts.shift_px) * parts.each_px; }
+// In the exposure: where a path turns round, its sweep is short and little beyond it leads far away.
+float part_time(Parts parts, float place_px) {
+    return kOpens + (clamp(place_px, 0.0, parts.length_px) + parts.shift_px) * parts.each_px;
+}
 
 float tap_time(int i, float shift, int taps) { return kOpens + (float(i) + 0.5 + shift) / float(taps); }
 
