@@ -57,7 +57,7 @@ bool may_share_memory(const TextureDesc& a, const TextureDesc& b);
 /// Bytes that the texture's texels take, all layers and levels.
 std::uint64_t byte_size(const TextureDesc& desc);
 
-/// The name of a texture that nobody owns yet. Throws what Texture's constructor does.
+/// The name of a texture that no object owns yet. Throws what Texture's constructor does.
 unsigned int make_texture(Context& context, const TextureDesc& desc, const std::string& label);
 
 /// [the context's thread]

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <exception>
 #include <functional>
-#include <numeric>
 #include <system_error>
 #include <utility>
 
@@ -19,9 +18,8 @@ constexpr std::uint64_t kLeastBytes = 16ull * 1024 * 1024;
 }  // namespace
 
 bool TexturesAhead::is_useful(const Context& context, const std::vector<TextureDesc>& descs) {
-    const std::uint64_t bytes =
-        std::accumulate(descs.begin(), descs.end(), std::uint64_t{0},
-                        [](std::uint64_t sum, const TextureDesc& desc) { return sum + byte_size(desc); });
+    std::uint64_t bytes = 0;
+    for (const TextureDesc& desc : descs) bytes += byte_size(desc);
     return context.info().software && bytes >= kLeastBytes && !address_space_left();
 }
 
@@ -62,7 +60,7 @@ std::size_t TexturesAhead::textures_made() const {
     return std::size_t(std::ranges::count_if(textures_, [](const Made& made) { return made.handle != 0; }));
 }
 
-/// The largest that nobody has taken or begun; nullptr: there is nothing to do.
+/// The largest that is neither taken nor begun; nullptr: there is nothing to do.
 TexturesAhead::Made* TexturesAhead::begin_largest() {
     const std::lock_guard lock(mutex_);
     const auto found =
