@@ -4,7 +4,7 @@
 void main() {
     ivec2 last = ivec2(color_size.xy) - 1, corner = 8 * ivec2(gl_FragCoord.xy);
     float sum = 0.0;
-    // From a place that varies: unrolled, as loops of known bounds are, it took much longer to compile.
+    // From a place that varies: unrolled, as loops of constant bounds are, it took much longer to compile.
     ivec2 p = corner;
     do {
         p.x = corner.x;

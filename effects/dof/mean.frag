@@ -7,7 +7,7 @@ float amount(vec4 light) { return dot(light.rgb, vec3(1.0)); }
 void main() {
     ivec2 last = ivec2(color_size.xy) - 1, corner = 8 * ivec2(gl_FragCoord.xy);
     vec2 sum = vec2(0.0);
-    // From a place that varies: unrolled, as loops of known bounds are, it took much longer to compile.
+    // From a place that varies: unrolled, as loops of constant bounds are, it took much longer to compile.
     ivec2 at = corner;
     do {
         at.x = corner.x;
