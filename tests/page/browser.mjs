@@ -27,6 +27,7 @@ export async function openPage(browser, file, options = {}) {
     offline: true,
     ...options,
   });
+  context.setDefaultTimeout(Number(process.env.AFTERSHADE_PAGE_TIMEOUT ?? 60_000)); // for machines that are busy
   const page = await context.newPage();
   page.faults = [];
   page.requests = [];
