@@ -197,7 +197,7 @@ void Handle<ObjectKind::texture>::remove(Context& context, unsigned int name) no
     context.gl().DeleteTextures(1, &name);
 }
 
-unsigned int make_texture(Context& context, const TextureDesc& desc, const std::string& label) {
+unsigned int Texture::made(Context& context, const TextureDesc& desc, const std::string& label) {
     context.make_current();
     check_desc(context.impl().limits, desc, label);
     const GLuint name = make_storage(context.gl(), desc);
@@ -212,7 +212,7 @@ unsigned int make_texture(Context& context, const TextureDesc& desc, const std::
 }
 
 Texture::Texture(Context& context, const TextureDesc& desc, std::string label)
-    : Texture(context, desc, label, make_texture(context, desc, label)) {}
+    : Texture(context, desc, label, made(context, desc, label)) {}
 
 Texture::Texture(Context& context, const TextureDesc& desc, std::string label, unsigned int handle)
     : handle_(context, handle), desc_(desc), label_(std::move(label)) {

@@ -57,9 +57,6 @@ bool may_share_memory(const TextureDesc& a, const TextureDesc& b);
 /// Bytes that the texture's texels take, all layers and levels.
 std::uint64_t byte_size(const TextureDesc& desc);
 
-/// The name of a texture that no object owns yet. Throws what Texture's constructor does.
-unsigned int make_texture(Context& context, const TextureDesc& desc, const std::string& label);
-
 /// [the context's thread]
 class Texture {
 public:
@@ -101,6 +98,8 @@ public:
 
 private:
     friend class TexturesAhead;
+    /// The name of a texture that no object owns yet. Throws what the constructor does.
+    static unsigned int made(Context& context, const TextureDesc& desc, const std::string& label);
     /// Of a name that another context made, which shares its objects with this one.
     Texture(Context& context, const TextureDesc& desc, std::string label, unsigned int handle);
 

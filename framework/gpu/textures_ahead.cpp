@@ -74,7 +74,7 @@ void TexturesAhead::work() {
     try {
         Context context(SiblingOf{context_, true});
         while (Made* const made = begin_largest()) {
-            const unsigned int handle = make_texture(context, made->desc, "made ahead");
+            const unsigned int handle = Texture::made(context, made->desc, "made ahead");
             context.finish();
             const std::lock_guard lock(mutex_);
             made->handle = handle;
