@@ -219,9 +219,11 @@ void Executor::run_pass(const BoundPass& bound) {
         case PassKind::draw:
         case PassKind::instances:
         case PassKind::compute: run_program(bound); break;
-        case PassKind::copy:
-            gpu::copy(context_, *bound.textures.front().texture, *bound.targets.front().texture);
+        case PassKind::copy: {
+            const gpu::Texture &from = *bound.textures.front().texture, &to = *bound.targets.front().texture;
+            if (&from != &to) gpu::copy(context_, from, to);
             break;
+        }
         case PassKind::clear:
             for (std::size_t i = 0; i < bound.clear_targets.size(); ++i)
                 bound.clear_targets[i]->clear_to(pass.clear_value, bound.targets[i].level,

@@ -32,8 +32,13 @@ BufferHandle FrameGraph::add_buffer(Buffer buffer) {
     return {int(buffers_.size()) - 1, buffers_.back().version};
 }
 
-TextureHandle FrameGraph::import_texture(std::string name, const gpu::TextureDesc& desc) {
-    return add_texture({.name = std::move(name), .desc = desc, .imported = true, .version = 1});
+TextureHandle FrameGraph::import_texture(std::string name, const gpu::TextureDesc& desc,
+                                         bool is_given_each_frame) {
+    return add_texture({.name = std::move(name),
+                        .desc = desc,
+                        .imported = true,
+                        .is_given_each_frame = is_given_each_frame,
+                        .version = 1});
 }
 
 BufferHandle FrameGraph::import_buffer(std::string name, const BufferDesc& desc) {
@@ -70,9 +75,8 @@ bool FrameGraph::overwrites(const Pass& pass, const Target& target) const {
     const Texture& texture = textures_[std::size_t(target.texture.texture)];
     const bool all_levels = texture.desc.mips == 1 || texture.options.auto_mips || target.level < 0;
     const bool all_layers = texture.desc.layers == 1 || target.layer < 0;
-    const bool all_texels =
-        pass.kind == PassKind::clear || pass.kind == PassKind::copy ||
-        (pass.kind == PassKind::draw && pass.blend == gpu::Blend::none);
+    const bool all_texels = pass.kind == PassKind::clear || pass.kind == PassKind::copy ||
+                            (pass.kind == PassKind::draw && pass.blend == gpu::Blend::none);
     return all_levels && all_layers && all_texels;
 }
 

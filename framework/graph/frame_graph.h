@@ -166,8 +166,10 @@ struct SparseTexture {
 
 /// A graph made ready to run: which passes, in which order, and which texture lies in which memory.
 struct CompiledGraph {
-    std::vector<int> passes;              ///< indices of the passes that something kept depends on, in order
-    std::vector<int> slot_of_texture;     ///< per texture: index into slots, -1 for one that is not needed
+    std::vector<int> passes;  ///< indices of the passes that something kept depends on, in order
+    /// Per texture: index into slots, -1 for one that is not needed. A copy whose source nothing needs
+    /// afterwards has both its textures in one slot, and there is nothing to copy.
+    std::vector<int> slot_of_texture;
     std::vector<gpu::TextureDesc> slots;  ///< memory; textures whose lifetimes do not meet and that
                                           ///< gpu::may_share_memory() share a slot
     std::vector<int> slot_of_buffer;
@@ -183,8 +185,10 @@ struct CompiledGraph {
 
 class FrameGraph {
 public:
-    /// A texture whose content is given from outside before every frame.
-    TextureHandle import_texture(std::string name, const gpu::TextureDesc& desc);
+    /// A texture whose content is given from outside. `is_given_each_frame`: before every run, so that a pass
+    /// may change its memory once no other one needs it.
+    TextureHandle import_texture(std::string name, const gpu::TextureDesc& desc,
+                                 bool is_given_each_frame = false);
     /// A buffer whose content is given from outside, such as a table of parameters.
     BufferHandle import_buffer(std::string name, const BufferDesc& desc);
     /// A transient: lives from its first write to its last read. Reading one that is not cleared before any
@@ -229,6 +233,7 @@ public:
         gpu::TextureDesc desc;
         TextureOptions options{};
         bool imported = false;
+        bool is_given_each_frame = false;
         bool kept = false;
         int previous_of = -1;  ///< of a history's `previous`: the texture that is its `current`
         int version = 0;

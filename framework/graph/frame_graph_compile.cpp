@@ -76,13 +76,14 @@ public:
     CompiledGraph run() {
         cull();
         find_lifetimes();
+        find_copies_in_place();
         const auto bytes_of_buffer = [](const BufferDesc& desc) { return std::uint64_t(desc.bytes); };
         assign(graph_.textures(), 0, compiled_.slots, compiled_.slot_of_texture, gpu::byte_size,
-               gpu::may_share_memory);
+               gpu::may_share_memory, original_of_);
         set_formats_for_copies();
         find_sparse();
         assign(graph_.buffers(), buffers_, compiled_.buffer_slots, compiled_.slot_of_buffer, bytes_of_buffer,
-               std::equal_to());
+               std::equal_to(), std::vector<int>(graph_.buffers().size(), -1));
         for (std::size_t i = 0; i < resources_.size(); ++i) {
             auto& cleared = i < buffers_ ? compiled_.texture_cleared_before : compiled_.buffer_cleared_before;
             const bool is_seen = resources_[i].cleared && lifetimes_[i] && needed_[i][0];
@@ -203,17 +204,44 @@ private:
         }
         for (std::size_t i = 0; i < resources_.size(); ++i) {
             std::optional<Lifetime>& life = lifetimes_[i];
+            last_use_.push_back(life ? life->last : -1);
             if (resources_[i].kept) life = {life ? life->first : end, end};
             first_use_.push_back(life ? life->first : -1);
             if (life && (resources_[i].alone || !shares_memory_)) life = {-1, end};
         }
     }
 
+    /// Whether a copy of `from` can leave everything where it is: nothing needs `from` after it, and `from`
+    /// is made, or given, anew in every frame.
+    bool gives_up(const TextureHandle& from, int position) const {
+        const auto index = std::size_t(from.texture);
+        const FrameGraph::Texture& texture = graph_.textures()[index];
+        const bool comes_again = texture.imported ? texture.is_given_each_frame : texture.previous_of < 0;
+        return shares_memory_ && comes_again && !texture.kept && !texture.options.clear &&
+               !resources_[index].is_history && last_use_[index] == position;
+    }
+
+    void find_copies_in_place() {
+        original_of_.assign(buffers_, -1);
+        for (int position = 0; position < int(compiled_.passes.size()); ++position) {
+            const Pass& pass = graph_.pass(compiled_.passes[std::size_t(position)]);
+            if (pass.kind != PassKind::copy) continue;
+            const TextureHandle from = pass.reads.front().texture, to = pass.targets.front().texture;
+            const FrameGraph::Texture& copy = graph_.textures()[std::size_t(to.texture)];
+            const bool begins = first_use_[std::size_t(to.texture)] == position && !copy.imported &&
+                                !copy.options.clear && !resources_[std::size_t(to.texture)].is_history;
+            if (begins && gives_up(from, position) &&
+                copy.desc == graph_.textures()[std::size_t(from.texture)].desc)
+                original_of_[std::size_t(to.texture)] = from.texture;
+        }
+    }
+
     /// By first use, each into the first slot that suits its description and is free by then: as many slots
-    /// as live at once, since the lifetimes are intervals.
+    /// as live at once, since the lifetimes are intervals. What has an original goes to its slot.
     template <typename Node, typename Desc, typename ByteSize, typename Suits>
     void assign(const std::vector<Node>& nodes, std::size_t offset, std::vector<Desc>& slots,
-                std::vector<int>& slot_of, ByteSize byte_size, Suits suits) {
+                std::vector<int>& slot_of, ByteSize byte_size, Suits suits,
+                const std::vector<int>& original_of) {
         slot_of.assign(nodes.size(), -1);
         std::vector<std::size_t> order;
         for (std::size_t i = 0; i < nodes.size(); ++i)
@@ -226,14 +254,16 @@ private:
             const Lifetime life = *lifetimes_[offset + i];
             const Desc& desc = nodes[i].desc;
             std::size_t slot = 0;
-            while (slot < slots.size() && !(suits(slots[slot], desc) && busy_until[slot] < life.first))
-                ++slot;
+            const auto is_free = [&] { return suits(slots[slot], desc) && busy_until[slot] < life.first; };
+            if (original_of[i] >= 0) slot = std::size_t(slot_of[std::size_t(original_of[i])]);
+            else
+                while (slot < slots.size() && !is_free()) ++slot;
             if (slot == slots.size()) {
                 slots.push_back(desc);
                 busy_until.push_back(0);
                 compiled_.bytes += byte_size(desc);
             }
-            busy_until[slot] = life.last;
+            busy_until[slot] = std::max(busy_until[slot], life.last);
             slot_of[i] = int(slot);
             compiled_.bytes_unaliased += byte_size(desc);
         }
@@ -247,7 +277,8 @@ private:
     std::vector<std::vector<bool>> needed_;  // by resource and version
     std::vector<bool> runs_;
     std::vector<std::optional<Lifetime>> lifetimes_;
-    std::vector<int> first_use_;
+    std::vector<int> first_use_, last_use_;  // positions; -1 for what is not used
+    std::vector<int> original_of_;  // per texture: whose memory a copy in place keeps; -1: no such one
     CompiledGraph compiled_;
 };
 

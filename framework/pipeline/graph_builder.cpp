@@ -257,8 +257,10 @@ graph::TextureHandle GraphBuilder::import(const std::string& role, int offset) {
                               : offset == 1  ? "next."
                               : offset < 0   ? std::to_string(-offset) + " frames before."
                                              : std::to_string(offset) + " frames after.";
-    return imports_[image] =
-               graph_.import_texture(where + role, {width_, height_, texture_format_of_role(role)});
+    // Passes that run once a frame may need what those of each sub-frame have left.
+    const bool is_given_each_run = pipeline_.last_accumulating_step() < 0;
+    return imports_[image] = graph_.import_texture(
+               where + role, {width_, height_, texture_format_of_role(role)}, is_given_each_run);
 }
 
 graph::TextureHandle GraphBuilder::resolve(const InputSource& source, int offset) {

@@ -11,13 +11,14 @@ import sys
 import tempfile
 import time
 
+import focus
 from blender_turns import suzanne_1080p
 from family import ROOT
 from roofline import table
 
 WORK = ROOT / "build/bench"
 PAGE, HISTORY = ROOT / "docs/speed.md", ROOT / "scripts/speed/history.json"
-PARTS = os.environ.get("PARTS", "frames exr start film dof motion rivals roofline").split()
+PARTS = os.environ.get("PARTS", "frames exr start film dof focus motion rivals roofline").split()
 ROUNDS = os.environ.get("ROUNDS", "5")
 RIVAL_PYTHON = ROOT / "build/bench-venv/bin/python"
 AFTERSHADE = os.environ["AFTERSHADE"]
@@ -113,7 +114,7 @@ def roofline():
     return {}
 
 
-WORKS = {"frames": lambda: by_file("bench-frames", ROUNDS), "exr": lambda: by_file("bench-exr"), "start": start, "film": film, "dof": dof,
+WORKS = {"frames": lambda: by_file("bench-frames", ROUNDS), "exr": lambda: by_file("bench-exr"), "start": start, "film": film, "dof": dof, "focus": focus.figures,
          "motion": motion, "rivals": rivals, "roofline": roofline}
 
 

@@ -39,6 +39,73 @@ TEST(Aliasing, NeverSharesTheMemoryOfAnImport) {
         EXPECT_NE(slot(compiled, other), slot(compiled, chain.color));
 }
 
+/// source -> (copy) -> copied -> (blend) -> out, which is kept.
+struct Copied : Graph {
+    TextureHandle copy_of(TextureHandle from, TextureHandle to) {
+        Pass pass = pass_named("copy", PassKind::copy, {from});
+        pass.targets = {{to}};
+        return add_pass(std::move(pass)).targets.front();
+    }
+    void finish(TextureHandle to) {
+        copied = copy_of(source, to);
+        out = blend("add", {}, copied);
+        keep(out);
+    }
+    bool is_in_place(bool shares_memory = true) const {
+        const CompiledGraph compiled = compile(shares_memory);
+        return slot(compiled, out) == slot(compiled, source);
+    }
+
+    TextureHandle source = draw("source", {}, fresh("source")), copied, out;
+};
+
+TEST(Aliasing, LeavesACopyWhereItsSourceIsIfNothingNeedsTheSourceAfterwards) {
+    Copied of_pass;
+    of_pass.finish(of_pass.fresh("copied"));
+    EXPECT_TRUE(of_pass.is_in_place());
+    EXPECT_EQ(of_pass.compile().bytes, kFullBytes);
+    Copied of_capture;
+    of_capture.source = of_capture.import_texture("color", kFull, true);
+    of_capture.finish(of_capture.fresh("copied"));
+    EXPECT_TRUE(of_capture.is_in_place());
+}
+
+TEST(Aliasing, CopiesWhatALaterPassReads) {
+    Copied graph;
+    graph.copied = graph.copy_of(graph.source, graph.fresh("copied"));
+    graph.out = graph.draw("later", {graph.copied, graph.source}, graph.fresh("out"));
+    graph.keep(graph.out);
+    const CompiledGraph compiled = graph.compile();
+    EXPECT_NE(slot(compiled, graph.copied), slot(compiled, graph.source));
+}
+
+TEST(Aliasing, CopiesWhatTheNextFrameOrTheCallerNeeds) {
+    Copied kept;
+    kept.finish(kept.fresh("copied"));
+    kept.keep(kept.source);
+    EXPECT_FALSE(kept.is_in_place());
+    Copied given_once;
+    given_once.source = given_once.import_texture("table", kFull);
+    given_once.finish(given_once.fresh("copied"));
+    EXPECT_FALSE(given_once.is_in_place());
+    Copied from_history;
+    from_history.source = from_history.create_history("accum", kFull).previous;
+    from_history.finish(from_history.fresh("copied"));
+    EXPECT_FALSE(from_history.is_in_place());
+    Copied apart;
+    apart.finish(apart.fresh("copied"));
+    EXPECT_FALSE(apart.is_in_place(false));
+}
+
+TEST(Aliasing, CopiesIntoWhatWasUsedBefore) {
+    Copied graph;
+    const TextureHandle used = graph.draw("before", {}, graph.fresh("copied"));
+    const TextureHandle seen = graph.draw("seen", {used}, graph.fresh("seen"));
+    graph.keep(seen);
+    graph.finish(used);
+    EXPECT_FALSE(graph.is_in_place());
+}
+
 TEST(Aliasing, NeverSharesTheMemoryOfAHistory) {
     Graph graph;
     const TextureHistory history = graph.create_history("accum", kFull);

@@ -280,6 +280,29 @@ TEST_P(PassKindsOn, CopiesEveryBit) {
     EXPECT_EQ(executor.texture(out)->read_uints(), bits);
 }
 
+TEST_P(PassKindsOn, CopiesInPlaceWhatIsGivenForEachFrame) {
+    Graph graph;
+    const gpu::Program one = fragment(R"(
+layout(location = 0) out float result;
+void main() { result = 1.0; })");
+    const TextureHandle source = graph.import_texture("source", kSmall, true);
+    Pass copy = pass_named("copy", PassKind::copy, {source});
+    copy.targets = {{graph.fresh("copied", kSmall)}};
+    Pass add = draw_of("add", one, {}, graph.add_pass(copy).targets[0]);
+    add.blend = gpu::Blend::add;
+    const TextureHandle out = graph.add_pass(add).targets[0];
+    graph.keep(out);
+    Executor executor(context(), std::move(graph));
+    ASSERT_EQ(executor.texture(out), executor.texture(source));
+    for (const float step : {0.5f, 7.5f}) {
+        executor.texture(source)->upload(ramp(step));
+        executor.run(false);
+        Floats expected = ramp(step);
+        for (float& value : expected) value += 1;
+        EXPECT_EQ(executor.texture(out)->read_floats(), expected);
+    }
+}
+
 // A copy between two formats is a draw on software GL.
 TEST_P(PassKindsOn, CopiesIntoMemoryOfOneFormatWhateverLayThereBefore) {
     Graph graph;
