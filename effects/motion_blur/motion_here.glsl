@@ -1,5 +1,15 @@
 #include "motion.glsl"
 
+#ifdef HAS_OBJECT_ID
+// The factor of an object's motion. Software GL loads from the table lane by lane, which took longer than all else here. So the pass rest
+// has loaded that of the objects without a row, objects_default. In a table without rows the load is compared with itself, and left out.
+float scale_of(uint id) {
+    float scale = objects(id).scale;
+    bool has_row = floatBitsToUint(scale) != floatBitsToUint(objects_default.scale);
+    return has_row ? scale : texelFetch(tile_scale, ivec2(0), 0).r;
+}
+#endif
+
 // Motion of a pixel of the picture by the capture.
 Motion flat_motion(ivec2 p) {
     vec2 since = finite(texelFetch(velocity, p, 0).xy), next = since;
@@ -8,7 +18,7 @@ Motion flat_motion(ivec2 p) {
 #endif
     float scale = 1.0;
 #ifdef HAS_OBJECT_ID
-    scale = objects(texelFetch(object_id, p, 0).r).scale;
+    scale = scale_of(texelFetch(object_id, p, 0).r);
 #endif
     return motion_of(since, next, scale, texelFetch(depth, p, 0).r);
 }

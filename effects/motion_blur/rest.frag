@@ -21,4 +21,7 @@ void main() {
 #endif
         }
     out_tile_moves = is_zero(bits) ? 0u : 1u;
+#ifdef HAS_OUT_TILE_SCALE
+    out_tile_scale = objects_default.scale;
+#endif
 }
