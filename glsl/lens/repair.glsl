@@ -55,8 +55,15 @@ Crossing crossing_at(ivec2 p, Tap own, float at_infinity_px) {
 float repaired_coc(ivec2 p, float at_infinity_px, float tile_amount) {
     Tap own = tap_at(p, at_infinity_px);
     if (own.is_shared) return own.coc;
-    Crossing crossing = crossing_at(p, own, at_infinity_px);
-    if (!crossing.came_across || crossing.brightest.amount <= kOutshinesTile * tile_amount) return own.coc;
-    Crossing next = crossing_at(crossing.place, crossing.brightest, at_infinity_px);
-    return next.came_across ? next.brightest.coc : crossing.brightest.coc;
+    float coc = own.coc;
+    // To the neighbour, and from there to its own. A loop from a place that varies: a second copy takes as long to compile.
+    int turn = p.x < 0 ? 1 : 0;
+    do {
+        Crossing crossing = crossing_at(p, own, at_infinity_px);
+        if (!crossing.came_across || (turn == 0 && crossing.brightest.amount <= kOutshinesTile * tile_amount)) break;
+        own = crossing.brightest;
+        p = crossing.place;
+        coc = own.coc;
+    } while (++turn < 2);
+    return coc;
 }
