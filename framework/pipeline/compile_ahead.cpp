@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "framework/core/memory_limit.h"
+#include "framework/gpu/driver_cache.h"
 
 namespace aftershade {
 
@@ -12,9 +13,10 @@ int CompileAhead::useful_threads(const gpu::Context& context, int threads) {
     return context.info().software && !address_space_left() ? std::max(0, threads) : 0;
 }
 
-CompileAhead::CompileAhead(const gpu::Context& context, const ProgramCache& programs,
-                           std::vector<PassToCompile> passes, int threads)
+CompileAhead::CompileAhead(gpu::Context& context, ProgramCache& programs, std::vector<PassToCompile> passes,
+                           int threads)
     : context_(context),
+      programs_(programs),
       glsl_folder_(programs.glsl_folder()),
       store_(programs.store()),
       passes_(std::move(passes)),
@@ -66,8 +68,39 @@ void CompileAhead::take(const std::string& pass) {
     if (index < 0) return;
     std::unique_lock lock(mutex_);
     State& state = states_[std::size_t(index)];
-    changed_.wait(lock, [&] { return state != State::linking && state != State::drawing; });
+    while (state == State::linking || state == State::drawing) {
+        const int other = begin_first_linked();
+        if (other < 0) {
+            changed_.wait(lock);
+            continue;
+        }
+        lock.unlock();
+        draw_here(other);
+        lock.lock();
+        states_[std::size_t(other)] = State::finished;
+    }
     state = State::finished;
+}
+
+/// The first pass that nobody draws, from now on this thread's; -1: there is none.
+int CompileAhead::begin_first_linked() {
+    for (std::size_t i = 0; i < states_.size(); ++i) {
+        if (states_[i] != State::linked || !passes_[i].is_drawn) continue;
+        states_[i] = State::drawing_here;
+        return int(i);
+    }
+    return -1;
+}
+
+/// With the caller's own program, which keeps the machine code.
+void CompileAhead::draw_here(int index) {
+    const PassToCompile& pass = passes_[std::size_t(index)];
+    try {
+        graph::rehearse(context_, *programs_.get(*pass.sources), pass.shape);
+        ++passes_drawn_here_;
+    } catch (const std::exception&) {
+        // The caller meets the fault at that pass.
+    }
 }
 
 int CompileAhead::programs_made() const {
@@ -128,6 +161,7 @@ void CompileAhead::work_on(ProgramCache& programs, gpu::Context& context, int in
         if (!pass.is_drawn) return;
         graph::rehearse(context, *program, pass.shape);
         context.finish();
+        gpu::wait_for_driver_cache();
         set(State::finished, passes_drawn_);
     } catch (const std::exception&) {
         set(State::finished, failures);
