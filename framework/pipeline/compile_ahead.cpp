@@ -20,7 +20,8 @@ CompileAhead::CompileAhead(gpu::Context& context, ProgramCache& programs, std::v
       glsl_folder_(programs.glsl_folder()),
       store_(programs.store()),
       passes_(std::move(passes)),
-      states_(passes_.size(), State::open) {
+      states_(passes_.size(), State::open),
+      binary_bytes_(passes_.size()) {
     try {
         for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
     } catch (const std::system_error&) {
@@ -47,8 +48,11 @@ CompileAhead::LinkScope::LinkScope(CompileAhead* ahead, const std::string& pass)
 
 CompileAhead::LinkScope::~LinkScope() {
     if (index_ < 0) return;
+    const auto at = std::size_t(index_);
+    const std::size_t bytes = ahead_->programs_.binary_bytes(*ahead_->passes_[at].sources);
     const std::lock_guard lock(ahead_->mutex_);
-    ahead_->states_[std::size_t(index_)] = State::linked;
+    ahead_->states_[at] = State::linked;
+    ahead_->binary_bytes_[at] = bytes;
     ahead_->changed_.notify_all();
 }
 
@@ -69,11 +73,12 @@ void CompileAhead::take(const std::string& pass) {
     std::unique_lock lock(mutex_);
     State& state = states_[std::size_t(index)];
     while (state == State::linking || state == State::drawing) {
-        const int other = begin_first_linked();
+        const int other = longest_linked();
         if (other < 0) {
             changed_.wait(lock);
             continue;
         }
+        states_[std::size_t(other)] = State::drawing_here;
         lock.unlock();
         draw_here(other);
         lock.lock();
@@ -82,14 +87,27 @@ void CompileAhead::take(const std::string& pass) {
     state = State::finished;
 }
 
-/// The first pass that nobody draws, from now on this thread's; -1: there is none.
-int CompileAhead::begin_first_linked() {
-    for (std::size_t i = 0; i < states_.size(); ++i) {
-        if (states_[i] != State::linked || !passes_[i].is_drawn) continue;
-        states_[i] = State::drawing_here;
-        return int(i);
+/// Of the passes that only wait to be drawn the one with the most code: at the end short ones are left, and no
+/// core waits long. -1: there is none.
+int CompileAhead::longest_linked() const {
+    int longest = -1;
+    for (int i = 0; i < int(states_.size()); ++i) {
+        const auto at = std::size_t(i);
+        if (states_[at] != State::linked || !passes_[at].is_drawn) continue;
+        if (longest < 0 || binary_bytes_[at] > binary_bytes_[std::size_t(longest)]) longest = i;
     }
-    return -1;
+    return longest;
+}
+
+/// The last pass that nobody has linked; those that are not drawn come after all others. -1: there is none.
+int CompileAhead::last_open() const {
+    int undrawn = -1;
+    for (int i = int(states_.size()) - 1; i >= 0; --i) {
+        if (states_[std::size_t(i)] != State::open) continue;
+        if (passes_[std::size_t(i)].is_drawn) return i;
+        undrawn = std::max(undrawn, i);
+    }
+    return undrawn;
 }
 
 /// With the caller's own program, which keeps the machine code.
@@ -113,16 +131,16 @@ int CompileAhead::passes_drawn() const {
     return passes_drawn_;
 }
 
-/// The last pass that nobody works on, from now on this thread's; -1: there is none.
-int CompileAhead::begin_last_open() {
-    for (int i = int(states_.size()) - 1; i >= 0; --i) {
-        State& state = states_[std::size_t(i)];
-        if (state == State::open) state = State::linking;
-        else if (state == State::linked && passes_[std::size_t(i)].is_drawn) state = State::drawing;
-        else continue;
-        return i;
+/// A pass that nobody works on, from now on this thread's; -1: there is none.
+int CompileAhead::begin_any() {
+    int index = longest_linked();
+    if (index >= 0) {
+        states_[std::size_t(index)] = State::drawing;
+        return index;
     }
-    return -1;
+    index = last_open();
+    if (index >= 0) states_[std::size_t(index)] = State::linking;
+    return index;
 }
 
 /// Waits for what the caller is linking; -1 where nothing is left to do.
@@ -130,7 +148,7 @@ int CompileAhead::next() {
     std::unique_lock lock(mutex_);
     for (;;) {
         if (stops_) return -1;
-        if (const int index = begin_last_open(); index >= 0) return index;
+        if (const int index = begin_any(); index >= 0) return index;
         if (std::ranges::find(states_, State::linking_here) == states_.end()) return -1;
         changed_.wait(lock);
     }

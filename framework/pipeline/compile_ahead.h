@@ -22,8 +22,9 @@ struct PassToCompile {
     bool is_drawn = true;  ///< false: of a pass that nothing needs, its program alone
 };
 
-/// Threads that begin with the last pass, while the caller works from the first one on; where it comes to a
-/// pass that a thread is at, it goes on with the next one meanwhile. They hand over by two caches: programs by the ProgramStore, and the machine code that llvmpipe makes at a first draw by Mesa's
+/// Threads that begin with the last pass, while the caller links from the first one on, and then draw the
+/// longest of what it linked; where it comes to a pass that a thread is at, it does so too meanwhile. They hand
+/// over by two caches: programs by the ProgramStore, and the machine code that llvmpipe makes at a first draw by Mesa's
 /// own, since no context sees another one's. What they cannot compile they leave to the caller, who then
 /// meets the fault in its own order. [one thread, that of the context; threads of its own]
 class CompileAhead {
@@ -74,9 +75,10 @@ private:
 
     int index_of(const std::string& pass) const;
     int begin_link(int index);
-    int begin_first_linked();
+    int longest_linked() const;
+    int last_open() const;
     void draw_here(int index);
-    int begin_last_open();
+    int begin_any();
     int next();
     void work();
     void work_on(ProgramCache& programs, gpu::Context& context, int index);
@@ -89,6 +91,7 @@ private:
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     std::vector<State> states_;
+    std::vector<std::size_t> binary_bytes_;  ///< of what the caller linked
     bool stops_ = false;
     int programs_made_ = 0;
     int passes_drawn_ = 0;

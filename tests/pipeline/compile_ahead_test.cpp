@@ -170,6 +170,22 @@ TEST_P(CompileAheadOn, LetsTheCallerDrawOtherPassesWhileItWaitsForOne) {
     }
 }
 
+TEST_P(CompileAheadOn, KnowsHowLongTheCallersProgramsAre) {
+    const TemporaryFolder folder;
+    ProgramCache programs(context(), kData / "glsl", ProgramStore(folder.path()));
+    const ProgramSources small = *passes_to_compile(1).front().sources;
+    ProgramSources large = small;
+    large.main.text.insert(large.main.text.rfind('}'), "for (int i = 0; i < 9; ++i) c.x += sin(c.y * gl_FragCoord.x); ");
+    EXPECT_EQ(programs.binary_bytes(small), 0U) << "it was not asked for yet";
+    if (!programs.get(small)->binary()) GTEST_SKIP() << "SKIPPED: the driver gives no program binaries";
+    programs.get(large);
+    EXPECT_GT(programs.binary_bytes(small), 0U);
+    EXPECT_GT(programs.binary_bytes(large), programs.binary_bytes(small));
+    ProgramCache later(context(), kData / "glsl", ProgramStore(folder.path()));
+    later.get(large);
+    EXPECT_EQ(later.binary_bytes(large), programs.binary_bytes(large)) << "from the store";
+}
+
 TEST_P(CompileAheadOn, EndsWhileItCompiles) {
     const TemporaryFolder folder;
     ProgramCache programs(context(), kData / "glsl", ProgramStore(folder.path()));
