@@ -33,7 +33,7 @@ float slab_width(Line first, Line second) {
 Line first_line(int parallelogram) {
     Line line = make_line(first_degrees(parallelogram));
 #if SHAPE == SHAPE_HEXAGON
-    // Shared by both.
+    // Shared by both, which a loop takes, as shared_degrees() does.
     int i = param.squeeze < 0.0 ? 1 : 0;
     do {
         line.width = max(line.width, slab_width(line, make_line(second_degrees(i))));

@@ -1,7 +1,5 @@
 // CoC radii at the edges of small lights. Needs lens.glsl and highlight.glsl.
 
-ivec2 inside(ivec2 p) { return clamp(p, ivec2(0), ivec2(color_size.xy) - 1); }
-
 const float kLeastShare = 0.02;  // of the light: less of it cannot be seen in a blur
 
 struct Tap {
@@ -29,12 +27,13 @@ struct Crossing {
 Crossing crossing_at(ivec2 p, Tap own, float at_infinity_px) {
     Crossing crossing = Crossing(own, p, false);
     float darkest = own.amount;
+    ivec2 last = ivec2(color_size.xy) - 1;  // once: software GL fetches it anew wherever it stands
     // A compiler does not unroll loops from a place that varies; unrolled, these took three times as long to compile.
     ivec2 place = p - 1;
     do {
         place.x = p.x - 1;
         do {
-            ivec2 q = inside(place);
+            ivec2 q = clamp(place, ivec2(0), last);
             Tap tap = tap_at(q, at_infinity_px);
             if (abs(tap.coc - own.coc) <= kOneSurfacePx) {
                 darkest = min(darkest, tap.amount);
