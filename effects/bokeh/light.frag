@@ -16,7 +16,6 @@ float highlight(vec3 rgb, float radius) {
 }
 
 float gain(vec3 rgb, float radius) {
-    if (param.highlight_gain == 0.0) return 1.0;
     float blurred = clamp((radius - 0.5) / 1.5, 0.0, 1.0);  // what is in focus loses nothing
     return 1.0 + param.highlight_gain * (1.0 / kept_energy() - 1.0) * blurred * highlight(rgb, radius);
 }

@@ -32,11 +32,20 @@ float slab_width(Line first, Line second) {
 
 Line first_line(int parallelogram) {
     Line line = make_line(first_degrees(parallelogram));
-    line.width = slab_width(line, make_line(second_degrees(parallelogram)));
 #if SHAPE == SHAPE_HEXAGON
-    line.width = max(line.width, slab_width(line, make_line(second_degrees(1))));  // shared by both
+    // Shared by both, which a loop takes, as shared_degrees() does.
+    int i = param.squeeze < 0.0 ? 1 : 0;
+    do {
+        line.width = max(line.width, slab_width(line, make_line(second_degrees(i))));
+    } while (++i < 2);
+#else
+    line.width = slab_width(line, make_line(second_degrees(parallelogram)));
 #endif
     return line;
 }
+
+// From the vertex shader, which computes a line once, to the pixels.
+vec4 packed_line(Line line) { return vec4(line.x_major ? 1.0 : 0.0, line.major, line.slope, line.width); }
+Line unpacked_line(vec4 line) { return Line(line.x > 0.5, line.y, line.z, line.w); }
 
 Line second_line(int parallelogram) { return make_line(second_degrees(parallelogram)); }

@@ -84,10 +84,11 @@ float kept_energy() {
 // Two parallelograms: their first directions, and their second ones, deg. A hexagon with an edge's middle at +x is the
 // intersection of two parallelograms out of the directions 90, 30 and 150 deg; the one nearest to an axis is shared,
 // because a first blur along a diagonal would need a slab two texels wide.
-float first_degrees(int parallelogram) {
 #if SHAPE == SHAPE_HEXAGON
+float shared_degrees() {
     float best = 90.0 + param.rotation, least = 2.0;
-    for (int i = 0; i < 3; ++i) {
+    int i = param.squeeze < 0.0 ? 1 : 0;  // 0, but no compiler knows: unrolled, this takes three times as long to compile
+    do {
         float degrees = 90.0 + param.rotation - 60.0 * float(i);
         vec2 along = abs(squeezed(direction(degrees)));
         float slope = min(along.x, along.y) / max(along.x, along.y);
@@ -95,8 +96,16 @@ float first_degrees(int parallelogram) {
             least = slope;
             best = degrees;
         }
-    }
+    } while (++i < 3);
     return best;
+}
+
+float g_shared_degrees = shared_degrees();  // once, not for every line
+#endif
+
+float first_degrees(int parallelogram) {
+#if SHAPE == SHAPE_HEXAGON
+    return g_shared_degrees;
 #elif SHAPE == SHAPE_CUSTOM
     return param.rotation + (parallelogram == 0 ? param.first_angle : param.third_angle);
 #else

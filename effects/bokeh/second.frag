@@ -9,11 +9,20 @@ vec4 second_blur(usampler2D image, ivec2 p, float near_px, int parallelogram) {
 
 // `a`, `b`: blurred along the first direction of each parallelogram.
 vec4 polygon_of(usampler2D a, usampler2D b, ivec2 p, float near_px) {
-    vec4 first_one = second_blur(a, p, near_px, 0);
-#if SHAPE == SHAPE_HEXAGON || defined(HAS_FIRST_B)
-    return combine(first_one, second_blur(b, p, near_px, 1));
+#if SHAPE == SHAPE_HEXAGON
+    // Both from one image, in a loop: a second copy of the blur takes as long to compile as the first. It begins at 0, which no
+    // compiler knows, or it would be unrolled.
+    vec4 both = vec4(0.0);
+    int i = near_px < 0.0 ? 1 : 0;
+    do {
+        vec4 one = second_blur(a, p, near_px, i);
+        both = i == 0 ? one : combine(both, one);
+    } while (++i < 2);
+    return both;
+#elif defined(HAS_FIRST_B)
+    return combine(second_blur(a, p, near_px, 0), second_blur(b, p, near_px, 1));
 #else
-    return first_one;
+    return second_blur(a, p, near_px, 0);
 #endif
 }
 

@@ -4,7 +4,6 @@
 // Mean light of 8 x 8 px; the host makes the wider means.
 void main() {
     out_surroundings = vec4(0.0);
-    if (param.highlight_gain == 0.0) return;
     ivec2 corner = ivec2(gl_FragCoord.xy) * 8, last = ivec2(color_size.xy) - 1;
     // From a place that varies: unrolled, as loops of constant bounds are, this took eight times as long to compile.
     ivec2 p = corner;

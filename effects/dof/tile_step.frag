@@ -8,12 +8,14 @@
 void main() { out_tile_step = texelFetch(coc_step, ivec2(gl_FragCoord.xy), 0); }
 #else
 #if defined(HAS_COC)
-vec4 block(ivec2 p) { return textureGather(coc, vec2(p + 1) * coc_size.zw); }
+vec2 texel_of_blocks() { return coc_size.zw; }
+vec4 block(ivec2 p, vec2 texel) { return textureGather(coc, vec2(p + 1) * texel); }
 #else
 float at_infinity_px = lens_at_infinity_px();
 
-vec4 block(ivec2 p) {
-    vec4 depth_m = textureGather(depth, vec2(p + 1) * depth_size.zw);
+vec2 texel_of_blocks() { return depth_size.zw; }
+vec4 block(ivec2 p, vec2 texel) {
+    vec4 depth_m = textureGather(depth, vec2(p + 1) * texel);
     return vec4(coc_of(depth_m.x, at_infinity_px), coc_of(depth_m.y, at_infinity_px), coc_of(depth_m.z, at_infinity_px),
                 coc_of(depth_m.w, at_infinity_px));
 }

@@ -2,6 +2,15 @@
 
 namespace aftershade {
 
+namespace {
+
+bool is_another_than_0(const ParamValue& number) {
+    const auto* integer = std::get_if<std::int64_t>(&number);
+    return integer ? *integer != 0 : std::get<double>(number) != 0;
+}
+
+}  // namespace
+
 ParamValue aspect_of(const ParamSpec& spec, const ParamValue& value, ParamAspect aspect) {
     switch (aspect) {
         case ParamAspect::value: break;
@@ -11,6 +20,7 @@ ParamValue aspect_of(const ParamSpec& spec, const ParamValue& value, ParamAspect
             return std::vector<double>{double(size.width), double(size.height), double(size.channels)};
         }
         case ParamAspect::defines: return spec.type->defines(spec, value);
+        case ParamAspect::is_nonzero: return is_another_than_0(value);
     }
     return value;
 }
@@ -34,9 +44,16 @@ std::string ParamReader::defines(const ParamSpec& spec) const {
     return std::get<std::string>(ask(spec, ParamAspect::defines));
 }
 
+bool ParamReader::is_nonzero(const std::string& name) const {
+    return std::get<bool>(noted(name, ParamAspect::is_nonzero, is_another_than_0(params_->get(name))));
+}
+
 ParamValue ParamReader::ask(const ParamSpec& spec, ParamAspect aspect) const {
-    ParamValue answer = aspect_of(spec, params_->get(spec.name), aspect);
-    if (note_) note_(spec.name, aspect, answer);
+    return noted(spec.name, aspect, aspect_of(spec, params_->get(spec.name), aspect));
+}
+
+ParamValue ParamReader::noted(const std::string& name, ParamAspect aspect, ParamValue answer) const {
+    if (note_) note_(name, aspect, answer);
     return answer;
 }
 

@@ -17,7 +17,8 @@ enum class ParamAspect {
     value,
     table_entries,  ///< int: entries of its table
     texture_size,   ///< vector: width, height and channels of its texture
-    defines         ///< string: its preprocessor lines
+    defines,        ///< string: its preprocessor lines
+    is_nonzero      ///< bool: of one number, whether it is another than 0
 };
 
 /// The answer, of the type that the aspect says. The parameter's type must have that.
@@ -44,9 +45,12 @@ public:
     TexelSize texture_size(const ParamSpec& spec) const;
     /// Of a type with such lines.
     std::string defines(const ParamSpec& spec) const;
+    /// Of one number.
+    bool is_nonzero(const std::string& name) const;
 
 private:
     ParamValue ask(const ParamSpec& spec, ParamAspect aspect) const;
+    ParamValue noted(const std::string& name, ParamAspect aspect, ParamValue answer) const;
 
     const ParamSet* params_ = nullptr;
     Note note_;

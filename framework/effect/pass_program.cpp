@@ -10,6 +10,7 @@
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
 #include "framework/core/glsl_text.h"
+#include "framework/effect/glsl_tokens.h"
 #include "framework/effect/usage_check.h"
 
 namespace aftershade {
@@ -40,6 +41,13 @@ void guard(ShaderSource& source) {
     source.text.insert(source.text.find('\n') + 1, "#define main aftershade_author_main\n");
     source.lines.insert(source.lines.begin() + 1, SourceLine{"<generated>", 1});
     source.text += filled(kLoopGuard, {{"binding", std::to_string(kLoopGuardBinding)}});
+}
+
+/// Host programs, which have no lines, are short.
+bool has_loop(const ShaderSource& source) {
+    return std::ranges::any_of(all_glsl_tokens(source), [](const Token& token) {
+        return token.text == "for" || token.text == "while";
+    });
 }
 
 std::string trimmed(std::ostringstream& text) {
@@ -80,10 +88,12 @@ std::string ProgramCache::key_of(const ProgramSources& sources) const {
     return key;
 }
 
-gpu::Program ProgramCache::make(const ProgramSources& sources, const std::string& key) {
+gpu::Program ProgramCache::make(const ProgramSources& sources, const std::string& key,
+                                std::size_t& binary_bytes) {
     if (const auto binary = store_.load(key))
         if (auto program = gpu::Program::from_binary(context_, *binary, sources.is_compute, sources.label)) {
             ++loaded_;
+            binary_bytes = binary->bytes.size();
             return std::move(*program);
         }
     gpu::Program program =
@@ -91,8 +101,16 @@ gpu::Program ProgramCache::make(const ProgramSources& sources, const std::string
                            : gpu::Program::draw(context_, sources.vertex, sources.main.text, sources.label);
     ++compiled_;
     if (store_.is_on())
-        if (const auto binary = program.binary()) store_.save(key, *binary);
+        if (const auto binary = program.binary()) {
+            store_.save(key, *binary);
+            binary_bytes = binary->bytes.size();
+        }
     return program;
+}
+
+std::size_t ProgramCache::binary_bytes(const ProgramSources& sources) const {
+    const auto found = programs_.find(key_of(sources));
+    return found == programs_.end() ? 0 : found->second.binary_bytes;
 }
 
 bool ProgramCache::has(const ProgramSources& sources) const {
@@ -107,7 +125,9 @@ std::shared_ptr<const gpu::Program> ProgramCache::get(const ProgramSources& sour
     Cached& cached = programs_[key];
     if (!cached.program) {
         try {
-            cached.program = std::make_shared<const gpu::Program>(make(sources, key));
+            gpu::Program program = make(sources, key, cached.binary_bytes);
+            if (has_loop(sources.main)) program.use_one_form();
+            cached.program = std::make_shared<const gpu::Program>(std::move(program));
         } catch (...) {
             programs_.erase(key);
             throw;

@@ -66,17 +66,21 @@ public:
     bool is_guarding_loops() const { return guards_loops_; }
     const std::filesystem::path& glsl_folder() const { return glsl_folder_; }
     const ProgramStore& store() const { return store_; }
+    /// Of a program that get() made or loaded: how large the driver writes it, by which long ones are known; 0
+    /// where that is unknown.
+    std::size_t binary_bytes(const ProgramSources& sources) const;
     int compiled_count() const { return compiled_; }  ///< programs made from text
     int loaded_count() const { return loaded_; }      ///< programs taken from the store
 
 private:
     struct Cached {
         std::shared_ptr<const gpu::Program> program;
+        std::size_t binary_bytes = 0;
         std::uint64_t last_use = 0;
     };
     std::string host_vertex(const std::string& file) const;  // with what it includes
     void drop_idle();
-    gpu::Program make(const ProgramSources& sources, const std::string& key);
+    gpu::Program make(const ProgramSources& sources, const std::string& key, std::size_t& binary_bytes);
     std::string key_of(const ProgramSources& sources) const;
 
     gpu::Context& context_;

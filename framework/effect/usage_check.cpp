@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "framework/effect/glsl_names.h"
+#include "framework/effect/manifest/manifest_when.h"
 #include "framework/effect/shader_source.h"
 #include "framework/effect/shader_uses.h"
 
@@ -216,7 +217,7 @@ private:
         }
         const auto add_subjects = [&](const auto& uses) {
             for (const auto& use : uses)
-                for (const WhenSpec& condition : use.when) names.insert(condition.subject);
+                for (const WhenSpec& condition : use.when) names.insert(name_in_condition(condition.subject));
         };
         add_subjects(manifest_.inputs);
         add_subjects(manifest_.textures);

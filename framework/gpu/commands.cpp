@@ -145,6 +145,26 @@ private:
     bool enabled_;
 };
 
+/// llvmpipe makes the form for whole blocks only of draws without a logical operation. This one copies, and floats
+/// know none; where it is enabled, nothing blends.
+class OneFormScope {
+public:
+    OneFormScope(const GladGLContext& gl, bool enabled) : gl_(gl), enabled_(enabled) {
+        if (!enabled_) return;
+        gl_.Enable(GL_COLOR_LOGIC_OP);
+        gl_.LogicOp(GL_COPY);
+    }
+    ~OneFormScope() {
+        if (enabled_) gl_.Disable(GL_COLOR_LOGIC_OP);
+    }
+    OneFormScope(const OneFormScope&) = delete;
+    OneFormScope& operator=(const OneFormScope&) = delete;
+
+private:
+    const GladGLContext& gl_;
+    bool enabled_;
+};
+
 int side(int full, int level) {
     return std::max(1, full >> level);
 }
@@ -215,6 +235,7 @@ void draw_with(Context& context, const Program& program, std::span<const Target>
     {
         const PassScope pass(context, program, bindings);
         const BlendScope blending(gl, blend);
+        const OneFormScope form(gl, impl.info.software && program.has_one_form() && blend == Blend::none);
         const TextureDesc& desc = targets.front().texture->desc();
         const int level = targets.front().level;
         gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target);

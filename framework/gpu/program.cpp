@@ -127,7 +127,8 @@ Program Program::draw(Context& context, const std::string& vertex, const std::st
     const GladGLContext& gl = context.gl();
     const Stage vertex_stage(gl, GL_VERTEX_SHADER, "vertex", vertex, label);
     const Stage fragment_stage(gl, GL_FRAGMENT_SHADER, "fragment", fragment, label);
-    Program program(context, link(gl, {&vertex_stage, &fragment_stage}, label), false, std::move(label));
+    const GLuint handle = link(gl, {&vertex_stage, &fragment_stage}, label);
+    Program program(context, handle, false, std::move(label));
     context.check(fmt::format("program '{}'", program.label()));
     return program;
 }
@@ -136,7 +137,8 @@ Program Program::compute(Context& context, const std::string& source, std::strin
     context.make_current();
     const GladGLContext& gl = context.gl();
     const Stage stage(gl, GL_COMPUTE_SHADER, "compute", source, label);
-    Program program(context, link(gl, {&stage}, label), true, std::move(label));
+    const GLuint handle = link(gl, {&stage}, label);
+    Program program(context, handle, true, std::move(label));
     context.check(fmt::format("program '{}'", program.label()));
     return program;
 }

@@ -56,6 +56,11 @@ public:
 
     const std::string& label() const { return label_; }
     bool is_compute() const { return is_compute_; }
+    /// llvmpipe makes two forms of a fragment shader's machine code, one for blocks of pixels that a draw covers
+    /// whole, which need not be read. With the other alone, half is left to compile, and writing a pixel takes
+    /// some instructions more: for shaders that compute much for each pixel.
+    void use_one_form() { has_one_form_ = true; }
+    bool has_one_form() const { return has_one_form_; }
     /// nullopt where the driver gives none.
     std::optional<ProgramBinary> binary() const;
     unsigned int handle() const { return handle_.name(); }  ///< for framework/gpu
@@ -64,6 +69,7 @@ private:
     Program(Context& context, unsigned int handle, bool is_compute, std::string label);
     Handle<ObjectKind::program> handle_;
     bool is_compute_ = false;
+    bool has_one_form_ = false;
     std::string label_;
 };
 

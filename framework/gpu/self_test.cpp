@@ -13,23 +13,36 @@ namespace {
 
 constexpr std::array<float, 4> kColour = {-1.5F, 3.25F, 1e6F, 0.1F};
 
+/// glsl/fullscreen.vert to the letter: most passes then find its machine code in the driver's cache.
 constexpr const char* kVertex = R"(#version 450 core
+// One triangle that covers the target; gl_FragCoord (0.5, 0.5) is texel (0, 0), the top left of the image.
 void main() {
-    gl_Position = vec4(vec2((gl_VertexID << 1) & 2, gl_VertexID & 2) * 2.0 - 1.0, 0.0, 1.0);
+    vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
+    gl_Position = vec4(corner, 0.0, 1.0);
 }
 )";
 
 constexpr const char* kFragment = R"(#version 450 core
 layout(std140, binding = 0) uniform Colour { vec4 colour; };
 layout(location = 0) out vec4 result;
-void main() { result = colour; }
+void main() { result = colour + vec4(gl_FragCoord.xy, 0.0, 0.0); }
 )";
+
+constexpr int kWidth = 3, kHeight = 2;
+
+/// Of a channel at a texel, as the shader gives it: exact in floats.
+float expected(int x, int y, int channel) {
+    const float place = channel == 0 ? float(x) + 0.5F : channel == 1 ? float(y) + 0.5F : 0.0F;
+    return kColour[std::size_t(channel)] + place;
+}
 
 }  // namespace
 
 void self_test(Context& context) {
-    const Program program = Program::draw(context, kVertex, kFragment, "self-test");
-    const Texture target(context, {.width = 3, .height = 2, .format = TextureFormat::rgba32f}, "self-test");
+    Program program = Program::draw(context, kVertex, kFragment, "self-test");
+    program.use_one_form();
+    const Texture target(context, {.width = kWidth, .height = kHeight, .format = TextureFormat::rgba32f},
+                         "self-test");
     Buffer colour(context, sizeof(kColour), "self-test");
     colour.write(std::as_bytes(std::span(kColour)));
 
@@ -38,10 +51,11 @@ void self_test(Context& context) {
     draw(context, program, targets, {.uniforms = uniforms});
     const std::vector<float> got = target.read_floats();
     for (std::size_t i = 0; i < got.size(); ++i) {
-        if (got[i] == kColour[i % 4]) continue;
+        const int texel = int(i) / 4;
+        if (got[i] == expected(texel % kWidth, texel / kWidth, int(i) % 4)) continue;
         throw Error(ExitCode::gl,
-                    fmt::format("self-test on {}: drew ({}), read back ({})", context.info().renderer,
-                                fmt::join(kColour, ", "), fmt::join(got, ", ")));
+                    fmt::format("self-test on {}: drew ({}) and the texel's place, read back ({})",
+                                context.info().renderer, fmt::join(kColour, ", "), fmt::join(got, ", ")));
     }
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "framework/core/memory_limit.h"
+#include "framework/gpu/driver_cache.h"
 
 namespace aftershade {
 
@@ -12,13 +13,15 @@ int CompileAhead::useful_threads(const gpu::Context& context, int threads) {
     return context.info().software && !address_space_left() ? std::max(0, threads) : 0;
 }
 
-CompileAhead::CompileAhead(const gpu::Context& context, const ProgramCache& programs,
-                           std::vector<PassToCompile> passes, int threads)
+CompileAhead::CompileAhead(gpu::Context& context, ProgramCache& programs, std::vector<PassToCompile> passes,
+                           int threads)
     : context_(context),
+      programs_(programs),
       glsl_folder_(programs.glsl_folder()),
       store_(programs.store()),
       passes_(std::move(passes)),
-      states_(passes_.size(), State::open) {
+      states_(passes_.size(), State::open),
+      binary_bytes_(passes_.size()) {
     try {
         for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
     } catch (const std::system_error&) {
@@ -45,8 +48,11 @@ CompileAhead::LinkScope::LinkScope(CompileAhead* ahead, const std::string& pass)
 
 CompileAhead::LinkScope::~LinkScope() {
     if (index_ < 0) return;
+    const auto at = std::size_t(index_);
+    const std::size_t bytes = ahead_->programs_.binary_bytes(*ahead_->passes_[at].sources);
     const std::lock_guard lock(ahead_->mutex_);
-    ahead_->states_[std::size_t(index_)] = State::linked;
+    ahead_->states_[at] = State::linked;
+    ahead_->binary_bytes_[at] = bytes;
     ahead_->changed_.notify_all();
 }
 
@@ -66,8 +72,53 @@ void CompileAhead::take(const std::string& pass) {
     if (index < 0) return;
     std::unique_lock lock(mutex_);
     State& state = states_[std::size_t(index)];
-    changed_.wait(lock, [&] { return state != State::linking && state != State::drawing; });
+    while (state == State::linking || state == State::drawing) {
+        const int other = longest_linked();
+        if (other < 0) {
+            changed_.wait(lock);
+            continue;
+        }
+        states_[std::size_t(other)] = State::drawing_here;
+        lock.unlock();
+        draw_here(other);
+        lock.lock();
+        states_[std::size_t(other)] = State::finished;
+    }
     state = State::finished;
+}
+
+/// Of the passes that only wait to be drawn the one with the most code: at the end short ones are left, and no
+/// core waits long. -1: there is none.
+int CompileAhead::longest_linked() const {
+    int longest = -1;
+    for (int i = 0; i < int(states_.size()); ++i) {
+        const auto at = std::size_t(i);
+        if (states_[at] != State::linked || !passes_[at].is_drawn) continue;
+        if (longest < 0 || binary_bytes_[at] > binary_bytes_[std::size_t(longest)]) longest = i;
+    }
+    return longest;
+}
+
+/// The last pass that nobody has linked; those that are not drawn come after all others. -1: there is none.
+int CompileAhead::last_open() const {
+    int undrawn = -1;
+    for (int i = int(states_.size()) - 1; i >= 0; --i) {
+        if (states_[std::size_t(i)] != State::open) continue;
+        if (passes_[std::size_t(i)].is_drawn) return i;
+        undrawn = std::max(undrawn, i);
+    }
+    return undrawn;
+}
+
+/// With the caller's own program, which keeps the machine code.
+void CompileAhead::draw_here(int index) {
+    const PassToCompile& pass = passes_[std::size_t(index)];
+    try {
+        graph::rehearse(context_, *programs_.get(*pass.sources), pass.shape);
+        ++passes_drawn_here_;
+    } catch (const std::exception&) {
+        // The caller meets the fault at that pass.
+    }
 }
 
 int CompileAhead::programs_made() const {
@@ -80,16 +131,16 @@ int CompileAhead::passes_drawn() const {
     return passes_drawn_;
 }
 
-/// The last pass that nobody works on, from now on this thread's; -1: there is none.
-int CompileAhead::begin_last_open() {
-    for (int i = int(states_.size()) - 1; i >= 0; --i) {
-        State& state = states_[std::size_t(i)];
-        if (state == State::open) state = State::linking;
-        else if (state == State::linked && passes_[std::size_t(i)].is_drawn) state = State::drawing;
-        else continue;
-        return i;
+/// A pass that nobody works on, from now on this thread's; -1: there is none.
+int CompileAhead::begin_any() {
+    int index = longest_linked();
+    if (index >= 0) {
+        states_[std::size_t(index)] = State::drawing;
+        return index;
     }
-    return -1;
+    index = last_open();
+    if (index >= 0) states_[std::size_t(index)] = State::linking;
+    return index;
 }
 
 /// Waits for what the caller is linking; -1 where nothing is left to do.
@@ -97,7 +148,7 @@ int CompileAhead::next() {
     std::unique_lock lock(mutex_);
     for (;;) {
         if (stops_) return -1;
-        if (const int index = begin_last_open(); index >= 0) return index;
+        if (const int index = begin_any(); index >= 0) return index;
         if (std::ranges::find(states_, State::linking_here) == states_.end()) return -1;
         changed_.wait(lock);
     }
@@ -128,6 +179,7 @@ void CompileAhead::work_on(ProgramCache& programs, gpu::Context& context, int in
         if (!pass.is_drawn) return;
         graph::rehearse(context, *program, pass.shape);
         context.finish();
+        gpu::wait_for_driver_cache();
         set(State::finished, passes_drawn_);
     } catch (const std::exception&) {
         set(State::finished, failures);

@@ -22,8 +22,9 @@ struct PassToCompile {
     bool is_drawn = true;  ///< false: of a pass that nothing needs, its program alone
 };
 
-/// Threads that begin with the last pass, while the caller works from the first one on. They hand over by two
-/// caches: programs by the ProgramStore, and the machine code that llvmpipe makes at a first draw by Mesa's
+/// Threads that begin with the last pass, while the caller links from the first one on, and then draw the
+/// longest of what it linked; where it comes to a pass that a thread is at, it does so too meanwhile. They hand
+/// over by two caches: programs by the ProgramStore, and the machine code that llvmpipe makes at a first draw by Mesa's
 /// own, since no context sees another one's. What they cannot compile they leave to the caller, who then
 /// meets the fault in its own order. [one thread, that of the context; threads of its own]
 class CompileAhead {
@@ -33,8 +34,8 @@ public:
     /// what it allocates.
     static int useful_threads(const gpu::Context& context, int threads);
 
-    /// `context` outlives this.
-    CompileAhead(const gpu::Context& context, const ProgramCache& programs, std::vector<PassToCompile> passes,
+    /// `context` and `programs` outlive this.
+    CompileAhead(gpu::Context& context, ProgramCache& programs, std::vector<PassToCompile> passes,
                  int threads);
     /// Waits for the compilations at hand; begins no other.
     ~CompileAhead();
@@ -58,6 +59,8 @@ public:
     /// What the threads compiled so far.
     int programs_made() const;
     int passes_drawn() const;
+    /// What the caller drew ahead while it waited.
+    int passes_drawn_here() const { return passes_drawn_here_; }
 
 private:
     enum class State {
@@ -66,26 +69,33 @@ private:
         linking_here,  // by the caller
         linked,        // by the caller
         drawing,       // by a thread
+        drawing_here,  // by the caller, ahead
         finished       // by a thread, or taken by the caller
     };
 
     int index_of(const std::string& pass) const;
     int begin_link(int index);
-    int begin_last_open();
+    int longest_linked() const;
+    int last_open() const;
+    void draw_here(int index);
+    int begin_any();
     int next();
     void work();
     void work_on(ProgramCache& programs, gpu::Context& context, int index);
 
-    const gpu::Context& context_;
+    gpu::Context& context_;
+    ProgramCache& programs_;
     const std::filesystem::path glsl_folder_;
     const ProgramStore store_;
     const std::vector<PassToCompile> passes_;
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     std::vector<State> states_;
+    std::vector<std::size_t> binary_bytes_;  ///< of what the caller linked
     bool stops_ = false;
     int programs_made_ = 0;
     int passes_drawn_ = 0;
+    int passes_drawn_here_ = 0;
     std::vector<std::thread> threads_;
 };
 

@@ -32,8 +32,7 @@ void main() {
         int last = row;
         while (last < 15 && (rows[last + 1] & around) == run) ++last;
         uint rectangle = atomicAdd(TILE_ARGS[1], 1u);
-        TILE_RUNS[rectangle].x = uint(tile.x + first);
-        TILE_RUNS[rectangle].y = uint(tile.y);
-        TILE_RUNS[rectangle].z = uint(tile.x + end) | uint(tile.y + last - row + 1) << 16;
+        // At once: each store takes software GL a loop over the invocations, which takes long to compile.
+        TILE_RUNS[rectangle].xyz = uvec3(tile.x + first, tile.y, uint(tile.x + end) | uint(tile.y + last - row + 1) << 16);
     }
 }

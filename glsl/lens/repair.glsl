@@ -1,7 +1,5 @@
 // CoC radii at the edges of small lights. Needs lens.glsl and highlight.glsl.
 
-ivec2 inside(ivec2 p) { return clamp(p, ivec2(0), ivec2(color_size.xy) - 1); }
-
 const float kLeastShare = 0.02;  // of the light: less of it cannot be seen in a blur
 
 struct Tap {
@@ -29,12 +27,13 @@ struct Crossing {
 Crossing crossing_at(ivec2 p, Tap own, float at_infinity_px) {
     Crossing crossing = Crossing(own, p, false);
     float darkest = own.amount;
+    ivec2 last = ivec2(color_size.xy) - 1;  // once: software GL fetches it anew wherever it stands
     // A compiler does not unroll loops from a place that varies; unrolled, these took three times as long to compile.
     ivec2 place = p - 1;
     do {
         place.x = p.x - 1;
         do {
-            ivec2 q = inside(place);
+            ivec2 q = clamp(place, ivec2(0), last);
             Tap tap = tap_at(q, at_infinity_px);
             if (abs(tap.coc - own.coc) <= kOneSurfacePx) {
                 darkest = min(darkest, tap.amount);
@@ -55,8 +54,15 @@ Crossing crossing_at(ivec2 p, Tap own, float at_infinity_px) {
 float repaired_coc(ivec2 p, float at_infinity_px, float tile_amount) {
     Tap own = tap_at(p, at_infinity_px);
     if (own.is_shared) return own.coc;
-    Crossing crossing = crossing_at(p, own, at_infinity_px);
-    if (!crossing.came_across || crossing.brightest.amount <= kOutshinesTile * tile_amount) return own.coc;
-    Crossing next = crossing_at(crossing.place, crossing.brightest, at_infinity_px);
-    return next.came_across ? next.brightest.coc : crossing.brightest.coc;
+    float coc = own.coc;
+    // To the neighbour, and from there to its own. A loop from a place that varies: a second copy takes as long to compile.
+    int turn = p.x < 0 ? 1 : 0;
+    do {
+        Crossing crossing = crossing_at(p, own, at_infinity_px);
+        if (!crossing.came_across || (turn == 0 && crossing.brightest.amount <= kOutshinesTile * tile_amount)) break;
+        own = crossing.brightest;
+        p = crossing.place;
+        coc = own.coc;
+    } while (++turn < 2);
+    return coc;
 }

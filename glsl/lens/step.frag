@@ -3,7 +3,8 @@
 #include "highlight.glsl"
 #include "lens.glsl"
 
-vec4 block(ivec2 p) { return textureGather(coc, vec2(p + 1) * coc_size.zw); }
+vec2 texel_of_blocks() { return coc_size.zw; }
+vec4 block(ivec2 p, vec2 texel) { return textureGather(coc, vec2(p + 1) * texel); }
 
 #include "step.glsl"
 

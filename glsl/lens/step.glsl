@@ -1,9 +1,7 @@
-// Where surfaces end, by tiles, for shaders that give block(p): the CoC radii of 2 x 2 texels as textureGather orders them, lower left,
-// lower right, upper right, upper left. Needs highlight.glsl.
+// Where surfaces end, by tiles, for shaders that give block(p, texel): the CoC radii of 2 x 2 texels as textureGather orders them, lower
+// left, lower right, upper right, upper left; `texel` are the sides of one, in the texture's. Needs highlight.glsl.
 
 const int kSide = kRepairTile + 2;  // with 1 px around
-
-ivec2 inside(ivec2 p) { return clamp(p, ivec2(0), ivec2(color_size.xy) - 1); }
 
 float smallest_of(vec4 v) { return min(min(v.x, v.y), min(v.z, v.w)); }
 float largest_of(vec4 v) { return max(max(v.x, v.y), max(v.z, v.w)); }
@@ -13,21 +11,21 @@ float largest_of(vec4 v) { return max(max(v.x, v.y), max(v.z, v.w)); }
 struct Row { vec4 a, b, c, d, e; };
 struct Rows { Row upper, lower; };
 
-Rows rows_at(ivec2 p) {
+Rows rows_at(ivec2 p, vec2 texel) {
     Rows rows;
-    vec4 l = block(p), r = block(p + ivec2(2, 0));
+    vec4 l = block(p, texel), r = block(p + ivec2(2, 0), texel);
     rows.upper.a = vec4(l.wz, r.wz);
     rows.lower.a = vec4(l.xy, r.xy);
-    l = block(p + ivec2(4, 0)), r = block(p + ivec2(6, 0));
+    l = block(p + ivec2(4, 0), texel), r = block(p + ivec2(6, 0), texel);
     rows.upper.b = vec4(l.wz, r.wz);
     rows.lower.b = vec4(l.xy, r.xy);
-    l = block(p + ivec2(8, 0)), r = block(p + ivec2(10, 0));
+    l = block(p + ivec2(8, 0), texel), r = block(p + ivec2(10, 0), texel);
     rows.upper.c = vec4(l.wz, r.wz);
     rows.lower.c = vec4(l.xy, r.xy);
-    l = block(p + ivec2(12, 0)), r = block(p + ivec2(14, 0));
+    l = block(p + ivec2(12, 0), texel), r = block(p + ivec2(14, 0), texel);
     rows.upper.d = vec4(l.wz, r.wz);
     rows.lower.d = vec4(l.xy, r.xy);
-    l = block(p + ivec2(16, 0)), r = block(p + ivec2(17, 0));
+    l = block(p + ivec2(16, 0), texel), r = block(p + ivec2(17, 0), texel);
     rows.upper.e = vec4(l.wz, r.zz);
     rows.lower.e = vec4(l.xy, r.yy);
     return rows;
@@ -60,8 +58,11 @@ vec4 step_of(ivec2 tile) {
     const vec4 kNone = vec4(0.0);
     Row above = Row(kNone, kNone, kNone, kNone, kNone);
     int y = 0;
+    // Once: software GL fetches members of a block anew wherever they stand.
+    vec2 texel = texel_of_blocks();
+    ivec2 last = ivec2(color_size.xy) - 1;
     do {
-        Rows rows = rows_at(corner + ivec2(0, y));
+        Rows rows = rows_at(corner + ivec2(0, y), texel);
         float across = step_across(rows.lower, rows.upper);
         if (y > 0) across = max(across, step_across(rows.upper, above));
         step_px = max(max(step_px, across), max(step_along(rows.upper), step_along(rows.lower)));
@@ -83,7 +84,7 @@ vec4 step_of(ivec2 tile) {
     do {
         p.x = corner.x;
         do {
-            float light = amount(texelFetch(color, inside(p), 0).rgb);
+            float light = amount(texelFetch(color, clamp(p, ivec2(0), last), 0).rgb);
             brightest = max(brightest, light);
             ivec2 own = p - corner;
             if (own.x > 0 && own.x <= kRepairTile && own.y > 0 && own.y <= kRepairTile) sum += max(light, 0.0);

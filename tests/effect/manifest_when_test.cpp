@@ -55,6 +55,34 @@ TEST(Conditions, DecideWhichReadsAndWritesAreThere) {
     EXPECT_EQ(reads(last), (std::vector<std::string>{}));
 }
 
+TEST(Conditions, MayAskWhetherANumberIs0) {
+    const auto with = [](const std::string& conditions) {
+        return test::Sections{
+            {test::kTextures, R"("textures": {"small": {"format": "rgba16f", "doc": "."}})"},
+            {test::kPasses,
+             R"("passes": [{"name": "make", "shader": "a.frag", "writes": ["small"], "when": )" + conditions +
+                 R"(}, {"name": "last", "shader": "b.frag", "reads": ["color", "depth"], "writes": ["color", "small"]}])"}};
+    };
+    const EffectFolder folder(demo_manifest(with(R"({"nonzero.gain": true, "nonzero.taps": [true]})")));
+    Assembly make(folder, 0);
+    const auto runs = [&](double gain, std::int64_t taps) {
+        make.params.set("gain", gain);
+        make.params.set("taps", taps);
+        return pass_enabled(make.manifest.passes[0], make.params, {});
+    };
+    EXPECT_TRUE(runs(0.5, 3));
+    EXPECT_TRUE(runs(-1e-300, -3));
+    EXPECT_FALSE(runs(0, 3));
+    EXPECT_FALSE(runs(-0.0, 3));
+    EXPECT_FALSE(runs(0.5, 0));
+    test::expect_faults(with(R"({"nonzero.gian": true})"),
+                        {"6: pass 'make': the condition 'nonzero.gian' is not a parameter; did you mean 'gain'?"});
+    test::expect_faults(with(R"({"nonzero.mode": true})"),
+                        {"6: pass 'make': the condition 'nonzero.mode' is not on a number"});
+    test::expect_faults(with(R"({"nonzero.gain": 1})"),
+                        {"6: whether a number is not 0 compares with true or false"});
+}
+
 TEST(Conditions, LeaveAPassOutThatWouldWriteNothing) {
     const EffectFolder folder(conditional_manifest());
     Assembly refine(folder, 1);

@@ -82,6 +82,21 @@ TEST_P(ProgramCacheOn, CompilesComputeInstancesAndAtomics) {
     EXPECT_EQ(programs.compiled_count(), 6);
 }
 
+TEST_P(ProgramCacheOn, MakesOneFormOfShadersWithLoops) {
+    ProgramCache programs(context(), kSource / "glsl", ProgramStore());
+    const auto has_one_form = [&](const std::string& body) {
+        ProgramSources sources;
+        sources.vertex = gpu::kFullScreen;
+        sources.main.text = "#version 450 core\nlayout(location = 0) out vec4 c;\n" + body + "\n";
+        sources.main.lines.assign(3, SourceLine{"a.frag", 1});
+        return programs.get(sources)->has_one_form();
+    };
+    EXPECT_TRUE(has_one_form("void main() { c = vec4(0); for (int i = 0; i < 9; ++i) c.x += c.y; }"));
+    EXPECT_TRUE(has_one_form("void main() { c = vec4(0); do c.x += 1.0; while (c.x < 9.0); }"));
+    EXPECT_FALSE(has_one_form("void main() { c = vec4(0); }  // while for"));
+    EXPECT_FALSE(has_one_form("void main() { float form = 0.0; c = vec4(form); }"));
+}
+
 TEST_P(ProgramCacheOn, KeepsAsManyIdleProgramsAsItMay) {
     ProgramCache programs(context(), kSource / "glsl", ProgramStore());
     const std::size_t before = context().objects().programs;

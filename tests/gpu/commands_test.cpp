@@ -150,6 +150,27 @@ TEST_P(DrawOn, BlendsByAddMinAndMaxAndNotAfterwards) {
     EXPECT_EQ(blended(Blend::none), (std::vector<float>{3.0F, -5.0F}));
 }
 
+TEST_P(DrawOn, GivesTheSameBitsWithOneForm) {
+    Program floats = fragment("layout(location = 0) out vec4 c; void main() { c = vec4(-gl_FragCoord.x, 1.0 / 0.0, 1e-40, 0.1); }");
+    Program bits = fragment("layout(location = 0) out uvec4 c; void main() { c = uvec4(gl_FragCoord.x, 0xffffffffu, 7u, 0x7fc00001u); }");
+    const auto both = [&](bool uses_one_form) {
+        if (uses_one_form) floats.use_one_form(), bits.use_one_form();
+        const Texture a = texture(70, 67), b = texture(70, 67, TextureFormat::rgba32ui), half = texture(70, 67, TextureFormat::rgba16f);
+        draw_to(floats, {&a});
+        draw_to(bits, {&b});
+        draw_to(floats, {&half});
+        return std::tuple(a.read_floats(), b.read_uints(), half.read_floats());
+    };
+    const auto two_forms = both(false);
+    EXPECT_EQ(both(true), two_forms);
+    Program two = fragment("layout(location = 0) out vec4 c; void main() { c = vec4(2); }");
+    two.use_one_form();
+    Texture sum = texture(1, 1);
+    sum.clear(1);
+    draw_to(two, {&sum}, {}, Blend::add);
+    EXPECT_EQ(sum.read_floats()[0], 3) << "it blends as ever";
+}
+
 TEST_P(DrawOn, ReadsAUniformBlockInStd140) {
     struct Block {
         float scale;

@@ -146,6 +146,46 @@ TEST_P(CompileAheadOn, LeavesAFaultToTheCallerAndGoesOn) {
     EXPECT_THROW(programs.get(*passes[2].sources), gpu::ShaderError);
 }
 
+TEST_P(CompileAheadOn, LetsTheCallerDrawOtherPassesWhileItWaitsForOne) {
+    const TemporaryFolder folder;
+    ProgramCache programs(context(), kData / "glsl", ProgramStore(folder.path()));
+    // The last one, with which the thread begins, takes long to draw.
+    std::vector<PassToCompile> passes = passes_to_compile(4);
+    ProgramSources slow = *passes.back().sources;
+    std::string terms;
+    for (int i = 0; i < 300; ++i) terms += " + sin(gl_FragCoord.x * " + std::to_string(i) + ".25)";
+    slow.main.text.replace(slow.main.text.rfind('}'), 1, "c.g += 0.0" + terms + "; }");
+    passes.back().sources = std::make_shared<const ProgramSources>(slow);
+    CompileAhead ahead(context(), programs, passes, 1);
+    ASSERT_TRUE(waits_for([&] { return ahead.programs_made() == 1; }));
+    for (int i = 0; i < 3; ++i) {
+        const CompileAhead::LinkScope linking(&ahead, passes[std::size_t(i)].pass);
+        programs.get(*passes[std::size_t(i)].sources);
+    }
+    ahead.take(passes.back().pass);
+    EXPECT_GT(ahead.passes_drawn_here(), 0);
+    for (int i = 0; i < 3; ++i) {
+        ahead.take(passes[std::size_t(i)].pass);
+        EXPECT_EQ(drawn(*programs.get(*passes[std::size_t(i)].sources), 1, 1)[0], float(i) + 0.5f);
+    }
+}
+
+TEST_P(CompileAheadOn, KnowsHowLongTheCallersProgramsAre) {
+    const TemporaryFolder folder;
+    ProgramCache programs(context(), kData / "glsl", ProgramStore(folder.path()));
+    const ProgramSources small = *passes_to_compile(1).front().sources;
+    ProgramSources large = small;
+    large.main.text.insert(large.main.text.rfind('}'), "for (int i = 0; i < 9; ++i) c.x += sin(c.y * gl_FragCoord.x); ");
+    EXPECT_EQ(programs.binary_bytes(small), 0U) << "it was not asked for yet";
+    if (!programs.get(small)->binary()) GTEST_SKIP() << "SKIPPED: the driver gives no program binaries";
+    programs.get(large);
+    EXPECT_GT(programs.binary_bytes(small), 0U);
+    EXPECT_GT(programs.binary_bytes(large), programs.binary_bytes(small));
+    ProgramCache later(context(), kData / "glsl", ProgramStore(folder.path()));
+    later.get(large);
+    EXPECT_EQ(later.binary_bytes(large), programs.binary_bytes(large)) << "from the store";
+}
+
 TEST_P(CompileAheadOn, EndsWhileItCompiles) {
     const TemporaryFolder folder;
     ProgramCache programs(context(), kData / "glsl", ProgramStore(folder.path()));

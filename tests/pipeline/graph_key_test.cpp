@@ -25,11 +25,13 @@ const char* const kManifest = R"(
       "turns": { "type": "int", "default": 1, "min": 1, "max": 4, "doc": "." },
       "gains": { "type": "table", "doc": ".", "columns": {
           "gain": { "type": "float", "default": 1, "doc": "." } } },
+      "lift": { "type": "float", "default": 0, "doc": "." },
       "tone": { "type": "curve", "default": [[0, 0], [1, 1]], "doc": "." } },
     "textures": { "work": { "format": "r32f", "clear": 0, "doc": "." } },
     "passes": [
       { "name": "soften", "shader": "soften.frag", "writes": ["work"], "repeat": "turns",
         "when": { "mode": "soft", "really": true } },
+      { "name": "lift", "shader": "lift.frag", "writes": ["work"], "when": { "nonzero.lift": true } },
       { "name": "main", "shader": "main.frag", "reads": ["color", "object_id", "depth", "work"],
         "writes": ["color"] } ])";
 const char* const kMain = R"(
@@ -55,6 +57,8 @@ protected:
         effects_.add("shaped", kManifest, kMain);
         write_text(effects_.path() / "shaped/soften.frag",
                    std::string(kShaderHead) + "void main() { out_work = float(pass.count); }\n");
+        write_text(effects_.path() / "shaped/lift.frag",
+                   std::string(kShaderHead) + "void main() { out_work = param.lift; }\n");
     }
 
     static Capture capture_of(int number) {
@@ -113,6 +117,15 @@ TEST_F(GraphKeys, KnowOnlyTheConditionsAndCountsThatWereLookedAt) {
     EXPECT_EQ(graphs_of(R"("mode": "plain", )" + keyed("really", "true", "false")), 1)
         << "after a condition that does not hold";
     EXPECT_EQ(graphs_of(R"("mode": "soft", )" + keyed("really", "true", "false")), 2);
+}
+
+TEST_F(GraphKeys, KnowOfANumberOnlyWhetherItIs0WhereNothingElseIsAsked) {
+    EXPECT_EQ(graphs_of(keyed("lift", "0", "0.5")), 2);
+    EXPECT_EQ(graphs_of(keyed("lift", "-1", "0.5")), 1) << "the pass has a uniform for it";
+    Bench bench(effects_, look_of(R"({ "effect": "shaped", "params": {)" + keyed("lift", "0", "0.5") + "} }"));
+    const auto work = [&](int frame) { return bench.run(capture_of(frame)).images.at("color").floats()[1]; };
+    EXPECT_EQ(work(1), 0);
+    EXPECT_EQ(work(9), 0.5f);
 }
 
 TEST_F(GraphKeys, KnowTheImagesThatSomeStepMayTake) {

@@ -15,7 +15,8 @@
 
 namespace aftershade {
 
-/// A condition on one parameter ("shape") or on an optional input ("has.velocity"): any of these values.
+/// A condition on one parameter ("shape"), on whether a number is not 0 ("nonzero.gain") or on an optional input
+/// ("has.velocity"): any of these values.
 struct WhenSpec {
     std::string subject;
     std::vector<ParamValue> values;
@@ -32,8 +33,8 @@ struct InputSpec {
     int frame = 0;         ///< of the capture that many frames after; must be optional, for shots end
     int layer = -1;  ///< of a capture with layers, 0 in front, which must be optional; -1: the whole picture
     bool from_capture = false;  ///< the capture's image even where an earlier step makes that role
-    /// All must hold, or the input is absent and its image is not read. On parameters alone, of optional
-    /// inputs.
+    /// All must hold, or the input is absent and its image is not read. On values of parameters alone, of
+    /// optional inputs.
     std::vector<WhenSpec> when;
     std::string doc;
     Place place;

@@ -33,6 +33,10 @@ Form condition_on_input() {
     return one_or_more(grammar::boolean(), "a condition on an input compares with true or false");
 }
 
+Form condition_on_number() {
+    return one_or_more(grammar::boolean(), "whether a number is not 0 compares with true or false");
+}
+
 Form condition_on_param() {
     constexpr const char* kFault = "a condition compares with true, false, an integer or a name";
     const Form value = grammar::by_kind({grammar::boolean(), grammar::integer(), text()}, kFault);
@@ -40,16 +44,23 @@ Form condition_on_param() {
 }
 
 grammar::Pattern on_input() {
-    return {R"(^has\.)", [](const std::string& name) { return name.starts_with("has."); }};
+    return {R"(^has\.)", [](const std::string& name) { return name.starts_with(kHasInput); }};
+}
+
+grammar::Pattern on_number() {
+    return {R"(^nonzero\.)", [](const std::string& name) { return name.starts_with(kNonzero); }};
 }
 
 grammar::Pattern on_param() {
-    return {R"(^(?!has\.))", [](const std::string& name) { return !name.starts_with("has."); }};
+    return {R"(^(?!has\.|nonzero\.))",
+            [](const std::string& name) { return name_in_condition(name) == name; }};
 }
 
 Block conditions_block() {
     return {.name = "",
-            .others = {{on_input(), condition_on_input()}, {on_param(), condition_on_param()}},
+            .others = {{on_input(), condition_on_input()},
+                       {on_number(), condition_on_number()},
+                       {on_param(), condition_on_param()}},
             .type = "[conditions](#conditions)"};
 }
 
@@ -57,7 +68,8 @@ Block conditions_of_input_block() {
     return {.name = "",
             .others = {{on_param(), condition_on_param()}},
             .unknown_key =
-                "only passes test whether an input is present; the conditions of an input are on parameters",
+                "only passes test whether an input is present or a number is not 0; the conditions of an "
+                "input are on values of parameters",
             .type = "[conditions](#conditions) on parameters"};
 }
 

@@ -83,7 +83,7 @@ void ManifestParser::inputs(const Reader& document) {
         add_conditions(reader, input.when);
         // The grammar reports conditions on other inputs.
         std::erase_if(input.when,
-                      [](const WhenSpec& condition) { return condition.subject.starts_with(kHasInput); });
+                      [](const WhenSpec& c) { return name_in_condition(c.subject) != c.subject; });
         manifest_.inputs.push_back(std::move(input));
     }
 }

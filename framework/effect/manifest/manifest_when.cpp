@@ -20,6 +20,12 @@ bool may_equal(const ParamSpec& spec, const ParamValue& value) {
 
 }  // namespace
 
+std::string name_in_condition(const std::string& subject) {
+    for (const std::string_view prefix : {kHasInput, kNonzero})
+        if (subject.starts_with(prefix)) return subject.substr(prefix.size());
+    return subject;
+}
+
 void add_conditions(const grammar::Reader& owner, std::vector<WhenSpec>& conditions) {
     const Node* section = owner.find("when");
     if (!section) return;
@@ -40,16 +46,20 @@ void add_conditions(const grammar::Reader& owner, std::vector<WhenSpec>& conditi
 }
 
 std::vector<std::string> faults_of_condition(const EffectManifest& manifest, const WhenSpec& condition) {
-    const std::string subject = "'" + condition.subject + "'";
+    const std::string subject = "'" + condition.subject + "'", name = name_in_condition(condition.subject);
     if (condition.subject.starts_with(kHasInput)) {
-        const InputSpec* input = manifest.find_input(condition.subject.substr(kHasInput.size()));
+        const InputSpec* input = manifest.find_input(name);
         if (input && input->optional) return {};
         return {subject + " does not name an optional input"};
     }
-    const ParamSpec* spec = manifest.find_param(condition.subject);
+    const ParamSpec* spec = manifest.find_param(name);
     if (!spec)
         return {"the condition " + subject + " is not a parameter" +
-                did_you_mean(condition.subject, manifest.param_names())};
+                did_you_mean(name, manifest.param_names())};
+    if (condition.subject.starts_with(kNonzero)) {
+        if (spec->type->is_scalar) return {};
+        return {"the condition " + subject + " is not on a number"};
+    }
     std::vector<std::string> faults;
     for (const ParamValue& value : condition.values)
         if (!may_equal(*spec, value))
@@ -60,13 +70,12 @@ std::vector<std::string> faults_of_condition(const EffectManifest& manifest, con
 bool conditions_hold(const std::vector<WhenSpec>& conditions, const ParamReader& params,
                      const std::vector<std::string>& present_inputs) {
     const auto holds = [&](const WhenSpec& condition) {
+        const std::string name = name_in_condition(condition.subject);
         ParamValue actual;
-        if (condition.subject.starts_with(kHasInput)) {
-            const std::string input = condition.subject.substr(kHasInput.size());
-            actual = std::find(present_inputs.begin(), present_inputs.end(), input) != present_inputs.end();
-        } else {
-            actual = params.get(condition.subject);
-        }
+        if (condition.subject.starts_with(kHasInput))
+            actual = std::find(present_inputs.begin(), present_inputs.end(), name) != present_inputs.end();
+        else if (condition.subject.starts_with(kNonzero)) actual = params.is_nonzero(name);
+        else actual = params.get(name);
         return std::find(condition.values.begin(), condition.values.end(), actual) != condition.values.end();
     };
     return std::all_of(conditions.begin(), conditions.end(), holds);

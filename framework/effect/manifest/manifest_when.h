@@ -13,6 +13,11 @@ namespace aftershade {
 
 /// What a condition on an optional input begins with: "has.velocity".
 inline constexpr std::string_view kHasInput = "has.";
+/// What a condition on a number begins with, all of whose values but 0 make the same passes: "nonzero.gain".
+inline constexpr std::string_view kNonzero = "nonzero.";
+
+/// "gain" of "gain" and of "nonzero.gain", "depth" of "has.depth".
+std::string name_in_condition(const std::string& subject);
 
 /// Why a condition cannot be tested, or never holds: what it names and the values that it compares with.
 std::vector<std::string> faults_of_condition(const EffectManifest& manifest, const WhenSpec& condition);

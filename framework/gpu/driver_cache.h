@@ -1,0 +1,16 @@
+// Mesa's cache of machine code, which it writes behind its caller's back.
+#pragma once
+
+#include <string_view>
+
+namespace aftershade::gpu {
+
+/// Whether a thread is one that writes Mesa's cache ("aftersh:disk$0") and has work, by its /proc/.../stat.
+bool is_writing_driver_cache(std::string_view stat);
+
+/// What was compiled before is in Mesa's cache afterwards, where another context finds it: Mesa hands it to
+/// threads of least priority. At most a few hundredths of a second, since the disk may hang; then, and where
+/// there is no /proc, the other context compiles it once more. [any thread]
+void wait_for_driver_cache() noexcept;
+
+}  // namespace aftershade::gpu
