@@ -74,8 +74,7 @@ std::string conditions_text(const std::vector<WhenSpec>& conditions) {
         }
         std::string what = condition.subject + " " + values;
         if (condition.subject.starts_with(kHasInput) && condition.values.size() == 1)
-            what =
-                (values == "true" ? "the input " : "no input ") + name_in_condition(condition.subject);
+            what = (values == "true" ? "the input " : "no input ") + name_in_condition(condition.subject);
         if (condition.subject.starts_with(kNonzero) && condition.values.size() == 1)
             what = name_in_condition(condition.subject) + (values == "true" ? " not 0" : " 0");
         text += (text.empty() ? "" : ", ") + what;

@@ -66,8 +66,8 @@ public:
     bool is_guarding_loops() const { return guards_loops_; }
     const std::filesystem::path& glsl_folder() const { return glsl_folder_; }
     const ProgramStore& store() const { return store_; }
-    /// Of a program that get() made or loaded: how large the driver writes it, by which long ones are known; 0
-    /// where that is unknown.
+    /// Of a program that get() made or loaded: how large the driver writes it, by which long ones are known;
+    /// 0 where that is unknown.
     std::size_t binary_bytes(const ProgramSources& sources) const;
     int compiled_count() const { return compiled_; }  ///< programs made from text
     int loaded_count() const { return loaded_; }      ///< programs taken from the store

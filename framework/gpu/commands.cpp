@@ -145,8 +145,8 @@ private:
     bool enabled_;
 };
 
-/// llvmpipe makes the form for whole blocks only of draws without a logical operation. This one copies, and floats
-/// know none; where it is enabled, nothing blends.
+/// llvmpipe makes the form for whole blocks only of draws without a logical operation. This one copies, and
+/// floats know none; where it is enabled, nothing blends.
 class OneFormScope {
 public:
     OneFormScope(const GladGLContext& gl, bool enabled) : gl_(gl), enabled_(enabled) {

@@ -87,8 +87,8 @@ void CompileAhead::take(const std::string& pass) {
     state = State::finished;
 }
 
-/// Of the passes that only wait to be drawn the one with the most code: at the end short ones are left, and no
-/// core waits long. -1: there is none.
+/// Of the passes that only wait to be drawn the one with the most code: at the end short ones are left, and
+/// no core waits long. -1: there is none.
 int CompileAhead::longest_linked() const {
     int longest = -1;
     for (int i = 0; i < int(states_.size()); ++i) {

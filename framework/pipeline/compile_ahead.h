@@ -23,10 +23,10 @@ struct PassToCompile {
 };
 
 /// Threads that begin with the last pass, while the caller links from the first one on, and then draw the
-/// longest of what it linked; where it comes to a pass that a thread is at, it does so too meanwhile. They hand
-/// over by two caches: programs by the ProgramStore, and the machine code that llvmpipe makes at a first draw by Mesa's
-/// own, since no context sees another one's. What they cannot compile they leave to the caller, who then
-/// meets the fault in its own order. [one thread, that of the context; threads of its own]
+/// longest of what it linked; where it comes to a pass that a thread is at, it does so too meanwhile. They
+/// hand over by two caches: programs by the ProgramStore, and the machine code that llvmpipe makes at a first
+/// draw by Mesa's own, since no context sees another one's. What they cannot compile they leave to the
+/// caller, who then meets the fault in its own order. [one thread, that of the context; threads of its own]
 class CompileAhead {
 public:
     /// The threads that are worth having for `context`: at most `threads`; none where a driver does not

@@ -75,8 +75,9 @@ TEST(Conditions, MayAskWhetherANumberIs0) {
     EXPECT_FALSE(runs(0, 3));
     EXPECT_FALSE(runs(-0.0, 3));
     EXPECT_FALSE(runs(0.5, 0));
-    test::expect_faults(with(R"({"nonzero.gian": true})"),
-                        {"6: pass 'make': the condition 'nonzero.gian' is not a parameter; did you mean 'gain'?"});
+    test::expect_faults(
+        with(R"({"nonzero.gian": true})"),
+        {"6: pass 'make': the condition 'nonzero.gian' is not a parameter; did you mean 'gain'?"});
     test::expect_faults(with(R"({"nonzero.mode": true})"),
                         {"6: pass 'make': the condition 'nonzero.mode' is not on a number"});
     test::expect_faults(with(R"({"nonzero.gain": 1})"),

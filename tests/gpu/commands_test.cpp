@@ -151,11 +151,15 @@ TEST_P(DrawOn, BlendsByAddMinAndMaxAndNotAfterwards) {
 }
 
 TEST_P(DrawOn, GivesTheSameBitsWithOneForm) {
-    Program floats = fragment("layout(location = 0) out vec4 c; void main() { c = vec4(-gl_FragCoord.x, 1.0 / 0.0, 1e-40, 0.1); }");
-    Program bits = fragment("layout(location = 0) out uvec4 c; void main() { c = uvec4(gl_FragCoord.x, 0xffffffffu, 7u, 0x7fc00001u); }");
+    Program floats = fragment(
+        "layout(location = 0) out vec4 c; void main() { c = vec4(-gl_FragCoord.x, 1.0 / 0.0, 1e-40, 0.1); }");
+    Program bits = fragment(
+        "layout(location = 0) out uvec4 c; void main() { c = uvec4(gl_FragCoord.x, 0xffffffffu, 7u, "
+        "0x7fc00001u); }");
     const auto both = [&](bool uses_one_form) {
         if (uses_one_form) floats.use_one_form(), bits.use_one_form();
-        const Texture a = texture(70, 67), b = texture(70, 67, TextureFormat::rgba32ui), half = texture(70, 67, TextureFormat::rgba16f);
+        const Texture a = texture(70, 67), b = texture(70, 67, TextureFormat::rgba32ui),
+                      half = texture(70, 67, TextureFormat::rgba16f);
         draw_to(floats, {&a});
         draw_to(bits, {&b});
         draw_to(floats, {&half});

@@ -175,7 +175,8 @@ TEST_P(CompileAheadOn, KnowsHowLongTheCallersProgramsAre) {
     ProgramCache programs(context(), kData / "glsl", ProgramStore(folder.path()));
     const ProgramSources small = *passes_to_compile(1).front().sources;
     ProgramSources large = small;
-    large.main.text.insert(large.main.text.rfind('}'), "for (int i = 0; i < 9; ++i) c.x += sin(c.y * gl_FragCoord.x); ");
+    large.main.text.insert(large.main.text.rfind('}'),
+                           "for (int i = 0; i < 9; ++i) c.x += sin(c.y * gl_FragCoord.x); ");
     EXPECT_EQ(programs.binary_bytes(small), 0U) << "it was not asked for yet";
     if (!programs.get(small)->binary()) GTEST_SKIP() << "SKIPPED: the driver gives no program binaries";
     programs.get(large);

@@ -122,7 +122,8 @@ TEST_F(GraphKeys, KnowOnlyTheConditionsAndCountsThatWereLookedAt) {
 TEST_F(GraphKeys, KnowOfANumberOnlyWhetherItIs0WhereNothingElseIsAsked) {
     EXPECT_EQ(graphs_of(keyed("lift", "0", "0.5")), 2);
     EXPECT_EQ(graphs_of(keyed("lift", "-1", "0.5")), 1) << "the pass has a uniform for it";
-    Bench bench(effects_, look_of(R"({ "effect": "shaped", "params": {)" + keyed("lift", "0", "0.5") + "} }"));
+    Bench bench(effects_,
+                look_of(R"({ "effect": "shaped", "params": {)" + keyed("lift", "0", "0.5") + "} }"));
     const auto work = [&](int frame) { return bench.run(capture_of(frame)).images.at("color").floats()[1]; };
     EXPECT_EQ(work(1), 0);
     EXPECT_EQ(work(9), 0.5f);

@@ -15,7 +15,8 @@
 
 namespace aftershade {
 
-/// A condition on one parameter ("shape"), on whether a number is not 0 ("nonzero.gain") or on an optional input
+/// A condition on one parameter ("shape"), on whether a number is not 0 ("nonzero.gain") or on an optional
+/// input
 /// ("has.velocity"): any of these values.
 struct WhenSpec {
     std::string subject;
