@@ -10,8 +10,8 @@ from family import ROOT
 BENCH = ROOT / "build/release/tests/bench/effect_bench"
 
 
-def run_bench(job, names, folders, work, counting=False, by="ms"):
-    """Results by name: the run with the median of `by`, its passes, fetches a pixel. `job` has size, repetitions, cases; `names` are
+def run_bench(job, names, folders, work, counting=False):
+    """Results by name: the median of ms, the passes of that run, fetches a pixel. `job` has size, repetitions, cases; `names` are
     the effects in `folders`."""
     data = counting_copy(names, folders, work) if counting else ROOT
     folders = [data / f"effects-{i}" if counting else f for i, f in enumerate(folders)]
@@ -23,7 +23,7 @@ def run_bench(job, names, folders, work, counting=False, by="ms"):
     results = {}
     for result in json.loads(done.stdout)["results"]:
         results.setdefault(result["name"], []).append(result)
-    return {name: sorted(runs, key=lambda r: r[by])[(len(runs) - 1) // 2] for name, runs in results.items()}
+    return {name: sorted(runs, key=lambda r: r["ms"])[(len(runs) - 1) // 2] for name, runs in results.items()}
 
 
 # Counting: the same shaders with every fetch through a macro that adds one, and the sum of each invocation at its end.
