@@ -77,8 +77,11 @@ std::optional<std::pair<ParamValue, ParamValue>> other_contents(const ParamSpec&
     if (const auto* flag = std::get_if<bool>(&usual)) return std::pair<ParamValue, ParamValue>(*flag, !*flag);
     if (const auto* integer = std::get_if<std::int64_t>(&usual))
         return std::pair<ParamValue, ParamValue>(*integer, std::int64_t(nudged(double(*integer))));
-    if (const auto* number = std::get_if<double>(&usual))
-        return std::pair<ParamValue, ParamValue>(*number, nudged(*number));
+    // From 0 to another number passes may come and go ("nonzero.").
+    if (const auto* number = std::get_if<double>(&usual)) {
+        const double first = *number == 0 ? nudged(0) : *number;
+        return std::pair<ParamValue, ParamValue>(first, nudged(first));
+    }
     if (const auto* components = std::get_if<std::vector<double>>(&usual)) {
         std::vector<double> other;
         for (const double component : *components) other.push_back(nudged(component));
