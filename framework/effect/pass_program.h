@@ -64,8 +64,7 @@ public:
     /// [before the first program]
     void guard_loops() { guards_loops_ = true; }
     bool is_guarding_loops() const { return guards_loops_; }
-    /// Programs with loops made from now on have one form (gpu::Program::use_one_form()): in half the time,
-    /// but passes of many pixels then take up to 1.3 times as long.
+    /// Programs with loops made from now on have one form: see gpu::Program::use_one_form().
     void make_one_form(bool is_on) { makes_one_form_ = is_on; }
     bool is_making_one_form() const { return makes_one_form_; }
     const std::filesystem::path& glsl_folder() const { return glsl_folder_; }

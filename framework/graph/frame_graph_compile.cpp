@@ -211,8 +211,8 @@ private:
         }
     }
 
-    /// Whether a copy of `from` can leave everything where it is: nothing needs `from` after it, and `from`
-    /// is made, or given, anew in every frame.
+    /// Whether a copy of `from` can leave everything where it is: nothing needs `from` after it, and each
+    /// frame makes it again or is given it again.
     bool gives_up(const TextureHandle& from, int position) const {
         const auto index = std::size_t(from.texture);
         const FrameGraph::Texture& texture = graph_.textures()[index];
