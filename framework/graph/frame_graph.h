@@ -95,8 +95,8 @@ struct Wipe {
     std::shared_ptr<const gpu::Program> program{};
     UniformBlock uniforms{};
     BufferUse places{};  ///< says where the instances lie; read by the pass too
-    /// Where the pass gives all pixels of its instances another colour: binding of the same buffer as it is
-    /// before the pass draws, so that the program can leave out what the pass will draw over.
+    /// Where the pass gives all pixels of its instances another colour: binding of the buffer that says where
+    /// the first pass to draw to this target will do the same, so that the program can leave that out.
     std::optional<int> next_places{};
 };
 

@@ -5,6 +5,55 @@
 #include <utility>
 
 namespace aftershade::graph {
+namespace {
+
+/// Which buffer says, when a sparse texture is wiped, where a level of it will be drawn over: that of the
+/// first pass that draws to the level, where no pass reads the level before that or changes the buffer.
+/// nullptr if there is none.
+const Wipe* next_draw(const FrameGraph& graph, const CompiledGraph& compiled, const SparseTexture& sparse,
+                      const Target& level) {
+    const auto wipe_of = [&](const Pass& pass) -> const Wipe* {
+        for (std::size_t i = 0; i < pass.targets.size(); ++i) {
+            const Target& target = pass.targets[i];
+            if (target.texture.texture == sparse.texture && target.level == level.level &&
+                target.layer == level.layer)
+                return &*pass.wipes[i];
+        }
+        return nullptr;
+    };
+    const auto reads_it = [&](const Pass& pass) {
+        return std::ranges::any_of(pass.reads,
+                                   [&](const Read& read) {
+                                       return read.texture.texture == sparse.texture &&
+                                              (read.level < 0 || read.level == level.level);
+                                   }) ||
+               std::ranges::any_of(pass.images, [&](const ImageUse& use) {
+                   return use.texture.texture == sparse.texture && use.level == level.level;
+               });
+    };
+    const auto writes = [](const Pass& pass, const BufferHandle& buffer) {
+        return std::ranges::any_of(pass.buffers, [&](const BufferUse& use) {
+            return use.access != gpu::Access::read && use.buffer.buffer == buffer.buffer;
+        });
+    };
+    const auto from_first = std::ranges::find(compiled.passes, sparse.first);
+    for (auto at = from_first; at != compiled.passes.end(); ++at) {
+        const Pass& pass = graph.pass(*at);
+        const Wipe* const wipe = wipe_of(pass);
+        if (!wipe) {
+            if (reads_it(pass)) return nullptr;
+            continue;
+        }
+        const auto changes = [&](int index) { return writes(graph.pass(index), wipe->places.buffer); };
+        const bool is_known = wipe->next_places &&
+                              std::any_of(compiled.passes.begin(), from_first, changes) &&
+                              std::none_of(from_first, at, changes);
+        return is_known ? wipe : nullptr;
+    }
+    return nullptr;
+}
+
+}  // namespace
 
 SparseClears::SparseClears(gpu::Context& context, const FrameGraph& graph, const CompiledGraph& compiled,
                            std::vector<gpu::Texture>& slots, std::vector<gpu::Buffer>& buffer_slots)
@@ -17,9 +66,6 @@ SparseClears::SparseClears(gpu::Context& context, const FrameGraph& graph, const
         tracked.texture = &sparse;
         gpu::Texture& slot = slots[std::size_t(compiled.slot_of_texture[std::size_t(sparse.texture)])];
         tracked.slot = &slot;
-        // A later pass's list is not made yet when the texture is wiped, nor where another one reads it
-        // first.
-        const bool is_drawn_first = sparse.places.size() == 1 && sparse.first == sparse.places.front().pass;
         for (const SparseTexture::Place& place : sparse.places) {
             const Pass& pass = graph.pass(place.pass);
             const Target& target = pass.targets[std::size_t(place.target)];
@@ -27,13 +73,20 @@ SparseClears::SparseClears(gpu::Context& context, const FrameGraph& graph, const
             gpu::Buffer uniforms(context, wipe.uniforms.bytes.size(), pass.name + ".wipe");
             uniforms.write(wipe.uniforms.bytes);
             const gpu::Buffer* const places = buffer(wipe.places.buffer);
+            const gpu::Buffer* next_places = nullptr;
             std::optional<gpu::Buffer> no_places;
-            if (wipe.next_places && !is_drawn_first)
-                no_places.emplace(context, places->size(), pass.name + ".no places");
+            if (wipe.next_places) {
+                const Wipe* const next = next_draw(graph, compiled, sparse, target);
+                // Of the same tiles.
+                if (next && next->uniforms.bytes == wipe.uniforms.bytes)
+                    next_places = buffer(next->places.buffer);
+                else no_places.emplace(context, places->size(), pass.name + ".no places");
+            }
             tracked.wipes.push_back({&wipe,
                                      place.pass,
                                      std::move(uniforms),
                                      places,
+                                     next_places,
                                      std::move(no_places),
                                      {&slot, target.level, target.layer},
                                      {pass.instances.primitive, pass.instances.count,
@@ -102,7 +155,8 @@ void SparseClears::draw(const BoundWipe& bound, const Drawn& drawn) {
     const std::array<gpu::BufferBinding, 1> uniforms = {{{&bound.uniforms, bound.wipe->uniforms.binding}}};
     std::vector<gpu::BufferBinding> storage = {{&drawn.places, bound.wipe->places.binding}};
     if (bound.wipe->next_places)
-        storage.push_back({bound.no_places ? &*bound.no_places : bound.places, *bound.wipe->next_places});
+        storage.push_back(
+            {bound.no_places ? &*bound.no_places : bound.next_places, *bound.wipe->next_places});
     gpu::InstanceRange instances = bound.instances;
     if (drawn.instances) instances.indirect = &*drawn.instances;
     gpu::draw_instances(context_, *bound.wipe->program, targets, {.uniforms = uniforms, .storage = storage},

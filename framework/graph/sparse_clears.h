@@ -47,8 +47,8 @@ private:
         int pass = 0;
         gpu::Buffer uniforms;
         const gpu::Buffer* places = nullptr;
-        std::optional<gpu::Buffer>
-            no_places{};  ///< in place of next_places where those are not known in time
+        const gpu::Buffer* next_places = nullptr;  ///< where the texture will be drawn over
+        std::optional<gpu::Buffer> no_places{};    ///< in their stead, where they are not known in time
         gpu::Target target;
         gpu::InstanceRange instances;
     };

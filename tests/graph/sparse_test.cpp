@@ -1,4 +1,5 @@
 // Textures that are cleared only where they were drawn to before, against what a clear of every texel leaves.
+#include <array>
 #include <initializer_list>
 #include <memory>
 #include <utility>
@@ -68,6 +69,29 @@ void main() { result = )" + value + "; }",
         pass.instances.count = 1;
         pass.buffers = {{places, 0, gpu::Access::read}};
         if (wipes) pass.wipes = {Wipe{wipe_, {0, block_of(0)}, {places, 0, gpu::Access::read}}};
+        return pass;
+    }
+
+    /// As wipe_, but only where the buffer at binding 1 has another column.
+    Shared rest() {
+        return shared(gpu::Program::draw(context(), R"(#version 450 core
+layout(std430, binding = 0) readonly buffer Places { uvec4 place[]; };
+layout(std430, binding = 1) readonly buffer NextPlaces { uvec4 next_place[]; };
+void main() {
+    vec2 texel = vec2(float(place[0].x) + float(gl_VertexID & 1), 3.0 * float(gl_VertexID >> 1));
+    if (place[0].x == next_place[0].x) texel = vec2(0.0);
+    gl_Position = vec4(texel / vec2(5.0, 3.0) * vec2(2.0, -2.0) + vec2(-1.0, 1.0), 0.0, 1.0);
+})",
+                                         R"(#version 450 core
+layout(std140, binding = 0) uniform Block { vec4 unused; };
+layout(location = 0) out float result;
+void main() { result = 7.0; })",
+                                         "rest"));
+    }
+
+    Pass column_pass_that_wipes_the_rest(TextureHandle target, BufferHandle places, const Shared& rest) {
+        Pass pass = column_pass(target, places);
+        pass.wipes = {Wipe{rest, {0, block_of(0)}, {places, 0, gpu::Access::read}, 1}};
         return pass;
     }
 
@@ -301,28 +325,15 @@ TEST_P(SparseOn, IsAHistoryToo) {
 
 /// What is drawn again needs no wipe; what is not, does.
 TEST_P(SparseOn, GivesAWipeThePlacesThatThePassDrawsNext) {
-    const Shared rest = shared(gpu::Program::draw(context(), R"(#version 450 core
-layout(std430, binding = 0) readonly buffer Places { uvec4 place[]; };
-layout(std430, binding = 1) readonly buffer NextPlaces { uvec4 next_place[]; };
-void main() {
-    vec2 texel = vec2(float(place[0].x) + float(gl_VertexID & 1), 3.0 * float(gl_VertexID >> 1));
-    if (place[0].x == next_place[0].x) texel = vec2(0.0);
-    gl_Position = vec4(texel / vec2(5.0, 3.0) * vec2(2.0, -2.0) + vec2(-1.0, 1.0), 0.0, 1.0);
-})",
-                                                  R"(#version 450 core
-layout(std140, binding = 0) uniform Block { vec4 unused; };
-layout(location = 0) out float result;
-void main() { result = 7.0; })",
-                                                  "rest"));
+    const Shared rest = this->rest();
     for (const int lists : {1, 2}) {
         Columns columns;
         Graph& graph = columns.graph;
         columns.sparse = cleared(graph);
         for (int i = 0; i < lists; ++i) {
             const BufferHandle places = add_list(columns, graph.create_buffer("places", {16}));
-            Pass pass = column_pass(columns.sparse, places);
-            pass.wipes = {Wipe{rest, {0, block_of(0)}, {places, 0, gpu::Access::read}, 1}};
-            columns.sparse = graph.add_pass(pass).targets.front();
+            columns.sparse =
+                graph.add_pass(column_pass_that_wipes_the_rest(columns.sparse, places, rest)).targets.front();
         }
         graph.keep(columns.sparse);
         Executor executor(context(), graph);
@@ -336,6 +347,42 @@ void main() { result = 7.0; })",
                 << a << ", " << b;
         }
     }
+}
+
+/// Both draws leave the rows below the first as they are, although their wipes say otherwise: there a column
+/// shows whether it was wiped.
+TEST_P(SparseOn, WipesNothingOfWhatTheFirstOfSeveralPassesDrawsOver) {
+    draw_ = shared(columns("float(column) + 1000.0; if (gl_FragCoord.y > 1.0) discard"));
+    const Shared rest = this->rest();
+    constexpr float kStale = -1;
+    const auto row_below = [&](bool is_read_between, std::initializer_list<int> now) {
+        Columns columns;
+        Graph& graph = columns.graph;
+        columns.sparse = cleared(graph);
+        std::array<BufferHandle, 2> places;
+        for (BufferHandle& list : places) list = add_list(columns, graph.create_buffer("places", {16}));
+        if (is_read_between)
+            graph.keep(graph.add_pass(draw_of("look", *copy_, {columns.sparse}, graph.fresh("look", kSmall)))
+                           .targets.front());
+        for (const BufferHandle list : places)
+            columns.sparse =
+                graph.add_pass(column_pass_that_wipes_the_rest(columns.sparse, list, rest)).targets.front();
+        graph.keep(columns.sparse);
+        Executor executor(context(), graph);
+        EXPECT_EQ(executor.compiled().sparse.size(), 1u);
+        set_columns(executor, columns, {1, 2});
+        executor.run(false);
+        gpu::Texture& memory = *executor.texture(columns.sparse);
+        memory.upload(Floats(std::size_t(kWidth) * kHeight, kStale));
+        set_columns(executor, columns, now);
+        executor.run(false);
+        const Floats values = memory.read_floats();
+        return Floats(values.begin() + kWidth, values.begin() + 3 + kWidth);
+    };
+    EXPECT_EQ(row_below(false, {1, 2}), (Floats{kStale, kStale, kClear})) << "the second pass's place alone";
+    EXPECT_EQ(row_below(false, {2, 3}), (Floats{kStale, kClear, kStale})) << "now the first pass draws there";
+    EXPECT_EQ(row_below(false, {3, 1}), (Floats{kStale, kClear, kClear}));
+    EXPECT_EQ(row_below(true, {1, 2}), (Floats{kStale, kClear, kClear})) << "a pass sees it before";
 }
 
 TEST_P(SparseOn, RefusesWipesThatCannotWork) {
