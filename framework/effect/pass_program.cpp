@@ -126,7 +126,7 @@ std::shared_ptr<const gpu::Program> ProgramCache::get(const ProgramSources& sour
     if (!cached.program) {
         try {
             gpu::Program program = make(sources, key, cached.binary_bytes);
-            if (makes_one_form_ && has_loop(sources.main)) program.use_one_form();
+            if (has_loop(sources.main)) program.use_one_form();
             cached.program = std::make_shared<const gpu::Program>(std::move(program));
         } catch (...) {
             programs_.erase(key);

@@ -64,9 +64,6 @@ public:
     /// [before the first program]
     void guard_loops() { guards_loops_ = true; }
     bool is_guarding_loops() const { return guards_loops_; }
-    /// Programs with loops made from now on have one form: see gpu::Program::use_one_form().
-    void make_one_form(bool is_on) { makes_one_form_ = is_on; }
-    bool is_making_one_form() const { return makes_one_form_; }
     const std::filesystem::path& glsl_folder() const { return glsl_folder_; }
     const ProgramStore& store() const { return store_; }
     /// Of a program that get() made or loaded: how large the driver writes it, by which long ones are known;
@@ -93,7 +90,6 @@ private:
     std::map<std::string, Cached> programs_;
     std::uint64_t uses_ = 0;  // of the cache so far
     bool guards_loops_ = false;
-    bool makes_one_form_ = false;
     int compiled_ = 0;
     int loaded_ = 0;
 };

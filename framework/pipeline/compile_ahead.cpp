@@ -19,7 +19,6 @@ CompileAhead::CompileAhead(gpu::Context& context, ProgramCache& programs, std::v
       programs_(programs),
       glsl_folder_(programs.glsl_folder()),
       store_(programs.store()),
-      makes_one_form_(programs.is_making_one_form()),
       passes_(std::move(passes)),
       states_(passes_.size(), State::open),
       binary_bytes_(passes_.size()) {
@@ -159,7 +158,6 @@ void CompileAhead::work() {
     try {
         gpu::Context context(gpu::SiblingOf{context_});
         ProgramCache programs(context, glsl_folder_, store_);
-        programs.make_one_form(makes_one_form_);
         for (int index = next(); index >= 0; index = next()) work_on(programs, context, index);
     } catch (const std::exception&) {
         // No context, or no memory: the caller does the rest.

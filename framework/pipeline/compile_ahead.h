@@ -87,7 +87,6 @@ private:
     ProgramCache& programs_;
     const std::filesystem::path glsl_folder_;
     const ProgramStore store_;
-    const bool makes_one_form_;
     const std::vector<PassToCompile> passes_;
     mutable std::mutex mutex_;
     std::condition_variable changed_;

@@ -79,9 +79,6 @@ GraphBuilder::GraphBuilder(const GraphTools& tools, const GraphFrame& frame)
       built_(std::make_unique<BuiltGraph>()) {}
 
 std::unique_ptr<BuiltGraph> GraphBuilder::build() {
-    // A picture of this size takes less time to draw than its programs to compile.
-    constexpr int kSmallFrame_px = 512 * 512;
-    tools_.programs.make_one_form(width_ * height_ <= kSmallFrame_px);
     const int accumulating = pipeline_.last_accumulating_step();
     for (int i = 0; i < int(pipeline_.steps.size()); ++i) {
         built_->first_pass_of_step.push_back(graph_.pass_count());

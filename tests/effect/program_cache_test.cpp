@@ -82,10 +82,9 @@ TEST_P(ProgramCacheOn, CompilesComputeInstancesAndAtomics) {
     EXPECT_EQ(programs.compiled_count(), 6);
 }
 
-TEST_P(ProgramCacheOn, MakesOneFormOfShadersWithLoopsIfThatIsOn) {
-    const auto has_one_form = [&](const std::string& body, bool is_on = true) {
+TEST_P(ProgramCacheOn, MakesOneFormOfShadersWithLoops) {
+    const auto has_one_form = [&](const std::string& body) {
         ProgramCache programs(context(), kSource / "glsl", ProgramStore());
-        programs.make_one_form(is_on);
         ProgramSources sources;
         sources.vertex = gpu::kFullScreen;
         sources.main.text = "#version 450 core\nlayout(location = 0) out vec4 c;\n" + body + "\n";
@@ -93,7 +92,6 @@ TEST_P(ProgramCacheOn, MakesOneFormOfShadersWithLoopsIfThatIsOn) {
         return programs.get(sources)->has_one_form();
     };
     EXPECT_TRUE(has_one_form("void main() { c = vec4(0); for (int i = 0; i < 9; ++i) c.x += c.y; }"));
-    EXPECT_FALSE(has_one_form("void main() { c = vec4(0); for (int i = 0; i < 9; ++i) c.x += c.y; }", false));
     EXPECT_TRUE(has_one_form("void main() { c = vec4(0); do c.x += 1.0; while (c.x < 9.0); }"));
     EXPECT_FALSE(has_one_form("void main() { c = vec4(0); }  // while for"));
     EXPECT_FALSE(has_one_form("void main() { float form = 0.0; c = vec4(form); }"));
