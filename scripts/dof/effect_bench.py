@@ -26,11 +26,13 @@ def run_bench(job, names, folders, work, counting=False):
     return {name: sorted(runs, key=lambda r: r["ms"])[(len(runs) - 1) // 2] for name, runs in results.items()}
 
 
-# Counting: the same shaders with every fetch through a macro that adds one, and the sum of each invocation at its end.
+# Counting: the same shaders with every fetch through a macro that adds one, and the sum of each invocation at its end. On software GL the
+# host puts loads from images in the place of fetches.
 PRELUDE = """
 layout(std430, binding = 15) buffer FetchCounts { uint fetch_counts[4096]; };
 uint fetches_made = 0u;
 #define texelFetch(s, p, l) (fetches_made++, texelFetch(s, p, l))
+#define imageLoad(s, p) (fetches_made++, imageLoad(s, p))
 #define textureLod(s, p, l) (fetches_made++, textureLod(s, p, l))
 #define texture(s, p) (fetches_made++, texture(s, p))
 #define textureGather(s, p) (fetches_made += 4u, textureGather(s, p))
@@ -46,7 +48,7 @@ PLACE = {".frag": "(uint(gl_FragCoord.x) * 37u + uint(gl_FragCoord.y))", ".vert"
 
 
 def counting_copy(names, folders, work):
-    """A data folder of counting shaders; imageLoad and buffers are not fetches of textures and are not counted."""
+    """A data folder of counting shaders. Reads of buffers are not counted."""
     folder = work / "counting"
     shutil.rmtree(folder, ignore_errors=True)
     for part in "glsl", "profiles":

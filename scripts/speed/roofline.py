@@ -22,6 +22,7 @@ PARAMS = {"sss": {"scattering_profile": {"type": "burley", "d_mm": [60, 25, 15]}
           "lens": {"focus_distance": 6.4, "focal_length": 50, "f_number": 0.25, "sensor_width": 36, "lens_model": "pinhole"}}
 PROBE = {"aftershade": 1, "version": "1.0.0", "summary": "Measures software GL.", "inputs": {"color": {"role": "color", "doc": "Any."}},
          "outputs": {"color": {"role": "color", "doc": "Of no use."}}}
+PROBE_FETCHES = 64  # of probe_fetch, for each pixel
 PROBES = {
     "probe_copy": "out_color = texelFetch(color, ivec2(gl_FragCoord.xy), 0);",
     "probe_fetch": """vec4 sum = vec4(0.0);
@@ -94,9 +95,12 @@ def main():
     cores = os.cpu_count()
     times = {threads: bench(all_cases, threads=threads) for threads in (1, cores)}
     counts = bench(all_cases, counting=True, repetitions=1)
+    if round(counts["probe_fetch"]["fetches_per_pixel"]) != PROBE_FETCHES:
+        raise SystemExit(f"the probe of {PROBE_FETCHES} fetches a pixel counts {counts['probe_fetch']['fetches_per_pixel']}: the host reads texels in a "
+                         "way that scripts/dof/effect_bench.py does not count yet; extend PRELUDE")
     best = times[cores]
     copy_ms = best["probe_copy"]["ms"]
-    ns_per_fetch = 1e6 * (best["probe_fetch"]["ms"] - copy_ms) / 63 / PIXELS
+    ns_per_fetch = 1e6 * (best["probe_fetch"]["ms"] - copy_ms) / (PROBE_FETCHES - 1) / PIXELS
     rows = []
     for case in all_cases[:-len(PROBES)]:
         name = case["name"]
