@@ -225,7 +225,7 @@ void prepare_output_folder(const fs::path& file) {
     remove_stale_temporaries(folder);
 }
 
-void AtomicFile::commit() {
+void AtomicFile::commit(Flush flush) {
     const auto fail = [&](const char* step) {
         throw Error(ExitCode::output, final_path_.string() + ": " + step + ": " + std::strerror(errno));
     };
@@ -236,7 +236,7 @@ void AtomicFile::commit() {
         close(file);
         fail("cannot keep the permissions");
     }
-    const int flushed = fsync(file);
+    const int flushed = flush == Flush::yes ? fsync(file) : 0;
     close(file);
     if (flushed != 0) fail("cannot flush to disk");
     if (std::rename(temporary_path_.c_str(), target_.c_str()) != 0) fail("cannot rename into place");

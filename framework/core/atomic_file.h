@@ -28,8 +28,10 @@ public:
     AtomicFile& operator=(const AtomicFile&) = delete;
 
     const std::filesystem::path& temporary_path() const { return temporary_path_; }
+    /// `no`: after a crash of the system the file may lack its contents.
+    enum class Flush { no, yes };
     /// Throws Error(ExitCode::output) naming the final path and the system's reason.
-    void commit();
+    void commit(Flush flush = Flush::yes);
 
 private:
     std::filesystem::path final_path_;

@@ -139,7 +139,8 @@ void ProgramStore::save(const std::string& key, const gpu::ProgramBinary& binary
         std::ofstream out(file.temporary_path(), std::ios::binary);
         out.write(text.data(), static_cast<std::streamsize>(text.size()));
         out.close();
-        if (out) file.commit();
+        // A file without its contents counts as absent, and a disk may take long to flush each.
+        if (out) file.commit(AtomicFile::Flush::no);
         make_room();
     } catch (const Error&) {
         // A full disk or a folder of somebody else's costs time only: the program is compiled again.
