@@ -1,7 +1,7 @@
 #include "coarse.glsl"
 #include "tile.glsl"
 
-const int kCoarseTile = 16;  // texels of `coarse`, as effect.json declares it
+const int kCoarseTile = 8;  // texels of `coarse`, as effect.json declares it
 
 // Tiles of `coarse` that hold texels of a lit tile, of which a fetch takes four. The loops test at their end: llvmpipe runs the body of the
 // others once more, with every tile masked. A tile too many costs its texels alone.
