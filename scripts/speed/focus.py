@@ -1,5 +1,5 @@
 """What a frame costs `dof` of which 5 % is out of focus, and one all out of focus, at 1920x1080 with a CoC radius of 16 px: its passes,
-and these with upload and readback, which copy every pixel of both frames; of each the least of seven frames."""
+and these with upload and readback, which copy every pixel of both frames; of each the least of four runs of seven frames in turns."""
 import json
 import os
 import re
@@ -10,7 +10,7 @@ import numpy
 from family import AFTERSHADE, ROOT, write_exr
 
 WORK = ROOT / "build/bench/focus"
-WIDTH, HEIGHT, FRAMES = 1920, 1080, 7
+WIDTH, HEIGHT, FRAMES, TURNS = 1920, 1080, 7, 4
 FOCUS_M, FOCAL_MM, SENSOR_MM, COC_RADIUS_PX = 2, 200, 36, 16
 ROW = re.compile(r"^(\S+) +[\d.]+ +([\d.]+) +[\d.]+$", re.M)  # mean, least, most
 
@@ -30,14 +30,21 @@ def sequence(name, blurred):
     return WORK / f"{name}_####.exr"
 
 
-def frame_ms(look, frames):
-    """Of the passes, and of all rows of the table."""
+def rows_ms(look, frames, threads):
     words = [AFTERSHADE, "run", look, frames, "-o", WORK / "out_####.exr", "--backend", "osmesa", "--compression", "none", "--no-journal",
              "--overwrite"]
-    for _ in range(2):  # the first fills the program cache
-        done = subprocess.run([str(w) for w in words], check=True, capture_output=True, text=True)
-    rows = [(name, float(ms)) for name, ms in ROW.findall(done.stdout + done.stderr)]
-    return sum(ms for name, ms in rows if name.startswith("dof.")), sum(ms for _, ms in rows)
+    done = subprocess.run([str(w) for w in words], check=True, capture_output=True, text=True,
+                          env=os.environ | {"LP_NUM_THREADS": str(threads)})
+    return {name: float(ms) for name, ms in ROW.findall(done.stdout + done.stderr)}
+
+
+def frames_ms(look, sequences, threads):
+    """Of each sequence the passes, and all rows of the table: of each row the least of several runs in turns, of which the first fills
+    the program cache."""
+    runs = [[rows_ms(look, frames, threads) for frames in sequences] for _ in range(1 + TURNS)][1:]
+    for of_sequence in zip(*runs):
+        least = {name: min(run[name] for run in of_sequence) for name in of_sequence[0]}
+        yield sum(ms for name, ms in least.items() if name.startswith("dof.")), sum(least.values())
 
 
 def figures():
@@ -47,8 +54,13 @@ def figures():
               "f_number": FOCAL_MM / aperture_mm, "max_coc_radius": 64, "blades": 6}
     look = WORK / "dof.json"
     look.write_text(json.dumps({"aftershade": 1, "steps": [{"effect": "dof", "params": params}]}))
-    part, whole = (frame_ms(look, sequence(name, blurred)) for name, blurred in (("part", 0.05), ("whole", 1)))
-    print(f"dof: a frame with 5 % out of focus {part[0]:.1f} ms, one all out of focus {whole[0]:.1f} ms; with upload and readback "
-          f"{part[1]:.1f} and {whole[1]:.1f} ms", flush=True)
+    sequences = [sequence("part", 0.05), sequence("whole", 1)]
     name = "a frame with 5 % out of focus, of one all out of focus"
-    return {f"`dof`, passes alone: {name}": round(part[0] / whole[0], 3), f"`dof`: {name}": round(part[1] / whole[1], 3)}
+    found = {}
+    for threads, of in (1, ", one thread"), (os.cpu_count(), ""):
+        part, whole = frames_ms(look, sequences, threads)
+        print(f"dof{of}: a frame with 5 % out of focus {part[0]:.1f} ms, one all out of focus {whole[0]:.1f} ms; with upload and readback "
+              f"{part[1]:.1f} and {whole[1]:.1f} ms", flush=True)
+        found[f"`dof`{of}, passes alone: {name}"] = round(part[0] / whole[0], 3)
+        found[f"`dof`{of}: {name}"] = round(part[1] / whole[1], 3)
+    return found
