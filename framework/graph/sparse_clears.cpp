@@ -7,9 +7,9 @@
 namespace aftershade::graph {
 namespace {
 
-/// Which buffer says, when a sparse texture is wiped, where a level of it will be drawn over: that of the
-/// first pass that draws to the level, where no pass reads the level before that or changes the buffer.
-/// nullptr if there is none.
+/// The wipe whose buffer says, when a sparse texture is wiped, where a level of it will be drawn over: that
+/// of the first pass that draws to the level. nullptr where a pass reads the level before that, or changes
+/// the buffer.
 const Wipe* next_draw(const FrameGraph& graph, const CompiledGraph& compiled, const SparseTexture& sparse,
                       const Target& level) {
     const auto wipe_of = [&](const Pass& pass) -> const Wipe* {

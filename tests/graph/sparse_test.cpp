@@ -355,7 +355,7 @@ TEST_P(SparseOn, WipesNothingOfWhatTheFirstOfSeveralPassesDrawsOver) {
     draw_ = shared(columns("float(column) + 1000.0; if (gl_FragCoord.y > 1.0) discard"));
     const Shared rest = this->rest();
     constexpr float kStale = -1;
-    const auto row_below = [&](bool is_read_between, std::initializer_list<int> now) {
+    const auto row_below = [&](bool is_read_between, std::initializer_list<int> now, float second_tiles = 0) {
         Columns columns;
         Graph& graph = columns.graph;
         columns.sparse = cleared(graph);
@@ -364,9 +364,11 @@ TEST_P(SparseOn, WipesNothingOfWhatTheFirstOfSeveralPassesDrawsOver) {
         if (is_read_between)
             graph.keep(graph.add_pass(draw_of("look", *copy_, {columns.sparse}, graph.fresh("look", kSmall)))
                            .targets.front());
-        for (const BufferHandle list : places)
-            columns.sparse =
-                graph.add_pass(column_pass_that_wipes_the_rest(columns.sparse, list, rest)).targets.front();
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            Pass pass = column_pass_that_wipes_the_rest(columns.sparse, places[i], rest);
+            pass.wipes.front()->uniforms.bytes = block_of(i == 0 ? 0 : second_tiles);
+            columns.sparse = graph.add_pass(pass).targets.front();
+        }
         graph.keep(columns.sparse);
         Executor executor(context(), graph);
         EXPECT_EQ(executor.compiled().sparse.size(), 1u);
@@ -383,6 +385,7 @@ TEST_P(SparseOn, WipesNothingOfWhatTheFirstOfSeveralPassesDrawsOver) {
     EXPECT_EQ(row_below(false, {2, 3}), (Floats{kStale, kClear, kStale})) << "now the first pass draws there";
     EXPECT_EQ(row_below(false, {3, 1}), (Floats{kStale, kClear, kClear}));
     EXPECT_EQ(row_below(true, {1, 2}), (Floats{kStale, kClear, kClear})) << "a pass sees it before";
+    EXPECT_EQ(row_below(false, {2, 3}, 1), (Floats{kStale, kClear, kClear})) << "tiles of another size";
 }
 
 TEST_P(SparseOn, RefusesWipesThatCannotWork) {
