@@ -155,7 +155,7 @@ ExitCode run_here(const RunArguments& options, CheckedRun& run, const CaptureRea
     NativeRegistry natives = native_registry(options.plugins, &status);
     std::optional<gpu::Context> made;
     const auto context = [&]() -> gpu::Context& {
-        return made ? *made : made.emplace(chosen_backend(options.backend));
+        return made ? *made : made.emplace(chosen_backend(options.backend), gpu::SelfTest::at_first_use);
     };
     run.settings.natives = {&natives, &status};
     const Pipeline& pipeline = run.bound->pipeline;

@@ -224,6 +224,7 @@ void check_indirect(const Program& program, const Buffer& buffer, std::size_t by
 template <typename Submit>
 void draw_with(Context& context, const Program& program, std::span<const Target> targets,
                const Bindings& bindings, Blend blend, Submit submit) {
+    context.test_once();
     context.make_current();
     const Context::Impl& impl = context.impl();
     const GladGLContext& gl = impl.gl;
@@ -251,6 +252,7 @@ void draw_with(Context& context, const Program& program, std::span<const Target>
 
 template <typename Submit>
 void dispatch_with(Context& context, const Program& program, const Bindings& bindings, Submit submit) {
+    context.test_once();
     context.make_current();
     const GladGLContext& gl = context.gl();
     {
@@ -274,6 +276,7 @@ void dispatch_from(Context& context, const Program& program, const Buffer& group
 NothingToDo::NothingToDo(Context& context)
     : context_(context), no_groups_(context, 3 * sizeof(std::uint32_t), "no work groups") {
     no_groups_.clear(0);
+    context_.test_once();
     context_.impl().nothing = &no_groups_;
     context_.gl().Scissor(0, 0, 0, 0);
     context_.gl().Enable(GL_SCISSOR_TEST);

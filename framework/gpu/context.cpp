@@ -118,7 +118,7 @@ Context::Context(SiblingOf other) {
     impl_ = std::make_unique<Impl>(sibling, sibling.platform->sibling(other.shares_objects));
 }
 
-Context::Context(Backend backend) {
+Context::Context(Backend backend, SelfTest when) {
     // Mesa does not check every allocation: better refused here than a crash in there.
     require_address_space(kContextBytes, "OpenGL");
     std::vector<std::pair<Backend, std::string>> reasons;
@@ -126,7 +126,8 @@ Context::Context(Backend backend) {
         if (backend != Backend::automatic && backend != candidate) continue;
         try {
             impl_ = std::make_unique<Impl>(candidate);
-            self_test(*this);
+            if (when == SelfTest::now || !impl_->info.software) self_test(*this);
+            else impl_->is_untested = true;
             if (impl_->info.software) spread_rasterizer_threads();
             return;
         } catch (const Error& error) {
@@ -142,6 +143,17 @@ Context::~Context() = default;
 
 const ContextInfo& Context::info() const {
     return impl_->info;
+}
+
+void Context::test_once() {
+    if (!impl_->is_untested) return;
+    impl_->is_untested = false;  // it draws
+    try {
+        self_test(*this);
+    } catch (...) {
+        impl_->is_untested = true;
+        throw;
+    }
 }
 
 void Context::make_current() {

@@ -62,15 +62,21 @@ struct ObjectCounts {
 /// fails here fails again, and says why, where the context is made. [any thread]
 void load_ahead(Backend backend) noexcept;
 
+/// When a context draws what shows that it works: llvmpipe compiles that for 40 ms, without a cache, and
+/// threads may compile the caller's programs meanwhile. With `at_first_use` a software renderer, which Mesa
+/// itself has made current, is tested by test_once() or before its first draw or dispatch. Hardware, whose
+/// driver may not fit, always is at once.
+enum class SelfTest { now, at_first_use };
+
 /// Owns the GL context and its function table. Objects made from it keep a reference and must die first.
-/// Construction draws a known colour into a float framebuffer and reads it back; a context that cannot is
+/// A self-test draws a known colour into a float framebuffer and reads it back; a context that cannot is
 /// refused. [one thread: the one that made it; several contexts may exist in one process, make_current()
 /// selects]
 class Context {
 public:
     /// Throws Error(ExitCode::gl) that lists each backend tried and why it was refused, and
     /// Error(ExitCode::memory) where a limit leaves too little address space.
-    explicit Context(Backend backend);
+    explicit Context(Backend backend, SelfTest self_test = SelfTest::now);
     /// On EGL, sharing textures, buffers and fences with a context of the caller's, which must outlive this
     /// one. Throws as the other.
     explicit Context(const SharedEglContext& shared);
@@ -85,6 +91,8 @@ public:
     /// Stays the same while the same work is done again.
     ObjectCounts objects() const;
     void make_current();
+    /// The self-test that SelfTest::at_first_use has put off. Throws Error(ExitCode::gl).
+    void test_once();
     /// Leaves this thread without it, so that another thread may make it current.
     void release() noexcept;
     /// After memory ran out: this context and its objects are never deleted. Mesa 22.3 may wait for ever in

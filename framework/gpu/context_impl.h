@@ -52,6 +52,7 @@ struct Context::Impl {
     std::unique_ptr<ObjectCache> cache;
     ObjectCounts handles;  ///< of Handle alone
     bool abandoned = false;
+    bool is_untested = false;         ///< SelfTest::at_first_use
     const Buffer* nothing = nullptr;  ///< of NothingToDo: zero work groups
 
 private:

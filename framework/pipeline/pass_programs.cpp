@@ -244,6 +244,7 @@ void PassPrograms::finish(graph::FrameGraph& graph, std::vector<BlockBinding>& b
     std::vector<FusedAssembled> fusions = assemble_fusions(graph, divide_at);
     std::map<int, Assembled> others = assemble_others(graph, fusions);
     work_ahead(graph, fusions, others);
+    tools_.context.test_once();  // while the threads compile
     for (FusedAssembled& fused : fusions) fuse(graph, fused, blocks);
     for (const auto& [pass, added] : added_) {
         if (graph.is_fused_away(pass) || graph.pass(pass).program) continue;

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "framework/core/error.h"
+#include "framework/gpu/context_impl.h"
 #include "framework/gpu/platform.h"
 #include "tests/gpu/gpu_test.h"
 
@@ -23,6 +24,38 @@ TEST_P(ContextOn, PassesItsSelfTestAndSaysThatItIsSoftware) {
     EXPECT_FALSE(info.renderer.empty());
     EXPECT_FALSE(info.vendor.empty());
     EXPECT_EQ(info.version.substr(0, 2), "4.") << info.version;
+}
+
+/// Nothing that is drawn comes into a target.
+void mask_colour(Context& context, bool masked) {
+    context.make_current();
+    const GLboolean writes = masked ? GL_FALSE : GL_TRUE;
+    context.gl().ColorMask(writes, writes, writes, writes);
+}
+
+TEST_P(ContextOn, DrawsAPutOffSelfTestBeforeItsFirstDrawUntilItPassesOnce) {
+    Context late(GetParam(), SelfTest::at_first_use);
+    const Program program = Program::draw(
+        late, kFullScreen, "#version 450 core\nlayout(location = 0) out vec4 c; void main() { c = vec4(2); }",
+        "two");
+    const Texture target(late, {.width = 1, .height = 1, .format = TextureFormat::rgba32f}, "target");
+    const Target targets[] = {{.texture = &target}};
+    mask_colour(late, true);
+    for (int i = 0; i < 2; ++i) {
+        try {
+            draw(late, program, targets, {});
+            ADD_FAILURE() << "no error";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.exit_code(), ExitCode::gl);
+            EXPECT_EQ(std::string(error.what()).substr(0, 12), "self-test on") << error.what();
+        }
+    }
+    mask_colour(late, false);
+    draw(late, program, targets, {});
+    EXPECT_EQ(target.read_floats(), std::vector<float>(4, 2.0F));
+    mask_colour(late, true);
+    EXPECT_NO_THROW(late.test_once());
+    EXPECT_NO_THROW(draw(late, program, targets, {}));
 }
 
 TEST_P(ContextOn, ReportsNoErrorWhenThereIsNone) {
