@@ -388,6 +388,41 @@ TEST_P(SparseOn, WipesNothingOfWhatTheFirstOfSeveralPassesDrawsOver) {
     EXPECT_EQ(row_below(false, {2, 3}, 1), (Floats{kStale, kClear, kClear})) << "tiles of another size";
 }
 
+/// Where one level is drawn next, the other keeps its wipe.
+TEST_P(SparseOn, WipesEachLevelByWhatIsDrawnToItNext) {
+    constexpr int kLevels = 2;
+    const Shared rest = this->rest();
+    Columns columns;
+    Graph& graph = columns.graph;
+    TextureOptions options;
+    options.clear = {kClear, kClear, kClear, kClear};
+    gpu::TextureDesc desc = kSmall;
+    desc.width *= 2;
+    desc.height *= 2;
+    desc.mips = kLevels;
+    columns.sparse = graph.create_texture("sparse", desc, options);
+    std::array<BufferHandle, kLevels> places;
+    for (BufferHandle& list : places) list = add_list(columns, graph.create_buffer("places", {16}));
+    for (int level = 0; level < kLevels; ++level) {
+        Pass pass = column_pass_that_wipes_the_rest(columns.sparse, places[std::size_t(level)], rest);
+        pass.targets.front().level = level;
+        columns.sparse = graph.add_pass(pass).targets.front();
+    }
+    graph.keep(columns.sparse);
+    Executor executor(context(), graph);
+    ASSERT_EQ(executor.compiled().sparse.size(), 1u);
+    for (const auto& [a, b] :
+         {std::pair(0, 3), {3, 0}, {1, 1}, {1, 2}, {2, kNowhere}, {kNowhere, 2}, {4, 4}}) {
+        set_columns(executor, columns, {a, b});
+        executor.run(false);
+        const gpu::Texture& texture = *executor.texture(columns.sparse);
+        EXPECT_EQ(texture.read_floats(1), expected({b})) << a << ", " << b;
+        const Floats narrow = expected({a}), wide = texture.read_floats(0);
+        for (std::size_t i = 0; i < wide.size(); ++i)
+            EXPECT_EQ(wide[i], narrow[i % std::size_t(desc.width) / 2]) << i << ", " << a << ", " << b;
+    }
+}
+
 TEST_P(SparseOn, RefusesWipesThatCannotWork) {
     Columns columns;
     Graph& graph = columns.graph;
