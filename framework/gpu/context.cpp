@@ -126,8 +126,8 @@ Context::Context(Backend backend, SelfTest when) {
         if (backend != Backend::automatic && backend != candidate) continue;
         try {
             impl_ = std::make_unique<Impl>(candidate);
-            if (when == SelfTest::now || !impl_->info.software) self_test(*this);
-            else impl_->is_untested = true;
+            impl_->is_untested = true;
+            if (when == SelfTest::now || backend == Backend::automatic || !impl_->info.software) test_once();
             if (impl_->info.software) spread_rasterizer_threads();
             return;
         } catch (const Error& error) {

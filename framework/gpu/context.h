@@ -62,10 +62,10 @@ struct ObjectCounts {
 /// fails here fails again, and says why, where the context is made. [any thread]
 void load_ahead(Backend backend) noexcept;
 
-/// When a context draws what shows that it works: llvmpipe compiles that for 40 ms, without a cache, and
-/// threads may compile the caller's programs meanwhile. With `at_first_use` a software renderer, which Mesa
-/// itself has made current, is tested by test_once() or before its first draw or dispatch. Hardware, whose
-/// driver may not fit, always is at once.
+/// When a context draws its self-test, which llvmpipe takes 40 ms to compile from an empty cache; threads may
+/// compile the caller's programs meanwhile. With `at_first_use` test_once(), or the first draw or dispatch,
+/// draws it, where the caller names a backend and the renderer is software. Else it is drawn at once: another
+/// backend may have to take the context's place, and a driver may not fit its hardware.
 enum class SelfTest { now, at_first_use };
 
 /// Owns the GL context and its function table. Objects made from it keep a reference and must die first.
@@ -76,7 +76,7 @@ class Context {
 public:
     /// Throws Error(ExitCode::gl) that lists each backend tried and why it was refused, and
     /// Error(ExitCode::memory) where a limit leaves too little address space.
-    explicit Context(Backend backend, SelfTest self_test = SelfTest::now);
+    explicit Context(Backend backend, SelfTest when = SelfTest::now);
     /// On EGL, sharing textures, buffers and fences with a context of the caller's, which must outlive this
     /// one. Throws as the other.
     explicit Context(const SharedEglContext& shared);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <span>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -22,13 +23,16 @@ void main() {
 }
 )";
 
-/// Of kColour all but alpha are literals: llvmpipe takes a millisecond to compile each further value of a
+/// All of kColour but alpha as literals: llvmpipe takes a millisecond to compile each further value of a
 /// block.
-constexpr const char* kFragment = R"(#version 450 core
-layout(std140, binding = 0) uniform Block { float alpha; };
+std::string fragment_text() {
+    return fmt::format(R"(#version 450 core
+layout(std140, binding = 0) uniform Block {{ float alpha; }};
 layout(location = 0) out vec4 result;
-void main() { result = vec4(-1.5, 3.25, 1e6, alpha) + vec4(gl_FragCoord.xy, 0.0, 0.0); }
-)";
+void main() {{ result = vec4({}, {}, {}, alpha) + vec4(gl_FragCoord.xy, 0.0, 0.0); }}
+)",
+                       kColour[0], kColour[1], kColour[2]);
+}
 
 constexpr int kWidth = 3, kHeight = 2;
 
@@ -41,7 +45,7 @@ float expected(int x, int y, int channel) {
 }  // namespace
 
 void self_test(Context& context) {
-    Program program = Program::draw(context, kVertex, kFragment, "self-test");
+    Program program = Program::draw(context, kVertex, fragment_text(), "self-test");
     program.use_one_form();
     const Texture target(context, {.width = kWidth, .height = kHeight, .format = TextureFormat::rgba32f},
                          "self-test");
