@@ -15,6 +15,7 @@
 #include <cmath>
 #include <condition_variable>
 #include <cstring>
+#include <map>
 #include <mutex>
 
 namespace aftershade::exr {
@@ -73,7 +74,7 @@ public:
         try {
             Scratch scratch(header_.zipCompressionLevel());
             for (std::size_t i = next_++; i < offsets_.size(); i = next_++)
-                if (!write_in_turn(i, pack(i, scratch))) return;
+                if (!write_in_order(i, pack(i, scratch))) return;
         } catch (...) {
             const std::lock_guard lock(mutex_);
             if (!failure_) failure_ = std::current_exception();
@@ -130,20 +131,34 @@ private:
         return packed == 0 ? std::span<const char>(scratch.raw) : std::span(scratch.packed).first(packed);
     }
 
-    /// Waits until the blocks before it are written; false where one of them could not be.
-    bool write_in_turn(std::size_t index, std::span<const char> bytes) {
+    /// Writes the block and those that waited for it; one whose turn it is not waits in memory, so that a
+    /// thread that shares its core holds up no other. False where a block could not be written.
+    bool write_in_order(std::size_t index, std::span<const char> bytes) {
         std::unique_lock lock(mutex_);
-        turn_.wait(lock, [&] { return failure_ || written_ == index; });
+        turn_.wait(lock, [&] { return failure_ || written_ == index || waiting_.size() < kMostWaiting; });
         if (failure_) return false;
-        offsets_[index] = stream_.tellp();
-        const std::array<std::int32_t, 2> head = {block_box(header_, index).min.y,
+        if (written_ != index) {
+            waiting_.emplace(index, std::vector(bytes.begin(), bytes.end()));
+            return true;
+        }
+        write(bytes);
+        while (!waiting_.empty() && waiting_.begin()->first == written_)
+            write(waiting_.extract(waiting_.begin()).mapped());
+        turn_.notify_all();
+        return true;
+    }
+
+    /// The next block.
+    void write(std::span<const char> bytes) {
+        offsets_[written_] = stream_.tellp();
+        const std::array<std::int32_t, 2> head = {block_box(header_, written_).min.y,
                                                   std::int32_t(bytes.size())};
         stream_.write(reinterpret_cast<const char*>(head.data()), int(sizeof head));
         stream_.write(bytes.data(), int(bytes.size()));
         ++written_;
-        turn_.notify_all();
-        return true;
     }
+
+    static constexpr std::size_t kMostWaiting = 16;
 
     Imf::OStream& stream_;
     const Imf::Header& header_;
@@ -155,7 +170,8 @@ private:
     std::atomic<std::size_t> next_ = 0;
     std::mutex mutex_;
     std::condition_variable turn_;
-    std::size_t written_ = 0;
+    std::size_t written_ = 0;                             ///< blocks
+    std::map<std::size_t, std::vector<char>> waiting_{};  ///< packed, by index
     std::exception_ptr failure_;
 };
 
