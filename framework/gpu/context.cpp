@@ -128,7 +128,6 @@ Context::Context(Backend backend, SelfTest when) {
             impl_ = std::make_unique<Impl>(candidate);
             impl_->is_untested = true;
             if (when == SelfTest::now || backend == Backend::automatic || !impl_->info.software) test_once();
-            if (impl_->info.software) spread_rasterizer_threads();
             return;
         } catch (const Error& error) {
             impl_.reset();
@@ -154,6 +153,22 @@ void Context::test_once() {
         impl_->is_untested = true;
         throw;
     }
+    // Once they have drawn they are there, under their names.
+    if (impl_->info.software) spread_rasterizer_threads();
+}
+
+bool Context::zeroes_new_textures() {
+    if (!impl_->info.software) return false;
+    if (!impl_->zeroes_textures) {
+        // Small enough that the allocator gives what the first one had to the second one.
+        const TextureDesc desc{.width = 32, .height = 32, .format = TextureFormat::rgba32f};
+        const std::vector<float> ones(std::size_t(4 * desc.width * desc.height), 1.0F);
+        Texture(*this, desc, "ones").upload(ones);
+        finish();
+        const std::vector<float> found = Texture(*this, desc, "new").read_floats();
+        impl_->zeroes_textures = std::ranges::all_of(found, [](float value) { return value == 0; });
+    }
+    return *impl_->zeroes_textures;
 }
 
 void Context::make_current() {

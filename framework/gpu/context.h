@@ -93,6 +93,9 @@ public:
     void make_current();
     /// The self-test that SelfTest::at_first_use has put off. Throws Error(ExitCode::gl).
     void test_once();
+    /// Whether a new texture holds zeros, as llvmpipe's do. Found out with memory that held something else;
+    /// false on hardware, where GL leaves it open.
+    bool zeroes_new_textures();
     /// Leaves this thread without it, so that another thread may make it current.
     void release() noexcept;
     /// After memory ran out: this context and its objects are never deleted. Mesa 22.3 may wait for ever in

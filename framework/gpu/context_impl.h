@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -52,8 +53,9 @@ struct Context::Impl {
     std::unique_ptr<ObjectCache> cache;
     ObjectCounts handles;  ///< of Handle alone
     bool abandoned = false;
-    bool is_untested = false;         ///< SelfTest::at_first_use
-    const Buffer* nothing = nullptr;  ///< of NothingToDo: zero work groups
+    bool is_untested = false;               ///< SelfTest::at_first_use
+    std::optional<bool> zeroes_textures{};  ///< Context::zeroes_new_textures(), once it is known
+    const Buffer* nothing = nullptr;        ///< of NothingToDo: zero work groups
 
 private:
     void start();

@@ -70,6 +70,18 @@ TEST_P(ContextOn, IsTestedAtOnceWhereAnotherBackendMayTakeItsPlace) {
     EXPECT_NO_THROW(two_drawn(chosen));
 }
 
+/// Whatever the memory held before: of these sizes the allocator gives it out again.
+TEST_P(ContextOn, HasZerosInNewTextures) {
+    EXPECT_TRUE(context().zeroes_new_textures());
+    for (const int side : {16, 64, 512}) {
+        const TextureDesc desc{.width = side, .height = side, .format = TextureFormat::rgba32f, .mips = 3};
+        const std::vector<float> sevens(std::size_t(4 * side * side), 7.0F);
+        Texture(context(), desc, "sevens").upload(sevens);
+        context().finish();
+        EXPECT_EQ(Texture(context(), desc, "new").read_floats(), std::vector<float>(sevens.size(), 0.0F));
+    }
+}
+
 TEST_P(ContextOn, ReportsNoErrorWhenThereIsNone) {
     context().finish();
     EXPECT_NO_THROW(context().check("nothing"));

@@ -33,9 +33,10 @@ TEST(RasterizerThreads, AreKnownByTheirWholeName) {
               Cores(5));
 }
 
-/// Ends the process: 0 where a context's threads each keep to another core.
-[[noreturn]] void end_as_spread() {
-    const Context context(Backend::osmesa);
+/// Ends the process: 0 where a tested context's threads each keep to another core.
+[[noreturn]] void end_as_spread(SelfTest when) {
+    Context context(Backend::osmesa, when);
+    context.test_once();
     std::set<int> found;
     int threads = 0;
     for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
@@ -59,7 +60,8 @@ TEST(RasterizerThreads, OfAContextKeepToThem) {
     if (CPU_COUNT(&set) < 2 || CPU_COUNT(&set) > 8) GTEST_SKIP() << CPU_COUNT(&set) << " cores";
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     setenv("LP_NUM_THREADS", std::to_string(CPU_COUNT(&set)).c_str(), 1);
-    EXPECT_EXIT(end_as_spread(), testing::ExitedWithCode(0), "threads on");
+    for (const SelfTest when : {SelfTest::now, SelfTest::at_first_use})
+        EXPECT_EXIT(end_as_spread(when), testing::ExitedWithCode(0), "threads on");
     unsetenv("LP_NUM_THREADS");
 }
 
