@@ -73,10 +73,10 @@ ExitCode warm(const WarmOptions& options) {
     StatusWriter status;
     NativeRegistry natives = native_registry(options.plugins, &status);
     RunOptions run;
-    // The second frame of a look with history reads textures that the first one does not have.
-    const std::size_t count = pipeline.has_history() ? 2 : 1;
+    // The second frame reads a history, and sets back what the first one drew in tiles.
+    constexpr std::size_t kFrames = 2;
     run.frames.assign(sequence->frames.begin(),
-                      sequence->frames.begin() + std::ptrdiff_t(std::min(count, sequence->frames.size())));
+                      sequence->frames.begin() + std::ptrdiff_t(std::min(kFrames, sequence->frames.size())));
     run.natives = {&natives, &status};
     run.compile_threads = allotted_cores() - 1;
     // What a file takes decides which textures the last pass writes, and so its program.

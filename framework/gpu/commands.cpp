@@ -314,11 +314,14 @@ void draw_instances(Context& context, const Program& program, std::span<const Ta
 
 void copy(Context& context, const Texture& from, const Texture& to) {
     assert(from.desc().format == to.desc().format && from.desc().width == to.desc().width);
-    assert(from.desc().height == to.desc().height && from.desc().layers == 1 && to.desc().layers == 1);
+    assert(from.desc().height == to.desc().height && from.desc().mips >= to.desc().mips);
+    assert(from.desc().layers == 1 && to.desc().layers == 1);
     context.make_current();
     context.impl().wait_for_draws();
-    context.gl().CopyImageSubData(from.handle(), GL_TEXTURE_2D, 0, 0, 0, 0, to.handle(), GL_TEXTURE_2D, 0, 0,
-                                  0, 0, to.desc().width, to.desc().height, 1);
+    for (int level = 0; level < to.desc().mips; ++level)
+        context.gl().CopyImageSubData(from.handle(), GL_TEXTURE_2D, level, 0, 0, 0, to.handle(),
+                                      GL_TEXTURE_2D, level, 0, 0, 0, std::max(1, to.desc().width >> level),
+                                      std::max(1, to.desc().height >> level), 1);
     context.check(fmt::format("copying texture '{}' to '{}'", from.label(), to.label()));
 }
 

@@ -88,7 +88,7 @@ private:
     Buffer no_groups_;
 };
 
-/// Copies level 0 of `from` to level 0 of `to`, bit for bit; both have one size, one format and one layer. On
+/// Copies the levels of `to` from `from`, bit for bit; both have one size, one format and one layer. On
 /// software GL this takes a third of the time of a draw.
 void copy(Context& context, const Texture& from, const Texture& to);
 

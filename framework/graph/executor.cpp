@@ -107,11 +107,15 @@ void Executor::find_histories() {
 
 void Executor::bind_clears() {
     clears_.resize(compiled_.passes.size() + 1);
+    const bool are_zero = context_.zeroes_new_textures();
     for (std::size_t i = 0; i < graph_.textures().size(); ++i) {
         const int position = compiled_.texture_cleared_before[i];
         if (position < 0) continue;
-        clears_[std::size_t(position)].textures.push_back(
-            {int(i), texture({int(i)}), *graph_.textures()[i].options.clear});
+        const std::array<double, 4>& value = *graph_.textures()[i].options.clear;
+        const int slot = compiled_.slot_of_texture[i];
+        const bool is_there = are_zero && value == std::array<double, 4>{} &&
+                              compiled_.first_in_slot[std::size_t(slot)] == int(i);
+        clears_[std::size_t(position)].textures.push_back({int(i), texture({int(i)}), value, is_there});
     }
     for (std::size_t i = 0; i < graph_.buffers().size(); ++i) {
         const int position = compiled_.buffer_cleared_before[i];
@@ -178,14 +182,21 @@ void Executor::set_uniforms(int pass, int binding, std::vector<std::byte> bytes)
     assert(false && "the pass has no such uniform block");
 }
 
-void Executor::run_clears(const Clears& clears) {
-    for (const auto& [index, texture, value] : clears.textures)
-        if (!sparse_->wipe(index)) texture->clear_to(value);
+void Executor::run_clears(Clears& clears) {
+    for (Clears::OfTexture& clear : clears.textures)
+        if (!sparse_->wipe(clear.index) && !std::exchange(clear.is_there, false))
+            clear.texture->clear_to(clear.value);
     for (const auto& [buffer, words] : clears.buffers) {
         const auto bytes = std::as_bytes(words);
         if (bytes.size() < buffer->size()) buffer->clear(0);
         buffer->write(bytes);
     }
+}
+
+/// Passes run whose memory others were to clear.
+void Executor::forget_new_memory() {
+    for (Clears& clears : clears_)
+        for (Clears::OfTexture& clear : clears.textures) clear.is_there = false;
 }
 
 void Executor::run_program(const BoundPass& bound) {
@@ -241,6 +252,7 @@ std::vector<PassTime> Executor::run(bool timed, const PassObserver& observer, Pa
             if (range.contains(history.written_by)) act(history);
     };
     for_written([](auto& history) { history.advance(); });
+    if (range.begin > 0) forget_new_memory();
     sparse_->begin(range);
     std::vector<PassTime> times;
     if (timed) times.reserve(bound_.size());

@@ -110,6 +110,7 @@ private:
             int index = 0;  // in the graph
             gpu::Texture* texture = nullptr;
             std::array<double, 4> value{};
+            bool is_there = false;  ///< the memory is new, and a driver's zeros are the value
         };
         std::vector<OfTexture> textures;
         std::vector<std::pair<gpu::Buffer*, std::span<const std::uint32_t>>> buffers;
@@ -133,7 +134,8 @@ private:
     void find_histories();
     void bind_clears();
     BoundPass bind(int index);
-    void run_clears(const Clears& clears);
+    void run_clears(Clears& clears);
+    void forget_new_memory();
     void run_pass(const BoundPass& bound);
     void run_program(const BoundPass& bound);
 

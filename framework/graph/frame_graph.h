@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -92,7 +93,8 @@ struct Groups {
 /// How one target of instances becomes its texture's `clear` again: the same instances once more, with a
 /// program whose colour is that value. The pass's own textures and blocks are not bound.
 struct Wipe {
-    std::shared_ptr<const gpu::Program> program{};
+    /// The same one each time. The first frame needs none, so that it may be made once a second one does.
+    std::function<std::shared_ptr<const gpu::Program>()> program{};
     UniformBlock uniforms{};
     BufferUse places{};  ///< says where the instances lie; read by the pass too
     /// Where the pass gives all pixels of its instances another colour: binding of the buffer that says where
@@ -173,6 +175,7 @@ struct CompiledGraph {
     std::vector<gpu::TextureDesc> slots;  ///< memory; textures whose lifetimes do not meet and that
                                           ///< gpu::may_share_memory() share a slot
     std::vector<int> slot_of_buffer;
+    std::vector<int> first_in_slot;  ///< of the textures in each slot, the one that a frame uses first
     std::vector<BufferDesc> buffer_slots;
     /// Per texture and per buffer: position in `passes` of the pass before which it is set to its `clear`,
     /// passes.size() for the end of the frame; -1 where nothing would see it.

@@ -80,6 +80,7 @@ public:
         const auto bytes_of_buffer = [](const BufferDesc& desc) { return std::uint64_t(desc.bytes); };
         assign(graph_.textures(), 0, compiled_.slots, compiled_.slot_of_texture, gpu::byte_size,
                gpu::may_share_memory, original_of_);
+        find_first_in_slots();
         set_formats_for_copies();
         find_sparse();
         assign(graph_.buffers(), buffers_, compiled_.buffer_slots, compiled_.slot_of_buffer, bytes_of_buffer,
@@ -131,6 +132,15 @@ private:
         }
         for (std::size_t i = 0; i < runs_.size(); ++i)
             if (runs_[i]) compiled_.passes.push_back(int(i));
+    }
+
+    void find_first_in_slots() {
+        compiled_.first_in_slot.assign(compiled_.slots.size(), -1);
+        for (std::size_t i = 0; i < buffers_; ++i) {
+            if (compiled_.slot_of_texture[i] < 0) continue;
+            int& first = compiled_.first_in_slot[std::size_t(compiled_.slot_of_texture[i])];
+            if (first < 0 || lifetimes_[i]->first < lifetimes_[std::size_t(first)]->first) first = int(i);
+        }
     }
 
     /// Software GL copies memory only between textures of one format, and a view has that of its slot:

@@ -80,9 +80,9 @@ private:
         const Texture& from = live(graph_, pass_.reads.front().texture, user_);
         const Texture& to = live(graph_, pass_.targets.front().texture, user_);
         const gpu::TextureDesc &a = from.desc, &b = to.desc;
-        if (a.width != b.width || a.height != b.height || a.format != b.format || a.layers > 1 ||
-            b.layers > 1)
-            fail(fmt::format("copies '{}' to '{}', which differ in size, format or layers", from.name,
+        if (a.width != b.width || a.height != b.height || a.format != b.format || a.mips < b.mips ||
+            a.layers > 1 || b.layers > 1)
+            fail(fmt::format("copies '{}' to '{}', which differ in size, format, levels or layers", from.name,
                              to.name));
     }
 
@@ -136,8 +136,8 @@ private:
     void check_wipe(const Wipe& wipe, const Target& target) const {
         const Texture& texture = live(graph_, target.texture, user_);
         if (!texture.options.clear) fail(fmt::format("wipes '{}', which is not cleared", texture.name));
-        if (!wipe.program || wipe.program->is_compute() || wipe.uniforms.bytes.empty())
-            fail(fmt::format("wipes '{}' without a program that draws, or without its block", texture.name));
+        if (!wipe.program || wipe.uniforms.bytes.empty())
+            fail(fmt::format("wipes '{}' without a program or its block", texture.name));
         const auto reads = [&](const BufferUse& use) {
             return use.buffer == wipe.places.buffer && use.access == gpu::Access::read;
         };
@@ -191,7 +191,7 @@ private:
         check_writable(texture);
         check_range(texture, target.level, target.layer);
         check_auto_mips(texture, target.level);
-        if (pass_.kind == PassKind::clear) return;
+        if (pass_.kind == PassKind::clear || pass_.kind == PassKind::copy) return;
         if (target.level < 0 || target.layer < 0)
             fail(fmt::format("draws to every level or layer of '{}' at once", texture.name));
         const Target& first = pass_.targets.front();

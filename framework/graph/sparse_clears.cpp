@@ -159,8 +159,8 @@ void SparseClears::draw(const BoundWipe& bound, const Drawn& drawn) {
             {bound.no_places ? &*bound.no_places : bound.next_places, *bound.wipe->next_places});
     gpu::InstanceRange instances = bound.instances;
     if (drawn.instances) instances.indirect = &*drawn.instances;
-    gpu::draw_instances(context_, *bound.wipe->program, targets, {.uniforms = uniforms, .storage = storage},
-                        instances);
+    const std::shared_ptr<const gpu::Program> program = bound.wipe->program();
+    gpu::draw_instances(context_, *program, targets, {.uniforms = uniforms, .storage = storage}, instances);
 }
 
 }  // namespace aftershade::graph

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -93,6 +94,8 @@ private:
     int height_ = 0;
     graph::FrameGraph graph_;
     PassPrograms programs_;
+    std::map<std::vector<std::string>, std::function<std::shared_ptr<const gpu::Program>()>>
+        wipe_programs_;  // by defines
     std::unique_ptr<BuiltGraph> built_;
     std::map<std::pair<std::string, int>, graph::TextureHandle> imports_;  // by role and offset
     std::map<int, graph::TextureHandle> masks_;                            // by step

@@ -136,12 +136,14 @@ void GraphBuilder::add_copy_pass(StepBuild& build, const PassSpec& spec) {
     pass.name = build.prefix() + spec.name;
     pass.reads.push_back({from, 0, gpu::Filter::nearest, gpu::Wrap::clamp, input_level(from)});
     pass.targets.push_back({to});
-    if (a.format == b.format && a.width == b.width && a.height == b.height && a.layers == 1)
+    if (a.format == b.format && a.width == b.width && a.height == b.height && a.layers == 1) {
         pass.kind = graph::PassKind::copy;
-    else
+        if (b.mips > 1) pass.reads.front().level = pass.targets.front().level = -1;
+    } else {
         pass.program = tools_.programs.host("copy.frag", gpu::is_integer(a.format)
                                                              ? std::vector<std::string>{"COPY_UINT"}
                                                              : std::vector<std::string>{});
+    }
     build.textures[name] = graph_.add_pass(std::move(pass)).targets.front();
 }
 

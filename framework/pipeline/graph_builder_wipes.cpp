@@ -4,9 +4,12 @@
 #include <bit>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "framework/effect/glsl_tokens.h"
@@ -40,6 +43,15 @@ std::optional<std::array<std::uint32_t, 4>> wipe_bits(const std::array<double, 4
     return bits;
 }
 
+std::function<std::shared_ptr<const gpu::Program>()> wipe_program(ProgramCache& programs,
+                                                                  std::vector<std::string> defines) {
+    return [&programs, defines = std::move(defines),
+            made = std::make_shared<std::shared_ptr<const gpu::Program>>()] {
+        if (!*made) *made = programs.host("wipe.frag", defines, "wipe.vert");
+        return *made;
+    };
+}
+
 /// Whether every pixel of the pass's tiles gets what the shader makes.
 bool overwrites_tiles(const EffectManifest& manifest, const PassSpec& spec,
                       const std::filesystem::path& glsl_folder, ShaderTexts& texts) {
@@ -48,10 +60,7 @@ bool overwrites_tiles(const EffectManifest& manifest, const PassSpec& spec,
     const ShaderSource source = author_text(manifest, spec, glsl_folder, faults, ShaderFile::main, &texts);
     if (faults.has_errors()) return false;
     // A backslash may divide a word.
-    if (source.text.find("discard") == std::string::npos && source.text.find('\\') == std::string::npos)
-        return true;
-    return std::ranges::none_of(glsl_tokens(source),
-                                [](const Token& token) { return token.text == "discard"; });
+    return source.text.find('\\') == std::string::npos && !has_any_word(source, {"discard"});
 }
 
 }  // namespace
@@ -84,7 +93,9 @@ void GraphBuilder::add_wipes(const StepBuild& build, const PassSpec& spec, const
         std::vector<std::string> defines;
         if (gpu::is_integer(texture.desc.format)) defines.push_back("WIPE_UINT");
         if (overwrites) defines.push_back("WIPE_REST");
-        wipe = graph::Wipe{tools_.programs.host("wipe.frag", defines, "wipe.vert"),
+        auto& program = wipe_programs_[defines];
+        if (!program) program = wipe_program(tools_.programs, defines);
+        wipe = graph::Wipe{program,
                            {kWipeBinding, block.finish()},
                            {places.buffer, kPlacesBinding, gpu::Access::read},
                            overwrites ? std::optional(kNextPlacesBinding) : std::nullopt};

@@ -154,7 +154,7 @@ TEST(ManifestPasses, SayWhatIsWrongWithACopy) {
     const auto copy = [](const std::string& from, const std::string& to) {
         return R"({"name": "x", "kind": "copy", "from": ")" + from + R"(", "to": ")" + to + "\"}";
     };
-    const std::string differ = "which differ in size or format or have several levels or layers: draw instead";
+    const std::string differ = "which differ in size, format or levels or have several layers: draw instead";
     expect_pass_faults(
         {{copy("color", "small"), {"pass 'x': copies 'color' to 'small', " + differ}},
          {copy("depth", "color"), {"pass 'x': copies 'depth' to 'color', " + differ}},

@@ -224,5 +224,31 @@ TEST_P(ExecutorOn, ClearsSharedMemoryBeforeEachUseInEachFrame) {
     }
 }
 
+/// What new memory holds spares a first clear to zero, but not where another texture was in it before.
+TEST_P(ExecutorOn, ClearsToZeroFromTheFirstFrameOn) {
+    const gpu::Program one = draws("result = 1.0;");
+    const gpu::Program copy = draws("result = texelFetch(source, p, 0).r;");
+    Graph graph;
+    TextureOptions zero;
+    zero.clear = {0, 0, 0, 0};
+    const auto add_one = [&](const std::string& name, TextureHandle target) {
+        Pass pass = draw_of(name, one, {}, target);
+        pass.blend = gpu::Blend::add;
+        return graph.add_pass(pass).targets[0];
+    };
+    const TextureHandle a = add_one("a", graph.create_texture("a", kSmall, zero));
+    const TextureHandle b = graph.add_pass(draw_of("b", copy, {a}, graph.fresh("b", kSmall))).targets[0];
+    const TextureHandle c = add_one("c", graph.create_texture("c", kSmall, zero));
+    graph.keep(b);
+    graph.keep(c);
+    Executor executor(context(), std::move(graph));
+    ASSERT_EQ(executor.texture(a), executor.texture(c));
+    for (int frame = 0; frame < 3; ++frame) {
+        executor.run(false);
+        EXPECT_EQ(executor.texture(b)->read_floats(), Floats(kWidth * kHeight, 1)) << frame;
+        EXPECT_EQ(executor.texture(c)->read_floats(), Floats(kWidth * kHeight, 1)) << frame;
+    }
+}
+
 }  // namespace
 }  // namespace aftershade::graph

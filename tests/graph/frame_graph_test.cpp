@@ -198,7 +198,7 @@ TEST(FrameGraph, RefusesAPassWhoseKindAndPartsDoNotAgree) {
     EXPECT_EQ(fault(PassKind::copy, [](Pass&) {}),
               "pass 'odd' copies, but has more or less than one read and one target");
     EXPECT_EQ(fault(PassKind::copy, [&](Pass& p) { p.reads = {{graph.import_texture("small", kHalf)}}; }),
-              "pass 'odd' copies 'small' to 'a', which differ in size, format or layers");
+              "pass 'odd' copies 'small' to 'a', which differ in size, format, levels or layers");
     EXPECT_EQ(fault(PassKind::compute, [](Pass& p) { p.blend = gpu::Blend::max; }),
               "pass 'odd' blends, but draws nothing");
     EXPECT_EQ(fault(PassKind::draw, [](Pass& p) { p.instances.count = 3; }),

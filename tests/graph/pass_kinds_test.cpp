@@ -280,6 +280,25 @@ TEST_P(PassKindsOn, CopiesEveryBit) {
     EXPECT_EQ(executor.texture(out)->read_uints(), bits);
 }
 
+TEST_P(PassKindsOn, CopiesEveryLevel) {
+    const gpu::TextureDesc desc{.width = 6, .height = 5, .format = gpu::TextureFormat::r32f, .mips = 3};
+    Graph graph;
+    const TextureHandle source = graph.import_texture("source", desc);
+    Pass copy = pass_named("copy", PassKind::copy, {source});
+    copy.targets = {{graph.fresh("copied", desc), -1}};
+    const TextureHandle out = graph.add_pass(copy).targets[0];
+    graph.keep(out);
+    Executor executor(context(), std::move(graph));
+    for (int level = 0; level < 3; ++level)
+        executor.texture(source)->upload(
+            Floats(std::size_t(std::max(6 >> level, 1) * std::max(5 >> level, 1)), float(level) + 0.5f), 0,
+            level);
+    executor.run(false);
+    EXPECT_EQ(executor.texture(out)->read_floats(0), Floats(30, 0.5f));
+    EXPECT_EQ(executor.texture(out)->read_floats(1), Floats(6, 1.5f));
+    EXPECT_EQ(executor.texture(out)->read_floats(2), Floats(1, 2.5f));
+}
+
 TEST_P(PassKindsOn, CopiesInPlaceWhatIsGivenForEachFrame) {
     Graph graph;
     const gpu::Program one = fragment(R"(

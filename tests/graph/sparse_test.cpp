@@ -68,7 +68,8 @@ void main() { result = )" + value + "; }",
         pass.targets = {{target}};
         pass.instances.count = 1;
         pass.buffers = {{places, 0, gpu::Access::read}};
-        if (wipes) pass.wipes = {Wipe{wipe_, {0, block_of(0)}, {places, 0, gpu::Access::read}}};
+        if (wipes)
+            pass.wipes = {Wipe{[this] { return wipe_; }, {0, block_of(0)}, {places, 0, gpu::Access::read}}};
         return pass;
     }
 
@@ -91,7 +92,7 @@ void main() { result = 7.0; })",
 
     Pass column_pass_that_wipes_the_rest(TextureHandle target, BufferHandle places, const Shared& rest) {
         Pass pass = column_pass(target, places);
-        pass.wipes = {Wipe{rest, {0, block_of(0)}, {places, 0, gpu::Access::read}, 1}};
+        pass.wipes = {Wipe{[rest] { return rest; }, {0, block_of(0)}, {places, 0, gpu::Access::read}, 1}};
         return pass;
     }
 
@@ -435,7 +436,7 @@ TEST_P(SparseOn, RefusesWipesThatCannotWork) {
     pass = column_pass(graph.cleared("b", kSmall), places);
     pass.wipes[0]->program = nullptr;
     EXPECT_EQ(fault_of([&] { (void)graph.add_pass(pass); }),
-              "pass 'column' wipes 'b' without a program that draws, or without its block");
+              "pass 'column' wipes 'b' without a program or its block");
     pass.wipes.emplace_back();
     EXPECT_EQ(fault_of([&] { (void)graph.add_pass(pass); }),
               "pass 'column' has 2 wipes for 1 targets, or does not draw instances");

@@ -187,11 +187,12 @@ Block clear_kind() {
 Block copy_kind() {
     return {.name = "copy",
             .thing = "the copy pass",
-            .keys = {required("from", text({.min_length = 1, .type = "name"}),
-                              "Input or texture to copy, bit for bit."),
-                     required("to", text({.min_length = 1, .type = "name"}),
-                              "Output or texture of the same size and format to copy to. On software GL a "
-                              "copy takes a third of the time of a draw.")}};
+            .keys = {
+                required("from", text({.min_length = 1, .type = "name"}),
+                         "Input or texture to copy, bit for bit."),
+                required("to", text({.min_length = 1, .type = "name"}),
+                         "Output or texture of the same size, format and levels to copy to. On software GL a "
+                         "copy takes a third of the time of a draw.")}};
 }
 
 Block make_pass_block() {

@@ -75,18 +75,20 @@ private:
     /// An input may come from an earlier step in another format: the host then draws.
     void check_copy() {
         const std::string &from = pass_->reads.front().name, &to = pass_->writes.front().name;
-        const auto plain = [&](const std::string& name) {
+        const auto levels_of = [&](const std::string& name) -> std::optional<int> {
             const TextureSpec* texture = manifest_.find_texture(name);
-            return !texture || (texture->layers == 1 && texture->mips == 1 && !texture->auto_mips);
+            if (!texture) return 1;
+            return texture->layers == 1 && !texture->auto_mips ? std::optional(texture->mips) : std::nullopt;
         };
+        const auto from_levels = manifest_.find_input(from) ? 1 : levels_of(from), to_levels = levels_of(to);
         const auto from_format = format_of(from, true), to_format = format_of(to, false);
         if (!from_format || !to_format) return;  // reported, or an image of any format
-        if (grid_of(from, true) != grid_of(to) || *from_format != *to_format || !plain(to) ||
-            (!manifest_.find_input(from) && !plain(from)))
-            state_.fault(pass_->place,
-                         "copies '" + from + "' to '" + to +
-                             "', which differ in size or format or have several levels or layers: "
-                             "draw instead");
+        if (grid_of(from, true) != grid_of(to) || *from_format != *to_format || !to_levels ||
+            from_levels != to_levels)
+            state_.fault(
+                pass_->place,
+                "copies '" + from + "' to '" + to +
+                    "', which differ in size, format or levels or have several layers: draw instead");
     }
 
     std::optional<gpu::TextureFormat> format_of(const std::string& name, bool reads) const {
