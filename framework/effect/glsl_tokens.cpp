@@ -1,5 +1,6 @@
 #include "framework/effect/glsl_tokens.h"
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 #include <utility>
@@ -26,28 +27,33 @@ CharKind char_kind(char c) {
     return kCharKinds[static_cast<unsigned char>(c)];
 }
 
-class Tokens {
+const std::string kNoFile;
+
+/// Takes a shader apart. `take` gets each token in turn; once it returns true, no other.
+template <typename Take>
+class Tokenizer {
 public:
-    Tokens(const ShaderSource& source, bool all) {
-        constexpr std::size_t kBytesPerToken = 6;  // about, with blanks and comments
-        tokens_.reserve(source.text.size() / kBytesPerToken);
+    Tokenizer(const ShaderSource& source, const Take& take) : source_(source), take_(take) {}
+
+    void run(bool all) {
         std::size_t begin = 0;
-        for (std::size_t i = 0; i < source.lines.size(); ++i) {
-            const SourceLine& line = source.lines[i];
-            const std::size_t end = source.text.find('\n', begin);
-            if (all || line.file != "<generated>") {
-                file_ = all ? &kNoFile : &line.file;
+        const std::string_view text = source_.text;
+        for (std::size_t i = 0; i < source_.lines.size() && !is_over_; ++i) {
+            const SourceLine& line = source_.lines[i];
+            const std::string& file = line.file.text();
+            const std::size_t end = text.find('\n', begin);
+            if (all || file != "<generated>") {
+                file_ = all ? &kNoFile : &file;
                 line_ = all ? int(i) + 1 : line.line;
-                add_line(std::string_view(source.text).substr(begin, end - begin));
+                add_line(text.substr(begin, end - begin));
             }
             begin = end + 1;
         }
     }
-    std::vector<Token> take() { return std::move(tokens_); }
 
 private:
     void add_line(std::string_view text) {
-        for (std::size_t at = 0; at < text.size();) {
+        for (std::size_t at = 0; at < text.size() && !is_over_;) {
             const char next = at + 1 < text.size() ? text[at + 1] : ' ';
             if (in_comment_) {
                 const std::size_t end = text.find("*/", at);
@@ -71,26 +77,47 @@ private:
         // A number takes its letters along: 1e5, 0xff, 2u.
         while (kind == CharKind::word && end < text.size() && char_kind(text[end]) == kind) ++end;
         if (kind != CharKind::space)
-            tokens_.push_back({text.substr(at, end - at), file_, line_, int(at) + 1});
+            is_over_ = take_(Token{text.substr(at, end - at), file_, line_, int(at) + 1});
         return end;
     }
 
-    static inline const std::string kNoFile;
-
-    std::vector<Token> tokens_;
+    const ShaderSource& source_;
+    const Take& take_;
     const std::string* file_ = nullptr;
     int line_ = 0;
     bool in_comment_ = false;
+    bool is_over_ = false;
 };
+
+std::vector<Token> tokens_of(const ShaderSource& source, bool all) {
+    constexpr std::size_t kBytesPerToken = 6;  // about, with blanks and comments
+    std::vector<Token> tokens;
+    tokens.reserve(source.text.size() / kBytesPerToken);
+    const auto take = [&](const Token& token) {
+        tokens.push_back(token);
+        return false;
+    };
+    Tokenizer(source, take).run(all);
+    return tokens;
+}
 
 }  // namespace
 
 std::vector<Token> glsl_tokens(const ShaderSource& source) {
-    return Tokens(source, false).take();
+    return tokens_of(source, false);
 }
 
 std::vector<Token> all_glsl_tokens(const ShaderSource& source) {
-    return Tokens(source, true).take();
+    return tokens_of(source, true);
+}
+
+bool has_any_word(const ShaderSource& source, std::initializer_list<std::string_view> words) {
+    bool is_found = false;
+    const auto take = [&](const Token& token) {
+        return is_found = std::ranges::find(words, token.text) != words.end();
+    };
+    Tokenizer(source, take).run(true);
+    return is_found;
 }
 
 void BraceDepth::pass_directive(std::string_view kind) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cctype>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +28,9 @@ std::vector<Token> glsl_tokens(ShaderSource&&) = delete;
 /// The same with the host's own lines; every token's place is its line in the source's text.
 std::vector<Token> all_glsl_tokens(const ShaderSource& source);
 std::vector<Token> all_glsl_tokens(ShaderSource&&) = delete;
+
+/// Whether one of them stands outside of comments, in the host's lines too. Looks no further than the first.
+bool has_any_word(const ShaderSource& source, std::initializer_list<std::string_view> words);
 
 /// How many braces are open, for a walk from token to token. The branches of an #if may each open what is
 /// closed behind all of them.

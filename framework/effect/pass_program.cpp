@@ -20,7 +20,7 @@ namespace {
 Place author_place(const ShaderSource& source, const gpu::ShaderMessage& message) {
     if (message.line < 1 || message.line > int(source.lines.size())) return {"shader"};
     const SourceLine& line = source.lines[std::size_t(message.line) - 1];
-    return {line.file, line.line, message.column};
+    return {line.file.text(), line.line, message.column};
 }
 
 /// llvmpipe (Mesa 22.3 to 25: lp_bld_limits.h) counts the iterations of all loops of an invocation together,
@@ -45,9 +45,7 @@ void guard(ShaderSource& source) {
 
 /// Host programs, which have no lines, are short.
 bool has_loop(const ShaderSource& source) {
-    return std::ranges::any_of(all_glsl_tokens(source), [](const Token& token) {
-        return token.text == "for" || token.text == "while";
-    });
+    return has_any_word(source, {"for", "while"});
 }
 
 std::string trimmed(std::ostringstream& text) {
@@ -191,7 +189,7 @@ namespace {
 void add_hints(const EffectManifest& manifest, const std::filesystem::path& glsl_folder,
                const ShaderSource& source, Diagnostics& faults) {
     std::set<std::string> files;
-    for (const SourceLine& line : source.lines) files.insert(line.file);
+    for (const SourceLine& line : source.lines) files.insert(line.file.text());
     Diagnostics hints;
     check_declared_used(manifest, glsl_folder, hints);
     for (const Diagnostic& hint : hints.all())

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "framework/core/atomic_file.h"
+#include "framework/core/content_hash.h"
 #include "framework/core/error.h"
-#include "framework/core/text.h"
 
 namespace aftershade {
 
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kExtension = ".program";
-constexpr std::string_view kMagic = "aftershade program 1\n";
+constexpr std::string_view kMagic = "aftershade program 2\n";
 /// More than any program of ours; what is larger is no program.
 constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t(64) << 20;
 
@@ -56,8 +56,7 @@ std::string file_text(const std::string& key, const gpu::ProgramBinary& binary) 
     append(text, binary.format);
     append(text, binary.bytes.size());
     text.append(reinterpret_cast<const char*>(binary.bytes.data()), binary.bytes.size());
-    append(text, fnv1a(text));
-    return text;
+    return text + content_hash(text);
 }
 
 const char* environment(const char* name) {
@@ -78,7 +77,7 @@ ProgramStore ProgramStore::from_environment() {
 }
 
 fs::path ProgramStore::file_of(const std::string& key) const {
-    return folder_ / (fnv1a_hex(key) + kExtension);
+    return folder_ / (content_hash(key) + kExtension);
 }
 
 std::optional<gpu::ProgramBinary> ProgramStore::load(const std::string& key) const {
@@ -94,8 +93,8 @@ std::optional<gpu::ProgramBinary> ProgramStore::load(const std::string& key) con
     binary.format = static_cast<unsigned int>(taker.number());
     const std::string_view bytes = taker.bytes(taker.number());
     const std::string_view hashed = std::string_view(text).substr(0, text.size() - taker.rest.size());
-    const std::uint64_t hash = fnv1a(hashed);
-    if (taker.number() != hash || !taker.sound || !taker.rest.empty()) return std::nullopt;
+    const std::string hash = content_hash(hashed);
+    if (taker.bytes(hash.size()) != hash || !taker.sound || !taker.rest.empty()) return std::nullopt;
     binary.bytes.resize(bytes.size());
     std::memcpy(binary.bytes.data(), bytes.data(), bytes.size());
     return binary;

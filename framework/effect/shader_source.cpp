@@ -65,11 +65,11 @@ public:
     }
 
 private:
-    void add_line(const std::string& text, const std::string& file, int line) {
+    void add_line(std::string_view text, const FileName& file, int line) {
         if (is_too_large_) return;
         if (source_.lines.size() == kMaxShaderLines || source_.text.size() + text.size() >= kMaxShaderBytes) {
             is_too_large_ = true;
-            diagnostics_.error({file, line, 1},
+            diagnostics_.error({file.text(), line, 1},
                                "with its includes the shader has more than " +
                                    std::to_string(kMaxShaderLines) + " lines or " +
                                    std::to_string(kMaxShaderBytes) +
@@ -99,27 +99,28 @@ private:
             return;
         }
         ++depth_;
-        const std::string name = file.string();
+        const FileName name = file.string();
+        const std::string_view text = read.text;
         std::size_t at = 0;
-        for (int number = 1; at < read.text.size() && !is_too_large_; ++number) {
-            const std::size_t end = std::min(read.text.find('\n', at), read.text.size());
-            std::string line = read.text.substr(at, end - at);
-            if (line.ends_with('\r')) line.pop_back();
+        for (int number = 1; at < text.size() && !is_too_large_; ++number) {
+            const std::size_t end = std::min(text.find('\n', at), text.size());
+            std::string_view line = text.substr(at, end - at);
+            if (line.ends_with('\r')) line.remove_suffix(1);
             add_source_line(line, name, number);
             at = end + 1;
         }
         --depth_;
     }
 
-    void add_source_line(const std::string& line, const std::string& file, int number) {
+    void add_source_line(std::string_view line, const FileName& file, int number) {
         if (const auto include = parse_include(line)) {
-            add_include(include->is_shared, include->name, {file, number, 1});
+            add_include(include->is_shared, include->name, {file.text(), number, 1});
             return;
         }
         if (is_version_directive(line)) {
             if (source_.lines.empty() && line == "#version 450 core") has_version_ = true;
             else
-                diagnostics_.error({file, number, 1},
+                diagnostics_.error({file.text(), number, 1},
                                    "'#version 450 core' must appear once, as the first line of a shader");
         }
         add_line(line, file, number);
@@ -146,16 +147,17 @@ private:
 
     void add_generated(const std::string& text, int line) {
         std::istringstream lines(text);
-        for (std::string each; std::getline(lines, each);) add_line(each, "<generated>", line);
+        for (std::string each; std::getline(lines, each);) add_line(each, generated_, line);
     }
 
     /// What glsl/host/list_tiles.comp asks of each tile.
     void add_predicate(const Place& place) {
         const TileListSpec& list = *context_.manifest->find_tile_list(context_.pass->lists);
         if (!list.of) add_file(list.folder / list.predicate, place);
-        const std::string listed =
-            list.of ? "texelFetch(" + list.of->texture + ", tile, 0)." + "rgba"[list.of->channel] + " > 0.0"
-                    : list.name + "(tile)";
+        std::string listed = list.name + "(tile)";
+        if (list.of)
+            listed = "texelFetch(" + (list.has_common_text() ? kListedSampler : list.of->texture) +
+                     ", tile, 0)." + "rgba"[list.of->channel] + " > 0.0";
         add_generated("bool is_listed(ivec2 tile) { return " + listed + "; }\n", place.line);
     }
 
@@ -169,6 +171,7 @@ private:
     ShaderTexts own_texts_;
     ShaderTexts& texts_;
     ShaderSource source_;
+    const FileName generated_ = "<generated>";
     std::set<fs::path> included_;
     int depth_ = 0;
     bool is_too_large_ = false;

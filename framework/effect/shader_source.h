@@ -12,9 +12,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "framework/core/diagnostics.h"
@@ -112,8 +114,19 @@ std::filesystem::path shader_path(const PassSpec& pass, ShaderFile file,
 /// Of a texel as GLSL declares it: float, uint, vec2, uvec4.
 std::string texel_type(gpu::TextureFormat format);
 
+/// A name that many lines share: a shader with its includes has thousands. [safe to copy between threads]
+class FileName {
+public:
+    FileName(std::string name) : name_(std::make_shared<const std::string>(std::move(name))) {}
+    FileName(const char* name) : FileName(std::string(name)) {}
+    const std::string& text() const { return *name_; }
+
+private:
+    std::shared_ptr<const std::string> name_;
+};
+
 struct SourceLine {
-    std::string file;  ///< "<generated>" for the host's own lines
+    FileName file;  ///< "<generated>" for the host's own lines
     int line = 0;
 };
 
@@ -149,6 +162,9 @@ ShaderSource assemble_shader(const ShaderContext& context, Diagnostics& diagnost
 ShaderSource author_text(const EffectManifest& manifest, const PassSpec& pass,
                          const std::filesystem::path& glsl_folder, Diagnostics& diagnostics, ShaderFile file,
                          ShaderTexts* texts = nullptr);
+
+/// The texture of a pass that lists tiles by it, where TileListSpec::has_common_text().
+inline const std::string kListedSampler = "listed";
 
 /// What `#include <pass>` stands for; a vertex shader's has no outputs.
 std::string interface_glsl(const ShaderContext& context, ShaderFile file = ShaderFile::main);

@@ -60,6 +60,9 @@ public:
           bindings_(pass_bindings(context)) {}
 
     std::string write(ShaderFile file) {
+        const std::string& lists = context_.pass->lists;
+        if (!lists.empty() && manifest_.find_tile_list(lists)->has_common_text())
+            return listing(*manifest_.find_tile_list(lists));
         defines();
         if (bindings_.has_param_block && has(kParamBinding)) params();
         shared_block(kFrameBinding, frame_block_glsl());
@@ -79,6 +82,19 @@ public:
     }
 
 private:
+    /// Names and blocks are the same in every effect, so that its passes share a program and its machine
+    /// code.
+    std::string listing(const TileListSpec& list) {
+        text_ << "#define TILE_RUNS tile_runs\n#define TILE_ARGS tile_args\n#define TILE_SIDE "
+              << list.tile.number << "\nlayout(binding = 0) uniform "
+              << type_prefix(format_of_read(manifest_, list.of->texture)) << "sampler2D " << kListedSampler
+              << ";\nlayout(std140, binding = " << kSizeBinding
+              << ") uniform SizeBlock {\n    vec4 listed_size;\n    vec4 tile_grid_size;\n};\n"
+              << "layout(std430, binding = 0) writeonly buffer TileRunsBuffer { uvec4 tile_runs[]; };\n"
+              << "layout(std430, binding = 1) buffer TileArgsBuffer { uint tile_args[]; };\n";
+        return text_.str();
+    }
+
     bool has(int block) const { return !part_.leaves_out(block); }
     int block(int binding) const { return part_.first_block + binding; }
 

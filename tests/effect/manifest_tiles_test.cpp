@@ -1,4 +1,6 @@
 // Tile lists: what they become, and what is wrong with the rest.
+#include <algorithm>
+
 #include "framework/effect/describe.h"
 #include "framework/effect/shader_source.h"
 #include "framework/effect/usage_check.h"
@@ -87,9 +89,8 @@ TEST(TileLists, AreListedByTheHostsShader) {
     const ShaderSource of_texture = text(3, ShaderFile::main), over = text(4, ShaderFile::vertex),
                        by_predicate = text(5, ShaderFile::main), fragment = text(4, ShaderFile::main);
     EXPECT_TRUE(
-        has_line(of_texture, "bool is_listed(ivec2 tile) { return texelFetch(marks, tile, 0).g > 0.0; }"));
+        has_line(of_texture, "bool is_listed(ivec2 tile) { return texelFetch(listed, tile, 0).g > 0.0; }"));
     EXPECT_TRUE(has_line(of_texture, "#define TILE_SIDE 8"));
-    EXPECT_TRUE(has_line(of_texture, "#define TILE_RUNS marked_runs"));
     EXPECT_TRUE(has_line(by_predicate, "bool is_listed(ivec2 tile) { return near(tile); }"));
     EXPECT_TRUE(has_line(by_predicate, "#define TILE_SIDE 16"));
     EXPECT_EQ(manifest.passes[5].reads.at(0).name, "whole") << "the predicate's text names it";
@@ -100,6 +101,28 @@ TEST(TileLists, AreListedByTheHostsShader) {
     EXPECT_NE(described.find("tiles where marks.g > 0"), std::string::npos) << described;
     EXPECT_NE(described.find("tiles by near.glsl"), std::string::npos) << described;
     EXPECT_NE(described.find("-> half_size over near"), std::string::npos) << described;
+}
+
+TEST(TileLists, OfTexturesShareOneTextSoThatTheyShareAProgram) {
+    const EffectFolder folder(demo_manifest(tiled(
+        kMarked + R"(, "seen": {"of": "sights.g", "doc": "."}, "hidden": {"of": "sights.r", "doc": "."})",
+        R"(
+        {"name": "look", "shader": "a.frag", "writes": ["sights"]},
+        {"name": "one", "shader": "b.frag", "writes": ["color"], "over": "marked"},
+        {"name": "two", "shader": "b.frag", "writes": ["color"], "over": "seen"},
+        {"name": "three", "shader": "b.frag", "writes": ["color"], "over": "hidden"})",
+        R"("sights": {"format": "rg16f", "tile": 8, "doc": "."})")));
+    const EffectManifest manifest = folder.sound_manifest();
+    ParamSet params;
+    for (const ParamSpec& spec : manifest.params) params.set(spec.name, spec.default_value);
+    params.set("flag", true);
+    const auto text = [&](const std::string& list) {
+        const auto pass = std::ranges::find(manifest.passes, list, &PassSpec::lists);
+        Diagnostics diagnostics;
+        return assemble_shader({&manifest, &*pass, params, {}, kGlsl}, diagnostics, ShaderFile::main).text;
+    };
+    EXPECT_EQ(text("marked"), text("seen"));
+    EXPECT_NE(text("seen"), text("hidden")) << "of another channel";
 }
 
 TEST(TileLists, SayWhatIsWrong) {

@@ -134,7 +134,7 @@ TEST_F(Modules, HaveTheirShadersInTheirOwnFolder) {
         assemble_shader({&manifest, &manifest.passes[0], params, {}, glsl_.path()}, diagnostics);
     EXPECT_EQ(test::lines_of(diagnostics), Lines{});
     EXPECT_NE(source.text.find("return tone * param.key;"), std::string::npos);
-    EXPECT_EQ(source.lines.back().file, (glsl_ / "tone/tone.frag").string());
+    EXPECT_EQ(source.lines.back().file.text(), (glsl_ / "tone/tone.frag").string());
 }
 
 TEST_F(Modules, AreHeldToWhatTheyDeclare) {

@@ -94,7 +94,7 @@ TEST(ShaderBindings, GiveAVertexShaderAllButOutputs) {
     EXPECT_EQ(main, vertex);
     Diagnostics faults;
     const ShaderSource source = assemble_shader(shader, faults, ShaderFile::vertex);
-    EXPECT_EQ(std::filesystem::path(source.lines.back().file).filename(), "d.vert");
+    EXPECT_EQ(std::filesystem::path(source.lines.back().file.text()).filename(), "d.vert");
 }
 
 TEST(ShaderBindings, HaveThePassBlockOnlyWhereThePassRepeats) {

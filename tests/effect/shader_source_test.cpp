@@ -208,8 +208,8 @@ TEST(ShaderSource, MapsEveryLineBackToItsAuthors) {
 
     Lines from_table;
     for (const SourceLine& line : source.lines) {
-        if (line.file == "<generated>") continue;
-        from_table.push_back(std::filesystem::path(line.file).filename().string() + ":" +
+        if (line.file.text() == "<generated>") continue;
+        from_table.push_back(std::filesystem::path(line.file.text()).filename().string() + ":" +
                              std::to_string(line.line));
     }
     EXPECT_EQ(from_table,
@@ -217,8 +217,8 @@ TEST(ShaderSource, MapsEveryLineBackToItsAuthors) {
                      "own.glsl:3", "own.glsl:4", "own.glsl:5", "a.frag:6", "a.frag:7"}));
     for (std::size_t i = 0; i < lines.size(); ++i) {
         const SourceLine& line = source.lines[i];
-        if (line.file == "<generated>") continue;
-        EXPECT_EQ(lines[i], lines_of_text(test::read_text(line.file)).at(std::size_t(line.line) - 1));
+        if (line.file.text() == "<generated>") continue;
+        EXPECT_EQ(lines[i], lines_of_text(test::read_text(line.file.text())).at(std::size_t(line.line) - 1));
     }
 }
 
