@@ -58,6 +58,9 @@ public:
     }
     ~PixelArray() = default;
 
+    /// The memory, which this no longer has.
+    SpareMemory release() { return {values_.release(), std::exchange(count_, 0) * sizeof(Value)}; }
+
     std::span<Value> values() { return {values_.get(), count_}; }
     std::span<const Value> values() const { return {values_.get(), count_}; }
 
@@ -102,6 +105,12 @@ public:
         image.values_ = PixelArray<float>(take_spare_memory(
             std::size_t(width) * std::size_t(height) * std::size_t(channels) * sizeof(float), threads));
         return image;
+    }
+
+    /// Ends an image of floats, and keeps its memory for the next one that is `unset`.
+    static void give_memory(Image image) {
+        if (auto* const floats = std::get_if<PixelArray<float>>(&image.values_))
+            give_spare_memory(floats->release());
     }
 
     int width() const { return width_; }

@@ -128,8 +128,25 @@ std::optional<Capture> FrameLoader::outline(std::size_t index) const {
 void FrameLoader::request(int file) {
     if (reads_.contains(file)) return;
     reads_[file] = std::async(std::launch::async, [this, file]() -> CapturePointer {
-                       return std::make_shared<const Capture>(read(file));
+                       return std::make_shared<Capture>(read(file));
                    }).share();
+}
+
+void FrameLoader::give_images(std::size_t index, const CapturePointer& capture,
+                              const std::vector<std::string>& roles, long holders) {
+    const int file = files_.number(run_.frames[index], 0);
+    const bool has_next = index + 1 < run_.frames.size();
+    const std::vector<int> next = has_next ? files_.numbers(run_.frames[index + 1]) : std::vector<int>{};
+    const bool is_wanted = std::ranges::find(next, file) != next.end();
+    if (is_wanted || run_.missing == MissingFrame::hold || run_.region) return;
+    reads_.erase(file);
+    if (capture.use_count() > holders + (capture == last_ ? 1 : 0)) return;
+    // Read by this loader, and no constant.
+    auto& images = std::const_pointer_cast<Capture>(capture)->images;
+    for (const std::string& role : roles) {
+        if (!pipeline_.writes_role(role)) continue;
+        if (auto image = images.extract(role)) Image::give_memory(std::move(image.mapped()));
+    }
 }
 
 FrameLoader::CapturePointer FrameLoader::get(int file) {

@@ -38,6 +38,12 @@ public:
     std::optional<Capture> outline(std::size_t index) const;
     /// One sub-frame with its neighbours; its number is the frame's. Throws what reading threw.
     CapturePointer take(std::size_t index, int subframe);
+    /// Gives the memory of images of the `index`-th frame that the pipeline has read, and of which it writes
+    /// its own in `roles`, to the next result: making the pages of new memory takes longer than reading back
+    /// into it. Does nothing where anything but `holders` pointers of the caller's holds the capture, or
+    /// another frame may want it.
+    void give_images(std::size_t index, const CapturePointer& capture, const std::vector<std::string>& roles,
+                     long holders);
     using Neighbours = std::map<int, CapturePointer>;  ///< by offset
     /// Those of the same shot that some input wants and whose files are there.
     Neighbours neighbours(std::size_t index);

@@ -76,6 +76,7 @@ FrameRun::Rendered FrameRun::render(std::size_t index, const std::vector<std::st
         inputs.capture = current.get();
         inputs.centre = centre.get();
         inputs.subframe = subframe;
+        inputs.uploaded = [&] { loader_.give_images(index, current, roles, current == centre ? 2 : 1); };
         result = renderer_.render(inputs, roles, true);
         times.insert(times.end(), result.times.begin(), result.times.end());
         if (subframe == 0) history_reset = result.history_reset;

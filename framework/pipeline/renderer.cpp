@@ -226,6 +226,7 @@ FrameResult PipelineRenderer::render(const FrameInputs& frame, const std::vector
         for (const GraphBinding& binding : built_->bindings)
             if (const auto* input = std::get_if<CaptureBinding>(&binding))
                 audit_input(input->role, once.at(input->offset)->images.at(input->role), result.audit);
+    if (frame.uploaded && frame.subframe_count == 1) frame.uploaded();
     run_passes(timed, {first_pass, -1}, result);
     read_results(roles, timed, result);
     if (timed) result.times.insert(result.times.begin(), {"upload", upload_ms});

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/pipeline/frame_loader.h"
 #include "tests/pipeline/effect_fixture.h"
 
 namespace aftershade::test {
@@ -91,6 +92,29 @@ TEST_F(Runs, KeepItForTheHistoryThatTheySave) {
 TEST_F(Runs, FailWhereTheLastOutputCannotBeWrittenThoughTheContextHasEnded) {
     std::filesystem::create_directories(folder_ / "out_3.exr");
     EXPECT_THROW(endings(), Error);
+}
+
+TEST_F(Runs, GiveTheMemoryOfAFrameToItsResultOnceNobodyElseHoldsIt) {
+    Diagnostics faults;
+    const auto sequence = open_sequence((folder_ / "in_#.exr").string(), faults);
+    const CaptureReader reader(*sequence, read_profiles(kRoot / "profiles", faults), {});
+    const Bound bound(effects_, look_of(R"({ "effect": "blend" })"));
+    FrameLoader loader(*sequence, reader, bound.pipeline(), options_, {"color", "depth"});
+    const auto has_color = [](const FrameLoader::CapturePointer& capture) {
+        return capture->images.contains("color");
+    };
+    const auto first = loader.take(0, 0);
+    loader.give_images(0, first, {"depth"}, 1);
+    EXPECT_TRUE(has_color(first)) << "its result has no colour";
+    {
+        const auto other = first;
+        loader.give_images(0, first, {"color"}, 1);
+        EXPECT_TRUE(has_color(first)) << "somebody else may read it";
+    }
+    loader.give_images(0, first, {"color", "depth"}, 1);
+    EXPECT_FALSE(has_color(first));
+    EXPECT_TRUE(first->images.contains("depth")) << "no step writes depth";
+    EXPECT_TRUE(has_color(loader.take(1, 0)));
 }
 
 }  // namespace
