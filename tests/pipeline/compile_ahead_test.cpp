@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstring>
 #include <functional>
+#include <random>
 #include <thread>
 
 #include "tests/gpu/gpu_test.h"
@@ -146,11 +147,12 @@ TEST_P(CompileAheadOn, LeavesAFaultToTheCallerAndGoesOn) {
     EXPECT_THROW(programs.get(*passes[2].sources), gpu::ShaderError);
 }
 
-/// Passes of which the last one, with which the thread begins, takes long to draw.
+/// Passes of which the last one, with which the thread begins, takes long to draw: also where an earlier run
+/// of the tests has left its own in Mesa's cache.
 std::vector<PassToCompile> passes_with_a_slow_one(int terms) {
     std::vector<PassToCompile> passes = passes_to_compile(4);
     ProgramSources slow = *passes.back().sources;
-    std::string sum;
+    std::string sum = " + " + std::to_string(std::random_device()()) + ".0";
     for (int i = 0; i < terms; ++i) sum += " + sin(gl_FragCoord.x * " + std::to_string(i) + ".25)";
     slow.main.text.replace(slow.main.text.rfind('}'), 1, "c.g += 0.0" + sum + "; }");
     passes.back().sources = std::make_shared<const ProgramSources>(slow);
@@ -166,7 +168,7 @@ TEST_P(CompileAheadOn, LetsTheCallerDrawOtherPassesWhileItWaitsForOne) {
         ProgramCache programs(context(), kData / "glsl", ProgramStore(folder.path()));
         const std::vector<PassToCompile> passes = passes_with_a_slow_one(terms);
         CompileAhead ahead(context(), programs, passes, 1);
-        ASSERT_TRUE(waits_for([&] { return ahead.programs_made() == 1; }));
+        ASSERT_TRUE(waits_for([&] { return ahead.programs_made() >= 1; }));
         for (int i = 0; i < 3; ++i) {
             const CompileAhead::LinkScope linking(&ahead, passes[std::size_t(i)].pass);
             programs.get(*passes[std::size_t(i)].sources);
