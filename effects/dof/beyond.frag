@@ -8,11 +8,13 @@ void main() {
     vec2 own = texelFetch(tile_coc, tile, 0).rg;
     float reach_px = max(-own.x, own.y) + 1.5;
     bool may_hide = is_blurred(tile) && own.x < texelFetch(around, tile, 0).w - kClear;
-    int range = may_hide ? int(ceil(reach_px / float(kBlock))) : -1;
-    out_beyond = kNoEdge;
+    int narrow_range = int(ceil(kFullSizePx / float(kBlock))), range = max(may_hide ? int(ceil(reach_px / float(kBlock))) : -1, narrow_range);
+    out_beyond = vec2(kNoEdge, kNoNarrow);
     for (int y = max(block.y - range, 0); y <= min(block.y + range, last.y); ++y)
         for (int x = max(block.x - range, 0); x <= min(block.x + range, last.x); ++x) {
-            vec2 gap_px = float(kBlock) * vec2(max(abs(ivec2(x, y) - block) - 1, ivec2(0)));
-            if (length(gap_px) <= reach_px) out_beyond = max(out_beyond, texelFetch(edges, ivec2(x, y), 0).r);
+            ivec2 apart = abs(ivec2(x, y) - block);
+            vec2 gap_px = float(kBlock) * vec2(max(apart - 1, ivec2(0))), found = texelFetch(edges, ivec2(x, y), 0).rg;
+            if (may_hide && length(gap_px) <= reach_px) out_beyond.r = max(out_beyond.r, found.r);
+            if (max(apart.x, apart.y) <= narrow_range) out_beyond.g = min(out_beyond.g, found.g);
         }
 }

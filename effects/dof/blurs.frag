@@ -4,11 +4,10 @@
 
 void main() {
     ivec2 tile = ivec2(gl_FragCoord.xy);
-    out_blur_tile = vec2(0.0);
-    out_plate_tile = vec4(0.0);
-    if (!is_blurred(tile)) return;
-    float wide = is_wide(tile) ? 1.0 : 0.0;
-    vec2 of_plate = is_plated(tile) ? vec2(0.0, 1.0) : vec2(1.0, 0.0);
-    out_blur_tile = vec2(1.0, wide);
-    out_plate_tile = vec4(of_plate, wide * of_plate);
+    bool is_drawn = is_blurred(tile), is_wide_too = is_drawn && is_wide(tile), is_silhouette = is_plated(tile);
+    out_wide_tile = is_wide_too ? 1.0 : 0.0;
+    out_plain_tile = is_drawn && !is_silhouette ? 1.0 : 0.0;
+    out_silhouette_tile = is_drawn && is_silhouette ? 1.0 : 0.0;
+    out_wide_plain_tile = is_wide_too && !is_silhouette ? 1.0 : 0.0;
+    out_wide_silhouette_tile = is_wide_too && is_silhouette ? 1.0 : 0.0;
 }

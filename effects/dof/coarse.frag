@@ -17,8 +17,8 @@ void main() {
     int level = level_at(p);
     ivec2 texel = p - grid_of(level).origin;
     out_coarse = uvec4(0u);
-    if (level == 1) out_coarse = texelFetch(light, texel, 1);
-    if (level == 2) out_coarse = texelFetch(light, texel, 2);
-    if (level == 3) out_coarse = texelFetch(light, texel, 3);
+    if (level == 1) out_coarse = texelFetch(light_half, texel, 0);
+    if (level == 2) out_coarse = texelFetch(light_half, texel, 1);
+    if (level == 3) out_coarse = texelFetch(light_half, texel, 2);
     out_coarse_coc = unpack_light(out_coarse).coc;
 }

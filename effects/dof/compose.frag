@@ -4,8 +4,6 @@
 #define LOWER_FRONT front
 #define LOWER_BACK back
 #define LOWER_HIDES hides
-#define LOWER_PLATE plate_half
-#define LOWER_LEVEL 1
 #include "upsample.glsl"
 
 void main() {
@@ -25,7 +23,8 @@ void main() {
 
     if (radius_px >= kLeastBlurPx || reach_px >= kLeastBlurPx) prepare_outline_at(center);
     bool is_own = radius_px >= kLeastBlurPx && (radius_px < kFullSizePx || is_lost);
-    bool is_all = reach_px >= kLeastBlurPx && (!is_reached_far || is_lost), is_narrow = is_reached_far && !is_all && texelFetch(lit, p / kTile, 0).g > 0.5;
+    bool is_all = reach_px >= kLeastBlurPx && (!is_reached_far || is_lost),
+         is_narrow = is_reached_far && !is_all && texelFetch(beyond, p / kBlock, 0).g < own.coc;
     Gathered found = gather(Point(center, own, visible_coc, is_all ? reach_px : is_narrow ? kFullSizePx : kNotAsked, is_narrow ? kNarrow : kAll,
                                   is_own ? radius_px : kNotAsked), around_coc);
     Back surface = found.surface;

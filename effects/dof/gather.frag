@@ -5,8 +5,6 @@
 #define LOWER_FRONT front_quarter
 #define LOWER_BACK back_quarter
 #define LOWER_HIDES hides_quarter
-#define LOWER_PLATE plate_quarter
-#define LOWER_LEVEL 2
 #include "upsample.glsl"
 
 void main() {
@@ -27,5 +25,5 @@ void main() {
     Back surface = is_back_found ? coarse.surface : found.surface;
     out_front = pack_light(stored(over));
     out_back = pack_light(Light(surface.color, surface.share));
-    out_hides = over.hides;
+    out_hides = vec4(over.hides, own.coc, visible_coc);
 }

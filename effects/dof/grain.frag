@@ -15,4 +15,8 @@ bool has_fine_patches(ivec2 tile) {
     return false;
 }
 
-void main() { out_patch_tile = has_fine_patches(ivec2(gl_FragCoord.xy)) ? vec2(0.0, 1.0) : vec2(1.0, 0.0); }
+void main() {
+    bool is_fine = has_fine_patches(ivec2(gl_FragCoord.xy));
+    out_guessed_tile = is_fine ? 0.0 : 1.0;
+    out_fine_tile = is_fine ? 1.0 : 0.0;
+}

@@ -7,8 +7,9 @@
 // Neighbouring pixels may have taken different chords: the mean of 3 x 3 patches of one surface hides where.
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy), last = frame.size - 1;
-    out_plate = texelFetch(patches, p, 0);
-    Light own = unpack_light(out_plate);
+    uvec4 patched = texelFetch(patches, p, 0);
+    out_plate = pack_plate(patched);
+    Light own = unpack_light(patched);
     if (!is_patch(own)) return;
 #ifdef KNOWS_LAYERS
     Known known = known_behind(layers_at(p, lens_at_infinity_px()), own.coc - kOneLayerPx);
@@ -29,5 +30,5 @@ void main() {
             coc += weight * tap.coc;
             sum += weight;
         }
-    out_plate = pack_light(Light(color / sum, coc / sum));
+    out_plate = pack_plate(pack_light(Light(color / sum, coc / sum)));
 }

@@ -1,5 +1,5 @@
 // The clean plate: what a pixel shows where no silhouette hides it.
 Light plate_at(ivec2 p) {
-    Light patched = unpack_light(texelFetch(plate, p, 0));
+    Light patched = unpack_plate(texelFetch(plate, p, 0));
     return is_patch(patched) ? patched : tap_light(p);
 }

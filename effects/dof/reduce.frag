@@ -4,8 +4,8 @@
 #include "majority.glsl"
 
 void main() {
-    ivec2 p = ivec2(gl_FragCoord.xy), last = ivec2(light_size.xy) - 1;
+    ivec2 p = ivec2(gl_FragCoord.xy), last = ivec2(light_half_size.xy) - 1;
     Light texels[4];
-    for (int i = 0; i < 4; ++i) texels[i] = unpack_light(texelFetch(light, min(2 * p + ivec2(i & 1, i >> 1), last), 0));
-    out_light = pack_light(majority(texels, p));
+    for (int i = 0; i < 4; ++i) texels[i] = unpack_light(texelFetch(light_half, min(2 * p + ivec2(i & 1, i >> 1), last), 0));
+    out_light_half = pack_light(majority(texels, p));
 }

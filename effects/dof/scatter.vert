@@ -1,7 +1,7 @@
 #version 450 core
 #include <pass>
-#include <lens/packing.glsl>
 #include "highlights.glsl"
+#include "patch_texels.glsl"
 
 layout(location = 0) flat out vec2 source;
 layout(location = 1) flat out vec3 light_of_source;
@@ -17,7 +17,7 @@ void main() {
 #ifdef HAS_HIDDEN_HIGHLIGHT
     if (is_hidden(place)) {
         source = vec2(p) + 0.5;
-        source_coc = unpack_light(texelFetch(plate, p, 0)).coc;
+        source_coc = unpack_plate(texelFetch(plate, p, 0)).coc;
         light_of_source = texelFetch(hidden_highlight, p, 0).rgb;
     }
 #endif

@@ -1,5 +1,5 @@
-// Side in px of the tiles of tile_coc and around, as effect.json declares it.
-const int kTile = 16;
+// Sides in px, as effect.json declares them: of the tiles of tile_coc and around; of the blocks of edges and beyond.
+const int kTile = 16, kBlock = 8;
 
 int tiles_in_a_row() { return (frame.size.x + kTile - 1) / kTile; }
 

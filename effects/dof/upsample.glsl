@@ -8,11 +8,10 @@ struct Coarse {
 // Where a thin thing is lost at the lower resolution, its texels are gathered one by one.
 const float kLeastLikeness = 0.6;
 
-// p: at twice the resolution of LOWER_FRONT, LOWER_BACK, LOWER_HIDES, LOWER_PLATE and LOWER_LEVEL of `coarse`; alike_px: a difference of
+// p: at twice the resolution of LOWER_FRONT, LOWER_BACK and LOWER_HIDES, whose last texel is `last`; alike_px: a difference of
 // CoC radii of two surfaces. Texels that show the visible surface count too: where its clean plate ends, one texel has the plate below
 // it and the next has not, but both make the same picture. What a surface adds to that is weighted by how much of it is seen.
 Coarse upsampled(ivec2 p, float coc, float visible_coc, float alike_px, float least_px, ivec2 last) {
-    Grid grid = grid_of(LOWER_LEVEL);
     float seen = 0.0;
     vec2 at = 0.5 * (vec2(p) + 0.5) - 0.5;
     ivec2 corner = ivec2(floor(at));
@@ -23,8 +22,8 @@ Coarse upsampled(ivec2 p, float coc, float visible_coc, float alike_px, float le
         Light b = unpack_light(texelFetch(LOWER_BACK, texel, 0)), f = unpack_light(texelFetch(LOWER_FRONT, texel, 0));
         if (b.coc < 0.0) continue;  // of a tile that is not blurred so far
         vec2 linear = mix(1.0 - part, part, vec2(to));
-        float texel_coc = unpack_light(texelFetch(LOWER_PLATE, texel, 0)).coc, unlike_px = abs(texel_coc - coc);
-        float visible_unlike_px = abs(texelFetch(coarse_coc, min(texel, grid.last) + grid.origin, 0).r - visible_coc);
+        vec4 hides = texelFetch(LOWER_HIDES, texel, 0);
+        float texel_coc = hides.b, unlike_px = abs(texel_coc - coc), visible_unlike_px = abs(hides.a - visible_coc);
         if (min(abs(texel_coc), abs(coc)) > least_px) unlike_px = min(unlike_px, visible_unlike_px);
         float weight = linear.x * linear.y * max(1.0 - unlike_px / alike_px, 0.0), uncovered = weight * max(1.0 - f.coc, 1e-3);
         coarse.likeness += weight;
@@ -33,7 +32,7 @@ Coarse upsampled(ivec2 p, float coc, float visible_coc, float alike_px, float le
         coarse.surface.share += uncovered * b.coc;
         coarse.over.color += weight * f.color;
         coarse.over.opacity += weight * f.coc;
-        coarse.over.hides += weight * texelFetch(LOWER_HIDES, texel, 0).rg;
+        coarse.over.hides += weight * hides.rg;
     }
     float scale = 1.0 / max(coarse.likeness, 1e-6), surface_scale = 1.0 / max(seen, 1e-9);
     coarse.over = Layer(coarse.over.color * scale, coarse.over.opacity * scale, coarse.over.hides * scale);

@@ -1,0 +1,11 @@
+#version 450 core
+#include <pass>
+#include <lens/packing.glsl>
+#include "majority.glsl"
+
+void main() {
+    ivec2 p = ivec2(gl_FragCoord.xy), last = frame.size - 1;
+    Light texels[4];
+    for (int i = 0; i < 4; ++i) texels[i] = unpack_light(texelFetch(light, min(2 * p + ivec2(i & 1, i >> 1), last), 0));
+    out_light_half = pack_light(majority(texels, p));
+}
