@@ -130,7 +130,7 @@ struct TapRow {
 };
 
 TapRow tap_row(int y, vec2 center, Source source, bool is_coarse) {
-    int inside = clamp(y, 0, source.light.last.y), plate_y = is_coarse ? min(inside << source.plate.shift, source.plate.last.y) : inside;
+    int inside = clamp(y, 0, source.light.last.y), plate_y = is_coarse ? plate_row(inside, source.plate) : inside;
     return TapRow(is_coarse ? inside + source.light.origin.y : inside, plate_y, gauge_row(center.y - float(y) - 0.5));
 }
 

@@ -13,4 +13,5 @@ struct PlateGrid {
 };
 
 PlateGrid plate_grid_of(int level) { return PlateGrid(level - 1, (frame.size + 1 >> 1) - 1); }
+int plate_row(int y, PlateGrid grid) { return min(y << grid.shift, grid.last.y); }
 Light plate_coarse(int x, int row, PlateGrid grid) { return unpack_light(texelFetch(plate_half, ivec2(min(x << grid.shift, grid.last.x), row), 0)); }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -135,9 +136,14 @@ void FrameLoader::request(int file) {
 void FrameLoader::give_images(std::size_t index, const CapturePointer& capture,
                               const std::vector<std::string>& roles, long holders) {
     const int file = files_.number(run_.frames[index], 0);
-    const bool has_next = index + 1 < run_.frames.size();
-    const std::vector<int> next = has_next ? files_.numbers(run_.frames[index + 1]) : std::vector<int>{};
-    const bool is_wanted = std::ranges::find(next, file) != next.end();
+    const auto wants_it = [&](int frame) {
+        const std::vector<int> numbers = files_.numbers(frame);
+        return std::ranges::find(numbers, file) != numbers.end();
+    };
+    // As far ahead as an input's `frame` goes.
+    constexpr std::size_t kMostFrames = 3;
+    const auto later = std::span(run_.frames).subspan(index + 1);
+    const bool is_wanted = std::ranges::any_of(later.first(std::min(kMostFrames, later.size())), wants_it);
     if (is_wanted || run_.missing == MissingFrame::hold || run_.region) return;
     reads_.erase(file);
     if (capture.use_count() > holders + (capture == last_ ? 1 : 0)) return;

@@ -265,8 +265,13 @@ TEST_F(GoldenRun, WarnsWhereEveryCaseWasSkippedAndNothingCompared) {
 }
 
 TEST_F(GoldenRun, EndsACaseThatTakesTooLong) {
+    std::string steps;
+    for (int i = 0; i < 40; ++i)
+        steps += std::string(i == 0 ? "" : ", ") + R"({ "effect": "bokeh", "name": "b)" + std::to_string(i) +
+                 "\" }";
+    write_text(folder_ / "slow.json", R"({ "aftershade": 1, "steps": [ )" + steps + " ] }");
     write_suite(R"("fail": 0.004)", R"(,
-    { "name": "long", "look": "lens.json", "capture": "in_0001.exr", "set": ["bokeh.shape=octagon"] })");
+    { "name": "long", "look": "slow.json", "capture": "in_0001.exr" })");
     const CommandResult result = run({"--timeout", "0.1", "--filter", "long"});
     EXPECT_EQ(result.exit_code, 2) << result.err;
     EXPECT_NE(result.err.find("0.1 s"), std::string::npos) << result.err;

@@ -198,55 +198,32 @@ void main() { left = gl_FragCoord.x; right = vec4(gl_FragCoord.y); })");
     EXPECT_EQ(executor.texture(written[0])->read_floats().back(), float(kWidth) - 0.5f);
 }
 
+/// New memory that holds zeros spares a first clear to zero, but not where another texture was in it before.
 TEST_P(ExecutorOn, ClearsSharedMemoryBeforeEachUseInEachFrame) {
     const gpu::Program one = draws("result = 1.0;");
     const gpu::Program copy = draws("result = texelFetch(source, p, 0).r;");
-    Graph graph;
-    TextureOptions ten, hundred;
-    ten.clear = {10, 0, 0, 0};
-    hundred.clear = {100, 0, 0, 0};
-    const auto add_one = [&](const std::string& name, TextureHandle target) {
-        Pass pass = draw_of(name, one, {}, target);
-        pass.blend = gpu::Blend::add;
-        return graph.add_pass(pass).targets[0];
-    };
-    const TextureHandle a = add_one("a", graph.create_texture("a", kSmall, ten));
-    const TextureHandle b = graph.add_pass(draw_of("b", copy, {a}, graph.fresh("b", kSmall))).targets[0];
-    const TextureHandle c = add_one("c", add_one("c", graph.create_texture("c", kSmall, hundred)));
-    graph.keep(b);
-    graph.keep(c);
-    Executor executor(context(), std::move(graph));
-    EXPECT_EQ(executor.texture(a), executor.texture(c));
-    for (int frame = 0; frame < 3; ++frame) {
-        executor.run(false);
-        EXPECT_EQ(executor.texture(b)->read_floats(), Floats(kWidth * kHeight, 11)) << frame;
-        EXPECT_EQ(executor.texture(c)->read_floats(), Floats(kWidth * kHeight, 102)) << frame;
-    }
-}
-
-/// What new memory holds spares a first clear to zero, but not where another texture was in it before.
-TEST_P(ExecutorOn, ClearsToZeroFromTheFirstFrameOn) {
-    const gpu::Program one = draws("result = 1.0;");
-    const gpu::Program copy = draws("result = texelFetch(source, p, 0).r;");
-    Graph graph;
-    TextureOptions zero;
-    zero.clear = {0, 0, 0, 0};
-    const auto add_one = [&](const std::string& name, TextureHandle target) {
-        Pass pass = draw_of(name, one, {}, target);
-        pass.blend = gpu::Blend::add;
-        return graph.add_pass(pass).targets[0];
-    };
-    const TextureHandle a = add_one("a", graph.create_texture("a", kSmall, zero));
-    const TextureHandle b = graph.add_pass(draw_of("b", copy, {a}, graph.fresh("b", kSmall))).targets[0];
-    const TextureHandle c = add_one("c", graph.create_texture("c", kSmall, zero));
-    graph.keep(b);
-    graph.keep(c);
-    Executor executor(context(), std::move(graph));
-    ASSERT_EQ(executor.texture(a), executor.texture(c));
-    for (int frame = 0; frame < 3; ++frame) {
-        executor.run(false);
-        EXPECT_EQ(executor.texture(b)->read_floats(), Floats(kWidth * kHeight, 1)) << frame;
-        EXPECT_EQ(executor.texture(c)->read_floats(), Floats(kWidth * kHeight, 1)) << frame;
+    for (const auto& [first, second] : {std::pair(10.0f, 100.0f), std::pair(0.0f, 0.0f)}) {
+        Graph graph;
+        TextureOptions to_first, to_second;
+        to_first.clear = {first, 0, 0, 0};
+        to_second.clear = {second, 0, 0, 0};
+        const auto add_one = [&](const std::string& name, TextureHandle target) {
+            Pass pass = draw_of(name, one, {}, target);
+            pass.blend = gpu::Blend::add;
+            return graph.add_pass(pass).targets[0];
+        };
+        const TextureHandle a = add_one("a", graph.create_texture("a", kSmall, to_first));
+        const TextureHandle b = graph.add_pass(draw_of("b", copy, {a}, graph.fresh("b", kSmall))).targets[0];
+        const TextureHandle c = add_one("c", add_one("c", graph.create_texture("c", kSmall, to_second)));
+        graph.keep(b);
+        graph.keep(c);
+        Executor executor(context(), std::move(graph));
+        EXPECT_EQ(executor.texture(a), executor.texture(c));
+        for (int frame = 0; frame < 3; ++frame) {
+            executor.run(false);
+            EXPECT_EQ(executor.texture(b)->read_floats(), Floats(kWidth * kHeight, first + 1)) << frame;
+            EXPECT_EQ(executor.texture(c)->read_floats(), Floats(kWidth * kHeight, second + 2)) << frame;
+        }
     }
 }
 

@@ -285,7 +285,10 @@ TEST_P(PassKindsOn, CopiesEveryLevel) {
     Graph graph;
     const TextureHandle source = graph.import_texture("source", desc);
     Pass copy = pass_named("copy", PassKind::copy, {source});
-    copy.targets = {{graph.fresh("copied", desc), -1}};
+    copy.targets = {{graph.fresh("copied", desc)}};
+    EXPECT_EQ(fault_of([&] { (void)graph.add_pass(copy); }),
+              "pass 'copy' copies 'source' to level 0 of 'copied' alone; copies take every level");
+    copy.targets.front().level = -1;
     const TextureHandle out = graph.add_pass(copy).targets[0];
     graph.keep(out);
     Executor executor(context(), std::move(graph));
