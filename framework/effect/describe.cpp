@@ -90,6 +90,8 @@ std::string texture_text(const TextureSpec& texture) {
     if (grid.kind == GridSpec::Kind::size)
         text += ", " + std::to_string(grid.size[0]) + " x " + std::to_string(grid.size[1]);
     if (grid.kind == GridSpec::Kind::scale && grid.scale != 1) text += ", scale " + format_number(grid.scale);
+    if (grid.room[0] > 0) text += ", room of " + format_number(grid.room[0]) + " to its right";
+    if (grid.room[1] > 0) text += ", room of " + format_number(grid.room[1]) + " below";
     if (texture.layers > 1) text += ", " + std::to_string(texture.layers) + " layers, no tap";
     if (texture.auto_mips) text += ", mips";
     else if (texture.mips > 1) text += ", " + std::to_string(texture.mips) + " levels";

@@ -52,16 +52,17 @@ int count_value(const CountSpec& count, const ParamReader& params) {
 }
 
 std::pair<int, int> grid_size(const GridSpec& grid, const ParamReader& params, int width, int height) {
+    const auto with_room = [&](int side, int axis) { return side + int(std::ceil(side * grid.room[axis])); };
     switch (grid.kind) {
         case GridSpec::Kind::size: return {grid.size[0], grid.size[1]};
         case GridSpec::Kind::tile: {
             const int tile = std::max(1, count_value(grid.tile, params));
-            return {divided_up(width, tile), divided_up(height, tile)};
+            return {divided_up(with_room(width, 0), tile), divided_up(with_room(height, 1), tile)};
         }
         case GridSpec::Kind::scale: break;
     }
-    return {std::max(1, int(std::ceil(width * grid.scale))),
-            std::max(1, int(std::ceil(height * grid.scale)))};
+    return {with_room(std::max(1, int(std::ceil(width * grid.scale))), 0),
+            with_room(std::max(1, int(std::ceil(height * grid.scale))), 1)};
 }
 
 std::unique_ptr<BuiltGraph> build_graph(const GraphTools& tools, const GraphFrame& frame) {

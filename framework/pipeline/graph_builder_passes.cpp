@@ -243,7 +243,7 @@ void GraphBuilder::set_kind(const StepBuild& build, const PassSpec& spec, graph:
                 width = desc.width;
                 height = desc.height;
             }
-            const GridSpec tiles{GridSpec::Kind::tile, 1, dispatch.tile, {0, 0}};
+            const GridSpec tiles{.kind = GridSpec::Kind::tile, .tile = dispatch.tile};
             std::tie(width, height) = grid_size(tiles, build.params, width, height);
             pass.groups.count = {width, height, 1};
         }

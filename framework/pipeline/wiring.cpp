@@ -36,6 +36,7 @@ std::string grid_text(const GridSpec& grid) {
         case GridSpec::Kind::tile: return "a texel per tile";
         case GridSpec::Kind::scale: break;
     }
+    if (grid.has_room()) return "room beside the frame";
     return "another scale";
 }
 

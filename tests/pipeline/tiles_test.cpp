@@ -77,6 +77,59 @@ TEST(TilesOfAPass, LieOnLevelsAndOnBlocksToo) {
         }
 }
 
+/// A texture with room to the right of the frame's pixels and below: one list's tiles are the frame's, the
+/// other's lie in the room alone.
+const char* const kRoom =
+    R"("inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
+    "textures": { "marks": { "format": "r8", "tile": 16, "doc": "." },
+                  "wide": { "format": "r32f", "room": [0.5, 0.25], "clear": -1, "doc": "." } },
+    "tiles": { "chosen": { "of": "marks.r", "doc": "." },
+               "beyond": { "predicate": "beyond.glsl", "tile": 16, "on": "wide", "doc": "." } },
+    "passes": [
+        { "name": "mark", "shader": "main.frag", "reads": ["color"], "writes": ["marks"], "defines": { "MARK": 1 } },
+        { "name": "frame", "shader": "main.frag", "reads": [], "writes": ["wide"], "over": "chosen", "defines": { "OUT": "out_wide" } },
+        { "name": "room", "shader": "main.frag", "reads": [], "writes": ["wide"], "over": "beyond", "defines": { "OUT": "out_wide" } },
+        { "name": "show", "shader": "main.frag", "reads": ["wide"], "writes": ["color"], "defines": { "SHOW": 1 } } ])";
+
+const char* const kRoomShader = R"(
+void main() {
+    ivec2 p = ivec2(gl_FragCoord.xy);
+#if defined(MARK)
+    out_marks = (p.x + p.y) % 2 == 0 ? texelFetch(color, ivec2(0), 0).b : 0.0;
+#elif defined(SHOW)
+    ivec2 far = p + ivec2(wide_size.xy) - frame.size;
+    out_color = vec4(texelFetch(wide, p, 0).r, texelFetch(wide, far, 0).r, wide_size.xy);
+#else
+    OUT = float(p.x + 1000 * p.y);
+#endif
+}
+)";
+
+TEST(TilesOfAPass, LieInTheRoomBesideAFrameToo) {
+    EffectFolder effects;
+    effects.add("room", kRoom, kRoomShader);
+    write_text(effects.path() / "room" / "beyond.glsl",
+               "bool beyond(ivec2 tile) { return any(greaterThanEqual(16 * tile, frame.size)); }\n");
+    const std::string look = look_of(R"({"effect": "room"})");
+    Bench bench(effects, look);
+    constexpr int kWideWidth = kTiledWidth + 38, kWideHeight = kTiledHeight + 14;
+    const auto expected = [](int x, int y) {
+        const int i = x / kTilePx, k = y / kTilePx;
+        const bool is_beyond = i * kTilePx >= kTiledWidth || k * kTilePx >= kTiledHeight;
+        return is_beyond || is_chosen_tile(i, k) ? float(x + 1000 * y) : -1.0f;
+    };
+    for (int frame = 0; frame < 2; ++frame) {
+        const Image shown = bench.color(tiled_picture());
+        for (int y = 0; y < kTiledHeight; ++y)
+            for (int x = 0; x < kTiledWidth; ++x) {
+                ASSERT_EQ(shown.at(x, y, 0), expected(x, y)) << x << ", " << y;
+                ASSERT_EQ(shown.at(x, y, 1), expected(x + 38, y + 14)) << x << ", " << y;
+                ASSERT_EQ(shown.at(x, y, 2), kWideWidth);
+                ASSERT_EQ(shown.at(x, y, 3), kWideHeight);
+            }
+    }
+}
+
 /// As kTiled, but which tiles of three are chosen depends on the picture's red.
 TEST(TilesOfAPass, LeaveNothingBehindForTheNextFrame) {
     EffectFolder effects;

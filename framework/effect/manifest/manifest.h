@@ -64,9 +64,12 @@ struct CountSpec {
 struct GridSpec {
     enum class Kind { scale, tile, size };
     Kind kind = Kind::scale;
-    double scale = 1;      ///< of the working grid's sides, rounded up
+    double scale = 1;  ///< of the working grid's sides, rounded up
+    double room[2] = {0,
+                      0};  ///< with `scale`: further texels to the right and below, in its width and height
     CountSpec tile;        ///< one texel per tile of this many px a side, rounded up
     int size[2] = {0, 0};  ///< fixed, in texels
+    bool has_room() const { return room[0] > 0 || room[1] > 0; }
     bool operator==(const GridSpec&) const = default;
 };
 

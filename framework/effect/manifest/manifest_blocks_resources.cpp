@@ -42,36 +42,44 @@ Block make_texture_block() {
         .name = "texture",
         .thing = "texture '{}'",
         .doc = "An image between passes.",
-        .keys = {required("format", texture_format_form(), "Format of a texel."),
-                 required("doc", text(), "One sentence, with the unit."),
-                 optional("scale", grid_scale_form(), "Size relative to the working grid, rounded up.", "1"),
-                 optional("tile", count_form(kTileCount), "One texel per tile; the tile's side in px."),
-                 optional("size",
-                          grammar::shown_as(
-                              grammar::list(integer(1, kMaxSide),
-                                            {.min = 2, .max = 2, .fault = "'size' holds 2 integers"}),
-                              "[width, height], up to " + std::to_string(kMaxSide)),
-                          "Fixed size in texels, independent of the working grid."),
-                 optional("layers", integer(1, kMaxLayers),
-                          "Number of layers; more than one make an array texture.", "1"),
-                 optional("mips", mips_form(),
-                          "Number of levels, which passes write one by one; `\"auto\"`: the host fills "
-                          "levels 1 and up after each pass that writes level 0.",
-                          "1"),
-                 optional("clear", texel_form(),
-                          "Value at the beginning of each frame; whole for integer formats, and within the "
-                          "format's range."),
-                 optional("history", boolean(),
-                          "Keeps the texture for the next frame, where `name.prev` reads it; zero if there "
-                          "was none (`frame.history_valid`).",
-                          "false"),
-                 optional(
-                     "partial", boolean(),
-                     "No pass reads a texel that none has drawn in this frame, so the host fills nothing; "
-                     "for integer formats, without `clear` and `history`.",
-                     "false"),
-                 when_key("If they do not hold, every read and write of it is absent.")},
-        .rules = {grammar::at_most_one_of({"scale", "tile", "size"})}};
+        .keys =
+            {required("format", texture_format_form(), "Format of a texel."),
+             required("doc", text(), "One sentence, with the unit."),
+             optional("scale", grid_scale_form(), "Size relative to the working grid, rounded up.", "1"),
+             optional(
+                 "room",
+                 grammar::shown_as(grammar::list(grammar::number({.min = 0, .max = 1}),
+                                                 {.min = 2, .max = 2, .fault = "'room' holds 2 numbers"}),
+                                   "[x, y], each from 0 to 1"),
+                 "Further texels to the right of those and below them, in their width and height: with "
+                 "[0.5, 0], levels of a picture fit beside it."),
+             optional("tile", count_form(kTileCount), "One texel per tile; the tile's side in px."),
+             optional(
+                 "size",
+                 grammar::shown_as(grammar::list(integer(1, kMaxSide),
+                                                 {.min = 2, .max = 2, .fault = "'size' holds 2 integers"}),
+                                   "[width, height], up to " + std::to_string(kMaxSide)),
+                 "Fixed size in texels, independent of the working grid."),
+             optional("layers", integer(1, kMaxLayers),
+                      "Number of layers; more than one make an array texture.", "1"),
+             optional("mips", mips_form(),
+                      "Number of levels, which passes write one by one; `\"auto\"`: the host fills "
+                      "levels 1 and up after each pass that writes level 0.",
+                      "1"),
+             optional("clear", texel_form(),
+                      "Value at the beginning of each frame; whole for integer formats, and within the "
+                      "format's range."),
+             optional("history", boolean(),
+                      "Keeps the texture for the next frame, where `name.prev` reads it; zero if there "
+                      "was none (`frame.history_valid`).",
+                      "false"),
+             optional("partial", boolean(),
+                      "No pass reads a texel that none has drawn in this frame, so the host fills nothing; "
+                      "for integer formats, without `clear` and `history`.",
+                      "false"),
+             when_key("If they do not hold, every read and write of it is absent.")},
+        .rules = {grammar::at_most_one_of({"scale", "tile", "size"}),
+                  grammar::at_most_one_of({"room", "tile"}), grammar::at_most_one_of({"room", "size"})}};
 }
 
 /// How many elements fit into a buffer, by the type that they have.

@@ -71,6 +71,7 @@ private:
         const TextureSpec* on = manifest_.find_texture(list.on);
         if (on && on->grid.kind == GridSpec::Kind::scale)
             grid.tile.number = std::max(1, int(std::floor(list.tile.number / on->grid.scale)));
+        if (on) std::copy_n(on->grid.room, 2, grid.room);
         return grid;
     }
 

@@ -50,6 +50,10 @@ void ManifestParser::count_by_param(const Node& node, const std::string& key, co
 GridSpec ManifestParser::grid(const Reader& reader, bool may_be_fixed) {
     GridSpec grid;
     if (reader.has("scale")) grid.scale = reader.number("scale");
+    if (may_be_fixed && reader.has("room")) {
+        const std::vector<double> room = reader.numbers("room");
+        std::copy(room.begin(), room.end(), grid.room);
+    }
     if (reader.has("tile")) {
         grid.kind = GridSpec::Kind::tile;
         grid.tile = count(reader, "tile", kTileCount);
