@@ -76,7 +76,7 @@ GraphBuilder::GraphBuilder(const GraphTools& tools, const GraphFrame& frame)
       width_(frame_.width_px()),
       height_(frame_.height_px()),
       programs_({tools.context, tools.programs, tools.status, tools.fuses_passes, !tools.keeps_steps,
-                 tools.compile_threads}),
+                 tools.keeps_steps || tools.programs.is_guarding_loops(), tools.compile_threads}),
       built_(std::make_unique<BuiltGraph>()) {}
 
 std::unique_ptr<BuiltGraph> GraphBuilder::build() {

@@ -149,13 +149,14 @@ struct PassPrograms::FusedAssembled {
 };
 
 std::vector<PassPrograms::FusedAssembled> PassPrograms::assemble_fusions(const graph::FrameGraph& graph,
+                                                                         const graph::CompiledGraph& compiled,
                                                                          int divide_at) {
     std::vector<FusedAssembled> fusions;
     if (!tools_.fuses || tools_.programs.is_guarding_loops()) return fusions;
     const graph::FusionOptions options{{kMaxFusedParts, kMaxFusedSamplers, kMaxFusedBuffers, kMaxFusedBlocks},
                                        divide_at,
                                        [&](int pass) { return blocks_of(graph, pass); }};
-    for (const graph::Fusion& fusion : graph::find_fusions(graph, graph.compile(), options)) {
+    for (const graph::Fusion& fusion : graph::find_fusions(graph, compiled, options)) {
         FusedAssembled fused{FusedPassMaker(graph, fusion), "", {}};
         for (const int pass : fusion.passes) {
             fused.maker.add(pass, added_.at(pass).shader, unused_blocks_of(pass));
@@ -184,6 +185,10 @@ void PassPrograms::load_images(const graph::FrameGraph& graph, graph::Pass& pass
     }
 }
 
+bool PassPrograms::is_compiled(const graph::FrameGraph& graph, int pass) const {
+    return !graph.pass(pass).program && (tools_.compiles_culled || std::ranges::binary_search(needed_, pass));
+}
+
 std::map<int, PassPrograms::Assembled> PassPrograms::assemble_others(
     graph::FrameGraph& graph, const std::vector<FusedAssembled>& fusions) const {
     std::map<int, Assembled> others;
@@ -193,7 +198,7 @@ std::map<int, PassPrograms::Assembled> PassPrograms::assemble_others(
         });
     };
     for (const auto& [pass, added] : added_) {
-        if (is_fused(pass) || graph.pass(pass).program) continue;
+        if (is_fused(pass) || !is_compiled(graph, pass)) continue;
         Assembled& texts = others[pass];
         ProgramSources sources = tools_.programs.sources_of(added.shader, texts.faults);
         if (!texts.faults.has_errors()) load_images(graph, graph.pass(pass), sources.main);
@@ -241,13 +246,15 @@ void PassPrograms::compile_ahead(const graph::FrameGraph& graph, const graph::Co
 }
 
 void PassPrograms::finish(graph::FrameGraph& graph, std::vector<BlockBinding>& blocks, int divide_at) {
-    std::vector<FusedAssembled> fusions = assemble_fusions(graph, divide_at);
+    const graph::CompiledGraph compiled = graph.compile();
+    needed_ = compiled.passes;
+    std::vector<FusedAssembled> fusions = assemble_fusions(graph, compiled, divide_at);
     std::map<int, Assembled> others = assemble_others(graph, fusions);
     work_ahead(graph, fusions, others);
     tools_.context.test_once();  // while the threads compile
     for (FusedAssembled& fused : fusions) fuse(graph, fused, blocks);
     for (const auto& [pass, added] : added_) {
-        if (graph.is_fused_away(pass) || graph.pass(pass).program) continue;
+        if (graph.is_fused_away(pass) || !is_compiled(graph, pass)) continue;
         const StatusScope scope(tools_.status, compiling(added, added.shader.pass->name));
         const auto assembled = others.find(pass);
         const CompileAhead::LinkScope linking(ahead_.get(), graph.pass(pass).name);

@@ -30,7 +30,10 @@ public:
         StatusWriter* status = nullptr;  ///< receives which pass is compiled; may be null
         bool fuses = true;
         bool shares_memory = true;  ///< among the graph's textures
-        int compile_threads = 0;    ///< beside the caller's; with one, another makes textures
+        /// Whether passes that nothing needs get programs, too, so that the faults of their shaders are
+        /// found.
+        bool compiles_culled = false;
+        int compile_threads = 0;  ///< beside the caller's; with one, another makes textures
     };
     explicit PassPrograms(const Tools& tools) : tools_(tools) {}
 
@@ -53,9 +56,11 @@ private:
         ShaderContext shader;
         const PipelineStep* step = nullptr;
     };
+    bool is_compiled(const graph::FrameGraph& graph, int pass) const;
     struct Assembled;
     struct FusedAssembled;
-    std::vector<FusedAssembled> assemble_fusions(const graph::FrameGraph& graph, int divide_at);
+    std::vector<FusedAssembled> assemble_fusions(const graph::FrameGraph& graph,
+                                                 const graph::CompiledGraph& compiled, int divide_at);
     std::map<int, Assembled> assemble_others(graph::FrameGraph& graph,
                                              const std::vector<FusedAssembled>& fusions) const;
     void load_images(const graph::FrameGraph& graph, graph::Pass& pass, ShaderSource& source) const;
@@ -72,6 +77,7 @@ private:
     Tools tools_;
     ShaderTexts texts_;                       // of all passes
     std::map<int, Added> added_;              // by pass
+    std::vector<int> needed_;                 // passes, in order; after finish()
     std::map<int, std::vector<int>> unused_;  // uniform blocks, by pass
     std::map<int, int> block_counts_;         // likewise
     std::unique_ptr<CompileAhead> ahead_;

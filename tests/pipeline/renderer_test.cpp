@@ -412,6 +412,31 @@ TEST_F(Conditional, RefusesATapThatNoPassWrites) {
     EXPECT_STREQ(error("b", {{}, {"choose.extra"}}).what(), "no error");
 }
 
+TEST_F(Renderer, CompilesPassesThatNothingNeedsOnlyWhereFaultsAreSought) {
+    effects_.add("spare",
+                 std::string(kColorOnly) + R"("textures": { "unused": { "format": "r8", "doc": "." } },
+        "passes": [ { "name": "idle", "shader": "main.frag", "reads": ["color"], "writes": ["unused"], "defines": { "IDLE": 1 } },
+                    { "name": "main", "shader": "main.frag", "reads": ["color"], "writes": ["color"] } ])",
+                 "#ifdef IDLE\nvoid main() { out_unused = wrong; }\n#else\n"
+                 "void main() { out_color = texelFetch(color, ivec2(0), 0) * 2.0; }\n#endif\n");
+    const std::string look = look_of(R"({ "effect": "spare" })");
+    expect_everywhere(Bench(effects_, look).color(plain()), {0.5f, 1, 2});
+    const auto fault = [&](const auto& choose) -> std::string {
+        Bench bench(effects_, look);
+        choose(bench.renderer());
+        try {
+            bench.run(plain());
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "none";
+    };
+    const std::string kept = fault([](PipelineRenderer& renderer) { renderer.keep_steps(); });
+    EXPECT_NE(kept.find("[pass idle, llvmpipe"), std::string::npos) << kept;
+    const std::string checked = fault([](PipelineRenderer& renderer) { renderer.guard_loops(); });
+    EXPECT_NE(checked.find("[pass idle, llvmpipe"), std::string::npos) << checked;
+}
+
 TEST_F(Renderer, NamesTheFileTheLineAndThePassOfAFaultyShader) {
     effects_.add("wrong", std::string(kColorOnly) + kOnePass,
                  "void main() {\n    out_color = texelFetch(colour, ivec2(0), 0);\n}\n");
