@@ -188,8 +188,8 @@ struct CompiledGraph {
 
 class FrameGraph {
 public:
-    /// A texture whose content is given from outside. `is_given_each_frame`: before every run, so that a pass
-    /// may change its memory once no other one needs it.
+    /// A texture whose content is given from outside. `is_given_each_frame`: before every run, so that its
+    /// memory may hold something else once no pass needs it.
     TextureHandle import_texture(std::string name, const gpu::TextureDesc& desc,
                                  bool is_given_each_frame = false);
     /// A buffer whose content is given from outside, such as a table of parameters.

@@ -42,7 +42,8 @@ namespace {
 /// What a texture and a buffer have in common here.
 struct Resource {
     bool kept = false;
-    bool alone = false;  ///< imports and histories share their memory with nothing
+    bool alone = false;  ///< histories, and imports that stay, share their memory with nothing
+    bool is_given_each_frame = false;
     bool is_history = false;
     bool cleared = false;
     int previous_of = -1;  ///< a resource
@@ -60,10 +61,11 @@ public:
     Compiler(const FrameGraph& graph, bool shares_memory)
         : graph_(graph), shares_memory_(shares_memory), buffers_(graph.textures().size()) {
         for (const FrameGraph::Texture& t : graph.textures())
-            resources_.push_back(
-                {t.kept, t.imported, false, t.options.clear.has_value(), t.previous_of, t.version});
+            resources_.push_back({t.kept, t.imported && !t.is_given_each_frame,
+                                  t.imported && t.is_given_each_frame, false, t.options.clear.has_value(),
+                                  t.previous_of, t.version});
         for (const FrameGraph::Buffer& b : graph.buffers())
-            resources_.push_back({b.kept, b.imported, false, b.clear.has_value(),
+            resources_.push_back({b.kept, b.imported, false, false, b.clear.has_value(),
                                   b.previous_of < 0 ? -1 : b.previous_of + int(buffers_), b.version});
         for (Resource& resource : resources_) {
             if (resource.previous_of < 0) continue;
@@ -217,6 +219,7 @@ private:
             last_use_.push_back(life ? life->last : -1);
             if (resources_[i].kept) life = {life ? life->first : end, end};
             first_use_.push_back(life ? life->first : -1);
+            if (life && resources_[i].is_given_each_frame) life->first = -1;
             if (life && (resources_[i].alone || !shares_memory_)) life = {-1, end};
         }
     }

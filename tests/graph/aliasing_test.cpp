@@ -233,7 +233,7 @@ struct RandomGraph : Graph {
     explicit RandomGraph(unsigned seed) {
         std::mt19937 random(seed);
         const auto below = [&](std::size_t n) { return std::size_t(random() % n); };
-        std::vector<TextureHandle> live = {import_texture("input", kFull)};
+        std::vector<TextureHandle> live = {import_texture("input", kFull, seed % 2 == 0)};
         const std::size_t passes = 3 + below(30);
         for (std::size_t i = 0; i < passes; ++i) {
             const std::string name = "p" + std::to_string(i);
@@ -282,7 +282,8 @@ std::size_t most_alive(const FrameGraph& graph, const std::vector<int>& passes) 
             }
             const bool used = before || after;
             const FrameGraph::Texture& texture = graph.textures()[i];
-            if (texture.imported && (used || texture.kept)) before = after = true;
+            if (texture.imported && (used || texture.kept)) before = true;
+            if (texture.imported && (texture.kept || (used && !texture.is_given_each_frame))) after = true;
             if (texture.kept && used) after = true;
             if (before && after) ++alive;
         }

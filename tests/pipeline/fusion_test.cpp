@@ -12,7 +12,9 @@ EffectRegistry& shipped() {
 }
 
 /// Colours of every kind: above 1, below 0, without coverage, half covered.
-Capture colourful(int width = 53, int height = 31) {
+constexpr int kColourfulWidth = 53, kColourfulHeight = 31;
+
+Capture colourful(int width = kColourfulWidth, int height = kColourfulHeight) {
     Capture capture = make_capture({.width = width, .height = height, .background_depth_m = 4});
     std::uint32_t state = 17;
     for (float& value : capture.images.at("color").floats())
@@ -74,7 +76,10 @@ protected:
             for (const auto& [name, image] : apart.frames[i].taps)
                 EXPECT_TRUE(same_bits(fused.frames[i].taps.at(name), image)) << name << " of " << steps;
         }
-        EXPECT_LE(fused.bytes.first, apart.bytes.first);
+        // Apart, a result may lie in the memory of the capture's colour, which nothing reads any more; a
+        // fused pass reads it while it writes them all.
+        const std::uint64_t color_bytes = 16ull * kColourfulWidth * kColourfulHeight;
+        EXPECT_LE(fused.bytes.first, apart.bytes.first + color_bytes);
         EXPECT_LE(fused.bytes.second, apart.bytes.second);
         return fused;
     }
