@@ -55,6 +55,19 @@ std::optional<Texture> TexturesAhead::take(const TextureDesc& desc, const std::s
     return Texture(context_, desc, label, found->handle);
 }
 
+void TexturesAhead::finish() {
+    try {
+        make_all(context_);
+    } catch (const std::exception&) {
+        // Whoever takes it meets the fault.
+    }
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] {
+        return is_over_ || std::ranges::all_of(
+                               textures_, [](const Made& made) { return made.handle != 0 || made.is_taken; });
+    });
+}
+
 std::size_t TexturesAhead::textures_made() const {
     const std::lock_guard lock(mutex_);
     return std::size_t(std::ranges::count_if(textures_, [](const Made& made) { return made.handle != 0; }));
@@ -70,16 +83,20 @@ TexturesAhead::Made* TexturesAhead::begin_largest() {
     return &*found;
 }
 
+void TexturesAhead::make_all(Context& context) {
+    while (Made* const made = begin_largest()) {
+        const unsigned int handle = Texture::made(context, made->desc, "made ahead");
+        context.finish();
+        const std::lock_guard lock(mutex_);
+        made->handle = handle;
+        changed_.notify_all();
+    }
+}
+
 void TexturesAhead::work() {
     try {
         Context context(SiblingOf{context_, true});
-        while (Made* const made = begin_largest()) {
-            const unsigned int handle = Texture::made(context, made->desc, "made ahead");
-            context.finish();
-            const std::lock_guard lock(mutex_);
-            made->handle = handle;
-            changed_.notify_all();
-        }
+        make_all(context);
     } catch (const std::exception&) {
         // No context, or no memory: the caller makes the rest.
     }

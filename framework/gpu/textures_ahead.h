@@ -16,8 +16,8 @@ namespace aftershade::gpu {
 /// llvmpipe fills a texture's memory with zeros when it makes it, and the system makes the memory's pages
 /// then: at 1080p that takes a quarter of the time that a first frame's passes do. A thread with a context of
 /// its own that shares its objects does it while the caller loads programs. It begins with the largest, so
-/// that what is left when the caller meets it is soon made. What the thread cannot make, the caller does, who
-/// then meets the fault. [the context's thread; a thread of its own]
+/// that both are done at about the same time when the caller helps. What the thread cannot make, the caller
+/// does, who then meets the fault. [the context's thread; a thread of its own]
 class TexturesAhead {
 public:
     /// Whether a thread is worth it for textures of that description: none is where a driver does not take
@@ -32,6 +32,8 @@ public:
     TexturesAhead(const TexturesAhead&) = delete;
     TexturesAhead& operator=(const TexturesAhead&) = delete;
 
+    /// The caller makes textures too, until the thread has begun the last, and waits for that one.
+    void finish();
     /// One of that description, once it is made; nullopt where the thread has none or has not begun it, and
     /// will not then.
     std::optional<Texture> take(const TextureDesc& desc, const std::string& label);
@@ -47,6 +49,7 @@ private:
     };
 
     void work();
+    void make_all(Context& context);
     Made* begin_largest();
 
     Context& context_;

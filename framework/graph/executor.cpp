@@ -53,6 +53,7 @@ void Executor::allocate(gpu::TexturesAhead* ahead) {
     constexpr std::uint64_t kForMesa = 64ull * 1024 * 1024;
     require_address_space(compiled_.bytes + kForMesa, "the memory of a frame's passes");
     const auto labels = slot_labels(graph_.textures(), compiled_.slot_of_texture, compiled_.slots.size());
+    if (ahead) ahead->finish();
     // Pointers to slots are kept: they must not move.
     slots_.reserve(labels.size());
     for (std::size_t i = 0; i < labels.size(); ++i) {

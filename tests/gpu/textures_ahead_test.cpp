@@ -68,6 +68,24 @@ void main() { result = texelFetch(source, ivec2(gl_FragCoord.xy), 0) * 2.0; })")
     EXPECT_EQ(target->read_floats(), values);
 }
 
+TEST_P(TexturesAheadOn, AreAllThereOnceTheCallerHasHelped) {
+    const std::vector<TextureDesc> descs(
+        20, TextureDesc{.width = 700, .height = 300, .format = TextureFormat::rgba32f});
+    TexturesAhead ahead(context(), descs);
+    ahead.finish();
+    EXPECT_EQ(ahead.textures_made(), descs.size());
+    ahead.finish();
+    std::vector<unsigned int> handles;
+    for (const TextureDesc& desc : descs) {
+        const std::optional<Texture> texture = ahead.take(desc, "one");
+        ASSERT_TRUE(texture);
+        EXPECT_EQ(texture->read_floats()[5], 0.0F);
+        handles.push_back(texture->handle());
+    }
+    std::ranges::sort(handles);
+    EXPECT_EQ(std::ranges::unique(handles).size(), 0U) << "each is made once";
+}
+
 TEST_P(TexturesAheadOn, AreTakenOnceAndByTheirDescriptionAlone) {
     TexturesAhead ahead(context(), {kColor});
     ASSERT_TRUE(makes(ahead, 1));
@@ -84,6 +102,7 @@ TEST_P(TexturesAheadOn, LeaveToTheCallerWhatCannotBeMade) {
     TexturesAhead ahead(context(), {kTooWide, kLarge});
     ASSERT_TRUE(makes(ahead, 1)) << "the largest first";
     EXPECT_TRUE(ahead.take(kLarge, "large"));
+    ahead.finish();
     EXPECT_FALSE(ahead.take(kTooWide, "too wide"));
     EXPECT_NO_THROW(context().check("the thread's fault is not the caller's"));
 }
