@@ -60,7 +60,8 @@ ProgramCache::ProgramCache(gpu::Context& context, std::filesystem::path glsl_fol
     : context_(context),
       glsl_folder_(std::move(glsl_folder)),
       store_(std::move(store)),
-      full_screen_(read_text_file(glsl_folder_ / "fullscreen.vert", ExitCode::effect)) {}
+      full_screen_(read_text_file(glsl_folder_ / "fullscreen.vert", ExitCode::effect)),
+      over_tiles_(host_vertex("tiles.vert")) {}
 
 ProgramSources ProgramCache::sources_of(const ShaderContext& context, Diagnostics& faults) const {
     ProgramSources sources;
@@ -70,33 +71,78 @@ ProgramSources ProgramCache::sources_of(const ShaderContext& context, Diagnostic
     const bool guards = guards_loops_ && !faults.has_errors();
     if (guards) guard(sources.main);
     if (sources.is_compute) return sources;
-    const bool has_vertex = context.pass->has_vertex_shader();
+    const bool has_vertex = !context.pass->vertex.empty();
     if (has_vertex) sources.vertex_lines = assemble_shader(context, faults, ShaderFile::vertex);
     if (has_vertex && guards && !faults.has_errors()) guard(sources.vertex_lines);
-    sources.vertex = has_vertex ? sources.vertex_lines.text : full_screen_;
+    sources.vertex = has_vertex                   ? sources.vertex_lines.text
+                     : context.pass->over.empty() ? full_screen_
+                                                  : over_tiles_;
     return sources;
 }
 
-std::string ProgramCache::key_of(const ProgramSources& sources) const {
+namespace {
+
+gpu::Stages stages_of(const ProgramSources& sources) {
+    if (sources.is_compute) return gpu::Stages::compute;
+    return sources.shares_vertex() ? gpu::Stages::fragment : gpu::Stages::draw;
+}
+
+const char* name_of(gpu::Stages stages) {
+    switch (stages) {
+        case gpu::Stages::draw: return "draw";
+        case gpu::Stages::compute: return "compute";
+        case gpu::Stages::vertex: return "vertex";
+        case gpu::Stages::fragment: break;
+    }
+    return "fragment";
+}
+
+}  // namespace
+
+std::string ProgramCache::key_of(gpu::Stages stages, const std::string& vertex,
+                                 const std::string& main) const {
     const gpu::ContextInfo& gl = context_.info();
     std::string key = "aftershade " AFTERSHADE_VERSION "\n" + gl.vendor + "\n" + gl.renderer + "\n" +
-                      gl.version + "\n" + (sources.is_compute ? "compute" : "draw") + "\n";
+                      gl.version + "\n" + name_of(stages) + "\n";
     // The length keeps the two texts apart.
-    key += std::to_string(sources.vertex.size()) + "\n" + sources.vertex + sources.main.text;
+    key += std::to_string(vertex.size()) + "\n" + vertex + main;
     return key;
+}
+
+/// With the text of a vertex shader that it shares: programs are held by this key, too.
+std::string ProgramCache::key_of(const ProgramSources& sources) const {
+    return key_of(stages_of(sources), sources.vertex, sources.main.text);
+}
+
+std::shared_ptr<const gpu::Program> ProgramCache::vertex_stage(const std::string& text) {
+    std::shared_ptr<const gpu::Program>& stage = vertex_stages_[text];
+    if (stage) return stage;
+    const std::string key = key_of(gpu::Stages::vertex, text, ""), label = "host.vertex";
+    if (const auto binary = store_.load(key))
+        if (auto program = gpu::Program::from_binary(context_, *binary, gpu::Stages::vertex, label))
+            return stage = std::make_shared<const gpu::Program>(std::move(*program));
+    stage = std::make_shared<const gpu::Program>(gpu::Program::vertex(context_, text, label));
+    if (store_.is_on())
+        if (const auto binary = stage->binary()) store_.save(key, *binary);
+    return stage;
 }
 
 gpu::Program ProgramCache::make(const ProgramSources& sources, const std::string& key,
                                 std::size_t& binary_bytes) {
+    const gpu::Stages stages = stages_of(sources);
+    const std::shared_ptr<const gpu::Program> vertex =
+        stages == gpu::Stages::fragment ? vertex_stage(sources.vertex) : nullptr;
     if (const auto binary = store_.load(key))
-        if (auto program = gpu::Program::from_binary(context_, *binary, sources.is_compute, sources.label)) {
+        if (auto program = gpu::Program::from_binary(context_, *binary, stages, sources.label, vertex)) {
             ++loaded_;
             binary_bytes = binary->bytes.size();
             return std::move(*program);
         }
-    gpu::Program program =
-        sources.is_compute ? gpu::Program::compute(context_, sources.main.text, sources.label)
-                           : gpu::Program::draw(context_, sources.vertex, sources.main.text, sources.label);
+    const std::string& main = sources.main.text;
+    gpu::Program program = vertex ? gpu::Program::fragment(context_, vertex, main, sources.label)
+                           : sources.is_compute
+                               ? gpu::Program::compute(context_, main, sources.label)
+                               : gpu::Program::draw(context_, sources.vertex, main, sources.label);
     ++compiled_;
     if (store_.is_on())
         if (const auto binary = program.binary()) {

@@ -24,10 +24,11 @@ inline constexpr int kLoopGuardBinding = 15;
 struct ProgramSources {
     bool is_compute = false;
     std::string vertex;         ///< of a draw
-    ShaderSource vertex_lines;  ///< without lines for the host's own
+    ShaderSource vertex_lines;  ///< without lines for the host's own, which programs share
     ShaderSource main;
     std::string label;
 
+    bool shares_vertex() const { return !is_compute && vertex_lines.lines.empty(); }
     const ShaderSource& of_stage(const std::string& stage) const {
         return stage == "vertex" ? vertex_lines : main;
     }
@@ -81,12 +82,16 @@ private:
     std::string host_vertex(const std::string& file) const;  // with what it includes
     void drop_idle();
     gpu::Program make(const ProgramSources& sources, const std::string& key, std::size_t& binary_bytes);
+    std::shared_ptr<const gpu::Program> vertex_stage(const std::string& text);
+    std::string key_of(gpu::Stages stages, const std::string& vertex, const std::string& main) const;
     std::string key_of(const ProgramSources& sources) const;
 
     gpu::Context& context_;
     std::filesystem::path glsl_folder_;
     ProgramStore store_;
     std::string full_screen_;  // the vertex shader of a draw that has none
+    std::string over_tiles_;   // and of one over a tile list
+    std::map<std::string, std::shared_ptr<const gpu::Program>> vertex_stages_;  // by text; the host has few
     std::map<std::string, Cached> programs_;
     std::uint64_t uses_ = 0;  // of the cache so far
     bool guards_loops_ = false;

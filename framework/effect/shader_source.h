@@ -35,6 +35,9 @@ inline constexpr int kCameraBinding = 3;
 inline constexpr int kPassBinding = 4;  ///< only in passes with `repeat`
 inline constexpr int kNativeBinding = 5;
 inline constexpr int kLightsBinding = 6;  ///< only of effects with "uses": ["lights"]
+/// Of glsl/host/tiles.vert: the block, and the storage block with the rectangles of tiles.
+inline constexpr int kTilesBinding = 7;
+inline constexpr int kTileRunsBinding = 0;
 
 /// A pass as one part of a fused program (framework/effect/fused_shader.h).
 struct FusedPart {
@@ -96,8 +99,9 @@ struct PassBindings {
     bool has_param_block = false;
     bool has_pass_block = false;
     bool has_native_block = false;
-    /// The block of sizes ends with a vec4 `tile_grid_size`: how many texels of the tile list's grid the
-    /// pass's target has, or what the list is of.
+    /// Of a pass that lists tiles, or draws over them with a vertex shader of its own: the block of sizes
+    /// ends with a vec4 `tile_grid_size`, how many texels of the tile list's grid the pass's target has, or
+    /// what the list is of. Other draws over tiles have it in the block of glsl/host/tiles.vert.
     bool has_tile_grid = false;
 };
 

@@ -34,7 +34,7 @@ public:
         check_bindings();
         const std::string_view name = debug_text(program.label());
         gl_.PushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, static_cast<GLsizei>(name.size()), name.data());
-        gl_.UseProgram(program.handle());
+        use_program();
         bind_textures();
         for (const ImageBinding& image : bindings_.images) {
             const TextureDesc& desc = image.texture->desc();
@@ -58,7 +58,8 @@ public:
         for (const BufferBinding& b : bindings_.storage) {
             gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, unit(b.binding), 0);
         }
-        gl_.UseProgram(0);
+        if (program_.vertex_stage()) gl_.BindProgramPipeline(0);
+        else gl_.UseProgram(0);
         gl_.PopDebugGroup();
     }
 
@@ -99,6 +100,14 @@ private:
             fail(program_, fmt::format("the buffer at binding {} has {} bytes; the limit is {} ({})",
                                        binding.binding, bytes, limit, limit_name));
         }
+    }
+
+    void use_program() {
+        const Program* const vertex = program_.vertex_stage();
+        if (!vertex) return gl_.UseProgram(program_.handle());
+        gl_.UseProgramStages(impl_.pipeline, GL_VERTEX_SHADER_BIT, vertex->handle());
+        gl_.UseProgramStages(impl_.pipeline, GL_FRAGMENT_SHADER_BIT, program_.handle());
+        gl_.BindProgramPipeline(impl_.pipeline);
     }
 
     void bind_textures() {
@@ -230,6 +239,7 @@ void draw_with(Context& context, const Program& program, std::span<const Target>
     const GladGLContext& gl = impl.gl;
     // GL draws nothing with it, and reports nothing.
     if (program.is_compute()) fail(program, "a compute program cannot draw");
+    if (program.stages() == Stages::vertex) fail(program, "a vertex shader cannot draw by itself");
     check_targets(impl.limits, program, targets);
     check_feedback(program, targets, bindings);
     const GLuint target = framebuffer(context, program, targets);

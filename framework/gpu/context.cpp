@@ -268,6 +268,7 @@ Context::Impl::~Impl() {
     gl.DebugMessageCallback(nullptr, nullptr);
     cache.reset();
     gl.DeleteVertexArrays(1, &vertex_array);
+    gl.DeleteProgramPipelines(1, &pipeline);
     release();
 }
 
@@ -330,6 +331,7 @@ void Context::Impl::set_state() {
     // docs/design.md, Conventions: NDC y up, z in [0, 1], texel row 0 at the top.
     gl.ClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
     gl.CreateVertexArrays(1, &vertex_array);
+    gl.CreateProgramPipelines(1, &pipeline);
     gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &limits.texture_size);
     gl.GetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &limits.array_layers);
     gl.GetIntegerv(GL_MAX_COLOR_ATTACHMENTS, &limits.colour_attachments);

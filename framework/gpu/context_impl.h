@@ -50,6 +50,7 @@ struct Context::Impl {
     Limits limits;
     std::vector<std::string> errors;  ///< what KHR_debug reported since the last check()
     GLuint vertex_array = 0;          ///< empty; core profile draws nothing without one
+    GLuint pipeline = 0;              ///< of programs with one stage each
     std::unique_ptr<ObjectCache> cache;
     ObjectCounts handles;  ///< of Handle alone
     bool abandoned = false;

@@ -1,6 +1,7 @@
 #include "framework/gpu/program.h"
 
 #include <algorithm>
+#include <cassert>
 #include <initializer_list>
 #include <string_view>
 #include <utility>
@@ -90,9 +91,20 @@ private:
     GLuint handle_;
 };
 
-GLuint link(const GladGLContext& gl, std::initializer_list<const Stage*> stages, const std::string& label) {
+bool is_separable(Stages stages) {
+    return stages == Stages::vertex || stages == Stages::fragment;
+}
+
+GLuint new_program(const GladGLContext& gl, Stages stages) {
     const GLuint program = gl.CreateProgram();
     gl.ProgramParameteri(program, GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
+    if (is_separable(stages)) gl.ProgramParameteri(program, GL_PROGRAM_SEPARABLE, GL_TRUE);
+    return program;
+}
+
+GLuint link(const GladGLContext& gl, Stages kind, std::initializer_list<const Stage*> stages,
+            const std::string& label) {
+    const GLuint program = new_program(gl, kind);
     for (const Stage* stage : stages) gl.AttachShader(program, stage->handle());
     gl.LinkProgram(program);
     for (const Stage* stage : stages) gl.DetachShader(program, stage->handle());
@@ -127,8 +139,30 @@ Program Program::draw(Context& context, const std::string& vertex, const std::st
     const GladGLContext& gl = context.gl();
     const Stage vertex_stage(gl, GL_VERTEX_SHADER, "vertex", vertex, label);
     const Stage fragment_stage(gl, GL_FRAGMENT_SHADER, "fragment", fragment, label);
-    const GLuint handle = link(gl, {&vertex_stage, &fragment_stage}, label);
-    Program program(context, handle, false, std::move(label));
+    const GLuint handle = link(gl, Stages::draw, {&vertex_stage, &fragment_stage}, label);
+    Program program(context, handle, Stages::draw, std::move(label));
+    context.check(fmt::format("program '{}'", program.label()));
+    return program;
+}
+
+Program Program::vertex(Context& context, const std::string& source, std::string label) {
+    context.make_current();
+    const GladGLContext& gl = context.gl();
+    const Stage stage(gl, GL_VERTEX_SHADER, "vertex", source, label);
+    const GLuint handle = link(gl, Stages::vertex, {&stage}, label);
+    Program program(context, handle, Stages::vertex, std::move(label));
+    context.check(fmt::format("program '{}'", program.label()));
+    return program;
+}
+
+Program Program::fragment(Context& context, std::shared_ptr<const Program> vertex, const std::string& source,
+                          std::string label) {
+    assert(vertex && vertex->stages() == Stages::vertex);
+    context.make_current();
+    const GladGLContext& gl = context.gl();
+    const Stage stage(gl, GL_FRAGMENT_SHADER, "fragment", source, label);
+    const GLuint handle = link(gl, Stages::fragment, {&stage}, label);
+    Program program(context, handle, Stages::fragment, std::move(label), std::move(vertex));
     context.check(fmt::format("program '{}'", program.label()));
     return program;
 }
@@ -137,23 +171,23 @@ Program Program::compute(Context& context, const std::string& source, std::strin
     context.make_current();
     const GladGLContext& gl = context.gl();
     const Stage stage(gl, GL_COMPUTE_SHADER, "compute", source, label);
-    const GLuint handle = link(gl, {&stage}, label);
-    Program program(context, handle, true, std::move(label));
+    const GLuint handle = link(gl, Stages::compute, {&stage}, label);
+    Program program(context, handle, Stages::compute, std::move(label));
     context.check(fmt::format("program '{}'", program.label()));
     return program;
 }
 
-std::optional<Program> Program::from_binary(Context& context, const ProgramBinary& binary, bool is_compute,
-                                            std::string label) {
+std::optional<Program> Program::from_binary(Context& context, const ProgramBinary& binary, Stages stages,
+                                            std::string label, std::shared_ptr<const Program> vertex) {
+    assert((stages == Stages::fragment) == (vertex != nullptr));
     context.make_current();
     const GladGLContext& gl = context.gl();
     if (!knows_format(gl, binary.format)) return std::nullopt;
-    const GLuint handle = gl.CreateProgram();
-    gl.ProgramParameteri(handle, GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
+    const GLuint handle = new_program(gl, stages);
     gl.ProgramBinary(handle, binary.format, binary.bytes.data(), static_cast<GLsizei>(binary.bytes.size()));
     GLint linked = 0;
     gl.GetProgramiv(handle, GL_LINK_STATUS, &linked);
-    Program program(context, handle, is_compute, std::move(label));
+    Program program(context, handle, stages, std::move(label), std::move(vertex));
     context.check(fmt::format("program '{}' from its binary", program.label()));
     if (!linked) return std::nullopt;
     set_label(gl, GL_PROGRAM, handle, program.label());
@@ -183,7 +217,8 @@ void Handle<ObjectKind::program>::remove(Context& context, unsigned int name) no
     if (context.impl().try_make_current()) context.gl().DeleteProgram(name);
 }
 
-Program::Program(Context& context, unsigned int handle, bool is_compute, std::string label)
-    : handle_(context, handle), is_compute_(is_compute), label_(std::move(label)) {}
+Program::Program(Context& context, unsigned int handle, Stages stages, std::string label,
+                 std::shared_ptr<const Program> vertex)
+    : handle_(context, handle), stages_(stages), vertex_(std::move(vertex)), label_(std::move(label)) {}
 
 }  // namespace aftershade::gpu

@@ -1,7 +1,8 @@
-// Compiled GLSL: a vertex and a fragment shader, or one compute shader.
+// Compiled GLSL: a vertex and a fragment shader, one of them by itself, or a compute shader.
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,6 +42,9 @@ struct ProgramBinary {
     std::vector<std::byte> bytes;
 };
 
+/// The shaders of a program.
+enum class Stages { draw, compute, vertex, fragment };
+
 /// Bindings are fixed in the text by layout(binding = N); there is no lookup by name at draw time.
 /// [the context's thread]
 class Program {
@@ -49,13 +53,24 @@ public:
     static Program draw(Context& context, const std::string& vertex, const std::string& fragment,
                         std::string label);
     static Program compute(Context& context, const std::string& source, std::string label);
+    /// A vertex shader that many fragment shaders share: a driver then makes its machine code once. It
+    /// redeclares what it writes: `out gl_PerVertex { vec4 gl_Position; };`. It cannot draw by itself.
+    static Program vertex(Context& context, const std::string& source, std::string label);
+    /// Draws behind `vertex`, a program of that stage alone, and takes nothing from it but the position.
+    static Program fragment(Context& context, std::shared_ptr<const Program> vertex,
+                            const std::string& source, std::string label);
     /// nullopt where the driver refuses it, as it may at any time (an update, other hardware): compile
     /// instead. The bytes must be as binary() gave them; drivers do not defend themselves against others.
-    static std::optional<Program> from_binary(Context& context, const ProgramBinary& binary, bool is_compute,
-                                              std::string label);
+    /// `vertex`: of a fragment shader.
+    static std::optional<Program> from_binary(Context& context, const ProgramBinary& binary, Stages stages,
+                                              std::string label,
+                                              std::shared_ptr<const Program> vertex = nullptr);
 
     const std::string& label() const { return label_; }
-    bool is_compute() const { return is_compute_; }
+    Stages stages() const { return stages_; }
+    bool is_compute() const { return stages_ == Stages::compute; }
+    /// Of a fragment shader by itself; else null.
+    const Program* vertex_stage() const { return vertex_.get(); }
     /// llvmpipe makes two forms of a fragment shader's machine code, one for blocks of pixels that a draw
     /// covers whole, which need not be read. With the other alone, half is left to compile, and writing a
     /// pixel takes some instructions more: a frame of `dof` 0.3 % more, one of `motion_blur` 0.1 %.
@@ -66,9 +81,11 @@ public:
     unsigned int handle() const { return handle_.name(); }  ///< for framework/gpu
 
 private:
-    Program(Context& context, unsigned int handle, bool is_compute, std::string label);
+    Program(Context& context, unsigned int handle, Stages stages, std::string label,
+            std::shared_ptr<const Program> vertex = nullptr);
     Handle<ObjectKind::program> handle_;
-    bool is_compute_ = false;
+    Stages stages_ = Stages::draw;
+    std::shared_ptr<const Program> vertex_;
     bool has_one_form_ = false;
     std::string label_;
 };

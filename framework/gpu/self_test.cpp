@@ -1,6 +1,7 @@
 #include "framework/gpu/self_test.h"
 
 #include <array>
+#include <memory>
 #include <span>
 #include <string>
 
@@ -17,6 +18,7 @@ constexpr std::array<float, 4> kColour = {-1.5F, 3.25F, 1e6F, 0.1F};
 /// glsl/fullscreen.vert to the letter: most passes then find its machine code in the driver's cache.
 constexpr const char* kVertex = R"(#version 450 core
 // One triangle that covers the target; gl_FragCoord (0.5, 0.5) is texel (0, 0), the top left of the image.
+out gl_PerVertex { vec4 gl_Position; };
 void main() {
     vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
     gl_Position = vec4(corner, 0.0, 1.0);
@@ -45,7 +47,8 @@ float expected(int x, int y, int channel) {
 }  // namespace
 
 void self_test(Context& context) {
-    Program program = Program::draw(context, kVertex, fragment_text(), "self-test");
+    const auto vertex = std::make_shared<const Program>(Program::vertex(context, kVertex, "self-test"));
+    Program program = Program::fragment(context, vertex, fragment_text(), "self-test");
     program.use_one_form();
     const Texture target(context, {.width = kWidth, .height = kHeight, .format = TextureFormat::rgba32f},
                          "self-test");

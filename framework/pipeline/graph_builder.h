@@ -73,6 +73,8 @@ private:
                   graph::TextureHandle to);
     void keep_histories(StepBuild& build);
     std::array<float, 2> listed_size(const StepBuild& build, const TileListSpec& list) const;
+    std::vector<std::byte> tiles_block(const StepBuild& build, const PassSpec& spec,
+                                       const PassBindings& bindings) const;
     std::array<float, 4> tile_grid_size(const StepBuild& build, const PassSpec& spec,
                                         const PassBindings& bindings) const;
     graph::TextureHandle write_target(const StepBuild& build, const PassBindings& bindings,

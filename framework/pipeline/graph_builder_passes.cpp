@@ -147,6 +147,14 @@ void GraphBuilder::add_copy_pass(StepBuild& build, const PassSpec& spec) {
     build.textures[name] = graph_.add_pass(std::move(pass)).targets.front();
 }
 
+namespace {
+
+bool draws_with_tiles_vert(const PassSpec& spec) {
+    return !spec.over.empty() && spec.vertex.empty();
+}
+
+}  // namespace
+
 void GraphBuilder::add_turn(StepBuild& build, const PassSpec& spec, int turn, int turns) {
     const EffectManifest& manifest = build.manifest();
     const ShaderContext shader{&manifest,
@@ -160,6 +168,8 @@ void GraphBuilder::add_turn(StepBuild& build, const PassSpec& spec, int turn, in
     pass.name = build.prefix() + spec.name + (turns > 1 ? "[" + std::to_string(turn) + "]" : "");
     pass.blend = spec.blend;
     bind_reads(build, spec, bindings, turn, tile_grid_size(build, spec, bindings), graph_, pass);
+    if (draws_with_tiles_vert(spec))
+        pass.uniforms.push_back({kTilesBinding, tiles_block(build, spec, bindings)});
     bind_memory(build, bindings, pass);
     if (bindings.has_param_block) bind_block(build, BlockKind::param, pass);
     bind_block(build, BlockKind::frame, pass);
@@ -193,7 +203,7 @@ std::array<float, 2> GraphBuilder::listed_size(const StepBuild& build, const Til
 /// How many texels of the tile list's grid there are: on a target of another scale as many as it covers.
 std::array<float, 4> GraphBuilder::tile_grid_size(const StepBuild& build, const PassSpec& spec,
                                                   const PassBindings& bindings) const {
-    if (!bindings.has_tile_grid) return {};
+    if (spec.over.empty() && spec.lists.empty()) return {};
     const TileListSpec& list = *build.manifest().find_tile_list(spec.lists.empty() ? spec.over : spec.lists);
     const std::string& on = spec.lists.empty() ? bindings.writes.front().name : list.on;
     const int level = spec.lists.empty() ? bindings.writes.front().level : 0;
@@ -206,6 +216,16 @@ std::array<float, 4> GraphBuilder::tile_grid_size(const StepBuild& build, const 
         height = float(std::max(1, desc.height >> level) * scale);
     }
     return {width, height, 1 / width, 1 / height};
+}
+
+/// Of glsl/host/tiles.vert.
+std::vector<std::byte> GraphBuilder::tiles_block(const StepBuild& build, const PassSpec& spec,
+                                                 const PassBindings& bindings) const {
+    const std::array<float, 4> grid = tile_grid_size(build, spec, bindings);
+    Std140Writer block;
+    block.add(std::span<const float>(grid));
+    block.add(std::int32_t(count_value(build.manifest().find_tile_list(spec.over)->tile, build.params)));
+    return block.finish();
 }
 
 /// A draw that reads what it writes gets memory of its own to write to: the reads keep what was before.

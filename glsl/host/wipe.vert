@@ -1,6 +1,7 @@
 #version 450 core
 // Where a pass over tiles has drawn: as tiles.vert, by the host's numbers instead of the pass's own. With WIPE_REST only where it
 // does not draw again.
+out gl_PerVertex { vec4 gl_Position; };
 layout(std140, binding = 0) uniform WipeBlock {
     vec4 tile_grid_size;
     uvec4 value;

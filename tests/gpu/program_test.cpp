@@ -1,5 +1,7 @@
 #include "framework/gpu/program.h"
 
+#include <memory>
+#include <span>
 #include <type_traits>
 
 #include "tests/gpu/gpu_test.h"
@@ -49,6 +51,7 @@ TEST_P(ProgramOn, NamesTheStageThatFailed) {
     EXPECT_EQ(stage_of([&] { Program::compute(context(), "#version 450 core\nvoid main() { x; }", "p"); }),
               "compute");
     EXPECT_EQ(stage_of([&] { Program::draw(context(), kFullScreen, good, "p"); }), "none");
+    EXPECT_EQ(stage_of([&] { Program::vertex(context(), "nonsense", "p"); }), "vertex");
     EXPECT_NO_THROW(context().check("the next pass"));
 }
 
@@ -59,6 +62,58 @@ TEST_P(ProgramOn, KnowsItsKindAndLabel) {
     const Program computes = Program::compute(
         context(), "#version 450 core\nlayout(local_size_x = 1) in;\nvoid main() {}\n", "tiles");
     EXPECT_TRUE(computes.is_compute());
+}
+
+constexpr const char* kSharedVertex = R"(#version 450 core
+out gl_PerVertex { vec4 gl_Position; };
+layout(std140, binding = 3) uniform Block { float top; };
+void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : top, 0.0, 1.0); }
+)";
+
+std::string constant(const std::string& value) {
+    return "#version 450 core\nlayout(location = 0) out vec4 c;\nvoid main() { c = vec4(" + value + "); }\n";
+}
+
+TEST_P(ProgramOn, DrawsFragmentsBehindOneVertexShader) {
+    const auto vertex = std::make_shared<const Program>(Program::vertex(context(), kSharedVertex, "shared"));
+    const Program two = Program::fragment(context(), vertex, constant("2.0"), "two");
+    const Program three = Program::fragment(context(), vertex, constant("3.0"), "three");
+    const Program whole = Program::draw(context(), kFullScreen, constant("5.0"), "whole");
+    EXPECT_EQ(two.vertex_stage(), vertex.get());
+    EXPECT_EQ(whole.vertex_stage(), nullptr);
+    Buffer block(context(), 16, "block");
+    const float top = -1;
+    block.write(std::as_bytes(std::span(&top, 1)));
+    const BufferBinding uniforms[] = {{&block, 3}};
+    const Bindings bindings{.uniforms = uniforms};
+    for (int i = 0; i < 2; ++i) {
+        EXPECT_EQ(drawn(two, 2, 1, bindings), std::vector<float>(8, 2.0F));
+        EXPECT_EQ(drawn(whole, 2, 1), std::vector<float>(8, 5.0F)) << "a program of both stages between them";
+        EXPECT_EQ(drawn(three, 2, 1, bindings), std::vector<float>(8, 3.0F));
+    }
+    try {
+        drawn(*vertex, 2, 1, bindings);
+        FAIL() << "drew without a fragment shader";
+    } catch (const Error& error) {
+        EXPECT_STREQ(error.what(), "shared: a vertex shader cannot draw by itself");
+    }
+}
+
+TEST_P(ProgramOn, TakesEachStageFromItsBinary) {
+    const Program vertex_made = Program::vertex(context(), kSharedVertex, "vertex");
+    const auto vertex_binary = vertex_made.binary();
+    if (!vertex_binary) GTEST_SKIP() << "the driver writes no programs";
+    auto loaded = Program::from_binary(context(), *vertex_binary, Stages::vertex, "vertex");
+    ASSERT_TRUE(loaded);
+    const auto vertex = std::make_shared<const Program>(std::move(*loaded));
+    const Program made = Program::fragment(context(), vertex, constant("7.0"), "seven");
+    const auto seven = Program::from_binary(context(), *made.binary(), Stages::fragment, "seven", vertex);
+    ASSERT_TRUE(seven);
+    Buffer block(context(), 16, "block");
+    const float top = -1;
+    block.write(std::as_bytes(std::span(&top, 1)));
+    const BufferBinding uniforms[] = {{&block, 3}};
+    EXPECT_EQ(drawn(*seven, 1, 1, {.uniforms = uniforms}), std::vector<float>(4, 7.0F));
 }
 
 void expect_message(const ShaderMessage& message, int line, int column, bool error, const std::string& text) {

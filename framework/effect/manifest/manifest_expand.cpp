@@ -97,7 +97,8 @@ private:
     static void confine(PassSpec& pass, const TileListSpec& list) {
         pass.instances.emplace();
         pass.instances->indirect = list.args();
-        pass.buffers.push_back(access(list.runs(), AccessSpec::Kind::read, pass.place));
+        // At kTileRunsBinding.
+        pass.buffers.insert(pass.buffers.begin(), access(list.runs(), AccessSpec::Kind::read, pass.place));
         append(pass.when, list.when);
     }
 

@@ -29,8 +29,7 @@ public:
         const ShaderUses& main = uses_of(ShaderFile::main);
         if (pass.infers_reads) {
             add_reads(main);
-            const fs::path vertex = shader_path(pass, ShaderFile::vertex, glsl_folder_);
-            if (pass.has_vertex_shader() && fs::is_regular_file(vertex))
+            if (!pass.vertex.empty() && fs::is_regular_file(pass.folder / pass.vertex))
                 add_reads(uses_of(ShaderFile::vertex));
             put_in_order(pass.reads, manifest_.inputs);
         }
