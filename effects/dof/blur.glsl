@@ -1,4 +1,4 @@
-// Gathers at one point what the lens spreads over it, from `light` or a coarse level of it. Lengths in px of that level; CoC differences
+// Gathers at one point what the lens spreads over it, from a level of `light`. Lengths in px of that level; CoC differences
 // in px at full size. SILHOUETTES: in tiles where a surface lies clearly in front of another; elsewhere nothing is hidden, and software
 // GL, which runs both sides of a branch, is spared what follows from it.
 #include "loads.glsl"
@@ -23,8 +23,8 @@ const int kNarrow = 0, kWide = 1, kAll = 2;
 
 // The part of a tap that counts, as a line over its CoC radius in px, cut to 0 and 1: slope and value at 0. In a coarse level, what is in
 // focus would leak into the texel beside it.
-vec2 part_of(int which, bool is_coarse) {
-    vec2 wide = vec2(1.0, 1.0 - kFullSizePx), narrow = vec2(-1.0, kFullSizePx), all = is_coarse ? vec2(2.0, -1.0) : vec2(0.0, 1.0);
+vec2 part_of(int which, int level) {
+    vec2 wide = vec2(1.0, 1.0 - kFullSizePx), narrow = vec2(-1.0, kFullSizePx), all = level > 0 ? vec2(2.0, -1.0) : vec2(0.0, 1.0);
     return which == kAll ? all : which == kWide ? wide : narrow;
 }
 
@@ -74,7 +74,7 @@ struct Aim {
 
 const float kBehindNothing = -10000.0;  // px
 
-Aim aim_at(Point point, int level, bool is_coarse) {
+Aim aim_at(Point point, int level) {
     float texels_per_px = 1.0 / float(1 << level), apothem_per_px = aperture.inradius * texels_per_px;
     bool asks_front = point.reach_px >= 0.0;
     Aim aim;
@@ -82,7 +82,7 @@ Aim aim_at(Point point, int level, bool is_coarse) {
     aim.reach = max(max(point.reach_px, point.radius_px), 0.0) * texels_per_px;
     aim.apothem_per_px = apothem_per_px;
     aim.shrink = shrink_px(point.reach_px) * apothem_per_px;
-    aim.part = part_of(point.which, is_coarse);
+    aim.part = part_of(point.which, level);
     aim.front_coc = asks_front ? point.own.coc : kBehindNothing;
     aim.visible_coc = asks_front ? point.visible_coc : kBehindNothing;
     aim.own_apothem = point.radius_px * apothem_per_px;
@@ -123,27 +123,27 @@ struct Source {
     PlateGrid plate;
 };
 
-// A row of texels: y in `light` or `coarse`, and in the clean plate of that level.
+// A row of texels: y in `light`, and in the clean plate of that level.
 struct TapRow {
     int y, plate_y;
     GaugeRow gauge;
 };
 
-TapRow tap_row(int y, vec2 center, Source source, bool is_coarse) {
-    int inside = clamp(y, 0, source.light.last.y), plate_y = is_coarse ? plate_row(inside, source.plate) : inside;
-    return TapRow(is_coarse ? inside + source.light.origin.y : inside, plate_y, gauge_row(center.y - float(y) - 0.5));
+TapRow tap_row(int y, vec2 center, Source source) {
+    int inside = clamp(y, 0, source.light.last.y);
+    return TapRow(source.light.origin.y + inside, plate_row(inside, source.plate), gauge_row(center.y - float(y) - 0.5));
 }
 
 struct Tap {
     Light light, patched;
 };
 
-Tap tap_at(int x, TapRow row, Source source, bool is_coarse) {
+Tap tap_at(int x, TapRow row, Source source) {
     int inside = clamp(x, 0, source.light.last.x);
     Tap tap;
-    tap.light = unpack_light(is_coarse ? texelFetch(coarse, ivec2(inside + source.light.origin.x, row.y), 0) : texelFetch(light, ivec2(inside, row.y), 0));
+    tap.light = unpack_light(texelFetch(light, ivec2(source.light.origin.x + inside, row.y), 0));
 #ifdef SILHOUETTES
-    tap.patched = is_coarse ? plate_coarse(inside, row.plate_y, source.plate) : plate_fine(inside, row.plate_y, tap.light);
+    tap.patched = plate_of(inside, row.plate_y, source.plate, tap.light);
 #endif
     return tap;
 }
@@ -159,17 +159,17 @@ void add_tap(inout Sums sums, Aim aim, float own_coc, Tap tap, TapRow row, float
 
 // Two rows a turn, and their texels before what is made of them: a processor then has the next loads under way (0.83 of the time). The
 // loops test at their end: llvmpipe runs the body of the others once more, with every pixel masked. One texel is taken at least.
-void add_taps(inout Sums sums, Point point, int level, bool is_coarse) {
-    Aim aim = aim_at(point, level, is_coarse);
+void add_taps(inout Sums sums, Point point, int level) {
+    Aim aim = aim_at(point, level);
     Source source = Source(grid_of(level), plate_grid_of(level));
     int y = int(floor(aim.center.y - aim.reach - 0.5)), last = int(floor(aim.center.y + aim.reach + 0.5));
     do {
-        TapRow a = tap_row(y, aim.center, source, is_coarse), b = tap_row(y + 1, aim.center, source, is_coarse);
+        TapRow a = tap_row(y, aim.center, source), b = tap_row(y + 1, aim.center, source);
         vec2 columns_a = columns(aim.reach, -a.gauge.dy), columns_b = columns(aim.reach, -b.gauge.dy);
         float middle = aim.center.x - 0.5;
         int x = int(ceil(middle + min(columns_a.x, columns_b.x))), end = int(floor(middle + max(columns_a.y, columns_b.y)));
         do {
-            Tap tap_a = tap_at(x, a, source, is_coarse), tap_b = tap_at(x, b, source, is_coarse);
+            Tap tap_a = tap_at(x, a, source), tap_b = tap_at(x, b, source);
             float dx = aim.center.x - float(x) - 0.5;
             add_tap(sums, aim, point.own.coc, tap_a, a, dx);
             add_tap(sums, aim, point.own.coc, tap_b, b, dx);
@@ -208,15 +208,13 @@ Gathered gather(Point point, vec4 around_coc) {
     int front_level = level_for(max(point.reach_px, 1.0), around_coc), back_level = level_for(max(point.radius_px, 1.0), around_coc);
     if (!asks_back) back_level = front_level;
     if (!asks_front) front_level = back_level;
-    // One loop serves both where their levels are the same. Of two loops one takes its taps from level 0 alone.
+    // One loop serves both where their levels are the same.
     int turn = 0, turns = front_level == back_level ? 1 : 2;
     if (asks_front || asks_back) do {
         Point now = point;
-        int level = turn == 0 ? back_level : front_level;
         if (turns == 2 && turn == 0) now.reach_px = kNotAsked;
         if (turn == 1) now.radius_px = kNotAsked;
-        if (level == 0) add_taps(sums, now, 0, false);
-        else add_taps(sums, now, level, true);
+        add_taps(sums, now, turn == 0 ? back_level : front_level);
     } while (++turn < turns);
     Layer over = kNothing;
     if (asks_front) over = front_of(sums, point);

@@ -18,7 +18,12 @@ const float kFinePx = 7.0;  // of a walk, by the pixel
 const float kThinPx = 4.0;  // CoC radius of what may be thinner than its blur, and then shows what is behind it
 const float kTrustPx = 8.0;  // times the square of the best chord's length, px: how far a neighbour's view may lie to be like it
 
-bool is_outside(vec2 q) { return any(lessThan(q, vec2(0.0))) || any(greaterThanEqual(q, vec2(frame.size))); }
+// How far from a place within the picture a direction leads out of it, px.
+float outside_from_px(vec2 center, vec2 direction) {
+    vec2 edge = mix(vec2(0.0), vec2(frame.size), greaterThan(direction, vec2(0.0)));
+    vec2 at_px = abs(edge - center) / max(abs(direction), vec2(1e-6));
+    return min(at_px.x, at_px.y);
+}
 
 // A walk takes the pixels nearby, and further away texels of coarser levels.
 int level_of(float at_px) { return at_px <= kFinePx || !has_coarse_levels() ? 0 : at_px < 16.0 ? 1 : at_px < 32.0 ? 2 : 3; }
@@ -48,11 +53,12 @@ struct Walks { Walk a, b; };
 Walks walk_chord(vec2 center, float own_coc, vec2 direction, float reach_px) {
     Walk walk = Walk(own_coc, 0.0, -1.0, false);
     Walks walks = Walks(walk, walk);
+    float outside_a_px = outside_from_px(center, direction), outside_b_px = outside_from_px(center, -direction);
     float fine_px = has_coarse_levels() ? min(reach_px, kFinePx) : reach_px, at_px = 1.0;
     do {
         vec2 a = center + at_px * direction, b = center - at_px * direction;
-        step_on(walks.a, coc_near(ivec2(a)), is_outside(a), own_coc, at_px, 1.0);
-        step_on(walks.b, coc_near(ivec2(b)), is_outside(b), own_coc, at_px, 1.0);
+        step_on(walks.a, coc_near(ivec2(a)), at_px >= outside_a_px, own_coc, at_px, 1.0);
+        step_on(walks.b, coc_near(ivec2(b)), at_px >= outside_b_px, own_coc, at_px, 1.0);
         at_px += 1.0;
     } while (at_px <= fine_px && !(walks.a.is_over && walks.b.is_over));
     if (at_px <= reach_px && !(walks.a.is_over && walks.b.is_over)) do {
@@ -60,8 +66,8 @@ Walks walk_chord(vec2 center, float own_coc, vec2 direction, float reach_px) {
         int level = level_of(at_px);
         float stride_px = float(1 << level);
         Grid grid = grid_of(level);
-        step_on(walks.a, coarse_coc_at(ivec2(a) >> level, grid), is_outside(a), own_coc, at_px, stride_px);
-        step_on(walks.b, coarse_coc_at(ivec2(b) >> level, grid), is_outside(b), own_coc, at_px, stride_px);
+        step_on(walks.a, coarse_coc_at(ivec2(a) >> level, grid), at_px >= outside_a_px, own_coc, at_px, stride_px);
+        step_on(walks.b, coarse_coc_at(ivec2(b) >> level, grid), at_px >= outside_b_px, own_coc, at_px, stride_px);
         at_px += stride_px;
     } while (at_px <= reach_px && !(walks.a.is_over && walks.b.is_over));
     return walks;
@@ -80,7 +86,7 @@ End end_at(vec2 center, vec2 direction, float distance_px) {
     int level = level_of(distance_px);
     vec2 q = center + max(distance_px, 0.0) * direction;
     ivec2 texel = ivec2(q) >> level;
-    Light found = level == 0 ? tap_light(texel) : tap_coarse(texel, grid_of(level));
+    Light found = tap_level(texel, grid_of(level));
 #ifdef SEES_NEIGHBOURS
     End end = End(found, vec4(0.0), 0.0, distance_px);
     ivec2 last = frame.size - 1;
@@ -146,9 +152,11 @@ struct Patch {
 Patch patch_behind(vec2 center, Light own, float reach_px, bool is_thin) {
     Chord chords[kChords];
     int best = 0;
-    for (int i = 0; i < kChords; ++i) {
-        float angle = 3.14159265 * float(i) / float(kChords);
-        chords[i] = chord_through(center, own, vec2(cos(angle), sin(angle)), reach_px, is_thin);
+    const float kTurn = 3.14159265 / float(kChords);
+    const mat2 kTurned = mat2(cos(kTurn), sin(kTurn), -sin(kTurn), cos(kTurn));
+    vec2 direction = vec2(1.0, 0.0);
+    for (int i = 0; i < kChords; ++i, direction = kTurned * direction) {
+        chords[i] = chord_through(center, own, direction, reach_px, is_thin);
         if (chords[i].weight > chords[best].weight) best = i;
     }
     if (chords[best].weight == 0.0) return Patch(chords[best], 0.0, false);

@@ -14,11 +14,12 @@ int level_at(ivec2 p) {
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
+    if (p.y < frame.size.y) discard;  // of a tile that begins at level 0
     int level = level_at(p);
     ivec2 texel = p - grid_of(level).origin;
-    out_coarse = uvec4(0u);
-    if (level == 1) out_coarse = texelFetch(light_half, texel, 0);
-    if (level == 2) out_coarse = texelFetch(light_half, texel, 1);
-    if (level == 3) out_coarse = texelFetch(light_half, texel, 2);
-    out_coarse_coc = unpack_light(out_coarse).coc;
+    out_light = uvec4(0u);
+    if (level == 1) out_light = texelFetch(light_half, texel, 0);
+    if (level == 2) out_light = texelFetch(light_half, texel, 1);
+    if (level == 3) out_light = texelFetch(light_half, texel, 2);
+    out_coarse_coc = unpack_light(out_light).coc;
 }

@@ -1,9 +1,9 @@
 #include "coarse.glsl"
 #include "tile.glsl"
 
-const int kCoarseTile = 8;  // texels of `coarse`, as effect.json declares it
+const int kCoarseTile = 16;  // texels of `light`, as effect.json declares it
 
-// Tiles of `coarse` that hold texels of a lit tile, of which a fetch takes four. The loops test at their end: llvmpipe runs the body of the
+// Tiles that hold texels of a coarse level of a lit tile, of which a fetch takes four. The loops test at their end: llvmpipe runs the body of the
 // others once more, with every tile masked. A tile too many costs its texels alone.
 bool coarse_tiles(ivec2 tile) {
     ivec2 corner = kCoarseTile * tile, end = corner + kCoarseTile - 1;

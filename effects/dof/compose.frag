@@ -36,6 +36,10 @@ void main() {
     Layer over = found.over;
     if (is_reached_far && !is_all) over = both(over, coarse.over);
     out_color = over.color + surface.color * (1.0 - over.opacity);
+#ifdef SILHOUETTES
     bool is_hidden = visible_coc < own.coc - kClear;
+#else
+    const bool is_hidden = false;
+#endif
     out_veil = is_hidden ? 1.0 - over.hides : (1.0 - over.opacity) * vec2(1.0, 1.0 - surface.share);
 }

@@ -9,10 +9,10 @@
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
-    Light own = unpack_light(texelFetch(plate_half, p, 0));
+    Light own = half_plate_at(p);
     vec2 center = 2.0 * vec2(p) + 1.0;
     vec4 around_coc = texelFetch(around, min(2 * p, frame.size - 1) / kTile, 0);
-    float visible_coc = tap_coarse(p, grid_of(1)).coc, reach_px = front_reach_px(around_coc, own.coc, visible_coc);
+    float visible_coc = tap_level(p, grid_of(1)).coc, reach_px = front_reach_px(around_coc, own.coc, visible_coc);
     float radius_px = abs(own.coc);
     bool is_blurred = radius_px > kFullSizePx - 1.0, is_reached = reach_px > kFullSizePx;
     if (is_reached || is_blurred) prepare_outline_at(center);

@@ -8,7 +8,7 @@ void main() {
     Light own = unpack_light(texelFetch(plate_quarter, p, 0));
     vec2 center = 4.0 * vec2(p) + 2.0;
     vec4 around_coc = texelFetch(around, min(4 * p, frame.size - 1) / kTile, 0);
-    float visible_coc = tap_coarse(p, grid_of(2)).coc, reach_px = front_reach_px(around_coc, own.coc, visible_coc);
+    float visible_coc = tap_level(p, grid_of(2)).coc, reach_px = front_reach_px(around_coc, own.coc, visible_coc);
     // Between two texels lies what is up to kQuarterAlikePx wider than one of them.
     float radius_px = abs(own.coc);
     bool is_blurred = radius_px > kHalfSizePx - kQuarterAlikePx, is_reached = reach_px > kFullSizePx;

@@ -22,5 +22,5 @@ int level_for(float radius_px, vec4 around_coc) {
 #else
     float texels = around_coc.w - around_coc.x <= kAlikePx ? kEvenTexels : kPlainTexels;
 #endif
-    return clamp(int(ceil(log2(radius_px / texels))), 0, 3);
+    return int(radius_px > texels) + int(radius_px > 2.0 * texels) + int(radius_px > 4.0 * texels);
 }

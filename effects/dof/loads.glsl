@@ -4,4 +4,4 @@
 #include "coarse.glsl"
 
 Light tap_light(ivec2 texel) { return unpack_light(texelFetch(light, clamp(texel, ivec2(0), frame.size - 1), 0)); }
-Light tap_coarse(ivec2 texel, Grid grid) { return unpack_light(texelFetch(coarse, clamp(texel, ivec2(0), grid.last) + grid.origin, 0)); }
+Light tap_level(ivec2 texel, Grid grid) { return unpack_light(texelFetch(light, clamp(texel, ivec2(0), grid.last) + grid.origin, 0)); }

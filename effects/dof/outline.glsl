@@ -17,12 +17,15 @@ float open_area;   // of the outline within the rim, for a radius of 1
 void prepare_outline_at(vec2 pixel) {
     aperture = make_aperture(BLADES, CURVATURE, radians(param.rotation));
 #if BLADES >= 3
+    // One sine and one cosine for all normals, which lie at fixed angles to the first: software GL computes them for each pixel.
+    float turn = radians(param.rotation);
+    vec2 first = vec2(cos(turn), sin(turn)) / cos(kPi / float(BLADES));
     for (int i = 0; i < kNormals; ++i) {
-        float angle = radians(param.rotation) + 2.0 * kPi * float(i) / float(BLADES);
-        edge_normals[i] = vec2(cos(angle), sin(angle)) / cos(kPi / float(BLADES));
+        float angle = 2.0 * kPi * float(i) / float(BLADES);
+        edge_normals[i] = first * cos(angle) + vec2(-first.y, first.x) * sin(angle);
 #if BLADES >= 4 && BLADES % 2 == 0
-        float x = edge_normals[i].x < 0.0 ? min(edge_normals[i].x, -1e-4) : max(edge_normals[i].x, 1e-4);
-        edge_slants[i] = vec2(edge_normals[i].y, 1.0) / x;
+        float x = edge_normals[i].x, across = 1.0 / (x < 0.0 ? min(x, -1e-4) : max(x, 1e-4));
+        edge_slants[i] = vec2(edge_normals[i].y * across, across);
 #endif
     }
 #endif
@@ -104,7 +107,12 @@ const float kHalfErrorPx = 0.05;
 
 // Columns, from the middle of an outline of at most this radius, that it may cover in a row this far from its middle.
 vec2 columns(float radius_px, float dy) {
-    float gauge_px = radius_px + 0.5 / aperture.inradius + kHalfErrorPx, across = sqrt(max(gauge_px * gauge_px - dy * dy, 0.0));
+    float gauge_px = radius_px + 0.5 / aperture.inradius + kHalfErrorPx;
+#if BLADES >= 4 && BLADES % 2 == 0
+    float across = CURVATURE == 0.0 ? gauge_px : sqrt(max(gauge_px * gauge_px - dy * dy, 0.0));
+#else
+    float across = sqrt(max(gauge_px * gauge_px - dy * dy, 0.0));
+#endif
     vec2 range = vec2(-across, across);
 #if BLADES >= 4 && BLADES % 2 == 0
     if (CURVATURE == 0.0)

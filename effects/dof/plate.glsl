@@ -1,17 +1,21 @@
 #include "plate_at.glsl"
 
-// What plate_at gives, for a texel that shows `visible`: of level 0, and of a coarse one, which lies within the level.
-Light plate_fine(int x, int y, Light visible) {
-    Light patched = unpack_plate(texelFetch(plate, ivec2(x, y), 0));
-    return is_patch(patched) ? patched : visible;
-}
-
-// Where the texels of a coarse level lie in the plate at half size.
+// Where the texels of a level lie in the clean plate: coarser ones than half size have the one at their corner.
 struct PlateGrid {
     int shift;
+    int first_row;
     ivec2 last;
 };
 
-PlateGrid plate_grid_of(int level) { return PlateGrid(level - 1, (frame.size + 1 >> 1) - 1); }
-int plate_row(int y, PlateGrid grid) { return min(y << grid.shift, grid.last.y); }
-Light plate_coarse(int x, int row, PlateGrid grid) { return unpack_light(texelFetch(plate_half, ivec2(min(x << grid.shift, grid.last.x), row), 0)); }
+PlateGrid plate_grid_of(int level) {
+    bool is_half = level > 0;
+    return PlateGrid(max(level - 1, 0), is_half ? frame.size.y : 0, (is_half ? frame.size + 1 >> 1 : frame.size) - 1);
+}
+
+int plate_row(int y, PlateGrid grid) { return grid.first_row + min(y << grid.shift, grid.last.y); }
+
+// What plate_at gives, for a texel within the level that shows `visible`.
+Light plate_of(int x, int row, PlateGrid grid, Light visible) {
+    Light patched = unpack_plate(texelFetch(plate, ivec2(min(x << grid.shift, grid.last.x), row), 0));
+    return is_patch(patched) ? patched : visible;
+}

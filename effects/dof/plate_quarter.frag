@@ -1,11 +1,12 @@
 #version 450 core
 #include <pass>
-#include <lens/packing.glsl>
+#include "loads.glsl"
+#include "plate_at.glsl"
 #include "majority.glsl"
 
 void main() {
-    ivec2 p = ivec2(gl_FragCoord.xy), last = textureSize(plate_half, 0) - 1;
+    ivec2 p = ivec2(gl_FragCoord.xy), last = (frame.size + 1 >> 1) - 1;
     Light texels[4];
-    for (int i = 0; i < 4; ++i) texels[i] = unpack_light(texelFetch(plate_half, min(2 * p + ivec2(i & 1, i >> 1), last), 0));
+    for (int i = 0; i < 4; ++i) texels[i] = half_plate_at(min(2 * p + ivec2(i & 1, i >> 1), last));
     out_plate_quarter = pack_light(majority(texels, p));
 }
