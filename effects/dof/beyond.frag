@@ -7,8 +7,9 @@ void main() {
     ivec2 block = ivec2(gl_FragCoord.xy), tile = kBlock * block / kTile, last = ivec2(edges_size.xy) - 1;
     vec2 own = texelFetch(tile_coc, tile, 0).rg;
     float reach_px = max(-own.x, own.y) + 1.5;
-    bool may_hide = is_blurred(tile) && own.x < texelFetch(around, tile, 0).w - kClear;
-    int narrow_range = int(ceil(kFullSizePx / float(kBlock))), range = max(may_hide ? int(ceil(reach_px / float(kBlock))) : -1, narrow_range);
+    // What is in focus and not reached asks for neither.
+    bool is_drawn = is_blurred(tile), may_hide = is_drawn && own.x < texelFetch(around, tile, 0).w - kClear;
+    int narrow_range = is_drawn ? int(ceil(kFullSizePx / float(kBlock))) : -1, range = max(may_hide ? int(ceil(reach_px / float(kBlock))) : -1, narrow_range);
     out_beyond = vec2(kNoEdge, kNoNarrow);
     for (int y = max(block.y - range, 0); y <= min(block.y + range, last.y); ++y)
         for (int x = max(block.x - range, 0); x <= min(block.x + range, last.x); ++x) {

@@ -14,7 +14,6 @@ int level_at(ivec2 p) {
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
-    if (p.y < frame.size.y) discard;  // of a tile that begins at level 0
     int level = level_at(p);
     ivec2 texel = p - grid_of(level).origin;
     out_light = uvec4(0u);

@@ -7,7 +7,10 @@ struct Grid {
 // Smaller frames have no room for three levels.
 bool has_coarse_levels() { return min(frame.size.x, frame.size.y) >= 8; }
 
+// The first row of a texture's room.
+int room_row() { return frame.size.y + 63 & ~63; }
+
 Grid grid_of(int level) {
-    ivec2 origin = ivec2((level > 1 ? frame.size.x >> 1 : 0) + (level > 2 ? frame.size.x >> 2 : 0), level > 0 ? frame.size.y : 0);
+    ivec2 origin = ivec2((level > 1 ? frame.size.x >> 1 : 0) + (level > 2 ? frame.size.x >> 2 : 0), level > 0 ? room_row() : 0);
     return Grid(origin, max(frame.size >> level, ivec2(1)) - 1);
 }

@@ -1,7 +1,7 @@
 #include "coarse.glsl"
 #include "tile.glsl"
 
-const int kCoarseTile = 16;  // texels of `light`, as effect.json declares it
+const int kCoarseTile = 32;  // texels of `light`, as effect.json declares it
 
 // Tiles that hold texels of a coarse level of a lit tile, of which a fetch takes four. The loops test at their end: llvmpipe runs the body of the
 // others once more, with every tile masked. A tile too many costs its texels alone.

@@ -9,7 +9,7 @@ struct PlateGrid {
 
 PlateGrid plate_grid_of(int level) {
     bool is_half = level > 0;
-    return PlateGrid(max(level - 1, 0), is_half ? frame.size.y : 0, (is_half ? frame.size + 1 >> 1 : frame.size) - 1);
+    return PlateGrid(max(level - 1, 0), is_half ? room_row() : 0, (is_half ? frame.size + 1 >> 1 : frame.size) - 1);
 }
 
 int plate_row(int y, PlateGrid grid) { return grid.first_row + min(y << grid.shift, grid.last.y); }

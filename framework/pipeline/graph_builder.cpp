@@ -52,7 +52,10 @@ int count_value(const CountSpec& count, const ParamReader& params) {
 }
 
 std::pair<int, int> grid_size(const GridSpec& grid, const ParamReader& params, int width, int height) {
-    const auto with_room = [&](int side, int axis) { return side + int(std::ceil(side * grid.room[axis])); };
+    const auto with_room = [&](int side, int axis) {
+        const int room = int(std::ceil(side * grid.room[axis]));
+        return room == 0 ? side : divided_up(side, kRoomTexels) * kRoomTexels + room;
+    };
     switch (grid.kind) {
         case GridSpec::Kind::size: return {grid.size[0], grid.size[1]};
         case GridSpec::Kind::tile: {

@@ -108,22 +108,26 @@ void main() {
 TEST(TilesOfAPass, LieInTheRoomBesideAFrameToo) {
     EffectFolder effects;
     effects.add("room", kRoom, kRoomShader);
-    write_text(effects.path() / "room" / "beyond.glsl",
-               "bool beyond(ivec2 tile) { return any(greaterThanEqual(16 * tile, frame.size)); }\n");
+    write_text(
+        effects.path() / "room" / "beyond.glsl",
+        "bool beyond(ivec2 tile) { return any(greaterThanEqual(16 * tile, frame.size + 63 & ~63)); }\n");
     const std::string look = look_of(R"({"effect": "room"})");
     Bench bench(effects, look);
-    constexpr int kWideWidth = kTiledWidth + 38, kWideHeight = kTiledHeight + 14;
+    constexpr int kRoomX = 128, kRoomY = 64, kWideWidth = kRoomX + 38, kWideHeight = kRoomY + 14;
     const auto expected = [](int x, int y) {
         const int i = x / kTilePx, k = y / kTilePx;
-        const bool is_beyond = i * kTilePx >= kTiledWidth || k * kTilePx >= kTiledHeight;
-        return is_beyond || is_chosen_tile(i, k) ? float(x + 1000 * y) : -1.0f;
+        const bool is_beyond = x >= kRoomX || y >= kRoomY;
+        const bool is_framed = i * kTilePx < kTiledWidth && k * kTilePx < kTiledHeight;
+        return is_beyond || (is_framed && is_chosen_tile(i, k)) ? float(x + 1000 * y) : -1.0f;
     };
     for (int frame = 0; frame < 2; ++frame) {
         const Image shown = bench.color(tiled_picture());
         for (int y = 0; y < kTiledHeight; ++y)
             for (int x = 0; x < kTiledWidth; ++x) {
                 ASSERT_EQ(shown.at(x, y, 0), expected(x, y)) << x << ", " << y;
-                ASSERT_EQ(shown.at(x, y, 1), expected(x + 38, y + 14)) << x << ", " << y;
+                ASSERT_EQ(shown.at(x, y, 1),
+                          expected(x + kWideWidth - kTiledWidth, y + kWideHeight - kTiledHeight))
+                    << x << ", " << y;
                 ASSERT_EQ(shown.at(x, y, 2), kWideWidth);
                 ASSERT_EQ(shown.at(x, y, 3), kWideHeight);
             }

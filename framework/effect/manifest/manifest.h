@@ -60,13 +60,16 @@ struct CountSpec {
     bool operator==(const CountSpec&) const = default;
 };
 
+/// The room beside a texture begins at a multiple of this many texels.
+inline constexpr int kRoomTexels = 64;
+
 /// Extent of a texture, and of what is counted per texel.
 struct GridSpec {
     enum class Kind { scale, tile, size };
     Kind kind = Kind::scale;
     double scale = 1;  ///< of the working grid's sides, rounded up
-    double room[2] = {0,
-                      0};  ///< with `scale`: further texels to the right and below, in its width and height
+    /// With `scale`: further texels to the right and below, in its width and height.
+    double room[2] = {0, 0};
     CountSpec tile;        ///< one texel per tile of this many px a side, rounded up
     int size[2] = {0, 0};  ///< fixed, in texels
     bool has_room() const { return room[0] > 0 || room[1] > 0; }

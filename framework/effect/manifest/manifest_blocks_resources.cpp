@@ -52,7 +52,9 @@ Block make_texture_block() {
                                                  {.min = 2, .max = 2, .fault = "'room' holds 2 numbers"}),
                                    "[x, y], each from 0 to 1"),
                  "Further texels to the right of those and below them, in their width and height: with "
-                 "[0.5, 0], levels of a picture fit beside it."),
+                 "[0, 0.5], levels of a picture fit below it. They begin at the next multiple of " +
+                     std::to_string(kRoomTexels) +
+                     ", so that a tile whose side divides that does not lie on both sides."),
              optional("tile", count_form(kTileCount), "One texel per tile; the tile's side in px."),
              optional(
                  "size",
