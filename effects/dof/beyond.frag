@@ -7,7 +7,7 @@ void main() {
     ivec2 block = ivec2(gl_FragCoord.xy), tile = kBlock * block / kTile, last = ivec2(edges_size.xy) - 1;
     vec2 own = texelFetch(tile_coc, tile, 0).rg;
     float reach_px = max(-own.x, own.y) + 1.5;
-    // What is in focus and not reached asks for neither.
+    // Where nothing is blurred, neither is read.
     bool is_drawn = is_blurred(tile), may_hide = is_drawn && own.x < texelFetch(around, tile, 0).w - kClear;
     int narrow_range = is_drawn ? int(ceil(kFullSizePx / float(kBlock))) : -1, range = max(may_hide ? int(ceil(reach_px / float(kBlock))) : -1, narrow_range);
     out_beyond = vec2(kNoEdge, kNoNarrow);

@@ -3,7 +3,8 @@
 // How much further than its radius a blur takes texels: half a texel of the coarsest level, and what such a texel shows.
 const float kCoarsePx = 12.0;
 
-// Whether a blur of this tile, which has one, takes light from the clean plate: within its reach, a tile with a patch has something in front of it.
+// Whether a blur of this tile takes light from the clean plate: within its reach, a tile with a patch has something in front of it.
+// `is_drawn`: whether it has a blur.
 bool is_plated(ivec2 tile, bool is_drawn) {
     ivec2 last = ivec2(tile_coc_size.xy) - 1;
     vec2 own = texelFetch(tile_coc, tile, 0).rg;

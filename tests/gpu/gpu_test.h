@@ -13,6 +13,7 @@
 namespace aftershade::gpu {
 
 inline const char* const kFullScreen = R"(#version 450 core
+out gl_PerVertex { vec4 gl_Position; };
 void main() {
     gl_Position = vec4(vec2((gl_VertexID << 1) & 2, gl_VertexID & 2) * 2.0 - 1.0, 0.0, 1.0);
 }
