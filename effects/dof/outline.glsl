@@ -108,11 +108,9 @@ const float kHalfErrorPx = 0.05;
 // Columns, from the middle of an outline of at most this radius, that it may cover in a row this far from its middle.
 vec2 columns(float radius_px, float dy) {
     float gauge_px = radius_px + 0.5 / aperture.inradius + kHalfErrorPx;
-#if BLADES >= 4 && BLADES % 2 == 0
-    float across = CURVATURE == 0.0 ? gauge_px : sqrt(max(gauge_px * gauge_px - dy * dy, 0.0));
-#else
-    float across = sqrt(max(gauge_px * gauge_px - dy * dy, 0.0));
-#endif
+    // A polygon's own edges bound them closer than the circle around it.
+    const bool kIsPolygon = BLADES >= 4 && BLADES % 2 == 0 && CURVATURE == 0.0;
+    float across = kIsPolygon ? gauge_px : sqrt(max(gauge_px * gauge_px - dy * dy, 0.0));
     vec2 range = vec2(-across, across);
 #if BLADES >= 4 && BLADES % 2 == 0
     if (CURVATURE == 0.0)

@@ -114,17 +114,29 @@ std::string ProgramCache::key_of(const ProgramSources& sources) const {
     return key_of(stages_of(sources), sources.vertex, sources.main.text);
 }
 
+/// From the store, else by `make`, and then kept there.
+template <typename Make>
+ProgramCache::Kept ProgramCache::kept(const std::string& key, gpu::Stages stages, const std::string& label,
+                                      const std::shared_ptr<const gpu::Program>& vertex, const Make& make) {
+    if (const auto binary = store_.load(key))
+        if (auto program = gpu::Program::from_binary(context_, *binary, stages, label, vertex))
+            return {std::move(*program), binary->bytes.size(), true};
+    Kept made{make(), 0, false};
+    if (store_.is_on())
+        if (const auto binary = made.program.binary()) {
+            store_.save(key, *binary);
+            made.binary_bytes = binary->bytes.size();
+        }
+    return made;
+}
+
 std::shared_ptr<const gpu::Program> ProgramCache::vertex_stage(const std::string& text) {
     std::shared_ptr<const gpu::Program>& stage = vertex_stages_[text];
     if (stage) return stage;
-    const std::string key = key_of(gpu::Stages::vertex, text, ""), label = "host.vertex";
-    if (const auto binary = store_.load(key))
-        if (auto program = gpu::Program::from_binary(context_, *binary, gpu::Stages::vertex, label))
-            return stage = std::make_shared<const gpu::Program>(std::move(*program));
-    stage = std::make_shared<const gpu::Program>(gpu::Program::vertex(context_, text, label));
-    if (store_.is_on())
-        if (const auto binary = stage->binary()) store_.save(key, *binary);
-    return stage;
+    const std::string label = "host.vertex";
+    Kept found = kept(key_of(gpu::Stages::vertex, text, ""), gpu::Stages::vertex, label, nullptr,
+                      [&] { return gpu::Program::vertex(context_, text, label); });
+    return stage = std::make_shared<const gpu::Program>(std::move(found.program));
 }
 
 gpu::Program ProgramCache::make(const ProgramSources& sources, const std::string& key,
@@ -132,24 +144,15 @@ gpu::Program ProgramCache::make(const ProgramSources& sources, const std::string
     const gpu::Stages stages = stages_of(sources);
     const std::shared_ptr<const gpu::Program> vertex =
         stages == gpu::Stages::fragment ? vertex_stage(sources.vertex) : nullptr;
-    if (const auto binary = store_.load(key))
-        if (auto program = gpu::Program::from_binary(context_, *binary, stages, sources.label, vertex)) {
-            ++loaded_;
-            binary_bytes = binary->bytes.size();
-            return std::move(*program);
-        }
-    const std::string& main = sources.main.text;
-    gpu::Program program = vertex ? gpu::Program::fragment(context_, vertex, main, sources.label)
-                           : sources.is_compute
-                               ? gpu::Program::compute(context_, main, sources.label)
-                               : gpu::Program::draw(context_, sources.vertex, main, sources.label);
-    ++compiled_;
-    if (store_.is_on())
-        if (const auto binary = program.binary()) {
-            store_.save(key, *binary);
-            binary_bytes = binary->bytes.size();
-        }
-    return program;
+    Kept found = kept(key, stages, sources.label, vertex, [&] {
+        const std::string& main = sources.main.text;
+        if (vertex) return gpu::Program::fragment(context_, vertex, main, sources.label);
+        return sources.is_compute ? gpu::Program::compute(context_, main, sources.label)
+                                  : gpu::Program::draw(context_, sources.vertex, main, sources.label);
+    });
+    ++(found.is_loaded ? loaded_ : compiled_);
+    binary_bytes = found.binary_bytes;
+    return std::move(found.program);
 }
 
 std::size_t ProgramCache::binary_bytes(const ProgramSources& sources) const {

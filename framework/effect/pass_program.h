@@ -79,6 +79,14 @@ private:
         std::size_t binary_bytes = 0;
         std::uint64_t last_use = 0;
     };
+    struct Kept {
+        gpu::Program program;
+        std::size_t binary_bytes = 0;  ///< 0: unknown
+        bool is_loaded = false;        ///< from the store
+    };
+    template <typename Make>
+    Kept kept(const std::string& key, gpu::Stages stages, const std::string& label,
+              const std::shared_ptr<const gpu::Program>& vertex, const Make& make);
     std::string host_vertex(const std::string& file) const;  // with what it includes
     void drop_idle();
     gpu::Program make(const ProgramSources& sources, const std::string& key, std::size_t& binary_bytes);

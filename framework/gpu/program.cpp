@@ -145,36 +145,37 @@ Program Program::draw(Context& context, const std::string& vertex, const std::st
     return program;
 }
 
-Program Program::vertex(Context& context, const std::string& source, std::string label) {
+Program Program::of_one_stage(Context& context, Stages stages, const std::string& source, std::string label,
+                              std::shared_ptr<const Program> vertex) {
     context.make_current();
     const GladGLContext& gl = context.gl();
-    const Stage stage(gl, GL_VERTEX_SHADER, "vertex", source, label);
-    const GLuint handle = link(gl, Stages::vertex, {&stage}, label);
-    Program program(context, handle, Stages::vertex, std::move(label));
+    const bool is_vertex = stages == Stages::vertex, is_compute = stages == Stages::compute;
+    const Stage stage(gl,
+                      is_vertex    ? GL_VERTEX_SHADER
+                      : is_compute ? GL_COMPUTE_SHADER
+                                   : GL_FRAGMENT_SHADER,
+                      is_vertex    ? "vertex"
+                      : is_compute ? "compute"
+                                   : "fragment",
+                      source, label);
+    const GLuint handle = link(gl, stages, {&stage}, label);
+    Program program(context, handle, stages, std::move(label), std::move(vertex));
     context.check(fmt::format("program '{}'", program.label()));
     return program;
+}
+
+Program Program::vertex(Context& context, const std::string& source, std::string label) {
+    return of_one_stage(context, Stages::vertex, source, std::move(label));
 }
 
 Program Program::fragment(Context& context, std::shared_ptr<const Program> vertex, const std::string& source,
                           std::string label) {
     assert(vertex && vertex->stages() == Stages::vertex);
-    context.make_current();
-    const GladGLContext& gl = context.gl();
-    const Stage stage(gl, GL_FRAGMENT_SHADER, "fragment", source, label);
-    const GLuint handle = link(gl, Stages::fragment, {&stage}, label);
-    Program program(context, handle, Stages::fragment, std::move(label), std::move(vertex));
-    context.check(fmt::format("program '{}'", program.label()));
-    return program;
+    return of_one_stage(context, Stages::fragment, source, std::move(label), std::move(vertex));
 }
 
 Program Program::compute(Context& context, const std::string& source, std::string label) {
-    context.make_current();
-    const GladGLContext& gl = context.gl();
-    const Stage stage(gl, GL_COMPUTE_SHADER, "compute", source, label);
-    const GLuint handle = link(gl, Stages::compute, {&stage}, label);
-    Program program(context, handle, Stages::compute, std::move(label));
-    context.check(fmt::format("program '{}'", program.label()));
-    return program;
+    return of_one_stage(context, Stages::compute, source, std::move(label));
 }
 
 std::optional<Program> Program::from_binary(Context& context, const ProgramBinary& binary, Stages stages,

@@ -81,6 +81,8 @@ public:
     unsigned int handle() const { return handle_.name(); }  ///< for framework/gpu
 
 private:
+    static Program of_one_stage(Context& context, Stages stages, const std::string& source, std::string label,
+                                std::shared_ptr<const Program> vertex = nullptr);
     Program(Context& context, unsigned int handle, Stages stages, std::string label,
             std::shared_ptr<const Program> vertex = nullptr);
     Handle<ObjectKind::program> handle_;
