@@ -81,12 +81,12 @@ std::vector<std::uint64_t> check_deep_blocks(const DeepSource& source, int part)
         const auto cut_off = [&] {
             fail(source.path,
                  fmt::format("cut off or damaged: the file has {} bytes, {} should reach beyond that",
-                             file.size(), block_label(header, i)));
+                             file.byte_count(), block_label(header, i)));
         };
-        if (offsets[i] > file.size() || file.size() - offsets[i] < head) cut_off();
+        if (offsets[i] > file.byte_count() || file.byte_count() - offsets[i] < head) cut_off();
         DeepSizes sizes;
         file.read_at(offsets[i] + words * 4, {reinterpret_cast<char*>(&sizes), sizeof sizes});
-        const std::uint64_t left = file.size() - offsets[i] - head;
+        const std::uint64_t left = file.byte_count() - offsets[i] - head;
         if (sizes.packed_counts > left || sizes.packed_samples > left - sizes.packed_counts) cut_off();
         if (const std::string fault = size_fault(sizes, header, pixels_of(block_box(header, i)));
             !fault.empty())

@@ -75,7 +75,7 @@ private:
     int read_version() {
         unsigned char magic[4] = {};
         file_.read_at(
-            0, {reinterpret_cast<char*>(magic), std::size_t(std::min<std::uint64_t>(4, file_.size()))});
+            0, {reinterpret_cast<char*>(magic), std::size_t(std::min<std::uint64_t>(4, file_.byte_count()))});
         if (std::string_view(reinterpret_cast<const char*>(magic), sizeof magic) != kMagic) {
             fail(path_,
                  fmt::format("not an OpenEXR file (it begins with the bytes {:02x} {:02x} {:02x} {:02x}, "
@@ -108,9 +108,9 @@ private:
 
     void scan_value(const std::string& name, const std::string& type, int size) {
         const std::uint64_t begin = file_.tellg();
-        if (size < 0 || std::uint64_t(size) > file_.size() - begin) {
+        if (size < 0 || std::uint64_t(size) > file_.byte_count() - begin) {
             fail(path_, fmt::format("header attribute '{}' claims {} bytes, {} are left in the file", name,
-                                    size, file_.size() - begin));
+                                    size, file_.byte_count() - begin));
         }
         const auto* fixed = std::ranges::find(kFixedSizes, std::string_view(type), &FixedSize::type);
         bool sound = fixed == std::end(kFixedSizes) || fixed->bytes == size;
@@ -148,7 +148,7 @@ private:
             if (read_name("channel").empty()) return file_.tellg() == end;
             if (count == kMaxChannels)
                 fail(path_, fmt::format("more than {} channels, which is the limit", kMaxChannels));
-            file_.seekg(std::min(file_.size(), file_.tellg() + 16));
+            file_.seekg(std::min(file_.byte_count(), file_.tellg() + 16));
         }
         return false;
     }

@@ -84,7 +84,7 @@ public:
     void seekg(std::uint64_t position) override;
     void clear() override;
 
-    std::uint64_t size() const { return size_; }
+    std::uint64_t byte_count() const { return size_; }
     /// Leaves the position as it is.
     void read_at(std::uint64_t offset, std::span<char> bytes);
 

@@ -223,9 +223,9 @@ void check_block(FileStream& file, const fs::path& path, const Imf::Header& head
                  std::uint64_t offset, std::size_t head_words) {
     const auto cut_off = [&] {
         fail(path, fmt::format("cut off or damaged: the file has {} bytes, {} should reach beyond that",
-                               file.size(), block_label(header, index)));
+                               file.byte_count(), block_label(header, index)));
     };
-    if (offset > file.size() || file.size() - offset < head_words * 4) cut_off();
+    if (offset > file.byte_count() || file.byte_count() - offset < head_words * 4) cut_off();
     std::array<std::int32_t, 6> head = {};
     file.read_at(offset, {reinterpret_cast<char*>(head.data()), head_words * 4});
     const std::int64_t stored = head[head_words - 1];
@@ -233,7 +233,7 @@ void check_block(FileStream& file, const fs::path& path, const Imf::Header& head
         fail(path, fmt::format("damaged: {} stored in {} bytes, too few for the pixels",
                                block_label(header, index), stored));
     }
-    if (std::uint64_t(stored) > file.size() - offset - head_words * 4) cut_off();
+    if (std::uint64_t(stored) > file.byte_count() - offset - head_words * 4) cut_off();
 }
 
 /// Of a block's head: a part number, then a line or a tile's two coordinates and two levels, then the size;
@@ -271,7 +271,7 @@ std::vector<std::vector<std::uint64_t>> found_blocks(FileStream& file, const Fil
     for (; missing > 0; --missing) {
         std::array<std::int32_t, 3> head = {};
         const std::size_t words = layout.multi_part ? 3 : 2;
-        if (file.size() - position < words * 4) return {};
+        if (file.byte_count() - position < words * 4) return {};
         file.read_at(position, {reinterpret_cast<char*>(head.data()), words * 4});
         const std::size_t part = layout.multi_part ? std::size_t(std::uint32_t(head[0])) : 0;
         if (part >= found.size()) return {};
@@ -283,7 +283,7 @@ std::vector<std::vector<std::uint64_t>> found_blocks(FileStream& file, const Fil
         if (offset != 0 || head[words - 1] < 0) return {};
         offset = position;
         position += words * 4 + std::uint64_t(head[words - 1]);
-        if (position > file.size()) return {};
+        if (position > file.byte_count()) return {};
     }
     return found;
 }
@@ -318,9 +318,9 @@ FileLayout read_layout(FileStream& file, const fs::path& path, const ReadLimits&
         table += block_count(header) * sizeof(std::uint64_t);
         layout.largest_block_bytes = std::max(layout.largest_block_bytes, block_bytes(header));
     }
-    if (table > file.size()) {
+    if (table > file.byte_count()) {
         fail(path, fmt::format("cut off: the file has {} bytes, its headers and block tables take {}",
-                               file.size(), table));
+                               file.byte_count(), table));
     }
     if (has_empty_table(file, layout)) layout.found_blocks = found_blocks(file, layout, table);
     file.seekg(0);

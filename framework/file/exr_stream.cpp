@@ -81,7 +81,7 @@ void FileStream::read_at(std::uint64_t offset, std::span<char> bytes) {
 bool StreamView::read(char bytes[], int count) {
     file_.read_at(position_, {bytes, std::size_t(count)});
     position_ += std::uint64_t(count);
-    return position_ < file_.size();
+    return position_ < file_.byte_count();
 }
 
 }  // namespace exr

@@ -22,6 +22,7 @@
 #include <OpenEXR/ImfVecAttribute.h>
 #include <OpenEXR/OpenEXRConfig.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cassert>
@@ -116,7 +117,9 @@ Imf::Header make_header(const fs::path& path, std::span<const ExrOutputChannel> 
     Imf::Header header(exr::to_box(options.display_window), exr::to_box(options.data_window),
                        options.pixel_aspect);
     header.compression() = find_compression(path, options.compression);
-    if (const auto level = exr_compression_level(options.compression)) header.zipCompressionLevel() = *level;
+    // OpenEXR's own level up to 3.3. From 3.4 on a header has -1, which libdeflate does not know.
+    constexpr int kUsualLevel = 4;
+    header.zipCompressionLevel() = exr_compression_level(options.compression).value_or(kUsualLevel);
     if (options.carry_over && options.carry_over->impl) {
         const Imf::Header& source = options.carry_over->impl->header;
         for (auto i = source.begin(); i != source.end(); ++i) {

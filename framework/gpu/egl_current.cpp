@@ -31,8 +31,8 @@ EglCurrent current_egl_context() noexcept {
     return {display(), surface(EGL_DRAW), surface(EGL_READ), context(), api()};
 }
 
-void release_egl_context(const EglCurrent& current) noexcept {
-    make_egl_current(current.display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+void release_egl_context(const EglCurrent& found) noexcept {
+    make_egl_current(found.display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
 }
 
 void restore_egl_context(const EglCurrent& found) noexcept {

@@ -14,7 +14,7 @@ struct EglCurrent {
 
 /// Does not load EGL where the process has not.
 EglCurrent current_egl_context() noexcept;
-void release_egl_context(const EglCurrent& current) noexcept;
+void release_egl_context(const EglCurrent& found) noexcept;
 /// The context, where there was one, and the API.
 void restore_egl_context(const EglCurrent& found) noexcept;
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "framework/core/error.h"
 #include "framework/gpu/commands.h"

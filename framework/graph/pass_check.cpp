@@ -292,7 +292,7 @@ private:
 
 template <typename Resource>
 const Resource& live_of(const std::vector<Resource>& all, int index, int version, std::string_view what,
-                        const std::string& user) {
+                        std::string_view user) {
     if (index < 0 || index >= int(all.size()))
         throw GraphError(fmt::format("{} uses a {} that the graph does not have", user, what));
     const Resource& resource = all[std::size_t(index)];
@@ -305,11 +305,11 @@ const Resource& live_of(const std::vector<Resource>& all, int index, int version
 
 }  // namespace
 
-const FrameGraph::Texture& live(const FrameGraph& graph, TextureHandle handle, const std::string& user) {
+const FrameGraph::Texture& live(const FrameGraph& graph, TextureHandle handle, std::string_view user) {
     return live_of(graph.textures(), handle.texture, handle.version, "texture", user);
 }
 
-const FrameGraph::Buffer& live(const FrameGraph& graph, BufferHandle handle, const std::string& user) {
+const FrameGraph::Buffer& live(const FrameGraph& graph, BufferHandle handle, std::string_view user) {
     return live_of(graph.buffers(), handle.buffer, handle.version, "buffer", user);
 }
 

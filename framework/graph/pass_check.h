@@ -1,7 +1,7 @@
 // What FrameGraph refuses. Internal to framework/graph.
 #pragma once
 
-#include <string>
+#include <string_view>
 
 #include "framework/graph/frame_graph.h"
 
@@ -12,7 +12,7 @@ void check_pass(const FrameGraph& graph, const Pass& pass);
 
 /// The texture of a handle. Throws GraphError, which begins with `user`, for a handle that the graph never
 /// gave or that a later write made stale.
-const FrameGraph::Texture& live(const FrameGraph& graph, TextureHandle handle, const std::string& user);
-const FrameGraph::Buffer& live(const FrameGraph& graph, BufferHandle handle, const std::string& user);
+const FrameGraph::Texture& live(const FrameGraph& graph, TextureHandle handle, std::string_view user);
+const FrameGraph::Buffer& live(const FrameGraph& graph, BufferHandle handle, std::string_view user);
 
 }  // namespace aftershade::graph

@@ -57,6 +57,27 @@ bool refuse_to_write(std::string*, const std::string&, const std::vector<unsigne
     return false;
 }
 
+/// From 2.9 on the loader asks for a file's size first; read_whole_file() bounds it.
+[[maybe_unused]] bool file_size(std::size_t* bytes, std::string* error, const std::string& path, void*) {
+    std::error_code fault;
+    *bytes = std::size_t(fs::file_size(path, fault));
+    if (fault && error) *error += fault.message();
+    return !fault;
+}
+
+/// A template, for what this version of tinygltf does not have.
+template <typename Callbacks>
+Callbacks callbacks_in(std::string& folder) {
+    Callbacks callbacks{};
+    callbacks.FileExists = file_exists;
+    callbacks.ExpandFilePath = same_path;
+    callbacks.ReadWholeFile = read_whole_file;
+    callbacks.WriteWholeFile = refuse_to_write;
+    if constexpr (requires { callbacks.GetFileSizeInBytes; }) callbacks.GetFileSizeInBytes = file_size;
+    callbacks.user_data = &folder;
+    return callbacks;
+}
+
 bool leave_image(tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int,
                  void*) {
     return true;
@@ -91,7 +112,7 @@ tinygltf::Model load_model(const fs::path& path) {
     tinygltf::TinyGLTF loader;
     loader.SetImageLoader(leave_image, nullptr);
     std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";
-    loader.SetFsCallbacks({file_exists, same_path, read_whole_file, refuse_to_write, &folder});
+    loader.SetFsCallbacks(callbacks_in<tinygltf::FsCallbacks>(folder));
     const unsigned size = unsigned(bytes.size());
     tinygltf::Model model;
     std::string error;

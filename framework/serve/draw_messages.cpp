@@ -5,7 +5,9 @@
 #include <array>
 #include <cerrno>
 #include <cstddef>
+#include <optional>
 #include <string_view>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -58,7 +60,7 @@ std::optional<Json> receive_message(int socket, std::string& body) {
     if (!receive_bytes(socket, body.data(), body.size())) return std::nullopt;
     Json json = Json::from_cbor(head, true, false);
     if (!json.is_object()) return std::nullopt;
-    return json;
+    return std::make_optional(std::move(json));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "tests/temporary_folder.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cstdint>
 #include <filesystem>
