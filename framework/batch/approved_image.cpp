@@ -4,9 +4,12 @@
 #include <array>
 #include <cctype>
 #include <cstdint>
+#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string_view>
+
+#include <sys/utsname.h>
 
 #include "framework/capture/frame_range.h"
 #include "framework/core/atomic_file.h"
@@ -28,8 +31,6 @@ std::string after_word(std::string_view text, std::string_view word, std::string
     return std::string(text.substr(0, text.find_first_of(ends)));
 }
 
-constexpr std::string_view kVersionDigits = "0123456789.";
-
 /// Where a sidecar of an earlier version does not say it.
 bool is_software(const std::string& renderer) {
     constexpr std::array kNames = {"llvmpipe", "softpipe", "swrast", "SwiftShader", "software"};
@@ -37,17 +38,14 @@ bool is_software(const std::string& renderer) {
                        [&](const char* name) { return renderer.find(name) != std::string::npos; });
 }
 
-/// "llvmpipe (LLVM 15.0.6, 256 bits)" without "(LLVM 15.0.6,".
-std::string without_llvm(const std::string& renderer) {
-    constexpr std::string_view kLlvm = "LLVM ";
-    const std::size_t found = renderer.find(kLlvm);
-    if (found == std::string::npos) return renderer;
-    const std::size_t digits = found + kLlvm.size();
-    std::size_t end = std::min(renderer.find_first_not_of(kVersionDigits, digits), renderer.size());
-    if (end == digits) return renderer;
-    if (end < renderer.size() && renderer[end] == ',') ++end;
-    const std::size_t begin = found > 0 && renderer[found - 1] == '(' ? found - 1 : found;
-    return renderer.substr(0, begin) + renderer.substr(end);
+/// Of "llvmpipe (LLVM 15.0.6, 256 bits)", "llvmpipe": the width of the vectors decides no bit.
+std::string kind_of(const GoldenEnvironment& environment) {
+    const std::string& renderer = environment.renderer;
+    return environment.llvm().empty() ? renderer : renderer.substr(0, renderer.find(" (LLVM "));
+}
+
+std::string instead_of(std::string_view what, const std::string& now, const std::string& before) {
+    return now == before ? "" : std::string(what) + " " + now + " instead of " + before;
 }
 
 constexpr std::uintmax_t kMaxSidecarBytes = 1024 * 1024;
@@ -87,8 +85,9 @@ std::optional<GoldenSidecar> read_sidecar(const fs::path& image, std::optional<S
     sidecar.environment.software = software != json.end() && software->is_boolean()
                                        ? software->get<bool>()
                                        : is_software(sidecar.environment.renderer);
+    sidecar.environment.instructions = text("instructions");
     sidecar.command = text("command");
-    sidecar.look_hash = text("look_hash");
+    sidecar.sources = {text("look_hash"), text("capture_hash")};
     sidecar.image_hash = text("image_hash");
     sidecar.approver = text("approver");
     sidecar.approved = text("approved");
@@ -108,27 +107,34 @@ std::string GoldenEnvironment::llvm() const {
 }
 
 std::string GoldenEnvironment::key() const {
-    // LLVM's version follows from Mesa's package; the width of its vectors does not.
-    const std::string name = without_llvm(renderer);
+    // LLVM's version follows from Mesa's package.
     const std::string driver = mesa();
-    return slug(name + " " + (driver.empty() ? version : driver) + " " + cpu);
+    return slug(kind_of(*this) + " " + (driver.empty() ? version : driver) + " " + instructions);
 }
 
-bool GoldenEnvironment::equals(const GoldenEnvironment& other) const {
-    return renderer == other.renderer && mesa() == other.mesa() && cpu == other.cpu &&
-           (!mesa().empty() || version == other.version);
+std::string GoldenEnvironment::difference(const GoldenEnvironment& other) const {
+    if (kind_of(*this) != kind_of(other)) return instead_of("the renderer", kind_of(*this), kind_of(other));
+    if (mesa().empty() || other.mesa().empty()) return instead_of("the driver", version, other.version);
+    if (mesa() != other.mesa()) return instead_of("Mesa", mesa(), other.mesa());
+    if (llvm() != other.llvm()) return instead_of("LLVM", llvm(), other.llvm());
+    if (!software) return "";
+    if (instructions.empty() || other.instructions.empty())
+        return instead_of("the processor", cpu, other.cpu);
+    return instead_of("a processor of", instructions, other.instructions);
 }
 
 GoldenEnvironment environment_of(const gpu::ContextInfo& info) {
-    return {std::string(gpu::backend_name(info.backend)), info.renderer, info.version, cpu_model(),
-            info.software};
+    // OSMesa and EGL are two ways to one software renderer.
+    const gpu::Backend backend = info.software ? gpu::Backend::software : info.backend;
+    return {std::string(gpu::backend_name(backend)), info.renderer, info.version,
+            cpu_model(), info.software, info.software ? cpu_instructions() : ""};
 }
 
 Json json_of(const GoldenEnvironment& environment) {
     return {{"backend", environment.backend},  {"renderer", environment.renderer},
             {"version", environment.version},  {"mesa", environment.mesa()},
             {"llvm", environment.llvm()},      {"cpu", environment.cpu},
-            {"software", environment.software}};
+            {"instructions", environment.instructions}, {"software", environment.software}};
 }
 
 std::optional<int> approved_frame(const std::string& file_name, const std::string& image_stem) {
@@ -172,7 +178,8 @@ std::string sidecar_text(const GoldenSidecar& sidecar) {
     Json json{{"aftershade", 1}};
     json.update(json_of(sidecar.environment));
     json["command"] = sidecar.command;
-    json["look_hash"] = sidecar.look_hash;
+    json["look_hash"] = sidecar.sources.look;
+    json["capture_hash"] = sidecar.sources.capture;
     json["image_hash"] = sidecar.image_hash;
     if (!sidecar.approver.empty()) json["approver"] = sidecar.approver;
     if (!sidecar.approved.empty()) json["approved"] = sidecar.approved;
@@ -187,11 +194,33 @@ std::string file_hash(const fs::path& file) {
     return fnv1a_hex(bytes);
 }
 
-std::string cpu_model() {
+namespace {
+
+/// Of the first processor in /proc/cpuinfo; "" where it does not say.
+std::string cpu_property(std::string_view name) {
     std::ifstream info("/proc/cpuinfo");
     for (std::string line; std::getline(info, line);)
-        if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-    return "unknown";
+        if (line.starts_with(name) && line.find(": ") != std::string::npos)
+            return line.substr(line.find(": ") + 2);
+    return "";
+}
+
+}  // namespace
+
+std::string cpu_model() {
+    const std::string model = cpu_property("model name");
+    return model.empty() ? "unknown" : model;
+}
+
+std::string cpu_instructions() {
+    utsname system{};
+    uname(&system);
+    std::string machine = system.machine;
+    if (machine != "x86_64") return machine;
+    // Mesa's own switch. All of its values leave FMA out.
+    const char* limit = std::getenv("GALLIUM_OVERRIDE_CPU_CAPS");
+    const bool fma = (" " + cpu_property("flags") + " ").find(" fma ") != std::string::npos;
+    return fma && !(limit && *limit) ? "x86-64 with FMA" : "x86-64 without FMA";
 }
 
 }  // namespace aftershade

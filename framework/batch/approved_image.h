@@ -13,32 +13,42 @@
 
 namespace aftershade {
 
-/// What pictures depend on besides the look: on one renderer, Mesa and CPU the same input gives the same
-/// bits.
+/// What pictures depend on besides the look and the capture: the same input gives the same bits on one
+/// renderer, Mesa and LLVM, on every processor with the same instructions, whoever makes it.
 struct GoldenEnvironment {
-    std::string backend;
+    std::string backend;   ///< software GL is one, whichever library opens it
     std::string renderer;  ///< GL_RENDERER
     std::string version;   ///< GL_VERSION
     std::string cpu;       ///< "model name" of /proc/cpuinfo
     bool software = false;
+    /// Of a software renderer's processor, what decides bits: "x86-64 with FMA"; "" in sidecars of old form.
+    std::string instructions = {};
 
     std::string mesa() const;  ///< "22.3.6"; "" of other drivers
     std::string llvm() const;  ///< "15.0.6"; "" where the renderer names none
-    /// Names a renderer in files: "llvmpipe-256-bits-22.3.6-amd-epyc".
+    /// Names a renderer in files: "llvmpipe-22.3.6-x86-64-with-fma".
     std::string key() const;
-    /// Bits must be the same: one renderer, one version and one CPU, whatever the backend.
-    bool equals(const GoldenEnvironment& other) const;
+    /// Bits must be the same.
+    bool equals(const GoldenEnvironment& other) const { return difference(other).empty(); }
+    /// Why bits may differ from those of `other`: "Mesa 25.0.7 instead of 22.3.6"; "" where they must not.
+    std::string difference(const GoldenEnvironment& other) const;
 };
 
 GoldenEnvironment environment_of(const gpu::ContextInfo& info);
-/// backend, renderer, version, mesa, llvm, cpu, software.
+/// backend, renderer, version, mesa, llvm, cpu, instructions, software.
 nlohmann::ordered_json json_of(const GoldenEnvironment& environment);
+
+/// What a picture is made of, as hashes; "" where one is not known.
+struct GoldenSources {
+    std::string look;     ///< of the look and its effects (look_hash.h)
+    std::string capture;  ///< of the capture's files (capture_hash.h)
+};
 
 /// What made an approved image. Older ones have renderer, version, cpu and backend only.
 struct GoldenSidecar {
     GoldenEnvironment environment;
     std::string command;        ///< that approved it
-    std::string look_hash;      ///< of the look and its effects (look_hash.h)
+    GoldenSources sources;
     std::string image_hash;     ///< of the image file's bytes: a sidecar of another image says nothing
     std::string approver = {};  ///< who approved it; "" where no one is named
     std::string approved = {};  ///< the day, UTC: "2025-03-14"; "" where it is not known
@@ -72,5 +82,7 @@ std::string file_hash(const std::filesystem::path& file);
 
 /// "model name" of /proc/cpuinfo, or "unknown".
 std::string cpu_model();
+/// GoldenEnvironment::instructions of this process, with what limits Mesa to fewer of them.
+std::string cpu_instructions();
 
 }  // namespace aftershade

@@ -73,15 +73,15 @@ public:
         std::error_code failure;
         fs::create_directories(result.test->goldens, failure);
         if (failure) throw Error(ExitCode::output, result.test->goldens.string() + ": " + failure.message());
-        for (const RenderedImage& image : images) take(*result.test, image, result.look_hash);
+        for (const RenderedImage& image : images) take(*result.test, image, result.sources);
     }
     void commit() { staging_.commit(); }
 
 private:
-    void take(const GoldenCase& test, const RenderedImage& image, const std::string& look_hash) {
+    void take(const GoldenCase& test, const RenderedImage& image, const GoldenSources& sources) {
         const GoldenEnvironment& own = options_.run.environment;
         const std::vector<ApprovedImage> approved = approved_images(test.goldens, image.name, own);
-        GoldenSidecar sidecar{own, options_.command, look_hash, "", "", ""};
+        GoldenSidecar sidecar{own, options_.command, sources, "", "", ""};
         const auto equal = std::ranges::find_if(
             approved, [&](const ApprovedImage& other) { return same_bits(other.file, image.file); });
         if (equal != approved.end()) {
@@ -103,7 +103,7 @@ private:
         approve(target, image.file, sidecar);
         approval_.written.push_back(target);
         for (const ApprovedImage& other : approved)
-            if (other.file != target && (!other.sidecar || other.sidecar->look_hash != look_hash))
+            if (other.file != target && (!other.sidecar || other.sidecar->sources.look != sources.look))
                 approval_.outdated.push_back(other.file);
     }
 
@@ -120,7 +120,9 @@ private:
         if (approved.sidecar) {
             // Only what the bits depend on; another command is no news.
             const GoldenSidecar& old = *approved.sidecar;
-            if (old.environment.equals(sidecar.environment) && old.look_hash == sidecar.look_hash &&
+            if (old.environment.equals(sidecar.environment) &&
+                old.environment.instructions == sidecar.environment.instructions &&
+                old.sources.look == sidecar.sources.look && old.sources.capture == sidecar.sources.capture &&
                 old.image_hash == sidecar.image_hash)
                 return;
             // The picture is the one that was looked at then.
@@ -183,14 +185,14 @@ GoldenApproval approve_goldens(const GoldenSuite& suite, const GoldenApproveOpti
     std::error_code absent;
     for (const GoldenCase* test : cases)
         if (fs::is_directory(test->goldens, absent)) prepare_output_folder(test->goldens / test->stem);
-    const std::vector<std::string> hashes = look_hashes(cases, options.run.render.effect_paths);
+    const std::vector<GoldenSources> sources = sources_of(cases, options.run.render.effect_paths);
     approval.cases.resize(cases.size());
     std::mutex telling;
     int done = 0;
     for_each_in_folders(cases.size(), options.run.jobs, [&](std::size_t i, const fs::path& work) {
         GoldenCaseResult& result = approval.cases[i];
         result.test = cases[i];
-        result.look_hash = hashes[i];
+        result.sources = sources[i];
         result.skipped = cases[i]->skip;
         if (interrupt) return;
         if (result.skipped.empty()) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -55,6 +56,32 @@ bool can_approve(const GoldenCaseResult& test) {
                                [](const GoldenImage& image) { return image.verdict != Verdict::same; });
 }
 
+bool only_machine_changed(const GoldenCaseResult& test) {
+    return std::ranges::all_of(test.images, [](const GoldenImage& image) {
+        return image.verdict == Verdict::same || image.only_machine_changed;
+    });
+}
+
+/// What to do about a case that new images could make pass.
+std::string remedy_of(const GoldenCaseResult& test, const GoldenReportContext& context) {
+    const std::string approve = approve_command(context, {test.test->name});
+    if (!only_machine_changed(test)) return "to approve: " + approve;
+    return "to keep this machine's image too: " + approve + " --add (or widen the case's tolerance)";
+}
+
+/// "3 images differ in bits within their tolerance: only the machine differs: Mesa 25.0.7 instead of 22.3.6".
+std::string note_of_tolerated(const GoldenSuiteResult& result) {
+    std::map<std::string, std::size_t> counts;  // by what changed
+    for (const GoldenCaseResult& test : result.cases)
+        for (const GoldenImage& image : test.images)
+            if (image.verdict == Verdict::same && image.approved && !image.bits_equal)
+                ++counts[image.changes.empty() ? "no sidecar says why" : joined(image.changes, "; ", "; ")];
+    std::string text;
+    for (const auto& [changes, images] : counts)
+        text += fmt::format("{} within tolerance, but with other bits: {}\n", counted(images, "image"), changes);
+    return text;
+}
+
 std::vector<std::string> cases_to_approve(const GoldenSuiteResult& result) {
     std::vector<std::string> names;
     for (const GoldenCaseResult& test : result.cases)
@@ -66,7 +93,7 @@ std::string junit_case(const GoldenCaseResult& test, const GoldenReportContext& 
     std::string text = fmt::format("    <testcase classname=\"golden\" name=\"{}\" time=\"{:.3f}\">",
                                    xml_text(test.test->name), test.seconds);
     std::vector<std::string> lines = reasons_of(test);
-    if (can_approve(test)) lines.push_back("to approve: " + approve_command(context, {test.test->name}));
+    if (can_approve(test)) lines.push_back(remedy_of(test, context));
     const std::string why = lines.empty() ? "" : lines.front(), all = joined(lines, "\n", "\n");
     if (test.verdict >= Verdict::failure)
         text += fmt::format("<failure type=\"{}\" message=\"{}\">{}</failure>", verdict_name(test.verdict),
@@ -86,7 +113,8 @@ Json json_of(const ApprovedImage& approved) {
     if (!approved.sidecar) return json;
     json["sidecar"] = json_of(approved.sidecar->environment);
     json["sidecar"]["command"] = approved.sidecar->command;
-    json["sidecar"]["look_hash"] = approved.sidecar->look_hash;
+    json["sidecar"]["look_hash"] = approved.sidecar->sources.look;
+    json["sidecar"]["capture_hash"] = text_or_null(approved.sidecar->sources.capture);
     json["sidecar"]["approver"] = text_or_null(approved.sidecar->approver);
     json["sidecar"]["approved"] = text_or_null(approved.sidecar->approved);
     return json;
@@ -119,6 +147,8 @@ Json json_of(const GoldenImage& image) {
             {"approved_count", image.approved_count},
             {"tier", image.exact_tier ? "bits" : "tolerance"},
             {"bits_equal", image.bits_equal},
+            {"changes", image.changes},
+            {"only_machine_changed", image.only_machine_changed},
             {"pictures",
              {{"reference", text_or_null(pictures.reference)},
               {"test", text_or_null(pictures.test)},
@@ -155,7 +185,8 @@ Json json_of(const GoldenCaseResult& result, const GoldenReportContext& context)
             {"skipped", text_or_null(result.skipped)},
             {"seconds", result.seconds},
             {"messages", result.messages},
-            {"look_hash", text_or_null(result.look_hash)},
+            {"look_hash", text_or_null(result.sources.look)},
+            {"capture_hash", text_or_null(result.sources.capture)},
             {"command", text_or_null(result.command)},
             {"rerun", golden_command("run", context, {test.name})},
             {"approve", can_approve(result) ? Json(approve_command(context, {test.name})) : Json(nullptr)},
@@ -201,14 +232,14 @@ std::string summary_of(const GoldenSuiteResult& result, const GoldenReportContex
             text += fmt::format("\n{} {}: {}\n", failures ? "FAILED" : "WARNING", test.test->name,
                                 verdict_name(test.verdict));
             for (const std::string& line : reasons_of(test)) text += "    " + line + "\n";
-            if (can_approve(test))
-                text += "    to approve: " + approve_command(context, {test.test->name}) + "\n";
+            if (can_approve(test)) text += "    " + remedy_of(test, context) + "\n";
         }
     for (const fs::path& orphan : result.orphans)
         text += fmt::format("\nFAILED {}: no case gives this golden; remove it, or fix the case\n",
                             orphan.string());
     if (const auto names = cases_to_approve(result); names.size() > 1)
         text += "\nto approve all: " + approve_command(context, names) + "\n";
+    if (const std::string note = note_of_tolerated(result); !note.empty()) text += "\n" + note;
     const Counts counts = count(result);
     return text +
            fmt::format("\n{} passed, {} with warnings, {} failed, {} skipped{}, {} in {:.2f} s: {}\n",

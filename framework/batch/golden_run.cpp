@@ -11,6 +11,7 @@
 #include <set>
 #include <thread>
 
+#include "framework/batch/capture_hash.h"
 #include "framework/batch/look_hash.h"
 #include "framework/core/data_path.h"
 #include "framework/core/diagnostics.h"
@@ -67,7 +68,7 @@ void run_case(const GoldenRunOptions& options, const fs::path& work, ReportPictu
     result.verdict = rendered.verdict;
     result.messages = rendered.messages;
     for (const RenderedImage& image : rendered.images) {
-        result.images.push_back(judge_image(test, image, result.look_hash, options.environment, pictures));
+        result.images.push_back(judge_image(test, image, result.sources, options.environment, pictures));
         result.verdict = std::max(result.verdict, result.images.back().verdict);
     }
     check_layers(result);
@@ -104,15 +105,16 @@ void for_each_in_folders(std::size_t count, int jobs,
     if (failure) std::rethrow_exception(failure);
 }
 
-std::vector<std::string> look_hashes(const std::vector<const GoldenCase*>& cases,
-                                     const std::vector<std::string>& effect_paths) {
+std::vector<GoldenSources> sources_of(const std::vector<const GoldenCase*>& cases,
+                                      const std::vector<std::string>& effect_paths) {
     std::vector<fs::path> folders(effect_paths.begin(), effect_paths.end());
     const fs::path data = data_path();
     folders.push_back(data / "effects");
-    LookHasher hasher(folders, data / "glsl");
-    std::vector<std::string> hashes;
-    for (const GoldenCase* test : cases) hashes.push_back(hasher.hash(*test));
-    return hashes;
+    LookHasher looks(folders, data / "glsl");
+    CaptureHasher captures;
+    std::vector<GoldenSources> sources;
+    for (const GoldenCase* test : cases) sources.push_back({looks.hash(*test), captures.hash(*test)});
+    return sources;
 }
 
 GoldenSuiteResult run_golden_suite(const GoldenSuite& suite, const GoldenRunOptions& options,
@@ -123,11 +125,11 @@ GoldenSuiteResult run_golden_suite(const GoldenSuite& suite, const GoldenRunOpti
     std::vector<const GoldenCase*> cases;
     for (const GoldenCase& test : suite.cases)
         if (fits_filter(test, options.filters)) cases.push_back(&test);
-    const std::vector<std::string> hashes = look_hashes(cases, options.render.effect_paths);
+    const std::vector<GoldenSources> sources = sources_of(cases, options.render.effect_paths);
     for (std::size_t i = 0; i < cases.size(); ++i) {
         result.cases.emplace_back();
         result.cases.back().test = cases[i];
-        result.cases.back().look_hash = hashes[i];
+        result.cases.back().sources = sources[i];
         result.cases.back().skipped = kInterrupted;  // until it has run
     }
     std::optional<ReportPictures> pictures;

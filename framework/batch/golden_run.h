@@ -49,6 +49,10 @@ struct GoldenImage {
     /// Environment and look are those that the approved image was made by: every bit must be the same.
     bool exact_tier = false;
     bool bits_equal = false;
+    /// Of an image whose bits differ, what is not as it was when the approved one was made: the look or its
+    /// effects, the capture, the machine. Sentences without a full stop; none where its sidecar does not say.
+    std::vector<std::string> changes;
+    bool only_machine_changed = false;
     std::optional<Comparison> comparison;
     CompareRules rules;  ///< of the comparison; areas by name alone
     GoldenPictures pictures;
@@ -62,7 +66,7 @@ struct GoldenCaseResult {
     std::vector<std::string> messages;
     std::vector<GoldenImage> images;
     std::string command;  ///< what rendered it
-    std::string look_hash;
+    GoldenSources sources;
     double seconds = 0;  ///< rendering and comparing
 };
 
@@ -94,9 +98,9 @@ using GoldenListener = std::function<void(const GoldenCaseResult&, int done, int
 GoldenSuiteResult run_golden_suite(const GoldenSuite& suite, const GoldenRunOptions& options,
                                    const GoldenListener& listener, const std::atomic<bool>& interrupt);
 
-/// Hashes of the looks of the cases, in their order.
-std::vector<std::string> look_hashes(const std::vector<const GoldenCase*>& cases,
-                                     const std::vector<std::string>& effect_paths);
+/// Of the cases, in their order.
+std::vector<GoldenSources> sources_of(const std::vector<const GoldenCase*>& cases,
+                                      const std::vector<std::string>& effect_paths);
 
 /// Calls work(i, folder of its own, empty) for 0 .. count - 1 on `jobs` threads, beginning in order. The
 /// folders go away. The first exception ends all and is thrown.
@@ -108,7 +112,7 @@ bool has_equal_bits(const Comparison& comparison);
 
 /// An image against those approved by its name, the renderer's own first; its pictures are written, unless
 /// `pictures` is nullptr.
-GoldenImage judge_image(const GoldenCase& test, const RenderedImage& rendered, const std::string& look_hash,
+GoldenImage judge_image(const GoldenCase& test, const RenderedImage& rendered, const GoldenSources& sources,
                         const GoldenEnvironment& environment, ReportPictures* pictures);
 
 }  // namespace aftershade

@@ -23,9 +23,30 @@ std::vector<std::string> reasons_of(const Comparison& comparison) {
     return reasons;
 }
 
+/// Whether both are known, and differ.
+bool differ(const std::string& now, const std::string& before) {
+    return !now.empty() && !before.empty() && now != before;
+}
+
+/// Why bits differ, as far as the sidecar tells.
+void find_changes(const GoldenSidecar& approved, const GoldenSources& sources,
+                  const GoldenEnvironment& environment, GoldenImage& result) {
+    const bool look = differ(sources.look, approved.sources.look);
+    const bool capture = differ(sources.capture, approved.sources.capture);
+    const std::string machine = environment.difference(approved.environment);
+    if (look) result.changes.push_back("the look or an effect has changed since it was approved");
+    if (capture) result.changes.push_back("the capture has changed since it was approved");
+    if (machine.empty()) return;
+    // Of older sidecars the capture is not known.
+    result.only_machine_changed = !look && !capture && !sources.look.empty() && !sources.capture.empty() &&
+                                  !approved.sources.look.empty() && !approved.sources.capture.empty();
+    result.changes.push_back((result.only_machine_changed ? "only the machine differs: " : "the machine differs: ") +
+                             machine);
+}
+
 /// The image against one approved image.
 void compare_with(const ApprovedImage& approved, const CompareRules& rules, const RenderedImage& rendered,
-                  const std::string& look_hash, const GoldenEnvironment& environment, GoldenImage& result) {
+                  const GoldenSources& sources, const GoldenEnvironment& environment, GoldenImage& result) {
     result.approved = approved;
     result.comparison = compare_files(approved.file, rendered.file, rules);
     result.bits_equal = has_equal_bits(*result.comparison);
@@ -35,12 +56,18 @@ void compare_with(const ApprovedImage& approved, const CompareRules& rules, cons
         result.verdict = std::max(result.verdict, approved.sidecar_fault->verdict);
         result.reasons.push_back(approved.sidecar_fault->text);
     }
-    result.exact_tier = approved.sidecar && !look_hash.empty() && approved.sidecar->look_hash == look_hash &&
+    result.exact_tier = approved.sidecar && !sources.look.empty() &&
+                        approved.sidecar->sources.look == sources.look &&
                         approved.sidecar->environment.equals(environment);
-    if (!result.exact_tier || result.bits_equal) return;
-    result.verdict = std::max(result.verdict, Verdict::warning);
-    result.reasons.push_back("bits differ although renderer, driver, CPU, look and effects are those of " +
-                             approved.file.filename().string());
+    if (result.bits_equal) return;
+    if (approved.sidecar) find_changes(*approved.sidecar, sources, environment, result);
+    if (result.exact_tier) {
+        result.verdict = std::max(result.verdict, Verdict::warning);
+        result.reasons.push_back("bits differ although renderer, driver, CPU, look and effects are those of " +
+                                 approved.file.filename().string());
+    }
+    if (result.verdict != Verdict::same)
+        result.reasons.insert(result.reasons.end(), result.changes.begin(), result.changes.end());
 }
 
 /// The layer to look at: that of the worst verdict, of equal ones the first with colours.
@@ -165,7 +192,7 @@ bool has_equal_bits(const Comparison& comparison) {
                                [](const LayerComparison& layer) { return layer.differences.bits_equal; });
 }
 
-GoldenImage judge_image(const GoldenCase& test, const RenderedImage& rendered, const std::string& look_hash,
+GoldenImage judge_image(const GoldenCase& test, const RenderedImage& rendered, const GoldenSources& sources,
                         const GoldenEnvironment& environment, ReportPictures* pictures) {
     const std::vector<ApprovedImage> approved = approved_images(test.goldens, rendered.name, environment);
     GoldenImage best;
@@ -173,7 +200,7 @@ GoldenImage judge_image(const GoldenCase& test, const RenderedImage& rendered, c
     const auto [rules, fault] = rules_or_fault(test, rendered.frame);
     for (const ApprovedImage& candidate : approved) {
         GoldenImage result;
-        compare_with(candidate, rules, rendered, look_hash, environment, result);
+        compare_with(candidate, rules, rendered, sources, environment, result);
         own_bits_differ |= result.exact_tier && !result.bits_equal;
         if (!best.approved || result.verdict < best.verdict) best = std::move(result);
         if (best.verdict == Verdict::same || (own_bits_differ && best.verdict == Verdict::warning)) break;

@@ -112,31 +112,62 @@ TEST_F(Suite, FindsGoldensThatNoCaseGives) {
 // ---- environments and approved images ----
 
 const GoldenEnvironment kHere = {"osmesa", "llvmpipe (LLVM 15.0.6, 256 bits)",
-                                 "4.5 (Core Profile) Mesa 22.3.6", "AMD EPYC", true};
+                                 "4.5 (Core Profile) Mesa 22.3.6", "AMD EPYC", true,
+                                 "x86-64 with FMA"};
 
-TEST(GoldenEnvironment, IsOneByRendererMesaAndCpu) {
+TEST(GoldenEnvironment, IsOneByRendererMesaAndInstructions) {
     EXPECT_EQ(kHere.mesa(), "22.3.6");
     EXPECT_EQ(kHere.llvm(), "15.0.6");
-    EXPECT_EQ(kHere.key(), "llvmpipe-256-bits-22.3.6-amd-epyc");
+    EXPECT_EQ(kHere.key(), "llvmpipe-22.3.6-x86-64-with-fma");
     GoldenEnvironment other = kHere;
     other.backend = "egl-software";
     EXPECT_TRUE(kHere.equals(other)) << "both draw by the same code";
-    for (std::string GoldenEnvironment::*field :
-         {&GoldenEnvironment::renderer, &GoldenEnvironment::version, &GoldenEnvironment::cpu}) {
-        other = kHere;
-        other.*field = "Mesa 25.0.1";
-        EXPECT_FALSE(kHere.equals(other));
-        EXPECT_NE(kHere.key(), other.key());
-    }
+    other.cpu = "Intel Xeon";
+    other.renderer = "llvmpipe (LLVM 15.0.6, 128 bits)";
+    EXPECT_TRUE(kHere.equals(other)) << "neither the maker nor the width of the vectors decides a bit";
+    EXPECT_EQ(kHere.key(), other.key());
+    const auto changed = [](std::string GoldenEnvironment::*field, const std::string& value) {
+        GoldenEnvironment environment = kHere;
+        environment.*field = value;
+        EXPECT_NE(environment.key(), kHere.key());
+        return environment.difference(kHere);
+    };
+    EXPECT_EQ(changed(&GoldenEnvironment::version, "4.5 (Core Profile) Mesa 25.0.7-2"),
+              "Mesa 25.0.7-2 instead of 22.3.6");
+    EXPECT_EQ(changed(&GoldenEnvironment::renderer, "softpipe"),
+              "the renderer softpipe instead of llvmpipe");
+    EXPECT_EQ(changed(&GoldenEnvironment::instructions, "x86-64 without FMA"),
+              "a processor of x86-64 without FMA instead of x86-64 with FMA");
+    other = kHere;
+    other.renderer = "llvmpipe (LLVM 19.1.7, 256 bits)";
+    EXPECT_EQ(other.difference(kHere), "LLVM 19.1.7 instead of 15.0.6");
+}
+
+TEST(GoldenEnvironment, OfOldFormIsOneByItsProcessor) {
+    GoldenEnvironment old = kHere;
+    old.instructions.clear();
+    EXPECT_TRUE(kHere.equals(old));
+    old.cpu = "Intel Xeon";
+    EXPECT_EQ(kHere.difference(old), "the processor AMD EPYC instead of Intel Xeon");
+}
+
+TEST(GoldenEnvironment, OfHardwareIsOneByItsDriver) {
+    const GoldenEnvironment card = {"egl", "NVIDIA H100", "4.6.0 NVIDIA 580.159", "AMD EPYC", false, ""};
+    GoldenEnvironment other = card;
+    other.cpu = "Intel Xeon";
+    EXPECT_TRUE(card.equals(other));
+    other.version = "4.6.0 NVIDIA 570.1";
+    EXPECT_EQ(card.difference(other), "the driver 4.6.0 NVIDIA 580.159 instead of 4.6.0 NVIDIA 570.1");
 }
 
 TEST(ApprovedImages, ComeWithTheOwnRenderersFirst) {
     TemporaryFolder folder;
     GoldenEnvironment intel = kHere;
     intel.cpu = "Intel Xeon";
+    intel.instructions = "x86-64 without FMA";
     const auto approve = [&](const std::string& name, const GoldenEnvironment& environment) {
         write_text(folder / (name + ".exr"), name);
-        GoldenSidecar sidecar{environment, "aftershade golden approve x", "hash",
+        GoldenSidecar sidecar{environment, "aftershade golden approve x", {"hash", "files"},
                               file_hash(folder / (name + ".exr"))};
         write_text(folder / (name + ".json"), sidecar_text(sidecar));
     };
@@ -150,7 +181,8 @@ TEST(ApprovedImages, ComeWithTheOwnRenderersFirst) {
     EXPECT_EQ(images[1].key, "");
     EXPECT_EQ(images[2].key, "aaa");
     ASSERT_TRUE(images[0].sidecar);
-    EXPECT_EQ(images[0].sidecar->look_hash, "hash");
+    EXPECT_EQ(images[0].sidecar->sources.look, "hash");
+    EXPECT_EQ(images[0].sidecar->sources.capture, "files");
     EXPECT_EQ(images[0].sidecar->environment.cpu, "AMD EPYC");
     EXPECT_TRUE(images[0].sidecar->environment.software);
 
@@ -170,7 +202,7 @@ TEST(ApprovedImages, KnowSidecarsOfOldForm) {
     ASSERT_TRUE(images.at(0).sidecar);
     EXPECT_TRUE(images[0].sidecar->environment.equals(kHere));
     EXPECT_TRUE(images[0].sidecar->environment.software);
-    EXPECT_EQ(images[0].sidecar->look_hash, "");
+    EXPECT_EQ(images[0].sidecar->sources.look, "");
 }
 
 TEST(LookHash, ChangesWithTheLookItsManifestAndEveryShaderAndWithNothingElse) {

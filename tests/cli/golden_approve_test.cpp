@@ -20,7 +20,7 @@ protected:
                       bool software) {
         GoldenSidecar sidecar;
         sidecar.environment = {"egl", renderer, "4.5 (Core Profile) Mesa 22.3.6", cpu, software};
-        sidecar.look_hash = "0";
+        sidecar.sources.look = "0";
         sidecar.image_hash = file_hash(image(name));
         write_text(sidecar_path(image(name)), sidecar_text(sidecar));
     }
@@ -61,11 +61,12 @@ TEST_F(GoldenApprove, SaysBesideEachGoldenWhatMadeIt) {
     approve();
     const Json sidecar = Json::parse(read_text(sidecar_path(image("lens.color.0001"))));
     const Json environment = report()["environment"];
-    for (const char* key : {"backend", "renderer", "version", "mesa", "llvm", "cpu", "software"})
+    for (const char* key : {"backend", "renderer", "version", "mesa", "llvm", "cpu", "instructions", "software"})
         EXPECT_EQ(sidecar[key], environment[key]) << key;
     EXPECT_EQ(sidecar["command"], "aftershade golden approve golden.json");
     EXPECT_EQ(sidecar["image_hash"], file_hash(image("lens.color.0001")));
-    EXPECT_EQ(sidecar["look_hash"], case_of(report(), "lens")["look_hash"]);
+    for (const char* key : {"look_hash", "capture_hash"})
+        EXPECT_EQ(sidecar[key], case_of(report(), "lens")[key]) << key;
 }
 
 TEST_F(GoldenApprove, RenewsSidecarsWhereBitsAreEqualOnlyWhenAsked) {

@@ -6,6 +6,8 @@
 #include <thread>
 
 #include "framework/file/png_file.h"
+#include "framework/batch/approved_image.h"
+#include "tests/backends.h"
 #include "tests/cli/golden_suite.h"
 
 namespace aftershade::test {
@@ -142,17 +144,69 @@ TEST_F(GoldenRun, GivesTheSameBitsOnBothBackendsWithAnyThreadsAndVectors) {
     approve();
     EXPECT_TRUE(all_bits_equal(report({"-j", "1"})));
     EXPECT_TRUE(all_bits_equal(report({"-j", "2"}, {{"LP_NUM_THREADS", "1"}})));
-    const Json egl = report({"--backend", "egl-software"});
-    EXPECT_EQ(egl["environment"]["backend"], "egl-software");
-    EXPECT_TRUE(all_bits_equal(egl));
-    EXPECT_EQ(egl["cases"][0]["images"][0]["tier"], "bits") << "one driver under both";
+    for (const char* backend : {"egl-software", "osmesa"}) {
+        if (!gpu::why_not(*gpu::parse_backend(backend)).empty()) continue;
+        const Json one = report({"--backend", backend});
+        EXPECT_EQ(one["environment"]["backend"], "software");
+        EXPECT_TRUE(all_bits_equal(one)) << backend;
+        EXPECT_EQ(one["cases"][0]["images"][0]["tier"], "bits") << "one driver under both";
+    }
     const Json narrow = report({}, {{"LP_NATIVE_VECTOR_WIDTH", "128"}});
     ASSERT_NE(narrow["environment"]["renderer"].get<std::string>().find("128 bits"), std::string::npos);
     EXPECT_TRUE(all_bits_equal(narrow));
+    EXPECT_EQ(narrow["cases"][0]["images"][0]["tier"], "bits") << "the width decides no bit";
     EXPECT_EQ(narrow["exit_code"], 0);
 }
 
 // ---- tiers and verdicts ----
+
+TEST_F(GoldenRun, TellsAnotherMachineFromAChangedLookAndAChangedCapture) {
+    approve();
+    const auto says = [&](const std::string& text) {
+        const CommandResult result = run();
+        EXPECT_EQ(result.exit_code, 2) << result.err;
+        EXPECT_NE(result.err.find(text), std::string::npos) << result.err;
+        return case_of(report(), "corner")["images"][0];
+    };
+    const auto edit_sidecar = [&](const std::string& key, const std::string& value) {
+        const fs::path file = folder_ / "goldens/corner.color.0001.json";
+        Json sidecar = Json::parse(read_text(file));
+        sidecar[key] = value;
+        sidecar["image_hash"] = file_hash(image("corner.color.0001"));
+        write_text(file, sidecar.dump());
+    };
+    change_image(image("corner.color.0001"), [](Image& pixels) { pixels.floats()[0] += 1; });
+    edit_sidecar("version", "4.5 (Core Profile) Mesa 9.2.1");
+    Json seen = says("corner.color.0001: only the machine differs: Mesa ");
+    EXPECT_EQ(seen["only_machine_changed"], true);
+    EXPECT_NE(run().err.find("to keep this machine's image too: aftershade golden approve golden.json "
+                             "--filter corner --add"),
+              std::string::npos);
+    edit_sidecar("look_hash", "0123456789abcdef");
+    seen = says("corner.color.0001: the look or an effect has changed since it was approved");
+    EXPECT_EQ(seen["only_machine_changed"], false);
+    EXPECT_EQ(seen["changes"].size(), 2u) << seen["changes"];
+    edit_sidecar("look_hash", case_of(report(), "corner")["look_hash"]);
+    edit_sidecar("version", report()["environment"]["version"]);
+    write_frame(1, 29);
+    seen = says("corner.color.0001: the capture has changed since it was approved");
+    EXPECT_EQ(seen["changes"].size(), 1u) << seen["changes"];
+}
+
+TEST_F(GoldenRun, CountsWhatPassesByItsToleranceAlone) {
+    approve();
+    change_image(image("corner.color.0001"), [](Image& pixels) { pixels.floats()[0] += 0.001f; });
+    const fs::path file = folder_ / "goldens/corner.color.0001.json";
+    Json sidecar = Json::parse(read_text(file));
+    sidecar["version"] = "4.5 (Core Profile) Mesa 9.2.1";
+    sidecar["image_hash"] = file_hash(image("corner.color.0001"));
+    write_text(file, sidecar.dump());
+    const CommandResult result = run();
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.err.find("1 image within tolerance, but with other bits: only the machine differs: Mesa "),
+              std::string::npos)
+        << result.err;
+}
 
 TEST_F(GoldenRun, WarnsOfAnyBitWhereNothingThatChangesBitsHasChanged) {
     write_suite(R"("fail": 100)");
@@ -162,8 +216,8 @@ TEST_F(GoldenRun, WarnsOfAnyBitWhereNothingThatChangesBitsHasChanged) {
     EXPECT_EQ(result.exit_code, 1) << result.err;
     EXPECT_NE(result.err.find("WARNING corner"), std::string::npos) << result.err;
     EXPECT_NE(result.err.find("bits differ although"), std::string::npos) << result.err;
-    EXPECT_EQ(run({"--filter", "corner"}, {{"LP_NATIVE_VECTOR_WIDTH", "128"}}).exit_code, 0)
-        << "another renderer has the tolerance";
+    EXPECT_EQ(run({"--filter", "corner"}, {{"GALLIUM_OVERRIDE_CPU_CAPS", "sse2"}}).exit_code, 0)
+        << "another machine has the tolerance";
 }
 
 TEST_F(GoldenRun, HoldsAGoldenThatWasCopiedByHandToItsToleranceAlone) {
@@ -307,7 +361,20 @@ TEST_F(GoldenRun, EndsWith64ForWrongWordsAndDocuments) {
 TEST_F(GoldenRun, NeedsGl) {
     const CommandResult result = run({}, without_gl(folder_ / "no_gl"));
     EXPECT_EQ(result.exit_code, 4) << result.err;
-    EXPECT_NE(result.err.find("osmesa"), std::string::npos) << result.err;
+    for (const char* backend : {"egl-software: ", "osmesa: "})
+        EXPECT_NE(result.err.find(backend), std::string::npos) << result.err;
+}
+
+TEST_F(GoldenRun, TakesTheSoftwareBackendThatIsThereAsOneRenderer) {
+    SKIP_WITHOUT(gpu::Backend::egl_software);
+    SKIP_WITHOUT(gpu::Backend::osmesa);
+    approve();
+    for (const char* hidden : {"libOSMesa", "libEGL"}) {
+        const CommandResult result = run({"--json"}, without_gl(folder_ / hidden, {hidden}));
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        EXPECT_EQ(result.err.find("install"), std::string::npos) << result.err;
+        EXPECT_EQ(Json::parse(result.out).at("environment").at("backend").get<std::string>(), "software");
+    }
 }
 
 TEST_F(GoldenRun, HasAnImageForEachOutputTapAndFrame) {

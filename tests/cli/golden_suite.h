@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "framework/file/exr_file.h"
@@ -43,7 +44,7 @@ protected:
 
     CommandResult golden(std::vector<std::string> words, Environment environment = {}) {
         words.insert(words.begin(), "golden");
-        environment.try_emplace("AFTERSHADE_BACKEND", "osmesa");
+        environment.try_emplace("AFTERSHADE_BACKEND", "software");
         return run_aftershade(words, folder_.path(), environment);
     }
     CommandResult run(std::vector<std::string> words = {}, const Environment& environment = {}) {
@@ -63,10 +64,10 @@ protected:
         return folder_ / ("goldens/" + name + ".exr");
     }
 
-    static const Json& case_of(const Json& report, const std::string& name) {
+    static const Json& case_of(const Json& report, std::string_view name) {
         for (const Json& test : report["cases"])
             if (test["name"] == name) return test;
-        throw std::runtime_error("no case " + name);
+        throw std::runtime_error("no case " + std::string(name));
     }
     static const Json& colors_of(const Json& image) {
         for (const Json& layer : image["comparison"]["layers"])
