@@ -7,9 +7,12 @@
 
 namespace aftershade::cli {
 
+std::string backend_help(const std::string& by_default) {
+    return "GL backend, one of " + gpu::backend_names() + " (default: $AFTERSHADE_BACKEND, else " + by_default + ")";
+}
+
 void add_backend_option(CLI::App& app, std::string& backend) {
-    app.add_option("--backend", backend,
-                   "GL backend: auto, egl, egl-software or osmesa (default: $AFTERSHADE_BACKEND, else auto)");
+    app.add_option("--backend", backend, backend_help("auto"));
 }
 
 gpu::Backend chosen_backend(const std::string& option) {
@@ -19,8 +22,8 @@ gpu::Backend chosen_backend(const std::string& option) {
     const auto backend = gpu::parse_backend(name);
     if (!backend)
         throw Error(ExitCode::usage, std::string(from_environment ? "AFTERSHADE_BACKEND" : "--backend") +
-                                         ": '" + name +
-                                         "' is not one of 'auto', 'egl', 'egl-software' or 'osmesa'");
+                                         ": '" + name + "' is not one of " +
+                                         gpu::backend_names());
     return *backend;
 }
 

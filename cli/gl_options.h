@@ -11,6 +11,9 @@ class App;
 
 namespace aftershade::cli {
 
+/// What the option's line says; `by_default` names a backend.
+std::string backend_help(const std::string& by_default);
+
 void add_backend_option(CLI::App& app, std::string& backend);
 
 /// The option's, else that of $AFTERSHADE_BACKEND, else auto. Throws Error(ExitCode::usage) for an unknown

@@ -45,8 +45,8 @@ std::string line_of_git(const fs::path& folder, const std::vector<std::string>& 
 
 gpu::Backend backend_of(const GoldenOptions& options) {
     const char* environment = std::getenv("AFTERSHADE_BACKEND");
-    // Goldens are made on OSMesa unless someone says otherwise, not on what is at hand.
-    if (options.backend.empty() && !(environment && *environment)) return gpu::Backend::osmesa;
+    // Goldens are made on software GL unless someone says otherwise, not on the GPU that is at hand.
+    if (options.backend.empty() && !(environment && *environment)) return gpu::Backend::software;
     try {
         return chosen_backend(options.backend);
     } catch (const Error& error) {
@@ -90,9 +90,7 @@ void add_shared_golden_options(CLI::App& app, GoldenOptions& options) {
     app.add_option("--plugin-path", options.plugin_paths,
                    "Search this folder for native plug-ins; repeatable")
         ->allow_extra_args(false);
-    app.add_option(
-        "--backend", options.backend,
-        "GL backend: auto, egl, egl-software or osmesa (default: $AFTERSHADE_BACKEND, else osmesa)");
+    app.add_option("--backend", options.backend, backend_help("software"));
 }
 
 GoldenSetup prepare_golden(const GoldenOptions& options) {
@@ -118,8 +116,8 @@ GoldenSetup prepare_golden(const GoldenOptions& options) {
     {
         const gpu::Context context(backend);
         run.environment = environment_of(context.info());
+        run.render.backend = gpu::backend_name(context.info().backend);
     }
-    run.render.backend = run.environment.backend;
 
     std::vector<std::string> same;
     for (const std::string& path : options.effect_paths) same.insert(same.end(), {"--effect-path", path});

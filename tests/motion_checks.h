@@ -114,7 +114,7 @@ struct SuzanneInMotion {
         return {display_psnr_db(truth, picture), display_psnr_db_where(changed, truth, picture)};
     }
     Psnr through(const std::string& effect, const std::string& params = "") const {
-        LookRunner runner(look_of_step(effect, params), gpu::Backend::osmesa);
+        LookRunner runner(look_of_step(effect, params), gpu::Backend::software);
         FrameInputs frame;
         frame.capture = &capture;
         frame.previous = &before;

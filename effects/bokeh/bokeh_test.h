@@ -28,7 +28,7 @@ inline std::string lens(double radius_px, int width_px) {
 }
 
 inline Image color(const Capture& capture, const std::string& params,
-                   gpu::Backend backend = gpu::Backend::osmesa) {
+                   gpu::Backend backend = gpu::Backend::software) {
     return LookRunner(look(params), backend).color(capture);
 }
 

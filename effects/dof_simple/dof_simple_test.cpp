@@ -26,7 +26,7 @@ std::string lens(double radius_px, int width_px) {
 }
 
 FrameResult run(const Capture& capture, const std::string& params,
-                gpu::Backend backend = gpu::Backend::osmesa) {
+                gpu::Backend backend = gpu::Backend::software) {
     LookRunner runner(R"({"aftershade": 1, "steps": [{"effect": "dof_simple", "params": {)" + params + "}}]}",
                       backend, {"dof_simple.coc"});
     return runner.run(capture);

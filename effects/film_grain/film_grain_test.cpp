@@ -18,7 +18,7 @@ using Uvec3 = std::array<std::uint32_t, 3>;
 Image grained(const Capture& capture, const std::string& params, const std::string& name = "grain") {
     const std::string look = R"({"aftershade": 1, "steps": [{"name": ")" + name +
                              R"(", "effect": "film_grain", "params": {)" + params + "}}]}";
-    return LookRunner(look, gpu::Backend::osmesa).color(capture);
+    return LookRunner(look, gpu::Backend::software).color(capture);
 }
 
 Capture grey(float light, int frame = 1) {

@@ -12,7 +12,7 @@ namespace aftershade::test::motion_blur {
 inline constexpr double kExposure = 0.5;  // frames, of the default shutter_angle
 
 inline Image blur(const Capture& capture, const std::string& params = "") {
-    LookRunner runner(look_of_step("motion_blur", params), gpu::Backend::osmesa);
+    LookRunner runner(look_of_step("motion_blur", params), gpu::Backend::software);
     return runner.color(capture);
 }
 

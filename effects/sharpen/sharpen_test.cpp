@@ -17,7 +17,7 @@ constexpr int kWidth = 48, kHeight = 32;
 Image sharpened(const Capture& capture, const std::string& params) {
     const std::string look =
         R"({"aftershade": 1, "steps": [{"effect": "sharpen", "params": {)" + params + "}}]}";
-    return LookRunner(look, gpu::Backend::osmesa).color(capture);
+    return LookRunner(look, gpu::Backend::software).color(capture);
 }
 
 /// Soft waves, a hard edge to a lamp, and a little light below 0.

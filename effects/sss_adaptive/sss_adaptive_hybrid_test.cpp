@@ -35,7 +35,7 @@ std::string profile() {
 }
 
 LookRunner runner(const std::string& more, std::vector<std::string> taps = {}) {
-    return LookRunner(scattering_step(kEffect, profile(), more), gpu::Backend::osmesa, std::move(taps));
+    return LookRunner(scattering_step(kEffect, profile(), more), gpu::Backend::software, std::move(taps));
 }
 
 int pixels_that_differ(const Image& a, const Image& b) {

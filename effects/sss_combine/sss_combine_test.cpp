@@ -9,6 +9,7 @@
 #include "framework/scene/renderer.h"
 #include "tests/pipeline/effect_fixture.h"
 #include "tests/scene/scene_text.h"
+#include "tests/backends.h"
 
 namespace aftershade::test::sss_combine {
 namespace {
@@ -39,7 +40,7 @@ std::string with(const std::string& effect, const std::string& texturing, const 
 
 /// "scatter" stands for an effect that scatters: half the light, and half the next pixel's. From column 16 on
 /// it leaves the light as it is.
-class SssCombine : public testing::TestWithParam<gpu::Backend> {
+class SssCombine : public gpu::OnSoftware {
 protected:
     SssCombine() {
         effects_.add("scatter",
@@ -182,10 +183,7 @@ TEST_P(SssCombine, MakesTheRenderersPictureOfItsScatteredLight) {
     EXPECT_GT(farthest, 0.1) << "the scene scatters";
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, SssCombine, testing::Values(gpu::Backend::osmesa, gpu::Backend::egl_software),
-                         [](const auto& backend) {
-                             return backend.param == gpu::Backend::osmesa ? "OsMesa" : "EglSoftware";
-                         });
+ON_SOFTWARE_BACKENDS(SssCombine);
 
 }  // namespace
 }  // namespace aftershade::test::sss_combine

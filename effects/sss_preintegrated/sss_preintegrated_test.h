@@ -22,7 +22,7 @@ constexpr double kPi = 3.14159265358979323846;
 inline Image scattered(const Capture& capture, const std::string& params) {
     LookRunner runner(
         R"({"aftershade": 1, "steps": [{"effect": "sss_preintegrated", "params": {)" + params + "}}]}",
-        gpu::Backend::osmesa, {"sss_preintegrated.irradiance"});
+        gpu::Backend::software, {"sss_preintegrated.irradiance"});
     return runner.run(capture).taps.at("sss_preintegrated.irradiance");
 }
 

@@ -27,7 +27,7 @@ TEST(SssPrepare, MultipliesLightByThePartOfTheAlbedoThatScatters) {
         LookRunner runner(
             R"({"aftershade": 1, "steps": [{"effect": "sss_prepare", "params": {"texturing": ")" +
                 std::string(texturing) + R"("}}]})",
-            gpu::Backend::osmesa, {"sss_prepare.irradiance"});
+            gpu::Backend::software, {"sss_prepare.irradiance"});
         const Image light = runner.run(capture).taps.at("sss_prepare.irradiance");
         for (int y = 0; y < 8; ++y)
             for (int x = 0; x < 24; ++x)

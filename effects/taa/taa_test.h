@@ -20,7 +20,7 @@ class TaaRun {
 public:
     explicit TaaRun(const std::string& params = "")
         : runner_(R"({"aftershade": 1, "steps": [{"effect": "taa", "params": {)" + params + "}}]}",
-                  gpu::Backend::osmesa, {"taa.motion", "taa.age"}) {}
+                  gpu::Backend::software, {"taa.motion", "taa.age"}) {}
 
     /// Of the next frame; `cut`: it begins a shot.
     const FrameResult& next(const Capture& capture, bool cut = false) {

@@ -45,7 +45,7 @@ Capture thin() {
 Image transmitted(const Capture& capture, const std::string& params = "") {
     LookRunner runner(
         R"({"aftershade": 1, "steps": [{"effect": "transmittance", "params": {)" + params + "}}]}",
-        gpu::Backend::osmesa, {"transmittance.irradiance"});
+        gpu::Backend::software, {"transmittance.irradiance"});
     return runner.run(capture).taps.at("transmittance.irradiance");
 }
 

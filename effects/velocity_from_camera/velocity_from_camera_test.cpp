@@ -22,7 +22,7 @@ class VelocityRunner {
 public:
     explicit VelocityRunner(const std::string& step = "")
         : runner_(R"({"aftershade": 1, "steps": [{"effect": "velocity_from_camera")" + step + "}]}",
-                  gpu::Backend::osmesa, {"velocity_from_camera.velocity"}) {}
+                  gpu::Backend::software, {"velocity_from_camera.velocity"}) {}
     Image run(const Capture& capture, bool begins_shot = false) {
         FrameInputs frame;
         frame.capture = &capture;

@@ -20,7 +20,7 @@ inline std::string look(const std::string& params, const std::string& rest = "",
 
 inline Image shown(const Capture& capture, const std::string& params, const std::string& rest = "",
                    const std::string& before = "") {
-    return LookRunner(look(params, rest, before), gpu::Backend::osmesa).run(capture).images.at("display");
+    return LookRunner(look(params, rest, before), gpu::Backend::software).run(capture).images.at("display");
 }
 
 inline DisplayColor at(const Image& image, int x, int y) {

@@ -7,9 +7,11 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "framework/core/error.h"
 #include "framework/core/memory_limit.h"
+#include "framework/core/text.h"
 #include "framework/gpu/context_impl.h"
 #include "framework/gpu/egl_current.h"
 #include "framework/gpu/egl_platform.h"
@@ -22,6 +24,13 @@ namespace aftershade::gpu {
 namespace {
 
 constexpr std::array kBackends = {Backend::egl, Backend::egl_software, Backend::osmesa};
+constexpr std::array kChoices = {Backend::automatic, Backend::egl, Backend::software, Backend::egl_software,
+                                 Backend::osmesa};
+
+bool takes(Backend chosen, Backend candidate) {
+    return chosen == candidate || chosen == Backend::automatic ||
+           (chosen == Backend::software && candidate != Backend::egl);
+}
 constexpr std::size_t kMaxErrors = 16;
 constexpr std::size_t kMaxDebugText = 255;
 /// What OpenGL must have of the address space. With less, Mesa 22.3 crashes, or waits for threads that it
@@ -34,8 +43,8 @@ thread_local Context::Impl* current = nullptr;
 /// An Error that keeps its reasons apart, for probe_backends().
 class Refusal : public Error {
 public:
-    explicit Refusal(std::vector<std::pair<Backend, std::string>> reasons)
-        : Error(ExitCode::gl, text(reasons)), reasons_(std::move(reasons)) {}
+    explicit Refusal(std::vector<std::pair<Backend, std::string>> reasons, std::string_view remedy)
+        : Error(ExitCode::gl, text(reasons) + std::string(remedy)), reasons_(std::move(reasons)) {}
     const std::string& last_reason() const { return reasons_.back().second; }
 
 private:
@@ -70,13 +79,31 @@ void GLAD_API_PTR on_debug_message(GLenum, GLenum type, GLuint, GLenum, GLsizei 
                                 : std::string(message, static_cast<std::size_t>(length)));
 }
 
+/// Of the two software backends, the other one, if it works here: both draw the same bits.
+std::string other_software_backend(Backend refused) {
+    if (refused != Backend::egl_software && refused != Backend::osmesa) return "";
+    const Backend other = refused == Backend::osmesa ? Backend::egl_software : Backend::osmesa;
+    try {
+        const Context::Impl context(other);
+    } catch (const Error&) {
+        return "";
+    }
+    return fmt::format("\n  '{}' works here and draws the same bits; '{}' takes whichever is there",
+                       backend_name(other), backend_name(Backend::software));
+}
+
 }  // namespace
 
 std::optional<Backend> parse_backend(std::string_view name) {
-    for (Backend backend : {Backend::automatic, Backend::egl, Backend::egl_software, Backend::osmesa}) {
+    for (const Backend backend : kChoices)
         if (name == backend_name(backend)) return backend;
-    }
     return std::nullopt;
+}
+
+std::string backend_names() {
+    std::vector<std::string> names;
+    for (const Backend backend : kChoices) names.emplace_back(backend_name(backend));
+    return joined(names, ", ");
 }
 
 std::string_view backend_name(Backend backend) {
@@ -84,6 +111,7 @@ std::string_view backend_name(Backend backend) {
         case Backend::egl: return "egl";
         case Backend::egl_software: return "egl-software";
         case Backend::osmesa: return "osmesa";
+        case Backend::software: return "software";
         case Backend::automatic: break;
     }
     return "auto";
@@ -123,7 +151,7 @@ Context::Context(Backend backend, SelfTest when) {
     require_address_space(kContextBytes, "OpenGL");
     std::vector<std::pair<Backend, std::string>> reasons;
     for (Backend candidate : kBackends) {
-        if (backend != Backend::automatic && backend != candidate) continue;
+        if (!takes(backend, candidate)) continue;
         try {
             impl_ = std::make_unique<Impl>(candidate);
             impl_->is_untested = true;
@@ -135,7 +163,7 @@ Context::Context(Backend backend, SelfTest when) {
             reasons.emplace_back(candidate, error.what());
         }
     }
-    throw Refusal(std::move(reasons));
+    throw Refusal(std::move(reasons), other_software_backend(backend));
 }
 
 Context::~Context() = default;

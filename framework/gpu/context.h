@@ -12,15 +12,18 @@ struct GladGLContext;
 
 namespace aftershade::gpu {
 
-/// Which library and which kind of renderer. `automatic` tries the three others in this order.
-enum class Backend { automatic, egl, egl_software, osmesa };
+/// Which library and which kind of renderer. `automatic` tries egl, egl_software and osmesa in this order, and
+/// `software` the last two, which draw the same bits.
+enum class Backend { automatic, egl, egl_software, osmesa, software };
 
-/// "auto", "egl", "egl-software", "osmesa"; nullopt for anything else.
+/// "auto", "egl", "software", "egl-software", "osmesa"; nullopt for anything else.
 std::optional<Backend> parse_backend(std::string_view name);
 std::string_view backend_name(Backend backend);
+/// What parse_backend() takes, for messages: "auto, egl, software, egl-software, osmesa".
+std::string backend_names();
 
 struct ContextInfo {
-    Backend backend = Backend::automatic;  ///< never `automatic` in a made context
+    Backend backend = Backend::automatic;  ///< never `automatic` or `software` in a made context
     std::string renderer;                  ///< GL_RENDERER
     std::string version;                   ///< GL_VERSION
     std::string vendor;                    ///< GL_VENDOR
@@ -74,8 +77,8 @@ enum class SelfTest { now, at_first_use };
 /// selects]
 class Context {
 public:
-    /// Throws Error(ExitCode::gl) that lists each backend tried and why it was refused, and
-    /// Error(ExitCode::memory) where a limit leaves too little address space.
+    /// Throws Error(ExitCode::gl) that lists each backend tried, why it was refused, and a software backend
+    /// that works in its place, and Error(ExitCode::memory) where a limit leaves too little address space.
     explicit Context(Backend backend, SelfTest when = SelfTest::now);
     /// On EGL, sharing textures, buffers and fences with a context of the caller's, which must outlive this
     /// one. Throws as the other.

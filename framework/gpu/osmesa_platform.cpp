@@ -34,7 +34,8 @@ using OsmesaContext = void*;
 
 void* osmesa_library() {
     static void* const handle =
-        open_library({"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"}, "libosmesa6");
+        open_library({"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"},
+                     "libosmesa6 (Debian up to 13; Mesa 25.1 and later have no OSMesa)");
     return handle;
 }
 

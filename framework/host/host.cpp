@@ -37,7 +37,7 @@ void check_host_options(const HostOptions& options) {
         check_folder(folder, "HostOptions::profile_paths", faults);
     for (const fs::path& folder : options.plugin_paths)
         check_folder(folder, "HostOptions::plugin_paths", faults);
-    if (int(options.backend) < int(Backend::automatic) || int(options.backend) > int(Backend::osmesa))
+    if (int(options.backend) < int(Backend::automatic) || int(options.backend) > int(Backend::software))
         faults.error({"HostOptions::backend"}, fmt::format("{} is not a backend", int(options.backend)));
     if (options.share && (!options.share->display || !options.share->context))
         faults.error({"HostOptions::share"}, "display and context may not be null");
@@ -62,7 +62,8 @@ gpu::Backend internal_backend(Backend backend) {
 static_assert(int(Backend::automatic) == int(gpu::Backend::automatic) &&
               int(Backend::egl) == int(gpu::Backend::egl) &&
               int(Backend::egl_software) == int(gpu::Backend::egl_software) &&
-              int(Backend::osmesa) == int(gpu::Backend::osmesa));
+              int(Backend::osmesa) == int(gpu::Backend::osmesa) &&
+              int(Backend::software) == int(gpu::Backend::software));
 
 }  // namespace
 

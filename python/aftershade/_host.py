@@ -90,7 +90,7 @@ class Host:
     :param effect_paths: folders of effects, searched before the shipped ones
     :param profile_paths: folders of producers' profiles, likewise
     :param plugin_paths: folders of native plug-ins, whose code runs in this process
-    :param backend: "auto", "egl", "egl-software" or "osmesa"; by default $AFTERSHADE_BACKEND, else "auto"
+    :param backend: "auto", "egl", "software", "egl-software" or "osmesa"; by default $AFTERSHADE_BACKEND, else "auto"
     :param cache: folder for compiled programs; by default nothing is kept
     :param max_side_px: images with a longer side are refused, from 1 to 65536
     :param max_image_bytes: likewise, of the channels of one file

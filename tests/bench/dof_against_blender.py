@@ -19,7 +19,7 @@ def main():
     run_effect(name, source, ours, params, WORK)  # fills the program cache and the file cache
     extra = [w for folder in effect_folders()[:-1] for w in ("--effect-path", str(folder))]
     walls, _ = in_turns({
-        "aftershade": [AFTERSHADE, "run", WORK / f"{name}.json", source, "-o", ours, "--backend", "osmesa", "--progress", "none", *extra],
+        "aftershade": [AFTERSHADE, "run", WORK / f"{name}.json", source, "-o", ours, "--backend", "software", "--progress", "none", *extra],
         "blender": blender_words("dof_blender.py", source, theirs)})
     truth = read_exr(CAPTURES / "suzanne/truth/dof_0004.exr", ["R", "G", "B"])
     for label, file in ("aftershade", ours), ("blender", theirs):

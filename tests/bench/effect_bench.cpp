@@ -160,7 +160,7 @@ int run() {
     std::vector<std::filesystem::path> folders;
     for (const std::string folder : job.at("effects")) folders.emplace_back(folder);
     EffectRegistry effects(folders);
-    gpu::Context context(gpu::Backend::osmesa);
+    gpu::Context context(gpu::Backend::software);
     gpu::Buffer counts(context, kCountWords * sizeof(std::uint32_t), "counts");
     json results = json::array();
     std::optional<Capture> read;

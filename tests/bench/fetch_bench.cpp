@@ -110,7 +110,7 @@ public:
             diagnostics.print(faults);
             throw std::runtime_error(faults.str());
         }
-        gpu::Context context(gpu::Backend::osmesa);
+        gpu::Context context(gpu::Backend::software);
         gpu::Buffer records(context, kBufferBytes, "records");
         PipelineRenderer renderer(context, pipeline, job_.at("data").get<std::string>());
         Capture capture = read_capture();

@@ -18,7 +18,7 @@ def effect_ms(said, with_transfers=True):
 
 
 def run_words(source, target):
-    return [AFTERSHADE, "run", WORK / "motion_blur.json", source, "-o", target, "--backend", "osmesa"]
+    return [AFTERSHADE, "run", WORK / "motion_blur.json", source, "-o", target, "--backend", "software"]
 
 
 def flat(name, speed_px):

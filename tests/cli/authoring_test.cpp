@@ -37,12 +37,12 @@ TEST_F(Authoring, NewMakesAnEffectThatRunsAtOnceAndPassesItsCheck) {
     write_capture(make_capture({.width = 64, .height = 36, .background = {0.5f, 0.5f, 0.5f}}),
                   folder_ / "in_0001.exr");
     command({"run", "vignette2/look.json", "in_0001.exr", "--effect-path", ".", "-o", "out.exr", "--backend",
-             "osmesa"});
+             "software"});
     const std::vector<std::string> channels{"R"};
     const Image out = ExrFile(folder_ / "out.exr").read_floats(0, channels);
     EXPECT_NEAR(out.at(32, 18, 0), 0.5f, 1e-3f);
     EXPECT_LT(out.at(0, 0, 0), 0.12f);
-    const CommandResult checked = command({"check", "vignette2", "--strict", "--backend", "osmesa"});
+    const CommandResult checked = command({"check", "vignette2", "--strict", "--backend", "software"});
     EXPECT_EQ(checked.out, "vignette2: 0 errors, 0 warnings\n");
     EXPECT_NE(made.out.find("aftershade run ./vignette2/look.json CAPTURE --effect-path . -o out.png"),
               std::string::npos);
@@ -55,7 +55,7 @@ TEST_F(Authoring, NewPrintsCommandsThatAShellTakesWhateverTheFoldersName) {
     ASSERT_TRUE(std::regex_search(made.out, run, std::regex("Run it: +aftershade (.*) CAPTURE (.*)\n")));
     ASSERT_TRUE(std::regex_search(made.out, check, std::regex("Check it: aftershade (.*)\n")));
     const auto in_shell = [&](const std::string& words) {
-        Command shell({"/bin/sh", "-c", "exec '" AFTERSHADE_EXECUTABLE "' " + words + " --backend osmesa"},
+        Command shell({"/bin/sh", "-c", "exec '" AFTERSHADE_EXECUTABLE "' " + words + " --backend software"},
                       folder_.path());
         const CommandResult result = shell.wait();
         EXPECT_EQ(result.exit_code, 0) << words << "\n" << result.err;
@@ -83,7 +83,7 @@ TEST_F(Authoring, WatchMakesThePictureAnewAtEverySaveAndWaitsFaultsOut) {
     write_capture(make_capture({.width = 480, .height = 270, .background = {0.5f, 0.5f, 0.5f}}),
                   folder_ / "in_0001.exr");
     Command watch({AFTERSHADE_EXECUTABLE, "run", "mine/look.json", "in_0001.exr", "--effect-path", ".", "-o",
-                   "out.png", "--backend", "osmesa", "--watch"},
+                   "out.png", "--backend", "software", "--watch"},
                   folder_.path());
     ASSERT_TRUE(watch.wait_for_lines(1));
     const std::string first = read_text(folder_ / "out.png");
@@ -125,7 +125,7 @@ TEST_F(Authoring, WatchMakesThePictureAnewWhenAModuleChanges) {
     write_capture(make_capture({.width = 64, .height = 36, .background = {0.5f, 0.5f, 0.5f}}),
                   folder_ / "in_0001.exr");
     Command watch({AFTERSHADE_EXECUTABLE, "run", "mine/look.json", "in_0001.exr", "--effect-path", ".", "-o",
-                   "out.png", "--backend", "osmesa", "--watch"},
+                   "out.png", "--backend", "software", "--watch"},
                   folder_.path(), {{"AFTERSHADE_DATA", (folder_ / "data").string()}});
     ASSERT_TRUE(watch.wait_for_lines(1));
     const std::string first = read_text(folder_ / "out.png");
@@ -165,7 +165,7 @@ TEST_F(Authoring, WatchTakesTheNamesOfObjectsFromEachLook) {
                R"({"aftershade": 1, "steps": [{"effect": "dof_simple", "params": {"focus_distance": 2,
                    "focal_length": 50, "sensor_width": 36, "f_number": 0.1}}]})");
     Command watch({AFTERSHADE_EXECUTABLE, "run", "look.json", "in_0001.exr", "-o", "out.exr", "--backend",
-                   "osmesa", "--watch"},
+                   "software", "--watch"},
                   folder_.path());
     ASSERT_TRUE(watch.wait_for_lines(1));
     const std::string blurred = read_text(folder_ / "out.exr");
@@ -196,7 +196,7 @@ TEST_F(Authoring, CheckReportsEveryKindOfFaultWithItsPlace) {
         write_text(folder_ / "mine/mine.frag", shader);
         write_text(folder_ / "mine/effect.json", manifest);
         replace(file, before, after);
-        return command({"check", "mine", "--backend", "osmesa"}, 1).err;
+        return command({"check", "mine", "--backend", "software"}, 1).err;
     };
     EXPECT_TRUE(std::regex_search(fault("mine/mine.frag", "param.strength", "param.strenth"),
                                   std::regex("mine\\.frag:7:\\d+: error: .*strenth")));

@@ -29,7 +29,7 @@ const std::string kBrighterSuzanne = R"({"aftershade": 1, "steps": [
 CommandResult run_look(const TemporaryFolder& folder, const std::string& look, Args args) {
     write_text(folder / "look.json", look);
     args.insert(args.begin(), {"run", (folder / "look.json").string()});
-    args.insert(args.end(), {"--progress", "plain", "--backend", "osmesa"});
+    args.insert(args.end(), {"--progress", "plain", "--backend", "software"});
     return run_aftershade(args, folder.path());
 }
 

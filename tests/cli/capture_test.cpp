@@ -46,7 +46,7 @@ void main() {
 CommandResult run(const TemporaryFolder& folder, const std::string& look, Args args) {
     write_text(folder / "look.json", look);
     args.insert(args.begin(), {"run", (folder / "look.json").string()});
-    args.insert(args.end(), {"--progress", "none", "--backend", "osmesa"});
+    args.insert(args.end(), {"--progress", "none", "--backend", "software"});
     return run_aftershade(args, folder.path());
 }
 
@@ -288,7 +288,7 @@ TEST(Alpha, ThatIsZeroEverywhereIsSaidAndCanBeReadAsOne) {
                   "--progress",
                   "plain",
                   "--backend",
-                  "osmesa"};
+                  "software"};
         args.insert(args.end(), more.begin(), more.end());
         write_text(folder / "look.json", kEmptyLook);
         const CommandResult result = run_aftershade(args, folder.path());

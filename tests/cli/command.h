@@ -144,10 +144,10 @@ inline std::vector<std::string> aftershade_words(std::vector<std::string> argume
     return arguments;
 }
 
-/// On OSMesa unless `environment` or an argument says otherwise.
+/// On software GL unless `environment` or an argument says otherwise.
 inline CommandResult run_aftershade(const std::vector<std::string>& arguments,
                                     const std::filesystem::path& folder, Environment environment = {}) {
-    environment.try_emplace("AFTERSHADE_BACKEND", "osmesa");
+    environment.try_emplace("AFTERSHADE_BACKEND", "software");
     return Command(aftershade_words(arguments), folder, environment).wait();
 }
 
@@ -160,12 +160,14 @@ inline std::map<std::string, std::string> contents(const std::filesystem::path& 
     return files;
 }
 
-/// Makes dlopen of every GL library fail.
-inline Environment without_gl(const std::filesystem::path& folder) {
+/// Makes dlopen of GL libraries fail whose names begin with one of `hidden`.
+inline Environment without_gl(const std::filesystem::path& folder,
+                              const std::vector<std::string>& hidden = {"libOSMesa", "libEGL"}) {
     std::filesystem::create_directories(folder);
-    for (const char* library :
+    for (const std::string library :
          {"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so", "libEGL.so.1", "libEGL.so"})
-        write_text(folder / library, "");
+        for (const std::string& name : hidden)
+            if (library.starts_with(name)) write_text(folder / library, "");
     return {{"LD_LIBRARY_PATH", folder.string()}};
 }
 

@@ -44,7 +44,7 @@ protected:
 
 TEST_F(EffectMessages, CheckGivesAnEffectOfDisplayItsPicture) {
     write_effect("invert", "display", "vec4(1.0 - c.rgb * param.strength, c.a)");
-    EXPECT_EQ(command({"check", "invert", "--backend", "osmesa"}).out, "invert: 0 errors, 0 warnings\n");
+    EXPECT_EQ(command({"check", "invert", "--backend", "software"}).out, "invert: 0 errors, 0 warnings\n");
 }
 
 TEST_F(EffectMessages, RunOffersTheNameThatWasMeantAsCheckDoes) {
@@ -55,10 +55,10 @@ TEST_F(EffectMessages, RunOffersTheNameThatWasMeantAsCheckDoes) {
         "dim/main.frag:3:86: error: 'param.strenght' is not a parameter of the effect; did you mean "
         "'strength'?\n";
     const CommandResult run = command(
-        {"run", "look.json", "in_0001.exr", "--effect-path", ".", "-o", "out.exr", "--backend", "osmesa"}, 5);
+        {"run", "look.json", "in_0001.exr", "--effect-path", ".", "-o", "out.exr", "--backend", "software"}, 5);
     EXPECT_NE(run.err.find(hint), std::string::npos) << run.err;
     EXPECT_NE(run.err.find("cannot access field"), std::string::npos) << run.err;
-    const CommandResult check = command({"check", "dim", "--backend", "osmesa"}, 1);
+    const CommandResult check = command({"check", "dim", "--backend", "software"}, 1);
     EXPECT_NE(check.err.find(hint), std::string::npos) << check.err;
 }
 
@@ -78,10 +78,10 @@ TEST_F(EffectMessages, NameAWriteThatIsNotDeclaredAndWhatWasMeant) {
         write_text(folder_ / "dim/effect.json", changed);
     };
     const auto expect_both = [&](const std::string& message, int run_code) {
-        const CommandResult check = command({"check", "dim", "--backend", "osmesa"}, 1);
+        const CommandResult check = command({"check", "dim", "--backend", "software"}, 1);
         EXPECT_NE(check.err.find(message), std::string::npos) << check.err;
         const CommandResult run = command(
-            {"run", "look.json", "in_0001.exr", "--effect-path", ".", "-o", "out.exr", "--backend", "osmesa"},
+            {"run", "look.json", "in_0001.exr", "--effect-path", ".", "-o", "out.exr", "--backend", "software"},
             run_code);
         EXPECT_NE(run.err.find(message), std::string::npos) << run.err;
     };
@@ -117,7 +117,7 @@ TEST_F(EffectMessages, NameTheCycleOfStepsAndOfPassesWithTheWayOut) {
 
 TEST_F(EffectMessages, CheckPutsEachFaultOfAShaderOnItsOwnLine) {
     write_effect("dim", "color", "mixx(c, param.strength) + clamp(1, vec2(0), 2.0)");
-    const CommandResult check = command({"check", "dim", "--backend", "osmesa"}, 1);
+    const CommandResult check = command({"check", "dim", "--backend", "software"}, 1);
     int faults = 0;
     for (const std::string& line : lines_of_text(check.err)) {
         EXPECT_EQ(line.find('?'), std::string::npos) << line;

@@ -23,7 +23,7 @@ protected:
             "submit", "--to", farm, "trail.json", "in_####.exr", "-o", "out/f_####.exr", "--folder", "job"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         for (const char* word :
-             {"--", "--effect-path", "effects", "--backend", "osmesa", "--pixel-type", "float"})
+             {"--", "--effect-path", "effects", "--backend", "software", "--pixel-type", "float"})
             arguments.push_back(word);
         arguments.insert(arguments.end(), run_options.begin(), run_options.end());
         CommandResult result = run_aftershade(arguments, folder_.path());

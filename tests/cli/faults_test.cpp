@@ -230,7 +230,7 @@ TEST(OutputFaults, AFullDiskKeepsTheOlderFileWhole) {
     // A limit on the size of files stands for a disk without space: both make write() fail.
     const CommandResult result =
         Command({"/bin/sh", "-c", "ulimit -f 16; exec \"$0\" \"$@\"", AFTERSHADE_EXECUTABLE, "run",
-                 "view.json", "noise.exr", "-o", "out.exr", "--progress", "none", "--backend", "osmesa"},
+                 "view.json", "noise.exr", "-o", "out.exr", "--progress", "none", "--backend", "software"},
                 work.path())
             .wait();
     EXPECT_EQ(result.exit_code, int(ExitCode::output));
@@ -280,7 +280,7 @@ TEST_P(Interrupted, LeavesWholeFilesOnly) {
     const auto before = contents(work.path());
     Command command(
         aftershade_words({"run", "bokeh.json", "many_####.exr", "-o", "out_####.exr", "--progress", "none"}),
-        work.path(), {{"AFTERSHADE_BACKEND", "osmesa"}});
+        work.path(), {{"AFTERSHADE_BACKEND", "software"}});
     ASSERT_TRUE(command.wait_for_lines(2));
     command.send(GetParam());
     const CommandResult result = command.wait();

@@ -205,7 +205,7 @@ TEST_F(Jobs, AnOutputThatCannotBeWrittenEndsTheRun) {
 TEST_F(Jobs, AnInterruptPrintsTheCommandThatGoesOn) {
     write_frames(1, 80, 320, 180);
     Command command({AFTERSHADE_EXECUTABLE, "run", "spread.json", "in_####.exr", "-o", "many/f_####.exr",
-                     "--effect-path", "effects", "--backend", "osmesa", "--jobs", "2"},
+                     "--effect-path", "effects", "--backend", "software", "--jobs", "2"},
                     folder_.path());
     while (!fs::exists(folder_ / "many/f_0003.exr"))
         std::this_thread::sleep_for(std::chrono::milliseconds(5));

@@ -57,7 +57,7 @@ protected:
     /// Red in the middle, where the lamp is, and at the left, where it is not.
     std::pair<float, float> rendered(const std::string& look, const std::string& capture) {
         command({"run", look, capture, "--effect-path", "effects", "--frames", "1", "-o", "out.exr",
-                 "--pixel-type", "float", "--backend", "osmesa"});
+                 "--pixel-type", "float", "--backend", "software"});
         const Image out = ExrFile(folder_ / "out.exr").read_floats(0, std::vector<std::string>{"R"});
         return {out.at(16, 9, 0), out.at(1, 9, 0)};
     }
@@ -85,7 +85,7 @@ TEST_F(CapturesWithLayers, DrawAWarningWhereColorChangesBeforeTheyAreRead) {
     const auto warning = [&](const std::string& steps, const std::string& capture) {
         write_text(folder_ / "look.json", R"({"aftershade": 1, "steps": [)" + steps + "]}");
         return command({"run", "look.json", capture, "--effect-path", "effects", "-o", "out.exr", "--backend",
-                        "osmesa", "--overwrite", "--progress", "none"})
+                        "software", "--overwrite", "--progress", "none"})
             .err;
     };
     const std::string grade = R"({"effect": "color_grade"})", reveal = R"({"effect": "reveal"})";
@@ -101,7 +101,7 @@ TEST_F(CapturesWithLayers, KeepTheChannelsOfADeepFileFlatAndThoseOfSeveralFilesN
     command({"render", "scene.json", "-o", "layers", "--layers", "2", "--frames", "1"});
     command({"render", "scene.json", "-o", "deep", "--deep", "--frames", "1"});
     write_text(folder_ / "none.json", R"({"aftershade": 1, "steps": [{"effect": "sanitize"}]})");
-    const std::vector<std::string> keep = {"--keep-channels", "--backend", "osmesa", "-o", "kept.exr"};
+    const std::vector<std::string> keep = {"--keep-channels", "--backend", "software", "-o", "kept.exr"};
     const auto run = [&](const std::string& capture, int exit_code) {
         std::vector<std::string> words = {"run", "none.json", capture};
         words.insert(words.end(), keep.begin(), keep.end());
@@ -149,7 +149,7 @@ TEST_F(CapturesWithLayers, AreShownByInspect) {
 TEST_F(CapturesWithLayers, AreRenderedAgainWhereALayerChanged) {
     command({"render", "scene.json", "-o", "layers", "--layers", "2"});
     const std::vector<std::string> run = {"run", "reveal.json",  "layers",   "--effect-path", "effects",
-                                          "-o",  "out_####.exr", "--resume", "--backend",     "osmesa"};
+                                          "-o",  "out_####.exr", "--resume", "--backend",     "software"};
     command(run);
     const auto before = fs::last_write_time(folder_ / "out_0001.exr");
     fs::copy_file(folder_ / "layers/gbuffer_0002.exr", folder_ / "layers/layer1_0002.exr",
@@ -161,7 +161,7 @@ TEST_F(CapturesWithLayers, AreRenderedAgainWhereALayerChanged) {
     // A layer that is not there is a frame that is not there.
     fs::remove(folder_ / "layers/layer1_0001.exr");
     EXPECT_NE(command({"run", "reveal.json", "layers", "--effect-path", "effects", "-o", "none_####.exr",
-                       "--backend", "osmesa"},
+                       "--backend", "software"},
                       int(ExitCode::partial))
                   .err.find("layer1_0001.exr"),
               std::string::npos);
@@ -174,7 +174,7 @@ TEST_F(CapturesWithLayers, AreNamedWhereEffectsAreDescribed) {
         json::parse(command({"describe", "reveal", "--effect-path", "effects", "--json"}).out);
     EXPECT_EQ(document["inputs"]["behind"]["layer"], 1);
     const CommandResult checked =
-        command({"check", "reveal", "--effect-path", "effects", "--backend", "osmesa"});
+        command({"check", "reveal", "--effect-path", "effects", "--backend", "software"});
     EXPECT_EQ(checked.out, "reveal: 0 errors, 0 warnings\n");
 }
 

@@ -187,7 +187,7 @@ std::vector<Fault> word_faults() {
         words("AMissingEffectFolder", {"--effect-path", "none"}, "--effect-path none: error: no such folder"),
         words(
             "AnUnknownBackend", {"--backend", "vulkan"},
-            "aftershade: error: --backend: 'vulkan' is not one of 'auto', 'egl', 'egl-software' or 'osmesa'"),
+            "aftershade: error: --backend: 'vulkan' is not one of auto, egl, software, egl-software, osmesa"),
         words("AnUnknownOption", {"--fast"}, ".*--fast.*"),
         words("AnUnknownPixelType", {"--pixel-type", "double"}, "--pixel-type: .*double.*"),
         words("AMaxSizeOfZero", {"--max-size", "0"}, "--max-size: .*"),

@@ -1,5 +1,6 @@
 // A limit of the address space, as farms set it: a picture or exit 7, never a crash.
 #include "tests/cli/batch_work.h"
+#include "tests/backends.h"
 
 namespace aftershade::test {
 namespace {
@@ -43,6 +44,7 @@ protected:
 };
 
 TEST_P(MemoryLimit, GivesThePictureOrTheExitOfItsOwn) {
+    SKIP_WITHOUT(*gpu::parse_backend(GetParam().backend));
     if (!kCanLimit) GTEST_SKIP() << "the address sanitizer needs all of the address space";
     write_frames(1, 1, 480, 270);
     write_text(folder_ / "bokeh.json", R"({ "aftershade": 1, "steps": [ { "effect": "bokeh" } ] })");
@@ -74,7 +76,7 @@ TEST_F(OutOfMemory, AFrameThatDoesNotFitIsNoDamagedFile) {
     const CommandResult result =
         Command({"/bin/sh", "-c", "ulimit -c 0; ulimit -v 700000; exec \"$0\" \"$@\"", AFTERSHADE_EXECUTABLE,
                  "run", "spread.json", "in_0001.exr", "-o", "out.exr", "--effect-path", "effects",
-                 "--backend", "osmesa"},
+                 "--backend", "software"},
                 folder_.path())
             .wait();
     EXPECT_EQ(result.exit_code, int(ExitCode::memory)) << result.err;

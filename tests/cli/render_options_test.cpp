@@ -55,7 +55,7 @@ protected:
 
     CommandResult run(std::vector<std::string> arguments, int exit_code = 0) {
         arguments.insert(arguments.begin(), "run");
-        for (const char* word : {"--effect-path", "effects", "--backend", "osmesa", "--pixel-type", "float"})
+        for (const char* word : {"--effect-path", "effects", "--backend", "software", "--pixel-type", "float"})
             arguments.push_back(word);
         CommandResult result = run_aftershade(arguments, folder_.path());
         EXPECT_EQ(result.exit_code, exit_code) << result.err;

@@ -113,7 +113,7 @@ nlohmann::json visibility_by_gl(const fs::path& folder, const std::string& threa
                   "--visibility-on",
                   "gl",
                   "--backend",
-                  "osmesa",
+                  "software",
                   "--json",
                   "--quiet"};
     words.insert(words.end(), more.begin(), more.end());

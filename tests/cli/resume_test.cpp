@@ -43,7 +43,7 @@ protected:
     static std::vector<std::string> words(const std::string& look, const std::vector<std::string>& more,
                                           const std::string& outputs = "out_####.exr") {
         std::vector<std::string> words{"run",       look + ".json", "in_####.exr", "--effect-path", "effects",
-                                       "--backend", "osmesa",       "-o",          outputs};
+                                       "--backend", "software",       "-o",          outputs};
         words.insert(words.end(), more.begin(), more.end());
         return words;
     }
@@ -268,7 +268,7 @@ TEST_F(Resume, ResumesAfterAKillWithTheSameBits) {
                          frame),
             FramePattern((folder_ / "in_####.exr").string()).path(frame));
     Command command(aftershade_words(words("trail", {"--checkpoint", "5"})), folder_.path(),
-                    {{"AFTERSHADE_BACKEND", "osmesa"}});
+                    {{"AFTERSHADE_BACKEND", "software"}});
     ASSERT_TRUE(command.wait_for_lines(12));
     command.send(SIGKILL);
     EXPECT_EQ(command.wait().exit_code, 128 + SIGKILL);
@@ -294,7 +294,7 @@ TEST_F(Resume, ASecondRunOverTheSameFramesNamesWhoHasThem) {
                              FramePattern((folder_ / "many_####.exr").string()).path(frame));
     std::vector<std::string> all = words("tint", {});
     all[2] = "many_####.exr";
-    Command command(aftershade_words(all), folder_.path(), {{"AFTERSHADE_BACKEND", "osmesa"}});
+    Command command(aftershade_words(all), folder_.path(), {{"AFTERSHADE_BACKEND", "software"}});
     ASSERT_TRUE(command.wait_for_lines(1));
     all.insert(all.end(), {"--frames", "290-320"});
     const CommandResult second = run_aftershade(all, folder_.path());

@@ -38,7 +38,7 @@ TEST_F(FullStdout, IsAnOutputThatCannotBeWrittenForEveryVerb) {
         std::vector<std::string> shell{"/bin/sh", "-c", "exec \"$0\" \"$@\" > /dev/full"};
         for (const std::string& word : aftershade_words(arguments)) shell.push_back(word);
         const CommandResult result =
-            Command(shell, folder_.path(), {{"AFTERSHADE_BACKEND", "osmesa"}}).wait();
+            Command(shell, folder_.path(), {{"AFTERSHADE_BACKEND", "software"}}).wait();
         EXPECT_EQ(result.exit_code, code) << arguments.front() << "\n" << result.err;
         EXPECT_NE(result.err.find("standard output cannot be written: No space left on device"),
                   std::string::npos)

@@ -63,7 +63,7 @@ protected:
 
     CommandResult aftershade(std::vector<std::string> arguments, Environment environment = {}) const {
         arguments.insert(arguments.end(), {"--effect-path", "effects"});
-        environment.try_emplace("AFTERSHADE_BACKEND", "osmesa");
+        environment.try_emplace("AFTERSHADE_BACKEND", "software");
         return run_aftershade(arguments, folder_.path(), environment);
     }
     CommandResult run(const std::vector<std::string>& more, const Environment& environment = {}) const {

@@ -13,6 +13,7 @@
 #include "framework/scene/scatter_points.h"
 #include "tests/glsl/shader_table.h"
 #include "tests/reference/burley.h"
+#include "tests/backends.h"
 
 namespace aftershade::test {
 namespace {
@@ -213,7 +214,7 @@ double u_of(int i) {
     return (i + 0.5) / kCount;
 }
 
-class BurleyShader : public testing::TestWithParam<gpu::Backend> {
+class BurleyShader : public gpu::OnSoftware {
 protected:
     /// The largest error over max(|expected|, floor), of values by i and component.
     static double worst(const Image& got, int components, double floor,
@@ -318,11 +319,7 @@ TEST_P(BurleyShader, MapsMeanFreePathsAsTheTwin) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, BurleyShader,
-                         testing::Values(gpu::Backend::osmesa, gpu::Backend::egl_software),
-                         [](const auto& backend) {
-                             return backend.param == gpu::Backend::osmesa ? "OsMesa" : "EglSoftware";
-                         });
+ON_SOFTWARE_BACKENDS(BurleyShader);
 
 }  // namespace
 }  // namespace aftershade::test

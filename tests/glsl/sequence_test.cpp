@@ -8,6 +8,7 @@
 
 #include "tests/glsl/shader_table.h"
 #include "tests/reference/sequence.h"
+#include "tests/backends.h"
 
 namespace aftershade::test {
 namespace {
@@ -60,7 +61,7 @@ TEST(SequenceTwin, NeverGivesZeroOrOne) {
     EXPECT_EQ(reference::unit_float(0xffffffffu), 1 - 0x1p-24f);
 }
 
-class SequenceShader : public testing::TestWithParam<gpu::Backend> {
+class SequenceShader : public gpu::OnSoftware {
 protected:
     static constexpr int kCount = 4096;
     static Image table(const std::string& expression) {
@@ -96,11 +97,7 @@ TEST_P(SequenceShader, GoesOnBitByBitAsTheTwinForMillionsOfPoints) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, SequenceShader,
-                         testing::Values(gpu::Backend::osmesa, gpu::Backend::egl_software),
-                         [](const auto& backend) {
-                             return backend.param == gpu::Backend::osmesa ? "OsMesa" : "EglSoftware";
-                         });
+ON_SOFTWARE_BACKENDS(SequenceShader);
 
 }  // namespace
 }  // namespace aftershade::test

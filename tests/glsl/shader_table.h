@@ -13,7 +13,7 @@ namespace aftershade::test {
 /// functions.
 inline Image shader_table(const std::string& head, const std::string& expression, int count,
                           const std::string& format = "rgba32f",
-                          gpu::Backend backend = gpu::Backend::osmesa) {
+                          gpu::Backend backend = gpu::Backend::software) {
     EffectFolder effects;
     effects.add("table",
                 R"("inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },

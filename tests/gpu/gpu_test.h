@@ -9,6 +9,7 @@
 
 #include "framework/gpu/commands.h"
 #include "framework/gpu/context.h"
+#include "tests/backends.h"
 
 namespace aftershade::gpu {
 
@@ -19,20 +20,11 @@ void main() {
 }
 )";
 
-/// Empty where `backend` is usable; probed once for the whole run.
-inline std::string why_not(Backend backend) {
-    static const std::vector<BackendReport> reports = probe_backends();
-    for (const BackendReport& report : reports) {
-        if (report.backend == backend) return report.reason;
-    }
-    return "unknown backend";
-}
-
-class SoftwareTest : public testing::TestWithParam<Backend> {
+class SoftwareTest : public OnSoftware {
 protected:
     void SetUp() override {
-        if (const std::string reason = why_not(GetParam()); !reason.empty()) GTEST_SKIP() << reason;
-        context_ = std::make_unique<Context>(GetParam());
+        OnSoftware::SetUp();
+        if (!IsSkipped()) context_ = std::make_unique<Context>(GetParam());
     }
 
     Context& context() { return *context_; }
@@ -57,10 +49,6 @@ private:
     std::unique_ptr<Context> context_;
 };
 
-inline std::string parameter_name(const testing::TestParamInfo<Backend>& info) {
-    return info.param == Backend::osmesa ? "osmesa" : "egl_software";
-}
-
 /// The message of the Error that `action` throws; empty where it throws none.
 template <typename Action>
 std::string error_of(Action action) {
@@ -73,9 +61,3 @@ std::string error_of(Action action) {
 }
 
 }  // namespace aftershade::gpu
-
-#define ON_SOFTWARE_BACKENDS(suite)                                                                \
-    INSTANTIATE_TEST_SUITE_P(                                                                      \
-        Software, suite,                                                                           \
-        testing::Values(aftershade::gpu::Backend::egl_software, aftershade::gpu::Backend::osmesa), \
-        aftershade::gpu::parameter_name)

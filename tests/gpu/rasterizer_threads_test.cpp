@@ -35,7 +35,7 @@ TEST(RasterizerThreads, AreKnownByTheirWholeName) {
 
 /// Ends the process: 0 where a tested context's threads each keep to another core.
 [[noreturn]] void end_as_spread(SelfTest when) {
-    Context context(Backend::osmesa, when);
+    Context context(Backend::software, when);
     context.test_once();
     std::set<int> found;
     int threads = 0;

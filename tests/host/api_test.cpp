@@ -23,10 +23,10 @@ TEST(HostApi, RendersWhatTheProgramWrites) {
     write_file(look, kBlurLook);
     const std::string frame = std::string(AFTERSHADE_SOURCE_DIR) + "/scenes/suzanne";
     ASSERT_EQ(std::system(("\"" AFTERSHADE_EXECUTABLE "\" run " + look + " " + frame + " -o " + out +
-                           " --frames 3 --backend osmesa --pixel-type float --scale 1/4 --progress none")
+                           " --frames 3 --backend software --pixel-type float --scale 1/4 --progress none")
                               .c_str()),
               0);
-    Host host(osmesa());
+    Host host(on_software());
     Look from_file = host.load_look(look);
     const Capture capture = from_file.read(frame, {.scale_divisor = 4});
     const Result result = from_file.render(capture);
@@ -39,7 +39,7 @@ TEST(HostApi, RendersWhatTheProgramWrites) {
 }
 
 TEST(HostApi, ArraysGiveTheBitsOfFiles) {
-    Host host(osmesa());
+    Host host(on_software());
     Look look = host.parse_look(kBlurLook);
     const Capture read =
         look.read(std::string(AFTERSHADE_SOURCE_DIR) + "/scenes/suzanne", {.scale_divisor = 4});
@@ -61,7 +61,7 @@ TEST(HostApi, WritesOverNoDocumentOfItsOwnLookAndKnowsNoOtherHosts) {
     const auto own = folder.path() / "own.png", others = folder.path() / "others.png";
     write_file(own, look);
     write_file(others, look);
-    Host host(osmesa()), other(osmesa());
+    Host host(on_software()), other(on_software());
     other.load_look(others);
     const Result result = host.load_look(own).render(small_capture());
     const WriteOptions color{.roles = {"color"}};

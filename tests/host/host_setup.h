@@ -11,8 +11,8 @@
 
 namespace aftershade::test {
 
-inline host::HostOptions osmesa() {
-    return {.data = AFTERSHADE_SOURCE_DIR, .backend = host::Backend::osmesa};
+inline host::HostOptions on_software() {
+    return {.data = AFTERSHADE_SOURCE_DIR, .backend = host::Backend::software};
 }
 
 inline constexpr const char* kBlurLook = R"({"aftershade": 1, "steps": [

@@ -22,7 +22,7 @@ using namespace aftershade::test;
 /// What a misuse is done to.
 struct Bench {
     TemporaryFolder folder;
-    Host host{osmesa()};
+    Host host{on_software()};
     Look look = host.parse_look(kBlurLook);
     Capture capture = small_capture();
     std::vector<float> pixels = std::vector<float>(48 * 32 * 4, 0.5f);
@@ -315,7 +315,7 @@ TEST(HostMisuse, OfHostsNamesTheOption) {
 }
 
 TEST(HostMisuse, EveryFaultComesAtOnce) {
-    Host host(osmesa());
+    Host host(on_software());
     try {
         host.parse_look(
             R"({"aftershade": 1, "steps": [{"effect": "bokhe"}, {"effect": "bloom", "bad": 1}]})");

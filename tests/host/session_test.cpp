@@ -28,7 +28,7 @@ Capture still(int frame, float brightness) {
 }
 
 TEST(HostSession, RemembersFramesThatFollowOneAnother) {
-    Host host(osmesa());
+    Host host(on_software());
     Look look = host.parse_look(kTemporal);
     ASSERT_TRUE(look.has_history());
     Session session = look.session();
@@ -45,7 +45,7 @@ TEST(HostSession, RemembersFramesThatFollowOneAnother) {
 
 TEST(HostSession, ContinuesFromAFile) {
     const TemporaryFolder folder;
-    Host host(osmesa());
+    Host host(on_software());
     Look look = host.parse_look(kTemporal);
     Session session = look.session();
     session.render(still(1, 1));
@@ -60,14 +60,14 @@ TEST(HostSession, PlaysASequenceAsTheProgramRunsIt) {
     const TemporaryFolder folder;
     const std::string look_file = folder / "look.json", pattern = folder / "f_####.exr";
     write_file(look_file, kTemporal);
-    Host host(osmesa());
+    Host host(on_software());
     Look copy = host.parse_look(R"({"aftershade": 1, "steps": []})");
     for (int frame = 1; frame <= 3; ++frame)
         copy.render(still(frame, 1 + 0.2f * float(frame)))
             .write(pattern, {.roles = {"color", "depth", "velocity"}, .half = false});
     ASSERT_EQ(std::system(("\"" AFTERSHADE_EXECUTABLE "\" run " + look_file + " " + pattern + " -o " +
                            (folder / "out_####.exr").string() +
-                           " --backend osmesa --pixel-type float --progress none")
+                           " --backend software --pixel-type float --progress none")
                               .c_str()),
               0);
     Look look = host.load_look(look_file);
@@ -90,16 +90,16 @@ TEST(HostLook, DrawsTheSameBitsWithAnEmptyCacheAFilledOneAndNone) {
         Host host(options);
         return host.parse_look(kBlurLook).render(small_capture()).image("color");
     };
-    HostOptions cached = osmesa();
+    HostOptions cached = on_software();
     cached.cache = folder.path() / "cache";
-    const Image alone = color(osmesa()), first = color(cached), second = color(cached);
+    const Image alone = color(on_software()), first = color(cached), second = color(cached);
     EXPECT_TRUE(same_bits(alone, first));
     EXPECT_TRUE(same_bits(alone, second));
     EXPECT_FALSE(std::filesystem::is_empty(cached.cache));
 }
 
 TEST(HostLook, GivesItsParametersAndTakesNewValues) {
-    Host host(osmesa());
+    Host host(on_software());
     Look look = host.parse_look(kBlurLook);
     EXPECT_EQ(look.steps(), (std::vector<std::string>{"bokeh", "vignette"}));
     const Image before = look.render(small_capture()).image("color");
@@ -122,7 +122,7 @@ TEST(HostLook, GivesItsParametersAndTakesNewValues) {
 }
 
 TEST(HostLook, GivesTimesStatisticsAndTaps) {
-    Host host(osmesa());
+    Host host(on_software());
     Look look = host.parse_look(kBlurLook, {.taps = {"bokeh.coc"}});
     const Result result = look.render(small_capture(), {.timed = true, .telemetry = true});
     EXPECT_EQ(result.times().front().pass, "upload");
@@ -133,7 +133,7 @@ TEST(HostLook, GivesTimesStatisticsAndTaps) {
 }
 
 TEST(HostEffects, AreWhatTheProgramLists) {
-    Host host(osmesa());
+    Host host(on_software());
     const std::vector<EffectInfo> effects = host.effects();
     ASSERT_GT(effects.size(), 10u);
     for (const EffectInfo& effect : effects) {

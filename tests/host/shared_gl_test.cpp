@@ -18,7 +18,7 @@ using namespace aftershade::test;
 constexpr int kWidth = 48, kHeight = 32;
 
 HostOptions sharing(const OwnEgl& egl) {
-    HostOptions options = osmesa();
+    HostOptions options = on_software();
     options.backend = Backend::automatic;
     options.share = SharedEgl{egl.display, egl.context};
     return options;
@@ -86,7 +86,7 @@ TEST(HostSharedGl, ValuesAreTakenFromTexturesToo) {
 TEST(HostSharedGl, LeavesTheCallersContextCurrentWhateverTheBackend) {
     OwnEgl egl;
     const GLuint mine = egl.texture(GL_RGBA32F, 4, 4);
-    Host host(osmesa());
+    Host host(on_software());
     Look look = host.parse_look(kBlurLook);
     const Image first = look.render(small_capture()).image("color");
     for (int i = 0; i < 3; ++i) {

@@ -56,19 +56,19 @@ void expect_bits_of_one_alone(const HostOptions& options) {
 }
 
 TEST(HostThreads, FourHostsGiveTheBitsOfOneAlone) {
-    expect_bits_of_one_alone(osmesa());
+    expect_bits_of_one_alone(on_software());
 }
 
 TEST(HostThreads, FourHostsOnEglGiveTheBitsOfOneAlone) {
-    HostOptions options = osmesa();
+    HostOptions options = on_software();
     options.backend = Backend::egl_software;
     expect_bits_of_one_alone(options);
 }
 
 TEST(HostThreads, TwoHostsTakeTurnsInOneThread) {
-    HostOptions on_egl = osmesa();
+    HostOptions on_egl = on_software();
     on_egl.backend = Backend::egl_software;
-    Host first(osmesa()), second(on_egl);
+    Host first(on_software()), second(on_egl);
     Look blur = first.parse_look(look_of_thread(0)), grain = second.parse_look(look_of_thread(3));
     const Image blurred = blur.render(small_capture()).image("color");
     const Image grained = grain.render(small_capture()).image("color");
@@ -79,7 +79,7 @@ TEST(HostThreads, TwoHostsTakeTurnsInOneThread) {
 }
 
 TEST(HostThreads, ADetachedHostWorksInTheThreadThatCallsNext) {
-    Host host(osmesa());
+    Host host(on_software());
     Look look = host.parse_look(look_of_thread(0));
     const Image here = look.render(small_capture()).image("color");
     host.detach();
@@ -95,7 +95,7 @@ TEST(HostThreads, ADetachedHostWorksInTheThreadThatCallsNext) {
 TEST(HostThreads, LooksMayDieOnAnyThreadAndAfterTheirHost) {
     std::optional<Look> last;
     {
-        Host host(osmesa());
+        Host host(on_software());
         last.emplace(host.parse_look(look_of_thread(0)));
         last->render(small_capture());
         std::optional<Look> other(host.parse_look(look_of_thread(1)));
@@ -115,7 +115,7 @@ std::size_t resident_bytes() {
 }
 
 TEST(HostThreads, MemoryIsFlatOverManyFrames) {
-    Host host(osmesa());
+    Host host(on_software());
     Look look = host.parse_look(look_of_thread(0));
     std::size_t early = 0;
     for (int frame = 1; frame <= 150; ++frame) {

@@ -26,7 +26,7 @@ TEST(HostVelocity, IsWhatTheProgramPrints) {
                  kNextFrame + " > " + printed)
                     .c_str());
     const auto expected = nlohmann::json::parse(std::ifstream(printed)).at("checks");
-    const Host host(osmesa());
+    const Host host(on_software());
     const std::vector<VelocityCheck> checks = check_velocity(host, kFrame, kNextFrame);
     ASSERT_FALSE(checks.empty());
     ASSERT_EQ(checks.size(), expected.size());
@@ -56,7 +56,7 @@ std::vector<VelocityCheck> check_scaled(const Host& host, float scale_x, float s
 }
 
 TEST(HostVelocity, OfFramesInMemoryTellsAWrongSign) {
-    const Host host(osmesa());
+    const Host host(on_software());
     const auto right = check_scaled(host, 1, 1), reversed = check_scaled(host, -1, -1);
     ASSERT_FALSE(right.empty());
     ASSERT_EQ(right.size(), reversed.size());

@@ -482,7 +482,7 @@ test("copies a command that approves the case", async () => {
   symlinkSync(program, join(bin, "aftershade"));
   const options = {
     cwd: mine,
-    env: { ...process.env, PATH: `${bin}:${process.env.PATH}`, AFTERSHADE_BACKEND: "osmesa" },
+    env: { ...process.env, PATH: `${bin}:${process.env.PATH}`, AFTERSHADE_BACKEND: "software" },
     stdio: "pipe",
   };
   execFileSync("sh", ["-c", command], options);

@@ -14,7 +14,7 @@ import { TINT, tintShader } from "./tint.mjs";
 const root = resolve(import.meta.dirname, "../.."),
   capture = join(root, "scenes/starter/capture.json"), // 240 x 135 px
   folder = mkdtempSync(join(tmpdir(), "aftershade-serve-")),
-  environment = { ...process.env, AFTERSHADE_BACKEND: "osmesa" };
+  environment = { ...process.env, AFTERSHADE_BACKEND: "software" };
 const LOOK = `// Comments and spaces are the author's.
 {
   "aftershade": 1,

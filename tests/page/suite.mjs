@@ -106,7 +106,7 @@ export function golden(folder, ...words) {
   const result = spawnSync(program, ["golden", ...words], {
     cwd: folder,
     encoding: "utf8",
-    env: { ...process.env, AFTERSHADE_BACKEND: "osmesa" },
+    env: { ...process.env, AFTERSHADE_BACKEND: "software" },
   });
   return { code: result.status, err: result.stderr, out: result.stdout };
 }
@@ -114,7 +114,7 @@ export function golden(folder, ...words) {
 function draw(folder, from, to, ...words) {
   const look = join(folder, "nothing.json");
   writeFileSync(look, JSON.stringify({ aftershade: 1, steps: [] }));
-  const result = spawnSync(program, ["run", look, from, "-o", to, "--backend", "osmesa", ...words], {
+  const result = spawnSync(program, ["run", look, from, "-o", to, "--backend", "software", ...words], {
     cwd: folder,
     encoding: "utf8",
   });

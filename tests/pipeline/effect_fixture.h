@@ -82,7 +82,7 @@ private:
 class Bench {
 public:
     Bench(const EffectFolder& effects, const std::string& look, const PipelineOptions& options = {},
-          gpu::Backend backend = gpu::Backend::osmesa)
+          gpu::Backend backend = gpu::Backend::software)
         : bound_(effects, look, options),
           context_(backend),
           renderer_(context_, bound_.pipeline(), std::filesystem::path(AFTERSHADE_SOURCE_DIR)) {

@@ -2,6 +2,7 @@
 #include <cstring>
 
 #include "tests/pipeline/effect_fixture.h"
+#include "tests/backends.h"
 
 namespace aftershade::test {
 namespace {
@@ -43,7 +44,7 @@ struct RunChoices {
     std::vector<std::string> taps{};
 };
 
-class FusionOn : public testing::TestWithParam<gpu::Backend> {
+class FusionOn : public gpu::OnSoftware {
 protected:
     LookRun run(const EffectFolder& effects, const std::string& steps, const RunChoices& choices = {}) {
         PipelineOptions options;
@@ -86,11 +87,7 @@ protected:
 
     EffectFolder none_;
 };
-INSTANTIATE_TEST_SUITE_P(Software, FusionOn,
-                         testing::Values(gpu::Backend::egl_software, gpu::Backend::osmesa),
-                         [](const auto& backend) {
-                             return backend.param == gpu::Backend::osmesa ? "osmesa" : "egl_software";
-                         });
+ON_SOFTWARE_BACKENDS(FusionOn);
 
 /// Shipped effects that take their colour by the pixel, and nothing else that a capture of colour lacks.
 std::vector<const EffectManifest*> pointwise_effects() {

@@ -5,6 +5,7 @@
 
 #include "framework/core/error.h"
 #include "tests/pipeline/effect_fixture.h"
+#include "tests/backends.h"
 
 namespace aftershade::test {
 namespace {
@@ -32,12 +33,8 @@ void expect_everywhere(const Image& image, Rgb expected) {
         }
 }
 
-class RendererOn : public testing::TestWithParam<gpu::Backend> {};
-INSTANTIATE_TEST_SUITE_P(Software, RendererOn,
-                         testing::Values(gpu::Backend::egl_software, gpu::Backend::osmesa),
-                         [](const auto& backend) {
-                             return backend.param == gpu::Backend::osmesa ? "osmesa" : "egl_software";
-                         });
+class RendererOn : public gpu::OnSoftware {};
+ON_SOFTWARE_BACKENDS(RendererOn);
 
 TEST_P(RendererOn, CopiesColorBitForBitThroughAnIdentity) {
     EffectFolder effects;

@@ -43,7 +43,7 @@ protected:
         std::optional<gpu::Context> context;
         int endings = 0;
         RunSetup setup{
-            [&]() -> gpu::Context& { return context ? *context : context.emplace(gpu::Backend::osmesa); },
+            [&]() -> gpu::Context& { return context ? *context : context.emplace(gpu::Backend::software); },
             bound.pipeline(),
             *sequence,
             reader,

@@ -7,11 +7,12 @@
 #include "framework/effect/registry.h"
 #include "framework/pipeline/renderer.h"
 #include "tests/synthetic_capture.h"
+#include "tests/backends.h"
 
 namespace aftershade::test {
 namespace {
 
-class Toys : public testing::TestWithParam<gpu::Backend> {
+class Toys : public gpu::OnSoftware {
 protected:
     static Image run(const std::string& steps, const Capture& capture) {
         const std::filesystem::path root = AFTERSHADE_SOURCE_DIR;
@@ -83,10 +84,7 @@ TEST_P(Toys, SplatForwardWithTheNearestWinning) {
                 ASSERT_EQ(splat.at(x, y, c), expected.at(x, y, c)) << x << " " << y << " " << c;
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, Toys, testing::Values(gpu::Backend::osmesa, gpu::Backend::egl_software),
-                         [](const auto& backend) {
-                             return backend.param == gpu::Backend::osmesa ? "OsMesa" : "EglSoftware";
-                         });
+ON_SOFTWARE_BACKENDS(Toys);
 
 }  // namespace
 }  // namespace aftershade::test

@@ -40,7 +40,7 @@ protected:
         write_text(folder_ / "look.json", look_);
         write_text(folder_ / "secret.txt", "secret");
         std::vector<std::string> words{"serve", "look.json", frames_ > 1 ? "in_####.exr" : "in_0001.exr",
-                                       "--backend", "osmesa"};
+                                       "--backend", "software"};
         words.insert(words.end(), more.begin(), more.end());
         command_.emplace(aftershade_words(words), folder_.path());
         ASSERT_TRUE(command_->wait_for_lines(1)) << command_->wait().err;

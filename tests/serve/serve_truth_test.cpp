@@ -33,7 +33,7 @@ TEST_F(Serve, MeasuresTheColourOfItsStepsAgainstTheTruthBesideTheFrame) {
 
     const CommandResult run =
         run_aftershade({"run", "look.json", "in_0001.exr", "--output-roles", "color", "--pixel-type", "float",
-                        "-o", "out.exr", "--backend", "osmesa"},
+                        "-o", "out.exr", "--backend", "software"},
                        folder_.path());
     ASSERT_EQ(run.exit_code, 0) << run.err;
     const double psnr_db =
@@ -54,7 +54,7 @@ TEST_F(Serve, ShowsHowFarEachPixelIsFromTheTruthAsBrightAsTheExposureMakesIt) {
     write_truth(folder_ / "truth_lens_0001.exr");
     const CommandResult run =
         run_aftershade({"run", "look.json", "in_0001.exr", "--output-roles", "color", "--pixel-type", "float",
-                        "-o", "out.exr", "--backend", "osmesa"},
+                        "-o", "out.exr", "--backend", "software"},
                        folder_.path());
     ASSERT_EQ(run.exit_code, 0) << run.err;
     const Image truth = rgb_in(folder_ / "truth_lens_0001.exr"), made = rgb_in(folder_ / "out.exr");

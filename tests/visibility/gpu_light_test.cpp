@@ -15,8 +15,7 @@ namespace aftershade::visibility {
 namespace {
 
 class LightOn : public gpu::SoftwareTest {};
-INSTANTIATE_TEST_SUITE_P(Backends, LightOn, testing::Values(gpu::Backend::egl_software, gpu::Backend::osmesa),
-                         gpu::parameter_name);
+ON_SOFTWARE_BACKENDS(LightOn);
 
 constexpr glm::ivec2 kLitSize_px(160, 90);
 

@@ -18,9 +18,7 @@ namespace {
 using scene::kNoShading;
 
 class VisibilityOn : public gpu::SoftwareTest {};
-INSTANTIATE_TEST_SUITE_P(Backends, VisibilityOn,
-                         testing::Values(gpu::Backend::egl_software, gpu::Backend::osmesa),
-                         gpu::parameter_name);
+ON_SOFTWARE_BACKENDS(VisibilityOn);
 
 struct Traced {
     std::vector<std::uint32_t> on_cpu;

@@ -42,15 +42,16 @@ namespace aftershade::host {
 
 class Access;
 
-/// Which library makes the context. `automatic` tries the others in this order.
+/// Which library makes the context. `automatic` tries egl, egl_software and osmesa in this order.
 enum class Backend {
     automatic,
     egl,           ///< a GPU
-    egl_software,  ///< llvmpipe
-    osmesa         ///< llvmpipe, through OSMesa
+    egl_software,  ///< llvmpipe, through EGL
+    osmesa,        ///< llvmpipe, through OSMesa, which Mesa has up to 25.0
+    software       ///< egl_software, else osmesa: both draw the same bits
 };
 
-/// "auto", "egl", "egl-software", "osmesa". Never fails.
+/// "auto", "egl", "egl-software", "osmesa", "software". Never fails.
 AFTERSHADE_API const char* backend_name(Backend backend) noexcept;
 
 struct HostLimits {
@@ -74,7 +75,7 @@ struct HostOptions {
 };
 
 struct GlInfo {
-    Backend backend = Backend::automatic;  ///< never `automatic`
+    Backend backend = Backend::automatic;  ///< never `automatic` or `software`
     std::string renderer, version, vendor;
     bool is_software = false;  ///< renders on the CPU
 };
