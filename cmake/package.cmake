@@ -10,13 +10,15 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR})
 set(CPACK_COMPONENTS_ALL runtime library development)
 
-# Mesa's drivers are opened at run time, so that no tool finds these dependencies.
-set(gl_packages "libegl1, libgl1-mesa-dri, libosmesa6")
+# Mesa's drivers are opened at run time, so that no tool finds these dependencies. EGL is on every release; OSMesa, which draws
+# the same, on some.
+set(gl_packages "libegl1, libegl-mesa0, libgl1-mesa-dri")
 set(library_package libaftershade${AFTERSHADE_SOVERSION})
 
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME aftershade)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS ${gl_packages})
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS libosmesa6)
 set(CPACK_COMPONENT_RUNTIME_DESCRIPTION "Shader effects over G-buffer captures, without a display
  The program, its effects, manual pages and completions of shells.")
 
