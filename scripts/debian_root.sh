@@ -1,21 +1,24 @@
-# Sourced by scripts/check-bare-debian and scripts/check-ci-recipes: a Debian 12 that has nothing, made by debootstrap and
-# reaching the package mirror as this machine does. Needs root, debootstrap and about 3 GB.
+# Sourced by scripts that need a Debian that has nothing, made by debootstrap and reaching the package mirror as this machine
+# does. Needs root, debootstrap and about 3 GB.
 #
-#   fresh_root FOLDER       makes FOLDER/root from a fresh copy of FOLDER/pristine, which is kept; sets $root
-#   leave_root              unmounts what fresh_root mounted; for the trap EXIT
-#   in_root COMMAND...      runs it there
+#   fresh_root FOLDER [SUITE]   makes FOLDER/root from a fresh copy of FOLDER/pristine-SUITE, which is kept; sets $root.
+#                               SUITE: bookworm unless given
+#   leave_root                  unmounts what fresh_root mounted; for the trap EXIT
+#   in_root COMMAND...          runs it there
 fresh_root() {
-    local pristine=$1/pristine file
+    local pristine=$1/pristine-${2:-bookworm} file
     root=$1/root
-    [ -e "$pristine/etc/debian_version" ] || debootstrap --variant=minbase bookworm "$pristine" >/dev/null
+    mkdir -p "$1"
+    [ -e "$pristine/complete" ] || { debootstrap --variant=minbase "${2:-bookworm}" "$pristine" >"$pristine.log" && touch "$pristine/complete"; }
     leave_root
     rm -rf --one-file-system "$root"
     cp -a "$pristine" "$root"
     cp /etc/resolv.conf "$root/etc/"
-    # The package mirror and its certificates as this machine reaches them.
-    rm -f "$root/etc/apt/sources.list"
-    for file in /etc/apt/apt.conf.d /etc/apt/sources.list.d/debian.sources /etc/ssl/certs/ca-certificates.crt; do
-        [ -e "$file" ] && mkdir -p "$root/$(dirname "$file")" && cp -a "$file" "$root/$(dirname "$file")/"
+    # The package mirror, PyPI and npm as this machine reaches them; certificates under a name that no package writes.
+    cp -a /etc/apt/apt.conf.d/. "$root/etc/apt/apt.conf.d/"
+    mkdir -p "$root/etc/ssl/certs"
+    for file in /etc/ssl/certs/ca-certificates.crt /etc/ssl/mirror.crt; do
+        cp /etc/ssl/certs/ca-certificates.crt "$root$file"
     done
     mount -t proc proc "$root/proc"
 }
@@ -23,4 +26,5 @@ fresh_root() {
 leave_root() { ! mountpoint -q "$root/proc" || umount "$root/proc"; }
 
 in_root() { chroot "$root" env -i HOME=/root TERM=dumb PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
-                http_proxy="${http_proxy:-}" https_proxy="${https_proxy:-}" "$@"; }
+                http_proxy="${http_proxy:-}" https_proxy="${https_proxy:-}" PIP_CERT=/etc/ssl/mirror.crt \
+                NPM_CONFIG_CAFILE=/etc/ssl/mirror.crt "$@"; }

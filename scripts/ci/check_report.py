@@ -26,7 +26,7 @@ def check_report(folder, verdict, commit):
     expect("verdict", report["verdict"], verdict)
     expect("exit_code", report["exit_code"], EXIT_CODES[verdict])
     expect("commit", report["environment"]["commit"], commit)
-    expect("backend", report["environment"]["backend"], "osmesa")
+    expect("backend", report["environment"]["backend"], "software")
     expect("cases", report["counts"]["cases"], 3)
     expect("cases passed", report["counts"]["passed"], 3 if verdict == "same" else 2)
     expect("cases skipped", report["counts"]["skipped"], 0)

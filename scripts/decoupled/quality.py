@@ -30,7 +30,7 @@ def through(steps, capture, frames=FRAME):
     look, out, telemetry = WORK / "look.json", WORK / "out_####.exr", WORK / "out_####.json"
     look.write_text(json.dumps({"aftershade": 1, "steps": steps}))
     command([AFTERSHADE, "run", look, capture, "--frames", frames, "-o", out, "--telemetry", telemetry, "--overwrite", "--pixel-type", "float",
-             "--compression", "none", "--progress", "none", "--backend", "osmesa", "--no-journal"])
+             "--compression", "none", "--progress", "none", "--backend", "software", "--no-journal"])
     last = int(str(frames).split("-")[-1])
     numbered = lambda path: path.parent / path.name.replace("####", f"{last:04}")
     return read_exr(numbered(out), RGB), json.loads(numbered(telemetry).read_text())

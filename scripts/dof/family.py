@@ -55,7 +55,7 @@ def run_effect(effect, capture, out, params, work, frame=None):
     look.write_text(json.dumps({"aftershade": 1, "steps": [{"effect": effect, "params": params}]}))
     paths = [word for folder in effect_folders()[:-1] for word in ("--effect-path", str(folder))]
     command([AFTERSHADE, "run", look, capture, "-o", out, "--pixel-type", "float", "--compression", "none",
-             "--progress", "none", "--backend", "osmesa", "--no-journal", *(["--frames", frame] if frame else []), *paths])
+             "--progress", "none", "--backend", "software", "--no-journal", *(["--frames", frame] if frame else []), *paths])
     return read_exr(out, ["R", "G", "B"])
 
 

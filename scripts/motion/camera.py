@@ -47,7 +47,7 @@ class Hall:
         look = self.folder / "look.json"
         look.write_text(json.dumps({"aftershade": 1, "steps": [{"effect": effect, "params": params}]}))
         command([AFTERSHADE, "run", look, capture, "-o", self.folder / "out_####.exr", "--pixel-type", "float", "--compression",
-                 "none", "--progress", "none", "--backend", "osmesa"])
+                 "none", "--progress", "none", "--backend", "software"])
         return picture(self.folder / f"out_{FRAME:04}.exr")
 
     def camera_motion_blur(self, **params):

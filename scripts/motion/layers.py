@@ -69,7 +69,7 @@ class Case:
         look = self.folder / "look.json"
         look.write_text(json.dumps({"aftershade": 1, "steps": [{"effect": effect}]}))
         command([AFTERSHADE, "run", look, capture, "-o", self.folder / "out_####.exr", "--pixel-type", "float", "--compression", "none",
-                 "--progress", "none", "--backend", "osmesa"])
+                 "--progress", "none", "--backend", "software"])
         return read_exr(self.folder / f"out_{self.frame:04}.exr", ["R", "G", "B"])
 
     def truth(self, kind):

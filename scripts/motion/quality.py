@@ -33,7 +33,7 @@ def blurred(capture, frame, params):
     look, out = WORK / "look.json", WORK / "out.exr"
     look.write_text(json.dumps({"aftershade": 1, "steps": [{"effect": "motion_blur", "params": params}]}))
     command([AFTERSHADE, "run", look, capture, "--frames", frame, "-o", out, "--pixel-type", "float", "--compression", "none",
-             "--progress", "none", "--backend", "osmesa"])
+             "--progress", "none", "--backend", "software"])
     return read_exr(out, RGB)
 
 

@@ -73,7 +73,7 @@ def ran(work, folder, variant, frames):
     out.mkdir(exist_ok=True)
     look.write_text(json.dumps({"aftershade": 1, "steps": [step]}))
     command([AFTERSHADE, "run", look, folder / "capture.json", "--frames", frames, "-o", out / "####.exr", "--pixel-type",
-             "float", "--compression", "none", "--progress", "none", "--backend", "osmesa"])
+             "float", "--compression", "none", "--progress", "none", "--backend", "software"])
     return lambda frame: read_exr(out / f"{frame:04d}.exr", RGB)
 
 

@@ -40,7 +40,7 @@ export async function serve(capture, { ownEffect = false } = {}) {
     words.push("--effect-path", join(folder, "effects"));
   }
   const server = spawn(process.env.AFTERSHADE_EXECUTABLE, words, {
-    env: { AFTERSHADE_BACKEND: "osmesa", ...process.env },
+    env: { AFTERSHADE_BACKEND: "software", ...process.env },
     stdio: ["ignore", "pipe", "inherit"],
   });
   const address = await new Promise((ready, failed) => {

@@ -49,7 +49,7 @@ def start():
         folder = pathlib.Path(name)
 
         def seconds(cache, verb="run"):
-            words = [AFTERSHADE, verb, look, capture, "--frames", "4", "--backend", "osmesa"]
+            words = [AFTERSHADE, verb, look, capture, "--frames", "4", "--backend", "software"]
             if verb == "run":
                 words += ["--progress", "none", "--overwrite", "-o", folder / "out_####.exr"]
             begin = time.perf_counter()
@@ -70,7 +70,7 @@ def start():
 
 def passes_ms(look, source):
     """By step, the least of three frames."""
-    lines = said([AFTERSHADE, "run", look, source, "--profile", "blender", "--backend", "osmesa", "--overwrite", "-o", WORK / "out.exr"])
+    lines = said([AFTERSHADE, "run", look, source, "--profile", "blender", "--backend", "software", "--overwrite", "-o", WORK / "out.exr"])
     steps = {}
     for step, ms in re.findall(r"^(\w+)\.\S+ +([\d.]+)", lines, re.M):
         steps[step] = steps.get(step, 0) + float(ms)

@@ -50,7 +50,7 @@ def run(name, capture, profile, params, frames, effect="sss_adaptive", taps=("es
     look.write_text(json.dumps({"aftershade": 1, "steps": [
         {"effect": effect, "params": {"scattering_profile": profile, "object_ids": [1]} | params}, *after]}))
     words = [AFTERSHADE, "run", look, capture, "--frames", f"1-{frames}", "-o", folder / "out_####.exr", "--output-roles", roles,
-             "--pixel-type", "float", "--compression", "none", "--progress", "none", "--backend", "osmesa"]
+             "--pixel-type", "float", "--compression", "none", "--progress", "none", "--backend", "software"]
     for tap in taps:
         words += ["--tap", f"{effect}.{tap}"]
     if region:

@@ -42,7 +42,7 @@ def scatter(capture, out, technique, profile, more=(), options=()):
         look.write_text(json.dumps({"aftershade": 1, "steps": [
             {"effect": effect, "params": {"scattering_profile": profile} | dict(more) | params}]}))
         command([AFTERSHADE, "run", look, capture, "-o", out, "--output-roles", "irradiance", "--pixel-type", "float",
-                 "--compression", "none", "--progress", "none", "--backend", "osmesa", *options])
+                 "--compression", "none", "--progress", "none", "--backend", "software", *options])
     return read_exr(out, [f"irradiance.{c}" for c in "RGB"]).astype(numpy.float64)
 
 
