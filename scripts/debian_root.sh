@@ -21,9 +21,14 @@ fresh_root() {
         cp /etc/ssl/certs/ca-certificates.crt "$root$file"
     done
     mount -t proc proc "$root/proc"
+    mkdir -p "$root/dev/shm"
+    mount -t tmpfs tmpfs "$root/dev/shm"
 }
 
-leave_root() { ! mountpoint -q "$root/proc" || umount "$root/proc"; }
+leave_root() {
+    local folder
+    for folder in proc dev/shm; do ! mountpoint -q "$root/$folder" || umount "$root/$folder"; done
+}
 
 in_root() { chroot "$root" env -i HOME=/root TERM=dumb PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
                 http_proxy="${http_proxy:-}" https_proxy="${https_proxy:-}" PIP_CERT=/etc/ssl/mirror.crt \

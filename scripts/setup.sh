@@ -8,6 +8,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/help.sh"
 export LC_ALL=C.UTF-8
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
+# CMake uses a ccache that is installed; on a first build it costs a tenth, so that it is not among these.
 build_packages=(
     cmake ninja-build g++
     python3 python3-glad        # the GL loader is generated when configuring

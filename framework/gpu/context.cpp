@@ -131,6 +131,14 @@ std::vector<BackendReport> probe_backends() {
         reports.push_back(std::move(report));
     }
     if (current) current->release();
+    // The two software backends need not both be there.
+    for (auto [one, other] : {std::pair(1, 2), std::pair(2, 1)}) {
+        const BackendReport& usable = reports[std::size_t(other)];
+        BackendReport& absent = reports[std::size_t(one)];
+        if (usable.usable && !absent.usable)
+            absent.reason = fmt::format("not needed, since {} draws the same bits ({})",
+                                        backend_name(usable.backend), absent.reason);
+    }
     return reports;
 }
 
