@@ -120,7 +120,7 @@ std::string GoldenEnvironment::difference(const GoldenEnvironment& other) const 
     if (!software) return "";
     if (instructions.empty() || other.instructions.empty())
         return instead_of("the processor", cpu, other.cpu);
-    return instead_of("a processor of", instructions, other.instructions);
+    return instead_of("the processor is", instructions, other.instructions);
 }
 
 GoldenEnvironment environment_of(const gpu::ContextInfo& info) {
@@ -217,10 +217,11 @@ std::string cpu_instructions() {
     uname(&system);
     std::string machine = system.machine;
     if (machine != "x86_64") return machine;
-    // Mesa's own switch. All of its values leave FMA out.
-    const char* limit = std::getenv("GALLIUM_OVERRIDE_CPU_CAPS");
+    // Mesa's own switch; its other values leave FMA out.
+    const char* value = std::getenv("GALLIUM_OVERRIDE_CPU_CAPS");
+    const std::string_view limit = value ? value : "";
     const bool fma = (" " + cpu_property("flags") + " ").find(" fma ") != std::string::npos;
-    return fma && !(limit && *limit) ? "x86-64 with FMA" : "x86-64 without FMA";
+    return fma && (limit.empty() || limit == "avx") ? "x86-64 with FMA" : "x86-64 without FMA";
 }
 
 }  // namespace aftershade

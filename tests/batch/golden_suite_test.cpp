@@ -137,7 +137,7 @@ TEST(GoldenEnvironment, IsOneByRendererMesaAndInstructions) {
     EXPECT_EQ(changed(&GoldenEnvironment::renderer, "softpipe"),
               "the renderer softpipe instead of llvmpipe");
     EXPECT_EQ(changed(&GoldenEnvironment::instructions, "x86-64 without FMA"),
-              "a processor of x86-64 without FMA instead of x86-64 with FMA");
+              "the processor is x86-64 without FMA instead of x86-64 with FMA");
     other = kHere;
     other.renderer = "llvmpipe (LLVM 19.1.7, 256 bits)";
     EXPECT_EQ(other.difference(kHere), "LLVM 19.1.7 instead of 15.0.6");

@@ -31,9 +31,9 @@ TEST(HostVelocity, IsWhatTheProgramPrints) {
     ASSERT_FALSE(checks.empty());
     ASSERT_EQ(checks.size(), expected.size());
     for (std::size_t i = 0; i < checks.size(); ++i) {
-        EXPECT_EQ(checks[i].role, expected[i].at("role"));
-        EXPECT_EQ(velocity_verdict_name(checks[i].verdict), expected[i].at("verdict"));
-        EXPECT_EQ(checks[i].sentence, expected[i].at("sentence"));
+        EXPECT_EQ(checks[i].role, expected[i].at("role").get<std::string>());
+        EXPECT_EQ(velocity_verdict_name(checks[i].verdict), expected[i].at("verdict").get<std::string>());
+        EXPECT_EQ(checks[i].sentence, expected[i].at("sentence").get<std::string>());
         EXPECT_EQ(checks[i].score, expected[i].at("score"));
         EXPECT_EQ(checks[i].settings.delta, expected[i].at("settings").at("delta"));
         EXPECT_EQ(checks[i].suggested.delta, expected[i].at("suggested").at("delta"));
