@@ -107,6 +107,7 @@ GoldenSetup prepare_golden(const GoldenOptions& options) {
     run.jobs = options.jobs > 0 ? options.jobs : cores;
     run.filters = options.filters;
     run.no_skip = options.no_skip;
+    run.program = AFTERSHADE_VERSION;
     run.report = options.report;
     run.render.timeout = std::chrono::milliseconds(std::int64_t(options.timeout_s * 1000));
     run.render.threads = std::max(1, cores / run.jobs);
@@ -124,7 +125,6 @@ GoldenSetup prepare_golden(const GoldenOptions& options) {
     for (const std::string& path : options.plugin_paths) same.insert(same.end(), {"--plugin-path", path});
     if (!options.backend.empty()) same.insert(same.end(), {"--backend", options.backend});
     setup.context.with_options = same.empty() ? "" : " " + shell_line(same);
-    setup.context.version = AFTERSHADE_VERSION;
     setup.context.commit = line_of_git(setup.suite.folder(), {"rev-parse", "HEAD"});
     return setup;
 }

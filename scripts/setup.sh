@@ -23,8 +23,9 @@ osmesa_packages=(libosmesa6?)
 without_apt() {
     cat >&2 <<'TEXT'
 This system has no apt, so nothing is installed. Aftershade is built with: CMake 3.23, Ninja, GCC 12 or Clang 16, Python 3 with
-glad 2, and the headers of OpenEXR 3.1, Imath, glm, stb, fmt 9, nlohmann-json 3.11, CLI11 2.3, MurmurHash, tinygltf 2.5, xxHash,
-zlib and, for speed, libdeflate; or newer ones. It runs on EGL with Mesa's llvmpipe or a GPU of OpenGL 4.5. Tests need GoogleTest.
+glad 2, and the headers of OpenEXR 3.1, Imath, glm, stb, fmt 9, nlohmann-json 3.11, CLI11 2.1, MurmurHash, tinygltf 2.5, xxHash,
+zlib and, for speed, libdeflate; or newer ones. It runs on OpenGL 4.5 through EGL (a GPU or Mesa's llvmpipe) or through OSMesa.
+Tests need GoogleTest.
 TEXT
 }
 

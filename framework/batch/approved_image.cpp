@@ -77,7 +77,7 @@ std::optional<GoldenSidecar> read_sidecar(const fs::path& image, std::optional<S
     }
     const auto text = [&](const char* key) {
         const auto found = json.find(key);
-        return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
+        return found != json.end() && found->is_string() ? printable(found->get<std::string>()) : std::string();
     };
     GoldenSidecar sidecar;
     sidecar.environment = {text("backend"), text("renderer"), text("version"), text("cpu"), false};
@@ -87,7 +87,7 @@ std::optional<GoldenSidecar> read_sidecar(const fs::path& image, std::optional<S
                                        : is_software(sidecar.environment.renderer);
     sidecar.environment.instructions = text("instructions");
     sidecar.command = text("command");
-    sidecar.sources = {text("look_hash"), text("capture_hash")};
+    sidecar.sources = {text("look_hash"), text("capture_hash"), text("program")};
     sidecar.image_hash = text("image_hash");
     sidecar.approver = text("approver");
     sidecar.approved = text("approved");
@@ -118,8 +118,11 @@ std::string GoldenEnvironment::difference(const GoldenEnvironment& other) const 
     if (mesa() != other.mesa()) return instead_of("Mesa", mesa(), other.mesa());
     if (llvm() != other.llvm()) return instead_of("LLVM", llvm(), other.llvm());
     if (!software) return "";
-    if (instructions.empty() || other.instructions.empty())
-        return instead_of("the processor", cpu, other.cpu);
+    // A sidecar of old form knows the processor by its name alone, and may be of one that Mesa used in full.
+    if (instructions.empty() || other.instructions.empty()) {
+        const bool limited = (instructions + other.instructions).find("without FMA") != std::string::npos;
+        return limited ? "one processor is without FMA" : instead_of("the processor", cpu, other.cpu);
+    }
     return instead_of("the processor is", instructions, other.instructions);
 }
 
@@ -180,6 +183,7 @@ std::string sidecar_text(const GoldenSidecar& sidecar) {
     json["command"] = sidecar.command;
     json["look_hash"] = sidecar.sources.look;
     json["capture_hash"] = sidecar.sources.capture;
+    json["program"] = sidecar.sources.program;
     json["image_hash"] = sidecar.image_hash;
     if (!sidecar.approver.empty()) json["approver"] = sidecar.approver;
     if (!sidecar.approved.empty()) json["approved"] = sidecar.approved;
@@ -217,11 +221,12 @@ std::string cpu_instructions() {
     uname(&system);
     std::string machine = system.machine;
     if (machine != "x86_64") return machine;
-    // Mesa's own switch; its other values leave FMA out.
-    const char* value = std::getenv("GALLIUM_OVERRIDE_CPU_CAPS");
-    const std::string_view limit = value ? value : "";
+    // Mesa's own switch; it takes no notice of other values, and "avx" leaves FMA in.
+    constexpr std::array<std::string_view, 6> kWithoutFma = {"nosse", "sse", "sse2", "sse3", "ssse3", "sse4.1"};
+    const char* limit = std::getenv("GALLIUM_OVERRIDE_CPU_CAPS");
+    const bool limited = limit && std::ranges::find(kWithoutFma, limit) != kWithoutFma.end();
     const bool fma = (" " + cpu_property("flags") + " ").find(" fma ") != std::string::npos;
-    return fma && (limit.empty() || limit == "avx") ? "x86-64 with FMA" : "x86-64 without FMA";
+    return fma && !limited ? "x86-64 with FMA" : "x86-64 without FMA";
 }
 
 }  // namespace aftershade

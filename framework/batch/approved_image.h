@@ -38,10 +38,11 @@ GoldenEnvironment environment_of(const gpu::ContextInfo& info);
 /// backend, renderer, version, mesa, llvm, cpu, instructions, software.
 nlohmann::ordered_json json_of(const GoldenEnvironment& environment);
 
-/// What a picture is made of, as hashes; "" where one is not known.
+/// What a picture is made of; "" where one is not known.
 struct GoldenSources {
-    std::string look;     ///< of the look and its effects (look_hash.h)
-    std::string capture;  ///< of the capture's files (capture_hash.h)
+    std::string look;     ///< hash of the look, its effects and plug-ins (look_hash.h)
+    std::string capture;  ///< hash of the capture's files and profiles (capture_hash.h)
+    std::string program;  ///< version of Aftershade
 };
 
 /// What made an approved image. Older ones have renderer, version, cpu and backend only.

@@ -1,10 +1,14 @@
 #include "framework/batch/capture_hash.h"
 
+#include <set>
+
 #include "framework/capture/frame_range.h"
 #include "framework/capture/sequence.h"
 #include "framework/core/content_hash.h"
+#include "framework/core/data_path.h"
 #include "framework/core/diagnostics.h"
 #include "framework/core/error.h"
+#include "framework/effect/manifest/manifest.h"
 
 namespace aftershade {
 
@@ -12,36 +16,50 @@ namespace fs = std::filesystem;
 
 namespace {
 
-void add_frame(const Sequence& sequence, int frame, std::vector<fs::path>& files) {
+void add_frame(const Sequence& sequence, int frame, std::set<fs::path>& files) {
     for (std::size_t layer = 0; layer < sequence.layers.size(); ++layer)
         add_frame(sequence_of_layer(sequence, layer), frame, files);
     if (!sequence.layers.empty()) return;
     for (int subframe = 0; subframe < sequence.subframes; ++subframe) {
         const int number = sequence.file_number(frame, subframe);
-        if (!sequence.files.text().empty()) files.push_back(sequence.path_of(number));
-        for (const auto& [role, pattern] : sequence.role_files) files.push_back(pattern.path(number));
+        if (!sequence.files.text().empty()) files.insert(sequence.path_of(number));
+        for (const auto& [role, pattern] : sequence.role_files) files.insert(pattern.path(number));
     }
 }
 
-std::vector<fs::path> files_of(const GoldenCase& test) {
+/// The documents of profiles that the sequence names, of all where it leaves the choice to its files.
+void add_profiles(const Sequence& sequence, std::set<fs::path>& files) {
+    const fs::path folder = data_path() / "profiles";
+    std::set<std::string> names{sequence.profile};
+    for (const LayerSource& layer : sequence.layers) names.insert(layer.profile.value_or(sequence.profile));
+    for (const auto& entry : fs::directory_iterator(folder))
+        if (entry.path().extension() == ".json" &&
+            (names.contains("auto") || names.contains(entry.path().stem().string())))
+            files.insert(entry.path());
+}
+
+std::set<fs::path> files_of(const GoldenCase& test) {
     Diagnostics faults;
     const std::optional<Sequence> sequence = open_sequence(test.capture.string(), faults);
     if (!sequence || faults.has_errors()) return {};
-    std::vector<fs::path> files;
-    if (const auto document = capture_document(test.capture.string())) files.push_back(*document);
+    std::set<fs::path> files;
+    if (const auto document = capture_document(test.capture.string())) files.insert(*document);
     const auto chosen = parse_frame_range(test.frames);
-    for (const int frame : chosen ? *chosen : sequence->frames) add_frame(*sequence, frame, files);
+    for (const int frame : chosen ? *chosen : sequence->frames)
+        for (int away = -kMostFrameOffset; away <= kMostFrameOffset; ++away) add_frame(*sequence, frame + away, files);
+    add_profiles(*sequence, files);
     return files;
 }
 
 }  // namespace
 
 std::string CaptureHasher::hash(const GoldenCase& test) {
+    const std::scoped_lock lock(mutex_);
     try {
         std::string text;
-        for (const fs::path& file : files_of(test)) text += content_of(file);
+        for (const fs::path& file : files_of(test)) text += content_of(file) + "\n";
         return text.empty() ? "" : content_hash(text);
-    } catch (const Error&) {
+    } catch (const std::exception&) {
         return "";  // the worker tells it
     }
 }
@@ -49,7 +67,8 @@ std::string CaptureHasher::hash(const GoldenCase& test) {
 const std::string& CaptureHasher::content_of(const fs::path& file) {
     const auto known = contents_.find(file);
     if (known != contents_.end()) return known->second;
-    return contents_[file] = file_content(file).hash;
+    // A neighbour need not be there.
+    return contents_[file] = fs::exists(file) ? file_content(file).hash : "absent";
 }
 
 }  // namespace aftershade

@@ -3,23 +3,25 @@
 
 #include <filesystem>
 #include <map>
+#include <mutex>
 #include <string>
 
 #include "framework/batch/golden_case.h"
 
 namespace aftershade {
 
-/// Remembers what it read: cases share captures. [one thread at a time]
+/// Remembers what it read: cases share captures. [thread-safe]
 class CaptureHasher {
 public:
-    /// 32 hexadecimal digits over the capture's document and the files of the case's frames, with their roles
-    /// and sub-frames, but without the neighbours that some effects read. "" where one cannot be read.
+    /// 32 hexadecimal digits over the capture's document, the profiles that may read it, and the files of the
+    /// case's frames and of their neighbours, with roles, sub-frames and layers. "" where one cannot be read.
     std::string hash(const GoldenCase& test);
 
 private:
     const std::string& content_of(const std::filesystem::path& file);
 
     std::map<std::filesystem::path, std::string> contents_;
+    std::mutex mutex_;
 };
 
 }  // namespace aftershade

@@ -4,6 +4,7 @@
 #include <list>
 #include <mutex>
 
+#include "framework/batch/capture_hash.h"
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
 #include "framework/core/input_files.h"
@@ -123,6 +124,7 @@ private:
             if (old.environment.equals(sidecar.environment) &&
                 old.environment.instructions == sidecar.environment.instructions &&
                 old.sources.look == sidecar.sources.look && old.sources.capture == sidecar.sources.capture &&
+                old.sources.program == sidecar.sources.program &&
                 old.image_hash == sidecar.image_hash)
                 return;
             // The picture is the one that was looked at then.
@@ -185,17 +187,19 @@ GoldenApproval approve_goldens(const GoldenSuite& suite, const GoldenApproveOpti
     std::error_code absent;
     for (const GoldenCase* test : cases)
         if (fs::is_directory(test->goldens, absent)) prepare_output_folder(test->goldens / test->stem);
-    const std::vector<GoldenSources> sources = sources_of(cases, options.run.render.effect_paths);
+    const std::vector<std::string> looks = look_hashes(cases, options.run.render);
+    CaptureHasher captures;
     approval.cases.resize(cases.size());
     std::mutex telling;
     int done = 0;
     for_each_in_folders(cases.size(), options.run.jobs, [&](std::size_t i, const fs::path& work) {
         GoldenCaseResult& result = approval.cases[i];
         result.test = cases[i];
-        result.sources = sources[i];
+        result.sources = {looks[i], "", options.run.program};
         result.skipped = cases[i]->skip;
         if (interrupt) return;
         if (result.skipped.empty()) {
+            result.sources.capture = captures.hash(*cases[i]);
             const RenderedCase rendered = render_case(*cases[i], options.run.render, work, interrupt);
             if (rendered.interrupted) return;
             result.skipped = rendered.absent;

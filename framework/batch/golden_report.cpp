@@ -64,9 +64,9 @@ bool only_machine_changed(const GoldenCaseResult& test) {
 
 /// What to do about a case that new images could make pass.
 std::string remedy_of(const GoldenCaseResult& test, const GoldenReportContext& context) {
-    const std::string approve = approve_command(context, {test.test->name});
+    const std::string approve = approve_command(context, {&test});
     if (!only_machine_changed(test)) return "to approve: " + approve;
-    return "to keep this machine's image too: " + approve + " --add (or widen the case's tolerance)";
+    return "to keep this machine's image too: " + approve + " (or widen the case's tolerance)";
 }
 
 /// "3 images differ in bits within their tolerance: only the machine differs: Mesa 25.0.7 instead of 22.3.6".
@@ -75,18 +75,18 @@ std::string note_of_tolerated(const GoldenSuiteResult& result) {
     for (const GoldenCaseResult& test : result.cases)
         for (const GoldenImage& image : test.images)
             if (image.verdict == Verdict::same && image.approved && !image.bits_equal)
-                ++counts[image.changes.empty() ? "no sidecar says why" : joined(image.changes, "; ", "; ")];
+                ++counts[image.changes.empty() ? "their sidecars do not say why" : joined(image.changes, "; ", "; ")];
     std::string text;
     for (const auto& [changes, images] : counts)
         text += fmt::format("{} within tolerance, but with other bits: {}\n", counted(images, "image"), changes);
     return text;
 }
 
-std::vector<std::string> cases_to_approve(const GoldenSuiteResult& result) {
-    std::vector<std::string> names;
+std::vector<const GoldenCaseResult*> cases_to_approve(const GoldenSuiteResult& result) {
+    std::vector<const GoldenCaseResult*> cases;
     for (const GoldenCaseResult& test : result.cases)
-        if (can_approve(test)) names.push_back(test.test->name);
-    return names;
+        if (can_approve(test)) cases.push_back(&test);
+    return cases;
 }
 
 std::string junit_case(const GoldenCaseResult& test, const GoldenReportContext& context) {
@@ -189,14 +189,23 @@ Json json_of(const GoldenCaseResult& result, const GoldenReportContext& context)
             {"capture_hash", text_or_null(result.sources.capture)},
             {"command", text_or_null(result.command)},
             {"rerun", golden_command("run", context, {test.name})},
-            {"approve", can_approve(result) ? Json(approve_command(context, {test.name})) : Json(nullptr)},
+            {"approve", can_approve(result) ? Json(approve_command(context, {&result})) : Json(nullptr)},
             {"images", std::move(images)}};
 }
 
 }  // namespace
 
-std::string approve_command(const GoldenReportContext& context, const std::vector<std::string>& cases) {
-    return cases.empty() ? "" : golden_command("approve", context, cases);
+std::string approve_command(const GoldenReportContext& context, const std::vector<const GoldenCaseResult*>& cases) {
+    if (cases.empty()) return "";
+    std::vector<std::string> names;
+    bool keeps_others = false;
+    for (const GoldenCaseResult* test : cases) {
+        names.push_back(test->test->name);
+        for (const GoldenImage& image : test->images)
+            keeps_others |= image.verdict != Verdict::same && image.only_machine_changed;
+    }
+    // Another machine's image is not replaced where nothing but the machine has changed.
+    return golden_command("approve", context, names) + (keeps_others ? " --add" : "");
 }
 
 /// What the verdict of a case did not look at, the most of any image; "" where it looked at everything.
@@ -237,8 +246,8 @@ std::string summary_of(const GoldenSuiteResult& result, const GoldenReportContex
     for (const fs::path& orphan : result.orphans)
         text += fmt::format("\nFAILED {}: no case gives this golden; remove it, or fix the case\n",
                             orphan.string());
-    if (const auto names = cases_to_approve(result); names.size() > 1)
-        text += "\nto approve all: " + approve_command(context, names) + "\n";
+    if (const auto cases = cases_to_approve(result); cases.size() > 1)
+        text += "\nto approve all: " + approve_command(context, cases) + "\n";
     if (const std::string note = note_of_tolerated(result); !note.empty()) text += "\n" + note;
     const Counts counts = count(result);
     return text +
@@ -287,7 +296,7 @@ Json json_of(const GoldenSuiteResult& result, const GoldenReportContext& context
     environment["threads"] = std::thread::hardware_concurrency();
     environment["jobs"] = context.options.jobs;
     environment["commit"] = text_or_null(context.commit);
-    environment["aftershade"] = context.version;
+    environment["aftershade"] = context.options.program;
     Json cases = Json::array(), orphans = Json::array();
     for (const GoldenCaseResult& test : result.cases) cases.push_back(json_of(test, context));
     for (const fs::path& orphan : result.orphans) orphans.push_back(orphan.string());

@@ -13,13 +13,13 @@ namespace aftershade {
 struct GoldenReportContext {
     const GoldenSuite* suite = nullptr;
     GoldenRunOptions options;
-    std::string version;       ///< of aftershade
     std::string commit;        ///< of the folder of the suite; "" where git has none
     std::string with_options;  ///< " --effect-path x": added to approve commands
 };
 
 /// A command for a shell that approves these cases' images; "" for none.
-std::string approve_command(const GoldenReportContext& context, const std::vector<std::string>& cases);
+std::string approve_command(const GoldenReportContext& context,
+                            const std::vector<const GoldenCaseResult*>& cases);
 
 /// What the verdict of a case did not look at, as allowances_of(Comparison) says it; "" where it looked at
 /// everything.

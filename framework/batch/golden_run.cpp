@@ -105,16 +105,15 @@ void for_each_in_folders(std::size_t count, int jobs,
     if (failure) std::rethrow_exception(failure);
 }
 
-std::vector<GoldenSources> sources_of(const std::vector<const GoldenCase*>& cases,
-                                      const std::vector<std::string>& effect_paths) {
-    std::vector<fs::path> folders(effect_paths.begin(), effect_paths.end());
+std::vector<std::string> look_hashes(const std::vector<const GoldenCase*>& cases,
+                                     const GoldenRenderOptions& options) {
+    std::vector<fs::path> folders(options.effect_paths.begin(), options.effect_paths.end());
     const fs::path data = data_path();
     folders.push_back(data / "effects");
-    LookHasher looks(folders, data / "glsl");
-    CaptureHasher captures;
-    std::vector<GoldenSources> sources;
-    for (const GoldenCase* test : cases) sources.push_back({looks.hash(*test), captures.hash(*test)});
-    return sources;
+    LookHasher hasher(folders, data / "glsl", {options.plugin_paths.begin(), options.plugin_paths.end()});
+    std::vector<std::string> hashes;
+    for (const GoldenCase* test : cases) hashes.push_back(hasher.hash(*test));
+    return hashes;
 }
 
 GoldenSuiteResult run_golden_suite(const GoldenSuite& suite, const GoldenRunOptions& options,
@@ -125,11 +124,12 @@ GoldenSuiteResult run_golden_suite(const GoldenSuite& suite, const GoldenRunOpti
     std::vector<const GoldenCase*> cases;
     for (const GoldenCase& test : suite.cases)
         if (fits_filter(test, options.filters)) cases.push_back(&test);
-    const std::vector<GoldenSources> sources = sources_of(cases, options.render.effect_paths);
+    const std::vector<std::string> looks = look_hashes(cases, options.render);
+    CaptureHasher captures;
     for (std::size_t i = 0; i < cases.size(); ++i) {
         result.cases.emplace_back();
         result.cases.back().test = cases[i];
-        result.cases.back().sources = sources[i];
+        result.cases.back().sources = {looks[i], "", options.program};
         result.cases.back().skipped = kInterrupted;  // until it has run
     }
     std::optional<ReportPictures> pictures;
@@ -141,6 +141,7 @@ GoldenSuiteResult run_golden_suite(const GoldenSuite& suite, const GoldenRunOpti
         const auto begin = Clock::now();
         bool interrupted = false;
         result.cases[i].skipped.clear();
+        if (cases[i]->skip.empty()) result.cases[i].sources.capture = captures.hash(*cases[i]);
         run_case(options, work, pictures ? &*pictures : nullptr, interrupt, result.cases[i], interrupted);
         if (interrupted) result.cases[i].skipped = kInterrupted;
         result.cases[i].seconds = seconds_since(begin);

@@ -73,6 +73,7 @@ struct GoldenCaseResult {
 struct GoldenRunOptions {
     GoldenRenderOptions render;
     GoldenEnvironment environment;  ///< of the workers
+    std::string program;            ///< GoldenSources::program
     std::vector<std::string> filters;
     std::filesystem::path report;  ///< <report>/images exists and is for pictures; "": none are written
     int jobs = 1;
@@ -98,9 +99,9 @@ using GoldenListener = std::function<void(const GoldenCaseResult&, int done, int
 GoldenSuiteResult run_golden_suite(const GoldenSuite& suite, const GoldenRunOptions& options,
                                    const GoldenListener& listener, const std::atomic<bool>& interrupt);
 
-/// Of the cases, in their order.
-std::vector<GoldenSources> sources_of(const std::vector<const GoldenCase*>& cases,
-                                      const std::vector<std::string>& effect_paths);
+/// Hashes of the looks of the cases, in their order.
+std::vector<std::string> look_hashes(const std::vector<const GoldenCase*>& cases,
+                                     const GoldenRenderOptions& options);
 
 /// Calls work(i, folder of its own, empty) for 0 .. count - 1 on `jobs` threads, beginning in order. The
 /// folders go away. The first exception ends all and is thrown.

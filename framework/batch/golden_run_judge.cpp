@@ -33,13 +33,19 @@ void find_changes(const GoldenSidecar& approved, const GoldenSources& sources,
                   const GoldenEnvironment& environment, GoldenImage& result) {
     const bool look = differ(sources.look, approved.sources.look);
     const bool capture = differ(sources.capture, approved.sources.capture);
+    const bool program = differ(sources.program, approved.sources.program);
     const std::string machine = environment.difference(approved.environment);
     if (look) result.changes.push_back("the look or an effect has changed since it was approved");
     if (capture) result.changes.push_back("the capture has changed since it was approved");
+    if (program)
+        result.changes.push_back("the program is Aftershade " + sources.program + " instead of " +
+                                 approved.sources.program);
     if (machine.empty()) return;
-    // Of older sidecars the capture is not known.
-    result.only_machine_changed = !look && !capture && !sources.look.empty() && !sources.capture.empty() &&
-                                  !approved.sources.look.empty() && !approved.sources.capture.empty();
+    // Of older sidecars capture and program are not known.
+    const auto is_known = [](const GoldenSources& of) {
+        return !of.look.empty() && !of.capture.empty() && !of.program.empty();
+    };
+    result.only_machine_changed = result.changes.empty() && is_known(sources) && is_known(approved.sources);
     result.changes.push_back((result.only_machine_changed ? "only the machine differs: " : "the machine differs: ") +
                              machine);
 }
@@ -63,8 +69,9 @@ void compare_with(const ApprovedImage& approved, const CompareRules& rules, cons
     if (approved.sidecar) find_changes(*approved.sidecar, sources, environment, result);
     if (result.exact_tier) {
         result.verdict = std::max(result.verdict, Verdict::warning);
-        result.reasons.push_back("bits differ although renderer, driver, CPU, look and effects are those of " +
-                                 approved.file.filename().string());
+        if (result.changes.empty())
+            result.reasons.push_back("bits differ although renderer, driver, CPU, look and effects are those of " +
+                                     approved.file.filename().string());
     }
     if (result.verdict != Verdict::same)
         result.reasons.insert(result.reasons.end(), result.changes.begin(), result.changes.end());

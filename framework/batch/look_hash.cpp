@@ -3,6 +3,7 @@
 #include <set>
 
 #include "framework/core/atomic_file.h"
+#include "framework/core/content_hash.h"
 #include "framework/core/text.h"
 #include "framework/pipeline/look_content.h"
 #include "framework/pipeline/pipeline.h"
@@ -19,8 +20,16 @@ namespace {
 
 }  // namespace
 
-LookHasher::LookHasher(std::vector<fs::path> effect_folders, fs::path glsl_folder)
-    : effects_(std::move(effect_folders), glsl_folder), glsl_folder_(std::move(glsl_folder)) {}
+LookHasher::LookHasher(std::vector<fs::path> effect_folders, fs::path glsl_folder,
+                       const std::vector<fs::path>& plugins)
+    : effects_(std::move(effect_folders), glsl_folder), glsl_folder_(std::move(glsl_folder)) {
+    std::set<fs::path> libraries;
+    std::error_code unreadable;
+    for (const fs::path& folder : plugins)
+        for (const auto& entry : fs::directory_iterator(folder, unreadable))
+            if (entry.path().extension() == ".so") libraries.insert(entry.path());
+    for (const fs::path& library : libraries) plugins_ += file_content(library).hash;
+}
 
 std::string LookHasher::hash(const GoldenCase& test) {
     try {
@@ -44,7 +53,7 @@ std::string LookHasher::text_of(const GoldenCase& test) {
     options.sets = test.sets;
     const Pipeline pipeline = bind_pipeline(*look, effects_, options, faults);
     if (faults.has_errors()) refuse();
-    std::string text = test.steps;
+    std::string text = test.steps + plugins_;
     // Of a suite or a case only the steps count; its tolerance changes no picture.
     for (std::size_t i = test.look.empty() ? 1 : 0; i < look->files.size(); ++i)
         text += read_text_file(look->files[i], ExitCode::usage);

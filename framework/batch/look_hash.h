@@ -15,7 +15,9 @@ namespace aftershade {
 class LookHasher {
 public:
     /// As the registry's: folders of effects in order, and the folder of shared GLSL.
-    LookHasher(std::vector<std::filesystem::path> effect_folders, std::filesystem::path glsl_folder);
+    /// `plugins`: folders whose libraries any of the effects may load.
+    LookHasher(std::vector<std::filesystem::path> effect_folders, std::filesystem::path glsl_folder,
+               const std::vector<std::filesystem::path>& plugins = {});
 
     /// 16 hexadecimal digits over the look (and looks that it uses), `--set`s, the files that values and
     /// masks name, scattering profiles by what they say, and of each of its effects the manifest, its
@@ -30,6 +32,7 @@ private:
 
     EffectRegistry effects_;
     std::filesystem::path glsl_folder_;
+    std::string plugins_;  // hashes of the libraries
     std::map<std::string, std::string> effect_texts_;  // by id
 };
 

@@ -1,6 +1,7 @@
 #include "framework/core/content_hash.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 // The functions in this source, compiled for speed, whatever the rest of the module is compiled for.
@@ -40,8 +41,15 @@ FileContent file_content(const std::filesystem::path& path) {
     const auto fail = [&] {
         return Error(ExitCode::capture, path.string() + ": cannot be read: " + std::strerror(errno));
     };
-    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    // A FIFO would be waited for, a device never end.
+    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (file < 0) throw fail();
+    struct stat found{};
+    if (fstat(file, &found) != 0 || !S_ISREG(found.st_mode)) {
+        close(file);
+        throw Error(ExitCode::capture, path.string() +
+                                           ": is not a regular file (a pipe, socket or device cannot be read)");
+    }
     const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(),
                                                                                 XXH3_freeState);
     XXH3_128bits_reset(state.get());

@@ -40,23 +40,32 @@ constexpr std::uint64_t kContextBytes = 320ull * 1024 * 1024;
 /// What is current in this thread; EGL and OSMesa share Mesa's slot and would not see each other's change.
 thread_local Context::Impl* current = nullptr;
 
+struct Reason {
+    Backend backend = Backend::automatic;
+    std::string text, advice;  ///< advice: of an absent library, "; install ..."
+};
+
 /// An Error that keeps its reasons apart, for probe_backends().
 class Refusal : public Error {
 public:
-    explicit Refusal(std::vector<std::pair<Backend, std::string>> reasons, std::string_view remedy)
-        : Error(ExitCode::gl, text(reasons) + std::string(remedy)), reasons_(std::move(reasons)) {}
-    const std::string& last_reason() const { return reasons_.back().second; }
+    /// `other` is a backend that works in place of those refused, so that nothing need be installed.
+    Refusal(std::vector<Reason> reasons, std::optional<Backend> other)
+        : Error(ExitCode::gl, text(reasons, other)), reasons_(std::move(reasons)) {}
+    const Reason& last() const { return reasons_.back(); }
 
 private:
-    static std::string text(std::span<const std::pair<Backend, std::string>> reasons) {
+    static std::string text(std::span<const Reason> reasons, std::optional<Backend> other) {
         std::string result = "no usable GL";
-        for (const auto& [backend, reason] : reasons) {
-            result += fmt::format("\n  {}: {}", backend_name(backend), reason);
-        }
+        for (const Reason& reason : reasons)
+            result += fmt::format("\n  {}: {}{}", backend_name(reason.backend), reason.text,
+                                  other ? "" : reason.advice);
+        if (other)
+            result += fmt::format("\n  '{}' works here and draws the same bits; '{}' takes whichever is there",
+                                  backend_name(*other), backend_name(Backend::software));
         return result;
     }
 
-    std::vector<std::pair<Backend, std::string>> reasons_;
+    std::vector<Reason> reasons_;
 };
 
 std::string error_name(GLenum code) {
@@ -80,16 +89,15 @@ void GLAD_API_PTR on_debug_message(GLenum, GLenum type, GLuint, GLenum, GLsizei 
 }
 
 /// Of the two software backends, the other one, if it works here: both draw the same bits.
-std::string other_software_backend(Backend refused) {
-    if (refused != Backend::egl_software && refused != Backend::osmesa) return "";
+std::optional<Backend> other_software_backend(Backend refused) {
+    if (refused != Backend::egl_software && refused != Backend::osmesa) return std::nullopt;
     const Backend other = refused == Backend::osmesa ? Backend::egl_software : Backend::osmesa;
     try {
         const Context::Impl context(other);
+        return other;
     } catch (const Error&) {
-        return "";
+        return std::nullopt;
     }
-    return fmt::format("\n  '{}' works here and draws the same bits; '{}' takes whichever is there",
-                       backend_name(other), backend_name(Backend::software));
 }
 
 }  // namespace
@@ -119,26 +127,27 @@ std::string_view backend_name(Backend backend) {
 
 std::vector<BackendReport> probe_backends() {
     std::vector<BackendReport> reports;
+    std::vector<std::string> advice;
     for (Backend backend : kBackends) {
-        BackendReport report;
+        BackendReport& report = reports.emplace_back();
         report.backend = backend;
+        advice.emplace_back();
         try {
             report.info = Context(backend).info();
             report.usable = true;
         } catch (const Refusal& refusal) {
-            report.reason = refusal.last_reason();
+            report.reason = refusal.last().text;
+            advice.back() = refusal.last().advice;
         }
-        reports.push_back(std::move(report));
     }
     if (current) current->release();
-    // The two software backends need not both be there.
-    for (auto [one, other] : {std::pair(1, 2), std::pair(2, 1)}) {
-        const BackendReport& usable = reports[std::size_t(other)];
-        BackendReport& absent = reports[std::size_t(one)];
-        if (usable.usable && !absent.usable)
-            absent.reason = fmt::format("not needed, since {} draws the same bits ({})",
-                                        backend_name(usable.backend), absent.reason);
-    }
+    const bool has_software = std::ranges::any_of(
+        reports, [](const BackendReport& report) { return report.usable && report.info.software; });
+    for (std::size_t i = 0; i < reports.size(); ++i)
+        if (!advice[i].empty())
+            reports[i].reason += has_software && reports[i].backend != Backend::egl
+                                     ? "; not needed, the other software backend draws the same bits"
+                                     : advice[i];
     return reports;
 }
 
@@ -157,7 +166,7 @@ Context::Context(SiblingOf other) {
 Context::Context(Backend backend, SelfTest when) {
     // Mesa does not check every allocation: better refused here than a crash in there.
     require_address_space(kContextBytes, "OpenGL");
-    std::vector<std::pair<Backend, std::string>> reasons;
+    std::vector<Reason> reasons;
     for (Backend candidate : kBackends) {
         if (!takes(backend, candidate)) continue;
         try {
@@ -168,7 +177,8 @@ Context::Context(Backend backend, SelfTest when) {
         } catch (const Error& error) {
             impl_.reset();
             if (error.exit_code() == ExitCode::memory) throw;
-            reasons.emplace_back(candidate, error.what());
+            const auto* absent = dynamic_cast<const AbsentLibrary*>(&error);
+            reasons.push_back({candidate, error.what(), absent ? absent->advice() : ""});
         }
     }
     throw Refusal(std::move(reasons), other_software_backend(backend));

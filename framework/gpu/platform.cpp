@@ -43,7 +43,7 @@ void* open_library(std::initializer_list<const char*> names, std::string_view pa
         const char* message = dlerror();
         if (reason.empty()) reason = message ? message : name;
     }
-    throw Error(ExitCode::gl, fmt::format("{}; install the Debian package {}", reason, package));
+    throw AbsentLibrary(reason, fmt::format("; install the Debian package {}", package));
 }
 
 std::string gl_string(const Platform& platform, unsigned int name) {

@@ -6,7 +6,9 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 
+#include "framework/core/error.h"
 #include "framework/gpu/context.h"
 
 namespace aftershade::gpu {
@@ -39,7 +41,18 @@ std::unique_ptr<Platform> make_platform(Backend backend);
 /// True for the GL_RENDERER of a CPU rasteriser.
 bool is_software_renderer(std::string_view renderer);
 
-/// dlopen of the first of `names` that loads. Throws Error(ExitCode::gl) naming the Debian package.
+/// A library that is not there. `advice` says how to have it, for those who need it.
+class AbsentLibrary : public Error {
+public:
+    AbsentLibrary(const std::string& reason, std::string advice)
+        : Error(ExitCode::gl, reason), advice_(std::move(advice)) {}
+    const std::string& advice() const { return advice_; }
+
+private:
+    std::string advice_;
+};
+
+/// dlopen of the first of `names` that loads. Throws AbsentLibrary, which names the Debian package.
 void* open_library(std::initializer_list<const char*> names, std::string_view package);
 
 /// GL_VERSION, for gl_string().

@@ -1,11 +1,13 @@
 #include "framework/batch/golden_suite.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "framework/batch/approved_image.h"
+#include "framework/batch/capture_hash.h"
 #include "framework/batch/look_hash.h"
 #include "tests/temporary_folder.h"
 
@@ -149,6 +151,11 @@ TEST(GoldenEnvironment, OfOldFormIsOneByItsProcessor) {
     EXPECT_TRUE(kHere.equals(old));
     old.cpu = "Intel Xeon";
     EXPECT_EQ(kHere.difference(old), "the processor AMD EPYC instead of Intel Xeon");
+    GoldenEnvironment limited = kHere;
+    limited.instructions = "x86-64 without FMA";
+    EXPECT_EQ(limited.difference(old), "one processor is without FMA");
+    old.cpu = limited.cpu;
+    EXPECT_FALSE(limited.equals(old)) << "a virtual machine's name says little";
 }
 
 TEST(GoldenEnvironment, OfHardwareIsOneByItsDriver) {
@@ -167,7 +174,7 @@ TEST(ApprovedImages, ComeWithTheOwnRenderersFirst) {
     intel.instructions = "x86-64 without FMA";
     const auto approve = [&](const std::string& name, const GoldenEnvironment& environment) {
         write_text(folder / (name + ".exr"), name);
-        GoldenSidecar sidecar{environment, "aftershade golden approve x", {"hash", "files"},
+        GoldenSidecar sidecar{environment, "aftershade golden approve x", {"hash", "files", "0.1.0"},
                               file_hash(folder / (name + ".exr"))};
         write_text(folder / (name + ".json"), sidecar_text(sidecar));
     };
@@ -203,6 +210,35 @@ TEST(ApprovedImages, KnowSidecarsOfOldForm) {
     EXPECT_TRUE(images[0].sidecar->environment.equals(kHere));
     EXPECT_TRUE(images[0].sidecar->environment.software);
     EXPECT_EQ(images[0].sidecar->sources.look, "");
+}
+
+TEST(CaptureHash, ChangesWithFramesNeighboursAndDocumentAndIsNoneOfAPipe) {
+    TemporaryFolder folder;
+    for (const char* frame : {"f_0001.exr", "f_0004.exr", "f_0005.exr"}) write_text(folder / frame, frame);
+    GoldenCase test;
+    test.capture = (folder / "f_####.exr").string();
+    test.frames = "1";
+    const auto hash = [&] { return CaptureHasher().hash(test); };
+    const std::string before = hash();
+    EXPECT_EQ(before.size(), 32u);
+    write_text(folder / "f_0005.exr", "four frames away");
+    EXPECT_EQ(hash(), before);
+    write_text(folder / "f_0004.exr", "three frames away");
+    EXPECT_NE(hash(), before) << "effects may read it";
+    fs::remove(folder / "f_0004.exr");
+    const std::string alone = hash();
+    EXPECT_NE(alone, before) << "absent is not empty";
+    write_text(folder / "f_0001.exr", "another picture");
+    EXPECT_NE(hash(), alone);
+    write_text(folder / "capture.json", R"({ "aftershade": 1, "frames": "f_####.exr", "range": "1-5", "profile": "blender" })");
+    test.capture = folder / "capture.json";
+    const std::string documented = hash();
+    EXPECT_NE(documented, alone);
+    write_text(folder / "capture.json", R"({ "aftershade": 1, "frames": "f_####.exr", "range": "1-5", "profile": "native" })");
+    EXPECT_NE(hash(), documented);
+    fs::remove(folder / "f_0001.exr");
+    ASSERT_EQ(mkfifo((folder / "f_0001.exr").c_str(), 0600), 0);
+    EXPECT_EQ(hash(), "") << "and does not wait for its writer";
 }
 
 TEST(LookHash, ChangesWithTheLookItsManifestAndEveryShaderAndWithNothingElse) {

@@ -308,6 +308,8 @@ struct ReachSpec {
     Place place;
 };
 inline constexpr int kMaxReachPx = 16384;
+/// How many frames before or behind its own an input may be of.
+inline constexpr int kMostFrameOffset = 3;
 
 struct EffectManifest {
     std::string id;

@@ -52,7 +52,7 @@ Form version_form() {
 Block input_block() {
     constexpr const char* kLayersEnd =
         "an input of a layer must be 'optional': a capture may have fewer layers";
-    constexpr int kMostInputLayer = 7, kMostFrameOffset = 3;
+    constexpr int kMostInputLayer = 7;
     constexpr const char* kShotsEnd = "an input of another frame must be 'optional': shots begin and end";
     std::vector<Form> offsets;
     for (int distance = 1; distance <= kMostFrameOffset; ++distance)
