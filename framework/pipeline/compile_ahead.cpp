@@ -1,6 +1,7 @@
 #include "framework/pipeline/compile_ahead.h"
 
 #include <algorithm>
+#include <charconv>
 #include <system_error>
 #include <utility>
 
@@ -10,7 +11,20 @@
 namespace aftershade {
 
 int CompileAhead::useful_threads(const gpu::Context& context, int threads) {
-    return context.info().software && !address_space_left() ? std::max(0, threads) : 0;
+    const bool useful =
+        context.info().software && !address_space_left() && is_safe_on_threads(context.info().version);
+    return useful ? std::max(0, threads) : 0;
+}
+
+bool CompileAhead::is_safe_on_threads(std::string_view gl_version) {
+    constexpr std::string_view kMesa = "Mesa ";
+    const std::size_t found = gl_version.find(kMesa);
+    if (found == std::string_view::npos) return true;
+    const char* const end = gl_version.data() + gl_version.size();
+    std::pair<int, int> version;
+    const auto major = std::from_chars(gl_version.data() + found + kMesa.size(), end, version.first);
+    if (major.ptr < end) std::from_chars(major.ptr + 1, end, version.second);
+    return version < std::pair(25, 2) || version > std::pair(26, 1);
 }
 
 CompileAhead::CompileAhead(gpu::Context& context, ProgramCache& programs, std::vector<PassToCompile> passes,

@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -33,6 +34,9 @@ public:
     /// compile on the processor, and none where the address space is limited, since Mesa does not check
     /// what it allocates.
     static int useful_threads(const gpu::Context& context, int threads);
+    /// Of a GL_VERSION, whether Mesa compiles on several threads at once and lives: from 25.2 to 26.1 its
+    /// compiler, LLVM's ORC JIT, is reported to crash then (SkiaSharp issue 4604, wgpu issue 9903).
+    static bool is_safe_on_threads(std::string_view gl_version);
 
     /// `context` and `programs` outlive this.
     CompileAhead(gpu::Context& context, ProgramCache& programs, std::vector<PassToCompile> passes,

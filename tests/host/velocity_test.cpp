@@ -35,8 +35,8 @@ TEST(HostVelocity, IsWhatTheProgramPrints) {
         EXPECT_EQ(velocity_verdict_name(checks[i].verdict), expected[i].at("verdict").get<std::string>());
         EXPECT_EQ(checks[i].sentence, expected[i].at("sentence").get<std::string>());
         EXPECT_EQ(checks[i].score, expected[i].at("score"));
-        EXPECT_EQ(checks[i].settings.delta, expected[i].at("settings").at("delta"));
-        EXPECT_EQ(checks[i].suggested.delta, expected[i].at("suggested").at("delta"));
+        EXPECT_EQ(checks[i].settings.delta, expected[i].at("settings").at("delta").get<std::string>());
+        EXPECT_EQ(checks[i].suggested.delta, expected[i].at("suggested").at("delta").get<std::string>());
     }
 }
 
