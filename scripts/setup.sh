@@ -63,8 +63,11 @@ install_packages() {
 }
 
 build_target() {
-    local target=$1
+    local target=$1 jobs
     shift
+    # A compiler takes up to 1.6 GB here; Ninja alone would start two more than there are cores.
+    jobs=$(awk -v cores="$(nproc)" '/^MemAvailable/ { fit = int($2 / 1.7e6); print fit < 1 ? 1 : fit < cores ? fit : cores }' /proc/meminfo)
+    export CMAKE_BUILD_PARALLEL_LEVEL=${CMAKE_BUILD_PARALLEL_LEVEL:-$jobs}
     mkdir -p build
     local log=build/build.log
     if ! { cmake --preset release "$@" && cmake --build --preset release --target "$target"; } >"$log" 2>&1; then
