@@ -18,7 +18,7 @@ inline std::string why_not(Backend backend) {
     return "unknown backend";
 }
 
-/// How tests of both are told apart in their names.
+/// Names the backend in a test's name.
 inline std::string parameter_name(const testing::TestParamInfo<Backend>& info) {
     return info.param == Backend::osmesa ? "osmesa" : "egl_software";
 }

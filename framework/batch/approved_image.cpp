@@ -38,7 +38,7 @@ bool is_software(const std::string& renderer) {
                        [&](const char* name) { return renderer.find(name) != std::string::npos; });
 }
 
-/// Of "llvmpipe (LLVM 15.0.6, 256 bits)", "llvmpipe": the width of the vectors decides no bit.
+/// "llvmpipe" for the renderer "llvmpipe (LLVM 15.0.6, 256 bits)": the width of the vectors changes no bit.
 std::string kind_of(const GoldenEnvironment& environment) {
     const std::string& renderer = environment.renderer;
     return environment.llvm().empty() ? renderer : renderer.substr(0, renderer.find(" (LLVM "));
@@ -200,7 +200,7 @@ std::string file_hash(const fs::path& file) {
 
 namespace {
 
-/// Of the first processor in /proc/cpuinfo; "" where it does not say.
+/// The first value of `name` in /proc/cpuinfo; "" if there is none.
 std::string cpu_property(std::string_view name) {
     std::ifstream info("/proc/cpuinfo");
     for (std::string line; std::getline(info, line);)

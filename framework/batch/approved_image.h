@@ -21,7 +21,8 @@ struct GoldenEnvironment {
     std::string version;   ///< GL_VERSION
     std::string cpu;       ///< "model name" of /proc/cpuinfo
     bool software = false;
-    /// Of a software renderer's processor, what decides bits: "x86-64 with FMA"; "" in sidecars of old form.
+    /// The processor instructions that change bits of a software renderer, as in "x86-64 with FMA"; "" in older
+    /// sidecars.
     std::string instructions = {};
 
     std::string mesa() const;  ///< "22.3.6"; "" of other drivers

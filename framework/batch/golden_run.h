@@ -49,8 +49,8 @@ struct GoldenImage {
     /// Environment and look are those that the approved image was made by: every bit must be the same.
     bool exact_tier = false;
     bool bits_equal = false;
-    /// Of an image whose bits differ, what is not as it was when the approved one was made: the look or its
-    /// effects, the capture, the machine. Sentences without a full stop; none where its sidecar does not say.
+    /// If bits differ: what has changed since the approved image was made (look or effects, capture, program,
+    /// machine), a sentence each without a full stop. Empty if its sidecar does not record it.
     std::vector<std::string> changes;
     bool only_machine_changed = false;
     std::optional<Comparison> comparison;

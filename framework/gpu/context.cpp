@@ -88,7 +88,7 @@ void GLAD_API_PTR on_debug_message(GLenum, GLenum type, GLuint, GLenum, GLsizei 
                                 : std::string(message, static_cast<std::size_t>(length)));
 }
 
-/// Of the two software backends, the other one, if it works here: both draw the same bits.
+/// The other software backend, which draws the same bits, if it works here.
 std::optional<Backend> other_software_backend(Backend refused) {
     if (refused != Backend::egl_software && refused != Backend::osmesa) return std::nullopt;
     const Backend other = refused == Backend::osmesa ? Backend::egl_software : Backend::osmesa;

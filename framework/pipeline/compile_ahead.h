@@ -34,8 +34,8 @@ public:
     /// compile on the processor, and none where the address space is limited, since Mesa does not check
     /// what it allocates.
     static int useful_threads(const gpu::Context& context, int threads);
-    /// Of a GL_VERSION, whether Mesa compiles on several threads at once and lives: from 25.2 to 26.1 its
-    /// compiler, LLVM's ORC JIT, is reported to crash then (SkiaSharp issue 4604, wgpu issue 9903).
+    /// Whether the Mesa of this GL_VERSION can compile on several threads at once. From 25.2 to 26.1 its
+    /// compiler, LLVM's ORC JIT, is reported to crash (SkiaSharp issue 4604, wgpu issue 9903).
     static bool is_safe_on_threads(std::string_view gl_version);
 
     /// `context` and `programs` outlive this.
