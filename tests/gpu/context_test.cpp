@@ -211,9 +211,13 @@ TEST(Platform, KnowsSoftwareRenderersByTheirNames) {
 }
 
 TEST(Platform, NamesThePackageOfALibraryThatIsMissing) {
-    const std::string message = error_of([] { open_library({"libnone.so.1", "libnone.so"}, "libnone1"); });
-    EXPECT_NE(message.find("libnone.so.1"), std::string::npos) << message;
-    EXPECT_NE(message.find("install the Debian package libnone1"), std::string::npos) << message;
+    try {
+        open_library({"libnone.so.1", "libnone.so"}, "libnone1");
+        FAIL() << "a library that does not exist was opened";
+    } catch (const AbsentLibrary& error) {
+        EXPECT_NE(std::string(error.what()).find("libnone.so.1"), std::string::npos) << error.what();
+        EXPECT_EQ(error.advice(), "; install the Debian package libnone1");
+    }
 }
 
 }  // namespace
