@@ -45,8 +45,6 @@ std::vector<std::string> names_of(const std::set<CLI::Option*>& options) {
     return names;
 }
 
-}  // namespace
-
 CommandOption command_option(const CLI::Option& declared) {
     CommandOption option;
     option.positional = declared.get_positional();
@@ -56,15 +54,14 @@ CommandOption command_option(const CLI::Option& declared) {
     option.description = declared.get_description();
     if (declared.get_type_size() != 0) read_type(declared.get_type_name(), option);
     option.default_value = declared.get_default_str();
-    if (declared.get_group() != "Options") option.group = declared.get_group();
+    // CLI11's own heading; "OPTIONS" from 2.5 on.
+    if (lower_case(declared.get_group()) != "options") option.group = declared.get_group();
     option.required = declared.get_required();
     option.repeatable = declared.get_items_expected_max() > 1;
     option.needs = names_of(declared.get_needs());
     option.excludes = names_of(declared.get_excludes());
     return option;
 }
-
-namespace {
 
 Command command(const CLI::App& app, const std::vector<std::string>& path,
                 const std::string& parents_footer) {

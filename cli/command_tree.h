@@ -7,7 +7,6 @@
 
 namespace CLI {
 class App;
-class Option;
 }  // namespace CLI
 
 namespace aftershade::cli {
@@ -41,8 +40,6 @@ struct Command {
     std::vector<CommandOption> options;  ///< positionals first
     std::vector<Command> subcommands;
 };
-
-CommandOption command_option(const CLI::Option& declared);
 
 /// `app` and all of its subcommands; options that `--help` hides are left out.
 Command command_tree(const CLI::App& app);

@@ -23,6 +23,9 @@ void add_tolerance(CLI::App& app, const std::string& word, const char* verdict, 
     add(word, options.limit,
         fails ? "Largest difference of a pixel that passes (default: 1e-6)"
               : "Largest difference of a pixel without a warning (default: as --fail)");
+    add(word + "relative", options.relative,
+        fails ? "Let a difference pass that is at most this part of its value (default: 0)"
+              : "Cause no warning for a difference that is at most this part of its value (default: as --failrelative)");
     add(word + "percent", options.percent, "Percentage of a layer's pixels that may exceed it (default: 0)");
     add("hard" + word, options.hard, "Largest difference of any pixel (default: inf)");
     add(std::string("allow") + (fails ? "failures" : "warnings"), options.allowed,
@@ -44,12 +47,14 @@ Tolerance tolerance_of(const ToleranceOptions& options, const std::string& word,
                        Diagnostics& diagnostics) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     check_number(word, options.limit, kInfinity, diagnostics);
+    check_number(word + "relative", options.relative, kInfinity, diagnostics);
     check_number(word + "percent", options.percent, 100, diagnostics);
     check_number("hard" + word, options.hard, kInfinity, diagnostics);
     check_number(word + "-flip", options.flip, 1, diagnostics);
     check_number(word + "-ssim", options.ssim, 1, diagnostics);
     return {options.limit.value_or(defaults.limit), options.percent.value_or(defaults.percent),
-            options.hard.value_or(defaults.hard), options.allowed.value_or(defaults.allowed)};
+            options.hard.value_or(defaults.hard), options.allowed.value_or(defaults.allowed),
+            options.relative.value_or(defaults.relative)};
 }
 
 void read_roles(const CompareOptions& options, CompareRules& rules, Diagnostics& diagnostics) {
@@ -193,6 +198,7 @@ CompareRules rules_of(const CompareOptions& options) {
     Tolerance as_fail;
     as_fail.limit = rules.fail.limit;
     as_fail.allowed = rules.fail.allowed;
+    as_fail.relative = rules.fail.relative;
     const Tolerance warn = tolerance_of(options.warn, "warn", as_fail, diagnostics);
     if (options.warn.any()) rules.warn = warn;
     rules.nan_equal = options.nan_equal;

@@ -67,39 +67,52 @@ std::string described(const CommandOption& option) {
     return text + " (" + more + ")";
 }
 
+void add_rows(const std::vector<CommandOption>& options, const std::string& title, bool positionals,
+              const std::string& group, std::string& out) {
+    std::string rows;
+    for (const CommandOption& option : options) {
+        if (option.positional != positionals || option.group != group) continue;
+        std::string head = joined(option.names, ", ");
+        if (!positionals && option.takes_value()) head += " " + option.type;
+        rows += row(head, described(option));
+    }
+    if (!rows.empty()) out += "\n" + title + ":\n" + rows;
+}
+
+/// "aftershade compare [OPTIONS] reference test".
+std::string usage(const Command& command, const std::string& name) {
+    std::string line = "Usage: " + name + " [OPTIONS]";
+    for (const CommandOption& option : command.options) {
+        if (!option.positional) continue;
+        const std::string word = option.names.front() + (option.repeatable ? "..." : "");
+        line += option.required ? " " + word : " [" + word + "]";
+    }
+    return line + (command.subcommands.empty() ? "" : " SUBCOMMAND");
+}
+
+/// The headings of options in their order, without that of the others, which is "".
+std::vector<std::string> groups(const Command& command) {
+    std::vector<std::string> names;
+    for (const CommandOption& option : command.options)
+        if (!option.group.empty() && std::ranges::find(names, option.group) == names.end())
+            names.push_back(option.group);
+    return names;
+}
+
 }  // namespace
 
-std::string HelpFormatter::make_option(const CLI::Option* declared, bool is_positional) const {
-    CommandOption option = command_option(*declared);
-    option.positional = is_positional;
-    std::string head = joined(option.names, ", ");
-    if (!is_positional && option.takes_value()) head += " " + option.type;
-    return row(head, described(option));
-}
-
-std::string HelpFormatter::make_group(std::string group, bool is_positional,
-                                      std::vector<const CLI::Option*> options) const {
-    // CLI11 puts a line between two groups already, but none before the first.
-    std::string out = is_positional || group == "Options" ? "\n" : "";
-    out += group + ":\n";
-    for (const CLI::Option* option : options) out += make_option(option, is_positional);
-    return out;
-}
-
-std::string HelpFormatter::make_subcommand(const CLI::App* subcommand) const {
-    return row(subcommand->get_name(), subcommand->get_description());
-}
-
-std::string HelpFormatter::make_usage(const CLI::App* app, std::string name) const {
-    return "\n" + CLI::Formatter::make_usage(app, name);
-}
-
-std::string HelpFormatter::make_footer(const CLI::App* app) const {
-    const std::string footer = app->get_footer();
-    std::string out;
-    for (const std::string_view paragraph : split(footer, '\n'))
+std::string HelpFormatter::make_help(const CLI::App* app, std::string name, CLI::AppFormatMode) const {
+    const Command command = command_tree(*app);
+    std::string out = command.description + "\n\n" + usage(command, name) + "\n";
+    add_rows(command.options, "Positionals", true, "", out);
+    add_rows(command.options, "Options", false, "", out);
+    for (const std::string& group : groups(command)) add_rows(command.options, group, false, group, out);
+    if (!command.subcommands.empty()) out += "\nSubcommands:\n";
+    for (const Command& below : command.subcommands) out += row(below.path.back(), below.description);
+    if (!command.footer.empty()) out += "\n";
+    for (const std::string_view paragraph : split(command.footer, '\n'))
         for (const std::string& line : wrapped(paragraph, kColumns)) out += line + "\n";
-    return footer.empty() ? "" : out;
+    return out;
 }
 
 }  // namespace aftershade::cli

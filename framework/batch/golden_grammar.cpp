@@ -39,6 +39,9 @@ void add_level(const std::string& word, const std::string& many, const Tolerance
     };
     add(word, grammar::number({.min = 0}), "Largest difference of a channel at which a pixel passes.",
         number(&Tolerance::limit));
+    add(word + "_relative", grammar::number({.min = 0}),
+        "A difference counts where it also exceeds this part of its value; 0.001 is a half's last digit.",
+        number(&Tolerance::relative));
     add(word + "_percent", grammar::number({.min = 0, .max = 100}),
         "Percentage of pixels that may exceed it.", number(&Tolerance::percent));
     add("hard_" + word, grammar::number({.min = 0}), "Largest difference of any pixel; default: no limit.");

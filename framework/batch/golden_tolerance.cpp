@@ -21,6 +21,7 @@ bool read_level(const grammar::Reader& reader, const std::string& word, const st
         if (reader.has(key)) target = reader.number(key), any = true;
     };
     read(word, level.limit);
+    read(word + "_relative", level.relative);
     read(word + "_percent", level.percent);
     read("hard_" + word, level.hard);
     if (reader.has("allow_" + many))

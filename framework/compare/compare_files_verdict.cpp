@@ -42,9 +42,11 @@ void judge(const Level& level, LayerComparison& comparison) {
     const double let_pass = std::max(double(tolerance.allowed), tolerance.percent / 100 * pixels);
     if (double(level.above.count) > let_pass)
         say(comparison, level.verdict,
-            fmt::format("{}{} pixels ({:.6g} %) differ by more than {} {:.6g}{}", level.where,
+            fmt::format("{}{} pixels ({:.6g} %) differ by more than {} {:.6g}{}{}", level.where,
                         level.above.count, 100 * double(level.above.count) / pixels, level.word,
                         tolerance.limit,
+                        tolerance.relative > 0 ? fmt::format(" and {:.6g} of their value", tolerance.relative)
+                                               : "",
                         let_pass > 0 ? fmt::format(", {:.6g} may", std::floor(let_pass)) : "") +
                 not_comparable(comparison.differences));
     if (level.hard.count > tolerance.allowed)
@@ -92,12 +94,13 @@ Tolerance Levels::warn_tolerance() const {
     Tolerance same_limit;
     same_limit.limit = fail.limit;
     same_limit.allowed = fail.allowed;
+    same_limit.relative = fail.relative;
     return same_limit;
 }
 
 DifferenceRules Levels::difference_limits() const {
     const Tolerance warning = warn_tolerance();
-    return {fail.limit, fail.hard, warning.limit, warning.hard, false, {}};
+    return {fail.limit, fail.hard, warning.limit, warning.hard, false, {}, fail.relative, warning.relative};
 }
 
 const Levels& CompareRules::levels_of(const std::string& label) const {

@@ -17,6 +17,9 @@ struct Tolerance {
     double percent = 0;   ///< of the pixels
     double hard = std::numeric_limits<double>::infinity();
     std::uint64_t allowed = 0;  ///< pixels
+    /// A difference above `limit` counts where it is also more than this part of its magnitude; see
+    /// DifferenceRules. `hard` does not ask it.
+    double relative = 0;
 };
 
 struct Levels {

@@ -95,18 +95,25 @@ private:
         figures.largest_pixel = std::max(figures.largest_pixel, difference.value);
         if (difference.value < kInfinity) sums.pixel_sum += difference.value, ++sums.finite_pixels;
         const DifferenceRules& limits = area == 0 ? rules_ : areas_.limits[area - 1];
+        // What a relative limit leaves of the difference.
+        const auto left_by = [&](double relative) {
+            return relative > 0 ? difference_of(pairs, role_, relative).value : kInfinity;
+        };
+        const double fail_left = left_by(limits.fail_relative), warn_left = left_by(limits.warn_relative);
         // Fails above any limit, infinity too.
-        const auto exceeds = [&](double limit) { return !difference.comparable || difference.value > limit; };
+        const auto exceeds = [&](double limit, double left = kInfinity) {
+            return !difference.comparable || std::min(difference.value, left) > limit;
+        };
         if (forgiveness_.forgives()) {
             const double least = std::min({limits.fail, limits.hard_fail, limits.warn, limits.hard_warn});
-            const bool failed = exceeds(limits.fail);
+            const bool failed = exceeds(limits.fail, fail_left);
             if (exceeds(least)) difference = forgiveness_.least(place, difference, least, pairs);
-            if (failed && !exceeds(limits.fail)) ++figures.forgiven;
+            if (failed && !exceeds(limits.fail, fail_left)) ++figures.forgiven;
         }
         LimitCounts& counts = figures.by_area[area];
         ++counts.pixels;
-        if (exceeds(limits.fail)) add(counts.failing, place.x, place.y);
-        if (exceeds(limits.warn)) add(counts.warning, place.x, place.y);
+        if (exceeds(limits.fail, fail_left)) add(counts.failing, place.x, place.y);
+        if (exceeds(limits.warn, warn_left)) add(counts.warning, place.x, place.y);
         if (difference.value > limits.hard_fail) add(counts.hard_failing, place.x, place.y);
         if (difference.value > limits.hard_warn) add(counts.hard_warning, place.x, place.y);
     }

@@ -33,6 +33,11 @@ struct Forgive {
 ///   id          0 where all bits are equal, else infinite.
 /// Where a channel is NaN in one image or (without `nan_equal`) in both, or infinite in one or with another
 /// sign, the pixel's difference is infinite and the pixel fails whatever the limit.
+///
+/// `fail_relative` R lets differences pass that are in the last digits of a large value: of color, display,
+/// alpha and data a channel counts where |reference - test| > R (|reference| + |test|) / 2, of velocity a
+/// vector, by lengths. Depth is relative already. It holds for `fail`, not for `hard_fail`, as idiff's
+/// -failrelative.
 struct DifferenceRules {
     double fail = 1e-6;  ///< a pixel fails above it
     double hard_fail = std::numeric_limits<double>::infinity();
@@ -40,6 +45,7 @@ struct DifferenceRules {
     double hard_warn = std::numeric_limits<double>::infinity();
     bool nan_equal = false;
     Forgive forgive;  ///< of a layer; areas have their layer's
+    double fail_relative = 0, warn_relative = 0;
 };
 
 /// The pixel and channel of the largest |reference - test|; of ids the first that differ.

@@ -28,20 +28,30 @@ double relative_difference(const ValuePair& pair) {
     return difference == 0 || difference == kEndless ? difference : difference / std::abs(pair.reference);
 }
 
-double end_point_error(std::span<const ValuePair> pairs) {
-    const auto length = [](std::span<const ValuePair> vector) {
-        double sum = 0;
-        for (const ValuePair& pair : vector) sum += pair.difference() * pair.difference();
-        return std::sqrt(sum);
-    };
-    return pairs.size() == 4 ? std::max(length(pairs.first(2)), length(pairs.last(2))) : length(pairs);
+/// `difference`, or 0 where it is within `relative` of the mean of the magnitudes.
+double beyond(double difference, double relative, double reference, double test) {
+    return difference <= relative * (reference + test) / 2 && difference < kEndless ? 0 : difference;
 }
 
-double value_of(std::span<const ValuePair> pairs, LayerRole role) {
-    if (role == LayerRole::velocity) return end_point_error(pairs);
+double end_point_error(std::span<const ValuePair> pairs, double relative) {
+    const auto error = [&](std::span<const ValuePair> vector) {
+        double difference = 0, reference = 0, test = 0;
+        for (const ValuePair& pair : vector) {
+            difference += pair.difference() * pair.difference();
+            reference += pair.reference * pair.reference;
+            test += pair.test * pair.test;
+        }
+        return beyond(std::sqrt(difference), relative, std::sqrt(reference), std::sqrt(test));
+    };
+    return pairs.size() == 4 ? std::max(error(pairs.first(2)), error(pairs.last(2))) : error(pairs);
+}
+
+double value_of(std::span<const ValuePair> pairs, LayerRole role, double relative) {
+    if (role == LayerRole::velocity) return end_point_error(pairs, relative);
     double largest = 0;
     for (const ValuePair& pair : pairs) {
-        double difference = pair.difference();
+        double difference =
+            beyond(pair.difference(), relative, std::abs(pair.reference), std::abs(pair.test));
         if (role == LayerRole::depth) difference = relative_difference(pair);
         if (role == LayerRole::id) difference = pair.same_bits ? 0 : kEndless;
         largest = std::max(largest, difference);
@@ -67,8 +77,8 @@ void take_pair(const Image& reference, PixelPlace in_reference, const Image& tes
                        : pair_of(reference.floats()[r + c], test.floats()[t + c], nan_equal);
 }
 
-PixelDifference difference_of(std::span<const ValuePair> pairs, LayerRole role) {
-    const double value = value_of(pairs, role);
+PixelDifference difference_of(std::span<const ValuePair> pairs, LayerRole role, double relative) {
+    const double value = value_of(pairs, role, relative);
     const bool comparable =
         role == LayerRole::id ? value == 0 : std::ranges::all_of(pairs, &ValuePair::comparable);
     return {value, comparable};

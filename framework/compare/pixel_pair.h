@@ -33,7 +33,7 @@ struct PixelPlace {
 void take_pair(const Image& reference, PixelPlace in_reference, const Image& test, PixelPlace in_test,
                bool nan_equal, std::vector<ValuePair>& pairs);
 
-/// A pixel's difference as DifferenceRules defines it.
+/// A pixel's difference as DifferenceRules defines it; of what exceeds `relative` of its magnitude alone.
 struct PixelDifference {
     double value = 0;
     bool comparable = true;  ///< else the pixel fails whatever the limit
@@ -41,6 +41,7 @@ struct PixelDifference {
         return comparable != other.comparable ? comparable : value < other.value;
     }
 };
-PixelDifference difference_of(std::span<const ValuePair> pairs, LayerRole role);
+PixelDifference difference_of(std::span<const ValuePair> pairs, LayerRole role,
+                              double relative = 0);
 
 }  // namespace aftershade

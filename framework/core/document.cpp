@@ -252,6 +252,11 @@ std::optional<Node> parse_document(std::string_view text, const std::string& fil
         diagnostics.error(builder.place(nul), "a NUL byte: a document is UTF-8 text");
         return std::nullopt;
     }
+    // The library's word for it changes from version to version.
+    if (text.empty()) {
+        diagnostics.error(builder.place(0), "unexpected end of input; the document is empty");
+        return std::nullopt;
+    }
     const CountingIterator begin(text.data(), builder.reached());
     const CountingIterator end(text.data() + text.size(), builder.reached());
     const bool strict = true;  // nothing may follow the value

@@ -68,6 +68,7 @@ def compare(
     *,
     role: str = "color",
     limit: float = 1e-6,
+    relative: float = 0,
     percent: float = 0,
     allowed: int = 0,
     fail_flip: float | None = None,
@@ -83,12 +84,24 @@ def compare(
 
     :param role: of arrays: color, display, alpha, depth, velocity, id or data
     :param limit: of a pixel's difference; more than `percent` of the pixels and more than `allowed` above it fail
+    :param relative: a difference above `limit` counts where it is also more than this part of its value
     :param fail_flip, fail_ssim: fails where the mean FLIP is above, or the SSIM below
     :param maps: fill Layer.flip_map and Layer.ssim_map
     :param roles: of files: how layers are compared, by label
     """
     options = _native.CompareOptions(
-        limit, percent, allowed, fail_flip, fail_ssim, nan_equal, flip, ssim, maps, pixels_per_degree, dict(roles or {})
+        limit,
+        relative,
+        percent,
+        allowed,
+        fail_flip,
+        fail_ssim,
+        nan_equal,
+        flip,
+        ssim,
+        maps,
+        pixels_per_degree,
+        dict(roles or {}),
     )
     are_files = [isinstance(one, (str, OsPathLike)) for one in (reference, test)]
     if all(are_files):

@@ -111,7 +111,9 @@ TEST_P(PluginThat, CostsItsFrameAtMost) {
     std::vector<std::string> options{"--plugin-path", kCases, "--set", "graded.what=" + behaviour.what};
     options.insert(options.end(), behaviour.options.begin(), behaviour.options.end());
     const CommandResult result =
-        run(options, {{"SECRET_TOKEN", "secret"}, {"HOME", (folder_ / "home").string()}});
+        run(options, {{"SECRET_TOKEN", "secret"},
+                      {"HOME", (folder_ / "home").string()},
+                      {"MESA_SHADER_CACHE_DIR", (folder_ / "mesa").string()}});
     EXPECT_EQ(read_text(folder_ / "home/victim.txt"), "mine");
     EXPECT_EQ(contents(folder_ / "home").size(), 1u) << "a file was made";
     if (behaviour.message.empty()) {
@@ -247,12 +249,17 @@ TEST_F(Strangers, AShaderThatTakesTooLongIsNamed) {
     EXPECT_TRUE(has(check.err, late)) << check.err;
 }
 
+// Mesa's llvmpipe ends loops after 65,535 iterations; from some version on it does not.
 constexpr const char* kLoopFault =
     "pass 'graded\\.main': llvmpipe ended its loops after 65,535 iterations, so the picture is wrong";
 
 TEST_F(Strangers, ALoopThatTheDriverEndedIsAnErrorOfTheAuditAndTheCheck) {
     write_shader("endless", "while (c < 1.0e30) c = max(c, 1.0) + 0.0 * c;");
-    EXPECT_EQ(run({}).exit_code, 0) << "llvmpipe tells nobody";
+    const CommandResult plain = run({"--pass-timeout", "3"});
+    if (plain.exit_code != 0) {
+        EXPECT_TRUE(has(plain.err, "the GL driver did not finish within 3 s .* drawing pass 'main'")) << plain.err;
+        GTEST_SKIP() << "this llvmpipe ends no loop";
+    }
     const CommandResult audit = run({"--audit"});
     EXPECT_EQ(audit.exit_code, 5) << audit.err;
     EXPECT_TRUE(has(audit.err, kLoopFault)) << audit.err;
@@ -273,7 +280,12 @@ TEST_F(Strangers, LoopsThatEndByThemselvesPassTheAudit) {
                  "for (int i = 0; i < 40000; ++i) c += 1.0e-6;\n"
                  "FOR(i, 30000) c += 1.0e-6;",
                  "#define FOR(i, n) for (int i = 0; i < n; ++i)\n");
+    const float before = ExrFile(folder_ / "in_0001.exr").read_floats(0, std::vector<std::string>{"R"}).at(3, 3, 0);
     const CommandResult beyond = run({"--audit"});
+    if (beyond.exit_code == 0) {
+        EXPECT_NEAR(red(), before + 0.07f, 2e-3f) << "the audit passes what is whole";
+        return;
+    }
     EXPECT_EQ(beyond.exit_code, 5) << beyond.err;
     EXPECT_TRUE(has(beyond.err, kLoopFault)) << beyond.err;
 }

@@ -87,6 +87,50 @@ TEST(PixelDifferences, FailAboveTheLimitAndNotAtIt) {
     EXPECT_EQ(d.hard_failing.count, 1);
 }
 
+TEST(PixelDifferences, FailOnlyWhereARelativeLimitIsExceededTooAsIdiffSays) {
+    struct Case {
+        float reference, test;
+        double fail, relative;
+        std::uint64_t failing;  ///< by idiff 2.4.7's exit code
+    };
+    for (const Case& c : {Case{98, 98.0625f, 0.004, 0, 1}, {98, 98.0625f, 0.004, 0.001, 0},
+                          {98, 98.0625f, 0.004, 0.0005, 1}, {98, 98.0625f, 0.1, 0.0005, 0},
+                          {0.5f, 0.51f, 0.004, 0.001, 1}, {0.5f, 0.51f, 0.004, 0.03, 0},
+                          {0.5f, 0.51f, 0.004, 0.015, 1}}) {
+        DifferenceRules rules;
+        rules.fail = rules.warn = c.fail, rules.fail_relative = c.relative, rules.hard_fail = 1e-3;
+        // A channel beside it that differs by less than either limit changes nothing.
+        const PixelDifferences d = differences(constant(1, 1, {c.reference, 7}), constant(1, 1, {c.test, 7}),
+                                               LayerRole::color, rules);
+        EXPECT_EQ(d.failing.count, c.failing) << c.reference << " " << c.fail << " " << c.relative;
+        EXPECT_EQ(d.warning.count, c.reference > 1 ? c.fail < 0.0625 : c.fail < 0.01);
+        EXPECT_EQ(d.hard_failing.count, 1) << "no relative limit holds for hard_fail";
+        EXPECT_NEAR(d.largest_pixel, std::abs(c.test - c.reference), 1e-7);
+    }
+}
+
+TEST(PixelDifferences, HoldARelativeLimitOfAVectorByItsLength) {
+    DifferenceRules rules;
+    rules.fail_relative = 0.1;
+    const auto failing = [&](std::vector<float> reference, std::vector<float> test) {
+        return differences(constant(1, 1, std::move(reference)), constant(1, 1, std::move(test)),
+                           LayerRole::velocity, rules)
+            .failing.count;
+    };
+    EXPECT_EQ(failing({30, 40}, {30, 44}), 0) << "4 px of about 51";
+    EXPECT_EQ(failing({30, 40}, {30, 46}), 1) << "6 px of about 52";
+    EXPECT_EQ(failing({0, 0}, {0, 0.5f}), 1);
+    EXPECT_EQ(failing({30, 40, 1, 0}, {30, 44, 2, 0}), 1) << "the second vector's";
+}
+
+TEST(PixelDifferences, NeverLetARelativeLimitPassInfinityOrNan) {
+    DifferenceRules rules;
+    rules.fail_relative = 10;
+    for (const auto& [r, t] : {std::pair{kInfinity, 1.0f}, {1.0f, -kInfinity}, {kNan, 1.0f}})
+        for (const LayerRole role : {LayerRole::data, LayerRole::velocity})
+            EXPECT_EQ(differences(row({r}), row({t}), role, rules).failing.count, 1) << r << " " << t;
+}
+
 TEST(PixelDifferences, TakeNanForEqualOnlyWhenAsked) {
     DifferenceRules rules;
     PixelDifferences d = differences(row({kNan, 1}), row({kNan, 1}), LayerRole::data, rules);

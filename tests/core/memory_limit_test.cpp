@@ -86,8 +86,11 @@ TEST(Crash, IsPutDownToMemoryOnlyWhereTheLimitIsReached) {
                            [&] {
                                const std::uint64_t left = address_space_left().value_or(0);
                                // Asked for in pieces: half of what is left, until little is.
-                               for (std::uint64_t bytes = left / 2; bytes > kMiB; bytes /= 2)
-                                   static_cast<void>(new (std::nothrow) char[bytes]);
+                               for (std::uint64_t bytes = left / 2; bytes > kMiB; bytes /= 2) {
+                                   // Volatile, or the compiler may leave the allocation out.
+                                   [[maybe_unused]] const volatile char* kept =
+                                       static_cast<volatile char*>(operator new(bytes, std::nothrow));
+                               }
                                crash();
                            }),
               int(ExitCode::memory));

@@ -122,7 +122,7 @@ TEST_P(LightOn, IsTheSameInSlicesAndBands) {
             << i;
 }
 
-TEST_P(LightOn, SaysWhereGlEndsItsLoopsEarly) {
+TEST_P(LightOn, IsWholeOrSaysThatGlEndsItsLoopsEarly) {
     std::string lights;
     for (int i = 0; i < 8; ++i)
         lights +=
@@ -130,8 +130,9 @@ TEST_P(LightOn, SaysWhereGlEndsItsLoopsEarly) {
             R"(", "type": "area", "position": [-1.5, 1.2, 1.5], "target": [0, 0.2, 0], "size": [1.6, 1.2],
                      "intensity": 1, "shadow_samples": 16 })";
     try {
-        pictures(context(), room_under(lights), 1, 1, kMaxBufferBytes, {32, 18});
-        FAIL() << "2048 shadow rays for each shading sample had all their turns";
+        // 2048 shadow rays for each shading sample.
+        const Pictures both = pictures(context(), room_under(lights), 1, 1, kMaxBufferBytes, {32, 18});
+        EXPECT_LT(other_pixels(both), 0.001);
     } catch (const Error& error) {
         EXPECT_EQ(error.exit_code(), ExitCode::effect);
         EXPECT_NE(std::string(error.what()).find("choose --visibility-on cpu"), std::string::npos)

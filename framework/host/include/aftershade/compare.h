@@ -26,6 +26,8 @@ struct Tolerance {
     double percent = 0;                                     ///< of the pixels; from 0 to 100
     double hard = std::numeric_limits<double>::infinity();  ///< at least 0
     std::uint64_t allowed = 0;                              ///< pixels
+    /// At least 0: a difference above `limit` counts where it is also more than this part of its value.
+    double relative = 0;
 };
 
 /// `automatic`: LDR of encoded colours, HDR of light.
