@@ -25,7 +25,7 @@ namespace {
 struct DescribeOptions {
     std::string what;
     std::vector<std::string> effect_paths;
-    bool json = false;
+    bool json = false, verbose = false;
     std::string plot;
 };
 
@@ -69,7 +69,7 @@ ExitCode describe(const DescribeOptions& options) {
         write_plot(profile_of(*manifest, diagnostics), options.plot);
         return ExitCode::done;
     }
-    fmt::print("{}{}", options.json ? describe_json(*manifest) : printable_lines(describe_text(*manifest)),
+    fmt::print("{}{}", options.json ? describe_json(*manifest) : printable_lines(describe_text(*manifest, options.verbose)),
                options.json ? "\n" : "");
     return ExitCode::done;
 }
@@ -84,6 +84,8 @@ Verb add_describe(CLI::App& app) {
         ->required();
     add_effect_path_option(app, options->effect_paths);
     auto* json = app.add_flag("--json", options->json, "Print JSON");
+    app.add_flag("-v,--verbose", options->verbose,
+                 "Of an effect, print its sources, textures, telemetry and passes too");
     app.add_option("--plot", options->plot,
                    "Plot the scattering profile, or an effect's default one, to this .svg")
         ->type_name("FILE")

@@ -35,7 +35,7 @@ struct InspectOptions {
     std::vector<std::string> check_velocity;
     std::optional<std::string> cryptomatte;
     std::vector<int> pixel;  ///< x and y; empty: none
-    bool json = false;
+    bool json = false, channels = false;
 };
 
 void check_options(const InspectOptions& options, const std::optional<Sequence>& sequence,
@@ -207,6 +207,7 @@ ExitCode inspect(const InspectOptions& options) {
         return write_frame_sheet(options.contact_sheet, options.columns, *sequence, reader);
     Inspection inspection =
         inspect_frame(*sequence, sequence->file_number(sequence->frames.front()), reader, options);
+    inspection.lists_channels = options.channels;
     note_deep_reduction(reader, inspection);
     find_depth_kind_of(reader, inspection);
     if (options.cryptomatte) add_coverage(*options.cryptomatte, reader, inspection);
@@ -236,6 +237,8 @@ Verb add_inspect(CLI::App& app) {
     capture->required(false)->excludes(check);
     add_capture_options(app, options->capture,
                         "The frame to show (default: the first), or the frames of a contact sheet");
+    app.add_flag("--channels", options->channels,
+                 "List the channels of each part, with their types and their smallest and largest values");
     app.add_flag("--json", options->json, "Print JSON");
     app.add_option(
            "--cryptomatte", options->cryptomatte,

@@ -32,6 +32,41 @@ std::string part_title(const InspectedPart& part, std::size_t index) {
     return title + fmt::format("  pixel aspect    {}\n", header.pixel_aspect);
 }
 
+/// "scanlineimage, zip, 480 x 270 px", with what is out of the ordinary.
+std::string layout_text(const ExrPart& part) {
+    std::string text = fmt::format("{}, {}, ", part.type, part.compression);
+    if (part.data_window == part.display_window && part.data_window.min_x == 0 && part.data_window.min_y == 0)
+        text += fmt::format("{} x {} px", part.data_window.width(), part.data_window.height());
+    else
+        text += fmt::format("data window {}, display window {}", window_text(part.data_window),
+                            window_text(part.display_window));
+    return part.pixel_aspect == 1 ? text : text + fmt::format(", pixel aspect {}", part.pixel_aspect);
+}
+
+/// One line for parts of one layout; what cannot be read by name.
+std::string part_lines(const std::vector<InspectedPart>& parts) {
+    struct Like {
+        std::string layout;
+        std::size_t parts = 0, channels = 0;
+    };
+    std::vector<Like> likes;
+    std::string faults;
+    for (const InspectedPart& part : parts) {
+        const std::string layout = layout_text(part.header);
+        auto like = std::ranges::find(likes, layout, &Like::layout);
+        if (like == likes.end()) like = likes.insert(like, {layout});
+        ++like->parts, like->channels += part.channels.size();
+        for (const InspectedChannel& channel : part.channels)
+            if (!channel.statistics)
+                faults += fmt::format("  {}: {}\n", printable(channel.channel.name), printable(channel.reason));
+    }
+    std::string text;
+    for (const Like& like : likes)
+        text += fmt::format("{} part{}: {}; {} channels (--channels lists them)\n", like.parts,
+                            like.parts == 1 ? "" : "s", like.layout, like.channels);
+    return text + faults;
+}
+
 std::string number_text(const std::optional<double>& value) {
     return value ? fmt::format("{:.6g}", *value) : "-";
 }
@@ -257,7 +292,9 @@ const InspectedChannel* Inspection::first_unreadable() const {
 
 std::string text_of(const Inspection& inspection) {
     std::string text = inspection.file.string() + "\n";
-    for (std::size_t i = 0; i < inspection.parts.size(); ++i)
+    const bool lists_channels = inspection.lists_channels || inspection.pixel || !inspection.capture;
+    if (!lists_channels) text += part_lines(inspection.parts);
+    for (std::size_t i = 0; lists_channels && i < inspection.parts.size(); ++i)
         text += part_title(inspection.parts[i], i) + channel_table(inspection.parts[i].channels) +
                 sample_lines(inspection.parts[i]) + pixel_lines(inspection, inspection.parts[i]);
     if (inspection.capture)

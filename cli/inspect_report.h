@@ -25,6 +25,7 @@ struct InspectedPart {
 struct Inspection {
     std::filesystem::path file;
     std::vector<InspectedPart> parts;
+    bool lists_channels = false;           ///< in the text, also where a profile fits
     std::optional<CaptureHeader> capture;  ///< nullopt where no profile fits
     std::string no_profile_reason;         ///< without the file's name
     std::string no_profile_message;        ///< with it

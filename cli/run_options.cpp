@@ -124,6 +124,8 @@ void add_history_options(CLI::App& app, RunArguments& options) {
 void add_diagnosis_options(CLI::App& app, RunArguments& options) {
     app.add_flag("--explain", options.explain,
                  "Print every parameter's value and its source, and run nothing");
+    app.add_flag("-v,--verbose", options.verbose,
+                 "Print the time of each pass and stage, and the memory of textures and buffers");
     app.add_flag("--audit", options.audit,
                  "Name the pass that first writes NaN or infinite values, with place and count; slow");
     app.add_flag("--apart", options.apart,

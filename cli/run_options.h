@@ -38,7 +38,7 @@ struct RunArguments {
     bool keep_channels = false;
     bool audit = false;
     bool apart = false;
-    bool explain = false;
+    bool explain = false, verbose = false;
     bool watch = false;
     std::string telemetry;
     std::string telemetry_plot;

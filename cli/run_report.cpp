@@ -12,6 +12,7 @@
 #include "framework/capture/frame_range.h"
 #include "framework/core/error.h"
 #include "framework/core/text.h"
+#include "framework/gpu/context.h"
 
 namespace aftershade::cli {
 
@@ -187,9 +188,9 @@ RunObserver RunReporter::observer() {
     return observer;
 }
 
-void RunReporter::print_tables(const RunReport& report, const std::string& clock) const {
+void RunReporter::print_tables(const RunReport& report) const {
     fmt::print(stderr, "{:<28} {:>9} {:>9} {:>9}   ms a frame, {} clock\n", "pass", "mean", "min", "max",
-               clock);
+               report.clock);
     for (const PassStatistics& pass : report.passes)
         fmt::print(stderr, "{:<28} {:>9.2f} {:>9.2f} {:>9.2f}\n", pass.pass, pass.total_ms / pass.frames,
                    pass.min_ms, pass.max_ms);
@@ -198,10 +199,8 @@ void RunReporter::print_tables(const RunReport& report, const std::string& clock
     for (const Stage& stage : stages_of(report))
         fmt::print(stderr, "{:<28} {:>9.2f} {:>9.2f}\n", stage.name, stage.busy_ms / kMsPerSecond,
                    stage.waited_ms / kMsPerSecond);
-    fmt::print(stderr,
-               "{} of {} frames in {:.2f} s; waited {:.2f} s for files to be read, {:.2f} s to be written\n",
-               report.frames_done, frame_count_, report.wall_ms / kMsPerSecond, report.read_ms / kMsPerSecond,
-               report.write_ms / kMsPerSecond);
+    fmt::print(stderr, "waited {:.2f} s for files to be read, {:.2f} s to be written\n",
+               report.read_ms / kMsPerSecond, report.write_ms / kMsPerSecond);
     constexpr double kMiB = 1024 * 1024;
     fmt::print(stderr, "textures and buffers: {:.1f} MiB ({:.1f} MiB without sharing memory)\n",
                double(report.bytes) / kMiB, double(report.bytes_unaliased) / kMiB);
@@ -223,7 +222,7 @@ void RunReporter::print_json_summary(const RunReport& report) const {
                 {"stages", stages}});
 }
 
-void RunReporter::print_summary(const RunReport& report, const std::string& clock) {
+void RunReporter::print_summary(const RunReport& report) {
     line_.clear();
     if (style_ == ProgressStyle::none) return;
     frame_count_ -= warmup_frames_ + report.frames_unwritten;  // what was to be written
@@ -231,13 +230,19 @@ void RunReporter::print_summary(const RunReport& report, const std::string& cloc
     if (style_ == ProgressStyle::openjd)
         print_openjd_progress(std::size_t(frame_count_), std::size_t(frame_count_),
                               fmt::format("{} of {} frames done", report.frames_done, frame_count_));
-    if (report.frames_done > 0) print_tables(report, clock);
+    if (verbose_ && report.frames_done > 0) print_tables(report);
     if (!report.frames_non_finite.empty())
         fmt::print(stderr, "NaN or infinite pixels in {} of {} frames: {}\n", report.frames_non_finite.size(),
                    frame_count_, format_frame_range(report.frames_non_finite));
     if (!report.failures.empty())
         fmt::print(stderr, "{} of {} frames failed: {}\n", report.failures.size(), frame_count_,
                    format_frame_range(failed_frames(report)));
+    fmt::print(stderr, "{} of {} frames in {:.2f} s", report.frames_done, frame_count_,
+               report.wall_ms / kMsPerSecond);
+    if (!report.gl.renderer.empty())
+        fmt::print(stderr, ", {}: {}, {}", gpu::backend_name(report.gl.backend), report.gl.renderer,
+                   report.gl.version);
+    fmt::print(stderr, "\n");
 }
 
 }  // namespace aftershade::cli

@@ -46,11 +46,11 @@ private:
 class RunReporter {
 public:
     /// Of `frame_count` frames the first ones only warm history up.
-    RunReporter(ProgressStyle style, int frame_count, int warmup_frames = 0)
-        : style_(style), frame_count_(frame_count), warmup_frames_(warmup_frames) {}
+    RunReporter(ProgressStyle style, int frame_count, int warmup_frames, bool verbose)
+        : style_(style), frame_count_(frame_count), warmup_frames_(warmup_frames), verbose_(verbose) {}
 
     RunObserver observer();
-    void print_summary(const RunReport& report, const std::string& clock);
+    void print_summary(const RunReport& report);
     /// Whatever the style.
     void warn(const std::string& message);
 
@@ -62,12 +62,13 @@ private:
     void begin_frame(const Capture& capture);
     void tell_conventions(const Capture& capture);
     void show_progress(int frame);
-    void print_tables(const RunReport& report, const std::string& clock) const;
+    void print_tables(const RunReport& report) const;
     void print_json_summary(const RunReport& report) const;
 
     ProgressStyle style_;
     int frame_count_ = 0;
     int warmup_frames_ = 0;
+    bool verbose_ = false;
     int started_ = 0;
     ProgressLine line_;
     Clock::time_point begin_{};

@@ -92,19 +92,17 @@ ExitCode render(const RunSession& session, const RunOptions& run, const Pipeline
     Trace trace;
     RunOptions settings = run;
     if (!session.arguments.trace.empty()) settings.trace = &trace;
-    RunReporter reporter(session.progress, int(run.frames.size()), run.warmup_frames);
+    RunReporter reporter(session.progress, int(run.frames.size()), run.warmup_frames,
+                         session.arguments.verbose);
     ReportFile report_file(session, current);
     const RunReport report =
         report_file.run({session.context, pipeline, session.sequence, session.reader, settings,
                          session.outputs, data_path(), hooks, session.end_context},
                         reporter.observer(), stop);
-    const gpu::ContextInfo& gl = report.gl;
-    if (session.progress == ProgressStyle::plain || session.progress == ProgressStyle::terminal)
-        std::cerr << gpu::backend_name(gl.backend) << ": " << gl.renderer << ", " << gl.version << "\n";
     // Of several workers each sees only a part of the frames.
     if (!session.arguments.jobs.is_worker())
         for (const std::string& warning : report.objects_unmatched) reporter.warn(warning);
-    reporter.print_summary(report, report.clock);
+    reporter.print_summary(report);
     if (session.outputs.stream && !report.failures.empty())
         std::cerr
             << "-o -: the stream ends before frame " << report.failures.front().frame

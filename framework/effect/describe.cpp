@@ -160,51 +160,12 @@ void markdown_params(const EffectManifest& manifest, std::ostream& out) {
     }
 }
 
-}  // namespace
-
-std::string type_text(const ParamSpec& spec) {
-    const auto own = spec.type->type_text;
-    const std::string text = own ? own(spec) : std::string(spec.type->name);
-    return text + (spec.unit.empty() ? "" : ", " + spec.unit);
-}
-
-std::string default_text(const ParamSpec& spec) {
-    const auto own = spec.type->default_text;
-    const std::string value = own ? own(spec) : format_value(spec, spec.default_value);
-    return value + (spec.unit.empty() ? "" : " " + spec.unit) +
-           (spec.from.empty() ? "" : "; before it " + spec.from);
-}
-
-std::string describe_text(const EffectManifest& manifest) {
-    std::ostringstream out;
-    out << manifest.id << " " << manifest.version << "\n" << manifest.summary << "\n";
-    for (const std::string& source : manifest.sources) out << "  source: " << source << "\n";
+/// How it is made.
+void describe_inside(const EffectManifest& manifest, std::ostream& out) {
+    if (!manifest.sources.empty() || !manifest.modules.empty()) out << "\nsources\n";
+    for (const std::string& source : manifest.sources) out << "  " << source << "\n";
     for (const ModuleSpec& module : manifest.modules)
         out << "  module " << module.name << ": " << module.summary << "\n";
-    if (manifest.uses_lights) out << "  takes the capture's lights\n";
-    out << "\ninputs\n";
-    TextTable inputs("  ");
-    for (const InputSpec& input : manifest.inputs)
-        inputs.add({input.name, input.role + input_flags(input), input.doc});
-    inputs.print(out);
-    out << "\noutputs\n";
-    TextTable outputs("  ");
-    for (const OutputSpec& output : manifest.outputs) outputs.add({output.name, output.role, output.doc});
-    outputs.print(out);
-    if (!manifest.params.empty()) out << "\nparameters\n";
-    TextTable params("  ");
-    for (const ParamSpec& spec : manifest.params) {
-        params.add({spec.name, type_text(spec), default_text(spec), range_text(spec), spec.doc});
-        for (const ParamSpec& column : spec.columns)
-            params.add({"  " + column.name, type_text(column), default_text(column), range_text(column),
-                        column.doc});
-    }
-    params.print(out);
-    if (!manifest.presets.empty()) out << "\npresets\n";
-    TextTable presets("  ");
-    for (const PresetSpec& preset : manifest.presets)
-        presets.add({preset.name, preset_text(manifest, preset)});
-    presets.print(out);
     if (!manifest.textures.empty()) out << "\ntextures (--tap " << manifest.id << ".<name>)\n";
     TextTable textures("  ");
     for (const TextureSpec& texture : manifest.textures)
@@ -220,6 +181,52 @@ std::string describe_text(const EffectManifest& manifest) {
     for (const PassSpec& pass : manifest.passes)
         passes.add({pass.name, shader_text(manifest, pass), flow_text(manifest, pass)});
     passes.print(out);
+}
+
+}  // namespace
+
+std::string type_text(const ParamSpec& spec) {
+    const auto own = spec.type->type_text;
+    const std::string text = own ? own(spec) : std::string(spec.type->name);
+    return text + (spec.unit.empty() ? "" : ", " + spec.unit);
+}
+
+std::string default_text(const ParamSpec& spec) {
+    const auto own = spec.type->default_text;
+    const std::string value = own ? own(spec) : format_value(spec, spec.default_value);
+    return value + (spec.unit.empty() ? "" : " " + spec.unit) +
+           (spec.from.empty() ? "" : "; before it " + spec.from);
+}
+
+std::string describe_text(const EffectManifest& manifest, bool verbose) {
+    std::ostringstream out;
+    out << manifest.id << " " << manifest.version << "\n" << manifest.summary << "\n";
+    if (!manifest.params.empty()) out << "\nparameters\n";
+    TextTable params("  ");
+    for (const ParamSpec& spec : manifest.params) {
+        params.add({spec.name, type_text(spec), default_text(spec), range_text(spec), spec.doc});
+        for (const ParamSpec& column : spec.columns)
+            params.add({"  " + column.name, type_text(column), default_text(column), range_text(column),
+                        column.doc});
+    }
+    params.print(out);
+    if (!manifest.presets.empty()) out << "\npresets\n";
+    TextTable presets("  ");
+    for (const PresetSpec& preset : manifest.presets)
+        presets.add({preset.name, preset_text(manifest, preset)});
+    presets.print(out);
+    out << "\ninputs\n";
+    TextTable inputs("  ");
+    for (const InputSpec& input : manifest.inputs)
+        inputs.add({input.name, input.role + input_flags(input), input.doc});
+    inputs.print(out);
+    if (manifest.uses_lights) out << "  the capture's lights\n";
+    out << "\noutputs\n";
+    TextTable outputs("  ");
+    for (const OutputSpec& output : manifest.outputs) outputs.add({output.name, output.role, output.doc});
+    outputs.print(out);
+    if (verbose) describe_inside(manifest, out);
+    else out << "\n--verbose adds its sources, textures, telemetry and passes.\n";
     return out.str();
 }
 

@@ -70,7 +70,7 @@ def start():
 
 def passes_ms(look, source):
     """By step, the least of three frames."""
-    lines = said([AFTERSHADE, "run", look, source, "--profile", "blender", "--backend", "software", "--overwrite", "-o", WORK / "out.exr"])
+    lines = said([AFTERSHADE, "run", look, source, "--profile", "blender", "--backend", "software", "--overwrite", "--verbose", "-o", WORK / "out.exr"])
     steps = {}
     for step, ms in re.findall(r"^(\w+)\.\S+ +([\d.]+)", lines, re.M):
         steps[step] = steps.get(step, 0) + float(ms)

@@ -32,7 +32,7 @@ def sequence(name, blurred):
 
 def rows_ms(look, frames, threads):
     words = [AFTERSHADE, "run", look, frames, "-o", WORK / "out_####.exr", "--backend", "software", "--compression", "none", "--no-journal",
-             "--overwrite"]
+             "--overwrite", "--verbose"]
     done = subprocess.run([str(w) for w in words], check=True, capture_output=True, text=True,
                           env=os.environ | {"LP_NUM_THREADS": str(threads)})
     return {name: float(ms) for name, ms in ROW.findall(done.stdout + done.stderr)}

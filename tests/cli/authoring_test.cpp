@@ -272,13 +272,22 @@ TEST_F(Authoring, ListAndDescribeTellWhatThereIs) {
 
 TEST_F(Authoring, DescribeTellsWhatEachPassTakesAndMakesAndWhatHasNoTap) {
     const std::string folder = std::string(AFTERSHADE_SOURCE_DIR) + "/tests/schema";
-    const std::string text = command({"describe", "every_form", "--effect-path", folder}).out;
+    const std::string text = command({"describe", "every_form", "--verbose", "--effect-path", folder}).out;
     for (const char* line : {"  count   main.comp                color, depth, winner, arguments -> winner, "
                              "list, arguments, sums\n",
                              "  spread  main.comp                state.prev -> state, coarse\n",
                              "  empty   clear                    -> half_size, slices\n",
                              "  slices     r32f, 4 layers, no tap", "  pyramid    r32f, 64 x 32, 3 levels"})
         EXPECT_NE(text.find(line), std::string::npos) << line << "\n" << text;
+}
+
+TEST_F(Authoring, DescribeLeadsWithTheParametersOfAnEffectOnOneScreen) {
+    for (const char* effect : {"dof", "sss_adaptive", "motion_blur", "vignette"}) {
+        const std::string text = command({"describe", effect}).out;
+        EXPECT_LE(std::ranges::count(text, '\n'), 60) << text;
+        EXPECT_LT(text.find("\nparameters\n"), text.find("\ninputs\n")) << text;
+        EXPECT_EQ(text.find("\npasses\n"), std::string::npos) << text;
+    }
 }
 
 TEST_F(Authoring, DocsAreWrittenOnceAndTheirDriftIsFound) {

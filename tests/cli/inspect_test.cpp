@@ -96,7 +96,7 @@ TEST_F(Inspect, TellsTheSuzanneCaptureAsJson) {
 }
 
 TEST_F(Inspect, TellsAPersonTheSame) {
-    const CommandResult result = inspect({kSuzanneCapture, "--frames", "4"});
+    const CommandResult result = inspect({kSuzanneCapture, "--frames", "4", "--channels"});
     for (const char* words :
          {"scenes/suzanne/gbuffer_0004.exr\n", "part 0: scanlineimage, zip\n",
           "data window     (0, 0)-(479, 269), 480 x 270 px\n", "ViewLayer.IndexOB.X   float  1 x 1 ",
@@ -104,6 +104,13 @@ TEST_F(Inspect, TellsAPersonTheSame) {
           "(missing)       specular, emission, mask\n", "  focal_length    50 mm\n"})
         EXPECT_NE(result.out.find(words), std::string::npos) << words << "\n" << result.out;
     EXPECT_EQ(result.err, "");
+}
+
+TEST_F(Inspect, ListsTheChannelsOnlyOnRequest) {
+    const std::string text = inspect({kSuzanneCapture, "--frames", "4"}).out;
+    EXPECT_LE(std::ranges::count(text, '\n'), 40) << text;
+    EXPECT_NE(text.find("1 part: scanlineimage, zip, 480 x 270 px; "), std::string::npos) << text;
+    EXPECT_EQ(text.find("ViewLayer.IndexOB.X   float"), std::string::npos) << text;
 }
 
 TEST_F(Inspect, CountsWhatIsNotFinite) {

@@ -21,7 +21,7 @@ protected:
 };
 
 TEST_F(Progress, PlainLinesGiveRateAndTimeLeftAndATableOfStages) {
-    const CommandResult result = sequence({"--progress", "plain"});
+    const CommandResult result = sequence({"--progress", "plain", "--verbose"});
     EXPECT_TRUE(std::regex_search(result.err, std::regex("frame 1 \\(1/4\\)\n"))) << result.err;
     EXPECT_TRUE(
         std::regex_search(result.err, std::regex("frame 3 \\(3/4\\), [0-9.e+]+ frames/s, [0-9.]+ s left\n")))
@@ -31,6 +31,14 @@ TEST_F(Progress, PlainLinesGiveRateAndTimeLeftAndATableOfStages) {
             std::regex_search(result.err, std::regex("\n" + std::string(stage) + " +[0-9.]+ +[0-9.]+\n")))
             << stage << "\n"
             << result.err;
+}
+
+TEST_F(Progress, SaysByDefaultOnlyWhatAPersonNeeds) {
+    const CommandResult result = sequence({"--progress", "plain", "--frames", "1"});
+    const std::vector<std::string> lines = lines_of_text(result.err);
+    EXPECT_LE(lines.size(), 12u) << result.err;
+    EXPECT_TRUE(std::regex_match(lines.back(), std::regex("1 of 1 frames in [0-9.]+ s, .*: llvmpipe .*")))
+        << result.err;
 }
 
 TEST_F(Progress, JsonIsAnObjectALineAndEndsWithTheStages) {

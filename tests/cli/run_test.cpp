@@ -299,7 +299,10 @@ TEST_F(Run, HonoursTheBackendOfTheEnvironmentAndPutsTheOptionAboveIt) {
     const auto backend_of = [&](const Environment& environment, std::vector<std::string> more) {
         more.insert(more.begin(), {"view.json", "in_0001.exr", "-o", "out.exr", "--progress", "plain"});
         for (const std::string& line : lines_of_text(run(more, environment).err))
-            if (line.find(": llvmpipe") != std::string::npos) return line.substr(0, line.find(':'));
+            if (const std::size_t end = line.find(": llvmpipe"); end != std::string::npos) {
+                const std::size_t begin = line.rfind(' ', end) + 1;
+                return line.substr(begin, end - begin);
+            }
         return std::string("none");
     };
     SKIP_WITHOUT(gpu::Backend::egl_software);

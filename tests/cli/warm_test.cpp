@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <sched.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 #include <string>
@@ -34,6 +35,14 @@ protected:
     TemporaryFolder folder_;
 };
 
+/// In a folder "mesa_shader_cache", of Mesa 24 and 25.0 "mesa_shader_cache_db".
+bool has_mesas_code(const fs::path& cache) {
+    return fs::is_directory(cache) &&
+           std::ranges::any_of(fs::directory_iterator(cache), [](const fs::directory_entry& entry) {
+               return entry.path().filename().string().starts_with("mesa_shader_cache");
+           });
+}
+
 TEST_F(Warm, LeavesNothingForALaterRunToCompile) {
     const fs::path cache = folder_ / "cache";
     const CommandResult warmed =
@@ -41,7 +50,7 @@ TEST_F(Warm, LeavesNothingForALaterRunToCompile) {
     ASSERT_EQ(warmed.exit_code, 0) << warmed.err;
     EXPECT_NE(warmed.out.find(cache.string()), std::string::npos) << warmed.out;
     const std::set<fs::path> after_warm = files_below(cache);
-    EXPECT_TRUE(fs::is_directory(cache / "mesa_shader_cache")) << "Mesa's code lies in the same folder";
+    EXPECT_TRUE(has_mesas_code(cache)) << "Mesa's code lies in the same folder";
     using Words = std::vector<std::string>;
     for (const Words& outputs : {Words{"-o", "o_####.exr"}, Words{"-o", "o_####.png"},
                                  Words{"-o", "o_####.exr", "-o", "o_####.png"}}) {
@@ -62,7 +71,7 @@ TEST_F(Warm, FailsWhereTheCacheIsOffOrTheLookIsFaulty) {
     const CommandResult faulty = run({"warm", "look.json", kWarmCapture}, (folder_ / "cache").string());
     EXPECT_EQ(faulty.exit_code, 2);
     EXPECT_NE(faulty.err.find("blom"), std::string::npos) << faulty.err;
-    EXPECT_FALSE(fs::exists(folder_ / "cache/mesa_shader_cache")) << "nothing was compiled";
+    EXPECT_FALSE(has_mesas_code(folder_ / "cache")) << "nothing was compiled";
 }
 
 /// This process and those that it starts on one processor.

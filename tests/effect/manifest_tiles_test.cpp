@@ -96,7 +96,7 @@ TEST(TileLists, AreListedByTheHostsShader) {
     EXPECT_EQ(manifest.passes[5].reads.at(0).name, "whole") << "the predicate's text names it";
     EXPECT_FALSE(has_line(over, "    vec4 tile_grid_size;")) << "the vertex shader that all share has it";
     EXPECT_EQ(manifest.passes[4].buffers.front().name, "marked_runs") << "where that shader reads it";
-    const std::string described = describe_text(manifest);
+    const std::string described = describe_text(manifest, true);
     EXPECT_NE(described.find("tiles where marks.g > 0"), std::string::npos) << described;
     EXPECT_NE(described.find("tiles by near.glsl"), std::string::npos) << described;
     EXPECT_NE(described.find("-> half_size over near"), std::string::npos) << described;
