@@ -32,7 +32,7 @@ Form files_by_role() {
 
 Block cryptomatte_block() {
     return {.name = "cryptomatte",
-            .keys = {optional("layer", text(), "Which Cryptomatte; required if there are several."),
+            .keys = {optional("layer", text(), "Which Cryptomatte; default: the one that has the named objects, and of several such that of objects."),
                      optional("mask", grammar::list(text()),
                               "Names of objects; the role mask is their coverage.")}};
 }
