@@ -168,6 +168,7 @@ int main(int argc, char** argv) {
         // So fmt::print reports a stream that takes nothing.
         const auto* system = dynamic_cast<const std::system_error*>(&error);
         if (system && std::ferror(stdout)) return fail_for_stdout(system->code().value());
-        return fail(ExitCode::effect, error.what());
+        return fail(ExitCode::effect,
+                    (std::string("a fault of the program itself: ") + error.what() + "; please report it").c_str());
     }
 }

@@ -123,6 +123,7 @@ CheckedRun checked_run(const RunArguments& options) {
         add_missing_frames(options.capture, run.settings.missing, *sequence, diagnostics);
         run.share = share_of_frames(options, run.bound->pipeline, *sequence, diagnostics);
     }
+    if (sequence && !diagnostics.has_errors()) require_some_file(*sequence);
     const Sequence checked = sequence.value_or(Sequence{});
     InputFiles inputs = run_inputs(*run.bound, checked, diagnostics);
     check_run_outputs(options, run.outputs, checked, inputs, diagnostics);

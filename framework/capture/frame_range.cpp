@@ -170,6 +170,7 @@ FramePattern FramePattern::of_file(std::string name) {
 
 std::string FramePattern::path(int frame) const {
     if (!has_frame()) return text_;
+    if (const auto other = other_names_.find(frame); other != other_names_.end()) return other->second;
     std::string digits = std::to_string(std::abs(std::int64_t(frame)));
     const std::size_t width = std::size_t(width_) - (frame < 0 && width_ > 1 ? 1 : 0);
     if (digits.size() < width) digits.insert(0, width - digits.size(), '0');
@@ -182,18 +183,17 @@ std::string FramePattern::with(std::string_view number) const {
 }
 
 std::optional<int> FramePattern::match(std::string_view name) const {
+    const auto frame = number_in(name);
+    return frame && path(*frame) == name ? frame : std::nullopt;
+}
+
+std::optional<int> FramePattern::number_in(std::string_view name) const {
     const std::size_t fixed = text_.size() - length_;
     if (!has_frame() || name.size() <= fixed) return std::nullopt;
     const std::size_t digits = name.size() - fixed;
     if (name.substr(0, start_) != std::string_view(text_).substr(0, start_)) return std::nullopt;
     if (name.substr(start_ + digits) != std::string_view(text_).substr(start_ + length_)) return std::nullopt;
-    const auto frame = parse_int(name.substr(start_, digits));
-    return frame && path(*frame) == name ? frame : std::nullopt;
-}
-
-FramePattern FramePattern::padded(int width) const {
-    return FramePattern(text_.substr(0, start_) + std::string(std::size_t(width), '#') +
-                        text_.substr(start_ + length_));
+    return parse_int(name.substr(start_, digits));
 }
 
 std::optional<int> frame_in_name(std::string_view stem) {

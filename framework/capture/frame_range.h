@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -38,18 +39,21 @@ public:
     bool has_frame() const { return length_ > 0; }
     const std::string& text() const { return text_; }
     std::string path(int frame) const;
+    /// The file of `frame` has this name from now on, whose number is padded in another way.
+    void name_otherwise(int frame, std::string name) { other_names_.insert_or_assign(frame, std::move(name)); }
     /// The name with this text in the number's place.
     std::string with(std::string_view number) const;
     /// The frame number in `name` if the pattern fits it.
     std::optional<int> match(std::string_view name) const;
-    /// The same with this many #.
-    FramePattern padded(int width) const;
+    /// The same, however the number is padded: "f_####.exr" fits "f_12.exr" and "f_-0001.exr".
+    std::optional<int> number_in(std::string_view name) const;
 
 private:
     std::string text_;
     std::size_t start_ = 0;
     std::size_t length_ = 0;  // of the placeholder
     int width_ = 0;           // digits, padded with zeros
+    std::map<int, std::string> other_names_;
 };
 
 /// The last group of digits in a file's stem: "gbuffer_0004.exr" is frame 4.

@@ -1,6 +1,7 @@
 #include "framework/capture/sequence.h"
 
 #include <algorithm>
+#include <cctype>
 #include <iterator>
 #include <numeric>
 #include <set>
@@ -10,6 +11,7 @@
 #include "framework/core/document.h"
 #include "framework/core/error.h"
 #include "framework/core/grammar_reader.h"
+#include "framework/core/text.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
@@ -18,10 +20,40 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// The paths in the pattern's folder as the pattern begins them: a path in normal form would not match the text
+/// of "shots//f_####.exr".
+std::vector<std::string> paths_beside(const FramePattern& pattern) {
+    const std::string prefix = pattern.text().substr(0, pattern.text().rfind('/') + 1);
+    std::vector<std::string> paths;
+    std::error_code failure;
+    for (const auto& entry : fs::directory_iterator(prefix.empty() ? "." : prefix, failure))
+        paths.push_back(prefix + entry.path().filename().string());
+    return paths;
+}
+
+/// A sequence is its numbers: a frame whose own file is not there is read from the one whose number is padded in
+/// another way (998 to 1001, -0001). Throws Error(ExitCode::capture) where there are two of these, or where
+/// `padding_decides` is false and two files have one number.
+FramePattern pattern_on_disk(FramePattern pattern, bool padding_decides) {
+    std::map<int, std::vector<std::string>> paths;
+    for (const std::string& path : paths_beside(pattern))
+        if (const auto frame = pattern.number_in(path)) paths[*frame].push_back(path);
+    for (auto& [frame, found] : paths) {
+        if (padding_decides && std::ranges::find(found, pattern.path(frame)) != found.end()) continue;
+        std::ranges::sort(found);
+        if (found.size() > 1)
+            throw Error(ExitCode::capture, "frame " + std::to_string(frame) + " is both " + found[0] + " and " +
+                                               found[1] + "; move one of them away");
+        if (found[0] != pattern.path(frame)) pattern.name_otherwise(frame, std::move(found[0]));
+    }
+    return pattern;
+}
+
 /// A file that has this very name, else what the marks in it stand for.
 FramePattern file_or_pattern(const std::string& text) {
     std::error_code failure;
-    return fs::is_regular_file(text, failure) ? FramePattern::of_file(text) : FramePattern(text);
+    return fs::is_regular_file(text, failure) ? FramePattern::of_file(text)
+                                              : pattern_on_disk(FramePattern(text), true);
 }
 
 std::map<std::string, FramePattern> read_role_files(const grammar::Reader& reader, const fs::path& folder) {
@@ -99,30 +131,50 @@ std::optional<Sequence> read_capture_document(const fs::path& path, Diagnostics&
     return sequence;
 }
 
+bool is_digit(char c) {
+    return c >= '0' && c <= '9';
+}
+
+/// "a." of "a.0998.exr" and of "a.-0001.exr", "film-" of "film-0001.exr": what stands before the last number.
+std::size_t begin_of_number(const std::string& name, std::size_t last_digit) {
+    std::size_t first = last_digit;
+    while (first > 0 && is_digit(name[first - 1])) --first;
+    const bool is_signed = first > 0 && name[first - 1] == '-' &&
+                           (first == 1 || !std::isalnum(static_cast<unsigned char>(name[first - 2])));
+    return is_signed ? first - 1 : first;
+}
+
+/// Files of one sequence: the marks that most of their numbers need, and how many they are.
+struct FolderSequence {
+    std::map<std::size_t, int> digits;
+    int count = 0;
+};
+
 /// The pattern that most *.exr files of a folder share: their names with the last group of digits left open.
 FramePattern pattern_of_folder(const fs::path& folder) {
-    std::map<std::string, int> counts;
+    std::map<std::pair<std::string, std::string>, FolderSequence> sequences;  // by what is around the number
     std::error_code failure;
     for (const auto& entry : fs::directory_iterator(folder, failure)) {
         const std::string name = entry.path().filename().string();
         const std::size_t last = entry.path().stem().string().find_last_of("0123456789");
-        if (entry.path().extension() != ".exr" || last == std::string::npos || name.starts_with('.'))
+        if (lower_case(entry.path().extension().string()) != ".exr" || last == std::string::npos ||
+            name.starts_with('.'))
             continue;
-        std::size_t first = last;
-        while (first > 0 && name[first - 1] >= '0' && name[first - 1] <= '9') --first;
-        const std::size_t digits = last - first + 1;
-        ++counts[name.substr(0, first) + (digits == 1 ? "%d" : std::string(digits, '#')) +
-                 name.substr(last + 1)];
+        const std::size_t first = begin_of_number(name, last);
+        FolderSequence& found = sequences[{name.substr(0, first), name.substr(last + 1)}];
+        ++found.count;
+        ++found.digits[last + 1 - first];
     }
-    if (counts.empty()) throw Error(ExitCode::capture, folder.string() + ": holds no numbered .exr files");
-    const auto most = std::max_element(counts.begin(), counts.end(),
-                                       [](const auto& a, const auto& b) { return a.second < b.second; });
-    if (std::count_if(counts.begin(), counts.end(), [&](const auto& c) { return c.second == most->second; }) >
-        1)
-        throw Error(ExitCode::capture, folder.string() +
-                                           ": holds several sequences; name one by its pattern, such as " +
-                                           (folder / most->first).string());
-    return FramePattern((folder / most->first).string());
+    if (sequences.empty()) throw Error(ExitCode::capture, folder.string() + ": holds no numbered .exr files");
+    const auto most = std::ranges::max_element(sequences, {}, [](const auto& one) { return one.second.count; });
+    // The fewest digits pad no number beyond what it has, but for numbers that are padded in several ways.
+    const std::size_t width = most->second.digits.begin()->first;
+    const std::string text =
+        (folder / (most->first.first + (width == 1 ? "%d" : std::string(width, '#')) + most->first.second)).string();
+    if (std::ranges::count(sequences, most->second.count, [](const auto& one) { return one.second.count; }) > 1)
+        throw Error(ExitCode::capture,
+                    folder.string() + ": holds several sequences; name one by its pattern, such as " + text);
+    return pattern_on_disk(FramePattern(text), false);
 }
 
 /// Frames all of whose sub-frames are among `files`, which are sorted.
@@ -136,16 +188,6 @@ std::vector<int> whole_frames(const std::vector<int>& files, int subframes) {
     return frames;
 }
 
-/// "; f_#.exr fits 12 files": the pattern with the padding that the files have. "" where none helps.
-std::string other_padding(const FramePattern& pattern) {
-    for (int width = 1; width <= 8; ++width) {
-        const FramePattern other = pattern.padded(width);
-        if (const std::size_t count = find_frames(other).size())
-            return "; " + other.text() + " fits " + std::to_string(count) + (count == 1 ? " file" : " files");
-    }
-    return "";
-}
-
 void find_missing_range(Sequence& sequence, const std::string& argument) {
     sequence.frames_declared = !sequence.frames.empty() || !sequence.files.has_frame();
     if (!sequence.frames.empty()) return;
@@ -156,7 +198,7 @@ void find_missing_range(Sequence& sequence, const std::string& argument) {
                         argument + ": no file fits the pattern " + sequence.files.text() +
                             (sequence.subframes > 1 ? ", or no frame has all its " +
                                                           std::to_string(sequence.subframes) + " sub-frames"
-                                                    : other_padding(sequence.files)));
+                                                    : ""));
         return;
     }
     const fs::path file = sequence.files.text();
@@ -168,16 +210,25 @@ void find_missing_range(Sequence& sequence, const std::string& argument) {
 }  // namespace
 
 std::vector<int> find_frames(const FramePattern& pattern) {
-    // As it is written: a path in normal form would not match the text of "shots//f_####.exr".
-    const std::string prefix = pattern.text().substr(0, pattern.text().rfind('/') + 1);
-    const fs::path folder = prefix.empty() ? "." : prefix;
     std::vector<int> frames;
-    std::error_code failure;
-    for (const auto& entry : fs::directory_iterator(folder, failure))
-        if (const auto frame = pattern.match(prefix + entry.path().filename().string()))
-            frames.push_back(*frame);
+    for (const std::string& path : paths_beside(pattern))
+        if (const auto frame = pattern.match(path)) frames.push_back(*frame);
     std::sort(frames.begin(), frames.end());
     return frames;
+}
+
+void require_some_file(const Sequence& sequence) {
+    if (!sequence.files.has_frame() || !sequence.layers.empty()) return;
+    const std::vector<int> there = find_frames(sequence.files);
+    const auto is_there = [&](int frame) {
+        const int first = sequence.file_number(frame), next = sequence.file_number(frame + 1);
+        const auto found = std::ranges::lower_bound(there, first);
+        return found != there.end() && *found < next;
+    };
+    if (std::ranges::none_of(sequence.frames, is_there))
+        throw Error(ExitCode::capture, sequence.files.text() + ": no file of the frames " +
+                                           format_frame_range(sequence.frames) + " is there" +
+                                           (there.empty() ? "" : "; there are " + format_frame_range(there)));
 }
 
 FrameGaps find_gaps(std::span<const int> frames) {

@@ -94,4 +94,7 @@ FrameGaps find_gaps(std::span<const int> frames);
 /// Frames that exist for a pattern, sorted.
 std::vector<int> find_frames(const FramePattern& pattern);
 
+/// Throws Error(ExitCode::capture) where the disk has none of the sequence's frames: each would fail by itself.
+void require_some_file(const Sequence& sequence);
+
 }  // namespace aftershade

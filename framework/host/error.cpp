@@ -184,7 +184,8 @@ void rethrow() {
         throw Error(kind_of(error.exit_code()), diagnostics_of_text(error.what()));
     } catch (const std::exception& error) {
         if (is_out_of_memory(error)) throw Error(ErrorKind::memory, out_of_memory_text(error));
-        throw Error(ErrorKind::effect, error.what());
+        throw Error(ErrorKind::effect,
+                    std::string("a fault of the library itself: ") + error.what() + "; please report it");
     }
 }
 

@@ -102,7 +102,8 @@ bool PipelineRenderer::can_build_ahead() const {
 }
 
 void PipelineRenderer::build_ahead(const FrameInputs& frame, const std::vector<std::string>& roles) {
-    if (!can_build_ahead()) return;
+    // Of a role that is missing, rendering says what to do.
+    if (!can_build_ahead() || find_missing_role(pipeline_, frame.capture->header.roles)) return;
     try {
         resolve(frame);
         build(frame, roles, true);

@@ -58,7 +58,7 @@ TEST(Sequence, OfTheShippedCaptureIsItsTwoFrames) {
 TEST(Sequence, WithoutARangeIsTheFilesThatThereAre) {
     const TemporaryFolder folder;
     for (const char* name :
-         {"f_0010.exr", "f_0002.exr", "f_-001.exr", "f_12.exr", "f_0003.png", "g_0001.exr", "f_.exr"})
+         {"f_0010.exr", "f_0002.exr", "f_-001.exr", "f_2.exr", "f_0003.png", "g_0001.exr", "f_.exr"})
         write_text(folder / name, "");
     write_text(folder / "capture.json", R"({"aftershade": 1, "frames": "f_####.exr"})");
     const Frames expected = {-1, 2, 10};
@@ -92,15 +92,61 @@ TEST(Sequence, OfAFileWithMarksInItsNameIsThatFile) {
     }
 }
 
-TEST(Sequence, OfAnotherPaddingIsNamed) {
+TEST(Sequence, IsItsNumbersHoweverTheyArePadded) {
+    struct Case {
+        std::vector<const char*> names;
+        Frames frames;
+    };
+    for (const Case& c : {Case{{"a.998.exr", "a.999.exr", "a.1000.exr", "a.1001.exr"}, {998, 999, 1000, 1001}},
+                          Case{{"a.9998.exr", "a.9999.exr", "a.10000.exr"}, {9998, 9999, 10000}},
+                          Case{{"a.-0001.exr", "a.0000.exr", "a.0001.exr"}, {-1, 0, 1}},
+                          Case{{"a.8.exr", "a.09.exr", "a.0010.exr"}, {8, 9, 10}}}) {
+        const TemporaryFolder folder;
+        for (const char* name : c.names) write_text(folder / name, "");
+        write_text(folder / "b.1.exr", "");
+        for (const char* pattern : {"", "a.####.exr", "a.%d.exr", "a.@.exr", "a.##.exr"}) {
+            const Sequence sequence = opened((folder / pattern).string());
+            EXPECT_EQ(sequence.frames, c.frames) << pattern;
+            for (std::size_t i = 0; i < c.frames.size(); ++i)
+                EXPECT_EQ(sequence.path_of(c.frames[i]).filename(), c.names[i]) << pattern;
+        }
+    }
+}
+
+TEST(Sequence, OfAFolderTakesExtensionsInCapitals) {
     const TemporaryFolder folder;
-    for (const char* name : {"f_8.exr", "f_9.exr", "f_10.exr"}) write_text(folder / name, "");
-    const std::string fault = capture_error([&] {
-        Diagnostics diagnostics;
-        open_sequence((folder / "f_####.exr").string(), diagnostics);
-    });
-    EXPECT_NE(fault.find("no file fits the pattern"), std::string::npos) << fault;
-    EXPECT_NE(fault.find("f_#.exr fits 3 files"), std::string::npos) << fault;
+    for (const char* name : {"A_0001.EXR", "A_0002.EXR"}) write_text(folder / name, "");
+    EXPECT_EQ(opened(folder.path().string()).path_of(2), folder / "A_0002.EXR");
+}
+
+TEST(Sequence, RefusesTwoFilesOfOneNumberUnlessThePatternSaysWhich) {
+    const TemporaryFolder folder;
+    for (const char* name : {"f_2.exr", "f_02.exr", "f_3.exr"}) write_text(folder / name, "");
+    const auto fault = [&](const char* pattern) {
+        return capture_error([&] {
+            Diagnostics diagnostics;
+            open_sequence((folder / pattern).string(), diagnostics);
+        });
+    };
+    const std::string both =
+        "frame 2 is both " + (folder / "f_02.exr").string() + " and " + (folder / "f_2.exr").string();
+    EXPECT_TRUE(fault("f_####.exr").starts_with(both)) << fault("f_####.exr");
+    EXPECT_TRUE(fault("").starts_with("frame 2 is both ")) << fault("");
+    EXPECT_EQ(opened((folder / "f_##.exr").string()).path_of(2), folder / "f_02.exr");
+    EXPECT_EQ(opened((folder / "f_%d.exr").string()).path_of(2), folder / "f_2.exr");
+}
+
+TEST(Sequence, NoneOfWhoseFilesIsThereIsRefusedAtOnce) {
+    const TemporaryFolder folder;
+    for (const char* name : {"f_0001.exr", "f_0002.exr"}) write_text(folder / name, "");
+    Sequence sequence = opened((folder / "f_####.exr").string());
+    require_some_file(sequence);
+    sequence.frames = {2, 3};
+    require_some_file(sequence);
+    sequence.frames.clear();
+    for (int frame = 1'000; frame < 1'001'000; ++frame) sequence.frames.push_back(frame);
+    const std::string fault = capture_error([&] { require_some_file(sequence); });
+    EXPECT_NE(fault.find("no file of the frames 1000-1000999 is there; there are 1-2"), std::string::npos) << fault;
 }
 
 TEST(Sequence, ThatIsNotThereIsACaptureError) {

@@ -179,7 +179,7 @@ TEST_F(RenderOptions, FramesUpToThreeAwayAreReadAsFarAsTheShotAndTheFilesGo) {
 }
 
 TEST_F(RenderOptions, GraphIsDrawn) {
-    const CommandResult result = run({"trail.json", "in_0001.exr", "-o", "a.exr", "--graph", "g.dot"});
+    const CommandResult result = run({"trail.json", "in_0001.exr", "-o", "a.exr", "--graph", "g.dot", "--verbose"});
     const std::string dot = read_text(folder_ / "g.dot");
     EXPECT_EQ(dot.find("digraph"), 0u);
     EXPECT_NE(dot.find("trail.main"), std::string::npos);

@@ -43,8 +43,9 @@ Pictures pictures(gpu::Context& context, const scene::Scene& scene, int frame, i
 /// The share of pixels in which a channel differs by more than a thousandth of its value and of 0.1.
 double other_pixels(const Pictures& both) {
     int other = 0;
-    for (int y = 0; y < kLitSize_px.y; ++y)
-        for (int x = 0; x < kLitSize_px.x; ++x) {
+    const int width = both.on_cpu.width(), height = both.on_cpu.height();
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
             bool differs = false;
             for (int c = 0; c < 3; ++c) {
                 const float a = both.on_cpu.at(x, y, c), b = both.on_gpu.at(x, y, c);
@@ -52,7 +53,7 @@ double other_pixels(const Pictures& both) {
             }
             other += differs ? 1 : 0;
         }
-    return other / double(kLitSize_px.x * kLitSize_px.y);
+    return other / double(width * height);
 }
 
 TEST_P(LightOn, LightsShippedScenesAsTheCpuDoesButAtEdgesOfShadowsAndChecks) {
