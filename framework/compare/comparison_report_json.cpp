@@ -175,6 +175,8 @@ nlohmann::ordered_json json_of(const Comparison& comparison, const CompareRules&
               {"verdict", verdict_name(comparison.verdict)},
               {"exit_code", int(comparison.verdict)},
               {"faults", comparison.faults},
+              {"warnings", comparison.warnings},
+              {"notes", comparison.notes},
               {"rules", rules_json(rules)},
               {"layers", Json::array()}};
     for (const LayerComparison& layer : comparison.layers) json["layers"].push_back(layer_json(layer, rules));

@@ -202,6 +202,8 @@ std::string text_of(const Comparison& comparison, const CompareRules& rules) {
                                    comparison.test.string());
     for (const LayerComparison& layer : comparison.layers) text += layer_text(layer, rules);
     for (const std::string& fault : comparison.faults) text += "! " + fault + "\n";
+    for (const std::string& warning : comparison.warnings) text += "! " + warning + "\n";
+    for (const std::string& note : comparison.notes) text += "note: " + note + "\n";
     const std::string allowances = allowances_of(comparison, rules);
     return printable_lines(text + std::string(verdict_name(comparison.verdict)) +
                            (allowances.empty() ? "" : " (" + allowances + ")") + "\n");
