@@ -123,7 +123,7 @@ private:
     }
 
     void miss(const LayerFile& file, const LayerInfo& layer, const char* where) {
-        if (is_ignored(layer.label())) return;
+        if (is_ignored(layer.label())) return result_.ignored.push_back(layer.label());
         if (!missing_parts_.contains(layer.part))
             fault(fmt::format("layer '{}' is only in the {}", layer.label(), where));
         // For the verdict: that a file is damaged says more than that it lacks a layer.
@@ -191,7 +191,7 @@ private:
 
     void compare(const LayerInfo& reference, const LayerInfo& test) {
         const std::string label = label_of(reference, test);
-        if (is_ignored(label)) return;
+        if (is_ignored(label)) return result_.ignored.push_back(label);
         const std::optional<LayerRole> role = role_of(reference, test);
         if (!role) return;
         LayerComparison comparison;
