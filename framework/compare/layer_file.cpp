@@ -32,6 +32,7 @@ struct LayerFile::Impl {
 
     void open_exr(ExrFile file);
     void open_flat(Image image, LayerRole color);
+    void open_png();
     int part_of(const LayerInfo& layer) const;
     Image read_exr(const LayerInfo& layer, const std::vector<std::string>& channels) const;
     Image from_whole(const std::vector<std::string>& channels) const;
@@ -114,6 +115,24 @@ void LayerFile::Impl::open_flat(Image image, LayerRole color) {
         if (layer.role == LayerRole::color) layer.role = color;
 }
 
+void LayerFile::Impl::open_png() {
+    format = "PNG";
+    PngColor color;
+    Image image = read_png(path, &color);
+    traits.colors = color.space;
+    if (color.is_animated) traits.left_out.push_back("all pictures of the animation but the first");
+    if (!color.is_srgb()) traits.notes.push_back("its colours are of " + color.space + ", and are taken for sRGB");
+    if (color.gamma) {
+        traits.notes.push_back(
+            fmt::format("its chunk gAMA {:.5g} is applied: colours are compared as sRGB encodes them", *color.gamma));
+        const int colors = image.channels() - (image.channels() % 2 == 0 ? 1 : 0);
+        for (int y = 0; y < image.height(); ++y)
+            for (int x = 0; x < image.width(); ++x)
+                for (int c = 0; c < colors; ++c) image.at(x, y, c) = encoded_as_srgb(image.at(x, y, c), *color.gamma);
+    }
+    open_flat(std::move(image), LayerRole::display);
+}
+
 int LayerFile::Impl::part_of(const LayerInfo& layer) const {
     const std::vector<ExrPart>& parts = exr->parts();
     if (parts.size() == 1) return 0;
@@ -133,8 +152,7 @@ Image LayerFile::Impl::from_whole(const std::vector<std::string>& channels) cons
 LayerFile::LayerFile(const fs::path& path, const ReadLimits& limits) : impl_(std::make_unique<Impl>()) {
     impl_->path = path;
     if (file_begins_with(path, "\x89PNG")) {
-        impl_->format = "PNG";
-        impl_->open_flat(read_png(path), LayerRole::display);
+        impl_->open_png();
     } else if (is_hdr_file(path)) {
         impl_->format = "Radiance HDR";
         impl_->open_flat(read_hdr(path), LayerRole::color);
