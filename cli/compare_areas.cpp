@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "framework/batch/object_area.h"
@@ -86,8 +87,9 @@ struct Limited {
 std::optional<Limited> limited(const std::string& word, const std::string& text, const char* expected,
                                Diagnostics& diagnostics) {
     const std::size_t equals = text.rfind('=');
+    const std::string number = equals == std::string::npos || equals == 0 ? "" : text.substr(equals + 1);
     const auto limit =
-        equals == std::string::npos || equals == 0 ? std::nullopt : parse_number(text.substr(equals + 1));
+        number == "inf" ? std::optional(std::numeric_limits<double>::infinity()) : parse_number(number);
     if (!limit || !(*limit >= 0)) {
         diagnostics.error({word + " " + text},
                           fmt::format("expected {}, with a limit of at least 0", expected));

@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <thread>
+#include <utility>
 
 #include "framework/compare/comparison_report.h"
 #include "framework/core/text.h"
@@ -94,6 +95,7 @@ std::string junit_case(const GoldenCaseResult& test, const GoldenReportContext& 
                                    xml_text(test.test->name), test.seconds);
     std::vector<std::string> lines = reasons_of(test);
     if (can_approve(test)) lines.push_back(remedy_of(test, context));
+    if (const std::string note = allowances_of(test); !note.empty()) lines.push_back(note);
     const std::string why = lines.empty() ? "" : lines.front(), all = joined(lines, "\n", "\n");
     if (test.verdict >= Verdict::failure)
         text += fmt::format("<failure type=\"{}\" message=\"{}\">{}</failure>", verdict_name(test.verdict),
@@ -101,6 +103,7 @@ std::string junit_case(const GoldenCaseResult& test, const GoldenReportContext& 
     else if (!test.skipped.empty()) text += fmt::format("<skipped message=\"{}\"/>", xml_text(test.skipped));
     else if (test.verdict == Verdict::warning)
         text += fmt::format("<system-out>warning: {}</system-out>", xml_text(all));
+    else if (!all.empty()) text += fmt::format("<system-out>{}</system-out>", xml_text(all));
     return text + "</testcase>\n";
 }
 
@@ -183,6 +186,7 @@ Json json_of(const GoldenCaseResult& result, const GoldenReportContext& context)
             {"tags", test.tags},
             {"verdict", verdict_name(result.verdict)},
             {"skipped", text_or_null(result.skipped)},
+            {"allowances", text_or_null(allowances_of(result))},
             {"seconds", result.seconds},
             {"messages", result.messages},
             {"look_hash", text_or_null(result.sources.look)},
@@ -208,20 +212,25 @@ std::string approve_command(const GoldenReportContext& context, const std::vecto
     return golden_command("approve", context, names) + (keeps_others ? " --add" : "");
 }
 
-/// What the verdict of a case did not look at, the most of any image; "" where it looked at everything.
 std::string allowances_of(const GoldenCaseResult& test) {
     std::string text;
     double most_percent = -1;
+    std::vector<std::string> not_judged;  // in any image
     for (const GoldenImage& image : test.images) {
         if (!image.comparison) continue;
+        Comparison comparison = *image.comparison;
+        for (LayerComparison& layer : comparison.layers)
+            for (std::string& name : std::exchange(layer.not_judged, {}))
+                if (std::ranges::find(not_judged, name) == not_judged.end()) not_judged.push_back(std::move(name));
         double percent = 0;
-        for (const LayerComparison& layer : image.comparison->layers)
+        for (const LayerComparison& layer : comparison.layers)
             percent = std::max(percent, layer.left_out_percent());
         if (percent <= most_percent) continue;
         most_percent = percent;
-        text = allowances_of(*image.comparison, image.rules);
+        text = allowances_of(comparison, image.rules);
     }
-    return text;
+    if (not_judged.empty()) return text;
+    return text + (text.empty() ? "" : "; ") + "not judged: " + joined(not_judged, ", ", ", ");
 }
 
 std::string line_of(const GoldenCaseResult& test, int done, int all, const char* good) {

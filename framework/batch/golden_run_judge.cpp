@@ -18,6 +18,7 @@ namespace {
 
 std::vector<std::string> reasons_of(const Comparison& comparison) {
     std::vector<std::string> reasons = comparison.faults;
+    reasons.insert(reasons.end(), comparison.warnings.begin(), comparison.warnings.end());
     for (const LayerComparison& layer : comparison.layers)
         for (const std::string& reason : layer.reasons) reasons.push_back(layer.label + ": " + reason);
     return reasons;
@@ -194,7 +195,7 @@ RulesOrFault rules_or_fault(const GoldenCase& test, int frame) {
 }  // namespace
 
 bool has_equal_bits(const Comparison& comparison) {
-    return comparison.verdict <= Verdict::failure && comparison.faults.empty() &&
+    return comparison.verdict <= Verdict::failure && comparison.faults.empty() && comparison.warnings.empty() &&
            std::ranges::all_of(comparison.layers,
                                [](const LayerComparison& layer) { return layer.differences.bits_equal; });
 }

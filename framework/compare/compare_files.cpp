@@ -6,6 +6,7 @@
 #include <set>
 #include <span>
 
+#include "framework/compare/layer_pairs.h"
 #include "framework/core/error.h"
 #include "framework/image/window.h"
 
@@ -50,18 +51,21 @@ public:
     void run() {
         check_labels();
         check_areas();
-        compare_parts();
+        check_traits();
+        const std::vector<const LayerInfo*> pairs = paired_layers(reference_.layers(), test_.layers());
+        std::vector<const LayerInfo*> ours, theirs;  // without a pair
+        for (std::size_t i = 0; i < pairs.size(); ++i)
+            if (!pairs[i]) ours.push_back(&reference_.layers()[i]);
+        for (const LayerInfo& layer : test_.layers())
+            if (std::ranges::find(pairs, &layer) == pairs.end()) theirs.push_back(&layer);
+        name_parts(reference_, ours, test_, "reference");
+        name_parts(test_, theirs, reference_, "test image");
         reference_.prefetch();
         test_.prefetch();
-        for (const LayerInfo& layer : reference_.layers()) {
-            const auto match = std::ranges::find(test_.layers(), layer.key(), &LayerInfo::key);
-            if (match != test_.layers().end()) compare(layer, *match);
-            else miss(reference_, layer, "reference");
-        }
-        for (const LayerInfo& layer : test_.layers())
-            if (std::ranges::find(reference_.layers(), layer.key(), &LayerInfo::key) ==
-                reference_.layers().end())
-                miss(test_, layer, "test image");
+        for (std::size_t i = 0; i < pairs.size(); ++i)
+            if (pairs[i]) compare(reference_.layers()[i], *pairs[i]);
+        for (const LayerInfo* layer : ours) miss(reference_, *layer, "reference");
+        for (const LayerInfo* layer : theirs) miss(test_, *layer, "test image");
         if (result_.layers.empty() && result_.faults.empty())
             fault("there is no layer to compare: the roles leave none");
     }
@@ -70,6 +74,28 @@ private:
     void fault(std::string text) {
         result_.verdict = std::max(result_.verdict, Verdict::different_size);
         result_.faults.push_back(std::move(text));
+    }
+
+    void warn(std::string text) {
+        result_.verdict = std::max(result_.verdict, Verdict::warning);
+        result_.warnings.push_back(std::move(text));
+    }
+
+    void check_traits() {
+        const FileTraits &ours = reference_.traits(), &theirs = test_.traits();
+        for (const auto& [traits, where] : {std::pair{&ours, "the reference"}, {&theirs, "the test image"}}) {
+            for (const std::string& what : traits->left_out) warn(fmt::format("not compared: {} in {}", what, where));
+            for (const std::string& note : traits->notes) result_.notes.push_back(where + (": " + note));
+        }
+        if (ours.pixel_aspect != theirs.pixel_aspect)
+            warn(fmt::format("another pixel aspect: {:.6g} in the reference, {:.6g} in the test image",
+                             ours.pixel_aspect, theirs.pixel_aspect));
+        const auto is_color = [](const LayerInfo& layer) { return is_perceptual(layer.role); };
+        if (reference_.format() != test_.format() || ours.colors == theirs.colors ||
+            std::ranges::none_of(reference_.layers(), is_color))
+            return;
+        warn(fmt::format("the same numbers are other colours: {} in the reference, {} in the test image",
+                         ours.colors, theirs.colors));
     }
 
     /// An area that is nowhere would be left out of nothing, unseen.
@@ -91,37 +117,34 @@ private:
             if (!labels.contains(label)) result_.unknown_layers.push_back(label);
     }
 
-    bool is_ignored(const LayerInfo& layer) const {
-        const auto role = rules_.roles.find(layer.label());
+    bool is_ignored(const std::string& label) const {
+        const auto role = rules_.roles.find(label);
         return role != rules_.roles.end() && !role->second;
     }
 
     void miss(const LayerFile& file, const LayerInfo& layer, const char* where) {
-        if (is_ignored(layer)) return;
+        if (is_ignored(layer.label())) return result_.ignored.push_back(layer.label());
         if (!missing_parts_.contains(layer.part))
             fault(fmt::format("layer '{}' is only in the {}", layer.label(), where));
         // For the verdict: that a file is damaged says more than that it lacks a layer.
         file.read(layer, layer.channels);
     }
 
-    void compare_parts() {
-        const std::set<std::string> ours = parts_of(reference_), theirs = parts_of(test_);
-        const auto tell = [&](const std::set<std::string>& some, const std::set<std::string>& others,
-                              const char* where) {
-            for (const std::string& part : some) {
-                if (others.contains(part)) continue;
-                missing_parts_.insert(part);
-                fault(part.empty()
-                          ? fmt::format("the {} has one part, the other has {}", where, others.size())
-                          : fmt::format("part '{}' is only in the {}", part, where));
-            }
-        };
-        tell(ours, theirs, "reference");
-        tell(theirs, ours, "test image");
+    /// The parts of which no layer has a pair, instead of each of their layers.
+    void name_parts(const LayerFile& file, const std::vector<const LayerInfo*>& unpaired,
+                    const LayerFile& other, const char* where) {
+        for (const std::string& part : parts_of(file)) {
+            const auto is_of = [&](const LayerInfo& layer) { return layer.part == part; };
+            const auto alone = std::ranges::count_if(unpaired, [&](const LayerInfo* at) { return is_of(*at); });
+            if (parts_of(other).contains(part) || alone != std::ranges::count_if(file.layers(), is_of)) continue;
+            missing_parts_.insert(part);
+            fault(part.empty() ? fmt::format("the {} has one part, the other has {}", where, parts_of(other).size())
+                               : fmt::format("part '{}' is only in the {}", part, where));
+        }
     }
 
     std::optional<LayerRole> role_of(const LayerInfo& reference, const LayerInfo& test) {
-        const auto given = rules_.roles.find(reference.label());
+        const auto given = rules_.roles.find(label_of(reference, test));
         if (given != rules_.roles.end()) return given->second;
         if (reference.role == test.role) return reference.role;
         fault(
@@ -132,29 +155,50 @@ private:
         return std::nullopt;
     }
 
-    std::vector<std::string> common_channels(const LayerInfo& reference, const LayerInfo& test) {
-        std::vector<std::string> common;
-        const auto has = [](const LayerInfo& layer, const std::string& channel) {
-            return std::ranges::find(layer.channels, channel) != layer.channels.end();
+    /// Names in the reference, and those of the same channels in the test image.
+    struct CommonChannels {
+        std::vector<std::string> reference, test;
+    };
+    CommonChannels common_channels(const LayerInfo& reference, const LayerInfo& test) {
+        // Of layers with other names the channels' last words are held against each other.
+        const auto name_of = [](const std::string& channel) {
+            return channel.substr(channel.rfind('.') + 1);  // npos + 1 is 0
         };
+        const auto find = [&](const LayerInfo& layer, const std::string& channel) {
+            return std::ranges::find(layer.channels, name_of(channel), name_of);
+        };
+        CommonChannels common;
         for (const std::string& channel : reference.channels) {
-            if (has(test, channel)) common.push_back(channel);
-            else fault(fmt::format("channel '{}' is only in the reference", channel));
+            const auto same = find(test, channel);
+            if (same == test.channels.end())
+                fault(fmt::format("channel '{}' is only in the reference", channel));
+            else common.reference.push_back(channel), common.test.push_back(*same);
         }
         for (const std::string& channel : test.channels)
-            if (!has(reference, channel))
+            if (find(reference, channel) == reference.channels.end())
                 fault(fmt::format("channel '{}' is only in the test image", channel));
         return common;
     }
 
+    /// That of the reference, but where only the name in the test image has limits or a role of its own.
+    std::string label_of(const LayerInfo& reference, const LayerInfo& test) const {
+        const std::string ours = reference.label(), theirs = test.label();
+        const auto has = [&](const std::string& label) {
+            return rules_.roles.contains(label) || rules_.layers.contains(label);
+        };
+        return has(theirs) && !has(ours) ? theirs : ours;
+    }
+
     void compare(const LayerInfo& reference, const LayerInfo& test) {
-        if (is_ignored(reference)) return;
+        const std::string label = label_of(reference, test);
+        if (is_ignored(label)) return result_.ignored.push_back(label);
         const std::optional<LayerRole> role = role_of(reference, test);
         if (!role) return;
         LayerComparison comparison;
-        comparison.label = reference.label();
+        comparison.label = label;
         comparison.role = *role;
-        comparison.channels = common_channels(reference, test);
+        const CommonChannels common = common_channels(reference, test);
+        comparison.channels = common.reference;
         if (comparison.channels.empty()) return;
         if (reference.type != test.type) {
             fault(fmt::format("layer '{}' holds {} in the reference, {} in the test image", comparison.label,
@@ -165,8 +209,8 @@ private:
         compare_windows(reference, test, comparison);
         LayerImages images;
         if (!is_empty(comparison.window)) {
-            images.reference = read(reference_, reference, comparison);
-            images.test = read(test_, test, comparison);
+            images.reference = read(reference_, reference, common.reference, comparison);
+            images.test = read(test_, test, common.test, comparison);
             images.areas = pixel_areas(rules_.areas, comparison.window, reference.display_window,
                                        rules_.difference_rules(comparison.label));
             compare_layer(images, rules_, comparison);
@@ -177,7 +221,7 @@ private:
                     comparison.label));
         } else {
             reference_.read(reference, comparison.channels);
-            test_.read(test, comparison.channels);
+            test_.read(test, common.test);
         }
         result_.verdict = std::max(result_.verdict, comparison.verdict);
         if (visit_) visit_(comparison, images);
@@ -187,10 +231,10 @@ private:
         result_.layers.push_back(std::move(comparison));
     }
 
-    Image read(const LayerFile& file, const LayerInfo& layer, const LayerComparison& comparison) const {
+    Image read(const LayerFile& file, const LayerInfo& layer, const std::vector<std::string>& channels,
+               const LayerComparison& comparison) const {
         const float outside = comparison.role == LayerRole::depth ? kNothingHit : 0;
-        return place_in_window(file.read(layer, comparison.channels), layer.data_window, comparison.window,
-                               outside);
+        return place_in_window(file.read(layer, channels), layer.data_window, comparison.window, outside);
     }
 
     void compare_windows(const LayerInfo& reference, const LayerInfo& test, LayerComparison& comparison) {

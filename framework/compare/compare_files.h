@@ -63,6 +63,8 @@ struct LayerComparison {
     Image ssim_map;                       ///< of each pixel's window; 1 everywhere for equal bits
     Verdict verdict = Verdict::same;
     std::vector<std::string> reasons;  ///< of the verdict: what was exceeded, by how much
+    /// Of what no difference counts, because nothing limits it: "Z", "Z in the area mask hair.png".
+    std::vector<std::string> not_judged;
 
     double failing_percent() const;   ///< of the pixels that are not left out
     double left_out_percent() const;  ///< of all pixels of the window
@@ -74,10 +76,18 @@ struct Comparison {
     /// What keeps the files from being compared: layers, channels and windows that one has and the other has
     /// not, or why a file cannot be read.
     std::vector<std::string> faults;
+    /// What is not compared, or has equal numbers and is another picture: smaller levels of tiles, other
+    /// primaries, another pixel aspect. Then the verdict is at least a warning.
+    std::vector<std::string> warnings;
+    std::vector<std::string> notes;  ///< how files were read; no verdict
     std::vector<LayerComparison> layers;  ///< in the reference's order; without FLIP's error images and maps
+    std::vector<std::string> ignored;         ///< labels of layers that CompareRules::roles leaves out
     std::vector<std::string> unknown_roles;   ///< labels in CompareRules::roles that neither file has
     std::vector<std::string> unknown_layers;  ///< likewise in CompareRules::layers
     std::vector<std::string> labels;          ///< of every layer of either file
+
+    /// What the verdict does not depend on: `ignored`, and LayerComparison::not_judged of every layer.
+    std::vector<std::string> not_judged() const;
 };
 
 /// The two images of a layer over LayerComparison::window, kept for pictures of the differences.

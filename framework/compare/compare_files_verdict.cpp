@@ -73,6 +73,20 @@ void judge_look(const char* word, Verdict verdict, const std::optional<double>& 
                         word, *ssim_limit));
 }
 
+bool can_exceed(const Tolerance& tolerance, LayerRole role, std::uint64_t pixels) {
+    // Encoded colours and coverage are from 0 to 1. Nothing else is held to a million: such a limit stands for
+    // none in documents, where infinity cannot be written.
+    const bool is_unit = role == LayerRole::display || role == LayerRole::alpha;
+    const double no_limit = is_unit ? 1 : 1e6;
+    const bool differs = role == LayerRole::id;  // ids that differ fail above any limit
+    const auto limits = [&](double limit) { return differs || limit < no_limit; };
+    const double let_pass = std::max(double(tolerance.allowed), tolerance.percent / 100 * double(pixels));
+    // Two numbers differ by at most twice the mean of their magnitudes.
+    const bool all_relative = tolerance.relative >= 2 && role != LayerRole::depth && !differs;
+    return (limits(tolerance.limit) && let_pass < double(pixels) && !all_relative) ||
+           (limits(tolerance.hard) && tolerance.allowed < pixels);
+}
+
 /// The layer first, then each area with limits of its own.
 std::vector<const Levels*> levels_by_area(const CompareRules& rules, const std::string& label) {
     std::vector<const Levels*> levels{&rules.levels_of(label)};
@@ -96,6 +110,13 @@ Tolerance Levels::warn_tolerance() const {
     same_limit.allowed = fail.allowed;
     same_limit.relative = fail.relative;
     return same_limit;
+}
+
+bool Levels::judge(LayerRole role, std::uint64_t pixels, bool has_flip, bool has_ssim) const {
+    const auto by_flip = [&](const std::optional<double>& limit) { return has_flip && limit && *limit < 1; };
+    const auto by_ssim = [&](const std::optional<double>& limit) { return has_ssim && limit && *limit > 0; };
+    return can_exceed(fail, role, pixels) || can_exceed(warn_tolerance(), role, pixels) || by_flip(fail_flip) ||
+           by_flip(warn_flip) || by_ssim(fail_ssim) || by_ssim(warn_ssim);
 }
 
 DifferenceRules Levels::difference_limits() const {
@@ -124,6 +145,38 @@ double LayerComparison::left_out_percent() const {
     return all == 0 ? 0 : 100 * double(differences.left_out) / all;
 }
 
+std::vector<std::string> Comparison::not_judged() const {
+    std::vector<std::string> names;
+    for (const LayerComparison& layer : layers)
+        names.insert(names.end(), layer.not_judged.begin(), layer.not_judged.end());
+    names.insert(names.end(), ignored.begin(), ignored.end());
+    return names;
+}
+
+namespace {
+
+/// FLIP and SSIM are of the whole layer.
+void find_not_judged(const std::vector<const Levels*>& levels, LayerComparison& comparison) {
+    const std::vector<LimitCounts>& areas = comparison.differences.by_area;
+    const bool has_flip = comparison.ldr_flip || comparison.hdr_flip;
+    std::vector<std::string> names;
+    std::size_t with_pixels = 0;
+    for (std::size_t i = 0; i < areas.size(); ++i) {
+        if (areas[i].pixels == 0) continue;
+        ++with_pixels;
+        const bool is_layer = i == 0;
+        if (levels[i]->judge(comparison.role, areas[i].pixels, is_layer && has_flip,
+                             is_layer && comparison.ssim.has_value()))
+            continue;
+        names.push_back(comparison.label + (is_layer ? " outside of the areas"
+                                                     : " in the area " + comparison.areas[i - 1]));
+    }
+    if (names.size() == with_pixels) names = {comparison.label};
+    comparison.not_judged = std::move(names);
+}
+
+}  // namespace
+
 void compare_layer(const LayerImages& images, const CompareRules& rules, LayerComparison& comparison) {
     comparison.differences = pixel_differences(images.reference, images.test, comparison.role,
                                                rules.difference_rules(comparison.label), images.areas,
@@ -134,6 +187,7 @@ void compare_layer(const LayerImages& images, const CompareRules& rules, LayerCo
     if (d.pixels == 0) return;
     measure_perceptually(images, rules, comparison);
     const std::vector<const Levels*> levels = levels_by_area(rules, comparison.label);
+    find_not_judged(levels, comparison);
     const auto where = [&](std::size_t area) {
         return area == 0 ? "" : "in the area " + comparison.areas[area - 1] + ": ";
     };

@@ -117,6 +117,7 @@ Json layer_json(const LayerComparison& layer, const CompareRules& rules) {
               {"channels", layer.channels},
               {"verdict", verdict_name(layer.verdict)},
               {"reasons", layer.reasons},
+              {"not_judged", layer.not_judged},
               {"window", window_json(layer.window)},
               {"pixels", layer.differences.pixels},
               {"left_out_pixels", layer.differences.left_out},
@@ -175,6 +176,9 @@ nlohmann::ordered_json json_of(const Comparison& comparison, const CompareRules&
               {"verdict", verdict_name(comparison.verdict)},
               {"exit_code", int(comparison.verdict)},
               {"faults", comparison.faults},
+              {"warnings", comparison.warnings},
+              {"notes", comparison.notes},
+              {"not_judged", comparison.not_judged()},
               {"rules", rules_json(rules)},
               {"layers", Json::array()}};
     for (const LayerComparison& layer : comparison.layers) json["layers"].push_back(layer_json(layer, rules));

@@ -155,9 +155,13 @@ std::string non_finite_line(const PixelDifferences& d) {
 }
 
 std::string layer_text(const LayerComparison& layer, const CompareRules& rules) {
-    std::string text =
-        fmt::format("{} ({}): {}\n", layer.label, layer_role_name(layer.role), verdict_name(layer.verdict));
+    const bool unlimited = layer.verdict == Verdict::same &&
+                           std::ranges::find(layer.not_judged, layer.label) != layer.not_judged.end();
+    std::string text = fmt::format("{} ({}): {}\n", layer.label, layer_role_name(layer.role),
+                                   unlimited ? "not judged, no limit" : verdict_name(layer.verdict));
     for (const std::string& reason : layer.reasons) text += "  ! " + reason + "\n";
+    for (const std::string& name : layer.not_judged)
+        if (name != layer.label) text += "  not judged: " + name + "\n";
     if (layer.absent_in_reference + layer.absent_in_test > 0)
         text += fmt::format("  {} pixels are absent in the reference, {} in the test image\n",
                             layer.absent_in_reference, layer.absent_in_test);
@@ -194,6 +198,8 @@ std::string allowances_of(const Comparison& comparison, const CompareRules& rule
     if (std::ranges::any_of(rules.areas, [](const CompareArea& area) { return !area.levels; }))
         text += fmt::format("{}{:.4g} % of the pixels left out", text.empty() ? "" : "; ",
                             all > 0 ? 100 * left_out / all : 0);
+    if (const std::vector<std::string> names = comparison.not_judged(); !names.empty())
+        text += (text.empty() ? "" : "; ") + ("not judged: " + joined(names, ", ", ", "));
     return text;
 }
 
@@ -202,6 +208,8 @@ std::string text_of(const Comparison& comparison, const CompareRules& rules) {
                                    comparison.test.string());
     for (const LayerComparison& layer : comparison.layers) text += layer_text(layer, rules);
     for (const std::string& fault : comparison.faults) text += "! " + fault + "\n";
+    for (const std::string& warning : comparison.warnings) text += "! " + warning + "\n";
+    for (const std::string& note : comparison.notes) text += "note: " + note + "\n";
     const std::string allowances = allowances_of(comparison, rules);
     return printable_lines(text + std::string(verdict_name(comparison.verdict)) +
                            (allowances.empty() ? "" : " (" + allowances + ")") + "\n");

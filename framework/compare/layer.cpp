@@ -88,15 +88,31 @@ bool is_alpha_component(const std::string& component) {
     return name == "a" || name == "alpha";
 }
 
+/// Of a vector, apart from z, which alone is a distance.
+bool is_vector_component(const std::string& component) {
+    static const std::set<std::string> names = {"x", "y", "w", "u", "v"};
+    return names.contains(lower_case(component));
+}
+
+/// What the layers of a part share.
+struct PartNames {
+    std::string part;                  ///< "" of a file's only one
+    std::set<std::string> with_color;  ///< prefixes that have colours
+    bool has_vector = false;           ///< X and Y without a prefix
+};
+
 /// Which layer of its prefix a channel belongs to.
-std::string group_of(const ExrChannel& channel, const std::string& prefix, bool has_color) {
+std::string group_of(const ExrChannel& channel, const std::string& prefix, const PartNames& names) {
     const std::string component = component_of(channel.name);
-    if (is_cryptomatte(prefix)) return "id";
+    const bool has_color = names.with_color.contains(prefix);
+    // Read as floats, integers above 2^24 would lose their last bits.
     if (channel.type == PixelType::uint32) return "id";
+    if (is_cryptomatte(prefix.empty() ? names.part : prefix)) return "cryptomatte";
     if (is_color_component(component)) return "color";
     if (is_alpha_component(component) && (has_color || prefix.empty())) return "alpha";
     if (!prefix.empty()) return "";
     const std::string name = lower_case(component);
+    if (names.has_vector && (is_vector_component(component) || name == "z")) return "";
     if (name == "z") return "depth";
     if (name == "y" && !has_color) return "color";  // luminance alone
     return component;
@@ -105,8 +121,9 @@ std::string group_of(const ExrChannel& channel, const std::string& prefix, bool 
 LayerRole role_of(const LayerInfo& layer) {
     if (layer.group == "alpha") return LayerRole::alpha;
     if (layer.group == "depth") return LayerRole::depth;
-    if (layer.group == "id") return LayerRole::id;
-    const std::string& name = layer.name.empty() ? layer.group : layer.name;
+    if (layer.group == "id" || layer.group == "cryptomatte") return LayerRole::id;
+    const std::string& own = layer.name.empty() ? layer.part : layer.name;
+    const std::string& name = own.empty() ? layer.group : own;
     const std::size_t count = layer.channels.size();
     static const std::set<std::string> velocity = words_of(LayerRole::velocity, kVelocityWords),
                                        depth = words_of(LayerRole::depth, kDepthWords),
@@ -116,6 +133,8 @@ LayerRole role_of(const LayerInfo& layer) {
     if (has_word(name, velocity) && count >= 2) return LayerRole::velocity;
     if (has_word(name, depth) && count == 1) return LayerRole::depth;
     if (has_word(name, ids) && count == 1) return LayerRole::id;
+    if (count == 1 && lower_case(component_of(layer.channels[0])) == "z" && !has_word(name, data))
+        return LayerRole::depth;  // of a view: "left.Z"
     if (layer.group != "color" || has_word(name, data)) return LayerRole::data;
     return has_word(name, display) ? LayerRole::display : LayerRole::color;
 }
@@ -152,23 +171,28 @@ std::string LayerInfo::label() const {
 
 std::vector<LayerInfo> layers_of_channels(const std::string& part, std::span<const ExrChannel> channels,
                                           const Window& data_window, const Window& display_window) {
-    std::set<std::string> with_color;
+    PartNames names;
+    names.part = part;
+    const auto has = [&](const char* upper, const char* lower) {
+        return std::ranges::any_of(channels, [&](const ExrChannel& channel) {
+            return channel.name == upper || channel.name == lower;
+        });
+    };
+    names.has_vector = !part.empty() && ((has("X", "x") && has("Y", "y")) || (has("U", "u") && has("V", "v")));
     for (const ExrChannel& channel : channels)
-        if (is_color_component(component_of(channel.name))) with_color.insert(prefix_of(channel.name));
+        if (is_color_component(component_of(channel.name))) names.with_color.insert(prefix_of(channel.name));
     std::vector<LayerInfo> layers;
     for (const ExrChannel& channel : channels) {
         LayerInfo layer;
         layer.part = part;
         layer.name = prefix_of(channel.name);
-        layer.group = group_of(channel, layer.name, with_color.contains(layer.name));
+        layer.group = group_of(channel, layer.name, names);
         layer.data_window = data_window;
         layer.display_window = display_window;
         layer.type = channel.type == PixelType::uint32 ? ComponentType::uint32 : ComponentType::float32;
         const auto known = std::ranges::find(layers, layer.key(), &LayerInfo::key);
         LayerInfo& target = known == layers.end() ? layers.emplace_back(std::move(layer)) : *known;
         target.channels.push_back(channel.name);
-        // Integers beside floats are read as floats.
-        if (channel.type != PixelType::uint32) target.type = ComponentType::float32;
     }
     for (LayerInfo& layer : layers) {
         std::ranges::stable_sort(layer.channels, {}, rank);

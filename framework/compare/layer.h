@@ -27,6 +27,7 @@ bool is_perceptual(LayerRole role);
 /// Channels of one part that share their name up to the last dot, without their alpha. [value type]
 struct LayerInfo {
     std::string part;   ///< "" where the file has one part only
+    std::string view;   ///< the part's own; "" where the file has one part only
     std::string name;   ///< up to the last dot: "diffuse" of diffuse.R; "" of R
     std::string group;  ///< separates layers of one name: "color", "alpha", "depth", "id", "" or a channel
     LayerRole role = LayerRole::data;
@@ -41,7 +42,8 @@ struct LayerInfo {
     std::string key() const { return part + "\n" + name + "\n" + group; }
 };
 
-/// `part` empty: the only one of its file.
+/// `part` empty: the only one of its file. What its channels lack of a name, the part's says: R, G and B of the
+/// part "N" are no colours, X and Y of "velocity" are one layer.
 std::vector<LayerInfo> layers_of_channels(const std::string& part, std::span<const ExrChannel> channels,
                                           const Window& data_window, const Window& display_window);
 

@@ -1,6 +1,7 @@
 #include "framework/compare/layer_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -24,21 +25,57 @@ struct LayerFile::Impl {
     fs::path path;
     std::string format;
     std::vector<LayerInfo> layers;
+    FileTraits traits;
     std::optional<ExrFile> exr;
     Image whole;                           // of formats without parts
     std::vector<std::string> whole_names;  // its channels
 
     void open_exr(ExrFile file);
     void open_flat(Image image, LayerRole color);
+    void open_png();
     int part_of(const LayerInfo& layer) const;
+    Image read_exr(const LayerInfo& layer, const std::vector<std::string>& channels) const;
     Image from_whole(const std::vector<std::string>& channels) const;
 };
 
 namespace {
 
-bool is_subsampled(const ExrPart& part) {
-    return std::ranges::any_of(part.channels,
-                               [](const ExrChannel& c) { return c.x_sampling != 1 || c.y_sampling != 1; });
+const std::vector<std::string> kColors = {"R", "G", "B"};
+
+/// Of images of one size and type.
+void copy_channel(const Image& from, int source, Image& to, int target) {
+    const auto copy = [&](const auto values, const auto result) {
+        const auto stride = std::size_t(from.channels()), step = std::size_t(to.channels());
+        for (std::size_t i = 0; i * step < result.size(); ++i)
+            result[i * step + std::size_t(target)] = values[i * stride + std::size_t(source)];
+    };
+    if (to.type() == ComponentType::uint32) copy(from.uints(), to.uints());
+    else copy(from.floats(), to.floats());
+}
+
+const ExrChannel* find_channel(const ExrPart& part, const std::string& name) {
+    const auto found = std::ranges::find(part.channels, name, &ExrChannel::name);
+    return found == part.channels.end() ? nullptr : &*found;
+}
+
+std::string text_of(const Chromaticities& primaries) {
+    if (const std::string name = name_of_primaries(primaries); !name.empty()) return name;
+    return fmt::format("primaries {:.4f}", fmt::join(primaries, " "));
+}
+
+bool is_subsampled(const ExrChannel& channel) {
+    return channel.x_sampling != 1 || channel.y_sampling != 1;
+}
+
+/// Luminance at full and chroma at half resolution, which OpenEXR's own filters make a picture of.
+bool is_luminance_chroma(const ExrPart& part) {
+    const auto is_half = [&](const char* name) {
+        const ExrChannel* const channel = find_channel(part, name);
+        return channel && channel->x_sampling == 2 && channel->y_sampling == 2;
+    };
+    const ExrChannel* const luminance = find_channel(part, "Y");
+    return luminance && !is_subsampled(*luminance) && is_half("RY") && is_half("BY") &&
+           std::ranges::none_of(kColors, [&](const auto& name) { return find_channel(part, name); });
 }
 
 }  // namespace
@@ -47,19 +84,21 @@ void LayerFile::Impl::open_exr(ExrFile file) {
     format = "OpenEXR";
     exr = std::move(file);
     const std::vector<ExrPart>& parts = exr->parts();
+    traits.colors = text_of(stored_primaries(parts.front().metadata));
+    traits.pixel_aspect = parts.front().pixel_aspect;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const std::string name = parts.size() > 1 ? parts[i].name : "";
+        if (parts[i].has_smaller_levels)
+            traits.left_out.push_back("smaller levels of the tiles" + (name.empty() ? "" : " of part '" + name + "'"));
         std::vector<ExrChannel> channels = parts[i].channels;
-        if (is_subsampled(parts[i])) {
-            // Luminance at full and chroma at half resolution: a picture, converted by OpenEXR's own filters.
-            whole = exr->read_luminance_chroma(int(i));
-            whole_names = {"R", "G", "B", "A"};
-            channels.clear();
-            for (const std::string& channel : whole_names) channels.push_back({channel, PixelType::half});
-        }
+        // As colours too, so that it can be held against a file of R, G and B. The converter reads first parts.
+        if (i == 0 && is_luminance_chroma(parts[i]))
+            for (const std::string& color : kColors) channels.push_back({color, PixelType::half});
         for (LayerInfo& layer :
-             layers_of_channels(name, channels, parts[i].data_window, parts[i].display_window))
+             layers_of_channels(name, channels, parts[i].data_window, parts[i].display_window)) {
+            if (!name.empty()) layer.view = parts[i].view;
             layers.push_back(std::move(layer));
+        }
     }
 }
 
@@ -76,6 +115,24 @@ void LayerFile::Impl::open_flat(Image image, LayerRole color) {
         if (layer.role == LayerRole::color) layer.role = color;
 }
 
+void LayerFile::Impl::open_png() {
+    format = "PNG";
+    PngColor color;
+    Image image = read_png(path, &color);
+    traits.colors = color.space;
+    if (color.is_animated) traits.left_out.push_back("all pictures of the animation but the first");
+    if (!color.is_srgb()) traits.notes.push_back("its colours are of " + color.space + ", and are taken for sRGB");
+    if (color.gamma) {
+        traits.notes.push_back(
+            fmt::format("its chunk gAMA {:.5g} is applied: colours are compared as sRGB encodes them", *color.gamma));
+        const int colors = image.channels() - (image.channels() % 2 == 0 ? 1 : 0);
+        for (int y = 0; y < image.height(); ++y)
+            for (int x = 0; x < image.width(); ++x)
+                for (int c = 0; c < colors; ++c) image.at(x, y, c) = encoded_as_srgb(image.at(x, y, c), *color.gamma);
+    }
+    open_flat(std::move(image), LayerRole::display);
+}
+
 int LayerFile::Impl::part_of(const LayerInfo& layer) const {
     const std::vector<ExrPart>& parts = exr->parts();
     if (parts.size() == 1) return 0;
@@ -84,12 +141,10 @@ int LayerFile::Impl::part_of(const LayerInfo& layer) const {
 
 Image LayerFile::Impl::from_whole(const std::vector<std::string>& channels) const {
     Image image(whole.width(), whole.height(), int(channels.size()));
-    const auto pixels = std::size_t(whole.width()) * std::size_t(whole.height());
     for (std::size_t c = 0; c < channels.size(); ++c) {
-        const auto from = std::size_t(std::ranges::find(whole_names, channels[c]) - whole_names.begin());
-        assert(from < whole_names.size());
-        for (std::size_t i = 0; i < pixels; ++i)
-            image.floats()[i * channels.size() + c] = whole.floats()[i * whole_names.size() + from];
+        const auto from = std::ranges::find(whole_names, channels[c]);
+        assert(from != whole_names.end());
+        copy_channel(whole, int(from - whole_names.begin()), image, int(c));
     }
     return image;
 }
@@ -97,8 +152,7 @@ Image LayerFile::Impl::from_whole(const std::vector<std::string>& channels) cons
 LayerFile::LayerFile(const fs::path& path, const ReadLimits& limits) : impl_(std::make_unique<Impl>()) {
     impl_->path = path;
     if (file_begins_with(path, "\x89PNG")) {
-        impl_->format = "PNG";
-        impl_->open_flat(read_png(path), LayerRole::display);
+        impl_->open_png();
     } else if (is_hdr_file(path)) {
         impl_->format = "Radiance HDR";
         impl_->open_flat(read_hdr(path), LayerRole::color);
@@ -137,20 +191,47 @@ const std::string& LayerFile::format() const {
 const std::vector<LayerInfo>& LayerFile::layers() const {
     return impl_->layers;
 }
+const FileTraits& LayerFile::traits() const {
+    return impl_->traits;
+}
+
+/// Subsampled channels are repeated to the size of the others.
+Image LayerFile::Impl::read_exr(const LayerInfo& layer, const std::vector<std::string>& channels) const {
+    const int at = part_of(layer);
+    const ExrPart& part = exr->parts()[std::size_t(at)];
+    if (!find_channel(part, channels.front())) {
+        const Image colors = exr->read_luminance_chroma(at);
+        Image image(colors.width(), colors.height(), int(channels.size()));
+        for (std::size_t c = 0; c < channels.size(); ++c)
+            copy_channel(colors, int(std::ranges::find(kColors, channels[c]) - kColors.begin()), image, int(c));
+        return image;
+    }
+    const auto repeats = [&](const std::string& name) { return is_subsampled(*find_channel(part, name)); };
+    if (std::ranges::none_of(channels, repeats))
+        return layer.type == ComponentType::uint32 ? exr->read_uints(at, channels)
+                                                   : exr->read_floats(at, channels);
+    Image image(part.data_window.width(), part.data_window.height(), int(channels.size()), layer.type);
+    for (std::size_t c = 0; c < channels.size(); ++c)
+        copy_channel(exr->read_repeated(at, channels[c], layer.type), 0, image, int(c));
+    return image;
+}
 
 Image LayerFile::read(const LayerInfo& layer, const std::vector<std::string>& channels) const {
-    if (!impl_->exr) return impl_->from_whole(channels);
-    const int part = impl_->part_of(layer);
-    if (is_subsampled(impl_->exr->parts()[std::size_t(part)])) return impl_->from_whole(channels);
-    return layer.type == ComponentType::uint32 ? impl_->exr->read_uints(part, channels)
-                                               : impl_->exr->read_floats(part, channels);
+    return impl_->exr ? impl_->read_exr(layer, channels) : impl_->from_whole(channels);
 }
 
 void LayerFile::prefetch() const {
     if (!impl_->exr) return;
     std::vector<ExrRequest> requests;
-    for (const LayerInfo& layer : impl_->layers)
-        requests.push_back({impl_->part_of(layer), layer.channels, layer.type});
+    for (const LayerInfo& layer : impl_->layers) {
+        const int at = impl_->part_of(layer);
+        const ExrPart& part = impl_->exr->parts()[std::size_t(at)];
+        const auto is_plain = [&](const std::string& name) {
+            const ExrChannel* const channel = find_channel(part, name);
+            return channel && !is_subsampled(*channel);
+        };
+        if (std::ranges::all_of(layer.channels, is_plain)) requests.push_back({at, layer.channels, layer.type});
+    }
     impl_->exr->prefetch(requests);
 }
 

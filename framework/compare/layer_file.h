@@ -11,8 +11,17 @@
 
 namespace aftershade {
 
-/// OpenEXR, PNG or Radiance, recognised by its first bytes. OpenEXR: every part, level 0 of tiles; parts with
-/// subsampled chroma as R, G, B, A of half precision. PNG: `display`, value / maximum. Radiance: `color`.
+/// What the values of a file's layers do not say.
+struct FileTraits {
+    std::string colors;  ///< what the numbers of colours mean: "sRGB", "rec709"
+    float pixel_aspect = 1;
+    std::vector<std::string> left_out;  ///< what no layer has: "smaller levels of the tiles of part 'a'"
+    std::vector<std::string> notes;     ///< how colours were read, where it is not as they are stored
+};
+
+/// OpenEXR, PNG or Radiance, recognised by its first bytes. OpenEXR: every part, level 0 of tiles; samples of
+/// subsampled channels are repeated over their pixels; a first part of luminance and chroma has a layer of R, G
+/// and B in half precision besides what it stores. PNG: `display`, value / maximum. Radiance: `color`.
 /// Headers are read on construction. [one thread at a time]
 class LayerFile {
 public:
@@ -28,6 +37,7 @@ public:
     /// "OpenEXR", "PNG" or "Radiance HDR".
     const std::string& format() const;
     const std::vector<LayerInfo>& layers() const;
+    const FileTraits& traits() const;
     /// Some channels of a layer, in the order asked for, over its own data window. Cut-off and damaged pixels
     /// throw Error(ExitCode::capture).
     Image read(const LayerInfo& layer, const std::vector<std::string>& channels) const;

@@ -71,6 +71,7 @@ struct ExrPart {
     float pixel_aspect = 1;
     std::vector<ExrChannel> channels;  ///< in the file's order
     ExrMetadata metadata;
+    bool has_smaller_levels = false;  ///< of tiles, which no reader of this program looks at
     bool is_deep() const { return type.starts_with("deep"); }
     /// Second names of channels, each with the first: "Beauty.R" for "R" of a part that is called Beauty.
     /// Only FrameFile::merged() has any.
@@ -108,6 +109,9 @@ public:
     /// files and channels that do not exist are errors.
     Image read_floats(int part, std::span<const std::string> channels) const;
     Image read_uints(int part, std::span<const std::string> channels) const;
+    /// One channel, subsampled or not, over the part's data window: every stored sample is repeated over the
+    /// pixels that it stands for. ComponentType::uint32 takes uint channels only.
+    Image read_repeated(int part, const std::string& channel, ComponentType type) const;
     /// Unpacks what these reads will request in one pass over each part, instead of one for each read: all
     /// channels of a block are compressed together. The next read of exactly a request's channels takes what
     /// is kept for it. Never fails: what cannot be read, or would be more than the limits allow, is left to

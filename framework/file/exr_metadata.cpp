@@ -225,6 +225,8 @@ ExrPart describe_part(const Imf::Header& header) {
     part.data_window = to_window(header.dataWindow());
     part.display_window = to_window(header.displayWindow());
     part.pixel_aspect = header.pixelAspectRatio();
+    part.has_smaller_levels =
+        header.hasTileDescription() && header.tileDescription().mode != Imf::ONE_LEVEL && is_tiled_part(header);
     for (auto i = header.channels().begin(); i != header.channels().end(); ++i) {
         const Imf::Channel& channel = i.channel();
         const PixelType type = channel.type == Imf::HALF    ? PixelType::half

@@ -100,6 +100,7 @@ struct ExrFile::Impl {
         return layout.largest_block_bytes > kThreadedBlockBytes ? 0 : Imf::globalThreadCount();
     }
     Image read(const ExrRequest& request);
+    Image read_repeated(int part, const std::string& name, ComponentType type);
     void prefetch(int part, std::span<const ExrRequest> requests);
     Image add_slices(Imf::FrameBuffer& frame, const ExrRequest& request) const;
     void check_type(int part) const;
@@ -229,6 +230,36 @@ Image ExrFile::Impl::read(const ExrRequest& request) {
     });
 }
 
+Image ExrFile::Impl::read_repeated(int part, const std::string& name, ComponentType type) {
+    const ExrPart& info = parts[std::size_t(part)];
+    const auto channel = std::ranges::find(info.channels, name, &ExrChannel::name);
+    assert(channel != info.channels.end());
+    const int across = channel->x_sampling, down = channel->y_sampling;
+    if (across == 1 && down == 1) return read({part, {name}, type});
+    check_type(part);
+    check_bytes(part, 1);
+    // read_layout refuses samplings that do not divide the window.
+    Image samples(info.data_window.width() / across, info.data_window.height() / down, 1, type);
+    exr::translate_errors(path, ExitCode::capture, "damaged pixel data", [&] {
+        exr::check_blocks(*stream, path, layout, part);
+        Imf::FrameBuffer frame;
+        frame.insert(name, Imf::Slice::Make(type == ComponentType::float32 ? Imf::FLOAT : Imf::UINT,
+                                            bytes_of(samples), exr::to_box(info.data_window), sizeof(float),
+                                            sizeof(float) * std::size_t(samples.width()), across, down));
+        read_pixels(part, frame);
+    });
+    Image image(info.data_window.width(), info.data_window.height(), 1, type);
+    const auto repeat = [&](const auto from, const auto to) {
+        for (int y = 0; y < image.height(); ++y)
+            for (int x = 0; x < image.width(); ++x)
+                to[std::size_t(y) * std::size_t(image.width()) + std::size_t(x)] =
+                    from[std::size_t(y / down) * std::size_t(samples.width()) + std::size_t(x / across)];
+    };
+    if (type == ComponentType::uint32) repeat(std::as_const(samples).uints(), image.uints());
+    else repeat(std::as_const(samples).floats(), image.floats());
+    return image;
+}
+
 void ExrFile::Impl::prefetch(int part, std::span<const ExrRequest> requests) {
     std::vector<Kept> together;
     Imf::FrameBuffer frame;
@@ -275,6 +306,10 @@ Image ExrFile::read_floats(int part, std::span<const std::string> channels) cons
 
 Image ExrFile::read_uints(int part, std::span<const std::string> channels) const {
     return impl_->read({part, {channels.begin(), channels.end()}, ComponentType::uint32});
+}
+
+Image ExrFile::read_repeated(int part, const std::string& channel, ComponentType type) const {
+    return impl_->read_repeated(part, channel, type);
 }
 
 void ExrFile::prefetch(std::span<const ExrRequest> requests) const {

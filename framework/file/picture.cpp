@@ -7,6 +7,7 @@
 #include "framework/image/srgb.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -51,7 +52,14 @@ Image read_exr_picture(const fs::path& path) {
 }
 
 Image read_png_picture(const fs::path& path, PictureSpace space) {
-    const Image stored = read_png(path);
+    PngColor color;
+    const Image stored = read_png(path, &color);
+    if (space == PictureSpace::srgb && !color.is_srgb())
+        throw Error(ExitCode::capture, path.string() + ": its colours are not sRGB but of " + color.space +
+                                           ", which is not converted; save the picture as sRGB");
+    const auto light = [&](float value) {
+        return color.gamma ? std::pow(double(value), 1 / *color.gamma) : decode_srgb(double(value));
+    };
     const bool grey = stored.channels() <= 2;
     const bool has_alpha = stored.channels() % 2 == 0;
     Image image(stored.width(), stored.height(), kRgba);
@@ -61,7 +69,7 @@ Image read_png_picture(const fs::path& path, PictureSpace space) {
             for (int c = 0; c < kAlpha; ++c) {
                 const float value = stored.at(x, y, grey ? 0 : c);
                 image.at(x, y, c) =
-                    space == PictureSpace::data ? value : float(decode_srgb(double(value)) * double(alpha));
+                    space == PictureSpace::data ? value : float(light(value) * double(alpha));
             }
             image.at(x, y, kAlpha) = alpha;
         }

@@ -103,7 +103,7 @@ void check_chunks(const fs::path& path, std::span<const unsigned char> bytes,
 
 }  // namespace
 
-std::string encode_png(const std::string& name, const Image& display, const PngText& text) {
+std::string encode_png(const std::string& name, const Image& display, const PngText& text, bool is_srgb) {
     const int channels = display.channels();
     assert(channels == 1 || channels == 3 || channels == 4);
     assert(!display.empty());
@@ -122,13 +122,14 @@ std::string encode_png(const std::string& name, const Image& display, const PngT
     if (sink.failure) std::rethrow_exception(sink.failure);
     if (written == 0) throw Error(ExitCode::memory, name + ": " + out_of_memory_text(std::bad_alloc()));
     constexpr std::size_t kSizeChunkBytes = kChunkHeadBytes + 13 + kChecksumBytes;  // IHDR, the first
-    std::string chunks;
+    const std::string perceptual(1, '\0');  // the rendering intent
+    std::string chunks = is_srgb ? chunk("sRGB", perceptual) : "";
     for (const auto& [keyword, value] : text) chunks += chunk("tEXt", keyword + '\0' + value);
     return sink.bytes.insert(kSignatureBytes + kSizeChunkBytes, chunks);
 }
 
-void write_png(const fs::path& path, const Image& display, const PngText& text) {
-    const std::string bytes = encode_png(path.string(), display, text);
+void write_png(const fs::path& path, const Image& display, const PngText& text, bool is_srgb) {
+    const std::string bytes = encode_png(path.string(), display, text, is_srgb);
     OutputStream stream(path);
     stream.write(bytes.data(), bytes.size());
     stream.commit();
@@ -150,7 +151,7 @@ std::optional<std::string> read_png_text(const fs::path& path, const std::string
     return found;
 }
 
-Image read_png(const fs::path& path) {
+Image read_png(const fs::path& path, PngColor* color) {
     const std::string text = read_bytes(path);
     const std::span bytes(reinterpret_cast<const unsigned char*>(text.data()), text.size());
     const int size = static_cast<int>(bytes.size());
@@ -164,7 +165,9 @@ Image read_png(const fs::path& path) {
     }
     if (const std::string fault = stb::fault_of_size(width, height, channels); !fault.empty())
         fail(path, fault);
-    check_chunks(path, bytes);
+    PngColorReader colors;
+    check_chunks(path, bytes, [&](const auto& type, const auto data) { colors.read(type, data); });
+    if (color) *color = colors.color();
     const bool is_wide = stbi_is_16_bit_from_memory(bytes.data(), size) != 0;
     const auto load = [&](auto* from_memory, float maximum) {
         const auto loaded = from_memory(bytes.data(), size, &width, &height, &channels, 0);

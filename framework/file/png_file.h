@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "framework/file/png_color.h"
 #include "framework/image/image.h"
 
 namespace aftershade {
@@ -15,17 +16,21 @@ using PngText = std::map<std::string, std::string>;
 
 /// The bytes of a PNG of display-referred values in [0, 1], already encoded, of 1, 3 or 4 float channels:
 /// round(255 * clamp(v)), NaN as 0. A fourth channel is unassociated alpha. `name` is what the
-/// Error(ExitCode::output) of a picture that is too large begins with.
-std::string encode_png(const std::string& name, const Image& display, const PngText& text = {});
+/// Error(ExitCode::output) of a picture that is too large begins with. `is_srgb`: the file says so, in the chunk
+/// sRGB; false colours and measures are not a display's.
+std::string encode_png(const std::string& name, const Image& display, const PngText& text = {},
+                       bool is_srgb = false);
 
 /// Writes these bytes. The file appears by rename from a temporary file in the same folder. Throws
 /// Error(ExitCode::output).
-void write_png(const std::filesystem::path& path, const Image& display, const PngText& text = {});
+void write_png(const std::filesystem::path& path, const Image& display, const PngText& text = {},
+               bool is_srgb = false);
 
 /// The text of a keyword; nullopt where the file is not a whole PNG or has no such text.
 std::optional<std::string> read_png_text(const std::filesystem::path& path, const std::string& keyword);
 
-/// Reads PNG of 8 or 16 bits into [0, 1] floats, 1 to 4 channels as stored. Throws Error(ExitCode::capture).
-Image read_png(const std::filesystem::path& path);
+/// Reads PNG of 8 or 16 bits into [0, 1] floats, 1 to 4 channels as stored; `color` gets what they mean. Throws
+/// Error(ExitCode::capture).
+Image read_png(const std::filesystem::path& path, PngColor* color = nullptr);
 
 }  // namespace aftershade

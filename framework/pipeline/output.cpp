@@ -194,7 +194,7 @@ WrittenFiles write_outputs(const OutputOptions& options, const FrameResult& resu
     const int frame = capture.header.frame;
     for (const std::string& text : options.patterns) {
         const fs::path path = FramePattern(text).path(frame);
-        if (extension(path) != ".exr") write_png(path, display_picture(result, capture), png_text(options));
+        if (extension(path) != ".exr") write_png(path, display_picture(result, capture), png_text(options), true);
         else if (auto lost = write_exr_output(path, options, result, capture, reader); !lost.empty())
             written.warnings.push_back(std::move(lost));
         written.paths.push_back(path);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "framework/file/exr_file.h"
 #include "tests/cli/command.h"
@@ -305,6 +306,50 @@ TEST_F(CompareCommand, LeavesOutObjectsByTheirIds) {
     EXPECT_EQ(compare({"plain.exr", "t.exr", "--ignore", "object:7"}).exit_code, 4) << "which has no ids";
     EXPECT_EQ(
         compare({"plain.exr", "plain.exr", "--ignore", "object:7", "--objects-from", "t.exr"}).exit_code, 0);
+}
+
+/// The recipes of a page: their options, without file names.
+std::vector<std::vector<std::string>> recipes_of(const std::filesystem::path& page) {
+    std::vector<std::vector<std::string>> recipes;
+    std::istringstream lines(read_text(page));
+    for (std::string line; std::getline(lines, line);) {
+        const std::string begin = "    aftershade compare ";
+        if (!line.starts_with(begin)) continue;
+        std::istringstream words(line.substr(begin.size()));
+        std::vector<std::string> options;
+        for (std::string word; words >> word && word != ">" && word != "||" && word != "#";) options.push_back(word);
+        options.erase(options.begin(), options.begin() + 2);
+        recipes.push_back(std::move(options));
+    }
+    return recipes;
+}
+
+TEST_F(CompareCommand, FindsInvertedNormalsByEveryRecipeOfItsPage) {
+    const auto write = [&](const char* name, float sign) {
+        write_exr_file(folder_ / name, {{{"R", "G", "B", "A"}, constant(64, 64, {0.5f, 0.2f, 0.1f, 1})},
+                                        {{"Z"}, constant(64, 64, {3})},
+                                        {{"velocity.X", "velocity.Y"}, constant(64, 64, {1, 2})},
+                                        {{"normal.X", "normal.Y", "normal.Z"}, constant(64, 64, {0, 0, sign})}});
+    };
+    write("a.exr", 1), write("b.exr", -1);
+    const auto recipes = recipes_of(AFTERSHADE_SOURCE_DIR "/docs/compare.md");
+    ASSERT_GE(recipes.size(), 6u);
+    for (std::vector<std::string> words : recipes) {
+        words.insert(words.begin(), {"a.exr", "b.exr"});
+        const CommandResult result = compare(words);
+        EXPECT_EQ(result.exit_code, 2) << words.back() << "\n" << result.out << result.err;
+    }
+}
+
+TEST_F(CompareCommand, NamesWhatNoLimitHolds) {
+    for (const bool inverted : {false, true})
+        write_exr_file(folder_ / (inverted ? "b.exr" : "a.exr"),
+                       {{{"R", "G", "B"}, constant(8, 8, {0.5f, 0.2f, 0.1f})},
+                        {{"Z"}, constant(8, 8, {inverted ? 3.0f : 2.0f})}});
+    const CommandResult result = compare({"a.exr", "b.exr", "--fail", "inf", "--fail-flip", "0.05"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(result.out.ends_with("same (not judged: Z)\n")) << result.out;
+    EXPECT_EQ(result.out.find("Z (depth): same"), std::string::npos) << result.out;
 }
 
 }  // namespace

@@ -87,6 +87,25 @@ TEST(Layers, KnowTheViewOfAPassBeforeOrBehindItsName) {
               (Texts{"forward.left.uv velocity", "left.forward.uv velocity"}));
 }
 
+TEST(Layers, OfAViewHaveADepth) {
+    EXPECT_EQ(told(layers({"left.R", "left.G", "left.B", "left.Z", "normal.Z"})),
+              (Texts{"left.RGB color", "left.Z depth", "normal.Z data"}));
+}
+
+TEST(Layers, TakeWhatTheirNamesLackFromTheirPart) {
+    const auto of_part = [](const std::string& part, const std::vector<std::string>& names) {
+        std::vector<ExrChannel> channels;
+        for (const std::string& name : names) channels.push_back({name, PixelType::half});
+        return told(layers_of_channels(part, channels, {0, 0, 3, 3}, {0, 0, 3, 3}));
+    };
+    EXPECT_EQ(of_part("velocity", {"X", "Y"}), Texts{"velocity:XY velocity"});
+    EXPECT_EQ(of_part("N", {"X", "Y", "Z"}), Texts{"N:XYZ data"});
+    EXPECT_EQ(of_part("N", {"B", "G", "R"}), Texts{"N:RGB data"});
+    EXPECT_EQ(of_part("depth", {"Z"}), Texts{"depth:Z depth"});
+    EXPECT_EQ(of_part("CryptoObject00", {"B", "G", "R"}), Texts{"CryptoObject00:RGB id"});
+    EXPECT_EQ(of_part("rgba", {"A", "B", "G", "R"}), (Texts{"rgba:A alpha", "rgba:RGB color"}));
+}
+
 TEST(Layers, TakeColoursOfNormalsForData) {
     EXPECT_EQ(told(layers({"N.R", "N.G", "N.B"})), Texts{"N.RGB data"});
 }
@@ -153,8 +172,10 @@ TEST(LayerFile, ConvertsSubsampledChroma) {
         out.writePixels(16);
     }
     const LayerFile file(folder / "yc.exr");
-    EXPECT_EQ(told(file.layers()), (Texts{"A alpha", "RGB color"}));
-    const Image image = file.read(file.layers()[0], {"R", "G", "B"});
+    // What is stored is compared, and its colours: this file stores no alpha.
+    EXPECT_EQ(told(file.layers()), (Texts{"BY data", "RGB color", "RY data", "Y data"}));
+    const auto colors = std::ranges::find(file.layers(), LayerRole::color, &LayerInfo::role);
+    const Image image = file.read(*colors, {"R", "G", "B"});
     EXPECT_NEAR(image.at(8, 8, 0), 0.5f, 0.01f);
     EXPECT_NEAR(image.at(8, 8, 2), 0.125f, 0.01f);
 }

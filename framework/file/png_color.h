@@ -1,0 +1,42 @@
+// What the samples of a PNG mean: its colour chunks.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace aftershade {
+
+/// PNG specification (third edition), 4.3: cICP before iCCP before sRGB before gAMA and cHRM. Without any, the
+/// samples are sRGB.
+struct PngColor {
+    /// "sRGB"; else what only a colour management could show: "ICC profile 'P3' (checksum 1a2b3c4d)", "cICP 9 16 0
+    /// 1", "primaries 0.7080 0.2920 ...".
+    std::string space = "sRGB";
+    /// Of gAMA where it is not sRGB's and no other chunk counts: light is the sample to the power 1 / gamma.
+    std::optional<double> gamma;
+    bool is_animated = false;  ///< there are further pictures
+    bool is_srgb() const { return space == "sRGB"; }
+};
+
+/// Gathers the chunks of one file.
+class PngColorReader {
+public:
+    void read(const std::string& type, std::span<const unsigned char> data);
+    PngColor color() const;
+
+private:
+    std::string cicp_, icc_, primaries_;
+    std::optional<double> gamma_;
+    bool has_cicp_ = false, has_icc_ = false, has_srgb_ = false, is_animated_ = false;
+};
+
+/// Whether an ICC profile is that of sRGB: of a display, its three colorants and a curve that is sRGB's or its
+/// approximation, a power of 2.2.
+bool is_srgb_profile(std::span<const unsigned char> profile);
+
+/// An encoded value of such a file, as sRGB encodes the same light.
+float encoded_as_srgb(float value, double gamma);
+
+}  // namespace aftershade

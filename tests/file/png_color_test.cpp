@@ -1,0 +1,168 @@
+// What the samples of a PNG mean.
+#include "framework/file/png_color.h"
+
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <cmath>
+#include <vector>
+
+#include "framework/file/picture.h"
+#include "framework/file/png_file.h"
+#include "framework/image/srgb.h"
+#include "tests/temporary_folder.h"
+
+namespace aftershade {
+namespace {
+
+std::string number(std::uint32_t value) {
+    return {char(value >> 24), char(value >> 16), char(value >> 8), char(value)};
+}
+
+std::string numbers(const std::vector<std::uint32_t>& values) {
+    std::string text;
+    for (const std::uint32_t value : values) text += number(value);
+    return text;
+}
+
+PngColor color_of(const std::vector<std::pair<std::string, std::string>>& chunks) {
+    PngColorReader reader;
+    for (const auto& [type, data] : chunks)
+        reader.read(type, {reinterpret_cast<const unsigned char*>(data.data()), data.size()});
+    return reader.color();
+}
+
+/// A display's profile of three colorants and one curve, by ICC.1:2022.
+std::string icc_profile(const std::string& curve, bool exchanged = false) {
+    const auto fixed = [](double value) { return number(std::uint32_t(std::int32_t(std::lround(value * 65536)))); };
+    const auto xyz = [&](double x, double y, double z) { return "XYZ " + number(0) + fixed(x) + fixed(y) + fixed(z); };
+    const std::string red = xyz(0.4361, 0.2225, 0.0139), green = xyz(0.3851, 0.7169, 0.0971),
+                      blue = xyz(0.1431, 0.0606, 0.7141);
+    const std::vector<std::pair<std::string, std::string>> tags = {
+        {"rXYZ", exchanged ? blue : red}, {"gXYZ", green}, {"bXYZ", exchanged ? red : blue},
+        {"rTRC", curve},                  {"gTRC", curve}, {"bTRC", curve}};
+    std::string table = number(std::uint32_t(tags.size())), data;
+    for (const auto& [name, tag] : tags) {
+        table += name + number(std::uint32_t(132 + 12 * tags.size() + data.size())) + number(std::uint32_t(tag.size()));
+        data += tag + std::string((4 - tag.size() % 4) % 4, '\0');
+    }
+    return std::string(16, '\0') + "RGB XYZ " + std::string(104, '\0') + table + data;
+}
+
+std::string iccp(const std::string& profile) {
+    uLongf size = compressBound(uLong(profile.size()));
+    std::string packed(size, '\0');
+    compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(profile.data()),
+             uLong(profile.size()));
+    packed.resize(size);
+    return "my screen" + std::string(2, '\0') + packed;
+}
+
+std::string power(double gamma) {
+    const int value = int(std::lround(gamma * 256));
+    return "curv" + number(0) + number(1) + char(value >> 8) + char(value);
+}
+
+/// sRGB's own curve as a table and as numbers.
+std::string srgb_table() {
+    std::string text = "curv" + number(0) + number(1024);
+    for (int i = 0; i < 1024; ++i) {
+        const int value = int(std::lround(65535 * decode_srgb(i / 1023.0)));
+        text += {char(value >> 8), char(value)};
+    }
+    return text;
+}
+std::string srgb_numbers() {
+    std::string text = "para" + number(0) + std::string{0, 3, 0, 0};
+    for (const double value : {2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045})
+        text += number(std::uint32_t(std::lround(value * 65536)));
+    return text;
+}
+
+const std::string kGamma1 = number(100000), kGamma22 = number(45455);
+const std::string kWide = numbers({31270, 32900, 70800, 29200, 17000, 79700, 13100, 4600});
+
+TEST(PngColor, IsSrgbWithoutChunksAndByEachOfThem) {
+    EXPECT_TRUE(color_of({}).is_srgb());
+    const std::string same = numbers({31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000});
+    for (const auto& chunk : std::vector<std::pair<std::string, std::string>>{
+             {"sRGB", std::string(1, '\0')}, {"gAMA", kGamma22}, {"gAMA", number(45450)}, {"cHRM", same},
+             {"cICP", {1, 13, 0, 1}}, {"iCCP", iccp(icc_profile(power(2.2)))}, {"iCCP", iccp(icc_profile(srgb_table()))},
+             {"iCCP", iccp(icc_profile(srgb_numbers()))}}) {
+        EXPECT_EQ(color_of({chunk}).space, "sRGB") << chunk.first;
+        EXPECT_FALSE(color_of({chunk}).gamma) << chunk.first;
+    }
+}
+
+TEST(PngColor, NamesWhatIsNotSrgb) {
+    EXPECT_EQ(color_of({{"cICP", {9, 16, 0, 1}}}).space, "cICP 9 16 0 1");
+    EXPECT_EQ(color_of({{"cHRM", kWide}}).space,
+              "primaries 0.7080 0.2920 0.1700 0.7970 0.1310 0.0460 0.3127 0.3290");
+    for (const std::string& profile :
+         {icc_profile(power(2.2), true), icc_profile(power(1.8)), icc_profile(power(1)), std::string("no profile")})
+        EXPECT_TRUE(color_of({{"iCCP", iccp(profile)}}).space.starts_with("ICC profile 'my screen' (checksum "));
+    EXPECT_NE(color_of({{"iCCP", iccp(icc_profile(power(1.8)))}}).space,
+              color_of({{"iCCP", iccp(icc_profile(power(1)))}}).space);
+    EXPECT_EQ(color_of({{"gAMA", kGamma1}}).gamma, 1.0);
+    EXPECT_EQ(color_of({{"gAMA", number(55556)}}).gamma, 0.55556);
+}
+
+TEST(PngColor, TakesTheStrongerChunk) {
+    // PNG specification, third edition, 4.3.
+    const std::pair<std::string, std::string> intent{"sRGB", std::string(1, '\0')}, gamma{"gAMA", kGamma1},
+        wide{"cHRM", kWide}, pq{"cICP", {9, 16, 0, 1}}, icc{"iCCP", iccp(icc_profile(power(1)))};
+    EXPECT_TRUE(color_of({gamma, wide, intent}).is_srgb());
+    EXPECT_FALSE(color_of({gamma, wide, intent}).gamma);
+    EXPECT_EQ(color_of({pq, icc, intent}).space, "cICP 9 16 0 1");
+    EXPECT_TRUE(color_of({icc, intent}).space.starts_with("ICC"));
+    EXPECT_FALSE(color_of({icc, gamma}).gamma);
+    EXPECT_TRUE(color_of({gamma, wide}).gamma);
+}
+
+TEST(PngColor, OfDamagedChunksIsNoFault) {
+    std::string profile = iccp(icc_profile(srgb_table()));
+    for (std::size_t bytes = 0; bytes < profile.size(); bytes += 7) color_of({{"iCCP", profile.substr(0, bytes)}});
+    std::string plain = icc_profile(srgb_table());
+    for (std::size_t at = 128; at < plain.size() && at < 260; ++at) {
+        std::string damaged = plain;
+        damaged[at] = char(0xff);
+        is_srgb_profile({reinterpret_cast<const unsigned char*>(damaged.data()), damaged.size()});
+    }
+    EXPECT_TRUE(color_of({{"gAMA", number(0)}, {"gAMA", "x"}, {"cHRM", "x"}, {"cICP", "x"}}).is_srgb());
+}
+
+/// `png` with a chunk behind its first.
+std::string with_chunk(std::string png, const std::string& type, const std::string& data) {
+    const std::string checked = type + data;
+    const auto sum = std::uint32_t(crc32(0, reinterpret_cast<const Bytef*>(checked.data()), uInt(checked.size())));
+    return png.insert(8 + 25, number(std::uint32_t(data.size())) + checked + number(sum));
+}
+
+TEST(Picture, DecodesAPngByItsGammaAndRefusesOtherSpaces) {
+    const test::TemporaryFolder folder;
+    Image grey(2, 2, 3);
+    for (float& value : grey.floats()) value = 128 / 255.0f;
+    const std::string plain = encode_png("", grey);
+    const auto light = [&](const std::string& png, PictureSpace space = PictureSpace::srgb) {
+        test::write_text(folder / "a.png", png);
+        return read_picture(folder / "a.png", space).at(1, 1, 0);
+    };
+    EXPECT_FLOAT_EQ(light(plain), float(decode_srgb(128 / 255.0)));
+    EXPECT_FLOAT_EQ(light(with_chunk(plain, "gAMA", kGamma1)), 128 / 255.0f);
+    EXPECT_FLOAT_EQ(light(with_chunk(plain, "gAMA", number(50000))), float(std::pow(128 / 255.0, 2)));
+    EXPECT_FLOAT_EQ(light(with_chunk(plain, "cHRM", kWide), PictureSpace::data), 128 / 255.0f);
+    for (const auto& [type, data] : {std::pair{std::string("cHRM"), kWide}, {"cICP", {9, 16, 0, 1}}})
+        EXPECT_THROW(light(with_chunk(plain, type, data)), Error) << type;
+}
+
+TEST(Png, SaysThatItIsSrgbWhereItIs) {
+    const test::TemporaryFolder folder;
+    const Image grey(2, 2, 3);
+    const std::string chunk = number(1) + "sRGB" + std::string(1, '\0');
+    EXPECT_EQ(encode_png("", grey).find("sRGB"), std::string::npos);
+    // PNG specification, 5.6: before the pixels.
+    EXPECT_EQ(encode_png("", grey, {{"Title", "x"}}, true).find(chunk), 8u + 25u);
+}
+
+}  // namespace
+}  // namespace aftershade
