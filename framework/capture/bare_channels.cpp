@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "framework/capture/channel_names.h"
 #include "framework/capture/common_names.h"
 
 namespace aftershade {
@@ -46,7 +47,8 @@ std::vector<std::vector<std::string>> usual_names(int channels) {
     }
 }
 
-/// "'A', 'B' and 'G'", or the first of many with "and 12 more".
+}  // namespace
+
 std::string channel_list(const ExrPart& part) {
     constexpr std::size_t kMost = 16;
     std::vector<std::string> names;
@@ -56,8 +58,6 @@ std::string channel_list(const ExrPart& part) {
     for (std::size_t i = 0; i < kMost; ++i) text += (i == 0 ? "'" : ", '") + names[i] + "'";
     return text + " and " + std::to_string(names.size() - kMost) + " more";
 }
-
-}  // namespace
 
 RoleDecoding without_bare_names(RoleDecoding decoding) {
     for (auto& names : decoding.layers)
@@ -75,9 +75,9 @@ bool has_one_layer(const ExrPart& part) {
 std::optional<FoundChannels> find_only_channels(const ChannelRole& role, const ExrPart& part) {
     if (role.channels == 1) {
         if (part.channels.size() == 1) return FoundChannels{{part.channels.front().name}};
-        return role.kind == RoleKind::distance ? find_common_depth(part, "") : std::nullopt;
+        return find_common_data(part, role.name, "", "");
     }
-    if (!has_one_layer(part)) return std::nullopt;
+    if (!has_one_layer(part)) return find_common_data(part, role.name, "", "");
     const std::string layer = layer_of_channel(part.channels.front().name);
     for (std::vector<std::string> names : usual_names(role.channels)) {
         for (std::string& name : names) name = "{layer}." + name;

@@ -118,7 +118,8 @@ CaptureReader::~CaptureReader() = default;
 
 const Profile& CaptureReader::choose_profile(const ExrPart& part, CaptureHeader& header) const {
     if (sequence_.profile == "auto") {
-        const ProfileChoice choice = detect_profile(profiles_, part, header.path.string());
+        const ProfileChoice choice = detect_profile(profiles_, part, header.path.string(),
+                                                    sequence_.channels.contains(kColorRole));
         header.profile_reason = choice.reason;
         return *choice.profile;
     }
@@ -169,6 +170,7 @@ void CaptureReader::find_roles(OpenFrame& open) const {
     if (!sequence_.channels.contains(kColorRole) && !names.contains(kColorRole))
         add_role(open, kColorRole, RoleDecoding{});
     take_data_of_other_layer(open);
+    note_assumed_space(open);
     find_cryptomatte_roles(open);
     for (const auto& [role, source] : open.roles) {
         open.header.roles.push_back(role);

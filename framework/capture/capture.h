@@ -130,6 +130,7 @@ private:
     void choose_layer(OpenFrame& open) const;
     void take_data_of_other_layer(OpenFrame& open) const;
     void find_roles(OpenFrame& open) const;
+    void note_assumed_space(OpenFrame& open) const;
     void find_cryptomatte_roles(OpenFrame& open) const;
     std::optional<FoundChannels> find_role_channels(const OpenFrame& open, const FrameFile& file,
                                                     const std::string& role,

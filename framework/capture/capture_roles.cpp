@@ -5,6 +5,7 @@
 
 #include "framework/capture/bare_channels.h"
 #include "framework/capture/capture_internal.h"
+#include "framework/capture/channel_names.h"
 #include "framework/capture/common_names.h"
 #include "framework/core/error.h"
 #include "framework/image/role.h"
@@ -57,6 +58,14 @@ void keep_numbers(Image& hashes, const Image& numbers, std::span<const std::stri
         if (!wanted.contains(hashes.uints()[i])) hashes.uints()[i] = numbers.uints()[i];
 }
 
+/// Files call the alpha by other names than the rest of the colour.
+void complete_alpha(FoundChannels& color, const ExrPart& part) {
+    std::vector<std::string>& names = color.front();
+    if (names.size() == 4 && names[3].empty()) names[3] = find_common_alpha(part, names[0]);
+}
+
+constexpr std::string_view kNativeProfile = "native";
+
 bool is_among(const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -103,14 +112,25 @@ std::optional<FoundChannels> CaptureReader::find_role_channels(const OpenFrame& 
     if (!names.layers.empty()) {
         auto found = find_channels(is_foreign ? below_layer(names) : names, layer, part);
         const bool is_of_color = found && !is_named_by_user && is_tristimulus(part, found->front().front());
+        if (found && role == kColorRole && !is_named_by_user) complete_alpha(*found, part);
         if (found && (!is_of_color || role == kColorRole)) return found;
     }
     // What capture.json says is what the user wants, and nothing else.
     if (is_named_by_user && !decoding.layers.empty()) return std::nullopt;
-    if (role == kColorRole) return find_common_color(part, layer);
+    if (role == kColorRole) {
+        auto found = find_common_color(part, layer);
+        if (found) complete_alpha(*found, part);
+        return found;
+    }
     if (is_own_file) return find_only_channels(*find_role(role), part);
-    if (role == kDepthRole) return find_common_depth(part, layer);
-    return std::nullopt;
+    // Of a known producer its profile says what other data mean.
+    if (role != kDepthRole && open.profile->id != kNativeProfile) return std::nullopt;
+    const auto color = open.roles.find(kColorRole);
+    const bool has_color = color != open.roles.end() && color->second.file == open.main.get() &&
+                           !color->second.channels.empty();
+    const bool is_only_layer = sequence_.layer.empty() && open.header.layers.size() < 2;
+    return find_common_data(part, role, is_only_layer ? "" : layer,
+                            has_color ? color->second.channels[0][0] : layer.empty() ? "" : layer + ".R");
 }
 
 /// A compositor's result comes as a layer of its own beside the one that it was made from. Its colour is the
@@ -133,6 +153,21 @@ void CaptureReader::take_data_of_other_layer(OpenFrame& open) const {
     header.notes = {"the layer '" + first + "' has a colour alone; " + list_of_names(taken, "and") +
                     (taken.size() == 1 ? " is" : " are") + " read from the layer '" + header.layers.back() +
                     "' (choose one layer for all with --layer, or 'layer' in capture.json)"};
+}
+
+/// Normals and positions under a name that many programs use may be in the camera's space.
+void CaptureReader::note_assumed_space(OpenFrame& open) const {
+    if (sequence_.profile != "auto" || open.profile->id != kNativeProfile) return;
+    for (const std::string role : {"normal", "position"}) {
+        const auto found = open.roles.find(role);
+        if (found == open.roles.end() || found->second.file != open.main.get() ||
+            sequence_.channels.contains(role) ||
+            canonical_name(found->second.channels[0][0]) == role + ".x")
+            continue;
+        open.header.notes.push_back(role + " is read from " +
+                                    list_of_names(found->second.channels[0], "and") +
+                                    " as of world space, which the file does not say");
+    }
 }
 
 /// The file that Cryptomattes are read from: object_id's own, if it has any, else the main one.
@@ -185,7 +220,7 @@ Image CaptureReader::read_cryptomatte_role(const OpenFrame& open, RoleKind kind)
     if (!matte) throw Error(ExitCode::capture, file.path().string() + ": has no Cryptomatte");
     const Window& grid = open.header.data_window;
     if (is_mask) return cryptomatte_mask(file, *matte, objects, grid);
-    Image ids = cryptomatte_ids(file, *matte, grid);
+    Image ids = cryptomatte_ids(file, *matte, grid, objects);
     if (!open.ids_by_number) return ids;
     try {
         keep_numbers(ids, read_ids(*open.ids_by_number, grid), objects);
@@ -248,8 +283,9 @@ void CaptureReader::require_names(const OpenFrame& open, const Image& ids,
             "write multilayer EXR, or name the file with the Cryptomatte as \"files\": "
             "{\"object_id\": ...} in capture.json";
     }
-    throw Error(ExitCode::capture, open.header.path.string() + ": the look names the object '" +
-                                       names.front() + "', but " + instead + " (" + remedy + ")");
+    throw UnknownObject(open.header.path.string() + ": the look names the object '" + names.front() +
+                            "', but " + instead + " (" + remedy + ")",
+                        names.front());
 }
 
 RoleElsewhere CaptureReader::find_elsewhere(const CaptureHeader& header, const std::string& role) const {

@@ -4,6 +4,7 @@
 #include <array>
 #include <set>
 
+#include "framework/capture/channel_names.h"
 #include "framework/core/text.h"
 #include "framework/image/color_space.h"
 #include "framework/image/role.h"
@@ -12,14 +13,13 @@ namespace aftershade {
 
 namespace {
 
-using Components = std::array<const char*, 4>;
-constexpr Components kTristimulus = {"X", "Y", "Z", "A"};
-constexpr std::array kColorComponents = {Components{"R", "G", "B", "A"}, Components{"r", "g", "b", "a"},
-                                         Components{"red", "green", "blue", "alpha"},
-                                         Components{"Red", "Green", "Blue", "Alpha"}, kTristimulus};
+constexpr std::array<const char*, 4> kTristimulus = {"X", "Y", "Z", "A"};
 
-std::string joined_name(const std::string& layer, const std::string& component) {
-    return layer.empty() ? component : layer + "." + component;
+/// The channel that is a component of the layer, in any usual spelling; "" where there is none.
+std::string component_of(const ExrPart& part, const std::string& layer, const std::string& component) {
+    for (const ExrChannel& channel : part.channels)
+        if (split_channel_name(channel.name) == ChannelName{layer, component}) return channel.name;
+    return "";
 }
 
 /// CIE tristimulus values, as Mitsuba writes them. Positions and normals are X, Y and Z of a layer, in files
@@ -30,16 +30,13 @@ bool has_tristimulus(const ExrPart& part, const std::string& layer) {
 
 /// The channels of the layer's colour; "" for an alpha that is absent.
 std::optional<std::vector<std::string>> color_of_layer(const ExrPart& part, const std::string& layer) {
-    for (const Components& components : kColorComponents) {
-        if (components[0] == kTristimulus[0] && !has_tristimulus(part, layer)) continue;
-        std::vector<std::string> names;
-        for (const char* component : components) names.push_back(joined_name(layer, component));
-        if (!has_channel(part, names[0]) || !has_channel(part, names[1]) || !has_channel(part, names[2]))
-            continue;
-        if (!has_channel(part, names[3])) names[3].clear();
-        return names;
-    }
-    return std::nullopt;
+    std::vector<std::string> names;
+    for (const char* component : {"r", "g", "b", "a"}) names.push_back(component_of(part, layer, component));
+    if (!names[0].empty() && !names[1].empty() && !names[2].empty()) return names;
+    if (!has_tristimulus(part, layer) || !has_x_y_z(part)) return std::nullopt;
+    names = {kTristimulus.begin(), kTristimulus.end()};
+    if (!has_channel(part, names[3])) names[3].clear();
+    return names;
 }
 
 /// What the file's header calls a Cryptomatte has a preview, which looks like a colour.
@@ -51,15 +48,24 @@ std::set<std::string> cryptomatte_names(const ExrPart& part) {
     return names;
 }
 
+/// "combined" of "ViewLayer_Combined".
+std::string last_word(const std::string& layer) {
+    const std::string name = canonical_name(layer);
+    return name.substr(name.rfind('.') + 1);
+}
+
 /// By the last word of its name, such as "N" of "beauty.N": a usual one, or a role's.
 bool holds_data(const std::string& layer) {
     static const std::set<std::string> words = {
         "n",      "normals", "ng",           "ns",        "normw",   "p",       "positions", "posw",
         "pos",    "z",       "uv",           "st",        "tangent", "id",      "vector",    "vectors",
-        "motion", "mvec",    "motionvector", "motionvec", "forward", "backward"};
+        "motion", "mvec",    "motionvector", "motionvec", "forward", "backward",
+        "motionvectors"};
+    static const std::set<std::string> last_words = {"depth",  "normal",  "normals", "position",
+                                                     "vector", "vectors", "velocity"};
     if (layer.empty()) return false;
     const std::string word = lower_case(layer.substr(layer.rfind('.') + 1));
-    return words.contains(word) || word.find("crypto") != std::string::npos || find_role(word).has_value();
+    return words.contains(word) || last_words.contains(last_word(layer)) || word.find("crypto") != std::string::npos || find_role(word).has_value();
 }
 
 /// Of several layers, the one that a person would take for the picture.
@@ -69,6 +75,9 @@ std::optional<std::string> usual_layer(const std::vector<std::string>& layers) {
     for (const char* usual : kUsual)
         for (const std::string& layer : layers)
             if (lower_case(layer.substr(layer.rfind('.') + 1)) == usual) return layer;
+    for (const char* word : {"combined", "composite", "rgba", "beauty"})
+        for (const std::string& layer : layers)
+            if (last_word(layer) == word) return layer;
     if (layers.size() == 1) return layers.front();
     return std::nullopt;
 }
@@ -95,11 +104,10 @@ std::vector<std::string> color_layers(const ExrPart& part) {
         return layer.size() > 2 && mattes.contains(layer.substr(0, layer.size() - 2));
     };
     std::vector<std::string> layers;
+    std::set<std::string> seen;
     for (const ExrChannel& channel : part.channels) {
-        const std::size_t dot = channel.name.rfind('.');
-        const std::string layer = dot == std::string::npos ? "" : channel.name.substr(0, dot);
-        if (std::find(layers.begin(), layers.end(), layer) != layers.end() || holds_data(layer) ||
-            mattes.contains(layer) || is_rank(layer))
+        const std::string layer = split_channel_name(channel.name).layer;
+        if (!seen.insert(layer).second || holds_data(layer) || mattes.contains(layer) || is_rank(layer))
             continue;
         if (color_of_layer(part, layer)) layers.push_back(layer);
     }
@@ -117,11 +125,20 @@ std::optional<FoundChannels> find_common_color(const ExrPart& part, const std::s
     return FoundChannels{*color_of_layer(part, *chosen)};
 }
 
-std::optional<FoundChannels> find_common_depth(const ExrPart& part, const std::string& layer) {
-    for (const char* name : {"depth.Z", "Depth.Z", "Depth.V", "depth.V", "depth", "Depth", "Z"})
-        if (has_channel(part, joined_name(layer, name)) && !is_tristimulus(part, joined_name(layer, name)))
-            return FoundChannels{{joined_name(layer, name)}};
-    return std::nullopt;
+std::string find_common_alpha(const ExrPart& part, const std::string& red) {
+    const std::string layer = split_channel_name(red).layer;
+    if (const std::string own = component_of(part, layer, "a"); !own.empty()) return own;
+    // What stands beside another colour is the alpha of that one.
+    if (!layer.empty() && component_of(part, "", "r").empty())
+        if (const std::string bare = component_of(part, "", "a"); !bare.empty()) return bare;
+    const std::string canonical = canonical_name(layer);
+    for (const std::string& above : {canonical, canonical.substr(0, canonical.rfind('.') + 1)})
+        for (const char* component : {"a", "v", "y", "x", "z", "r"}) {
+            const std::string head = above.empty() || above.ends_with('.') ? above : above + ".";
+            for (const ExrChannel& channel : part.channels)
+                if (canonical_name(channel.name) == head + "alpha." + component) return channel.name;
+        }
+    return "";
 }
 
 bool has_channel(const ExrPart& part, std::string_view name) {

@@ -21,8 +21,9 @@ std::vector<std::string> color_layers(const ExrPart& part);
 /// there is none or several would do.
 std::optional<FoundChannels> find_common_color(const ExrPart& part, const std::string& layer);
 
-/// Depth under one of the usual names, below `layer`.
-std::optional<FoundChannels> find_common_depth(const ExrPart& part, const std::string& layer);
+/// The alpha that belongs to a colour whose first channel is `red`: of its layer, else the file's only one,
+/// under one of the usual names (A, alpha, alpha.V); "" where there is none.
+std::string find_common_alpha(const ExrPart& part, const std::string& red);
 
 /// Whether it has a channel of that full name.
 bool has_channel(const ExrPart& part, std::string_view name);

@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <charconv>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "framework/capture/common_names.h"
+#include "framework/capture/channel_names.h"
 #include "framework/capture/frame_file.h"
+#include "framework/core/atomic_file.h"
 #include "framework/core/diagnostics.h"
 #include "framework/core/error.h"
 #include "framework/core/text.h"
@@ -22,30 +25,48 @@ namespace {
 
 constexpr int kMaxRankPairs = 50;  // two ranks to a set of four channels, which two digits count
 
-/// Names in the manifest, {"object": "hex", ...}; a manifest that is damaged counts as none: it is only a
-/// help.
-std::vector<std::string> manifest_names(const std::optional<std::string>& manifest) {
-    std::vector<std::string> names;
+/// The text of the manifest beside the EXR file; nullopt where there is none. A name that leads out of the
+/// file's folder is not followed: files come from elsewhere.
+std::optional<std::string> manifest_beside(const FrameFile& file, const std::optional<std::string>& name) {
+    constexpr std::uintmax_t kMaxBytes = 64 << 20;
+    if (!name || name->empty() || std::filesystem::path(*name).filename() != *name) return std::nullopt;
+    const std::filesystem::path path = file.path().parent_path() / *name;
+    std::error_code failure;
+    if (!std::filesystem::is_regular_file(path, failure) ||
+        std::filesystem::file_size(path, failure) > kMaxBytes)
+        return std::nullopt;
+    std::string text = read_text_file(path, failure);
+    return failure ? std::nullopt : std::optional(std::move(text));
+}
+
+/// A manifest, {"object": "hex", ...}. One that is damaged counts as none: it is only a help. An id that is no
+/// id is the hash of the name.
+void read_manifest(const std::optional<std::string>& manifest, CryptomatteLayer& layer) {
     const auto parsed = nlohmann::json::parse(manifest.value_or("{}"), nullptr, false);
-    if (parsed.is_object())
-        for (const auto& [name, hash] : parsed.items()) names.push_back(name);
-    return names;
+    if (!parsed.is_object()) return;
+    for (const auto& [name, hash] : parsed.items()) {
+        const std::string text = hash.is_string() ? hash.get<std::string>() : "";
+        std::uint32_t id = 0;
+        const auto end = std::from_chars(text.data(), text.data() + text.size(), id, 16);
+        const bool is_id = end.ec == std::errc() && end.ptr == text.data() + text.size() && id != 0;
+        layer.object_names.push_back(name);
+        layer.object_ids.push_back(is_id ? id : cryptomatte_hash(name));
+    }
 }
 
 using RankChannels = std::array<std::string, 4>;
 
 /// Empty where the file has not all four.
 std::optional<RankChannels> rank_channels(const FrameFile& file, const std::string& prefix) {
-    constexpr std::array<std::array<const char*, 4>, 3> kComponents = {
-        {{".R", ".G", ".B", ".A"}, {".r", ".g", ".b", ".a"}, {".red", ".green", ".blue", ".alpha"}}};
-    for (const auto& components : kComponents) {
-        RankChannels channels;
-        for (std::size_t i = 0; i < channels.size(); ++i) channels[i] = prefix + components[i];
-        if (std::all_of(channels.begin(), channels.end(),
-                        [&](const std::string& name) { return has_channel(file.merged(), name); }))
-            return channels;
+    constexpr std::array kComponents = {".R", ".G", ".B", ".A"};
+    RankChannels channels;
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+        const std::string name = prefix + kComponents[i];
+        for (const ExrChannel& channel : file.merged().channels)
+            if (canonical_name(channel.name) == canonical_name(name)) channels[i] = channel.name;
+        if (channels[i].empty()) return std::nullopt;
     }
-    return std::nullopt;
+    return channels;
 }
 
 std::vector<RankChannels> channels_of_ranks(const FrameFile& file, const std::string& name) {
@@ -85,16 +106,31 @@ std::optional<std::string> unknown_object(const CryptomatteLayer& layer,
     return std::nullopt;
 }
 
+/// "; 'skin' is in the Cryptomatte ViewLayer.CryptoMaterial": where the file has the object after all.
+std::string object_elsewhere(const std::string& object, const FrameFile& file) {
+    for (const CryptomatteLayer& layer : find_cryptomattes(file))
+        if (std::ranges::find(layer.object_names, object) != layer.object_names.end())
+            return "; '" + object + "' is in the Cryptomatte " + layer.name +
+                   " (read that one: \"cryptomatte\": {\"layer\": " + json_string(layer.name) +
+                   "} in capture.json; one look names objects of one Cryptomatte)";
+    return "";
+}
+
 [[noreturn]] void refuse_unknown_object(std::span<const CryptomatteLayer> layers, const std::string& object,
                                         const FrameFile& file) {
     std::vector<std::string> known;
-    for (const CryptomatteLayer& layer : layers)
+    for (const CryptomatteLayer& layer : find_cryptomattes(file))
         known.insert(known.end(), layer.object_names.begin(), layer.object_names.end());
-    throw Error(ExitCode::capture, file.path().string() + ": the Cryptomatte" +
-                                       (layers.size() == 1 ? " " : "s ") + joined(names_of(layers), ", ") +
-                                       (layers.size() == 1 ? " has" : " have") + " no object '" + object +
-                                       "'" + did_you_mean(object, known) +
-                                       " (inspect --cryptomatte lists them)");
+    const std::string elsewhere = object_elsewhere(object, file);
+    // Where one of several has it, the first is the one that has not.
+    const auto missing = elsewhere.empty() ? layers : layers.first(1);
+    throw UnknownObject(file.path().string() + ": the Cryptomatte" + (missing.size() == 1 ? " " : "s ") +
+                            joined(names_of(missing), ", ") + (missing.size() == 1 ? " has" : " have") +
+                            " no object '" + object + "'" +
+                            (elsewhere.empty() ? did_you_mean(object, known) +
+                                                     " (inspect --cryptomatte lists them)"
+                                               : elsewhere),
+                        object);
 }
 
 bool says_object(const CryptomatteLayer& layer) {
@@ -118,7 +154,8 @@ std::vector<CryptomatteLayer> find_cryptomattes(const FrameFile& file) {
         layer.ranks = channels_of_ranks(file, layer.name);
         if (layer.ranks.empty()) continue;
         const std::string base = attribute.substr(0, attribute.size() - kName.size());
-        layer.object_names = manifest_names(metadata.text(base + "/manifest"));
+        const auto manifest = metadata.text(base + "/manifest");
+        read_manifest(manifest ? manifest : manifest_beside(file, metadata.text(base + "/manif_file")), layer);
         layers.push_back(std::move(layer));
     }
     return layers;
@@ -168,6 +205,13 @@ std::uint32_t cryptomatte_hash(const std::string& object) {
     return exponent == 0 || exponent == 0xff ? hash ^ 1u << 23 : hash;
 }
 
+std::uint32_t id_of_object(const CryptomatteLayer& layer, const std::string& object) {
+    const auto found = std::ranges::find(layer.object_names, object);
+    return found == layer.object_names.end()
+               ? cryptomatte_hash(object)
+               : layer.object_ids[std::size_t(found - layer.object_names.begin())];
+}
+
 std::vector<IdRange> id_ranges(std::span<const TableKey> keys) {
     std::vector<IdRange> all, joined;
     for (const TableKey& key : keys) {
@@ -194,7 +238,7 @@ Image cryptomatte_mask(const FrameFile& file, const CryptomatteLayer& layer,
     if (const auto unknown = unknown_object(layer, objects))
         refuse_unknown_object(std::span(&layer, 1), *unknown, file);
     std::vector<std::uint32_t> wanted;
-    for (const std::string& object : objects) wanted.push_back(cryptomatte_hash(object));
+    for (const std::string& object : objects) wanted.push_back(id_of_object(layer, object));
     Image mask(grid.width(), grid.height(), 1);
     for (const RankChannels& channels : layer.ranks) {
         const Image ranks = read_ranks(file, channels, grid);
@@ -210,7 +254,7 @@ Image cryptomatte_mask(const FrameFile& file, const CryptomatteLayer& layer,
 std::vector<ObjectCoverage> coverage_of_objects(const FrameFile& file, const CryptomatteLayer& layer,
                                                 const Window& grid) {
     std::map<std::uint32_t, ObjectCoverage> by_id;
-    for (const std::string& name : layer.object_names) by_id[cryptomatte_hash(name)] = {name, 0};
+    for (const std::string& name : layer.object_names) by_id[id_of_object(layer, name)] = {name, 0};
     for (const RankChannels& channels : layer.ranks) {
         const Image ranks = read_ranks(file, channels, grid);
         for (std::size_t pixel = 0; pixel < ranks.floats().size() / 4; ++pixel)
@@ -227,11 +271,19 @@ std::vector<ObjectCoverage> coverage_of_objects(const FrameFile& file, const Cry
     return objects;
 }
 
-Image cryptomatte_ids(const FrameFile& file, const CryptomatteLayer& layer, const Window& grid) {
+Image cryptomatte_ids(const FrameFile& file, const CryptomatteLayer& layer, const Window& grid,
+                      std::span<const std::string> named) {
     const Image ranks = read_ranks(file, layer.ranks.front(), grid);
+    std::map<std::uint32_t, std::uint32_t> hashes;
+    for (const std::string& object : named)
+        if (const std::uint32_t id = id_of_object(layer, object); id != cryptomatte_hash(object))
+            hashes[id] = cryptomatte_hash(object);
     Image ids(grid.width(), grid.height(), 1, ComponentType::uint32);
     for (std::size_t pixel = 0; pixel < ids.uints().size(); ++pixel)
         ids.uints()[pixel] = id_bits(ranks, pixel, 0);
+    if (hashes.empty()) return ids;
+    for (std::uint32_t& id : ids.uints())
+        if (const auto hash = hashes.find(id); hash != hashes.end()) id = hash->second;
     return ids;
 }
 

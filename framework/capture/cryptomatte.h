@@ -6,8 +6,10 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "framework/core/error.h"
 #include "framework/core/object_keys.h"
 #include "framework/image/image.h"
 
@@ -22,9 +24,22 @@ struct CryptomatteLayer {
     /// full (`red`).
     std::vector<std::array<std::string, 4>> ranks;
     std::vector<std::string> object_names;  ///< of its manifest; empty where the file has none
+    std::vector<std::uint32_t> object_ids;  ///< of each name: what the manifest says, else its hash
 };
 
-/// Those whose channels are there, by their names' order in the header.
+/// Objects that a look or a capture.json names and that the file's Cryptomattes do not have.
+class UnknownObject : public Error {
+public:
+    UnknownObject(const std::string& message, std::string object)
+        : Error(ExitCode::capture, message), object_(std::move(object)) {}
+    const std::string& object() const { return object_; }  ///< the first of them
+
+private:
+    std::string object_;
+};
+
+/// Those whose channels are there, by their names' order in the header. A manifest may lie in a file of its own
+/// in the folder of the EXR file (manif_file).
 std::vector<CryptomatteLayer> find_cryptomattes(const FrameFile& file);
 /// What the header names, whether the channels are there or not.
 std::vector<std::string> declared_cryptomattes(const FrameFile& file);
@@ -41,6 +56,9 @@ const CryptomatteLayer& cryptomatte_with(const std::vector<CryptomatteLayer>& la
 /// The 32-bit pattern under which an object's name is stored: MurmurHash3_32 with seed 0, its exponent
 /// changed where it would read as zero, denormal, infinite or NaN.
 std::uint32_t cryptomatte_hash(const std::string& object);
+
+/// The id that stands for an object's name in the pixels of the layer.
+std::uint32_t id_of_object(const CryptomatteLayer& layer, const std::string& object);
 
 /// Ids first..last.
 struct IdRange {
@@ -68,7 +86,9 @@ struct ObjectCoverage {
 std::vector<ObjectCoverage> coverage_of_objects(const FrameFile& file, const CryptomatteLayer& layer,
                                                 const Window& grid);
 
-/// The id of rank 0, the object that covers most of the pixel; 0 for none.
-Image cryptomatte_ids(const FrameFile& file, const CryptomatteLayer& layer, const Window& grid);
+/// The id of rank 0, the object that covers most of the pixel; 0 for none. An object of `named` has the hash
+/// of its name, whichever id the manifest gives it.
+Image cryptomatte_ids(const FrameFile& file, const CryptomatteLayer& layer, const Window& grid,
+                      std::span<const std::string> named = {});
 
 }  // namespace aftershade

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "framework/capture/bare_channels.h"
+#include "framework/capture/channel_names.h"
 #include "framework/capture/common_names.h"
 #include "framework/core/error.h"
 #include "framework/core/text.h"
@@ -22,10 +24,18 @@ std::vector<std::string> split_alternatives(const std::string& text) {
     return parts;
 }
 
+/// How alike a channel's name and the one looked for are.
+enum class Spelling { exact, any_case, canonical };
+
 /// The channel that goes by the name; "" where none does.
-std::string channel_called(const ExrPart& part, const std::string& name, bool in_any_case) {
+std::string channel_called(const ExrPart& part, const std::string& name, Spelling spelling) {
+    const std::string canonical = canonical_name(name);
     const auto is_it = [&](const std::string& one) {
-        return in_any_case ? lower_case(one) == lower_case(name) : one == name || matches_pattern(one, name);
+        switch (spelling) {
+            case Spelling::exact: return one == name || matches_pattern(one, name);
+            case Spelling::any_case: return lower_case(one) == lower_case(name);
+            default: return !canonical.empty() && canonical_name(one) == canonical;
+        }
     };
     for (const ExrChannel& channel : part.channels)
         if (is_it(channel.name)) return channel.name;
@@ -42,27 +52,37 @@ std::string with_layer(const std::string& pattern, const std::string& layer) {
 
 /// The first of "a|b|c" that the part has; "" where it has none.
 std::string first_present(const std::string& alternatives, const std::string& layer, const ExrPart& part,
-                          bool in_any_case) {
+                          Spelling spelling) {
     for (const std::string& pattern : split_alternatives(alternatives))
-        if (const std::string name = channel_called(part, with_layer(pattern, layer), in_any_case);
+        if (const std::string name = channel_called(part, with_layer(pattern, layer), spelling);
             !name.empty())
             return name;
     return "";
 }
 
 std::optional<FoundChannels> find_in(const RoleDecoding& decoding, const std::string& layer,
-                                     const ExrPart& part, bool in_any_case) {
+                                     const ExrPart& part, Spelling spelling) {
     FoundChannels found;
     for (const auto& names : decoding.layers) {
         auto& components = found.emplace_back();
         for (std::string pattern : names) {
             const bool optional = pattern.ends_with('?');
             if (optional) pattern.pop_back();
-            components.push_back(first_present(pattern, layer, part, in_any_case));
+            components.push_back(first_present(pattern, layer, part, spelling));
             if (components.back().empty() && !optional) return std::nullopt;
         }
     }
     return found;
+}
+
+/// The layer of a channel that ends in `ending`, ".Combined.R", or in another spelling of it; "" for others.
+std::string layer_before(const std::string& channel, const std::string& ending) {
+    const auto last_component = [](const std::string& of) { return of.size() - (of.find_last_of("._- ") + 1); };
+    const std::string name = canonical_name(channel), wanted = "." + canonical_name(ending);
+    if (name.size() <= wanted.size() || !name.ends_with(wanted)) return "";
+    // The component alone is of another length.
+    const std::size_t length = wanted.size() - last_component(wanted) + last_component(channel);
+    return channel.substr(0, channel.size() - length);
 }
 
 /// What we wrote without the producer's own channels.
@@ -86,8 +106,9 @@ void leave_out_rewriters(std::vector<ProfileChoice>& choices) {
 
 std::optional<FoundChannels> find_channels(const RoleDecoding& decoding, const std::string& layer,
                                            const ExrPart& part) {
-    const auto found = find_in(decoding, layer, part, false);
-    return found ? found : find_in(decoding, layer, part, true);
+    for (const Spelling spelling : {Spelling::exact, Spelling::any_case, Spelling::canonical})
+        if (auto found = find_in(decoding, layer, part, spelling)) return found;
+    return std::nullopt;
 }
 
 std::vector<std::string> find_layers(const Profile& profile, const ExrPart& part) {
@@ -96,12 +117,10 @@ std::vector<std::string> find_layers(const Profile& profile, const ExrPart& part
     if (color == profile.roles.end() || color->second.layers.empty()) return layers;
     for (const std::string& pattern : split_alternatives(color->second.layers[0][0])) {
         if (!pattern.starts_with(kLayer)) continue;
-        const std::string ending = pattern.substr(kLayer.size());
-        for (const ExrChannel& channel : part.channels) {
-            if (channel.name.size() <= ending.size() || !channel.name.ends_with(ending)) continue;
-            const std::string layer = channel.name.substr(0, channel.name.size() - ending.size());
-            if (std::find(layers.begin(), layers.end(), layer) == layers.end()) layers.push_back(layer);
-        }
+        for (const ExrChannel& channel : part.channels)
+            if (const std::string layer = layer_before(channel.name, pattern.substr(kLayer.size()));
+                !layer.empty() && std::find(layers.begin(), layers.end(), layer) == layers.end())
+                layers.push_back(layer);
     }
     return layers;
 }
@@ -136,10 +155,23 @@ std::string attribute_called(const ExrMetadata& metadata, const std::string& pat
     return "";
 }
 
+/// One that names its layers, where another program has changed the marks between the words of its names.
+const Profile* profile_of_rewritten(const std::vector<Profile>& profiles, const ExrPart& part) {
+    for (const Profile& profile : profiles) {
+        const auto names_layer = [](const std::string& name) { return name.starts_with(kLayer); };
+        RoleDecoding wanted;
+        wanted.layers = {profile.detect_channels};
+        if (!profile.detect_channels.empty() && std::ranges::all_of(profile.detect_channels, names_layer) &&
+            find_in(wanted, find_layer(profile, part), part, Spelling::canonical))
+            return &profile;
+    }
+    return nullptr;
+}
+
 }  // namespace
 
 ProfileChoice detect_profile(const std::vector<Profile>& profiles, const ExrPart& part,
-                             const std::string& path) {
+                             const std::string& path, bool has_declared_color) {
     const Profile* const native = profile_called(profiles, "native");
     if (native && has_native_names(part)) return {native, "attribute aftershade/channels"};
     std::vector<ProfileChoice> by_attribute, by_channels;
@@ -153,7 +185,7 @@ ProfileChoice detect_profile(const std::vector<Profile>& profiles, const ExrPart
         }
         RoleDecoding wanted;
         wanted.layers = {profile.detect_channels};
-        const auto found = find_in(wanted, find_layer(profile, part), part, false);
+        const auto found = find_in(wanted, find_layer(profile, part), part, Spelling::exact);
         if (!found || profile.detect_channels.size() < most_channels) continue;
         // A profile that asks for more of what is there says more of where the file comes from.
         if (profile.detect_channels.size() > most_channels) by_channels.clear();
@@ -164,12 +196,18 @@ ProfileChoice detect_profile(const std::vector<Profile>& profiles, const ExrPart
     // An attribute is one producer's own mark; channel names are shared by several.
     const auto& fitting = by_attribute.empty() ? by_channels : by_attribute;
     if (fitting.size() == 1) return fitting.front();
+    if (native && has_declared_color) return {native, "capture.json names the channels of color"};
     std::vector<std::string> ids;
     for (const ProfileChoice& choice : fitting) ids.push_back(choice.profile->id);
+    if (const Profile* const other = fitting.empty() ? profile_of_rewritten(profiles, part) : nullptr)
+        return {other, "its names in another spelling"};
     if (fitting.empty() && native && find_common_color(part, ""))
         return {native, "no producer's mark, but a plain colour"};
     if (fitting.empty())
-        throw Error(ExitCode::capture, path + ": no profile fits its channels (name one with --profile)");
+        throw Error(ExitCode::capture,
+                    path + ": no profile fits its channels, " + printable(channel_list(part)) +
+                        " (name one with --profile, or name the channels of each role as \"channels\": "
+                        "{\"color\": {\"channels\": [\"NAME\", \"NAME\", \"NAME\"]}} in capture.json)");
     throw Error(ExitCode::usage, path + ": the profiles " + list_of_names(ids, "and") +
                                      " fit alike (name one with --profile, or as 'profile' in capture.json)");
 }

@@ -107,7 +107,7 @@ std::optional<Profile> parse_profile(const Node& node, Diagnostics& diagnostics)
 std::map<std::string, RoleDecoding> read_decodings(const Node& node);
 
 /// The stored channels that a role's decoding finds in a part. nullopt where a required one is missing. Names
-/// are first taken as they are, then in any case.
+/// are first taken as they are, then in any case, then by canonical_name().
 std::optional<FoundChannels> find_channels(const RoleDecoding& decoding, const std::string& layer,
                                            const ExrPart& part);
 
@@ -125,9 +125,9 @@ struct ProfileChoice {
 /// The profile that fits a part's header: by attribute first, else the one that names the most channels, else
 /// `native` where the file has a plain colour. What we wrote under native names is `native`. Throws
 /// Error(ExitCode::capture) where none does and Error(ExitCode::usage) where several do alike, naming the
-/// remedy.
+/// remedy; with `has_declared_color`, where capture.json names the colour's channels, it is `native` then.
 ProfileChoice detect_profile(const std::vector<Profile>& profiles, const ExrPart& part,
-                             const std::string& path);
+                             const std::string& path, bool has_declared_color = false);
 
 /// Whether `name` is `pattern` with each "*" in it replaced by some text.
 bool matches_pattern(const std::string& name, const std::string& pattern);

@@ -131,6 +131,14 @@ ExrWriteOptions exr_write_options(const OutputOptions& options, const CaptureHea
     return write;
 }
 
+namespace {
+
+std::string roles_there(const std::vector<std::string>& roles) {
+    return roles.empty() ? "" : "; the capture has " + list_of_names(roles, "and");
+}
+
+}  // namespace
+
 std::string write_exr_output(const std::filesystem::path& path, const OutputOptions& options,
                              const FrameResult& result, const Capture& capture, const CaptureReader& reader) {
     ExrContent content;
@@ -141,9 +149,9 @@ std::string write_exr_output(const std::filesystem::path& path, const OutputOpti
         if (options.keep_channels && is_kept) continue;
         const Image* image = find_image(name, result, capture);
         if (!image)
-            throw Error(ExitCode::capture,
-                        capture.header.path.string() + ": the role '" + name +
-                            "', requested in the output, is in neither the capture nor the look");
+            throw Error(ExitCode::capture, capture.header.path.string() + ": the role '" + name +
+                                               "', requested in the output, is in neither the capture nor the look" +
+                                               roles_there(capture.header.roles));
         drop_channels(content, find_role(name)->native_channels);
         add_role(content, *find_role(name), *image, options.color_type);
     }

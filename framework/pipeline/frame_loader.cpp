@@ -91,7 +91,12 @@ bool FrameLoader::begins_shot(std::size_t index) const {
 Capture FrameLoader::read(int file) const {
     const BusyTime busy(busy_ms_);
     const TraceScope traced(run_.trace, "decode", "file " + std::to_string(file));
-    Capture capture = reader_.read(file, roles_);
+    Capture capture;
+    try {
+        capture = reader_.read(file, roles_);
+    } catch (const UnknownObject& error) {
+        throw objects_.placed(error);
+    }
     require_capture_roles(pipeline_, capture.header, &reader_);
     objects_.look_at(capture);
     {

@@ -99,6 +99,13 @@ void ObjectMatches::look_at(const Capture& capture) {
     }
 }
 
+Error ObjectMatches::placed(const UnknownObject& error) const {
+    for (const Entry& entry : entries_)
+        if (std::ranges::find(entry.keys, error.object(), &TableKey::name) != entry.keys.end())
+            return Error(error.exit_code(), entry.user + ": " + error.what());
+    return error;
+}
+
 std::vector<ObjectSighting> ObjectMatches::take_sightings() {
     const std::lock_guard lock(mutex_);
     return std::exchange(sightings_, {});

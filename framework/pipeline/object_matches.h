@@ -10,6 +10,7 @@
 
 #include "framework/capture/capture.h"
 #include "framework/capture/cryptomatte.h"
+#include "framework/core/error.h"
 #include "framework/core/status.h"
 #include "framework/pipeline/pipeline.h"
 
@@ -24,6 +25,8 @@ public:
 
     /// Call with whole frames, before they are cropped.
     void look_at(const Capture& capture);
+    /// The error with the place that names the object, before it.
+    Error placed(const UnknownObject& error) const;
     /// What look_at() found since the last call, for a process that gathers it from several.
     std::vector<ObjectSighting> take_sightings();
     void add(const ObjectSighting& sighting);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "framework/capture/channel_names.h"
 #include "framework/core/error.h"
 #include "framework/core/param_type.h"
 #include "framework/core/text.h"
@@ -215,6 +216,12 @@ std::string remedies(const std::string& role, const CaptureHeader& header, const
             text += "--layer " + list_of_names(found.layers) +
                     (found.layers.size() == 1 ? " has it; " : " have it; ");
     }
+    if (kind_of_role(role) == RoleKind::motion)
+        if (const auto motion = channels_of_motion(header.channels); !motion.empty())
+            text += list_of_names(motion, "and") +
+                    (motion.size() == 1 ? " looks" : " look") +
+                    " like motion, whose unit, direction and sign no name says, so it is read only as "
+                    "declared; ";
     return text + "--role " + role + "=FILE reads it from a file of its own; \"channels\": {\"" + role +
            "\": {\"channels\": [...]}} in capture.json names its channels";
 }

@@ -246,6 +246,104 @@ TEST(Cryptomatte, KnowsTheObjectsOfItsManifest) {
     EXPECT_NE(message.find("did you mean 'Suzanne'?"), std::string::npos) << message;
 }
 
+/// A matte of one pixel that the first object covers, with a manifest in its header or beside it.
+std::filesystem::path write_manifest(const TemporaryFolder& folder, const std::string& key,
+                                     const std::string& manifest, std::uint32_t id,
+                                     const std::string& name = "uCryptoObject",
+                                     const std::string& channel_name = "uCryptoObject") {
+    Image image(1, 1, 4);
+    image.at(0, 0, 0) = std::bit_cast<float>(id);
+    image.at(0, 0, 1) = 0.5f;
+    const Image color(1, 1, 3);
+    std::vector<ExrOutputChannel> channels;
+    for (int c = 0; c < 3; ++c) channels.push_back({std::string(1, "RGB"[c]), PixelType::half, &color, c});
+    for (int c = 0; c < 4; ++c)
+        channels.push_back({channel_name + "00." + "RGBA"[c], PixelType::float32, &image, c});
+    ExrWriteOptions options;
+    options.data_window = options.display_window = {0, 0, 0, 0};
+    options.attributes["cryptomatte/1234567/name"] = name;
+    options.attributes["cryptomatte/1234567/" + key] = manifest;
+    write_exr(folder / "matte.exr", channels, options);
+    return folder / "matte.exr";
+}
+
+std::string coverage_of(const std::string& object) {
+    const std::vector<TableKey> keys = {{0, 0, object}};
+    return coverage_role(keys);
+}
+
+Capture read_object(const std::filesystem::path& path, const std::string& object) {
+    Sequence sequence;
+    sequence.object_names = {object};
+    return reader_of(sequence, path).read(
+        1, std::vector<std::string>{"object_id", coverage_of(object)});
+}
+
+TEST(CryptomatteManifest, MayLieBesideTheFile) {
+    const TemporaryFolder folder;
+    write_text(folder / "shot.json", R"({"hero": "01020304", "sword": "0a0b0c0d"})");
+    const auto path = write_manifest(folder, "manif_file", "shot.json", 0x01020304);
+    const std::string message = capture_error([&] { read_object(path, "heroo"); });
+    EXPECT_NE(message.find("did you mean 'hero'?"), std::string::npos) << message;
+}
+
+TEST(CryptomatteManifest, OutsideTheFolderOfTheFileIsNotRead) {
+    const TemporaryFolder folder;
+    std::filesystem::create_directory(folder / "in");
+    write_text(folder / "shot.json", R"({"hero": "01020304"})");
+    const auto path = write_manifest(folder, "manif_file", "../shot.json", 0x01020304);
+    std::filesystem::rename(path, folder / "in" / "matte.exr");
+    Sequence sequence;
+    EXPECT_EQ(reader_of(sequence, folder / "in" / "matte.exr").cryptomattes(1).at(0).object_names,
+              std::vector<std::string>{});
+}
+
+// Renderers that cut or mangle names hash what they had before.
+TEST(CryptomatteManifest, SaysTheIdsOfItsObjects) {
+    const TemporaryFolder folder;
+    ASSERT_NE(cryptomatte_hash("hero"), 0x01020304u);
+    const auto path = write_manifest(folder, "manifest", R"({"hero": "01020304"})", 0x01020304);
+    const Capture capture = read_object(path, "hero");
+    EXPECT_FLOAT_EQ(capture.images.at(coverage_of("hero")).at(0, 0, 0), 0.5f);
+    EXPECT_EQ(capture.images.at("object_id").uint_at(0, 0, 0), cryptomatte_hash("hero"));
+    Sequence sequence;
+    const auto covered = reader_of(sequence, path).cryptomatte_coverage(1, "");
+    ASSERT_EQ(covered.size(), 1u);
+    EXPECT_EQ(covered[0].name, "hero");
+}
+
+// As Nuke writes Blender's again, whose attribute keeps the name.
+TEST(Cryptomatte, IsFoundWhereMarksInTheNamesOfItsChannelsWereChanged) {
+    const TemporaryFolder folder;
+    const auto path = write_manifest(folder, "manifest", R"({"hero": "01020304"})", 0x01020304,
+                                     "View Layer.CryptoObject", "View_Layer_CryptoObject");
+    EXPECT_FLOAT_EQ(read_object(path, "hero").images.at(coverage_of("hero")).at(0, 0, 0), 0.5f);
+}
+
+TEST(Cryptomatte, OfAnotherKindThatHasTheNameIsNamed) {
+    const TemporaryFolder folder;
+    const Image image(1, 1, 4);
+    std::vector<ExrOutputChannel> channels;
+    for (const std::string head : {"", "CryptoObject00.", "CryptoMaterial00."})
+        for (int c = 0; c < 4; ++c)
+            channels.push_back({head + "RGBA"[c], PixelType::float32, &image, c});
+    ExrWriteOptions options;
+    options.data_window = options.display_window = {0, 0, 0, 0};
+    options.attributes["cryptomatte/1/name"] = std::string("CryptoMaterial");
+    options.attributes["cryptomatte/1/manifest"] = std::string(R"({"skin": "01020304"})");
+    options.attributes["cryptomatte/2/name"] = std::string("CryptoObject");
+    options.attributes["cryptomatte/2/manifest"] = std::string(R"({"head": "01020305"})");
+    write_exr(folder / "matte.exr", channels, options);
+    Sequence sequence;
+    sequence.cryptomatte = CryptomatteChoice{"CryptoObject", {"skin"}};
+    const CaptureReader reader = reader_of(sequence, folder / "matte.exr");
+    const std::string message = capture_error([&] { reader.read(1, std::vector<std::string>{"mask"}); });
+    EXPECT_NE(message.find("CryptoObject has no object 'skin'; 'skin' is in the Cryptomatte CryptoMaterial"),
+              std::string::npos)
+        << message;
+    EXPECT_EQ(message.find("did you mean"), std::string::npos) << message;
+}
+
 TEST(Cryptomatte, RefusesIdsThatStorageHasDestroyed) {
     const TemporaryFolder folder;
     EXPECT_NE(capture_error([&] {
