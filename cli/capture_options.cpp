@@ -68,7 +68,7 @@ void add_capture_options(CLI::App& app, CaptureOptions& options, const std::stri
                    "(default: as the capture declares)")
         ->check(CLI::IsMember(alpha_names()));
     app.add_option("--color-space", options.color_space,
-                   "Primaries of the stored colours: auto, rec709, acescg, ap0 or rec2020");
+                   "Primaries of the stored colours: auto, rec709, acescg, ap0, rec2020 or p3d65");
     app.add_option("--max-size", options.limits.max_side_px,
                    "Refuse images with a side longer than this, in px")
         ->check(CLI::Range(1, 65536))

@@ -137,9 +137,11 @@ std::string role_lines(const Inspection& inspection) {
 }
 
 std::string layer_lines(const CaptureHeader& capture) {
-    std::string text;
+    std::string text = fmt::format("color space: {}\n", printable(capture.stored_colors.text()));
     if (!capture.layer.empty()) text += fmt::format("layer: {}\n", printable(capture.layer));
     if (capture.layer_count > 1) text += fmt::format("layers, front to back: {}\n", capture.layer_count);
+    for (const std::string& warning : capture.warnings)
+        text += fmt::format("warning: {}\n", printable(warning));
     for (const std::string& note : capture.notes) text += fmt::format("note: {}\n", printable(note));
     return text;
 }
@@ -162,6 +164,12 @@ std::string cryptomatte_lines(const Inspection& inspection) {
         text += fmt::format("  {:>8.4f} %  {}\n", percent_of(object, inspection.capture->data_window),
                             printable(object.name));
     return text;
+}
+
+Json color_space_json(const Inspection& inspection) {
+    if (!inspection.capture) return nullptr;
+    const StoredColors& colors = inspection.capture->stored_colors;
+    return {{"name", colors.name}, {"known_by", colors.is_known() ? Json(colors.source) : Json(nullptr)}};
 }
 
 Json cryptomattes_json(const Inspection& inspection) {
@@ -321,6 +329,8 @@ std::string json_of(const Inspection& inspection) {
     json["layer"] = inspection.capture ? inspection.capture->layer : "";
     json["layers"] = inspection.capture ? inspection.capture->layers : std::vector<std::string>();
     json["layer_count"] = inspection.capture ? inspection.capture->layer_count : 0;
+    json["color_space"] = color_space_json(inspection);
+    json["warnings"] = inspection.capture ? inspection.capture->warnings : std::vector<std::string>();
     json["notes"] = inspection.capture ? inspection.capture->notes : std::vector<std::string>();
     json["roles"] = Json::object();
     if (inspection.capture)

@@ -52,6 +52,9 @@ ExitCode explain(const Sequence& sequence, const CaptureReader& reader, const Pi
         reader.read(sequence.file_number(sequence.frames.front()), pipeline.capture_roles());
     FrameInputs frame;
     frame.capture = &capture;
+    std::cout << printable_lines("color space: " + capture.header.stored_colors.text() + "\n");
+    for (const std::string& warning : capture.header.warnings)
+        std::cout << "warning: " << printable_lines(warning) << "\n";
     std::cout << printable_lines(explain_params(pipeline, frame));
     return ExitCode::done;
 }

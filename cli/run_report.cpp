@@ -119,6 +119,8 @@ void RunReporter::tell_conventions(const Capture& capture) {
     profile_ = profile;
     for (const std::string& note : header.notes)
         if (notes_.insert(note).second) say("note", path + ": note: " + printable(note));
+    for (const std::string& warning : header.warnings)
+        if (notes_.insert(warning).second) warn(path + ": " + warning);
     // Figures differ from frame to frame; the first stands for all.
     if (capture.deep && notes_.insert("deep").second)
         say("note", path + ": note: " + capture.deep->text(capture.deep_layers));

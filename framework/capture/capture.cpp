@@ -212,15 +212,7 @@ CaptureReader::OpenFrame CaptureReader::open(int frame, int deep_layers) const {
     header.data_window = color == open.roles.end()
                              ? part.data_window
                              : grid_of(*color->second.file, color->second.channels, color->second.luminance);
-    const std::string& space =
-        sequence_.color_space == "auto" ? open.profile->color_space : sequence_.color_space;
-    open.stored_primaries = space == "auto" ? stored_primaries(part.metadata) : *color_space_primaries(space);
-    const bool is_called_xyz =
-        color != open.roles.end() && !color->second.channels.empty() && color->second.channels[0][0] == "X";
-    if (is_called_xyz && space == "auto") open.stored_primaries = kXyz;
-    open.color_is_tristimulus = is_called_xyz && is_xyz(open.stored_primaries);
-    // XYZ has no primaries that light could have: effects see it as Rec. 709.
-    header.primaries = is_xyz(open.stored_primaries) ? kRec709 : open.stored_primaries;
+    find_colors(open);
     return open;
 }
 
@@ -299,10 +291,8 @@ Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, c
                      {file.path().string(), header.data_window, header.display_window, header.camera, nullptr,
                       exr_threads()});
     if (role.kind == RoleKind::motion) read_motion(open, name, image, color, capture);
-    // Beside tristimulus values, what is called R, G and B has primaries that no attribute names.
-    const bool has_primaries = !open.color_is_tristimulus || name == kColorRole;
-    if (role.kind == RoleKind::light && has_primaries && open.stored_primaries != header.primaries)
-        convert_colors(image, conversion_matrix(open.stored_primaries, header.primaries));
+    if (role.kind == RoleKind::light)
+        light_of_stored(image, source.colors, header.primaries, file.path().string());
     return image;
 }
 

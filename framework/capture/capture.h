@@ -15,6 +15,7 @@
 #include "framework/capture/light.h"
 #include "framework/capture/profile.h"
 #include "framework/capture/sequence.h"
+#include "framework/capture/stored_colors.h"
 #include "framework/file/exr_file.h"
 #include "framework/image/camera.h"
 #include "framework/image/color_space.h"
@@ -37,6 +38,7 @@ struct CaptureHeader {
     std::string layer;                ///< that the roles are taken from; "" where the file has none
     std::vector<std::string> layers;  ///< to choose from, by the profile
     std::vector<std::string> notes;   ///< on what was chosen for the user, in whole sentences
+    std::vector<std::string> warnings;  ///< on what may be wrong in the file, in whole sentences
     Window data_window;               ///< colour's: the working grid
     Window display_window;
     float pixel_aspect = 1;
@@ -48,6 +50,7 @@ struct CaptureHeader {
     std::set<std::string> derived_roles;
     std::vector<std::string> channels;   ///< of the file, in this view
     Chromaticities primaries = kRec709;  ///< of the colours as they are in memory
+    StoredColors stored_colors;          ///< of the colours as they are in the file
     Camera camera;                       ///< capture.json's, completed by the file's metadata
     std::vector<CaptureLight> lights;    ///< capture.json's, else those of the file's metadata
     ExrMetadata metadata;
@@ -142,6 +145,7 @@ private:
     Image read_coverage(const OpenFrame& open, const std::string& role) const;
     void require_names(const OpenFrame& open, const Image& ids, std::span<const std::string> names) const;
     void add_role(OpenFrame& open, const std::string& role, const RoleDecoding& decoding) const;
+    void find_colors(OpenFrame& open) const;
     /// Unpacks what read_role will need of these roles.
     void prefetch(const OpenFrame& open, std::span<const std::string> roles) const;
     Image read_ids(const RoleSource& source, const Window& grid, int layer = -1) const;

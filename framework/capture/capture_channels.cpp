@@ -31,8 +31,7 @@ std::map<std::string, Image> CaptureReader::encode_role(const OpenFrame& open, c
         color = read_role(open, kColorRole, nullptr, unused);
     const DecodeContext context{header.path.string(), header.data_window, header.display_window,
                                 header.camera, color.empty() ? nullptr : &color};
-    if (kind_of_role(name) == RoleKind::light && open.stored_primaries != header.primaries)
-        convert_colors(image, conversion_matrix(header.primaries, open.stored_primaries));
+    if (kind_of_role(name) == RoleKind::light) stored_of_light(image, source.colors, header.primaries);
     const bool ids_as_uint = source.file->type_of(source.channels[0][0]) == PixelType::uint32;
     return aftershade::encode_role(name, std::move(image), source.decoding, source.channels, ids_as_uint,
                                    context);

@@ -142,7 +142,8 @@ Block make_capture_block() {
              optional("layer", text(),
                       "Layer of a file with several, such as Blender's view layers; default: the first."),
              optional("color_space", color_space_form(),
-                      "Primaries of the stored colours; auto: the profile's, else the file's chromaticities.",
+                      "Primaries of the stored colours, which are light; auto: the profile's, else what the "
+                      "file says.",
                       "\"auto\""),
              optional("alpha", grammar::choice(alpha_names()),
                       "Alpha of color; opaque: ignore the stored alpha and read 1.", R"("keep")"),

@@ -18,6 +18,7 @@ struct CaptureReader::RoleSource {
     FoundChannels channels;  // empty for luminance and Cryptomatte
     std::string luminance;   // the Y channel that stands for color
     bool from_cryptomatte = false;
+    StoredColors colors;     // of light
 };
 
 struct CaptureReader::OpenFrame {
@@ -26,8 +27,6 @@ struct CaptureReader::OpenFrame {
     const Profile* profile = nullptr;
     bool is_foreign_layer = false;  // the user chose a layer that the profile does not list
     std::map<std::string, RoleSource> roles;
-    Chromaticities stored_primaries{};
-    bool color_is_tristimulus = false;  // its channels are X, Y and Z
     /// object_id as the file stores it, where a Cryptomatte has taken its place.
     std::optional<RoleSource> ids_by_number;
     int layer = -1;  ///< of deep parts, that roles are read of; -1: the whole picture

@@ -53,6 +53,7 @@ CaptureHeader header_of(const std::vector<CaptureHeader>& layers) {
     header.layer_count = int(layers.size());
     header.layer_roles.clear();
     header.notes.clear();
+    header.warnings.clear();
     for (std::size_t i = 0; i < layers.size(); ++i) {
         require_color(layers[i], i);
         require_same_picture(layers[i], layers.front(), i);
@@ -64,6 +65,8 @@ CaptureHeader header_of(const std::vector<CaptureHeader>& layers) {
             header.role_channels[role] = layers[i].role_channels.at(role);
         }
         for (const std::string& note : layers[i].notes) header.notes.push_back(layer_text(i) + ": " + note);
+        for (const std::string& warning : layers[i].warnings)
+            header.warnings.push_back(layer_text(i) + ": " + warning);
         // No channel of one file is that of the whole picture.
         header.derived_roles.insert(layers[i].roles.begin(), layers[i].roles.end());
     }

@@ -81,6 +81,8 @@ ExrWriteOptions write_options(const CaptureHeader& header, const Chromaticities&
     write.attributes = options.attributes;
     add_attributes(header.camera, header.lights, write.attributes);
     write.attributes["chromaticities"] = std::vector<float>(primaries.begin(), primaries.end());
+    if (const std::string id = color_interop_id({primaries, ColorEncoding::Curve::linear, 1}); !id.empty())
+        write.attributes["colorInteropID"] = id;
     if (options.fps > 0) write.attributes["framesPerSecond"] = float(options.fps);
     return write;
 }

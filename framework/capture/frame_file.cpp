@@ -168,6 +168,10 @@ const std::string& FrameFile::compression_of(const std::string& channel) const {
     return part_of(channel).compression;
 }
 
+const ExrMetadata& FrameFile::metadata_of(const std::string& channel) const {
+    return part_of(channel).metadata;
+}
+
 PixelType FrameFile::type_of(const std::string& channel) const {
     for (const ExrChannel& candidate : merged_.channels)
         if (candidate.name == channel) return candidate.type;

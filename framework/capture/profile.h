@@ -88,7 +88,7 @@ struct Profile {
     std::vector<std::string> detect_channels;  ///< ... or all of these channels show that the profile fits
     bool rewrites = false;  ///< also writes other producers' files again, whose attributes then say more
     std::string color_space =
-        "auto";              ///< of the stored colours; auto: the header's chromaticities, else Rec. 709
+        "auto";              ///< of the stored colours; auto: what the header says, else Rec. 709
     std::string lens_model;  ///< "thin" or "pinhole"; "" where not known
     std::map<std::string, RoleDecoding> roles;
     std::map<std::string, CameraSource> camera;  ///< by camera field

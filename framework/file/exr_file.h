@@ -147,6 +147,7 @@ struct ExrWriteOptions {
     /// Every attribute but windows, pixel aspect, channels, compression, type, name, line order, tiles,
     /// preview.
     std::optional<ExrMetadata> carry_over;
+    std::vector<std::string> left_behind;  ///< names that are not carried over
     /// Instead of those carried over. Vectors of 2, 3, 9 and 16 become v2f, v3f, m33f and m44f,
     /// "chromaticities" of 8 its own type, others floatvector; "framesPerSecond" becomes a rational.
     std::map<std::string, ExrValue> attributes;

@@ -125,7 +125,9 @@ Imf::Header make_header(const fs::path& path, std::span<const ExrOutputChannel> 
         for (auto i = source.begin(); i != source.end(); ++i) {
             // Not inserted and then replaced: the type may differ, and Imf::Header::erase of 3.1 leaks the
             // attribute.
-            if (is_own_attribute(i.name()) || options.attributes.contains(i.name())) continue;
+            if (is_own_attribute(i.name()) || options.attributes.contains(i.name()) ||
+                std::ranges::find(options.left_behind, i.name()) != options.left_behind.end())
+                continue;
             header.insert(i.name(), i.attribute());
         }
     }

@@ -244,7 +244,9 @@ void Capture::set_color_space(const std::string& name) {
     if (!primaries)
         fail_at(ErrorKind::usage, "color space",
                 "'" + name + "' is not " + list_of_names(color_space_names()));
-    own().capture.header.primaries = *primaries;
+    CaptureHeader& header = own().capture.header;
+    header.primaries = *primaries;
+    header.stored_colors = declared_colors(name, "set_color_space()");
 }
 
 Camera Capture::camera() const {
@@ -296,7 +298,10 @@ std::string Capture::path() const {
     return data_->capture.header.path.string();
 }
 std::vector<std::string> Capture::notes() const {
-    return data_->capture.header.notes;
+    std::vector<std::string> notes = data_->capture.header.notes;
+    const std::vector<std::string>& warnings = data_->capture.header.warnings;
+    notes.insert(notes.end(), warnings.begin(), warnings.end());
+    return notes;
 }
 
 }  // namespace aftershade::host

@@ -15,12 +15,14 @@ struct NamedPrimaries {
     Chromaticities primaries;
 };
 
-/// ITU-R BT.709 and BT.2020; SMPTE ST 2065-1 (AP0); Academy S-2014-004 (ACEScg, AP1).
+/// ITU-R BT.709 and BT.2020; SMPTE ST 2065-1 (AP0); Academy S-2014-004 (ACEScg, AP1); P3 of SMPTE RP 431-2
+/// with the white of D65.
 constexpr std::array kSpaces = {
     NamedPrimaries{"rec709", kRec709},
     NamedPrimaries{"acescg", {0.713f, 0.293f, 0.165f, 0.830f, 0.128f, 0.044f, 0.32168f, 0.33767f}},
     NamedPrimaries{"ap0", {0.7347f, 0.2653f, 0.0f, 1.0f, 0.0001f, -0.0770f, 0.32168f, 0.33767f}},
     NamedPrimaries{"rec2020", {0.708f, 0.292f, 0.170f, 0.797f, 0.131f, 0.046f, 0.3127f, 0.3290f}},
+    NamedPrimaries{"p3d65", {0.680f, 0.320f, 0.265f, 0.690f, 0.150f, 0.060f, 0.3127f, 0.3290f}},
 };
 
 using Vector = std::array<double, 3>;

@@ -23,7 +23,7 @@ inline constexpr Chromaticities kXyz = {1, 0, 0, 1, 0, 0, 1.0f / 3, 1.0f / 3};
 /// Row by row: out = matrix * rgb.
 using ColorMatrix = std::array<double, 9>;
 
-/// "rec709", "acescg", "ap0", "rec2020"; nullopt for anything else.
+/// "rec709", "acescg", "ap0", "rec2020", "p3d65"; nullopt for anything else.
 std::optional<Chromaticities> color_space_primaries(std::string_view name);
 std::vector<std::string> color_space_names();
 /// The name of known primaries, to 0.0005 a coordinate; "" for others.

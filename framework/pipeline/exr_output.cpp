@@ -86,6 +86,25 @@ void refuse_lossy_ids(const std::filesystem::path& path, const ExrContent& conte
                                           "' holds ids (choose zip, zips, piz, rle or none)");
 }
 
+/// An attribute of the input's pixels is not always true of the output's: kept channels stay as they are
+/// stored, and all others are light. Where the space is assumed, nothing is added to what the file says.
+void name_color_space(ExrWriteOptions& write, const OutputOptions& options, const CaptureHeader& header) {
+    const ColorEncoding light{header.primaries, ColorEncoding::Curve::linear, 1};
+    const ColorEncoding& written = options.keep_channels ? header.stored_colors.encoding : light;
+    // A file without the attribute is Rec. 709, so colours of other primaries must say so.
+    if (written.primaries != stored_primaries(header.metadata))
+        write.attributes["chromaticities"] =
+            std::vector<float>(written.primaries.begin(), written.primaries.end());
+    const bool has_light =
+        options.keep_channels || std::ranges::any_of(options.roles, [](const std::string& role) {
+            return kind_of_role(role) == RoleKind::light;
+        });
+    if (!header.stored_colors.is_known()) return;
+    write.left_behind = color_space_attributes();
+    if (const std::string id = color_interop_id(written); has_light && !id.empty())
+        write.attributes["colorInteropID"] = id;
+}
+
 std::string overflow_text(const std::filesystem::path& path, const OutputOptions& options, int frame,
                           const std::vector<HalfOverflow>& overflows) {
     if (overflows.empty()) return "";
@@ -124,10 +143,7 @@ ExrWriteOptions exr_write_options(const OutputOptions& options, const CaptureHea
     write.attributes["aftershade/channels"] = std::string(options.keep_channels ? "kept" : "native");
     write.attributes["aftershade/frame"] = header.frame;
     add_attributes(header.camera, header.lights, write.attributes);
-    // A file without the attribute is Rec. 709, so colours of other primaries must say so.
-    if (!options.keep_channels && header.primaries != stored_primaries(header.metadata))
-        write.attributes["chromaticities"] =
-            std::vector<float>(header.primaries.begin(), header.primaries.end());
+    name_color_space(write, options, header);
     return write;
 }
 

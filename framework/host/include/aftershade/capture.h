@@ -63,7 +63,7 @@ struct CaptureOptions {
     std::string profile = "auto";      ///< conventions of the producer: an id, or "auto" to detect it
     std::string view{};                ///< of a multi-view file; "": the first
     std::string layer{};               ///< of a file with several; "": the first
-    std::string color_space = "auto";  ///< of the stored colours: auto, rec709, acescg, ap0 or rec2020
+    std::string color_space = "auto";  ///< of the stored colours: auto, rec709, acescg, ap0, rec2020, p3d65
     bool alpha_is_opaque = false;      ///< the stored alpha of color means nothing: it is read as 1
     std::vector<std::string> roles{};  ///< to read; empty: every role that the file has
     int scale_divisor = 1;             ///< read at 1/this of the size; from 1 to 64
@@ -117,7 +117,8 @@ public:
     /// Throws Error(usage) for what is not above 0 and at most 64.
     void set_scale(double scale);
 
-    /// Primaries of the colours: rec709 (at first, of arrays), acescg, ap0, rec2020; "" for others of a file.
+    /// Primaries of the colours: rec709 (at first, of arrays), acescg, ap0, rec2020, p3d65; "" for others of a
+    /// file.
     std::string color_space() const;
     /// Throws Error(usage) for another name.
     void set_color_space(const std::string& name);

@@ -1,0 +1,140 @@
+#include "framework/capture/stored_colors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "framework/core/error.h"
+
+namespace aftershade {
+
+namespace {
+
+constexpr const char* kRemedy = " (choose with --color-space, or \"color_space\" in capture.json)";
+
+/// What one attribute says of the colours.
+struct Statement {
+    std::string attribute;
+    std::string value;
+    std::optional<ColorEncoding> encoding;  ///< nullopt where the value is not a known one
+};
+
+/// Producers write the id's name with another case.
+Statement interop_id(const ExrMetadata& part) {
+    for (const char* const name : {"colorInteropID", "colorInteropId"})
+        if (const auto id = part.text(name); id && !id->empty()) return {name, *id, find_color_encoding(*id)};
+    return {};
+}
+
+std::vector<Statement> statements_of(const ExrMetadata& metadata, const ExrMetadata& part) {
+    std::vector<Statement> all;
+    if (Statement id = interop_id(part); !id.value.empty()) all.push_back(std::move(id));
+    if (metadata.number("acesImageContainerFlag") == 1.0)
+        all.push_back({"acesImageContainerFlag", "1", find_color_encoding("lin_ap0_scene")});
+    if (metadata.value("chromaticities")) {
+        const ColorEncoding encoding{stored_primaries(metadata), ColorEncoding::Curve::linear, 1};
+        const std::string name = name_of_primaries(encoding.primaries);
+        all.push_back({"chromaticities", name.empty() ? "primaries without a name" : name, encoding});
+    }
+    // "linear" and "scene_linear" name no primaries, and light is what a file without the attribute has.
+    if (const auto space = metadata.text("oiio:ColorSpace"))
+        if (const auto encoding = find_color_encoding(*space))
+            all.push_back({"oiio:ColorSpace", *space, encoding});
+    return all;
+}
+
+bool agree(const ColorEncoding& a, const ColorEncoding& b) {
+    // Values of half a thousandth are rounding: writers have white as 0.3127 or 0.31271.
+    for (std::size_t i = 0; i < a.primaries.size(); ++i)
+        if (std::abs(a.primaries[i] - b.primaries[i]) > 0.0005f) return false;
+    return a.curve == b.curve && a.gamma == b.gamma;
+}
+
+std::string said(const Statement& statement) {
+    return statement.attribute + " is '" + statement.value + "'";
+}
+
+std::string name_of(const Statement& statement) {
+    const std::string primaries = name_of_primaries(statement.encoding->primaries);
+    return statement.encoding->is_light() && !primaries.empty() ? primaries
+           : statement.attribute == "chromaticities"            ? ""
+                                                                : statement.value;
+}
+
+std::string what_counts(const StoredColors& colors) {
+    return colors.is_known() ? colors.source + " counts" : "the numbers are taken for Rec. 709";
+}
+
+void warn_of_data(const Statement& data, StoredColors& colors) {
+    colors.warnings.push_back(said(data) + ", so color is read from channels that hold no colours; " +
+                              what_counts(colors) + kRemedy);
+}
+
+}  // namespace
+
+std::string StoredColors::text() const {
+    const std::string space = name.empty() ? "primaries without a name" : name;
+    return space + " (" + (is_known() ? source : "assumed") + ")";
+}
+
+StoredColors stored_colors(const ExrMetadata& metadata, const ExrMetadata& part) {
+    StoredColors colors;
+    colors.name = "rec709";
+    const std::vector<Statement> all = statements_of(metadata, part);
+    const auto is_color = [](const Statement& s) {
+        return s.encoding && s.encoding->curve != ColorEncoding::Curve::data;
+    };
+    const auto counts = std::find_if(all.begin(), all.end(), is_color);
+    if (counts != all.end()) {
+        colors.encoding = *counts->encoding;
+        colors.name = name_of(*counts);
+        colors.source = counts->attribute;
+    }
+    for (const Statement& other : all) {
+        if (!other.encoding)
+            colors.warnings.push_back(said(other) + ", which is not a known colour space; " +
+                                      what_counts(colors) + kRemedy);
+        else if (!is_color(other)) warn_of_data(other, colors);
+        else if (!agree(*other.encoding, colors.encoding))
+            colors.warnings.push_back(said(*counts) + ", but " + said(other) + "; " + counts->attribute +
+                                      " counts" + kRemedy);
+    }
+    return colors;
+}
+
+StoredColors declared_colors(const std::string& space, const std::string& source) {
+    StoredColors colors;
+    colors.encoding.primaries = *color_space_primaries(space);
+    colors.name = space;
+    colors.source = source;
+    colors.is_declared = true;
+    return colors;
+}
+
+void light_of_stored(Image& image, const StoredColors& stored, const Chromaticities& primaries,
+                     const std::string& place) {
+    if (!stored.encoding.is_color())
+        throw Error(ExitCode::capture,
+                    place + ": the colours are stored as '" + stored.name + "' (" + stored.source +
+                        "), a curve that this program cannot decode (convert the file to scene-linear light; "
+                        "or, if it holds that already, name its primaries with --color-space, or "
+                        "\"color_space\" in capture.json)");
+    decode_curve(image, stored.encoding);
+    if (stored.encoding.primaries != primaries)
+        convert_colors(image, conversion_matrix(stored.encoding.primaries, primaries));
+}
+
+void stored_of_light(Image& image, const StoredColors& stored, const Chromaticities& primaries) {
+    if (stored.encoding.primaries != primaries)
+        convert_colors(image, conversion_matrix(primaries, stored.encoding.primaries));
+    if (stored.encoding.is_color()) encode_curve(image, stored.encoding);
+}
+
+const std::vector<std::string>& color_space_attributes() {
+    static const std::vector<std::string> names = {"colorInteropID", "colorInteropId",
+                                                   "acesImageContainerFlag", "oiio:ColorSpace"};
+    return names;
+}
+
+}  // namespace aftershade
