@@ -16,6 +16,7 @@
 #include "framework/gpu/egl_current.h"
 #include "framework/gpu/egl_platform.h"
 #include "framework/gpu/foreign_context.h"
+#include "framework/gpu/fork_guard.h"
 #include "framework/gpu/handle.h"
 #include "framework/gpu/rasterizer_threads.h"
 #include "framework/gpu/self_test.h"
@@ -152,18 +153,21 @@ std::vector<BackendReport> probe_backends() {
 }
 
 Context::Context(const SharedEglContext& shared) {
+    require_not_forked();
     require_address_space(kContextBytes, "OpenGL");
     impl_ = std::make_unique<Impl>(shared);
     self_test(*this);
 }
 
 Context::Context(SiblingOf other) {
+    require_not_forked();
     if (current) current->release();
     const Impl& sibling = *other.context.impl_;
     impl_ = std::make_unique<Impl>(sibling, sibling.platform->sibling(other.shares_objects));
 }
 
 Context::Context(Backend backend, SelfTest when) {
+    require_not_forked();
     // Mesa does not check every allocation: better refused here than a crash in there.
     require_address_space(kContextBytes, "OpenGL");
     std::vector<Reason> reasons;
@@ -222,7 +226,7 @@ void Context::make_current() {
 }
 
 void Context::release() noexcept {
-    if (current == impl_.get()) impl_->release();
+    if (current == impl_.get() && !is_forked_from_gl()) impl_->release();
 }
 
 void Context::abandon() noexcept {
@@ -272,6 +276,7 @@ const GladGLContext& Context::gl() const {
 }
 
 Context::Impl::Impl(Backend backend) {
+    watch_for_forks();
     if (current) current->release();
     platform = make_platform(backend);
     info.backend = backend;
@@ -279,6 +284,7 @@ Context::Impl::Impl(Backend backend) {
 }
 
 Context::Impl::Impl(const SharedEglContext& shared) {
+    watch_for_forks();
     if (current) current->release();
     platform = make_egl_platform(shared);
     start();
@@ -305,7 +311,7 @@ void Context::Impl::start() {
 }
 
 Context::Impl::~Impl() {
-    if (abandoned) {  // what these own goes with the process
+    if (abandoned || is_forked_from_gl()) {  // what these own goes with the process
         static_cast<void>(cache.release());
         static_cast<void>(platform.release());
         return;
@@ -319,6 +325,7 @@ Context::Impl::~Impl() {
 }
 
 void Context::Impl::make_current() {
+    require_not_forked();
     if (current == this) return;
     if (current) current->release();
     platform->make_current();

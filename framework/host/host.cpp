@@ -148,6 +148,10 @@ Host& Host::operator=(Host&& other) noexcept {
 
 Host::~Host() {
     if (!data_) return;
+    if (gpu::is_forked_from_gl()) {
+        gpu::leave_to_exit(std::move(data_));
+        return;
+    }
     bool is_mine = false;
     {
         const std::lock_guard lock(data_->mutex);
@@ -159,6 +163,10 @@ Host::~Host() {
 
 void Host::close() {
     if (is_closed()) return;
+    if (gpu::is_forked_from_gl()) {
+        data_->is_closed = true;
+        return;
+    }
     called(*data_, [&] { data_->close(false); });
 }
 
@@ -168,6 +176,7 @@ bool Host::is_closed() const noexcept {
 
 void Host::detach() {
     Data& data = Access::host(*this);
+    if (gpu::is_forked_from_gl()) return;
     called(data, [&] {
         data.release();
         const std::lock_guard lock(data.mutex);

@@ -19,6 +19,7 @@
 #include "framework/effect/registry.h"
 #include "framework/gpu/context.h"
 #include "framework/gpu/foreign_context.h"
+#include "framework/gpu/fork_guard.h"
 #include "framework/host/failures.h"
 
 namespace aftershade::host {
@@ -73,6 +74,7 @@ private:
 template <typename Work>
 auto called(Host::Data& host, Work work) -> decltype(work()) {
     try {
+        gpu::require_not_forked();  // before a lock that a thread of the parent may have held
         const Call call(host);
         return work();
     } catch (...) {

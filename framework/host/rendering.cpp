@@ -76,6 +76,12 @@ Rendering::Rendering(std::shared_ptr<Host::Data> host, std::shared_ptr<const Loo
     : host_(std::move(host)), look_(std::move(look)) {}
 
 Rendering::~Rendering() {
+    if (gpu::is_forked_from_gl()) {
+        gpu::leave_to_exit(std::move(look_));  // the renderer refers to its pipeline
+        gpu::leave_to_exit(std::move(renderer_));
+        gpu::leave_to_exit(std::move(host_));
+        return;
+    }
     std::unique_lock lock(host_->mutex);
     host_->renderings.erase(this);
     if (!renderer_) return;

@@ -39,8 +39,14 @@ Session Look::session() {
 
 Session::Session(std::unique_ptr<Data> data) : data_(std::move(data)) {}
 Session::Session(Session&&) noexcept = default;
-Session& Session::operator=(Session&&) noexcept = default;
-Session::~Session() = default;
+Session& Session::operator=(Session&& other) noexcept {
+    Session replaced(std::move(other));
+    std::swap(data_, replaced.data_);
+    return *this;
+}
+Session::~Session() {
+    if (gpu::is_forked_from_gl()) gpu::leave_to_exit(std::move(data_));  // frames read ahead wait for threads
+}
 
 Result Session::render(const Capture& capture, const RenderOptions& options) {
     return render_subframe(capture, 0, 1, options);

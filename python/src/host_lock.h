@@ -7,6 +7,8 @@
 #include <mutex>
 #include <utility>
 
+#include <unistd.h>
+
 #include "aftershade/host.h"
 
 namespace aftershade::python {
@@ -19,16 +21,27 @@ struct SharedHost {
     /// What `work` returns, which must hold no Python object. Without the GIL, in this thread alone.
     template <typename Work>
     auto call(Work work) {
+        renew_after_fork();
         const nanobind::gil_scoped_release released;
-        const std::lock_guard lock(mutex);
+        const std::lock_guard lock(*mutex);
         const Detach detach{host};
         return work();
     }
 
     host::Host host;
-    std::mutex mutex;
 
 private:
+    std::unique_ptr<std::mutex> mutex = std::make_unique<std::mutex>();
+    pid_t process = getpid();
+
+    /// Another thread of the parent may have held the lock at the fork; in the child no thread gives it back.
+    void renew_after_fork() {
+        if (process == getpid()) return;
+        process = getpid();
+        static_cast<void>(mutex.release());
+        mutex = std::make_unique<std::mutex>();
+    }
+
     struct Detach {
         host::Host& host;
         ~Detach() {

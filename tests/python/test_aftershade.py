@@ -2,6 +2,7 @@
 
 import json
 import math
+import multiprocessing
 import os
 import re
 import threading
@@ -314,6 +315,21 @@ def test_memory_stays_flat(host):
         if number == 20:
             at_20 = resident_kib()
     assert resident_kib() <= at_20 * 1.02
+
+
+def mean_of_a_frame(_):
+    own = aftershade.Host(backend="software")
+    return float(aftershade.Look(BLUR, host=own).render(frame_arrays())["color"].mean())
+
+
+def test_a_spawned_pool_renders_and_a_forked_one_raises_at_once(host):
+    expected = float(aftershade.Look(BLUR, host=host).render(frame_arrays())["color"].mean())
+    with multiprocessing.get_context("spawn").Pool(2) as pool:
+        assert pool.map_async(mean_of_a_frame, range(2)).get(timeout=120) == [expected, expected]
+    with multiprocessing.get_context("fork").Pool(2) as pool:
+        with pytest.raises(aftershade.UsageError, match="spawn"):
+            pool.map_async(mean_of_a_frame, range(2)).get(timeout=120)
+    assert float(aftershade.Look(BLUR, host=host).render(frame_arrays())["color"].mean()) == expected
 
 
 def test_the_example_of_the_readme_runs(tmp_path, monkeypatch):
