@@ -257,6 +257,8 @@ const InspectedChannel* Inspection::first_unreadable() const {
 
 std::string text_of(const Inspection& inspection) {
     std::string text = inspection.file.string() + "\n";
+    for (const std::string& warning : inspection.warnings)
+        text += fmt::format("warning: {}\n", printable(warning));
     for (std::size_t i = 0; i < inspection.parts.size(); ++i)
         text += part_title(inspection.parts[i], i) + channel_table(inspection.parts[i].channels) +
                 sample_lines(inspection.parts[i]) + pixel_lines(inspection, inspection.parts[i]);
@@ -285,6 +287,7 @@ std::string json_of(const Inspection& inspection) {
     json["layers"] = inspection.capture ? inspection.capture->layers : std::vector<std::string>();
     json["layer_count"] = inspection.capture ? inspection.capture->layer_count : 0;
     json["notes"] = inspection.capture ? inspection.capture->notes : std::vector<std::string>();
+    json["warnings"] = inspection.warnings;
     json["roles"] = Json::object();
     if (inspection.capture)
         for (const std::string& role : inspection.capture->roles)
