@@ -20,6 +20,7 @@ nlohmann::ordered_json json_of(const VelocitySettings& settings) {
             {"y_axis", settings.y_axis},
             {"unit", settings.unit},
             {"scale", settings.scale},
+            {"bias", settings.bias},
             {"exchange_channels", settings.exchange_channels}};
 }
 
@@ -29,6 +30,7 @@ nlohmann::ordered_json json_of(const std::string& role, const VelocityCheck& che
     row["settings"] = json_of(check.settings);
     row["suggested"] = json_of(check.suggested);
     row["score"] = check.identity.score;
+    row["at_limit"] = check.at_limit;
     row["hypotheses"] = nlohmann::ordered_json::array();
     for (const VelocityScore& score : check.hypotheses)
         row["hypotheses"].push_back({{"other_time", score.hypothesis.other_time},

@@ -23,6 +23,7 @@
 #include "framework/inspect/depth_kind.h"
 #include "framework/inspect/frame_sheet.h"
 #include "framework/inspect/pixel_samples.h"
+#include "framework/inspect/role_faults.h"
 
 namespace aftershade::cli {
 
@@ -119,6 +120,54 @@ void note_deep_reduction(const CaptureReader& reader, Inspection& inspection) {
     }
 }
 
+/// What the stored values of the roles' channels show: NaN, and halves that overflowed.
+void warn_of_stored_values(Inspection& inspection) {
+    if (!inspection.capture) return;
+    for (const auto& [role, names] : inspection.capture->role_channels) {
+        const RoleKind kind = kind_of_role(role);
+        for (const InspectedPart& part : inspection.parts)
+            for (const auto& [channel, statistics, reason, readable] : part.channels) {
+                if (!statistics || std::ranges::find(names, channel.name) == names.end()) continue;
+                if (statistics->nan > 0)
+                    inspection.warnings.push_back(fmt::format(
+                        "{} (role '{}') has {} NaN{}; run --on-nan fail leaves such frames out", channel.name,
+                        role, statistics->nan,
+                        kind == RoleKind::distance ? ", read as no hit"
+                        : kind == RoleKind::motion ? ", read as no motion data"
+                                                   : ""));
+                if (kind == RoleKind::distance && channel.type == PixelType::half && statistics->infinite > 0)
+                    inspection.warnings.push_back(fmt::format(
+                        "{} (role '{}') is half and has {} infinite values: a half ends at 65504, so far depth "
+                        "and marks such as 1e10 cannot be told from no hit; have the producer write float",
+                        channel.name, role, statistics->infinite));
+            }
+    }
+}
+
+void add_warning(std::string warning, Inspection& inspection) {
+    if (!warning.empty()) inspection.warnings.push_back(std::move(warning));
+}
+
+void warn_of_normals(const CaptureReader& reader, Inspection& inspection) {
+    if (!inspection.capture) return;
+    for (const std::string& role : inspection.capture->roles) {
+        if (kind_of_role(role) != RoleKind::direction) continue;
+        try {
+            const Capture capture = reader.read(inspection.capture->frame, std::vector{role});
+            add_warning(find_normal_fault(capture.images.at(role)), inspection);
+        } catch (const Error&) {
+            // Said where the role's channels are listed, or by whoever needs the role.
+        }
+    }
+}
+
+/// Whether the depth is one of the position's channels, which then shows nothing of it.
+bool is_of_position(const CaptureHeader& capture, const std::string& depth, const std::string& position) {
+    const auto& of_depth = capture.role_channels.at(depth);
+    const auto& of_position = capture.role_channels.at(position);
+    return std::ranges::find_first_of(of_depth, of_position) != of_depth.end();
+}
+
 /// The depth as the profile decodes it, held to its own edges and to the positions of its pixels.
 void find_depth_kind_of(const CaptureReader& reader, Inspection& inspection) {
     if (!inspection.capture) return;
@@ -133,8 +182,12 @@ void find_depth_kind_of(const CaptureReader& reader, Inspection& inspection) {
     try {
         const Capture capture = reader.read(inspection.capture->frame, roles);
         note_averaged_depth(capture.images.at(depth), inspection);
-        if (position.empty()) return;
-        const DepthKind kind = find_depth_kind(capture.images.at(depth), capture.images.at(position));
+        add_warning(find_depth_fault(capture.images.at(depth)), inspection);
+        if (position.empty() || is_of_position(*inspection.capture, depth, position)) return;
+        const Image& positions = capture.images.at(position);
+        add_warning(find_position_fault(capture.images.at(depth), positions, inspection.capture->camera),
+                    inspection);
+        const DepthKind kind = find_depth_kind(capture.images.at(depth), positions);
         inspection.depth_kind = kind.text();
         if (kind.verdict() == DepthKind::Verdict::radial)
             inspection.depth_kind += "; declare it in the profile or capture.json: \"kind\": \"radial\"";
@@ -209,6 +262,8 @@ ExitCode inspect(const InspectOptions& options) {
         inspect_frame(*sequence, sequence->file_number(sequence->frames.front()), reader, options);
     inspection.lists_channels = options.channels;
     note_deep_reduction(reader, inspection);
+    warn_of_stored_values(inspection);
+    warn_of_normals(reader, inspection);
     find_depth_kind_of(reader, inspection);
     if (options.cryptomatte) add_coverage(*options.cryptomatte, reader, inspection);
     std::cout << (options.json ? json_of(inspection) + "\n" : text_of(inspection)) << std::flush;

@@ -300,6 +300,8 @@ const InspectedChannel* Inspection::first_unreadable() const {
 
 std::string text_of(const Inspection& inspection) {
     std::string text = inspection.file.string() + "\n";
+    for (const std::string& warning : inspection.warnings)
+        text += fmt::format("warning: {}\n", printable(warning));
     const bool lists_channels = inspection.lists_channels || inspection.pixel || !inspection.capture;
     if (!lists_channels) text += part_lines(inspection.parts);
     for (std::size_t i = 0; lists_channels && i < inspection.parts.size(); ++i)
@@ -330,8 +332,10 @@ std::string json_of(const Inspection& inspection) {
     json["layers"] = inspection.capture ? inspection.capture->layers : std::vector<std::string>();
     json["layer_count"] = inspection.capture ? inspection.capture->layer_count : 0;
     json["color_space"] = color_space_json(inspection);
-    json["warnings"] = inspection.capture ? inspection.capture->warnings : std::vector<std::string>();
     json["notes"] = inspection.capture ? inspection.capture->notes : std::vector<std::string>();
+    json["warnings"] = inspection.warnings;
+    if (inspection.capture)
+        for (const std::string& warning : inspection.capture->warnings) json["warnings"].push_back(warning);
     json["roles"] = Json::object();
     if (inspection.capture)
         for (const std::string& role : inspection.capture->roles)

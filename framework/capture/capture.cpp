@@ -285,6 +285,10 @@ Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, c
     Image image = source.luminance.empty()
                       ? read_layers(file, source.channels, header.data_window, outside, how)
                       : file.read_luminance_chroma(source.luminance, header.data_window);
+    // Decoding makes "no hit" and "no motion" of NaN, so it is looked for in what the file stores.
+    if (role.kind == RoleKind::distance || role.kind == RoleKind::motion)
+        if (const NonFinitePixels found = find_non_finite(image, true, exr_threads()); found.nan > 0)
+            capture.non_finite[name] = found;
     if (source.decoding.is_mean) repair_means(image);
     if (role.kind == RoleKind::distance)
         decode_depth(image, source.decoding,

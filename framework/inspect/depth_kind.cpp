@@ -19,6 +19,7 @@ constexpr std::size_t kMostSamples = 50000;
 constexpr std::size_t kLeastSamples = 64;
 constexpr double kFits = 0.01;
 constexpr double kClearly = 4;
+constexpr double kMostOnEdges = 0.2;  // of the pixels
 
 struct PlacedDepth {
     glm::dvec3 position;
@@ -85,6 +86,11 @@ DepthKind::Verdict DepthKind::verdict() const {
     return Verdict::unknown;
 }
 
+bool DepthKind::contradicts() const {
+    return pixels > 0 && std::min(planar_error, radial_error) > kFits &&
+           std::min(planar_off, radial_off) > kMostOnEdges;
+}
+
 std::string DepthKind::text() const {
     switch (verdict()) {
         case Verdict::planar: return fmt::format("planar, fits position to {:.2g} %", 100 * planar_error);
@@ -120,6 +126,13 @@ DepthKind find_depth_kind(const Image& depth, const Image& position) {
     }
     kind.planar_error = root_mean_square(planar) / median;
     kind.radial_error = root_mean_square(radial) / median;
+    const auto off_share = [&](const std::vector<double>& errors) {
+        const auto off = std::ranges::count_if(
+            errors, [&](double error) { return std::abs(error) > kFits * median; });
+        return double(off) / double(errors.size());
+    };
+    kind.planar_off = off_share(planar);
+    kind.radial_off = off_share(radial);
     return kind;
 }
 

@@ -15,11 +15,15 @@ namespace aftershade {
 struct DepthKind {
     double planar_error = 0;  ///< root mean square, as a share of the median depth
     double radial_error = 0;
+    double planar_off = 0;    ///< share of the pixels whose depth is off by more than 1 % of the median depth
+    double radial_off = 0;
     std::size_t pixels = 0;  ///< that were looked at; 0 where there are too few
 
     enum class Verdict { planar, radial, unknown };
     /// unknown unless one reading fits to 1 % and the other four times worse.
     Verdict verdict() const;
+    /// Neither reading fits, and not only at edges, where pixels may be averages.
+    bool contradicts() const;
     std::string text() const;  ///< "planar, fits position to 0.02 %"; "" where the verdict is unknown
 };
 

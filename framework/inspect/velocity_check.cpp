@@ -1,6 +1,7 @@
 #include "framework/inspect/velocity_check.h"
 
 #include "framework/core/error.h"
+#include "framework/inspect/velocity_bias.h"
 #include "framework/inspect/velocity_report.h"
 #include "framework/inspect/velocity_warp.h"
 
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -24,6 +26,7 @@ constexpr double kExplainsWell = 0.5;   // a rival in time that does, where the 
 constexpr double kRest = 0.1;           // ... or that leaves no more of what the claim leaves
 constexpr double kStillError = 1e-4;    // below, the two pictures are one
 constexpr double kFitSlack = 0.03;      // fits closer than this are one
+constexpr double kMostScale = 8;        // the fit begins with scales up to 4; far beyond, it is guesswork
 constexpr double kHopeless = 0.3;       // worse starts of the fit are left out
 constexpr double kWorst = -std::numeric_limits<double>::infinity();
 
@@ -270,6 +273,14 @@ std::vector<std::string> list_untold(const Tests& tests, const VelocityCheck& ch
     return names;
 }
 
+/// Whether it is evidence enough to recommend its scales.
+bool is_sound(const VelocityFit& fit) {
+    const auto is_told = [](const std::optional<double>& scale) {
+        return scale && std::abs(*scale) <= kMostScale && std::abs(*scale) >= 1 / kMostScale;
+    };
+    return is_told(fit.scale_x) && is_told(fit.scale_y);
+}
+
 /// Decides on `check.verdict`, `untold` and `suggested` from the figures.
 void judge(const Tests& tests, VelocityCheck& check) {
     const WarpTest* test = tests.at(check.best.hypothesis.other_time);
@@ -277,7 +288,8 @@ void judge(const Tests& tests, VelocityCheck& check) {
     if (check.fit->score >= kExplains && check.fit->score - check.best.score >= kClearScore &&
         !scale_is_listed(*check.fit, check.best.hypothesis)) {
         check.verdict = VelocityVerdict::no_fit;
-        check.suggested = correct_settings(check.settings, hypothesis_of(*check.fit));
+        if (is_sound(*check.fit))
+            check.suggested = correct_settings(check.settings, hypothesis_of(*check.fit));
         return;
     }
     if (check.best.score < kExplains) {
@@ -293,13 +305,8 @@ void judge(const Tests& tests, VelocityCheck& check) {
     else check.verdict = check.untold.empty() ? VelocityVerdict::confirmed : VelocityVerdict::undecided;
 }
 
-}  // namespace
-
-VelocityCheck check_velocity(const VelocityCheckInput& input) {
-    require_image(input.color_a, *input.color_a, 3, "the colour of frame A");
-    require_image(input.color_b, *input.color_a, 3, "the colour of frame B");
-    require_image(input.vectors_a, *input.color_a, 2, "the motion of frame A");
-    require_image(input.vectors_b, *input.color_a, 2, "the motion of frame B");
+/// Under one bias and unit.
+VelocityCheck check_reading(const VelocityCheckInput& input) {
     const Tests tests(input);
     VelocityCheck check;
     check.settings = check.suggested = input.settings;
@@ -317,6 +324,63 @@ VelocityCheck check_velocity(const VelocityCheckInput& input) {
             check.longest_px = std::max(check.longest_px, (*test)->longest_px());
         }
     judge(tests, check);
+    return check;
+}
+
+/// How well the reading that a check decided on explains the frames.
+double leading_score(const VelocityCheck& check) {
+    switch (check.verdict) {
+        case VelocityVerdict::confirmed:
+        case VelocityVerdict::undecided: return check.identity.score;
+        case VelocityVerdict::wrong: return check.best.score;
+        case VelocityVerdict::no_fit:
+            return is_sound(*check.fit) ? std::max(check.best.score, check.fit->score) : check.best.score;
+        case VelocityVerdict::untestable: break;
+    }
+    return 0;
+}
+
+/// Holds the claim to another bias or unit.
+void try_reading(const VelocityCheckInput& input, const std::vector<Image>& stored,
+                 const OtherReading& reading, VelocityCheck& check) {
+    VelocityCheckInput other = input;
+    other.settings = reading.settings;
+    std::vector<Image> vectors;
+    for (const Image& image : stored) vectors.push_back(read_vectors(image, reading.settings));
+    if (input.vectors_a) other.vectors_a = &vectors.front();
+    if (input.vectors_b) other.vectors_b = &vectors.back();
+    const VelocityCheck rival = check_reading(other);
+    if (rival.verdict == VelocityVerdict::no_fit || rival.verdict == VelocityVerdict::untestable) return;
+    const double score = leading_score(rival);
+    const double own = check.reading ? check.reading->score : leading_score(check);
+    if (score < kExplains) return;
+    if (score >= own + kClearScore) {
+        check.verdict = VelocityVerdict::wrong;
+        check.suggested = rival.suggested;
+        check.untold = rival.untold;
+        check.reading = VelocityReading{rival.suggested, score};
+    } else if (reading.is_common_value && check.verdict == VelocityVerdict::confirmed &&
+               score >= own - kClearScore) {
+        check.verdict = VelocityVerdict::undecided;
+        check.untold = {"bias"};
+        check.reading = VelocityReading{rival.suggested, score};
+    }
+}
+
+}  // namespace
+
+VelocityCheck check_velocity(const VelocityCheckInput& input) {
+    require_image(input.color_a, *input.color_a, 3, "the colour of frame A");
+    require_image(input.color_b, *input.color_a, 3, "the colour of frame B");
+    require_image(input.vectors_a, *input.color_a, 2, "the motion of frame A");
+    require_image(input.vectors_b, *input.color_a, 2, "the motion of frame B");
+    VelocityCheck check = check_reading(input);
+    std::vector<Image> stored;
+    for (const Image* vectors : {input.vectors_a, input.vectors_b})
+        if (vectors) stored.push_back(stored_vectors(*vectors, input.settings));
+    for (const OtherReading& reading : other_readings(stored, input.settings))
+        try_reading(input, stored, reading, check);
+    check.at_limit = describe_limit(stored, check.reading ? check.reading->settings : input.settings);
     check.sentence = describe_verdict(check);
     return check;
 }

@@ -25,6 +25,8 @@ VelocitySettings settings_of(const ChannelRole& role, const std::map<std::string
     settings.y_axis = decoding.y_axis_up ? "up" : "down";
     settings.unit = kUnits[std::size_t(decoding.unit)];
     settings.scale = {decoding.velocity_scale[0], decoding.velocity_scale[1]};
+    settings.bias = double(decoding.bias);
+    settings.shutter_frames = decoding.shutter_frames;
     return settings;
 }
 

@@ -56,6 +56,8 @@ std::string describe_change(const VelocitySettings& from, const VelocitySettings
     if (from.unit != to.unit) changes.push_back(fmt::format("unit from {} to {}", from.unit, to.unit));
     if (from.scale != to.scale)
         changes.push_back(fmt::format("scale from {} to {}", scale_text(from.scale), scale_text(to.scale)));
+    if (from.bias != to.bias)
+        changes.push_back(fmt::format("bias from {:.4g} to {:.4g}", from.bias, to.bias));
     if (from.exchange_channels != to.exchange_channels) changes.push_back("the order of the two channels");
     std::string text = joined(changes, " and ");
     if (from.is_next() != to.is_next())
@@ -67,6 +69,7 @@ std::string describe_settings(const VelocitySettings& settings) {
     std::string text = fmt::format("delta {}, y_axis {}", settings.delta, settings.y_axis);
     if (settings.unit != "px") text += ", unit " + settings.unit;
     if (settings.scale != std::array<double, 2>{1, 1}) text += ", scale " + scale_text(settings.scale);
+    if (settings.bias != 0) text += fmt::format(", bias {:.4g}", settings.bias);
     if (settings.exchange_channels) text += ", channels exchanged";
     return text;
 }
@@ -94,7 +97,19 @@ std::string describe_untestable(const VelocityCheck& check) {
                        counted(std::size_t(moving_px), "pixel"));
 }
 
+std::string scale_or_unknown(const std::optional<double>& scale) {
+    return scale ? fmt::format("{:.3f}", *scale) : "undecided";
+}
+
 std::string describe_no_fit(const VelocityCheck& check) {
+    if (check.suggested == check.settings && check.fit->score > check.best.score + kClearlyMore)
+        return fmt::format(
+            "The profile is not confirmed: no change of sign, order or factor of 2 fits (the profile's own "
+            "reading removes {} of the difference between the frames, the best listed {}); free scales (x {}, "
+            "y {}) remove {}, but these frames are too little evidence for a change; use frames in which more "
+            "moves, along both axes",
+            percent(check.identity.score), percent(check.best.score), scale_or_unknown(check.fit->scale_x),
+            scale_or_unknown(check.fit->scale_y), percent(check.fit->score));
     if (check.suggested == check.settings)
         return fmt::format(
             "No reading of the vectors explains the pictures: the best removes {} of the difference between "
@@ -115,8 +130,56 @@ std::string row(const VelocityCheck& check, const char* label, const VelocitySco
                        describe_settings(correct_settings(check.settings, score.hypothesis)));
 }
 
-std::string scale_or_unknown(const std::optional<double>& scale) {
-    return scale ? fmt::format("{:.3f}", *scale) : "undecided";
+std::string describe_reading(const VelocityCheck& check) {
+    if (check.verdict == VelocityVerdict::wrong)
+        return fmt::format(
+            "The profile is wrong: change {}; that removes {} of the difference between the frames, the "
+            "profile's own reading {}{}",
+            describe_change(check.settings, check.suggested), percent(check.reading->score),
+            percent(check.identity.score),
+            check.untold.empty() ? ""
+                                 : " (these frames do not decide " + joined(check.untold, " and ") + ")");
+    return fmt::format(
+        "The profile fits ({}: {} of the difference between the frames removed), but so does bias {:.4g} "
+        "({}), the stored value of many pixels; if these do not move, set \"bias\": {:.4g}",
+        describe_settings(check.settings), percent(check.identity.score), check.reading->settings.bias,
+        percent(check.reading->score), check.reading->settings.bias);
+}
+
+std::string describe_without_limit(const VelocityCheck& check) {
+    const std::string own = percent(check.identity.score), settings = describe_settings(check.settings);
+    const std::string untold = joined(check.untold, " and ");
+    if (check.reading) return describe_reading(check);
+    switch (check.verdict) {
+        case VelocityVerdict::confirmed:
+            return fmt::format(
+                "The profile is right: with {} the vectors remove {} of the difference between the frames, "
+                "the "
+                "best other reading {}",
+                settings, own, percent(check.rival.score));
+        case VelocityVerdict::undecided:
+            if (check.best.score >= check.identity.score + kClearlyMore)
+                return fmt::format(
+                    "Undecided: with {} the vectors remove {} of the difference between the frames, with "
+                    "{} "
+                    "{}, but uniform motion and uncovered background explain that too; use frames in which "
+                    "things turn, bounce or change their speed",
+                    settings, own, describe_settings(correct_settings(check.settings, check.best.hypothesis)),
+                    percent(check.best.score));
+            return fmt::format(
+                "The profile fits ({}: {} of the difference between the frames removed), but these frames do "
+                "not decide {}; use frames in which things turn, bounce or change their speed",
+                settings, own, untold);
+        case VelocityVerdict::wrong:
+            return fmt::format(
+                "The profile is wrong: change {}; that removes {} of the difference between the frames, the "
+                "profile's own reading {}{}",
+                describe_change(check.settings, check.suggested), percent(check.best.score), own,
+                untold.empty() ? "" : " (these frames do not decide " + untold + ")");
+        case VelocityVerdict::no_fit: return describe_no_fit(check);
+        case VelocityVerdict::untestable: break;
+    }
+    return describe_untestable(check);
 }
 
 }  // namespace
@@ -179,42 +242,17 @@ void add_difference(const VelocitySettings& settings, const VelocityHypothesis& 
 }
 
 std::string describe_verdict(const VelocityCheck& check) {
-    const std::string own = percent(check.identity.score), settings = describe_settings(check.settings);
-    const std::string untold = joined(check.untold, " and ");
-    switch (check.verdict) {
-        case VelocityVerdict::confirmed:
-            return fmt::format(
-                "The profile is right: with {} the vectors remove {} of the difference between the frames, "
-                "the "
-                "best other reading {}",
-                settings, own, percent(check.rival.score));
-        case VelocityVerdict::undecided:
-            if (check.best.score >= check.identity.score + kClearlyMore)
-                return fmt::format(
-                    "Undecided: with {} the vectors remove {} of the difference between the frames, with "
-                    "{} "
-                    "{}, but uniform motion and uncovered background explain that too; use frames in which "
-                    "things turn, bounce or change their speed",
-                    settings, own, describe_settings(correct_settings(check.settings, check.best.hypothesis)),
-                    percent(check.best.score));
-            return fmt::format(
-                "The profile fits ({}: {} of the difference between the frames removed), but these frames do "
-                "not decide {}; use frames in which things turn, bounce or change their speed",
-                settings, own, untold);
-        case VelocityVerdict::wrong:
-            return fmt::format(
-                "The profile is wrong: change {}; that removes {} of the difference between the frames, the "
-                "profile's own reading {}{}",
-                describe_change(check.settings, check.suggested), percent(check.best.score), own,
-                untold.empty() ? "" : " (these frames do not decide " + untold + ")");
-        case VelocityVerdict::no_fit: return describe_no_fit(check);
-        case VelocityVerdict::untestable: break;
-    }
-    return describe_untestable(check);
+    const std::string text = describe_without_limit(check);
+    return check.at_limit.empty()
+               ? text
+               : text + "; " + check.at_limit + ": longer vectors were cut off; have the producer write floats";
 }
 
 std::string format_velocity_check(const VelocityCheck& check) {
     std::string text = fmt::format("{}: {}\n", role_name(check.settings), check.sentence);
+    if (check.reading)
+        text += fmt::format("  {:<12} {:>6}  {}\n", "other bias", percent(check.reading->score),
+                            describe_settings(check.reading->settings));
     if (!check.fit) return text;
     text += fmt::format("  moving: {} px in A, {} px in B, at most {:.1f} px a frame\n", check.moving_px_a,
                         check.moving_px_b, check.longest_px);

@@ -14,6 +14,8 @@ struct VelocitySettings {
     std::string y_axis = "down";     ///< down, up
     std::string unit = "px";         ///< px, uv, ndc
     std::array<double, 2> scale = {1, 1};
+    double bias = 0;            ///< the stored value of no motion
+    double shutter_frames = 1;  ///< frames that a vector spans
     bool exchange_channels = false;  ///< the two channels are to be named in the other order
 
     /// The vectors go from a frame to the next one: the role is velocity_next.
@@ -46,6 +48,12 @@ struct VelocityFit {
     double score = 0;
 };
 
+/// The claim with another bias or unit, which the stored values hint at.
+struct VelocityReading {
+    VelocitySettings settings;  ///< the best under that bias and unit
+    double score = 0;
+};
+
 enum class VelocityVerdict {
     confirmed,  ///< the claim explains the pictures, every rival clearly less; no other scale is better
     undecided,  ///< the claim explains them, but these frames do not tell it from another: see `untold`
@@ -61,10 +69,12 @@ struct VelocityCheck {
     VelocityScore identity;          ///< the claim
     VelocityScore rival;             ///< the best of all others
     std::optional<VelocityFit> fit;  ///< where anything was tested
-    VelocitySettings settings;       ///< as given
+    std::optional<VelocityReading> reading;  ///< where it refutes the claim, or these frames do not decide
+    std::string at_limit;  ///< "1298 pixels ... are stored as 1, ..."; "" where no values pile up at a limit
+    VelocitySettings settings;  ///< as given
     VelocitySettings suggested;      ///< `settings` where nothing better is known
     /// What these frames do not tell, in the profile's words: "delta" (its sign), "delta (cur-prev or
-    /// next-cur)", "y_axis", "order of channels", "scale".
+    /// next-cur)", "y_axis", "order of channels", "scale", "bias".
     std::vector<std::string> untold;
     int moving_px_a = 0;  ///< pixels with vectors of at least one pixel
     int moving_px_b = 0;

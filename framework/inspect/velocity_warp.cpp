@@ -11,7 +11,8 @@ namespace {
 constexpr int kMaxSamples = 20000;
 constexpr std::size_t kRoughStride = 10;
 constexpr std::size_t kRoughSamples = 1000;  // at least, where there are as many
-constexpr int kMinMovingPx = 16;             // fewer moving pixels tell nothing
+constexpr int kMinMovingPx = 64;             // fewer moving pixels tell nothing: an edge of noise has as many
+constexpr std::size_t kMinCompared = 16;     // samples of a dispute in time
 constexpr double kMinDisputed = 0.01;        // share of the samples
 constexpr double kSameSurface_px = 0.5;      // vectors of one surface differ by less, ...
 constexpr double kSameSurface = 0.1;         // ... or by this share of their length
@@ -241,7 +242,7 @@ TimeDispute WarpTest::dispute_in_time(const VectorMap& map, const WarpTest& othe
         dispute.other += error_other;
         ++dispute.count;
     }
-    dispute.told = dispute.count >= std::size_t(kMinMovingPx) &&
+    dispute.told = dispute.count >= kMinCompared &&
                    double(dispute.count) >= kMinDisputed * double(samples_.size());
     return dispute;
 }

@@ -38,7 +38,16 @@ std::string mended_text(const NonFinitePixels& pixels) {
     return text;
 }
 
-std::string remedy(NanPolicy policy) {
+/// What decoding makes of NaN; "" where it keeps it.
+std::string decoded_text(NanPolicy policy, const std::string& role) {
+    const auto kind = kind_of_role(role);
+    const bool is_depth = kind == RoleKind::distance;
+    if (policy == NanPolicy::fail || (!is_depth && kind != RoleKind::motion)) return "";
+    return is_depth ? "; read as no hit" : "; read as no motion data";
+}
+
+std::string remedy(NanPolicy policy, const std::string& role = "") {
+    if (!decoded_text(policy, role).empty()) return " (--on-nan fail leaves such frames out)";
     return policy == NanPolicy::fail
                ? "; the frame is left out (--on-nan fail; --on-nan mend replaces such pixels)"
                : " (--on-nan mend replaces such pixels, --on-nan fail leaves such frames out)";
@@ -56,6 +65,10 @@ std::string source_text(const Capture& capture) {
 
 void apply_nan_policy(NanPolicy policy, Capture& capture) {
     const Window& window = capture.header.data_window;
+    for (auto& [role, found] : capture.non_finite) {
+        found.x += window.min_x;
+        found.y += window.min_y;
+    }
     for (auto& [role, image] : capture.images) {
         NonFinitePixels found = check_image(policy, image, may_be_infinite(role));
         if (!found) continue;
@@ -83,7 +96,8 @@ std::vector<std::string> describe_non_finite(NanPolicy policy, const Capture& ca
     for (const auto& [role, pixels] : capture.non_finite)
         sentences.push_back("frame " + std::to_string(capture.header.frame) + ": the role '" + role +
                             "' of " + capture.header.path.string() + " has " + counts_text(pixels) +
-                            (pixels.mended > 0 ? mended_text(pixels) : remedy(policy)));
+                            decoded_text(policy, role) +
+                            (pixels.mended > 0 ? mended_text(pixels) : remedy(policy, role)));
     return sentences;
 }
 

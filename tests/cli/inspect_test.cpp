@@ -70,7 +70,7 @@ TEST_F(Inspect, TellsTheSuzanneCaptureAsJson) {
     EXPECT_EQ(
         keys_of(document),
         (std::set<std::string>{"file", "parts", "pixel", "profile", "layer", "layers", "layer_count", "notes",
-                               "roles", "depth_kind", "missing", "camera", "lights", "cryptomattes"}));
+                               "warnings", "roles", "depth_kind", "missing", "camera", "lights", "cryptomattes"}));
     EXPECT_TRUE(document["file"].get<std::string>().ends_with("scenes/suzanne/gbuffer_0003.exr"));
     ASSERT_EQ(document["parts"].size(), 1);
     const Json& part = document["parts"][0];
@@ -305,6 +305,31 @@ TEST_F(Inspect, NotesADepthThatIsAveragedOverSamples) {
     EXPECT_EQ(json({"capture.json"})["notes"].dump().find(averaged), std::string::npos);
     write(1);
     EXPECT_EQ(json({"a.exr"})["notes"].dump().find(averaged), std::string::npos);
+}
+
+TEST_F(Inspect, WarnsOfDepthThatIsNoDepth) {
+    Capture capture = make_capture({.width = 16, .height = 8, .background = {0.5f, 0.5f, 0.5f}});
+    capture.images.at("depth").at(1, 0, 0) = std::nanf("");
+    capture.images.at("depth").at(2, 0, 0) = -1;
+    write_capture(capture, folder_ / "a.exr");
+    const std::string warnings = json({"a.exr"})["warnings"].dump();
+    EXPECT_NE(warnings.find("Z (role 'depth') has 1 NaN, read as no hit"), std::string::npos) << warnings;
+    EXPECT_NE(warnings.find("negative in 1 of 128 pixels, down to -1 m"), std::string::npos) << warnings;
+    EXPECT_NE(inspect({"a.exr"}).out.find("\nwarning: "), std::string::npos);
+}
+
+TEST_F(Inspect, WarnsOfDepthThatOverflowedAHalf) {
+    Image depth(64, 4, 1);
+    for (float& value : depth.floats()) value = 4;
+    depth.at(0, 0, 0) = 1e10f;
+    const std::vector<ExrOutputChannel> channels = {{"R", PixelType::half, &depth, 0},
+                                                    {"G", PixelType::half, &depth, 0},
+                                                    {"B", PixelType::half, &depth, 0},
+                                                    {"Z", PixelType::half, &depth, 0}};
+    ExrWriteOptions options;
+    options.data_window = options.display_window = {0, 0, 63, 3};
+    write_exr(folder_ / "a.exr", channels, options);
+    EXPECT_NE(json({"a.exr"})["warnings"].dump().find("is half and has 1 infinite values"), std::string::npos);
 }
 
 TEST_F(Inspect, ListsSubsampledChannelsWithTheReason) {

@@ -109,6 +109,29 @@ TEST_F(NonFiniteFrame, LeavesInfiniteDepthAlone) {
     EXPECT_EQ(result.err.find("infinite"), std::string::npos) << result.err;
 }
 
+TEST_F(NonFiniteFrame, IsFoundInDepthAndVectorsThoughDecodingReplacesIt) {
+    for (const char* role : {"depth", "velocity"}) {
+        Capture damaged = clean_;
+        damaged.images.at(role).at(30, 17, 0) = kNan;
+        write_capture(damaged, frame_path(2));
+        const std::string roles = std::string("color,") + role;
+        const std::string fault =
+            "frame 2: the role '" + std::string(role) + "' of in_0002\\.exr has 1 NaN pixel, at \\(30, 17\\)";
+        const std::string read_as = role == std::string("depth") ? "no hit" : "no motion data";
+        expect_told(run({"nothing.json", "in_0002.exr", "-o", "out.exr", "--output-roles", roles}, 0),
+                    "warning: " + fault + "; read as " + read_as + " \\(--on-nan fail leaves");
+        expect_told(run({"nothing.json", "in_0002.exr", "-o", "no.exr", "--output-roles", roles, "--on-nan",
+                         "fail"},
+                        int(ExitCode::capture)),
+                    "error: " + fault + ".*left out");
+        EXPECT_FALSE(fs::exists(folder_ / "no.exr"));
+        expect_told(run({"nothing.json", "in_0002.exr", "-o", "out.exr", "--output-roles", roles, "--on-nan",
+                         "mend"},
+                        0),
+                    fault + "; read as " + read_as);
+    }
+}
+
 TEST_F(NonFiniteFrame, IsToldInAPictureToo) {
     damage_frame_two();
     const CommandResult result =

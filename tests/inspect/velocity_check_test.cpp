@@ -145,13 +145,70 @@ TEST(VelocityCheck, VectorsOverTwoEqualPicturesTellNothing) {
     EXPECT_NE(check.sentence.find("the same"), std::string::npos) << check.sentence;
 }
 
-TEST(VelocityCheck, VectorsBelowAPixelNameTheUnit) {
-    Pair pair = make_pair(kMotion, kMotion, kMotion);
-    pair.velocity_b = undo(pair.velocity_b, {false, false, 128, 96});
-    pair.velocity_a = undo(pair.velocity_a, {false, false, 128, 96});
+/// What a file stores, read as px: `store` makes a stored value of one in px and the picture's side.
+template <class Store>
+Pair read_as_px(Pair pair, Store&& store) {
+    for (Image* image : {&pair.velocity_a, &pair.velocity_b})
+        for (int y = 0; y < image->height(); ++y)
+            for (int x = 0; x < image->width(); ++x) {
+                image->at(x, y, 0) = float(store(double(image->at(x, y, 0)), image->width()));
+                image->at(x, y, 1) = float(store(double(image->at(x, y, 1)), image->height()));
+            }
+    return pair;
+}
+
+VelocitySettings suggested_for(const Pair& pair) {
     const VelocityCheck check = check_velocity(claim_velocity(pair));
-    EXPECT_EQ(check.verdict, VelocityVerdict::untestable);
-    EXPECT_NE(check.sentence.find("set the unit"), std::string::npos) << check.sentence;
+    EXPECT_EQ(check.verdict, VelocityVerdict::wrong) << check.sentence;
+    return check.suggested;
+}
+
+TEST(VelocityCheck, VectorsBelowAPixelNameTheUnit) {
+    const Pair pair = read_as_px(make_pair(kMotion, kOther, kOther), [](double v, int side) { return v / side; });
+    EXPECT_EQ(suggested_for(pair), (VelocitySettings{.unit = "uv"}));
+}
+
+TEST(VelocityCheck, VectorsAroundAHalfNameTheBias) {
+    const Pair pair = make_pair(kMotion, kOther, kOther);
+    EXPECT_EQ(suggested_for(read_as_px(pair, [](double v, int side) { return v / side + 0.5; })),
+              (VelocitySettings{.unit = "uv", .bias = 0.5}));
+    EXPECT_EQ(suggested_for(read_as_px(pair, [](double v, int side) { return 0.5 * v / side + 0.5; })),
+              (VelocitySettings{.unit = "uv", .scale = {2, 2}, .bias = 0.5}));
+    EXPECT_EQ(suggested_for(read_as_px(pair, [](double v, int side) { return 0.5 - v / side; })),
+              (VelocitySettings{.delta = "prev-cur", .unit = "uv", .bias = 0.5}));
+    // In bytes, no motion is 128 of 255.
+    EXPECT_NEAR(suggested_for(read_as_px(pair, [](double v, int side) {
+                    return std::round(255 * (v / side + 0.5)) / 255;
+                })).bias, 128.0 / 255, 1e-4);
+    EXPECT_EQ(suggested_for(read_as_px(pair, [](double v, int) { return v + 128; })),
+              (VelocitySettings{.bias = 128}));
+}
+
+TEST(VelocityCheck, VectorsThatWereCutOffAtTheEndOfTheRangeAreCounted) {
+    Pair pair = read_as_px(make_pair(kMotion, kOther, kOther), [](double v, int side) { return v / side + 0.5; });
+    EXPECT_EQ(check_velocity(claim_velocity(pair)).at_limit, "");
+    for (int i = 0; i < 20; ++i) pair.velocity_b.at(i, 0, 0) = 1;
+    const VelocityCheck check = check_velocity(claim_velocity(pair));
+    EXPECT_EQ(check.at_limit, "20 pixels of the two frames are stored as 1, the end of the range 0 to 1");
+    EXPECT_NE(check.sentence.find(check.at_limit), std::string::npos) << check.sentence;
+    EXPECT_EQ(check.suggested, (VelocitySettings{.unit = "uv", .bias = 0.5}));
+}
+
+TEST(VelocityCheck, ABiasOfHalfAPixelIsNotConfirmed) {
+    const Pair pair =
+        read_as_px(make_pair(kMotion, kOther, kOther), [](double v, int) { return v + 0.5; });
+    EXPECT_EQ(suggested_for(pair), (VelocitySettings{.bias = 0.5}));
+}
+
+TEST(VelocityCheck, AFewMovingPixelsAreNoEvidence) {
+    Pair pair = make_pair(kMotion, kOther, kOther);
+    for (Image* image : {&pair.velocity_a, &pair.velocity_b})
+        for (int y = 0; y < image->height(); ++y)
+            for (int x = 0; x < image->width(); ++x)
+                if (x > 65 || y > 45 || (x < 58 || y < 40)) image->at(x, y, 0) = image->at(x, y, 1) = 0;
+    const VelocityCheck check = check_velocity(claim_velocity(pair));
+    EXPECT_EQ(check.verdict, VelocityVerdict::untestable) << check.sentence;
+    EXPECT_NE(check.sentence.find("pixels with motion vectors"), std::string::npos) << check.sentence;
 }
 
 TEST(VelocityCheck, SteadyMotionDoesNotTellTheTime) {
