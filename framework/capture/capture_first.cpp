@@ -67,12 +67,13 @@ void CaptureReader::hold_channels(const std::string& role, const FrameFile& file
     if (held == first->channels.end() || held->second.empty() || held->second == found) return;
     const std::string path = first->header->path.string();
     if (has_all(file.merged(), held->second)) {
-        header.differences.push_back(role + " is read from " + list_of_found(held->second) + ", as in " + path +
-                                     ", and not from " + list_of_found(found));
+        header.differences.push_back(role + " is read from " + list_of_found(held->second) + ", as in " +
+                                     path + ", and not from " + list_of_found(found));
         found = held->second;
         return;
     }
-    const bool lacks_alpha = role == kColorRole && first->has_alpha && found[0].size() == 4 && found[0][3].empty();
+    const bool lacks_alpha =
+        role == kColorRole && first->has_alpha && found[0].size() == 4 && found[0][3].empty();
     header.differences.push_back(role + " is read from " + list_of_found(found) + ", in " + path + " from " +
                                  list_of_found(held->second) + (lacks_alpha ? "; its alpha is 1" : ""));
 }

@@ -31,7 +31,8 @@ protected:
         Names all = reader().read(2, kColorAndDepth).header.differences;
         const std::string path = (folder_ / "f1.exr").string();
         for (std::string& one : all)
-            for (std::size_t at; (at = one.find(path)) != std::string::npos;) one.replace(at, path.size(), "1");
+            for (std::size_t at; (at = one.find(path)) != std::string::npos;)
+                one.replace(at, path.size(), "1");
         return all;
     }
     std::vector<float> color_of(int number) {
@@ -66,7 +67,8 @@ TEST_F(FirstFrame, DecidesWhichLayerIsRead) {
     write(2, both("Beta", "Zeta"));
     write(3, layer("alpha"));
     EXPECT_EQ(color_of(2), (Values{5, 6, 7, 8}));
-    EXPECT_EQ(differences_of_second(), (Names{"it has the layers 'Beta' and 'Zeta'; 'Zeta' is read, as in 1"}));
+    EXPECT_EQ(differences_of_second(),
+              (Names{"it has the layers 'Beta' and 'Zeta'; 'Zeta' is read, as in 1"}));
     const std::string message = error_of(ExitCode::capture, [&] { color_of(3); });
     EXPECT_NE(message.find("has no layer 'Zeta'"), std::string::npos) << message;
     EXPECT_NE(message.find("it has 'alpha'"), std::string::npos) << message;
@@ -79,7 +81,8 @@ TEST_F(FirstFrame, DecidesWhetherThereIsAnAlpha) {
     write(2, {"R", "G", "B"});
     EXPECT_EQ(color_of(2), (Values{1, 2, 3, 1}));
     EXPECT_EQ(differences_of_second(),
-              (Names{"color is read from 'R', 'G' and 'B', in 1 from 'R', 'G', 'B' and 'A'; its alpha is 1"}));
+              (Names{"color is read from 'R', 'G' and 'B', in 1 from 'R', 'G', 'B' and 'A'; "
+                     "its alpha is 1"}));
     EXPECT_TRUE(reader().read_header(2).keeps_alpha);
     files_ = {2, 1};
     EXPECT_EQ(color_of(1), (Values{1, 2, 3, 1})) << "an alpha that the first frame does not have";

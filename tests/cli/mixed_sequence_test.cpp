@@ -69,7 +69,8 @@ TEST_F(MixedSequence, FailsInAFrameWithoutTheFirstFramesLayer) {
     const CommandResult result =
         run({"nothing.json", "in_####.exr", "-o", "out_####.exr"}, int(ExitCode::partial));
     EXPECT_EQ(result.out, "out_0001.exr\nout_0003.exr\n");
-    expect_text(result.err, "in_0002.exr: has no layer 'Zeta', which the first frame, in_0001.exr, is read from");
+    expect_text(result.err,
+                "in_0002.exr: has no layer 'Zeta', which the first frame, in_0001.exr, is read from");
 }
 
 TEST_F(MixedSequence, MakesPicturesOfOneKind) {
