@@ -172,6 +172,7 @@ RunObserver RunReporter::observer() {
         say("failed", "aftershade: error: " + message);
     };
     observer.non_finite = [this](const std::string& message) { warn(message); };
+    observer.frame_differs = [this](const std::string& message) { warn(message); };
     observer.frame_missing = [this](int frame, const std::string& what) {
         say("missing", fmt::format("frame {} is missing: {}", frame, what));
     };

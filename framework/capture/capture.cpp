@@ -117,15 +117,19 @@ CaptureReader::CaptureReader(const Sequence& sequence, std::vector<Profile> prof
 CaptureReader::~CaptureReader() = default;
 
 const Profile& CaptureReader::choose_profile(const ExrPart& part, CaptureHeader& header) const {
-    if (sequence_.profile == "auto") {
+    const FirstFrame* const first = first_frame();
+    if (sequence_.profile == "auto" && !first) {
         const ProfileChoice choice = detect_profile(profiles_, part, header.path.string(),
                                                     sequence_.channels.contains(kColorRole));
         header.profile_reason = choice.reason;
         return *choice.profile;
     }
-    header.profile_reason = "chosen by name";
+    const bool is_held = sequence_.profile == "auto";
+    header.profile_reason = is_held ? first->header->profile_reason : "chosen by name";
+    const std::string& id = is_held ? first->header->profile : sequence_.profile;
+    if (is_held) compare_profile(part, *first->header, header);
     for (const Profile& profile : profiles_)
-        if (profile.id == sequence_.profile) return profile;
+        if (profile.id == id) return profile;
     std::vector<std::string> ids;
     for (const Profile& profile : profiles_) ids.push_back(profile.id);
     throw Error(ExitCode::usage,
@@ -143,6 +147,7 @@ void CaptureReader::add_role(OpenFrame& open, const std::string& role, const Rol
     luminance.layers = {{decoding.luminance.empty() && role == kColorRole ? "Y" : decoding.luminance}};
     const bool has_luminance = !luminance.layers[0][0].empty() && !has_x_y_z(file.merged()) &&
                                find_channels(luminance, "", file.merged());
+    if (found) hold_channels(role, file, *found, open.header);
     if (found) source.channels = std::move(*found);
     else if (has_luminance) source.luminance = luminance.layers[0][0];
     else if (own_file != open.role_files.end() && &file != &cryptomatte_file(open))
@@ -213,6 +218,7 @@ CaptureReader::OpenFrame CaptureReader::open(int frame, int deep_layers) const {
                              ? part.data_window
                              : grid_of(*color->second.file, color->second.channels, color->second.luminance);
     find_colors(open);
+    compare_with_first(header, header.primaries);
     return open;
 }
 
@@ -339,6 +345,7 @@ Capture CaptureReader::read(int frame, std::span<const std::string> roles) const
     OpenFrame open = this->open(frame, std::min(asked_layers(roles), sequence_.deep_layers));
     Capture capture;
     prefetch(open, roles_of_any_layer(roles));
+    compare_roles(open.header, roles);
     capture.header = open.header;
     read_images(open, roles, capture);
     for (const std::string& role : roles)

@@ -26,6 +26,7 @@
 namespace aftershade {
 
 class DeepPart;
+class FrameFile;
 
 /// The header of one frame, read before its pixels: what it has, and where.
 struct CaptureHeader {
@@ -39,6 +40,9 @@ struct CaptureHeader {
     std::vector<std::string> layers;  ///< to choose from, by the profile
     std::vector<std::string> notes;   ///< on what was chosen for the user, in whole sentences
     std::vector<std::string> warnings;  ///< on what may be wrong in the file, in whole sentences
+    /// From the first frame of the run, by CaptureReader::hold_to_first_of(): what is read otherwise.
+    std::vector<std::string> differences;
+    bool keeps_alpha = false;  ///< opaque pictures of it have an alpha, too: those of the run are alike
     Window data_window;               ///< colour's: the working grid
     Window display_window;
     float pixel_aspect = 1;
@@ -91,6 +95,11 @@ public:
     CaptureReader(const Sequence& sequence, std::vector<Profile> profiles, ReadLimits limits);
     ~CaptureReader();
 
+    /// Every frame is read as the first of these files that can be read: by its profile, from its layer and
+    /// its channels where the frame has them, and into its colour space. CaptureHeader::differences has what
+    /// is otherwise. A frame without that layer is Error(ExitCode::capture). A capture with layers is read
+    /// frame by frame. Call before anything is read.
+    void hold_to_first_of(std::vector<int> files);
     /// Whether the frame's main file is there.
     bool has_frame(int frame) const;
     /// Throws Error(ExitCode::capture): no such file, not readable, no profile.
@@ -128,6 +137,14 @@ public:
 private:
     struct OpenFrame;
     struct RoleSource;
+    struct FirstFrame;
+    /// nullptr where no frame decides for others.
+    const FirstFrame* first_frame() const;
+    void hold_channels(const std::string& role, const FrameFile& file, FoundChannels& found,
+                       CaptureHeader& header) const;
+    void compare_profile(const ExrPart& part, const CaptureHeader& first, CaptureHeader& header) const;
+    void compare_with_first(CaptureHeader& header, const Chromaticities& primaries) const;
+    void compare_roles(CaptureHeader& header, std::span<const std::string> roles) const;
     OpenFrame open(int frame, int deep_layers = 1) const;
     const Profile& choose_profile(const ExrPart& part, CaptureHeader& header) const;
     void choose_layer(OpenFrame& open) const;
@@ -169,6 +186,7 @@ private:
     const Sequence& sequence_;
     std::vector<Profile> profiles_;
     ReadLimits limits_;
+    std::shared_ptr<FirstFrame> first_;
 };
 
 }  // namespace aftershade

@@ -3,8 +3,10 @@
 
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "framework/capture/capture.h"
 #include "framework/capture/frame_file.h"
@@ -31,6 +33,15 @@ struct CaptureReader::OpenFrame {
     std::optional<RoleSource> ids_by_number;
     int layer = -1;  ///< of deep parts, that roles are read of; -1: the whole picture
     CaptureHeader header;
+};
+
+/// What the first frame of a run decides for the others.
+struct CaptureReader::FirstFrame {
+    std::vector<int> files;  ///< the first that can be read is the one
+    std::once_flag once;
+    std::optional<CaptureHeader> header;  ///< nullopt where none can be read
+    std::map<std::string, FoundChannels> channels;
+    bool has_alpha = false;
 };
 
 }  // namespace aftershade

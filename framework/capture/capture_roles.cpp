@@ -70,6 +70,15 @@ bool is_among(const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+void require_layer_of_first(const CaptureHeader& header, const CaptureHeader& first) {
+    if (is_among(header.layers, first.layer)) return;
+    throw Error(ExitCode::capture,
+                header.path.string() + ": has no layer '" + first.layer + "', which the first frame, " +
+                    first.path.string() + ", is read from; it has " +
+                    (header.layers.empty() ? "none" : list_of_names(header.layers, "and")) +
+                    " (choose a layer that every frame has with --layer, or 'layer' in capture.json)");
+}
+
 }  // namespace
 
 void CaptureReader::choose_layer(OpenFrame& open) const {
@@ -78,9 +87,15 @@ void CaptureReader::choose_layer(OpenFrame& open) const {
     header.layers = find_layers(*open.profile, part);
     header.layer = sequence_.layer;
     if (sequence_.layer.empty()) {
+        const FirstFrame* const first = first_frame();
+        const bool is_held = first && !first->header->layer.empty();
+        if (is_held) require_layer_of_first(header, *first->header);
         if (header.layers.empty()) return;
-        header.layer = header.layers.front();
-        if (header.layers.size() > 1)
+        header.layer = is_held ? first->header->layer : header.layers.front();
+        if (is_held && header.layers != first->header->layers)
+            header.differences.push_back("it has the layers " + list_of_names(header.layers, "and") + "; '" +
+                                         header.layer + "' is read, as in " + first->header->path.string());
+        else if (header.layers.size() > 1)
             header.notes.push_back("the file has the layers " + list_of_names(header.layers, "and") + "; '" +
                                    header.layer +
                                    "' is read (choose with --layer, or 'layer' in capture.json)");
@@ -140,7 +155,8 @@ void CaptureReader::take_data_of_other_layer(OpenFrame& open) const {
     if (!sequence_.layer.empty() || header.layers.size() != 2) return;
     for (const auto& [role, source] : open.roles)
         if (role != kColorRole && source.file == open.main.get() && takes_layer(source.decoding)) return;
-    const std::string first = std::exchange(header.layer, header.layers.back());
+    const std::string other = header.layers[header.layer == header.layers.front() ? 1 : 0];
+    const std::string first = std::exchange(header.layer, other);
     std::vector<std::string> taken;
     for (const auto& [role, decoding] : open.profile->roles) {
         if (open.roles.contains(role) || sequence_.channels.contains(role) || !takes_layer(decoding))
@@ -151,7 +167,7 @@ void CaptureReader::take_data_of_other_layer(OpenFrame& open) const {
     header.layer = first;
     if (taken.empty()) return;
     header.notes = {"the layer '" + first + "' has a colour alone; " + list_of_names(taken, "and") +
-                    (taken.size() == 1 ? " is" : " are") + " read from the layer '" + header.layers.back() +
+                    (taken.size() == 1 ? " is" : " are") + " read from the layer '" + other +
                     "' (choose one layer for all with --layer, or 'layer' in capture.json)"};
 }
 

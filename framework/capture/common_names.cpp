@@ -65,7 +65,8 @@ bool holds_data(const std::string& layer) {
                                                      "vector", "vectors", "velocity"};
     if (layer.empty()) return false;
     const std::string word = lower_case(layer.substr(layer.rfind('.') + 1));
-    return words.contains(word) || last_words.contains(last_word(layer)) || word.find("crypto") != std::string::npos || find_role(word).has_value();
+    return words.contains(word) || last_words.contains(last_word(layer)) ||
+           word.find("crypto") != std::string::npos || find_role(word).has_value();
 }
 
 /// Of several layers, the one that a person would take for the picture.

@@ -39,8 +39,8 @@ std::optional<std::string> manifest_beside(const FrameFile& file, const std::opt
     return failure ? std::nullopt : std::optional(std::move(text));
 }
 
-/// A manifest, {"object": "hex", ...}. One that is damaged counts as none: it is only a help. An id that is no
-/// id is the hash of the name.
+/// A manifest, {"object": "hex", ...}. One that is damaged counts as none: it is only a help. An id that is
+/// none is the hash of the name.
 void read_manifest(const std::optional<std::string>& manifest, CryptomatteLayer& layer) {
     const auto parsed = nlohmann::json::parse(manifest.value_or("{}"), nullptr, false);
     if (!parsed.is_object()) return;
@@ -155,7 +155,8 @@ std::vector<CryptomatteLayer> find_cryptomattes(const FrameFile& file) {
         if (layer.ranks.empty()) continue;
         const std::string base = attribute.substr(0, attribute.size() - kName.size());
         const auto manifest = metadata.text(base + "/manifest");
-        read_manifest(manifest ? manifest : manifest_beside(file, metadata.text(base + "/manif_file")), layer);
+        const auto beside = metadata.text(base + "/manif_file");
+        read_manifest(manifest ? manifest : manifest_beside(file, beside), layer);
         layers.push_back(std::move(layer));
     }
     return layers;

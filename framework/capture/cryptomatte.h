@@ -38,8 +38,8 @@ private:
     std::string object_;
 };
 
-/// Those whose channels are there, by their names' order in the header. A manifest may lie in a file of its own
-/// in the folder of the EXR file (manif_file).
+/// Those whose channels are there, by their names' order in the header. A manifest may lie in a file of its
+/// own in the folder of the EXR file (manif_file).
 std::vector<CryptomatteLayer> find_cryptomattes(const FrameFile& file);
 /// What the header names, whether the channels are there or not.
 std::vector<std::string> declared_cryptomattes(const FrameFile& file);

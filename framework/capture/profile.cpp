@@ -77,7 +77,9 @@ std::optional<FoundChannels> find_in(const RoleDecoding& decoding, const std::st
 
 /// The layer of a channel that ends in `ending`, ".Combined.R", or in another spelling of it; "" for others.
 std::string layer_before(const std::string& channel, const std::string& ending) {
-    const auto last_component = [](const std::string& of) { return of.size() - (of.find_last_of("._- ") + 1); };
+    const auto last_component = [](const std::string& of) {
+        return of.size() - (of.find_last_of("._- ") + 1);
+    };
     const std::string name = canonical_name(channel), wanted = "." + canonical_name(ending);
     if (name.size() <= wanted.size() || !name.ends_with(wanted)) return "";
     // The component alone is of another length.

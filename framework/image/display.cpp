@@ -20,8 +20,9 @@ Image display_of_color(Image color, const Chromaticities& primaries) {
     return display;
 }
 
-Image cropped_display(const Image& display, const Window& data, const Window& window) {
-    bool opaque = data.contains(window.min_x, window.min_y) && data.contains(window.max_x, window.max_y);
+Image cropped_display(const Image& display, const Window& data, const Window& window, bool keeps_alpha) {
+    bool opaque = !keeps_alpha && data.contains(window.min_x, window.min_y) &&
+                  data.contains(window.max_x, window.max_y);
     for (int y = window.min_y; opaque && y <= window.max_y; ++y)
         for (int x = window.min_x; opaque && x <= window.max_x; ++x)
             opaque = display.at(x - data.min_x, y - data.min_y, 3) >= 1.0f;

@@ -10,7 +10,8 @@ namespace aftershade {
 Image display_of_color(Image color, const Chromaticities& primaries);
 
 /// The pixels of `window` out of an RGBA picture over the window `data`; 0 where that does not reach. An
-/// opaque picture loses its alpha.
-Image cropped_display(const Image& display, const Window& data, const Window& window);
+/// opaque picture loses its alpha unless `keeps_alpha`.
+Image cropped_display(const Image& display, const Window& data, const Window& window,
+                      bool keeps_alpha = false);
 
 }  // namespace aftershade

@@ -165,9 +165,10 @@ std::string write_exr_output(const std::filesystem::path& path, const OutputOpti
         if (options.keep_channels && is_kept) continue;
         const Image* image = find_image(name, result, capture);
         if (!image)
-            throw Error(ExitCode::capture, capture.header.path.string() + ": the role '" + name +
-                                               "', requested in the output, is in neither the capture nor the look" +
-                                               roles_there(capture.header.roles));
+            throw Error(ExitCode::capture,
+                        capture.header.path.string() + ": the role '" + name +
+                            "', requested in the output, is in neither the capture nor the look" +
+                            roles_there(capture.header.roles));
         drop_channels(content, find_role(name)->native_channels);
         add_role(content, *find_role(name), *image, options.color_type);
     }

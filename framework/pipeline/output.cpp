@@ -31,7 +31,8 @@ Image display_picture(const FrameResult& result, const Capture& capture) {
     const Image display = made != result.images.end()
                               ? made->second
                               : display_of_color(*find_image(kColorRole, result, capture), header.primaries);
-    return cropped_display(display, header.data_window, result.region.value_or(header.display_window));
+    return cropped_display(display, header.data_window, result.region.value_or(header.display_window),
+                           header.keeps_alpha);
 }
 
 PngText png_text(const OutputOptions& options) {

@@ -210,7 +210,7 @@ FrameResult PipelineRenderer::render(const FrameInputs& frame, const std::vector
         run_passes(timed, {0, built_->first_single_pass}, result);
     }
     const CaptureHeader& header = frame.capture->header;
-    last_ = {header.frame, header.data_window, header.camera};
+    last_ = {header.frame, header.data_window, header.camera, header.pixel_aspect};
     is_partial_ = accumulates && frame.subframe + 1 < frame.subframe_count;
     if (is_partial_) return result;
 

@@ -119,6 +119,7 @@ private:
         int frame = 0;
         Window window;
         Camera camera;
+        float pixel_aspect = 1;
     };
     void resolve(const FrameInputs& frame);
     int first_changed_step(const std::vector<ParamSet>& before, const std::vector<std::string>& mixes) const;

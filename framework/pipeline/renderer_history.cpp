@@ -15,6 +15,7 @@ std::string PipelineRenderer::history_fault(const FrameInputs& frame) const {
     if (frame.begins_shot) return "a cut";
     if (is_partial_) return "frame " + std::to_string(last_->frame) + " lacks sub-frames";
     if (!(last_->window == header.data_window)) return "another data window";
+    if (last_->pixel_aspect != header.pixel_aspect) return "another pixel aspect";
     if (header.frame != last_->frame + 1)
         return "it follows frame " + std::to_string(last_->frame) + ", not " +
                std::to_string(header.frame - 1);
@@ -58,7 +59,7 @@ void PipelineRenderer::begin_from_saved(const FrameInputs& frame) {
                                          window_text(saved_->window) + ", that of frame " +
                                          std::to_string(header.frame) + " is " +
                                          window_text(header.data_window));
-    last_ = {saved_->frame, saved_->window, saved_->camera};
+    last_ = {saved_->frame, saved_->window, saved_->camera, header.pixel_aspect};
     camera_before_ = saved_->camera;
 }
 

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "framework/core/memory_limit.h"
+#include "framework/core/text.h"
 #include "framework/gpu/timer.h"
 #include "framework/pipeline/frame_loader.h"
 #include "framework/pipeline/frame_run.h"
@@ -56,11 +57,11 @@ public:
         ++report_.frames_skipped;
         finished(frame, FrameOutcome::Kind::skipped);
     }
-    void done(int frame, const std::vector<std::filesystem::path>& files) {
+    void done(int frame, const std::vector<std::filesystem::path>& files, const std::string& message) {
         ++report_.frames_done;
         if (observer_.file_written)
             for (const auto& path : files) observer_.file_written(path);
-        finished(frame, FrameOutcome::Kind::done);
+        finished(frame, FrameOutcome::Kind::done, message);
     }
 
 private:
@@ -94,6 +95,7 @@ Written write_frame(const RunSetup& setup, const OutputOptions& outputs, const F
 struct PendingWrite {
     int frame = 0;
     std::future<Written> files{};
+    std::string differences{};  ///< from the first frame
 };
 
 std::vector<std::string> roles_to_read(const Pipeline& pipeline, const OutputOptions& outputs) {
@@ -236,6 +238,9 @@ private:
         if (run.trace) trace_frame(*run.trace, number, begin, frame.result->times);
         report_result(frame.capture->header, *frame.result, !any_rendered_, run, observer_);
         any_rendered_ = true;
+        if (observer_.frame_differs)
+            for (const std::string& difference : frame.capture->header.differences)
+                observer_.frame_differs(frame.capture->header.path.string() + ": " + difference);
         for (const ObjectSighting& sighting : loader_.objects().take_sightings())
             if (observer_.object_seen) observer_.object_seen(sighting);
         if (!frame.result->history_reset.empty()) report_.history_begin = number;
@@ -254,7 +259,8 @@ private:
                 setup.hooks.frame_written(number, written.files.paths, milliseconds_since(begin) / 1000);
             return written;
         };
-        pending_ = {number, std::async(std::launch::async, write)};
+        pending_ = {number, std::async(std::launch::async, write),
+                    joined(frame.capture->header.differences, "; ", "; ")};
     }
 
     /// Waits for the files of the frame before, if there is one, and reports them.
@@ -266,7 +272,7 @@ private:
         report_.encode_ms += written.milliseconds;
         if (!written.files.warnings.empty()) note_non_finite(pending_.frame, report_);
         if (observer_.non_finite) std::ranges::for_each(written.files.warnings, observer_.non_finite);
-        outcomes_.done(pending_.frame, written.files.paths);
+        outcomes_.done(pending_.frame, written.files.paths, pending_.differences);
     }
 
     const RunSetup& setup_;

@@ -38,7 +38,7 @@ struct FrameOutcome {
     enum class Kind { done, failed, skipped };
     int frame = 0;
     Kind kind = Kind::done;
-    std::string message;  ///< why it failed
+    std::string message;  ///< why it failed, or how it differs from the first frame
     double seconds = 0;   ///< since the frame before ended
 };
 
@@ -78,6 +78,8 @@ struct RunObserver {
     /// A sentence on NaN or infinite pixels of a capture or of an output, or on values that became infinite
     /// in a file.
     std::function<void(const std::string& message)> non_finite;
+    /// A sentence on what a frame has otherwise than the first one: CaptureHeader::differences.
+    std::function<void(const std::string& message)> frame_differs;
     std::function<void(int frame, const std::string& what)> frame_missing;  ///< skipped or held
     /// Frames but the first that restart history, where some step has history.
     std::function<void(int frame, const std::string& reason)> history_reset;

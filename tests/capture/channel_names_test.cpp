@@ -1,5 +1,5 @@
-// Names of channels as many programs spell them, and what is read from them. Each channel holds 1, 2, 3 ... in
-// the order of its list, so that the value tells which one was read.
+// Names of channels as many programs spell them, and what is read from them. Each channel holds 1, 2, 3 ...
+// in the order of its list, so that the value shows which one was read.
 #include "framework/capture/channel_names.h"
 
 #include <cmath>
@@ -105,7 +105,8 @@ TEST_F(NamedChannels, OfLayersAreThoseOfTheLayerThatWasChosen) {
 // 1e10 is Blender's "nothing hit", which only its profile knows.
 TEST_F(NamedChannels, OfBlenderKeepTheirMeaningWhereNukeWroteThem) {
     std::vector<StoredChannel> stored;
-    for (const char* name : {"View_Layer_Combined.red", "View_Layer_Combined.green", "View_Layer_Combined.blue"})
+    for (const char* name :
+         {"View_Layer_Combined.red", "View_Layer_Combined.green", "View_Layer_Combined.blue"})
         stored.push_back({name, {1, 1}});
     stored.push_back({"View_Layer_Depth.Z", {3, 1e10f}});
     stored.push_back({"View_Layer_Vector.X", {2, 2}});

@@ -81,8 +81,9 @@ TEST(Profile, ThatFitsIsAskedForWhereNoneDoes) {
     const std::string message =
         test::error_of(ExitCode::capture, [&] { detect_profile(shipped(), part_with({"foo"}), "f.exr"); });
     EXPECT_EQ(message,
-              "f.exr: no profile fits its channels, 'foo' (name one with --profile, or name the channels of each "
-              "role as \"channels\": {\"color\": {\"channels\": [\"NAME\", \"NAME\", \"NAME\"]}} in capture.json)");
+              "f.exr: no profile fits its channels, 'foo' (name one with --profile, or name the channels of "
+              "each role as \"channels\": {\"color\": {\"channels\": [\"NAME\", \"NAME\", \"NAME\"]}} in "
+              "capture.json)");
     // A profile without a rule fits nothing of itself.
     const std::vector<Profile> without_rule = {detecting("quiet", "{}")};
     test::error_of(ExitCode::capture, [&] {
