@@ -211,6 +211,7 @@ CaptureReader::OpenFrame CaptureReader::open(int frame, int deep_layers) const {
                              ? part.data_window
                              : grid_of(*color->second.file, color->second.channels, color->second.luminance);
     find_colors(open);
+    find_losses(open);
     return open;
 }
 
