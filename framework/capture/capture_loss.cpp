@@ -25,7 +25,7 @@ void CaptureReader::find_losses(OpenFrame& open) {
         const bool is_own_file = source.file != open.main.get();
         open.header.warnings.push_back(role + " is read from " + list_of_names(lost, "and") +
                                        (is_own_file ? " of the role's own file" : "") +
-                                       ", which are stored with loss (" + compression +
+                                       ", stored with loss (" + compression +
                                        "): its values are not exact (write them with zip, zips or piz)");
     }
 }
