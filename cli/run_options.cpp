@@ -9,6 +9,7 @@
 
 #include "cli/effect_options.h"
 #include "cli/gl_options.h"
+#include "framework/core/units.h"
 #include "framework/file/frame_stream.h"
 
 namespace aftershade::cli {
@@ -20,9 +21,8 @@ int parse_scale(const std::string& text) {
     constexpr int kMost = 64;
     for (int n = 1; n <= kMost; ++n)
         if (text == "1/" + std::to_string(n)) return n;
-    double value = 0;
-    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (failure != std::errc{} || end != text.data() + text.size() || value <= 0 || value > 1) return 0;
+    const double value = parse_number(text).value_or(0);
+    if (value <= 0 || value > 1) return 0;
     const int n = int(1 / value + 0.5);
     return n <= kMost && std::abs(value * n - 1) < 1e-9 ? n : 0;
 }

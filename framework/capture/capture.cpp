@@ -219,6 +219,7 @@ CaptureReader::OpenFrame CaptureReader::open(int frame, int deep_layers) const {
                              : grid_of(*color->second.file, color->second.channels, color->second.luminance);
     find_colors(open);
     compare_with_first(header, header.primaries);
+    find_losses(open);
     return open;
 }
 

@@ -163,6 +163,7 @@ private:
     void require_names(const OpenFrame& open, const Image& ids, std::span<const std::string> names) const;
     void add_role(OpenFrame& open, const std::string& role, const RoleDecoding& decoding) const;
     void find_colors(OpenFrame& open) const;
+    static void find_losses(OpenFrame& open);
     /// Unpacks what read_role will need of these roles.
     void prefetch(const OpenFrame& open, std::span<const std::string> roles) const;
     Image read_ids(const RoleSource& source, const Window& grid, int layer = -1) const;

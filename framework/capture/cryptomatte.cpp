@@ -18,6 +18,7 @@
 #include "framework/core/diagnostics.h"
 #include "framework/core/error.h"
 #include "framework/core/text.h"
+#include "framework/file/exr_loss.h"
 
 namespace aftershade {
 
@@ -82,7 +83,10 @@ std::vector<RankChannels> channels_of_ranks(const FrameFile& file, const std::st
 /// id, coverage, id, coverage of two ranks.
 Image read_ranks(const FrameFile& file, const RankChannels& channels, const Window& grid) {
     const std::string& compression = file.compression_of(channels[0]);
-    const bool lossy = is_lossy_compression(compression);
+    const auto is_lost = [&](const std::string& channel) {
+        return loses_bits(compression, channel, file.type_of(channel));
+    };
+    const bool lossy = std::any_of(channels.begin(), channels.end(), is_lost);
     if (lossy || file.type_of(channels[0]) != PixelType::float32)
         throw Error(ExitCode::capture,
                     file.path().string() + ": the Cryptomatte ids in " + channels[0] + " are " +

@@ -1,5 +1,6 @@
 // What `#include <pass>` stands for.
 #include <algorithm>
+#include <locale>
 #include <sstream>
 #include <utility>
 
@@ -49,6 +50,13 @@ std::string_view qualifier(AccessSpec::Kind kind) {
         case AccessSpec::Kind::atomic: break;
     }
     return "";
+}
+
+/// A host's global locale may write 1024 as 1.024.
+std::ostringstream text_without_locale() {
+    std::ostringstream text;
+    text.imbue(std::locale::classic());
+    return text;
 }
 
 class InterfaceWriter {
@@ -252,7 +260,7 @@ private:
     const FusedPart part_;
     const PassBindings bindings_;
     int next_sampler_ = part_.first_sampler;
-    std::ostringstream text_;
+    std::ostringstream text_ = text_without_locale();
 };
 
 }  // namespace

@@ -1,11 +1,11 @@
 #include "framework/image/false_color.h"
+#include "framework/core/units.h"
 #include "framework/image/srgb.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -247,7 +247,7 @@ void FalseColor::fit_velocity() {
     const float longest = percentile(lengths, 1).value_or(0), most = percentile(lengths, 0.995).value_or(0);
     constexpr float kLeastRim_px = 0.1f;  // less is rounding
     const float rim = std::max(most > 0 ? most : longest, kLeastRim_px);
-    longest_px_ = std::strtof(fmt::format("{:.2g}", rim).c_str(), nullptr);
+    longest_px_ = float(parse_number(fmt::format("{:.2g}", rim)).value_or(rim));
     label_ = {fmt::format("up to {:.4g} px a frame", longest),
               fmt::format("rim of the wheel: {:g} px", longest_px_)};
 }

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <deque>
+#include <set>
 #include <utility>
 
 #include "framework/capture/camera_metadata.h"
 #include "framework/core/diagnostics.h"
 #include "framework/core/error.h"
+#include "framework/file/exr_loss.h"
 #include "framework/image/role.h"
 #include "framework/image/window.h"
 
@@ -19,14 +21,25 @@ struct ExrContent {
     std::vector<ExrOutputChannel> channels;
     std::deque<Image> images;               // its elements stay where they are
     std::map<const Image*, float> outside;  // beyond the data window; 0 for those that are not here
+    std::set<std::string> pictures;         // channels that may lose bits
 };
+
+/// What an AOV holds is for the user to know.
+bool is_picture_role(const std::string& role) {
+    const RoleKind kind = kind_of_role(role);
+    return kind == RoleKind::light || kind == RoleKind::display || kind == RoleKind::other;
+}
 
 void add_role(ExrContent& content, const ChannelRole& role, const Image& image, PixelType color_type) {
     content.outside[&image] = role.outside;
     const PixelType type = role.pixel_type == PixelType::half ? color_type : role.pixel_type;
+    const bool is_picture = is_picture_role(role.name);
     // An AOV may have fewer channels than its role.
-    for (int c = 0; c < std::min(role.channels, image.channels()); ++c)
-        content.channels.push_back({role.native_channels[std::size_t(c)], type, &image, c});
+    for (int c = 0; c < std::min(role.channels, image.channels()); ++c) {
+        const std::string& name = role.native_channels[std::size_t(c)];
+        content.channels.push_back({name, type, &image, c});
+        if (is_picture) content.pictures.insert(name);
+    }
 }
 
 /// Roles of which a step made another image than the capture's.
@@ -43,6 +56,10 @@ void add_stored_channels(ExrContent& content, const FrameResult& result, const C
         content.images.push_back(std::move(stored.image));
         content.channels.push_back({stored.name, stored.type, &content.images.back(), 0});
     }
+    for (const auto& [role, image] : result.images)
+        if (const auto names = capture.header.role_channels.find(role);
+            names != capture.header.role_channels.end() && is_picture_role(role))
+            content.pictures.insert(names->second.begin(), names->second.end());
 }
 
 /// Makes room for a role's native names: what a step or another file says goes before what the main file
@@ -103,6 +120,23 @@ void name_color_space(ExrWriteOptions& write, const OutputOptions& options, cons
     write.left_behind = color_space_attributes();
     if (const std::string id = color_interop_id(written); has_light && !id.empty())
         write.attributes["colorInteropID"] = id;
+}
+
+/// Of pictures a user who chooses such a compression accepts the loss; of data, and of channels that are kept
+/// bit for bit, a run may alter none.
+void refuse_lossy_data(const std::filesystem::path& path, const ExrContent& content,
+                       const OutputOptions& options) {
+    constexpr const char* kRemedy = " (choose zip, zips, piz, rle or none)";
+    for (const ExrOutputChannel& channel : content.channels) {
+        if (content.pictures.contains(channel.name) ||
+            !loses_bits(options.compression, channel.name, channel.type))
+            continue;
+        throw Error(ExitCode::output,
+                    path.string() + ": the compression " + options.compression +
+                        " loses bits of the channel '" + channel.name + "', which " +
+                        (options.keep_channels ? "--keep-channels keeps bit for bit" : "holds data") +
+                        kRemedy);
+    }
 }
 
 std::string overflow_text(const std::filesystem::path& path, const OutputOptions& options, int frame,
@@ -174,6 +208,7 @@ std::string write_exr_output(const std::filesystem::path& path, const OutputOpti
     }
     ExrWriteOptions write = exr_write_options(options, capture.header);
     refuse_lossy_ids(path, content, capture.header, write.compression);
+    refuse_lossy_data(path, content, options);
     if (options.crop_to_display) {
         crop(content, write.data_window, write.display_window);
         write.data_window = write.display_window;

@@ -294,11 +294,29 @@ void set_place(Node& node, const Place& place) {
     for (Member& member : node.members) set_place(member.value, place);
 }
 
+/// JSON has no .5, 5. and +0.5, which people write: "[.5, +1]" becomes "[0.5, 1]".
+std::string with_json_numbers(const std::string& text) {
+    const auto is_digit = [&](std::size_t i) { return i < text.size() && text[i] >= '0' && text[i] <= '9'; };
+    std::string json;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto follows = [&](const std::string& any) {
+            return i == 0 || any.find(text[i - 1]) != std::string::npos;
+        };
+        const bool is_before_number = is_digit(i + 1) || (i + 1 < text.size() && text[i + 1] == '.');
+        if (text[i] == '+' && follows("[, ") && is_before_number) continue;
+        if (text[i] == '.' && !is_digit(i + 1) && i > 0 && is_digit(i - 1)) continue;
+        if (text[i] == '.' && follows("[, -+") && is_digit(i + 1)) json += '0';
+        json += text[i];
+    }
+    return json;
+}
+
 }  // namespace
 
 Node parse_command_value(const std::string& text, const Place& place) {
     Diagnostics not_json;
     auto node = parse_document(text, place.file, not_json);
+    if (!node) node = parse_document(with_json_numbers(text), place.file, not_json);
     if (!node) {
         node.emplace();
         node->kind = Node::Kind::string;

@@ -89,6 +89,8 @@ void write_tap(const fs::path& path, const Image& image, const OutputOptions& op
         channels.push_back({name, is_uint ? PixelType::uint32 : PixelType::float32, &image, c});
     }
     ExrWriteOptions write = exr_write_options(options, header);
+    // Its channels are called as those of pictures, and may be data.
+    if (is_lossy_compression(write.compression)) write.compression = "zip";
     // A texture of another size than the working grid has windows of its own.
     if (image.width() != header.data_window.width() || image.height() != header.data_window.height())
         write.data_window = write.display_window = {0, 0, image.width() - 1, image.height() - 1};

@@ -344,12 +344,26 @@ TEST(Cryptomatte, OfAnotherKindThatHasTheNameIsNamed) {
     EXPECT_EQ(message.find("did you mean"), std::string::npos) << message;
 }
 
+/// dwaa and dwab change what is called R, G or B; b44 and b44a only halfs.
+TEST(Cryptomatte, ReadsIdsThatALossyCompressionHasKept) {
+    const TemporaryFolder folder;
+    const std::vector<std::string> lower = {"r", "g", "b", "a"}, upper = {"R", "G", "B", "A"};
+    for (const auto& [compression, components] : {std::pair{"dwaa", lower}, std::pair{"dwab", lower},
+                                                  std::pair{"b44", upper}, std::pair{"b44a", lower}}) {
+        const auto matte =
+            write_matte(folder, {{"Cube", 0.75f}}, PixelType::float32, compression, components);
+        EXPECT_EQ(read_with(matte, {"Cube"}).images.at("mask").floats()[0], 0.75f) << compression;
+    }
+}
+
 TEST(Cryptomatte, RefusesIdsThatStorageHasDestroyed) {
     const TemporaryFolder folder;
     EXPECT_NE(capture_error([&] {
                   read_with(write_matte(folder, {{"Cube", 1}}, PixelType::half), {"Cube"});
               }).find("half"),
               std::string::npos);
+    const auto packed = write_matte(folder, {{"Cube", 1}}, PixelType::float32, "pxr24", {"r", "g", "b", "a"});
+    EXPECT_NE(capture_error([&] { read_with(packed, {"Cube"}); }).find("pxr24"), std::string::npos);
     const auto lossy = write_matte(folder, {{"Cube", 1}}, PixelType::float32, "dwaa");
     EXPECT_NE(capture_error([&] { read_with(lossy, {"Cube"}); }).find("dwaa"), std::string::npos);
 }
