@@ -53,7 +53,7 @@ std::string frame_bytes(StreamFormat format, const Image& display) {
         case StreamFormat::rgba64le: return raw_bytes<std::uint16_t>(display, 4);
         case StreamFormat::png: break;
     }
-    return encode_png(kName, display, {}, true);
+    return encode_png(kName, display, {}, {.is_srgb = true});
 }
 
 /// "24", "23.98", "30000/1001".

@@ -14,17 +14,22 @@ namespace aftershade {
 /// Latin-1 text by keyword, as the PNG specification's chunk tEXt has it: a keyword of 1 to 79 characters.
 using PngText = std::map<std::string, std::string>;
 
+/// What a picture's own chunks say of it.
+struct PngMeaning {
+    bool is_srgb = false;    ///< chunk sRGB; false colours and measures are not a display's
+    float pixel_aspect = 1;  ///< width over height; other than 1 in the chunk pHYs
+};
+
 /// The bytes of a PNG of display-referred values in [0, 1], already encoded, of 1, 3 or 4 float channels:
 /// round(255 * clamp(v)), NaN as 0. A fourth channel is unassociated alpha. `name` is what the
-/// Error(ExitCode::output) of a picture that is too large begins with. `is_srgb`: the file says so, in the chunk
-/// sRGB; false colours and measures are not a display's.
+/// Error(ExitCode::output) of a picture that is too large begins with.
 std::string encode_png(const std::string& name, const Image& display, const PngText& text = {},
-                       bool is_srgb = false);
+                       const PngMeaning& meaning = {});
 
 /// Writes these bytes. The file appears by rename from a temporary file in the same folder. Throws
 /// Error(ExitCode::output).
 void write_png(const std::filesystem::path& path, const Image& display, const PngText& text = {},
-               bool is_srgb = false);
+               const PngMeaning& meaning = {});
 
 /// The text of a keyword; nullopt where the file is not a whole PNG or has no such text.
 std::optional<std::string> read_png_text(const std::filesystem::path& path, const std::string& keyword);

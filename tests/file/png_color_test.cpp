@@ -161,7 +161,7 @@ TEST(Png, SaysThatItIsSrgbWhereItIs) {
     const std::string chunk = number(1) + "sRGB" + std::string(1, '\0');
     EXPECT_EQ(encode_png("", grey).find("sRGB"), std::string::npos);
     // PNG specification, 5.6: before the pixels.
-    EXPECT_EQ(encode_png("", grey, {{"Title", "x"}}, true).find(chunk), 8u + 25u);
+    EXPECT_EQ(encode_png("", grey, {{"Title", "x"}}, {.is_srgb = true}).find(chunk), 8u + 25u);
 }
 
 }  // namespace
