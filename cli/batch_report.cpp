@@ -65,6 +65,10 @@ std::string report_json(const BatchSummary& summary) {
                                      {"skipped", count_outcome(summary.frames, "skipped")},
                                      {"not_run", count_outcome(summary.frames, "not run")},
                                      {"frames", std::move(frames)}};
+    if (!summary.renderer.empty()) {
+        report["renderer"] = summary.renderer;
+        report["hardware_not_usable"] = summary.is_fall_back;
+    }
     if (!summary.error.empty()) report["error"] = summary.error;
     return report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }

@@ -15,6 +15,8 @@ struct BatchSummary {
     std::vector<FrameEvent> frames;
     double seconds = 0;
     ExitCode exit_code = ExitCode::done;
+    std::string renderer{};  ///< "egl-software: llvmpipe (...), 4.5 ..."; "" where nothing was drawn here
+    bool is_fall_back = false;  ///< backend auto found no hardware GL
     std::string error{};  ///< the message of what ended the run; "" where nothing did
 };
 

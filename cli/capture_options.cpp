@@ -1,5 +1,8 @@
 #include "cli/capture_options.h"
 
+#include "cli/slip_hints.h"
+
+#include <sstream>
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
@@ -87,6 +90,12 @@ std::vector<Profile> load_profiles(const std::vector<std::string>& profile_paths
 
 std::optional<Sequence> find_sequence(const CaptureOptions& options, const std::vector<Profile>& profiles,
                                       Diagnostics& diagnostics) {
+    std::error_code unreadable;
+    if (options.capture.find('*') != std::string::npos && !std::filesystem::exists(options.capture, unreadable)) {
+        diagnostics.error({options.capture}, "a sequence is written with # for each digit of its frames, not with *: '" +
+                                                 frame_pattern(options.capture) + "'");
+        return std::nullopt;
+    }
     std::optional<Sequence> sequence;
     try {
         sequence = open_sequence(options.capture, diagnostics);
@@ -114,9 +123,11 @@ std::optional<Sequence> find_sequence(const CaptureOptions& options, const std::
 void stop_at_errors(const Diagnostics& diagnostics) {
     if (!diagnostics.has_errors()) return;
     diagnostics.print(std::cerr);
-    throw Error(ExitCode::usage, std::to_string(diagnostics.error_count()) +
-                                     (diagnostics.error_count() == 1 ? " error" : " errors") +
-                                     "; nothing was run");
+    std::ostringstream faults;
+    diagnostics.print(faults);
+    throw FaultyDocuments(std::to_string(diagnostics.error_count()) +
+                              (diagnostics.error_count() == 1 ? " error" : " errors") + "; nothing was run",
+                          faults.str());
 }
 
 }  // namespace aftershade::cli

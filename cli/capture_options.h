@@ -3,11 +3,13 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "framework/capture/profile.h"
 #include "framework/capture/sequence.h"
 #include "framework/core/diagnostics.h"
+#include "framework/core/error.h"
 #include "framework/file/exr_file.h"
 
 namespace CLI {
@@ -43,6 +45,13 @@ std::vector<Profile> load_profiles(const std::vector<std::string>& profile_paths
 /// fix.
 std::optional<Sequence> find_sequence(const CaptureOptions& options, const std::vector<Profile>& profiles,
                                       Diagnostics& diagnostics);
+
+/// Its message counts the faults, which have been printed.
+struct FaultyDocuments : Error {
+    FaultyDocuments(const std::string& message, std::string faults)
+        : Error(ExitCode::usage, message), details(std::move(faults)) {}
+    std::string details;  ///< a line for each fault
+};
 
 /// Throws Error(ExitCode::usage) with every fault collected so far.
 void stop_at_errors(const Diagnostics& diagnostics);

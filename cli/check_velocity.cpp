@@ -4,10 +4,10 @@
 
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <thread>
 #include <utility>
 
 #include "framework/capture/capture.h"
+#include "framework/core/cores.h"
 #include "framework/inspect/velocity_frames.h"
 #include "framework/inspect/velocity_report.h"
 
@@ -67,7 +67,7 @@ ExitCode check_velocity_of_files(const std::vector<std::string>& files, const Ca
             sequences.push_back(std::move(*sequence));
     }
     stop_at_errors(diagnostics);
-    set_exr_threads(int(std::thread::hardware_concurrency()));
+    set_exr_threads(allotted_cores());
 
     std::vector<Capture> captures;
     std::map<std::string, RoleDecoding> decodings;

@@ -4,7 +4,6 @@
 #include <memory>
 #include <new>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "cli/compare_options.h"
@@ -12,6 +11,7 @@
 #include "framework/compare/comparison_report.h"
 #include "framework/compare/difference_picture.h"
 #include "framework/core/atomic_file.h"
+#include "framework/core/cores.h"
 
 namespace aftershade::cli {
 
@@ -48,7 +48,7 @@ void check_labels(const Comparison& comparison) {
 Verdict compare(const CompareOptions& options, const CompareRules& rules) {
     ComparisonPictures pictures({options.absolute, options.scale}, !options.output.empty(),
                                 !options.heat_map.empty(), !options.side_by_side.empty());
-    set_exr_threads(int(std::thread::hardware_concurrency()));
+    set_exr_threads(allotted_cores());
     const Comparison comparison = compare_files(
         options.reference, options.test, rules,
         [&](const LayerComparison& layer, LayerImages& images) { pictures.add(layer, images); });

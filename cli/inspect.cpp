@@ -5,7 +5,6 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -15,6 +14,7 @@
 #include "cli/inspect_sheet.h"
 #include "cli/verbs.h"
 #include "framework/capture/sample_means.h"
+#include "framework/core/cores.h"
 #include "framework/core/data_path.h"
 #include "framework/core/input_files.h"
 #include "framework/file/png_file.h"
@@ -254,7 +254,7 @@ ExitCode inspect(const InspectOptions& options) {
     stop_at_errors(diagnostics);
     diagnostics.print(std::cerr);
 
-    set_exr_threads(int(std::thread::hardware_concurrency()));
+    set_exr_threads(allotted_cores());
     const CaptureReader reader(*sequence, std::move(profiles), options.capture.limits);
     if (wants_frames(options, *sequence))
         return write_frame_sheet(options.contact_sheet, options.columns, *sequence, reader);

@@ -22,6 +22,7 @@
 #include "cli/exit_code.h"
 #include "cli/help_formatter.h"
 #include "cli/plugin_options.h"
+#include "cli/slip_hints.h"
 #include "cli/verbs.h"
 #include "framework/core/diagnostics.h"
 #include "framework/core/memory_limit.h"
@@ -147,6 +148,10 @@ int main(int argc, char** argv) {
         if (const std::string fault = unknown_command(app, argc, argv); !fault.empty())
             return fail(code, fault.c_str());
         app.exit(error);
+        std::vector<std::string> names;
+        for (const auto& [verb, run] : verbs) names.push_back(verb->get_name());
+        if (const auto hint = aftershade::cli::slip_hint({argv + 1, argv + argc}, names); !hint.empty())
+            std::cerr << "hint: " << aftershade::printable(hint) << "\n";
         return end(int(code));
     }
     aftershade::prepare_for_memory_limit();

@@ -26,7 +26,10 @@ ExitCode make(const NewOptions& options) {
     const EffectRegistry shipped = find_effects({}, diagnostics);
     const fs::path folder = fs::path(options.folder) / options.id;
     std::error_code failure;
-    if (!is_snake_case(options.id)) diagnostics.error({"ID"}, "'" + options.id + "' " + kMustBeSnakeCase);
+    if (const fs::path path = options.id; path.has_parent_path() && is_snake_case(path.filename().string()))
+        diagnostics.error({"ID"}, "'" + options.id + "' is a path; the folder has an option of its own: aftershade new " +
+                                      path.filename().string() + " --path " + shell_line({path.parent_path().string()}));
+    else if (!is_snake_case(options.id)) diagnostics.error({"ID"}, "'" + options.id + "' " + kMustBeSnakeCase);
     else if (shipped.contains(options.id))
         diagnostics.error({"ID"}, "an effect that comes with Aftershade is called '" + options.id + "'");
     else if (fs::exists(folder, failure)) diagnostics.error({"ID"}, folder.string() + " is there already");

@@ -15,6 +15,7 @@
 #include "cli/visibility_options.h"
 #include "framework/capture/deep_layers.h"
 #include "framework/capture/frame_range.h"
+#include "framework/core/cores.h"
 #include "framework/core/input_files.h"
 #include "framework/core/text.h"
 #include "framework/scene/job.h"
@@ -175,7 +176,7 @@ void complete_job(const RenderArguments& options, const scene::Scene& scene, sce
     job.captures = !options.only_truth;
     job.jitter = options.jitter == "halton";
     job.texture_side_px = options.texture_size;
-    job.threads = int(std::max(std::thread::hardware_concurrency(), 1u));
+    job.threads = allotted_cores();
     read_texture_space(options, scene, job, diagnostics);
     scene::check_job(scene, job, diagnostics);
 }

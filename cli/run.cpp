@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/bound_look.h"
+#include "cli/early_report.h"
 #include "cli/frame_gaps.h"
 #include "cli/gl_options.h"
 #include "cli/graph_file.h"
@@ -229,7 +230,20 @@ ExitCode run(const RunArguments& options) {
 Verb add_run(CLI::App& app) {
     auto options = std::make_shared<RunArguments>();
     add_run_options(app, *options);
-    return [options] { return run(*options); };
+    return [options] {
+        remove_old_report(*options);
+        try {
+            const ExitCode code = run(*options);
+            write_early_report(*options, code, "");  // where there was no frame to run
+            return code;
+        } catch (const FaultyDocuments& faults) {
+            write_early_report(*options, faults.exit_code(), faults.details);
+            throw;
+        } catch (const Error& error) {
+            write_early_report(*options, error.exit_code(), error.what());
+            throw;
+        }
+    };
 }
 
 }  // namespace aftershade::cli

@@ -225,7 +225,7 @@ void RunReporter::print_json_summary(const RunReport& report) const {
                 {"stages", stages}});
 }
 
-void RunReporter::print_summary(const RunReport& report) {
+void RunReporter::print_summary(const RunReport& report, bool is_fall_back) {
     line_.clear();
     if (style_ == ProgressStyle::none) return;
     frame_count_ -= warmup_frames_ + report.frames_unwritten;  // what was to be written
@@ -245,7 +245,7 @@ void RunReporter::print_summary(const RunReport& report) {
     if (!report.gl.renderer.empty())
         fmt::print(stderr, ", {}: {}, {}", gpu::backend_name(report.gl.backend), report.gl.renderer,
                    report.gl.version);
-    fmt::print(stderr, "\n");
+    fmt::print(stderr, "{}\n", is_fall_back ? "; backend auto found no usable hardware GL" : "");
 }
 
 }  // namespace aftershade::cli

@@ -1,12 +1,14 @@
 #include "cli/run_session.h"
 
 #include <chrono>
+#include <filesystem>
 #include <iostream>
 #include <string>
 #include <thread>
 
 #include "cli/batch_report.h"
 #include "cli/command_line.h"
+#include "cli/gl_options.h"
 #include "cli/graph_file.h"
 #include "cli/run_continuation.h"
 #include "cli/telemetry_plot.h"
@@ -29,6 +31,23 @@ void write_extras(const RunArguments& arguments, const RunReport& report) {
             telemetry_plot(report.telemetry, std::filesystem::path(arguments.look).filename().string()));
 }
 
+std::string renderer_text(const gpu::ContextInfo& gl) {
+    return std::string(gpu::backend_name(gl.backend)) + ": " + gl.renderer + ", " + gl.version;
+}
+
+/// Whether `auto` took software because no hardware GL can be used here.
+bool is_fall_back(const RunSession& session, const gpu::ContextInfo& gl) {
+    return gl.software && chosen_backend(session.arguments.backend) == gpu::Backend::automatic;
+}
+
+/// The device files of GPUs: a machine without them is not expected to draw on hardware.
+bool has_gpu_device() {
+    std::error_code failure;
+    for (const char* path : {"/dev/nvidia0", "/dev/nvidiactl", "/dev/dri/renderD128", "/dev/dxg", "/dev/kfd"})
+        if (std::filesystem::exists(path, failure)) return true;
+    return false;
+}
+
 /// What --report has of a run in this process, also of one that an error ends.
 class ReportFile {
 public:
@@ -41,7 +60,7 @@ public:
             write_text_file(
                 session_.arguments.jobs.report,
                 report_json({session_.arguments.look, session_.arguments.capture.capture,
-                             frame_events(session_.run, outcomes_, current_), taken.count(), code_, error_}));
+                             frame_events(session_.run, outcomes_, current_), taken.count(), code_, renderer_, is_fall_back_, error_}));
         } catch (const Error& error) {
             std::cerr << printable_lines(error.what()) << "\n";
         }
@@ -68,6 +87,8 @@ public:
             RunReport report = run_frames(setup, watched(observer), stop);
             report.frames_current = int(current_.size());
             ended(report.exit_code());
+            if (!report.gl.renderer.empty()) renderer_ = renderer_text(report.gl);
+            is_fall_back_ = is_fall_back(session_, report.gl);
             return report;
         } catch (const Error& error) {
             ended(error.exit_code());
@@ -81,7 +102,9 @@ private:
     const std::vector<int>& current_;
     std::vector<FrameOutcome> outcomes_;
     ExitCode code_ = ExitCode::effect;  // of an error
-    std::string error_;                 // its message
+    std::string renderer_;
+    bool is_fall_back_ = false;
+    std::string error_;  // its message
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
@@ -99,10 +122,13 @@ ExitCode render(const RunSession& session, const RunOptions& run, const Pipeline
         report_file.run({session.context, pipeline, session.sequence, session.reader, settings,
                          session.outputs, data_path(), hooks, session.end_context},
                         reporter.observer(), stop);
+    if (is_fall_back(session, report.gl) && has_gpu_device())
+        reporter.warn("this machine has a GPU, but no hardware GL could be used, so the frames were drawn in "
+                      "software; aftershade doctor says why, and --backend egl refuses such a run");
     // Of several workers each sees only a part of the frames.
     if (!session.arguments.jobs.is_worker())
         for (const std::string& warning : report.objects_unmatched) reporter.warn(warning);
-    reporter.print_summary(report);
+    reporter.print_summary(report, is_fall_back(session, report.gl));
     if (session.outputs.stream && !report.failures.empty())
         std::cerr
             << "-o -: the stream ends before frame " << report.failures.front().frame

@@ -115,7 +115,12 @@ public:
         const std::size_t last = std::min(position == 0 ? 0 : position - 1, text_.size());
         // "invalid" speaks of one character; any other fault is a whole token out of place.
         const bool inside_token = message.find(" - invalid ") != std::string::npos;
-        diagnostics_.error(place(inside_token ? last : token_start(last)), message);
+        const std::size_t at = inside_token ? last : token_start(last);
+        const std::string_view before = std::string_view(text_).substr(0, at);
+        const std::size_t comma = before.find_last_not_of(" \t\r\n");
+        const bool is_trailing = at < text_.size() && (text_[at] == ']' || text_[at] == '}') &&
+                                 comma != std::string_view::npos && before[comma] == ',';
+        diagnostics_.error(place(at), message + (is_trailing ? "; remove the comma before it" : ""));
         return false;
     }
 

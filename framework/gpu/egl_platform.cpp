@@ -207,8 +207,8 @@ private:
         if (force_software) variable.emplace("LIBGL_ALWAYS_SOFTWARE", "1");
         if (egl_.initialize(display_, nullptr, nullptr)) return;
         throw Error(ExitCode::gl,
-                    fmt::format("{}: eglInitialize failed ({}); often the Debian package libgl1-mesa-dri is "
-                                "missing, or the device file may not be opened",
+                    fmt::format("{}: eglInitialize failed ({}): the driver does not load or may not open its device; "
+                                "EGL_LOG_LEVEL=debug makes it say why",
                                 name_, error_name(egl_.get_error())));
     }
 
@@ -307,7 +307,8 @@ std::unique_ptr<Platform> make_egl_platform(Renderer kind) {
     if (!reasons.empty()) throw Error(ExitCode::gl, reasons);
     throw Error(ExitCode::gl, kind == Renderer::hardware
                                   ? "EGL lists no hardware device"
-                                  : "EGL lists no software device; install the Debian package libegl-mesa0");
+                                  : "EGL lists no software device: it finds no Mesa among its vendors (Debian "
+                                    "package libegl-mesa0), or __EGL_VENDOR_LIBRARY_FILENAMES leaves it out");
 }
 
 }  // namespace aftershade::gpu

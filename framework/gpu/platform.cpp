@@ -29,21 +29,38 @@ void load_ahead(Backend backend) noexcept {
 }
 
 bool is_software_renderer(std::string_view renderer) {
-    static constexpr std::array<std::string_view, 5> kNames = {"llvmpipe", "softpipe", "swrast",
-                                                               "software rasterizer", "swiftshader"};
+    // WARP calls itself Microsoft Basic Render Driver, alone and below Mesa's d3d12.
+    static constexpr std::array<std::string_view, 9> kNames = {
+        "llvmpipe",    "lavapipe",               "softpipe",       "swrast", "software rasterizer",
+        "swiftshader", "microsoft basic render", "direct3d warp", "openswr"};
     const std::string lower = lower_case(renderer);
     return std::any_of(kNames.begin(), kNames.end(),
                        [&](std::string_view name) { return lower.find(name) != std::string::npos; });
 }
 
+namespace {
+
+/// Whether the loader says that it finds no file of the library itself. A library that it finds and cannot load
+/// has an undefined symbol, or lacks another one, which the loader then names without a path.
+bool is_absent(std::string_view message, std::string_view name) {
+    const std::string_view file = message.substr(0, message.find(':'));
+    return message.find("cannot open shared object file: No such file") != std::string_view::npos &&
+           (file == name || file.find('/') != std::string_view::npos);
+}
+
+}  // namespace
+
 void* open_library(std::initializer_list<const char*> names, std::string_view package) {
-    std::string reason;
+    std::string absent;
     for (const char* name : names) {
         if (void* library = dlopen(name, RTLD_NOW | RTLD_LOCAL)) return library;
-        const char* message = dlerror();
-        if (reason.empty()) reason = message ? message : name;
+        const char* said = dlerror();
+        const std::string message = said ? said : name;
+        if (said && !is_absent(message, name))
+            throw Error(ExitCode::gl, fmt::format("{} is there, but the loader refuses it: {}", name, message));
+        if (absent.empty()) absent = message;
     }
-    throw AbsentLibrary(reason, fmt::format("; install the Debian package {}", package));
+    throw AbsentLibrary(absent, fmt::format("; install the Debian package {}", package));
 }
 
 std::string gl_string(const Platform& platform, unsigned int name) {

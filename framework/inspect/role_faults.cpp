@@ -32,6 +32,20 @@ double median_of(std::vector<double>& values) {
     return *middle;
 }
 
+/// The share of the pixels with a depth or a position that have both.
+double overlap(const Image& depth, const Image& position) {
+    std::size_t both = 0, either = 0;
+    for (int y = 0; y < depth.height(); ++y)
+        for (int x = 0; x < depth.width(); ++x) {
+            const bool has_depth = std::isfinite(depth.at(x, y, 0)) && depth.at(x, y, 0) > 0;
+            const bool has_position =
+                position.at(x, y, 0) != 0 || position.at(x, y, 1) != 0 || position.at(x, y, 2) != 0;
+            both += has_depth && has_position;
+            either += has_depth || has_position;
+        }
+    return either < kLeastPixels ? 1 : double(both) / double(either);
+}
+
 /// The median ratio of the distances along the camera's axis to the depths; 1 where they agree or too few are
 /// known.
 double ratio_to_camera(const Image& depth, const Image& position, const CameraMatrix& camera_from_world) {
@@ -70,8 +84,10 @@ std::string find_depth_fault(const Image& depth) {
 std::string find_position_fault(const Image& depth, const Image& position, const Camera& camera) {
     const DepthKind kind = find_depth_kind(depth, position);
     if (kind.verdict() == DepthKind::Verdict::unknown) {
-        if (!kind.contradicts()) return "";
-        if (find_depth_kind(upside_down(depth), position).verdict() != DepthKind::Verdict::unknown)
+        const bool covers_others = overlap(depth, position) < 0.5;
+        if (!kind.contradicts() && !covers_others) return "";
+        if (covers_others && overlap(upside_down(depth), position) < kMostlyTrue) return "";
+        if (covers_others || find_depth_kind(upside_down(depth), position).verdict() != DepthKind::Verdict::unknown)
             return "the depth is upside down against the position: with its rows in the other order it fits; "
                    "write both from the same corner of the picture";
         return fmt::format("the depth contradicts the position: read as planar it is {:.2g} % off, as radial "

@@ -118,6 +118,10 @@ std::vector<OutputName> all_names(const OutputOptions& options) {
     return names;
 }
 
+bool is_film(const std::string& type) {
+    return type == ".mp4" || type == ".mov" || type == ".mkv" || type == ".webm" || type == ".avi";
+}
+
 }  // namespace
 
 void prepare_output_folders(const OutputOptions& options, const Sequence& sequence) {
@@ -139,7 +143,10 @@ void check_outputs(const OutputOptions& options, const Sequence& sequence, Input
         if (is_telemetry ? type != ".json" : type != ".exr" && type != ".png")
             diagnostics.error(place,
                               "the format '" + type + "' is not known; " +
-                                  (is_telemetry ? "telemetry ends in .json" : "outputs end in .exr or .png"));
+                                  (is_telemetry ? "telemetry ends in .json" : "outputs end in .exr or .png") +
+                                  (is_film(type) ? "; for a film, -o - --print-ffmpeg prints the command that "
+                                                   "gives the frames to ffmpeg"
+                                                 : ""));
         if (sequence.frames.size() > 1 && !pattern.has_frame())
             diagnostics.error(place, std::to_string(sequence.frames.size()) +
                                          " frames cannot share one file; write the number as #### or %04d");

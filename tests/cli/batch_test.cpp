@@ -1,5 +1,6 @@
 // Sequences with holes, history begun in the middle, empty words, watching.
 #include <chrono>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <thread>
 
@@ -45,6 +46,28 @@ TEST_F(Batch, AMissingFrameOfAPatternIsSkippedOrHeldWhereThatIsAskedFor) {
         run({"nothing.json", "in_####.exr", "-o", "out_####.exr", "--missing", "hold"}, 0);
     EXPECT_EQ(held.out, "out_0002.exr\n") << "frames 1 and 3 are current";
     EXPECT_TRUE(says(held, "frame 2 is missing: held")) << held.err;
+}
+
+TEST_F(Batch, ARunThatEndsEarlyReplacesTheReportOfAnEarlierOne) {
+    write_frames(1, 1);
+    const auto run_with = [&](std::vector<std::string> more, int code) {
+        more.insert(more.end(), {"-o", "out.exr", "--report", "report.json"});
+        run(more, code);
+        return nlohmann::json::parse(read_text(folder_ / "report.json"));
+    };
+    EXPECT_EQ(run_with({"nothing.json", "in_0001.exr"}, 0)["done"], 1);
+    write_text(folder_ / "faulty.json", R"({"aftershade": 1, "steps": [{"effect": "nope"}]})");
+    const auto faulty = run_with({"faulty.json", "in_0001.exr"}, int(ExitCode::usage));
+    EXPECT_EQ(faulty["look"], "faulty.json");
+    EXPECT_EQ(faulty["exit_code"], 2);
+    EXPECT_EQ(faulty["done"], 0);
+    EXPECT_NE(faulty["error"].get<std::string>().find("no effect 'nope'"), std::string::npos);
+    write_text(folder_ / "in_0002.exr", "no picture");
+    EXPECT_EQ(run_with({"nothing.json", "in_0002.exr"}, int(ExitCode::capture))["exit_code"], 3);
+    // What is no report is not removed.
+    write_text(folder_ / "notes.json", "{}");
+    run({"faulty.json", "in_0001.exr", "-o", "out.exr", "--report", "notes.json"}, int(ExitCode::usage));
+    EXPECT_EQ(read_text(folder_ / "notes.json"), "{}");
 }
 
 TEST_F(Batch, ASequenceOnTwosIsWholeAndSaysThatItIsOnTwos) {

@@ -206,6 +206,9 @@ TEST(Platform, KnowsSoftwareRenderersByTheirNames) {
     EXPECT_TRUE(is_software_renderer("zink Vulkan 1.3(llvmpipe (LLVM 15.0.6, 256 bits))"));
     EXPECT_TRUE(is_software_renderer("softpipe"));
     EXPECT_TRUE(is_software_renderer("Software Rasterizer"));
+    EXPECT_TRUE(is_software_renderer("D3D12 (Microsoft Basic Render Driver)"));
+    EXPECT_TRUE(is_software_renderer("ANGLE (Google, Vulkan 1.3.0 (SwiftShader Device (Subzero)))"));
+    EXPECT_TRUE(is_software_renderer("zink Vulkan 1.3(lavapipe)"));
     EXPECT_FALSE(is_software_renderer("NVIDIA H200/PCIe/SSE2"));
     EXPECT_FALSE(is_software_renderer("AMD Radeon RX 6800 (navi21, LLVM 15.0.6, DRM 3.49)"));
 }
@@ -217,6 +220,21 @@ TEST(Platform, NamesThePackageOfALibraryThatIsMissing) {
     } catch (const AbsentLibrary& error) {
         EXPECT_NE(std::string(error.what()).find("libnone.so.1"), std::string::npos) << error.what();
         EXPECT_EQ(error.advice(), "; install the Debian package libnone1");
+    }
+}
+
+TEST(Platform, QuotesTheLoaderOfALibraryThatIsThereAndCannotBeLoaded) {
+    // A file that is no library.
+    const std::string script = AFTERSHADE_SOURCE_DIR "/README.md";
+    try {
+        open_library({"libnone.so.1", script.c_str()}, "libnone1");
+        FAIL() << "a text was opened as a library";
+    } catch (const AbsentLibrary& error) {
+        FAIL() << error.advice();
+    } catch (const Error& error) {
+        const std::string text = error.what();
+        EXPECT_NE(text.find("is there, but the loader refuses it: " + script), std::string::npos) << text;
+        EXPECT_EQ(text.find("install"), std::string::npos) << text;
     }
 }
 
