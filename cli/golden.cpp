@@ -37,11 +37,43 @@ fs::path write_page(const fs::path& report, fs::path page, double limit_mb) {
     return page;
 }
 
-/// A run that does not end must not leave the figures of an earlier one beside its own pictures.
-void remove_old_page(const fs::path& report) {
+/// Whether a file is absent, or a report of an earlier run: an end before the outputs were held against the
+/// inputs replaces nothing else.
+bool may_replace(const fs::path& file, std::string_view begin) {
     std::error_code failure;
-    if (!fs::remove(report / "report.json", failure)) return;
-    fs::remove(report / "index.html", failure);
+    return !fs::exists(file, failure) || file_begins_with(file, begin);
+}
+
+/// A run that does not end must not leave the figures of an earlier one beside its own pictures.
+void remove_old_reports(const GoldenOptions& options) {
+    std::error_code failure;
+    if (!options.junit.empty() && fs::is_regular_file(options.junit, failure)) fs::remove(options.junit, failure);
+    if (options.report.empty()) return;
+    if (!fs::remove(fs::path(options.report) / "report.json", failure)) return;
+    fs::remove(fs::path(options.report) / "index.html", failure);
+}
+
+/// Reports of an earlier run would be taken for this one's. Faults of writing are not worth more than the cause.
+void write_early_end(const GoldenOptions& options, const std::string& message, int exit_code) {
+    const GoldenEarlyEnd end{options.suite, message, exit_code};
+    try {
+        if (!options.junit.empty() && may_replace(options.junit, "<?xml"))
+            write_text_file(options.junit, early_junit_of(end));
+        const fs::path report(options.report), json = report / "report.json", page = report / "index.html";
+        if (options.report.empty() || !may_replace(json, "{\n  \"aftershade\"") || !may_replace(page, "<!"))
+            return;
+        fs::create_directories(report);
+        write_text_file(json, early_json_of(end).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+        write_text_file(page, early_page_of(end));
+    } catch (const std::exception& error) {
+        std::cerr << "aftershade: warning: " << error.what() << "\n";
+    }
+}
+
+/// The code that this verb ends with.
+ExitCode own_code(const Error& error) {
+    if (error.exit_code() == kCompareUsage) return kCompareUsage;
+    return error.exit_code() == ExitCode::usage ? kCompareUsage : ExitCode(int(Verdict::file_error));
 }
 
 void write_reports(const GoldenOptions& options, const GoldenSuiteResult& result,
@@ -91,16 +123,13 @@ void check_outputs(const GoldenOptions& options, const GoldenSuite& suite) {
     refuse_outputs(diagnostics);
 }
 
-ExitCode run(const GoldenOptions& options) {
+ExitCode run_prepared(const GoldenOptions& options, const GoldenSetup& setup) {
     const std::atomic<bool>& stop = watch_for_interrupt();
-    GoldenSetup setup = prepare_golden(options);
-    setup.context.suite = &setup.suite;
-    check_outputs(options, setup.suite);
+    remove_old_reports(options);
     if (!options.report.empty()) {
         std::error_code failure;
         fs::create_directories(fs::path(options.report) / "images", failure);
         if (failure) throw Error(ExitCode::output, "--report " + options.report + ": " + failure.message());
-        remove_old_page(options.report);
     }
     print_head(setup.context);
     const GoldenSuiteResult result = run_golden_suite(
@@ -114,6 +143,21 @@ ExitCode run(const GoldenOptions& options) {
     print_notes(result);
     write_reports(options, result, setup.context);
     return ExitCode(int(result.verdict));
+}
+
+ExitCode run(const GoldenOptions& options) {
+    const auto or_early_end = [&](const auto& work) {
+        try {
+            return work();
+        } catch (const Error& error) {
+            write_early_end(options, error.what(), int(own_code(error)));
+            throw;
+        }
+    };
+    GoldenSetup setup = or_early_end([&] { return prepare_golden(options); });
+    setup.context.suite = &setup.suite;
+    check_outputs(options, setup.suite);
+    return or_early_end([&] { return run_prepared(options, setup); });
 }
 
 void print_approval(const GoldenApproval& approval) {
@@ -196,9 +240,7 @@ ExitCode with_own_codes(const std::function<ExitCode()>& work) {
     try {
         return work();
     } catch (const Error& error) {
-        if (error.exit_code() == kCompareUsage) throw;
-        const bool usage = error.exit_code() == ExitCode::usage;
-        throw Error(usage ? kCompareUsage : ExitCode(int(Verdict::file_error)), error.what());
+        throw Error(own_code(error), error.what());
     } catch (const fs::filesystem_error& error) {
         throw Error(ExitCode(int(Verdict::file_error)), error.what());
     }

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
 #include <nlohmann/json.hpp>
 #include <thread>
 #include <utility>
 
 #include "framework/compare/comparison_report.h"
+#include "framework/core/lfs_pointer.h"
 #include "framework/core/text.h"
 
 namespace aftershade {
@@ -41,20 +43,28 @@ std::string word_of(const GoldenCaseResult& test, const char* good) {
     return test.verdict == Verdict::warning ? "***Warning" : "   " + std::string(good) + " ";
 }
 
-/// Why a case has its verdict, an image a line.
+/// Why a case has its verdict, each reason once.
 std::vector<std::string> reasons_of(const GoldenCaseResult& test) {
     std::vector<std::string> lines;
     if (test.verdict >= Verdict::failure || test.verdict == Verdict::warning) lines = test.messages;
-    for (const GoldenImage& image : test.images)
-        if (image.verdict != Verdict::same)
-            for (const std::string& reason : image.reasons) lines.push_back(image.name + ": " + reason);
+    std::vector<std::pair<std::string, std::string>> images;  // names by reason, in order
+    for (const GoldenImage& image : test.images) {
+        if (image.verdict == Verdict::same) continue;
+        for (const std::string& reason : image.reasons) {
+            const auto known = std::ranges::find(images, reason, &std::pair<std::string, std::string>::first);
+            if (known == images.end()) images.emplace_back(reason, image.name);
+            else if (known->second != image.name) known->second += ", " + image.name;
+        }
+    }
+    for (const auto& [reason, names] : images) lines.push_back(names + ": " + reason);
     return lines;
 }
 
-/// Whether new images could make the case pass.
+/// Whether new images could make the case pass. An approved image that was not fetched is not replaced.
 bool can_approve(const GoldenCaseResult& test) {
-    return std::ranges::any_of(test.images,
-                               [](const GoldenImage& image) { return image.verdict != Verdict::same; });
+    return std::ranges::any_of(test.images, [](const GoldenImage& image) {
+        return image.verdict != Verdict::same && !(image.approved && !lfs_fault(image.approved->file).empty());
+    });
 }
 
 bool only_machine_changed(const GoldenCaseResult& test) {
@@ -83,11 +93,27 @@ std::string note_of_tolerated(const GoldenSuiteResult& result) {
     return text;
 }
 
-std::vector<const GoldenCaseResult*> cases_to_approve(const GoldenSuiteResult& result) {
+/// Of which more than the machine has changed, or nothing else.
+std::vector<const GoldenCaseResult*> cases_to_approve(const GoldenSuiteResult& result, bool of_machine) {
     std::vector<const GoldenCaseResult*> cases;
     for (const GoldenCaseResult& test : result.cases)
-        if (can_approve(test)) cases.push_back(&test);
+        if (can_approve(test) && only_machine_changed(test) == of_machine) cases.push_back(&test);
     return cases;
+}
+
+/// What an annotation shows of a case: all the errors of one that did not render, such as a shader's.
+std::string snippet_of(const GoldenCaseResult& test, const std::vector<std::string>& lines) {
+    constexpr std::size_t kMostLines = 8;
+    if (lines.empty() || !test.images.empty()) return lines.empty() ? "" : lines.front();
+    auto first = std::ranges::find_if(lines, [](const auto& line) { return line.find("error") != line.npos; });
+    if (first == lines.end()) first = lines.begin();
+    const std::span<const std::string> rest(first, lines.end());
+    return joined(rest.first(std::min(rest.size(), kMostLines)), "\n", "\n");
+}
+
+std::string fault_of_orphan(const fs::path& orphan) {
+    if (orphan.extension() == ".json") return "no case gives this golden: a sidecar without an image; remove it";
+    return "no case gives this golden; remove it, or fix the case";
 }
 
 std::string junit_case(const GoldenCaseResult& test, const GoldenReportContext& context) {
@@ -96,9 +122,11 @@ std::string junit_case(const GoldenCaseResult& test, const GoldenReportContext& 
     std::vector<std::string> lines = reasons_of(test);
     if (can_approve(test)) lines.push_back(remedy_of(test, context));
     if (const std::string note = allowances_of(test); !note.empty()) lines.push_back(note);
-    const std::string why = lines.empty() ? "" : lines.front(), all = joined(lines, "\n", "\n");
+    const std::string why = snippet_of(test, lines), all = joined(lines, "\n", "\n");
+    // What no picture decides (no GL, a file that cannot be read) is an error of JUnit.
+    const char* const element = test.verdict == Verdict::file_error ? "error" : "failure";
     if (test.verdict >= Verdict::failure)
-        text += fmt::format("<failure type=\"{}\" message=\"{}\">{}</failure>", verdict_name(test.verdict),
+        text += fmt::format("<{0} type=\"{1}\" message=\"{2}\">{3}</{0}>", element, verdict_name(test.verdict),
                             xml_text(why), xml_text(all));
     else if (!test.skipped.empty()) text += fmt::format("<skipped message=\"{}\"/>", xml_text(test.skipped));
     else if (test.verdict == Verdict::warning)
@@ -253,10 +281,11 @@ std::string summary_of(const GoldenSuiteResult& result, const GoldenReportContex
             if (can_approve(test)) text += "    " + remedy_of(test, context) + "\n";
         }
     for (const fs::path& orphan : result.orphans)
-        text += fmt::format("\nFAILED {}: no case gives this golden; remove it, or fix the case\n",
-                            orphan.string());
-    if (const auto cases = cases_to_approve(result); cases.size() > 1)
+        text += fmt::format("\nFAILED {}: {}\n", orphan.string(), fault_of_orphan(orphan));
+    if (const auto cases = cases_to_approve(result, false); cases.size() > 1)
         text += "\nto approve all: " + approve_command(context, cases) + "\n";
+    if (const auto cases = cases_to_approve(result, true); cases.size() > 1)
+        text += "\nto keep this machine's images of all: " + approve_command(context, cases) + "\n";
     if (const std::string note = note_of_tolerated(result); !note.empty()) text += "\n" + note;
     const Counts counts = count(result);
     return text +
@@ -270,10 +299,11 @@ std::string summary_of(const GoldenSuiteResult& result, const GoldenReportContex
 std::string junit_of(const GoldenSuiteResult& result, const GoldenReportContext& context) {
     const Counts counts = count(result);
     const std::size_t tests = result.cases.size() + result.orphans.size();
-    const std::size_t failures = std::size_t(counts.failed) + result.orphans.size();
+    const auto errors = std::size_t(std::ranges::count(result.cases, Verdict::file_error, &GoldenCaseResult::verdict));
+    const std::size_t failures = std::size_t(counts.failed) + result.orphans.size() - errors;
     std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
-    const std::string sums = fmt::format("tests=\"{}\" failures=\"{}\" errors=\"0\" time=\"{:.3f}\"", tests,
-                                         failures, result.seconds);
+    const std::string sums = fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\" time=\"{:.3f}\"", tests,
+                                         failures, errors, result.seconds);
     // Jenkins' schema of these files knows `skipped` of a testsuite alone.
     text += "<testsuites " + sums + ">\n";
     text +=
@@ -293,8 +323,8 @@ std::string junit_of(const GoldenSuiteResult& result, const GoldenReportContext&
     for (const fs::path& orphan : result.orphans)
         text += fmt::format(
             "    <testcase classname=\"golden.orphan\" name=\"{0}\"><failure type=\"failure\" "
-            "message=\"no case gives this golden\">{0}</failure></testcase>\n",
-            xml_text(orphan.string()));
+            "message=\"{1}\">{0}</failure></testcase>\n",
+            xml_text(orphan.string()), xml_text(fault_of_orphan(orphan)));
     return text + "  </testsuite>\n</testsuites>\n";
 }
 
@@ -325,10 +355,32 @@ Json json_of(const GoldenSuiteResult& result, const GoldenReportContext& context
               {"skipped", counts.skipped},
               {"orphans", result.orphans.size()}}},
             {"filters", context.options.filters},
-            {"approve", text_or_null(approve_command(context, cases_to_approve(result)))},
+            {"approve", text_or_null(approve_command(context, cases_to_approve(result, false)))},
+            {"approve_machine", text_or_null(approve_command(context, cases_to_approve(result, true)))},
             {"environment", std::move(environment)},
             {"cases", std::move(cases)},
             {"orphans", std::move(orphans)}};
+}
+
+std::string early_junit_of(const GoldenEarlyEnd& end) {
+    const std::string sums = "tests=\"1\" failures=\"0\" errors=\"1\" time=\"0\"";
+    return fmt::format(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {0}>\n  <testsuite name=\"{1}\" {0} skipped=\"0\">\n"
+        "    <testcase classname=\"golden\" name=\"run\" time=\"0\"><error type=\"exit code {2}\" message=\"{3}\">{3}"
+        "</error></testcase>\n  </testsuite>\n</testsuites>\n",
+        sums, xml_text(end.suite), end.exit_code, xml_text(end.message));
+}
+
+Json early_json_of(const GoldenEarlyEnd& end) {
+    return {{"aftershade", 1}, {"suite", end.suite},     {"verdict", "ended early"},      {"exit_code", end.exit_code},
+            {"error", end.message}, {"cases", Json::array()}, {"orphans", Json::array()}};
+}
+
+std::string early_page_of(const GoldenEarlyEnd& end) {
+    return fmt::format(
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}: ended early</title></head>\n"
+        "<body><h1>{0}: the run ended early</h1>\n<pre>{1}</pre>\n<p>Exit code {2}. No case was judged.</p></body></html>\n",
+        xml_text(end.suite), xml_text(end.message), end.exit_code);
 }
 
 }  // namespace aftershade

@@ -32,6 +32,17 @@ std::string summary_of(const GoldenSuiteResult& result, const GoldenReportContex
 /// JUnit's XML as Jenkins, GitLab and GitHub's actions read it.
 std::string junit_of(const GoldenSuiteResult& result, const GoldenReportContext& context);
 
+/// A run that ended before its cases were judged: no GL, a faulty suite.
+struct GoldenEarlyEnd {
+    std::string suite;  ///< as the user named it
+    std::string message;
+    int exit_code = 0;
+};
+/// The reports of such a run: JUnit with one error, report.json with `error`, and a page.
+std::string early_junit_of(const GoldenEarlyEnd& end);
+nlohmann::ordered_json early_json_of(const GoldenEarlyEnd& end);
+std::string early_page_of(const GoldenEarlyEnd& end);
+
 /// docs/golden.md lists every key.
 nlohmann::ordered_json json_of(const GoldenSuiteResult& result, const GoldenReportContext& context);
 

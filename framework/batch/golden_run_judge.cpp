@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -8,6 +10,7 @@
 #include "framework/compare/difference_picture.h"
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
+#include "framework/core/lfs_pointer.h"
 #include "framework/file/png_file.h"
 
 namespace aftershade {
@@ -16,11 +19,22 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// Size and place of a layer's largest difference, for those who have the log alone.
+std::string largest_of(const LayerComparison& layer) {
+    const LargestDifference& most = layer.differences.largest;
+    if (layer.differences.pixels == 0 || layer.differences.bits_equal) return "";
+    return fmt::format("; largest difference {:.6g} at ({}, {}) {}, {:.6g} instead of {:.6g}", most.value,
+                       most.x + layer.window.min_x, most.y + layer.window.min_y,
+                       layer.channels.at(std::size_t(most.channel)), most.test, most.reference);
+}
+
 std::vector<std::string> reasons_of(const Comparison& comparison) {
     std::vector<std::string> reasons = comparison.faults;
     reasons.insert(reasons.end(), comparison.warnings.begin(), comparison.warnings.end());
     for (const LayerComparison& layer : comparison.layers)
-        for (const std::string& reason : layer.reasons) reasons.push_back(layer.label + ": " + reason);
+        for (const std::string& reason : layer.reasons)
+            reasons.push_back(layer.label + ": " + reason +
+                              (&reason == &layer.reasons.front() ? largest_of(layer) : ""));
     return reasons;
 }
 
@@ -59,7 +73,8 @@ void compare_with(const ApprovedImage& approved, const CompareRules& rules, cons
     result.bits_equal = has_equal_bits(*result.comparison);
     result.verdict = result.comparison->verdict;
     result.reasons = reasons_of(*result.comparison);
-    if (approved.sidecar_fault) {
+    // Of a pointer neither sidecar nor approval says anything.
+    if (approved.sidecar_fault && lfs_fault(approved.file).empty()) {
         result.verdict = std::max(result.verdict, approved.sidecar_fault->verdict);
         result.reasons.push_back(approved.sidecar_fault->text);
     }

@@ -35,6 +35,7 @@ public:
         goldens_ = folder_ / reader.text("goldens");
         if (const std::string why = out_of_bounds(goldens_, folder_); !why.empty())
             diagnostics_.error(reader.place("goldens"), "the folder '" + goldens_.string() + "' " + why);
+        suite_.golden_folders.push_back(goldens_);
         for (const std::string& path : reader.texts("effect_paths")) add_effect_path(node, path);
         for (const grammar::Reader& test : reader.objects("cases")) add_case(test);
         if (reader.boolean("cases_of_effects")) add_cases_of_effects();
@@ -81,6 +82,7 @@ private:
             if (!fs::is_directory(folder)) continue;  // told of already
             for (const auto& entry : fs::directory_iterator(folder))
                 if (fs::is_regular_file(entry.path() / "effect.json")) effects.insert(entry.path());
+            for (const fs::path& effect : effects) suite_.golden_folders.push_back(effect / "cases");
             for (const fs::path& effect : effects)
                 for (GoldenCase& test : read_effect_cases(effect, folder.parent_path(), diagnostics_))
                     suite_.cases.push_back(std::move(test));
@@ -163,6 +165,7 @@ std::vector<fs::path> orphaned_goldens(const GoldenSuite& suite, const std::vect
                                           parse_frame_range(test.frames).value_or(std::vector<int>{})};
         if (fits_filter(test, filters)) chosen.insert({test.goldens, test.stem});
     }
+    for (const fs::path& folder : suite.golden_folders) known[folder];
     std::vector<fs::path> orphans;
     for (const auto& [folder, images] : known) {
         if (!fs::is_directory(folder)) continue;

@@ -18,6 +18,8 @@ struct GoldenSuite {
     /// Folders of effects: searched before the shipped ones, and with `cases_of_effects` the place of cases.
     std::vector<std::filesystem::path> effect_paths;
     std::vector<std::filesystem::path> documents;  ///< that were read
+    /// That goldens may lie in, also where no case is left: that of the document, those of effects' cases.
+    std::vector<std::filesystem::path> golden_folders;
     std::vector<GoldenCase> cases;                 ///< those of the document, then those of effects by name
 
     /// That the document lies in.

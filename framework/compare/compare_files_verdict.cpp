@@ -47,13 +47,13 @@ void judge(const Level& level, LayerComparison& comparison) {
                         tolerance.limit,
                         tolerance.relative > 0 ? fmt::format(" and {:.6g} of their value", tolerance.relative)
                                                : "",
-                        let_pass > 0 ? fmt::format(", {:.6g} may", std::floor(let_pass)) : "") +
+                        let_pass > 0 ? fmt::format(", {:.6g} allowed", std::floor(let_pass)) : "") +
                 not_comparable(comparison.differences));
     if (level.hard.count > tolerance.allowed)
         say(comparison, level.verdict,
             fmt::format("{}{} pixels differ by more than hard{} {:.6g}{}", level.where, level.hard.count,
                         level.word, tolerance.hard,
-                        tolerance.allowed > 0 ? fmt::format(", {} may", tolerance.allowed) : ""));
+                        tolerance.allowed > 0 ? fmt::format(", {} allowed", tolerance.allowed) : ""));
 }
 
 void judge_look(const char* word, Verdict verdict, const std::optional<double>& flip_limit,

@@ -14,6 +14,7 @@
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
+#include "framework/core/lfs_pointer.h"
 #include "framework/file/hdr_file.h"
 #include "framework/file/png_file.h"
 
@@ -168,6 +169,8 @@ LayerFile::LayerFile(const fs::path& path, const ReadLimits& limits) : impl_(std
             throw Error(ExitCode::capture, path.string() + ": the file is empty");
         if (!std::ifstream(path))
             throw Error(ExitCode::capture, path.string() + ": cannot be opened: " + std::strerror(errno));
+        if (const std::string fault = lfs_fault(path); !fault.empty())
+            throw Error(ExitCode::capture, path.string() + ": " + fault);
         throw Error(ExitCode::capture,
                     path.string() + ": is neither OpenEXR nor PNG nor Radiance HDR, by its first bytes");
     }

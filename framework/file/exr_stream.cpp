@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "framework/core/lfs_pointer.h"
 #include "framework/file/exr_internal.h"
 
 namespace aftershade {
@@ -36,6 +37,7 @@ FileStream::FileStream(OpenFile file) : Imf::IStream(file.path().c_str()) {
         fail(path, "is not a regular file (a pipe, socket or device cannot be read)");
     size_ = std::uint64_t(status.st_size);
     if (size_ == 0) fail(path, "the file is empty");
+    if (const std::string fault = lfs_fault(path); !fault.empty()) fail(path, fault);
 }
 
 bool FileStream::read(char bytes[], int count) {

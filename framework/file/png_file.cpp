@@ -2,6 +2,7 @@
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
+#include "framework/core/lfs_pointer.h"
 #include "framework/core/memory_limit.h"
 #include "framework/file/output_stream.h"
 #include "framework/file/quantized.h"
@@ -87,6 +88,7 @@ std::string read_bytes(const fs::path& path) {
     std::string bytes = read_regular_file(path, kMaxPngBytes, fault);
     if (!fault.empty()) fail(path, fault);
     if (bytes.empty()) fail(path, "the file is empty");
+    if (fault = lfs_fault(path); !fault.empty()) fail(path, fault);
     return bytes;
 }
 

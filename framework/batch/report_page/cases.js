@@ -194,13 +194,12 @@ function verdictMark(verdict) {
   return element("span", { class: `mark ${kind}` }, verdict);
 }
 
+/** Each reason once, with the images that it is of. */
 function reasonsOf(test) {
-  return [
-    ...test.messages,
-    ...test.images.flatMap((image) =>
-      image.verdict === "same" ? [] : image.reasons.map((reason) => `${image.name}: ${reason}`),
-    ),
-  ];
+  const names = new Map();
+  for (const image of test.images.filter((one) => one.verdict !== "same"))
+    for (const reason of image.reasons) names.set(reason, [...(names.get(reason) ?? []), image.name]);
+  return [...test.messages, ...[...names].map(([reason, images]) => `${images.join(", ")}: ${reason}`)];
 }
 
 /** Of an image that passes; beside the page where it did not fit. */
@@ -218,7 +217,7 @@ function caseDetails(test, report, viewers) {
   return element(
     "div",
     { class: "details" },
-    test.approve ? commandLine("Approve", test.approve) : null,
+    test.approve ? commandLine(test.approve.endsWith(" --add") ? "Keep this machine's image" : "Approve", test.approve) : null,
     commandLine("Run again", test.rerun),
     test.images.map((image) => imageSection(image, report, viewers)),
     facts([

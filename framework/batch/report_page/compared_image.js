@@ -61,7 +61,7 @@ class ComparedImage {
   firstLayer() {
     const rank = (layer) => {
       const verdicts = ["same", "warning", "failure", "different size or channels"];
-      return 2 * verdicts.indexOf(this.comparisonOf(layer)?.verdict ?? "failure") + (layer.role === "color");
+      return 2 * verdicts.indexOf(this.comparisonOf(layer)?.verdict ?? "failure") + ["color", "display"].includes(layer.role);
     };
     return this.layers.reduce((best, layer) => (best && rank(best) >= rank(layer) ? best : layer), null);
   }
