@@ -1,5 +1,6 @@
 #version 450 core
 #include <pass>
+#include <coverage.glsl>
 #include <luminance.glsl>
 #include <srgb.glsl>
 #include "table.glsl"
@@ -44,10 +45,10 @@ bool is_identity() {
 }
 
 void main() {
-    bool is_covered = color.a > 0.0;
+    bool is_covered = has_coverage(color.a);
     // Light without coverage (glows, flames) is graded, but offset must not light up the empty background: a second turn
     // grades black. A branch would cost both on llvmpipe, and so would a loop that tests before its first turn.
-    vec3 light = is_covered ? color.rgb / color.a : color.rgb, result = vec3(0.0), before;
+    vec3 light = straight_light(color), result = vec3(0.0), before;
     int turn = 0;
     do {
         before = result;

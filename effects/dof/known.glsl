@@ -23,7 +23,7 @@ float rest_of(Layers layers, int from) {
 // Of what has more than least_coc_px, the nearest surface that holds most of the rest of the pixel.
 Known known_behind(Layers layers, float least_coc_px) {
     for (int k = 1; k < kLayers; ++k) {
-        if (layers.color[k].a <= 0.0 || layers.coc[k] <= least_coc_px) continue;
+        if (!has_coverage(layers.color[k].a) || layers.coc[k] <= least_coc_px) continue;
         vec4 sum = composite_of(layers, k, k);
         if (sum.a > 0.5 * rest_of(layers, k)) return Known(Light(sum / sum.a, layers.coc[k]), true);
     }

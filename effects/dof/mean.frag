@@ -1,5 +1,6 @@
 #version 450 core
 #include <pass>
+#include <coverage.glsl>
 #include <lens/own.glsl>
 
 float amount(vec4 light) { return dot(light.rgb, vec3(1.0)); }
@@ -17,7 +18,7 @@ void main() {
             sum.x += visible;
 #ifdef HAS_SECOND
             vec4 behind = texelFetch(second, p, 0);
-            sum.y += behind.a > 0.0 ? amount(behind) / behind.a : visible;
+            sum.y += has_coverage(behind.a) ? amount(behind) / behind.a : visible;
 #endif
         } while (++at.x < corner.x + 8);
     } while (++at.y < corner.y + 8);

@@ -1,5 +1,6 @@
 #version 450 core
 #include <pass>
+#include <coverage.glsl>
 #include <luminance.glsl>
 #include "grain_place.glsl"
 #include "grain_bits.glsl"
@@ -45,7 +46,7 @@ void main() {
         out_color = color;
         return;
     }
-    vec3 light = color.a > 0.0 ? color.rgb / color.a : color.rgb;
+    vec3 light = straight_light(color);
     float level = clamp(luminance(frame.rec709_from_color * light), kDarkest, kBrightest);
     // 1 / size^2 grains in a pixel leave `size` of their deviation.
     float deviation = param.intensity * min(param.size, 1.0) * pow(level / kMiddleGrey, -param.response);

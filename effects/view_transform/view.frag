@@ -1,5 +1,6 @@
 #version 450 core
 #include <pass>
+#include <coverage.glsl>
 #include <srgb.glsl>
 
 #if TRANSFORM == TRANSFORM_ACES
@@ -35,9 +36,7 @@ vec3 transform(vec3 light) { return encode_srgb(light); }
 #endif
 
 void main() {
-    // A tone curve is not linear, so it is for the colour itself, not for the colour times its coverage. Light without
-    // coverage (glows, flames) has none to divide by.
-    vec3 light = color.a > 0.0 ? color.rgb / color.a : color.rgb;
-    vec3 rec709 = max(frame.rec709_from_color * light, 0.0) * exp2(param.exposure);
+    // A tone curve is not linear, so it is for the colour itself, not for the colour times its coverage.
+    vec3 rec709 = max(frame.rec709_from_color * straight_light(color), 0.0) * exp2(param.exposure);
     out_display = vec4(clamp(transform(rec709), 0.0, 1.0), clamp(color.a, 0.0, 1.0));
 }

@@ -1,3 +1,4 @@
+#include <coverage.glsl>
 #include <srgb.glsl>
 #include <luminance.glsl>
 
@@ -8,7 +9,7 @@ vec3 dimmed_picture(ivec2 p) {
     encoded = texelFetch(display, p, 0).rgb;
 #elif defined(HAS_COLOR)
     vec4 texel = texelFetch(color, p, 0);
-    vec3 light = frame.rec709_from_color * (texel.a > 0.0 ? texel.rgb / texel.a : texel.rgb);
+    vec3 light = frame.rec709_from_color * straight_light(texel);
     encoded = encode_srgb(clamp(light, 0.0, 1.0));
 #endif
     float grey = luminance(encoded);

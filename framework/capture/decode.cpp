@@ -8,6 +8,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/parallel.h"
+#include "framework/image/coverage.h"
 
 namespace aftershade {
 
@@ -130,7 +131,7 @@ void scale_vectors(std::span<float> values, float bias, const VelocityFactor& fa
 /// By which a premultiplied vector is divided.
 float vector_alpha(std::size_t pixel, const RoleDecoding& decoding, const DecodeContext& context) {
     const float alpha = decoding.premultiplied && context.color ? context.color->floats()[4 * pixel + 3] : 1;
-    return alpha > 0 ? alpha : 1;
+    return alpha >= kLeastAlpha ? alpha : 1;
 }
 
 /// Whether all are whole numbers from 0 to below 2^24, which `ids` then has.

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "framework/image/coverage.h"
 #include "framework/image/srgb.h"
 
 namespace aftershade {
@@ -13,7 +14,8 @@ Image display_of_color(Image color, const Chromaticities& primaries) {
         const float alpha = color.floats()[i + 3];
         for (std::size_t c = 0; c < 3; ++c) {
             const float premultiplied = color.floats()[i + c];
-            display.floats()[i + c] = float(encode_srgb(alpha > 0 ? premultiplied / alpha : premultiplied));
+            const float straight = alpha >= kLeastAlpha ? premultiplied / alpha : premultiplied;
+            display.floats()[i + c] = float(encode_srgb(straight));
         }
         display.floats()[i + 3] = alpha;
     }

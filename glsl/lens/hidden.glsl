@@ -1,4 +1,5 @@
 // What lies behind near things out of focus, by layers of the capture. After lens.glsl, where it knows layers.
+#include <coverage.glsl>
 #include <lens/highlight.glsl>
 
 const float kNearPx = 1.0;  // CoC radius from which a surface in front of the focus lets what it hides be seen
@@ -7,7 +8,7 @@ const float kNearPx = 1.0;  // CoC radius from which a surface in front of the f
 int layer_behind(Layers layers) {
     int behind = 0;
     for (int k = 1; k < kLayers; ++k)
-        if (layers.color[k].a > 0.0 && (behind == 0 || layers.coc[behind] < -kNearPx)) behind = k;
+        if (has_coverage(layers.color[k].a) && (behind == 0 || layers.coc[behind] < -kNearPx)) behind = k;
     return behind;
 }
 

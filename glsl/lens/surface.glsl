@@ -1,5 +1,6 @@
 // The capture's layers at a pixel, and the surface that stands for it where they share it. Included by lens.glsl.
 #define KNOWS_LAYERS
+#include <coverage.glsl>
 #if defined(HAS_FIRST) && defined(HAS_FIRST_DEPTH)
 #define SHARES_PIXELS
 #endif
@@ -83,12 +84,12 @@ Surface surface_in_focus(Layers layers, int from) {
 Surface surface_at(ivec2 p, float at_infinity_px) {
     float alpha = texelFetch(first, p, 0).a;
     Surface whole = Surface(vec4(0.0), coc_of(texelFetch(depth, p, 0).r, at_infinity_px), false);
-    if (alpha <= 0.0 || alpha >= kWholePixel) return whole;
+    if (!has_coverage(alpha) || alpha >= kWholePixel) return whole;
     Layers layers = layers_at(p, at_infinity_px);
     float lot = fract(52.9829189 * fract(dot(vec2(p), vec2(0.06711056, 0.00583715))));
     float left = 1.0, drawn = 0.0;
     for (int k = 0; k < kLayers; ++k) {
-        if (layers.color[k].a <= 0.0) continue;
+        if (!has_coverage(layers.color[k].a)) continue;
         if (abs(layers.coc[k]) < kFocusPx) return surface_in_focus(layers, k);
         drawn += left * layers.color[k].a;
         if (lot < drawn) {
