@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstdint>
 #include <exception>
 #include <functional>
@@ -69,6 +70,16 @@ std::string chunk(const std::string& type, const std::string& data) {
     return number_text(std::uint32_t(data.size())) + checked + number_text(checksum);
 }
 
+/// PNG specification, section 11.3.5.3: pixels per unit along x and y, of a unit that is not known.
+std::string aspect_chunk(float pixel_aspect) {
+    constexpr double kPerUnit = 1'000'000;
+    if (!(pixel_aspect > 1 / kPerUnit && pixel_aspect < kPerUnit)) return "";
+    const double larger = std::max(1.0, double(pixel_aspect));
+    const auto along = [&](double share) { return number_text(std::uint32_t(std::lround(kPerUnit * share))); };
+    // Wide pixels are fewer along x.
+    return chunk("pHYs", along(1 / larger) + along(double(pixel_aspect) / larger) + '\0');
+}
+
 std::string read_bytes(const fs::path& path) {
     std::error_code ignored;
     if (fs::is_directory(path, ignored)) fail(path, "is a folder, not a PNG file");
@@ -103,7 +114,8 @@ void check_chunks(const fs::path& path, std::span<const unsigned char> bytes,
 
 }  // namespace
 
-std::string encode_png(const std::string& name, const Image& display, const PngText& text) {
+std::string encode_png(const std::string& name, const Image& display, const PngText& text,
+                       float pixel_aspect) {
     const int channels = display.channels();
     assert(channels == 1 || channels == 3 || channels == 4);
     assert(!display.empty());
@@ -124,11 +136,12 @@ std::string encode_png(const std::string& name, const Image& display, const PngT
     constexpr std::size_t kSizeChunkBytes = kChunkHeadBytes + 13 + kChecksumBytes;  // IHDR, the first
     std::string chunks;
     for (const auto& [keyword, value] : text) chunks += chunk("tEXt", keyword + '\0' + value);
+    if (pixel_aspect != 1) chunks += aspect_chunk(pixel_aspect);
     return sink.bytes.insert(kSignatureBytes + kSizeChunkBytes, chunks);
 }
 
-void write_png(const fs::path& path, const Image& display, const PngText& text) {
-    const std::string bytes = encode_png(path.string(), display, text);
+void write_png(const fs::path& path, const Image& display, const PngText& text, float pixel_aspect) {
+    const std::string bytes = encode_png(path.string(), display, text, pixel_aspect);
     OutputStream stream(path);
     stream.write(bytes.data(), bytes.size());
     stream.commit();

@@ -16,11 +16,14 @@ using PngText = std::map<std::string, std::string>;
 /// The bytes of a PNG of display-referred values in [0, 1], already encoded, of 1, 3 or 4 float channels:
 /// round(255 * clamp(v)), NaN as 0. A fourth channel is unassociated alpha. `name` is what the
 /// Error(ExitCode::output) of a picture that is too large begins with.
-std::string encode_png(const std::string& name, const Image& display, const PngText& text = {});
+/// `pixel_aspect` is width over height; other than 1 it is stored in the chunk pHYs.
+std::string encode_png(const std::string& name, const Image& display, const PngText& text = {},
+                       float pixel_aspect = 1);
 
 /// Writes these bytes. The file appears by rename from a temporary file in the same folder. Throws
 /// Error(ExitCode::output).
-void write_png(const std::filesystem::path& path, const Image& display, const PngText& text = {});
+void write_png(const std::filesystem::path& path, const Image& display, const PngText& text = {},
+               float pixel_aspect = 1);
 
 /// The text of a keyword; nullopt where the file is not a whole PNG or has no such text.
 std::optional<std::string> read_png_text(const std::filesystem::path& path, const std::string& keyword);

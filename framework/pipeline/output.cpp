@@ -75,7 +75,7 @@ void write_false_color(const fs::path& path, const Image& image, const OutputOpt
             const DisplayColor color = colors.color(x, y);
             for (int c = 0; c < 3; ++c) picture.at(x, y, c) = color[std::size_t(c)];
         }
-    write_png(path, picture, png_text(options));
+    write_png(path, picture, png_text(options), header.pixel_aspect);
 }
 
 void write_tap(const fs::path& path, const Image& image, const OutputOptions& options,
@@ -194,7 +194,8 @@ WrittenFiles write_outputs(const OutputOptions& options, const FrameResult& resu
     const int frame = capture.header.frame;
     for (const std::string& text : options.patterns) {
         const fs::path path = FramePattern(text).path(frame);
-        if (extension(path) != ".exr") write_png(path, display_picture(result, capture), png_text(options));
+        if (extension(path) != ".exr")
+            write_png(path, display_picture(result, capture), png_text(options), capture.header.pixel_aspect);
         else if (auto lost = write_exr_output(path, options, result, capture, reader); !lost.empty())
             written.warnings.push_back(std::move(lost));
         written.paths.push_back(path);

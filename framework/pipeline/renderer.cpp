@@ -10,6 +10,7 @@
 #include "framework/image/role.h"
 #include "framework/pipeline/graph_builder.h"
 #include "framework/pipeline/history_file.h"
+#include "framework/pipeline/pixel_shape.h"
 
 namespace aftershade {
 
@@ -198,6 +199,10 @@ FrameResult PipelineRenderer::render(const FrameInputs& frame, const std::vector
     if (is_first && !frame_fault_.empty()) built_->executor->clear_history();
     FrameResult result;
     result.messages = natives_.take_messages();
+    const float aspect = frame.capture->header.pixel_aspect;
+    if (aspect != std::exchange(aspect_, aspect))
+        if (std::string warning = square_pixels_warning(pipeline_, aspect); !warning.empty())
+            result.messages.push_back("warning: " + std::move(warning));
     if (pipeline_.has_history() && is_first) result.history_reset = frame_fault_;
 
     const bool accumulates = built_->first_single_pass > 0 && frame.subframe_count > 1;

@@ -149,6 +149,7 @@ private:
     std::optional<Last> last_;             // capture, sub-frames too
     bool is_partial_ = false;              // of the last frame not all sub-frames came
     std::optional<Camera> camera_before_;  // of the last whole frame
+    float aspect_ = 1;                     // of the pixels of the frame before
     std::string frame_fault_;              // why this frame restarted history
     std::unique_ptr<SavedHistory> saved_;  // loaded and not yet taken up
     bool audit_ = false;

@@ -6,7 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <optional>
+#include <string>
 
 namespace aftershade {
 namespace {
@@ -27,6 +30,37 @@ TEST(PngFile, KeepsEveryByteForOneThreeAndFourChannels) {
         EXPECT_TRUE(std::ranges::equal(read.floats(), image.floats()));
     }
     EXPECT_EQ(folder.file_count(), 1u);
+}
+
+/// pHYs as pixels per unit along x over those along y; nullopt without the chunk.
+std::optional<double> stored_density_ratio(const std::string& png) {
+    const std::size_t at = png.find("pHYs");
+    if (at == std::string::npos) return std::nullopt;
+    const auto number = [&](std::size_t from) {
+        std::uint32_t value = 0;
+        for (std::size_t i = 0; i < 4; ++i) value = value << 8 | std::uint8_t(png[from + i]);
+        return double(value);
+    };
+    EXPECT_EQ(png[at + 12], 0) << "the unit is not known";
+    EXPECT_LT(at, png.find("IDAT"));
+    return number(at + 4) / number(at + 8);
+}
+
+TEST(PngFile, StoresThePixelAspectWherePixelsAreNotSquare) {
+    const Image image(4, 3, 3);
+    EXPECT_EQ(stored_density_ratio(encode_png("a", image)), std::nullopt);
+    EXPECT_EQ(encode_png("a", image, {}, 1), encode_png("a", image));
+    // Pixels twice as wide as high are half as many along x.
+    for (const float aspect : {2.0f, 0.5f, 1.4587f, 0.9f, 10.0f}) {
+        const std::optional<double> ratio = stored_density_ratio(encode_png("a", image, {}, aspect));
+        ASSERT_TRUE(ratio);
+        EXPECT_NEAR(*ratio, 1 / double(aspect), 1e-5 / double(aspect));
+    }
+    const TemporaryFolder folder;
+    write_png(folder / "a.png", image, {}, 2);
+    EXPECT_EQ(read_png(folder / "a.png").width(), 4);
+    for (const float odd : {0.0f, -1.0f, std::nanf(""), std::numeric_limits<float>::infinity()})
+        EXPECT_EQ(stored_density_ratio(encode_png("a", image, {}, odd)), std::nullopt) << odd;
 }
 
 TEST(PngFile, RoundsAndClampsAndWritesNanAsZero) {
