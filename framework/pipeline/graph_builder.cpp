@@ -214,7 +214,10 @@ bool GraphBuilder::shows_undrawn(const StepBuild& build, const TextureSpec& spec
 
 void GraphBuilder::declare_texture(StepBuild& build, const TextureSpec& spec) {
     const std::string name = build.prefix() + spec.name;
-    const auto [width, height] = grid_size(spec.grid, build.params, width_, height_);
+    auto [width, height] = grid_size(spec.grid, build.params, width_, height_);
+    // Of a frame of a few pixels too, passes read and write every level that the manifest names.
+    if (!spec.auto_mips && spec.mips > 1 && std::max(width, height) < 1 << (spec.mips - 1))
+        width = 1 << (spec.mips - 1);
     const int most_mips = int(std::bit_width(unsigned(std::max(width, height))));
     const int mips = spec.auto_mips ? most_mips : std::min(spec.mips, most_mips);
     const gpu::TextureDesc desc{width, height, spec.format, spec.layers, mips};
