@@ -27,6 +27,6 @@ ChannelName split_channel_name(const std::string& name);
 std::string channel_list(const ExrPart& part);
 
 /// Channels whose name says that they are motion vectors; no name tells their unit and their direction.
-std::vector<std::string> channels_of_motion(const std::vector<std::string>& channels);
+/// Channels whose names are those of motion vectors; names have neither unit nor direction.
 
 }  // namespace aftershade
