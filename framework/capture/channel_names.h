@@ -26,7 +26,7 @@ ChannelName split_channel_name(const std::string& name);
 /// "'A', 'B' and 'G'", or the first of many with "and 12 more".
 std::string channel_list(const ExrPart& part);
 
-/// Channels whose name says that they are motion vectors; no name tells their unit and their direction.
 /// Channels whose names are those of motion vectors; names have neither unit nor direction.
+std::vector<std::string> channels_of_motion(const std::vector<std::string>& channels);
 
 }  // namespace aftershade
