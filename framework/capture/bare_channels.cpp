@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "framework/capture/channel_names.h"
+#include "framework/capture/common_data.h"
 #include "framework/capture/common_names.h"
 
 namespace aftershade {
@@ -48,16 +49,6 @@ std::vector<std::vector<std::string>> usual_names(int channels) {
 }
 
 }  // namespace
-
-std::string channel_list(const ExrPart& part) {
-    constexpr std::size_t kMost = 16;
-    std::vector<std::string> names;
-    for (const ExrChannel& channel : part.channels) names.push_back(channel.name);
-    if (names.size() <= kMost) return list_of_names(names, "and");
-    std::string text;
-    for (std::size_t i = 0; i < kMost; ++i) text += (i == 0 ? "'" : ", '") + names[i] + "'";
-    return text + " and " + std::to_string(names.size() - kMost) + " more";
-}
 
 RoleDecoding without_bare_names(RoleDecoding decoding) {
     for (auto& names : decoding.layers)

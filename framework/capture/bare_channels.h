@@ -20,9 +20,6 @@ bool has_one_layer(const ExrPart& part);
 /// choice would be a guess.
 std::optional<FoundChannels> find_only_channels(const ChannelRole& role, const ExrPart& part);
 
-/// "'A', 'B' and 'G'", or the first of many with "and 12 more".
-std::string channel_list(const ExrPart& part);
-
 /// Why a file that was given for a role does not have it, its channels, and how to name them.
 std::string no_channels_for_role(const ChannelRole& role, const ExrPart& part, bool are_named);
 

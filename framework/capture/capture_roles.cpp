@@ -6,6 +6,7 @@
 #include "framework/capture/bare_channels.h"
 #include "framework/capture/capture_internal.h"
 #include "framework/capture/channel_names.h"
+#include "framework/capture/common_data.h"
 #include "framework/capture/common_names.h"
 #include "framework/core/error.h"
 #include "framework/image/role.h"
@@ -174,14 +175,13 @@ void CaptureReader::take_data_of_other_layer(OpenFrame& open) const {
 /// Normals and positions under a name that many programs use may be in the camera's space.
 void CaptureReader::note_assumed_space(OpenFrame& open) const {
     if (sequence_.profile != "auto" || open.profile->id != kNativeProfile) return;
-    for (const std::string role : {"normal", "position"}) {
-        const auto found = open.roles.find(role);
-        if (found == open.roles.end() || found->second.file != open.main.get() ||
-            sequence_.channels.contains(role) ||
-            canonical_name(found->second.channels[0][0]) == role + ".x")
+    for (const auto& [role, source] : open.roles) {
+        const RoleKind kind = kind_of_role(role);
+        if ((kind != RoleKind::direction && kind != RoleKind::place) || source.file != open.main.get() ||
+            sequence_.channels.contains(role) || canonical_name(source.channels[0][0]) == role + ".x")
             continue;
         open.header.notes.push_back(role + " is read from " +
-                                    list_of_names(found->second.channels[0], "and") +
+                                    list_of_names(source.channels[0], "and") +
                                     " as of world space, which the file does not say");
     }
 }

@@ -1,12 +1,10 @@
 // One spelling for the names of channels, which programs write in several.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "framework/capture/found_channels.h"
 #include "framework/file/exr_file.h"
 
 namespace aftershade {
@@ -25,14 +23,10 @@ struct ChannelName {
 };
 ChannelName split_channel_name(const std::string& name);
 
-/// The channels of a role of data (depth, normal, position, object_id) under one of its usual names. They are
-/// looked for in the layer that the colour's channel lies in, then in each one above it. Above `layer` they
-/// are looked for where that is "" only: then the file's only channels of such a name do, too. nullopt where
-/// there is none, or several would do.
-std::optional<FoundChannels> find_common_data(const ExrPart& part, std::string_view role,
-                                              const std::string& layer, const std::string& color_channel);
+/// "'A', 'B' and 'G'", or the first of many with "and 12 more".
+std::string channel_list(const ExrPart& part);
 
-/// Channels whose name says that they are motion vectors; no name tells their unit and their direction.
+/// Channels whose names are those of motion vectors; names have neither unit nor direction.
 std::vector<std::string> channels_of_motion(const std::vector<std::string>& channels);
 
 }  // namespace aftershade

@@ -61,11 +61,11 @@ bool holds_data(const std::string& layer) {
         "pos",    "z",       "uv",           "st",        "tangent", "id",      "vector",    "vectors",
         "motion", "mvec",    "motionvector", "motionvec", "forward", "backward",
         "motionvectors"};
-    static const std::set<std::string> last_words = {"depth",  "normal",  "normals", "position",
-                                                     "vector", "vectors", "velocity"};
+    static const std::set<std::string> last_words = {"normals", "vector", "vectors"};
     if (layer.empty()) return false;
     const std::string word = lower_case(layer.substr(layer.rfind('.') + 1));
     return words.contains(word) || last_words.contains(last_word(layer)) ||
+           (find_role(last_word(layer)) && kind_of_role(last_word(layer)) != RoleKind::light) ||
            word.find("crypto") != std::string::npos || find_role(word).has_value();
 }
 

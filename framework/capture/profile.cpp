@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "framework/capture/bare_channels.h"
 #include "framework/capture/channel_names.h"
 #include "framework/capture/common_names.h"
 #include "framework/core/error.h"
