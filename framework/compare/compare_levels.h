@@ -31,7 +31,7 @@ struct Levels {
     std::optional<double> fail_ssim, warn_ssim;  ///< exceeded where a layer's SSIM is below
 
     Tolerance warn_tolerance() const;
-    /// Whether some difference of a layer of this role with so many pixels exceeds a level of fail or warn;
+    /// Whether some difference of a layer of this role and number of pixels exceeds a level of fail or warn;
     /// NaN against a number does so whatever the levels. FLIP and SSIM count where the layer has them.
     bool judge(LayerRole role, std::uint64_t pixels, bool has_flip, bool has_ssim) const;
     /// The limits of a pixel alone.

@@ -43,7 +43,7 @@ struct LayerInfo {
 };
 
 /// `part` empty: the only one of its file. What its channels lack of a name, the part's says: R, G and B of the
-/// part "N" are no colours, X and Y of "velocity" are one layer.
+/// part "N" are plain numbers, X and Y of "velocity" are one layer.
 std::vector<LayerInfo> layers_of_channels(const std::string& part, std::span<const ExrChannel> channels,
                                           const Window& data_window, const Window& display_window);
 

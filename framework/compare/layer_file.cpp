@@ -122,7 +122,7 @@ void LayerFile::Impl::open_png() {
     Image image = read_png(path, &color);
     traits.colors = color.space;
     if (color.is_animated) traits.left_out.push_back("all pictures of the animation but the first");
-    if (!color.is_srgb()) traits.notes.push_back("its colours are of " + color.space + ", and are taken for sRGB");
+    if (!color.is_srgb()) traits.notes.push_back("its colours are of " + color.space + ", and are read as sRGB");
     if (color.gamma) {
         traits.notes.push_back(
             fmt::format("its chunk gAMA {:.5g} is applied: colours are compared as sRGB encodes them", *color.gamma));

@@ -10,7 +10,7 @@ namespace aftershade {
 
 /// What is wrong with such a file, and the remedy; "" of any other.
 inline std::string lfs_fault(const std::filesystem::path& path) {
-    // The first line of every pointer: github.com/git-lfs/git-lfs, docs/spec.md.
+    // The first line of every pointer: the specification of Git LFS, "The Pointer".
     if (!file_begins_with(path, "version https://git-lfs")) return "";
     return "is a pointer of Git LFS, not the file itself (fetch it: git lfs pull)";
 }
