@@ -76,9 +76,9 @@ TEST(OutputColorSpace, IsPrintedWithWhatSaysSo) {
     EXPECT_NE(inspected.out.find("warning: colorInteropID is 'lin_p3d65_scene', but acesImageContainerFlag"),
               std::string::npos)
         << inspected.out;
-    const auto json = nlohmann::json::parse(run_aftershade({"inspect", "--json", file}, folder.path()).out);
-    EXPECT_EQ(json.at("color_space").at("name"), "p3d65");
-    EXPECT_EQ(json.at("color_space").at("known_by"), "colorInteropID");
+    const auto document = nlohmann::json::parse(run_aftershade({"inspect", "--json", file}, folder.path()).out);
+    EXPECT_EQ(document.at("color_space").at("name"), "p3d65");
+    EXPECT_EQ(document.at("color_space").at("known_by"), "colorInteropID");
     const CommandResult explained = run_on(folder, {"--explain"});
     EXPECT_NE(explained.out.find("color space: p3d65 (colorInteropID)"), std::string::npos) << explained.err;
     const CommandResult ran = run_on(folder, {"-o", (folder / "o.exr").string()});
