@@ -1,6 +1,8 @@
 // The file of --report while a run has not come as far as to write it.
 #pragma once
 
+#include <string>
+
 #include "cli/run_options.h"
 
 namespace aftershade::cli {

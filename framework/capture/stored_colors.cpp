@@ -63,7 +63,7 @@ std::string name_of(const Statement& statement) {
 }
 
 std::string what_counts(const StoredColors& colors) {
-    return colors.is_known() ? colors.source + " counts" : "the numbers are taken for Rec. 709";
+    return colors.is_known() ? colors.source + " counts" : "the numbers are assumed to be Rec. 709";
 }
 
 void warn_of_data(const Statement& data, StoredColors& colors) {

@@ -132,6 +132,7 @@ TEST_F(Write, TakesARoleFromTheStepsElseFromTheCapture) {
 
 TEST_F(Write, NamesARoleThatIsNowhere) {
     capture_.images.erase("velocity");
+    capture_.header.roles = {"color", "depth"};
     try {
         write({"out.exr"}, {"color", "velocity"});
         FAIL() << "no error";
@@ -139,7 +140,7 @@ TEST_F(Write, NamesARoleThatIsNowhere) {
         EXPECT_EQ(error.exit_code(), ExitCode::capture);
         EXPECT_STREQ(error.what(),
                      "synthetic: the role 'velocity', requested in the output, is in neither the capture nor "
-                     "the look");
+                     "the look; the capture has 'color' and 'depth'");
     }
     EXPECT_EQ(folder_.file_count(), 0u);
 }
