@@ -119,8 +119,6 @@ void RunReporter::tell_conventions(const Capture& capture) {
     profile_ = profile;
     for (const std::string& note : header.notes)
         if (notes_.insert(note).second) say("note", path + ": note: " + printable(note));
-    for (const std::string& warning : header.warnings)
-        if (notes_.insert(warning).second) warn(path + ": " + warning);
     // Figures differ from frame to frame; the first stands for all.
     if (capture.deep && notes_.insert("deep").second)
         say("note", path + ": note: " + capture.deep->text(capture.deep_layers));
@@ -153,6 +151,8 @@ void RunReporter::show_progress(int frame) {
 
 void RunReporter::begin_frame(const Capture& capture) {
     if (started_++ == 0) begin_ = Clock::now();
+    for (const std::string& warning : capture.header.warnings)
+        if (notes_.insert(warning).second) warn(capture.header.path.string() + ": " + warning);
     if (style_ == ProgressStyle::none) return;
     tell_conventions(capture);
     show_progress(capture.header.frame);

@@ -69,7 +69,7 @@ TEST_F(Inspect, TellsTheSuzanneCaptureAsJson) {
     const Json document = json({kSuzanneCapture});
     EXPECT_EQ(
         keys_of(document),
-        (std::set<std::string>{"file", "parts", "pixel", "profile", "layer", "layers", "layer_count", "notes",
+        (std::set<std::string>{"file", "parts", "pixel", "profile", "layer", "layers", "layer_count", "color_space", "notes",
                                "warnings", "roles", "depth_kind", "missing", "camera", "lights", "cryptomattes"}));
     EXPECT_TRUE(document["file"].get<std::string>().ends_with("scenes/suzanne/gbuffer_0003.exr"));
     ASSERT_EQ(document["parts"].size(), 1);

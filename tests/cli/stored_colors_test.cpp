@@ -79,7 +79,7 @@ TEST(OutputColorSpace, IsPrintedWithWhatSaysSo) {
     const auto document = nlohmann::json::parse(run_aftershade({"inspect", "--json", file}, folder.path()).out);
     EXPECT_EQ(document.at("color_space").at("name"), "p3d65");
     EXPECT_EQ(document.at("color_space").at("known_by"), "colorInteropID");
-    const CommandResult explained = run_on(folder, {"--explain"});
+    const CommandResult explained = run_on(folder, {"--explain", "-o", (folder / "o.exr").string()});
     EXPECT_NE(explained.out.find("color space: p3d65 (colorInteropID)"), std::string::npos) << explained.err;
     const CommandResult ran = run_on(folder, {"-o", (folder / "o.exr").string()});
     EXPECT_NE(ran.err.find("colorInteropID counts"), std::string::npos) << ran.err;
