@@ -6,7 +6,7 @@
 
 namespace aftershade::cli {
 
-/// Of a command as command_tree.h has it. CLI11's own layout differs from version to version, wraps nothing up to
+/// Prints a command as command_tree.h describes it. CLI11's own layout differs from version to version, wraps nothing up to
 /// 2.4, and prints choices, limits and defaults between name and description.
 class HelpFormatter : public CLI::FormatterBase {
 public:

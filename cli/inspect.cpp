@@ -138,7 +138,7 @@ void warn_of_stored_values(Inspection& inspection) {
                 if (kind == RoleKind::distance && channel.type == PixelType::half && statistics->infinite > 0)
                     inspection.warnings.push_back(fmt::format(
                         "{} (role '{}') is half and has {} infinite values: a half ends at 65504, so far depth "
-                        "and marks such as 1e10 are not distinct from no hit; have the producer write float",
+                        "and marks such as 1e10 look like no hit; have the producer write float",
                         channel.name, role, statistics->infinite));
             }
     }

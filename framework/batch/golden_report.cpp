@@ -93,7 +93,7 @@ std::string note_of_tolerated(const GoldenSuiteResult& result) {
     return text;
 }
 
-/// Of which more than the machine has changed, or nothing else.
+/// The failed cases where only the machine has changed (`of_machine`), or the others.
 std::vector<const GoldenCaseResult*> cases_to_approve(const GoldenSuiteResult& result, bool of_machine) {
     std::vector<const GoldenCaseResult*> cases;
     for (const GoldenCaseResult& test : result.cases)

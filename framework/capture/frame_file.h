@@ -41,7 +41,7 @@ public:
     Window window_of(const std::string& channel) const;
     PixelType type_of(const std::string& channel) const;
     const std::string& compression_of(const std::string& channel) const;
-    /// Of the part that has the channel.
+    /// The metadata of the part that has the channel.
     const ExrMetadata& metadata_of(const std::string& channel) const;
 
     /// Interleaved in the order given, over `grid`; pixels that a channel's own window does not cover are

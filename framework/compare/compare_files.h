@@ -63,7 +63,7 @@ struct LayerComparison {
     Image ssim_map;                       ///< of each pixel's window; 1 everywhere for equal bits
     Verdict verdict = Verdict::same;
     std::vector<std::string> reasons;  ///< of the verdict: what was exceeded, by how much
-    /// Of what no difference counts, because nothing limits it: "Z", "Z in the area mask hair.png".
+    /// What no limit holds, so that any difference passes: "Z", "Z in the area mask hair.png".
     std::vector<std::string> not_judged;
 
     double failing_percent() const;   ///< of the pixels that are not left out

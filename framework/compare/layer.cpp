@@ -88,7 +88,7 @@ bool is_alpha_component(const std::string& component) {
     return name == "a" || name == "alpha";
 }
 
-/// Of a vector, apart from z, which alone is a distance.
+/// Components of a vector. A lone z is a distance, so it is not among them.
 bool is_vector_component(const std::string& component) {
     static const std::set<std::string> names = {"x", "y", "w", "u", "v"};
     return names.contains(lower_case(component));

@@ -43,7 +43,7 @@ namespace {
 
 const std::vector<std::string> kColors = {"R", "G", "B"};
 
-/// Of images of one size and type.
+/// Both images have one size and type.
 void copy_channel(const Image& from, int source, Image& to, int target) {
     const auto copy = [&](const auto values, const auto result) {
         const auto stride = std::size_t(from.channels()), step = std::size_t(to.channels());

@@ -14,7 +14,8 @@ struct PngColor {
     /// "sRGB"; else what only a colour management could show: "ICC profile 'P3' (checksum 1a2b3c4d)", "cICP 9 16 0
     /// 1", "primaries 0.7080 0.2920 ...".
     std::string space = "sRGB";
-    /// Of gAMA where it is not sRGB's and no other chunk counts: light is the sample to the power 1 / gamma.
+    /// The value of gAMA, where it differs from sRGB's and no other chunk counts: light is the sample to the power
+    /// 1 / gamma.
     std::optional<double> gamma;
     bool is_animated = false;  ///< there are further pictures
     bool is_srgb() const { return space == "sRGB"; }

@@ -102,14 +102,16 @@ std::string scale_or_unknown(const std::optional<double>& scale) {
 }
 
 std::string describe_no_fit(const VelocityCheck& check) {
+    const std::string none_fits = fmt::format(
+        "The profile is not confirmed: no change of sign, order or factor of 2 fits (the profile's own reading "
+        "removes {} of the difference between the frames, the best listed {})",
+        percent(check.identity.score), percent(check.best.score));
     if (check.suggested == check.settings && check.fit->score > check.best.score + kClearlyMore)
         return fmt::format(
-            "The profile is not confirmed: no change of sign, order or factor of 2 fits (the profile's own "
-            "reading removes {} of the difference between the frames, the best listed {}); free scales (x {}, "
-            "y {}) remove {}, but these frames are too little evidence for a change; use frames in which more "
-            "moves, along both axes",
-            percent(check.identity.score), percent(check.best.score), scale_or_unknown(check.fit->scale_x),
-            scale_or_unknown(check.fit->scale_y), percent(check.fit->score));
+            "{}; free scales (x {}, y {}) remove {}, but these frames are too little evidence for a change; use "
+            "frames in which more moves, along both axes",
+            none_fits, scale_or_unknown(check.fit->scale_x), scale_or_unknown(check.fit->scale_y),
+            percent(check.fit->score));
     if (check.suggested == check.settings)
         return fmt::format(
             "No reading of the vectors explains the pictures: the best removes {} of the difference between "
@@ -117,12 +119,9 @@ std::string describe_no_fit(const VelocityCheck& check) {
             "the motion",
             percent(check.best.score), percent(check.identity.score));
     return fmt::format(
-        "The profile is not confirmed: no change of sign, order or factor of 2 fits (the profile's own "
-        "reading "
-        "removes {} of the difference between the frames, the best listed {}), but free scales remove {}; "
-        "change {}, or ask the producer what one unit and the time of the vectors are",
-        percent(check.identity.score), percent(check.best.score), percent(check.fit->score),
-        describe_change(check.settings, check.suggested));
+        "{}, but free scales remove {}; change {}, or ask the producer what one unit and the time of the "
+        "vectors are",
+        none_fits, percent(check.fit->score), describe_change(check.settings, check.suggested));
 }
 
 std::string row(const VelocityCheck& check, const char* label, const VelocityScore& score) {

@@ -39,18 +39,24 @@ std::string mended_text(const NonFinitePixels& pixels) {
 }
 
 /// What decoding makes of NaN; "" where it keeps it.
-std::string decoded_text(NanPolicy policy, const std::string& role) {
+std::string decoded_as(const std::string& role) {
     const auto kind = kind_of_role(role);
-    const bool is_depth = kind == RoleKind::distance;
-    if (policy == NanPolicy::fail || (!is_depth && kind != RoleKind::motion)) return "";
-    return is_depth ? "; read as no hit" : "; read as no motion data";
+    if (kind == RoleKind::distance) return "no hit";
+    return kind == RoleKind::motion ? "no motion data" : "";
+}
+
+std::string decoded_text(NanPolicy policy, const std::string& role) {
+    const std::string decoded = decoded_as(role);
+    return policy == NanPolicy::fail || decoded.empty() ? "" : "; read as " + decoded;
 }
 
 std::string remedy(NanPolicy policy, const std::string& role = "") {
-    if (!decoded_text(policy, role).empty()) return " (--on-nan fail leaves such frames out)";
-    return policy == NanPolicy::fail
-               ? "; the frame is left out (--on-nan fail; --on-nan mend replaces such pixels)"
-               : " (--on-nan mend replaces such pixels, --on-nan fail leaves such frames out)";
+    const std::string decoded = decoded_as(role);
+    if (policy != NanPolicy::fail)
+        return decoded.empty() ? " (--on-nan mend replaces such pixels, --on-nan fail leaves such frames out)"
+                               : " (--on-nan fail leaves such frames out)";
+    return "; the frame is left out (--on-nan fail; " +
+           (decoded.empty() ? "--on-nan mend replaces such pixels)" : "--on-nan warn reads them as " + decoded + ")");
 }
 
 std::string source_text(const Capture& capture) {

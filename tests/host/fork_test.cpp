@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <exception>
 #include <functional>
 #include <optional>
 #include <string>
@@ -31,7 +32,13 @@ std::string in_child(const std::function<std::string()>& work) {
     const pid_t child = fork();
     if (child == 0) {
         alarm(kAlarm_s);
-        const std::string text = work();
+        std::string text;
+        // Past an exception the child would go on with the tests of its parent.
+        try {
+            text = work();
+        } catch (const std::exception& error) {
+            text = std::string("threw: ") + error.what();
+        }
         const bool is_sent = write(ends[1], text.data(), text.size()) == ssize_t(text.size());
         _exit(is_sent ? 0 : 1);
     }
