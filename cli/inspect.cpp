@@ -163,9 +163,9 @@ void warn_of_normals(const CaptureReader& reader, Inspection& inspection) {
 
 /// Whether the depth is one of the position's channels, which then shows nothing of it.
 bool is_of_position(const CaptureHeader& capture, const std::string& depth, const std::string& position) {
-    const auto& of_depth = capture.role_channels.at(depth);
-    const auto& of_position = capture.role_channels.at(position);
-    return std::ranges::find_first_of(of_depth, of_position) != of_depth.end();
+    const auto of_depth = capture.role_channels.find(depth), of_position = capture.role_channels.find(position);
+    if (of_depth == capture.role_channels.end() || of_position == capture.role_channels.end()) return false;
+    return std::ranges::find_first_of(of_depth->second, of_position->second) != of_depth->second.end();
 }
 
 /// The depth as the profile decodes it, held to its own edges and to the positions of its pixels.
