@@ -304,7 +304,8 @@ std::string with_json_numbers(const std::string& text) {
         };
         const bool is_before_number = is_digit(i + 1) || (i + 1 < text.size() && text[i + 1] == '.');
         if (text[i] == '+' && follows("[, ") && is_before_number) continue;
-        if (text[i] == '.' && !is_digit(i + 1) && i > 0 && is_digit(i - 1)) continue;
+        const bool is_last = i + 1 == text.size() || std::string(",] ").find(text[i + 1]) != std::string::npos;
+        if (text[i] == '.' && is_last && i > 0 && is_digit(i - 1)) continue;
         if (text[i] == '.' && follows("[, -+") && is_digit(i + 1)) json += '0';
         json += text[i];
     }

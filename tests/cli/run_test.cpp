@@ -370,7 +370,7 @@ TEST(Doctor, PrintsJson) {
         EXPECT_EQ(row.value("software", row.at("backend") != "egl"), row.at("backend") != "egl");
 }
 
-TEST(Doctor, ExitsWithFourAndSaysWhatToInstallWhereNothingIsUsable) {
+TEST(Doctor, ExitsWithFourAndSaysWhyNothingIsUsable) {
     const TemporaryFolder folder;
     const CommandResult result =
         run_aftershade({"doctor", "--json"}, folder.path(), without_gl(folder / "no_gl"));
@@ -378,7 +378,8 @@ TEST(Doctor, ExitsWithFourAndSaysWhatToInstallWhereNothingIsUsable) {
     const auto report = nlohmann::json::parse(result.out);
     for (const auto& row : report.at("backends")) {
         EXPECT_FALSE(row.at("usable").get<bool>());
-        EXPECT_NE(row.at("reason").get<std::string>().find("install the Debian package"), std::string::npos);
+        // The libraries are there and damaged: to install them would not help.
+        EXPECT_NE(row.at("reason").get<std::string>().find("the loader refuses it"), std::string::npos) << row;
     }
 }
 
