@@ -173,6 +173,9 @@ RunObserver RunReporter::observer() {
     };
     observer.non_finite = [this](const std::string& message) { warn(message); };
     observer.frame_differs = [this](const std::string& message) { warn(message); };
+    observer.light_cut = [this](const std::string& message) {
+        if (style_ != ProgressStyle::none) say("note", "note: " + message);
+    };
     observer.frame_missing = [this](int frame, const std::string& what) {
         say("missing", fmt::format("frame {} is missing: {}", frame, what));
     };

@@ -119,8 +119,8 @@ CaptureReader::~CaptureReader() = default;
 const Profile& CaptureReader::choose_profile(const ExrPart& part, CaptureHeader& header) const {
     const FirstFrame* const first = first_frame();
     if (sequence_.profile == "auto" && !first) {
-        const ProfileChoice choice = detect_profile(profiles_, part, header.path.string(),
-                                                    sequence_.channels.contains(kColorRole));
+        const ProfileChoice choice =
+            detect_profile(profiles_, part, header.path.string(), sequence_.channels.contains(kColorRole));
         header.profile_reason = choice.reason;
         return *choice.profile;
     }
@@ -176,6 +176,7 @@ void CaptureReader::find_roles(OpenFrame& open) const {
         add_role(open, kColorRole, RoleDecoding{});
     take_data_of_other_layer(open);
     note_assumed_space(open);
+    note_data_read_as_color(open);
     find_cryptomatte_roles(open);
     for (const auto& [role, source] : open.roles) {
         open.header.roles.push_back(role);

@@ -33,17 +33,17 @@ struct CaptureHeader {
     int frame = 0;         ///< its number in the output
     int source_frame = 0;  ///< the number that it was read under; another where a missing frame is held
     std::filesystem::path path;
-    std::string profile;              ///< id
-    std::string profile_reason;       ///< why: "chosen by name", "attribute BlenderMultiChannel"
-    std::string view;                 ///< of a multi-view file
-    std::string layer;                ///< that the roles are taken from; "" where the file has none
-    std::vector<std::string> layers;  ///< to choose from, by the profile
-    std::vector<std::string> notes;   ///< on what was chosen for the user, in whole sentences
+    std::string profile;                ///< id
+    std::string profile_reason;         ///< why: "chosen by name", "attribute BlenderMultiChannel"
+    std::string view;                   ///< of a multi-view file
+    std::string layer;                  ///< that the roles are taken from; "" where the file has none
+    std::vector<std::string> layers;    ///< to choose from, by the profile
+    std::vector<std::string> notes;     ///< on what was chosen for the user, in whole sentences
     std::vector<std::string> warnings;  ///< on what may be wrong in the file, in whole sentences
     /// From the first frame of the run, by CaptureReader::hold_to_first_of(): what is read otherwise.
     std::vector<std::string> differences;
     bool keeps_alpha = false;  ///< opaque pictures of it have an alpha, too: those of the run are alike
-    Window data_window;               ///< colour's: the working grid
+    Window data_window;        ///< colour's: the working grid
     Window display_window;
     float pixel_aspect = 1;
     int layer_count = 1;                   ///< of a deep capture, and of capture.json's "layers"
@@ -151,6 +151,7 @@ private:
     void take_data_of_other_layer(OpenFrame& open) const;
     void find_roles(OpenFrame& open) const;
     void note_assumed_space(OpenFrame& open) const;
+    void note_data_read_as_color(OpenFrame& open) const;
     void find_cryptomatte_roles(OpenFrame& open) const;
     std::optional<FoundChannels> find_role_channels(const OpenFrame& open, const FrameFile& file,
                                                     const std::string& role,

@@ -142,11 +142,13 @@ std::optional<FoundChannels> CaptureReader::find_role_channels(const OpenFrame& 
     // Of a known producer its profile says what other data mean.
     if (role != kDepthRole && open.profile->id != kNativeProfile) return std::nullopt;
     const auto color = open.roles.find(kColorRole);
-    const bool has_color = color != open.roles.end() && color->second.file == open.main.get() &&
-                           !color->second.channels.empty();
+    const bool has_color =
+        color != open.roles.end() && color->second.file == open.main.get() && !color->second.channels.empty();
     const bool is_only_layer = sequence_.layer.empty() && open.header.layers.size() < 2;
     return find_common_data(part, role, is_only_layer ? "" : layer,
-                            has_color ? color->second.channels[0][0] : layer.empty() ? "" : layer + ".R");
+                            has_color       ? color->second.channels[0][0]
+                            : layer.empty() ? ""
+                                            : layer + ".R");
 }
 
 /// A compositor's result comes as a layer of its own beside the one that it was made from. Its colour is the
@@ -180,10 +182,24 @@ void CaptureReader::note_assumed_space(OpenFrame& open) const {
         if ((kind != RoleKind::direction && kind != RoleKind::place) || source.file != open.main.get() ||
             sequence_.channels.contains(role) || canonical_name(source.channels[0][0]) == role + ".x")
             continue;
-        open.header.notes.push_back(role + " is read from " +
-                                    list_of_names(source.channels[0], "and") +
+        open.header.notes.push_back(role + " is read from " + list_of_names(source.channels[0], "and") +
                                     " as of world space, which the file does not say");
     }
+}
+
+/// A pass in a file of its own, whose only channels are those of a picture: a colour, for all that the file
+/// says.
+void CaptureReader::note_data_read_as_color(OpenFrame& open) const {
+    const std::string role = role_in_file_name(open.header.path.stem().string());
+    const bool has_color_alone = open.roles.size() == 1 && open.roles.contains(kColorRole);
+    if (role.empty() || !has_color_alone || sequence_.profile != "auto" ||
+        sequence_.channels.contains(kColorRole))
+        return;
+    open.header.notes.push_back(
+        "the file's name says " + role +
+        ", but its channels are read as color; where the picture is a file of its own, "
+        "name that one as the capture, and this one with --role " +
+        role + "=" + open.header.path.filename().string());
 }
 
 /// The file that Cryptomattes are read from: object_id's own, if it has any, else the main one.

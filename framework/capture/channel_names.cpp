@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <utility>
 
 #include "framework/core/diagnostics.h"
@@ -53,6 +54,19 @@ std::vector<std::string> channels_of_motion(const std::vector<std::string>& chan
         if (is_motion) found.push_back(channel);
     }
     return found;
+}
+
+std::string role_in_file_name(std::string_view stem) {
+    static const std::map<std::string, std::string, std::less<>> kRoles = {
+        {"depth", "depth"},      {"zdepth", "depth"},      {"z", "depth"},         {"normal", "normal"},
+        {"normals", "normal"},   {"velocity", "velocity"}, {"motion", "velocity"}, {"vector", "velocity"},
+        {"vectors", "velocity"}, {"position", "position"}};
+    const std::string name = canonical_name(stem);
+    std::string_view word;
+    for (const std::string_view part : split(name, '.'))
+        if (!part.empty() && part.find_first_not_of("0123456789") != std::string_view::npos) word = part;
+    const auto role = kRoles.find(word);
+    return role == kRoles.end() ? "" : role->second;
 }
 
 }  // namespace aftershade

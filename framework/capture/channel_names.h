@@ -29,4 +29,8 @@ std::string channel_list(const ExrPart& part);
 /// Channels whose names are those of motion vectors; names have neither unit nor direction.
 std::vector<std::string> channels_of_motion(const std::vector<std::string>& channels);
 
+/// The role that the last word of a file's name says, before the number of the frame: "depth" of
+/// shot_zdepth.0001.exr. "" for none. `stem` is the name without its extension.
+std::string role_in_file_name(std::string_view stem);
+
 }  // namespace aftershade

@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The paths in the pattern's folder as the pattern begins them: a path in normal form would not match the text
-/// of "shots//f_####.exr".
+/// The paths in the pattern's folder as the pattern begins them: a path in normal form would not match the
+/// text of "shots//f_####.exr".
 std::vector<std::string> paths_beside(const FramePattern& pattern) {
     const std::string prefix = pattern.text().substr(0, pattern.text().rfind('/') + 1);
     std::vector<std::string> paths;
@@ -31,9 +31,9 @@ std::vector<std::string> paths_beside(const FramePattern& pattern) {
     return paths;
 }
 
-/// A sequence is its numbers: a frame whose own file is not there is read from the one whose number is padded in
-/// another way (998 to 1001, -0001). Throws Error(ExitCode::capture) where there are two of these, or where
-/// `padding_decides` is false and two files have one number.
+/// A sequence is its numbers: a frame whose own file is not there is read from the one whose number is padded
+/// in another way (998 to 1001, -0001). Throws Error(ExitCode::capture) where there are two of these, or
+/// where `padding_decides` is false and two files have one number.
 FramePattern pattern_on_disk(FramePattern pattern, bool padding_decides) {
     std::map<int, std::vector<std::string>> paths;
     for (const std::string& path : paths_beside(pattern))
@@ -42,8 +42,8 @@ FramePattern pattern_on_disk(FramePattern pattern, bool padding_decides) {
         if (padding_decides && std::ranges::find(found, pattern.path(frame)) != found.end()) continue;
         std::ranges::sort(found);
         if (found.size() > 1)
-            throw Error(ExitCode::capture, "frame " + std::to_string(frame) + " is both " + found[0] + " and " +
-                                               found[1] + "; move one of them away");
+            throw Error(ExitCode::capture, "frame " + std::to_string(frame) + " is both " + found[0] +
+                                               " and " + found[1] + "; move one of them away");
         if (found[0] != pattern.path(frame)) pattern.name_otherwise(frame, std::move(found[0]));
     }
     return pattern;
@@ -105,6 +105,11 @@ void read_frames(const grammar::Reader& reader, const fs::path& folder, Sequence
 std::optional<Sequence> read_capture_document(const fs::path& path, Diagnostics& diagnostics) {
     const auto node = read_document(path, diagnostics);
     if (!node) return std::nullopt;
+    if (node->find("steps") && !node->find("frames")) {
+        diagnostics.error(node->place,
+                          "is a look, and this place takes a capture; the look comes before the capture");
+        return std::nullopt;
+    }
     const int errors_before = diagnostics.error_count();
     grammar::check(*node, capture_block(), diagnostics);
     const grammar::Reader reader(*node, capture_block());
@@ -166,12 +171,15 @@ FramePattern pattern_of_folder(const fs::path& folder) {
         ++found.digits[last + 1 - first];
     }
     if (sequences.empty()) throw Error(ExitCode::capture, folder.string() + ": holds no numbered .exr files");
-    const auto most = std::ranges::max_element(sequences, {}, [](const auto& one) { return one.second.count; });
+    const auto most =
+        std::ranges::max_element(sequences, {}, [](const auto& one) { return one.second.count; });
     // The fewest digits pad no number beyond what it has, but for numbers that are padded in several ways.
     const std::size_t width = most->second.digits.begin()->first;
     const std::string text =
-        (folder / (most->first.first + (width == 1 ? "%d" : std::string(width, '#')) + most->first.second)).string();
-    if (std::ranges::count(sequences, most->second.count, [](const auto& one) { return one.second.count; }) > 1)
+        (folder / (most->first.first + (width == 1 ? "%d" : std::string(width, '#')) + most->first.second))
+            .string();
+    if (std::ranges::count(sequences, most->second.count, [](const auto& one) { return one.second.count; }) >
+        1)
         throw Error(ExitCode::capture,
                     folder.string() + ": holds several sequences; name one by its pattern, such as " + text);
     return pattern_on_disk(FramePattern(text), false);

@@ -252,6 +252,12 @@ std::optional<Node> parse_document(std::string_view text, const std::string& fil
     // No editor counts the mark as a column.
     if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
     TreeBuilder builder(text, file, diagnostics);
+    if (text.starts_with("\x76\x2f\x31\x01") || text.starts_with("\x89PNG")) {
+        diagnostics.error({file},
+                          "is a picture, and this place takes a JSON document; the look comes before the "
+                          "capture");
+        return std::nullopt;
+    }
     // The lexer takes a NUL for the end of the text, and would leave what follows unread.
     if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
         diagnostics.error(builder.place(nul), "a NUL byte: a document is UTF-8 text");

@@ -31,7 +31,10 @@ public:
     void lint() {
         unused_textures();
         narrow_formats();
-        if (manifest_.has_history()) history_validity();
+        if (manifest_.has_history()) {
+            history_validity();
+            warmup();
+        }
         encodings();
         loops();
     }
@@ -92,6 +95,16 @@ private:
         diagnostics_.warning({(manifest_.folder / "effect.json").string()},
                              "the effect has history, but no shader reads frame.history_valid: after a cut "
                              "it would blend with nothing");
+    }
+
+    /// Sub-frames begin anew with each frame.
+    void warmup() {
+        if (manifest_.warmup || manifest_.accumulates_subframes) return;
+        diagnostics_.warning({(manifest_.folder / "effect.json").string()},
+                             "the effect has history, but declares no warmup: a chunk of a sequence begins "
+                             "without the frames before it, and shows a seam (add \"warmup\": "
+                             "{\"frames\": N, \"error\": E}; aftershade check LOOK --warmup CAPTURE "
+                             "measures them)");
     }
 
     static bool has_member(const std::vector<Token>& tokens, const std::string& block,

@@ -35,6 +35,32 @@ bool is_declared_at(const std::vector<Token>& tokens, std::size_t i, const Token
     return !is_on_line_of(tokens[i - 1], directive) || tokens[i].line == tokens[i - 1].line;
 }
 
+/// Whether the statement may change the variable at `i`: it assigns to it, or hands it to a function.
+bool may_be_written_at(const std::vector<Token>& tokens, std::size_t i, const Token* directive) {
+    if (is_on_line_of(tokens[i], directive)) return true;
+    const auto is_before = [&](std::size_t back, char c) {
+        return i >= back && is_char(tokens[i - back], c);
+    };
+    if ((is_before(1, '+') && is_before(2, '+')) || (is_before(1, '-') && is_before(2, '-'))) return true;
+    std::size_t at = i + 1;
+    const auto is_at = [&](std::size_t place, char c) {
+        return place < tokens.size() && is_char(tokens[place], c);
+    };
+    while (is_at(at, '.') || is_at(at, '[')) {
+        if (is_at(at, '.')) at += 2;
+        else {
+            while (at < tokens.size() && !is_char(tokens[at], ']')) ++at;
+            ++at;
+        }
+    }
+    const bool is_argument = (is_before(1, '(') || is_before(1, ',')) && (is_at(at, ')') || is_at(at, ','));
+    if (is_argument) return true;
+    if (is_at(at, '=')) return !is_at(at + 1, '=');
+    for (const char c : {'+', '-', '*', '/', '%', '&', '|', '^', '<', '>'})
+        if (is_at(at, c)) return is_at(at + 1, '=') || is_at(at + 1, c);
+    return false;
+}
+
 /// Parameters of the macro that "#define NAME(a, b) ..." at the "#" at `i` declares.
 ShaderUses::Words macro_parameters_at(const std::vector<Token>& tokens, std::size_t i) {
     ShaderUses::Words names;
@@ -88,6 +114,7 @@ ShaderUses::ShaderUses(ShaderSource source)
         if (!token.text.starts_with(kOut)) continue;
         if (declares) own_outputs.insert(token.text.substr(kOut.size()));
         else add_first(outputs, token.text.substr(kOut.size()), token);
+        if (may_be_written_at(tokens, i, directive)) written.insert(token.text);
     }
     std::erase_if(outputs, [&](const auto& use) { return own_outputs.contains(use.first); });
     std::erase_if(samplers, [&](const auto& use) { return own_samplers.contains(use.first); });

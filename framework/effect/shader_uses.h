@@ -21,10 +21,11 @@ struct ShaderUses {
     using Words = std::unordered_set<std::string_view>;      ///< views of the source
 
     Words words;
-    Words own;     ///< words after a type, or after #define: names of the shader's own
-    Uses params;   ///< x of param.x
-    Uses natives;  ///< x of native.x
-    Uses outputs;  ///< x of out_x, but for names that the shader declares itself
+    Words own;      ///< words after a type, or after #define: names of the shader's own
+    Uses params;    ///< x of param.x
+    Uses natives;   ///< x of native.x
+    Uses outputs;   ///< x of out_x, but for names that the shader declares itself
+    Words written;  ///< out_x that a statement assigns to, or that a call or a macro may
     /// x of texelFetch(x, ...), texture(x, ...), textureLod(x, ...), ..., but for parameters of functions.
     Uses samplers;
     Uses plain_samplers;          ///< those outside of every #if: what stands within may be left out

@@ -73,6 +73,12 @@ private:
                    return define.second == word && in_text(define.first);
                });
     }
+    /// Whether the fragment shader has this word, but nowhere as what a statement changes. What stands behind
+    /// a macro's name counts as changed.
+    bool reads_only(const PassSpec& pass, const std::string& word) const {
+        const ShaderUses& uses = shaders_.at((pass.folder / pass.shader).string());
+        return uses.words.contains(word) && !uses.written.contains(word);
+    }
     bool any_has(const std::string& word) const {
         return std::any_of(shaders_.begin(), shaders_.end(),
                            [&](const auto& shader) { return shader.second.words.contains(word); });
@@ -103,6 +109,11 @@ private:
         for (const WriteSpec& write : pass.writes)
             if (!pass_has(pass, std::string(kOut) + write.name))
                 unused(write.place, "its target 'out_" + write.name + "'");
+            else if (reads_only(pass, std::string(kOut) + write.name))
+                diagnostics_.error(write.place, "pass '" + pass.name + "': '" + pass.shader + "' has 'out_" +
+                                                    write.name + "' but assigns nothing to it, so that '" +
+                                                    write.name +
+                                                    "' is undefined; assign to it, or take it from 'writes'");
     }
 
     /// A read by the pixel has no sampler; only what looks at neighbouring pixels could still see others.

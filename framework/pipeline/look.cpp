@@ -304,7 +304,8 @@ std::string with_json_numbers(const std::string& text) {
         };
         const bool is_before_number = is_digit(i + 1) || (i + 1 < text.size() && text[i + 1] == '.');
         if (text[i] == '+' && follows("[, ") && is_before_number) continue;
-        const bool is_last = i + 1 == text.size() || std::string(",] ").find(text[i + 1]) != std::string::npos;
+        const bool is_last =
+            i + 1 == text.size() || std::string(",] ").find(text[i + 1]) != std::string::npos;
         if (text[i] == '.' && is_last && i > 0 && is_digit(i - 1)) continue;
         if (text[i] == '.' && follows("[, -+") && is_digit(i + 1)) json += '0';
         json += text[i];
@@ -330,6 +331,11 @@ Node parse_command_value(const std::string& text, const Place& place) {
 std::optional<Look> parse_look(const Node& node, Diagnostics& diagnostics, const LookVariables& variables) {
     if (!node.is_object()) {
         grammar::check(node, look_block(), diagnostics);
+        return std::nullopt;
+    }
+    if (node.find("frames") && !node.find("steps")) {
+        diagnostics.error(node.place,
+                          "is a capture, and this place takes a look; the look comes before the capture");
         return std::nullopt;
     }
     Look look;

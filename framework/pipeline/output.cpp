@@ -24,6 +24,15 @@ std::string extension(const fs::path& path) {
     return lower_case(path.extension().string());
 }
 
+/// Of the picture's pixels, those with a component above 1, which a PNG cuts.
+double share_above_1(const Image& picture) {
+    std::size_t count = 0;
+    for (int y = 0; y < picture.height(); ++y)
+        for (int x = 0; x < picture.width(); ++x)
+            count += std::max({picture.at(x, y, 0), picture.at(x, y, 1), picture.at(x, y, 2)}) > 1;
+    return double(count) / (double(picture.width()) * picture.height());
+}
+
 /// What a display shows of the frame.
 Image display_picture(const FrameResult& result, const Capture& capture) {
     const auto made = result.images.find(kDisplayRole);
@@ -141,12 +150,12 @@ void check_outputs(const OutputOptions& options, const Sequence& sequence, Input
         const FramePattern pattern(text);
         const std::string type = extension(text);
         if (is_telemetry ? type != ".json" : type != ".exr" && type != ".png")
-            diagnostics.error(place,
-                              "the format '" + type + "' is not known; " +
-                                  (is_telemetry ? "telemetry ends in .json" : "outputs end in .exr or .png") +
-                                  (is_film(type) ? "; for a film, -o - --print-ffmpeg prints the command that "
-                                                   "gives the frames to ffmpeg"
-                                                 : ""));
+            diagnostics.error(
+                place, "the format '" + type + "' is not known; " +
+                           (is_telemetry ? "telemetry ends in .json" : "outputs end in .exr or .png") +
+                           (is_film(type) ? "; for a film, -o - --print-ffmpeg prints the command that "
+                                            "gives the frames to ffmpeg"
+                                          : ""));
         if (sequence.frames.size() > 1 && !pattern.has_frame())
             diagnostics.error(place, std::to_string(sequence.frames.size()) +
                                          " frames cannot share one file; write the number as #### or %04d");
@@ -204,10 +213,11 @@ WrittenFiles write_outputs(const OutputOptions& options, const FrameResult& resu
     const int frame = capture.header.frame;
     for (const std::string& text : options.patterns) {
         const fs::path path = FramePattern(text).path(frame);
-        if (extension(path) != ".exr")
-            write_png(path, display_picture(result, capture), png_text(options),
-                      {true, capture.header.pixel_aspect});
-        else if (auto lost = write_exr_output(path, options, result, capture, reader); !lost.empty())
+        if (extension(path) != ".exr") {
+            const Image picture = display_picture(result, capture);
+            if (!result.images.contains(kDisplayRole)) written.share_cut = share_above_1(picture);
+            write_png(path, picture, png_text(options), {true, capture.header.pixel_aspect});
+        } else if (auto lost = write_exr_output(path, options, result, capture, reader); !lost.empty())
             written.warnings.push_back(std::move(lost));
         written.paths.push_back(path);
     }

@@ -33,6 +33,7 @@ std::vector<std::filesystem::path> output_files(const OutputOptions& options, co
 struct WrittenFiles {
     std::vector<std::filesystem::path> paths;
     std::vector<std::string> warnings;  ///< values that a format could not hold, with the remedy
+    double share_cut = 0;  ///< of a PNG's pixels: those of colour above 1, which no step mapped to display
 };
 
 /// Writes one frame, each file by rename. A role that no step made is taken from the capture. PNG takes

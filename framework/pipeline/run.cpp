@@ -272,7 +272,18 @@ private:
         report_.encode_ms += written.milliseconds;
         if (!written.files.warnings.empty()) note_non_finite(pending_.frame, report_);
         if (observer_.non_finite) std::ranges::for_each(written.files.warnings, observer_.non_finite);
+        say_cut(written.files);
         outcomes_.done(pending_.frame, written.files.paths, pending_.differences);
+    }
+
+    /// Once a run.
+    void say_cut(const WrittenFiles& files) {
+        constexpr double kFewPixels = 0.01;  // highlights
+        if (is_cut_said_ || files.share_cut <= kFewPixels || !observer_.light_cut) return;
+        observer_.light_cut(
+            "a PNG ends at 1, and more than 1 % of its pixels are brighter; the effect "
+            "view_transform, as the last step, keeps them apart");
+        is_cut_said_ = true;
     }
 
     const RunSetup& setup_;
@@ -285,6 +296,7 @@ private:
     std::function<void()> end_gl_;
     PendingWrite pending_;
     bool any_rendered_ = false;
+    bool is_cut_said_ = false;
 };
 
 }  // namespace

@@ -80,6 +80,7 @@ struct RunObserver {
     std::function<void(const std::string& message)> non_finite;
     /// A sentence on what a frame has otherwise than the first one: CaptureHeader::differences.
     std::function<void(const std::string& message)> frame_differs;
+    std::function<void(const std::string& message)> light_cut;  ///< once, where a PNG cuts bright light
     std::function<void(int frame, const std::string& what)> frame_missing;  ///< skipped or held
     /// Frames but the first that restart history, where some step has history.
     std::function<void(int frame, const std::string& reason)> history_reset;

@@ -235,11 +235,11 @@ TEST_F(Authoring, CheckWarnsOfWhatIsSeldomMeant) {
 }
 )");
     const std::string warnings = command({"check", "odd", "--no-gl"}).err;
-    for (const char* expected :
-         {"no pass reads the texture 'spare'",
-          "the texture 'near' is made from depth but has the format r16f",
-          "main.frag:5:5: warning: a parameter bounds this loop",
-          "main.frag:6:17: warning: this looks like a gamma", "no shader reads frame.history_valid"})
+    for (const char* expected : {"no pass reads the texture 'spare'",
+                                 "the texture 'near' is made from depth but has the format r16f",
+                                 "main.frag:5:5: warning: a parameter bounds this loop",
+                                 "main.frag:6:17: warning: this looks like a gamma",
+                                 "no shader reads frame.history_valid", "declares no warmup"})
         EXPECT_NE(warnings.find(expected), std::string::npos) << expected << "\n" << warnings;
     command({"check", "odd", "--no-gl", "--strict"}, 1);
 }

@@ -53,5 +53,58 @@ TEST_F(Slip, TheLookComesBeforeTheCapture) {
     expect_hint({"run", "in_0001.exr", "-o", "o.exr"}, "aftershade run look.json in_0001.exr");
 }
 
+TEST_F(Slip, ALookAndACaptureThatChangedPlacesAreNamedOnceEach) {
+    write_frames(1, 1);
+    write_text(folder_ / "capture.json", R"({"aftershade": 1, "frames": "in_0001.exr"})");
+    for (const std::string capture : {"in_0001.exr", "capture.json"}) {
+        const CommandResult result =
+            run_aftershade({"run", capture, "nothing.json", "-o", "o.exr"}, folder_.path());
+        EXPECT_EQ(result.exit_code, 2);
+        EXPECT_NE(result.err.find("this place takes a capture; the look comes before the capture"),
+                  std::string::npos)
+            << result.err;
+        EXPECT_NE(result.err.find("2 errors"), std::string::npos) << result.err;
+    }
+}
+
+TEST_F(Slip, ADepthPassThatIsReadAsColorIsSaid) {
+    const auto says = [&](const std::string& name, const std::string& channel) {
+        const Image image(8, 4, 1);
+        ExrWriteOptions options;
+        options.data_window = options.display_window = {0, 0, 7, 3};
+        const std::vector<ExrOutputChannel> channels = {{channel, PixelType::float32, &image, 0}};
+        write_exr(folder_ / name, channels, options);
+        return run_aftershade({"inspect", name}, folder_.path()).out;
+    };
+    const std::string hint = "--role depth=";
+    EXPECT_NE(says("depth.0001.exr", "Y").find(hint + "depth.0001.exr"), std::string::npos);
+    EXPECT_NE(says("shot_Zdepth_0001.exr", "Y").find(hint), std::string::npos);
+    EXPECT_NE(says("shot-z.exr", "Y").find(hint), std::string::npos);
+    EXPECT_EQ(says("depth_of_field_0001.exr", "Y").find(hint), std::string::npos);
+    EXPECT_EQ(says("depth_0001.exr", "Z").find(hint), std::string::npos);
+}
+
+TEST_F(Slip, LightThatAPngCutsIsSaidOnce) {
+    const auto says = [&](float light, const std::string& look, const std::string& output) {
+        SyntheticScene scene{.width = 8, .height = 4, .background = {light, light, light}};
+        for (int frame = 1; frame <= 2; ++frame) write_capture(make_capture(scene, frame), frame_path(frame));
+        write_text(folder_ / "look.json", look);
+        const CommandResult result =
+            run_aftershade({"run", "look.json", "in_####.exr", "-o", output}, folder_.path());
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        int times = 0;
+        const std::string name = "the effect view_transform";
+        for (std::size_t at = 0; (at = result.err.find(name, at)) != std::string::npos; ++at) ++times;
+        return times;
+    };
+    const std::string plain =
+        R"({"aftershade": 1, "steps": [{"effect": "vignette", "params": {"strength": 0}}]})";
+    const std::string viewed = R"({"aftershade": 1, "steps": [{"effect": "view_transform"}]})";
+    EXPECT_EQ(says(2, plain, "o_####.png"), 1);
+    EXPECT_EQ(says(0.5, plain, "o_####.png"), 0);
+    EXPECT_EQ(says(2, plain, "o_####.exr"), 0);
+    EXPECT_EQ(says(2, viewed, "o_####.png"), 0);
+}
+
 }  // namespace
 }  // namespace aftershade::test

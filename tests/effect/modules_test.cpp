@@ -141,10 +141,11 @@ TEST_F(Modules, AreHeldToWhatTheyDeclare) {
     write_module(
         "tone",
         tone_module({{kModuleParams, R"("params": {"kye": {"type": "float", "default": 1, "doc": "."}})"}}));
-    effect_.write("a.frag",
-                  std::string(kShaderHead) + "void main() { color; depth; out_small; param.gain; MODE; }\n");
-    effect_.write("b.frag", std::string(kShaderHead) +
-                                "void main() { color; small; out_color; param.flag; param.taps; }\n");
+    effect_.write("a.frag", std::string(kShaderHead) +
+                                "void main() { color; depth; out_small = vec4(0); param.gain; MODE; }\n");
+    effect_.write("b.frag",
+                  std::string(kShaderHead) +
+                      "void main() { color; small; out_color = vec4(0); param.flag; param.taps; }\n");
     const EffectManifest manifest = sound();
     Diagnostics diagnostics;
     check_declared_used(manifest, glsl_.path(), diagnostics);

@@ -138,6 +138,31 @@ TEST(UsageCheck, NamesThePlaceOfWhatIsNotUsed) {
     EXPECT_TRUE(lines[1].ends_with("error: no shader uses 'MODE'")) << lines[1];
 }
 
+TEST(UsageCheck, RefusesATargetThatItsShaderOnlyReads) {
+    const auto faults_with = [](const std::string& statements) {
+        Sound effect;
+        effect.folder.write("b.frag",
+                            "#version 450 core\n#include <pass>\n#include \"mode.glsl\"\n"
+                            "void put(out vec4 to) { to = vec4(0); }\nvoid main() {\n"
+                            "    vec4 light = mode() * small_size.x * textureLod(color, vec2(0), 0);\n"
+                            "    light *= float(param.taps);\n    " +
+                                statements + "\n}\n");
+        return effect.faults();
+    };
+    for (const char* reads : {"light = out_color;", "if (out_color == light) discard;",
+                              "light += out_color.rgbr;", "light = light + out_color;"}) {
+        const Lines lines = faults_with(reads);
+        ASSERT_EQ(lines.size(), 1U) << reads << ::testing::PrintToString(lines);
+        EXPECT_NE(lines[0].find("pass 'two': 'b.frag' has 'out_color' but assigns nothing to it"),
+                  std::string::npos)
+            << lines[0];
+    }
+    for (const char* writes :
+         {"out_color = light;", "out_color.rgb = light.rgb;", "out_color[1] += light.g;", "put(out_color);",
+          "light = out_color = light;", "++out_color;", "out_color--;"})
+        EXPECT_EQ(faults_with(writes), Lines{}) << writes;
+}
+
 TEST(UsageCheck, HoldsEffectsToWhetherTheyUseTheLights) {
     const auto faults = [](const std::string& shader, const std::string& uses) {
         Sound effect(uses.empty() ? test::Sections{} : test::Sections{{test::kMore, uses}});
@@ -196,7 +221,7 @@ TEST(UsageCheck, LooksAtImagesBuffersAndNativeValuesInEitherShader) {
         "c.comp",
         head + "void main() { imageAtomicAdd(small, color_size, depth); list[0] = native.warp; kernel; }\n");
     effect.folder.write("d.vert", head + "void main() { LIST[0]; }\n");
-    effect.folder.write("b.frag", head + "void main() { out_color; }\n");
+    effect.folder.write("b.frag", head + "void main() { out_color = vec4(0); }\n");
     EXPECT_EQ(effect.faults(), Lines{}) << "parameters may be for native code alone";
     effect.folder.write("d.vert", head + "void main() { }\n");
     effect.folder.write("c.comp", head + "void main() { color; depth; }\n");
