@@ -278,6 +278,16 @@ Image CaptureReader::read_ids(const RoleSource& source, const Window& grid, int 
                       file.path().string() + ": " + source.channels[0][0], exr_threads());
 }
 
+namespace {
+
+bool has_negative(const Image& image) {
+    float least = 0;
+    for (const float value : image.floats()) least = std::min(least, value);
+    return least < 0;
+}
+
+}  // namespace
+
 Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, const Image* color,
                                Capture& capture) const {
     const CaptureHeader& header = open.header;
@@ -298,10 +308,16 @@ Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, c
         if (const NonFinitePixels found = find_non_finite(image, true, exr_threads()); found.nan > 0)
             capture.non_finite[name] = found;
     if (source.decoding.is_mean) repair_means(image);
-    if (role.kind == RoleKind::distance)
+    if (role.kind == RoleKind::distance) {
         decode_depth(image, source.decoding,
                      {file.path().string(), header.data_window, header.display_window, header.camera, nullptr,
                       exr_threads()});
+        // Without figures, so that a sequence says it once.
+        if (has_negative(image))
+            capture.header.warnings.push_back(
+                name + " is negative in places, and nothing is seen behind the camera: if the file stores -z, set "
+                       "\"scale\": -1 next to the role's channels in capture.json");
+    }
     if (role.kind == RoleKind::motion) read_motion(open, name, image, color, capture);
     if (role.kind == RoleKind::light)
         light_of_stored(image, source.colors, header.primaries, file.path().string());

@@ -66,21 +66,6 @@ double ratio_to_camera(const Image& depth, const Image& position, const CameraMa
 
 }  // namespace
 
-std::string find_depth_fault(const Image& depth) {
-    std::size_t negative = 0;
-    double lowest = 0;
-    for (const float value : depth.floats())
-        if (value < 0) {
-            ++negative;
-            lowest = std::min(lowest, double(value));
-        }
-    if (negative == 0) return "";
-    return fmt::format("the depth is negative in {} of {} pixels, down to {:.4g} m; depth is positive ahead of the "
-                       "camera: if the file stores -z, set \"scale\": -1 next to the depth's channels in "
-                       "capture.json",
-                       negative, depth.floats().size(), lowest);
-}
-
 std::string find_position_fault(const Image& depth, const Image& position, const Camera& camera) {
     const DepthKind kind = find_depth_kind(depth, position);
     if (kind.verdict() == DepthKind::Verdict::unknown) {

@@ -8,10 +8,8 @@
 
 namespace aftershade {
 
-/// Negative depth: nothing is behind the camera. "" where there is none. [thread-safe]
-std::string find_depth_fault(const Image& depth);
-
-/// Depth that contradicts position or camera, or is upside down against position. [thread-safe]
+/// Depth that contradicts position or camera, or is upside down against position. "" where there is none.
+/// [thread-safe]
 std::string find_position_fault(const Image& depth, const Image& position, const Camera& camera);
 
 /// Normals in 0 to 1, or of another length than 1. Pixels of 0 have none. [thread-safe]

@@ -132,6 +132,20 @@ TEST_F(NonFiniteFrame, IsFoundInDepthAndVectorsThoughDecodingReplacesIt) {
     }
 }
 
+TEST_F(NonFiniteFrame, WhoseDepthIsNegativeIsWarnedOfOnceByARunAndByInspect) {
+    clean_.images.at("depth").at(3, 4, 0) = -2;
+    for (int frame = 2; frame <= 3; ++frame) write_capture(clean_, frame_path(frame));
+    const std::string warning = "depth is negative in places";
+    const std::string err =
+        run({"nothing.json", "in_####.exr", "-o", "out_####.exr", "--output-roles", "color,depth"}, 0).err;
+    EXPECT_NE(err.find("in_0002.exr: " + warning), std::string::npos) << err;
+    EXPECT_EQ(err.find("in_0003.exr: " + warning), std::string::npos) << err;
+    const std::string out = run_aftershade({"inspect", "in_0002.exr"}, folder_.path()).out;
+    EXPECT_NE(out.find("warning: " + warning), std::string::npos) << out;
+    EXPECT_EQ(out.find(warning), out.rfind(warning)) << out;
+    EXPECT_EQ(run_aftershade({"inspect", "in_0001.exr"}, folder_.path()).out.find(warning), std::string::npos);
+}
+
 TEST_F(NonFiniteFrame, IsToldInAPictureToo) {
     damage_frame_two();
     const CommandResult result =
