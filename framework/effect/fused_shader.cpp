@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -182,8 +183,14 @@ std::string fault_of_fusing(const ShaderContext& shader) {
     if (faults.has_errors()) return "its shader has faults";
     const GlobalNames names(tokens);
     if (names.has_extension) return "its shader has an #extension";
-    for (const Token& token : tokens)
+    std::map<std::string_view, int> uses_of_targets;
+    for (const Token& token : tokens) {
         if (token.text == "discard") return "its shader may discard a pixel";
+        if (token.text.starts_with("out_")) ++uses_of_targets[token.text];
+    }
+    for (const WriteSpec& write : pass_bindings(shader).writes)
+        if (uses_of_targets["out_" + write.name] < 2)
+            return "its shader writes nothing to '" + write.name + "'";
     for (const std::string& name : names.declared) {
         if (is_swizzle(name)) return "its shader has the global name '" + name + "'";
         if (names.tested.contains(name) || name.starts_with("gl_"))

@@ -23,24 +23,40 @@ Place author_place(const ShaderSource& source, const gpu::ShaderMessage& message
     return {line.file.text(), line.line, message.column};
 }
 
-/// llvmpipe (Mesa 22.3 to 25: lp_bld_limits.h) counts the iterations of all loops of an invocation together,
-/// and ends each loop after its first once 65,535 are over, without an error. So does it with a loop of two
-/// behind the author's main, whose bound no compiler can know.
-constexpr const char* kLoopGuard = R"(
+constexpr const char* kMain = R"(
 #undef main
-layout(std430, binding = $binding) restrict buffer AftershadeLoopGuard { uint aftershade_loops_ended; };
+$declarations
 void main() {
+    $before
     aftershade_author_main();
-    int wanted = 2 + int(aftershade_loops_ended >> 1), turns = 0;
-    while (turns < wanted) ++turns;
-    if (turns < wanted) aftershade_loops_ended = 1u;
+    $after
 }
 )";
 
-void guard(ShaderSource& source) {
+/// llvmpipe (Mesa 22.3 to 25: lp_bld_limits.h) counts the iterations of all loops of an invocation together,
+/// and ends each loop after its first once 65,535 are over, without an error. So does it with a loop of two
+/// behind the author's main, whose bound no compiler can know.
+constexpr const char* kLoopGuardBlock =
+    "layout(std430, binding = $binding) restrict buffer AftershadeLoopGuard { uint aftershade_loops_ended; "
+    "};";
+constexpr const char* kLoopGuard = R"(
+    int wanted = 2 + int(aftershade_loops_ended >> 1), turns = 0;
+    while (turns < wanted) ++turns;
+    if (turns < wanted) aftershade_loops_ended = 1u;)";
+
+/// A main around the author's: targets that this one leaves out are 0, not what was left in memory.
+void wrap_main(ShaderSource& source, const std::string& before, bool guards) {
     source.text.insert(source.text.find('\n') + 1, "#define main aftershade_author_main\n");
     source.lines.insert(source.lines.begin() + 1, SourceLine{"<generated>", 1});
-    source.text += filled(kLoopGuard, {{"binding", std::to_string(kLoopGuardBinding)}});
+    const std::string block = filled(kLoopGuardBlock, {{"binding", std::to_string(kLoopGuardBinding)}});
+    source.text += filled(
+        kMain,
+        {{"declarations", guards ? block : ""}, {"before", before}, {"after", guards ? kLoopGuard : ""}});
+}
+
+/// A text that has a target's name once only declares it.
+bool has_twice(const std::string& text, const std::string& word) {
+    return text.find(word, text.find(word) + 1) != std::string::npos;
 }
 
 /// Host programs, which have no lines, are short.
@@ -63,17 +79,26 @@ ProgramCache::ProgramCache(gpu::Context& context, std::filesystem::path glsl_fol
       full_screen_(read_text_file(glsl_folder_ / "fullscreen.vert", ExitCode::effect)),
       over_tiles_(host_vertex("tiles.vert")) {}
 
-ProgramSources ProgramCache::sources_of(const ShaderContext& context, Diagnostics& faults) const {
+ProgramSources ProgramCache::sources_of(const ShaderContext& context, Diagnostics& faults) {
     ProgramSources sources;
     sources.label = context.manifest->id + "." + context.pass->name;
     sources.is_compute = context.pass->kind == PassKind::compute;
     sources.main = assemble_shader(context, faults);
     const bool guards = guards_loops_ && !faults.has_errors();
-    if (guards) guard(sources.main);
+    std::string zeros;
+    for (const WriteSpec& write : pass_bindings(context).writes) {
+        const std::string target = "out_" + write.name;
+        zeros += target + " = " + texel_type(format_of_write(*context.manifest, write.name)) + "(0); ";
+        if (!faults.has_errors() && !has_twice(sources.main.text, target))
+            warnings_.push_back("pass '" + context.pass->name + "': '" + context.pass->shader +
+                                "' writes nothing to '" + target +
+                                "', which is 0 (aftershade check finds such faults)");
+    }
+    if (!faults.has_errors() && (guards || !zeros.empty())) wrap_main(sources.main, zeros, guards);
     if (sources.is_compute) return sources;
     const bool has_vertex = !context.pass->vertex.empty();
     if (has_vertex) sources.vertex_lines = assemble_shader(context, faults, ShaderFile::vertex);
-    if (has_vertex && guards && !faults.has_errors()) guard(sources.vertex_lines);
+    if (has_vertex && guards && !faults.has_errors()) wrap_main(sources.vertex_lines, "", true);
     sources.vertex = has_vertex                   ? sources.vertex_lines.text
                      : context.pass->over.empty() ? full_screen_
                                                   : over_tiles_;

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "framework/effect/fused_shader.h"
@@ -48,7 +49,7 @@ public:
     /// "effects/bokeh/coc.frag:6:17: error: 'parm' undeclared   [pass coc, llvmpipe ...]".
     std::shared_ptr<const gpu::Program> get(const ShaderContext& context);
     /// The texts that get() compiles; what is wrong with them goes to `faults`.
-    ProgramSources sources_of(const ShaderContext& context, Diagnostics& faults) const;
+    ProgramSources sources_of(const ShaderContext& context, Diagnostics& faults);
     std::shared_ptr<const gpu::Program> get(const ShaderContext& context, const ProgramSources& sources,
                                             Diagnostics& faults);
     /// Of several passes as one program.
@@ -70,6 +71,8 @@ public:
     /// Of a program that get() made or loaded: how large the driver writes it, by which long ones are known;
     /// 0 where that is unknown.
     std::size_t binary_bytes(const ProgramSources& sources) const;
+    /// Sentences on passes whose shader leaves a target out, since the last call.
+    std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
     int compiled_count() const { return compiled_; }  ///< programs made from text
     int loaded_count() const { return loaded_; }      ///< programs taken from the store
 
@@ -103,6 +106,7 @@ private:
     std::map<std::string, Cached> programs_;
     std::uint64_t uses_ = 0;  // of the cache so far
     bool guards_loops_ = false;
+    std::vector<std::string> warnings_;
     int compiled_ = 0;
     int loaded_ = 0;
 };

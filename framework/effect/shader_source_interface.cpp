@@ -249,10 +249,11 @@ private:
 
     void writes() {
         const auto& writes = bindings_.writes;
-        for (std::size_t i = 0; i < writes.size(); ++i)
-            text_ << (context_.part ? "" : "layout(location = " + std::to_string(i) + ") out ")
-                  << texel_type(format_of_write(manifest_, writes[i].name)) << " out_" << writes[i].name
-                  << ";\n";
+        for (std::size_t i = 0; i < writes.size(); ++i) {
+            const std::string type = texel_type(format_of_write(manifest_, writes[i].name));
+            text_ << (context_.part ? "" : "layout(location = " + std::to_string(i) + ") out ") << type
+                  << " out_" << writes[i].name << (context_.part ? " = " + type + "(0);\n" : ";\n");
+        }
     }
 
     const ShaderContext& context_;

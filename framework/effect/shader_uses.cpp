@@ -1,6 +1,8 @@
 #include "framework/effect/shader_uses.h"
 
 #include <cctype>
+#include <map>
+#include <set>
 #include <utility>
 
 namespace aftershade {
@@ -35,6 +37,27 @@ bool is_declared_at(const std::vector<Token>& tokens, std::size_t i, const Token
     return !is_on_line_of(tokens[i - 1], directive) || tokens[i].line == tokens[i - 1].line;
 }
 
+/// The place behind the "]" of the "[" at `at`.
+std::size_t behind_brackets(const std::vector<Token>& tokens, std::size_t at) {
+    int depth = 0;
+    for (; at < tokens.size(); ++at) {
+        depth += is_char(tokens[at], '[');
+        depth -= is_char(tokens[at], ']');
+        if (depth == 0) return at + 1;
+    }
+    return at;
+}
+
+/// "float", "uvec3", "mat2x3": types whose variables have no value until one is assigned.
+bool is_value_type(std::string_view word) {
+    if (!word.empty() && (word[0] == 'i' || word[0] == 'u' || word[0] == 'b') &&
+        word.substr(1).starts_with("vec"))
+        word.remove_prefix(1);
+    return word == "float" || word == "int" || word == "uint" || word == "bool" ||
+           ((word.starts_with("vec") || word.starts_with("mat")) && word.size() > 3 &&
+            std::isdigit(static_cast<unsigned char>(word[3])));
+}
+
 /// Whether the statement may change the variable at `i`: it assigns to it, or hands it to a function.
 bool may_be_written_at(const std::vector<Token>& tokens, std::size_t i, const Token* directive) {
     if (is_on_line_of(tokens[i], directive)) return true;
@@ -48,10 +71,7 @@ bool may_be_written_at(const std::vector<Token>& tokens, std::size_t i, const To
     };
     while (is_at(at, '.') || is_at(at, '[')) {
         if (is_at(at, '.')) at += 2;
-        else {
-            while (at < tokens.size() && !is_char(tokens[at], ']')) ++at;
-            ++at;
-        }
+        else at = behind_brackets(tokens, at);
     }
     const bool is_argument = (is_before(1, '(') || is_before(1, ',')) && (is_at(at, ')') || is_at(at, ','));
     if (is_argument) return true;
@@ -69,6 +89,53 @@ ShaderUses::Words macro_parameters_at(const std::vector<Token>& tokens, std::siz
     for (i += 4; i < tokens.size() && !is_char(tokens[i], ')'); ++i)
         if (tokens[i].is_word()) names.insert(tokens[i].text);
     return names;
+}
+
+/// Variables of a function that are read though nothing in it may assign to them, as far as its words show.
+void find_unset(const std::vector<Token>& tokens, ShaderUses::Uses& unset) {
+    struct Local {
+        Place place;
+        bool is_read = false, is_written = false;
+    };
+    std::map<std::string_view, Local> locals;  // of the function at hand
+    std::set<std::string_view> in_directives;
+    BraceDepth braces;
+    int parentheses = 0;
+    const Token* directive = nullptr;
+    for (std::size_t i = 0; i < tokens.size(); ++i) {
+        const Token& token = tokens[i];
+        if (is_char(token, '#')) directive = &token;
+        if (is_on_line_of(token, directive)) {
+            if (i > 0 && is_char(tokens[i - 1], '#')) braces.pass_directive(token.text);
+            in_directives.insert(token.text);
+            continue;
+        }
+        if (is_char(token, '{')) braces.open();
+        if (is_char(token, '}')) braces.close();
+        parentheses += is_char(token, '(') - is_char(token, ')');
+        if (braces.value() == 0) {
+            for (const auto& [name, local] : locals)
+                if (local.is_read && !local.is_written && !in_directives.contains(name))
+                    unset.emplace(name, local.place);
+            locals.clear();
+            continue;
+        }
+        if (!token.is_word() || i == 0 || is_char(tokens[i - 1], '.')) continue;
+        if (is_value_type(tokens[i - 1].text) && parentheses == 0) {
+            const std::size_t behind =
+                i + 1 < tokens.size() && is_char(tokens[i + 1], '[') ? behind_brackets(tokens, i + 1) : i + 1;
+            const bool is_open =
+                behind < tokens.size() && (is_char(tokens[behind], ';') || is_char(tokens[behind], ','));
+            const auto [local, is_new] = locals.try_emplace(token.text, Local{token.place()});
+            local->second.is_written |= !is_open || !is_new;
+            continue;
+        }
+        const auto local = locals.find(token.text);
+        if (local == locals.end()) continue;
+        const bool writes = may_be_written_at(tokens, i, nullptr);
+        local->second.is_written |= writes;
+        local->second.is_read |= !writes;
+    }
 }
 
 }  // namespace
@@ -116,6 +183,7 @@ ShaderUses::ShaderUses(ShaderSource source)
         else add_first(outputs, token.text.substr(kOut.size()), token);
         if (may_be_written_at(tokens, i, directive)) written.insert(token.text);
     }
+    find_unset(tokens, unset);
     std::erase_if(outputs, [&](const auto& use) { return own_outputs.contains(use.first); });
     std::erase_if(samplers, [&](const auto& use) { return own_samplers.contains(use.first); });
     std::erase_if(sizes, [&](const auto& use) { return own.contains(use.first + std::string(kSize)); });

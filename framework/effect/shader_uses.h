@@ -26,6 +26,7 @@ struct ShaderUses {
     Uses natives;   ///< x of native.x
     Uses outputs;   ///< x of out_x, but for names that the shader declares itself
     Words written;  ///< out_x that a statement assigns to, or that a call or a macro may
+    Uses unset;     ///< variables of functions that are read, but to which nothing is assigned
     /// x of texelFetch(x, ...), texture(x, ...), textureLod(x, ...), ..., but for parameters of functions.
     Uses samplers;
     Uses plain_samplers;          ///< those outside of every #if: what stands within may be left out

@@ -151,6 +151,9 @@ private:
                 once(place,
                      "'" + word + "' is not a target of a pass with this shader" + did_you_mean(word, meant));
         }
+        for (const auto& [name, place] : uses.unset)
+            once(place,
+                 "'" + name + "' is read, but nothing is assigned to it, so that its value is undefined");
         for (const auto& [name, place] : uses.params) check_member(name, place);
         for (const auto& [name, place] : uses.natives) check_native_member(name, place);
     }

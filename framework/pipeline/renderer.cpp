@@ -204,6 +204,8 @@ FrameResult PipelineRenderer::render(const FrameInputs& frame, const std::vector
     if (aspect != std::exchange(aspect_, aspect))
         if (std::string warning = square_pixels_warning(pipeline_, aspect); !warning.empty())
             result.messages.push_back("warning: " + std::move(warning));
+    for (const std::string& warning : programs_->take_warnings())
+        result.messages.push_back("warning: " + warning);
     if (pipeline_.has_history() && is_first) result.history_reset = frame_fault_;
 
     const bool accumulates = built_->first_single_pass > 0 && frame.subframe_count > 1;

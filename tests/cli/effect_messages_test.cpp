@@ -1,10 +1,12 @@
 // What authors of effects read: check, run and list with faults, hints and warnings.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "framework/file/exr_file.h"
 #include "tests/capture/capture_files.h"
 #include "tests/cli/command.h"
 #include "tests/synthetic_capture.h"
@@ -55,11 +57,34 @@ TEST_F(EffectMessages, RunOffersTheNameThatWasMeantAsCheckDoes) {
         "dim/main.frag:3:86: error: 'param.strenght' is not a parameter of the effect; did you mean "
         "'strength'?\n";
     const CommandResult run = command(
-        {"run", "look.json", "in_0001.exr", "--effect-path", ".", "-o", "out.exr", "--backend", "software"}, 5);
+        {"run", "look.json", "in_0001.exr", "--effect-path", ".", "-o", "out.exr", "--backend", "software"},
+        5);
     EXPECT_NE(run.err.find(hint), std::string::npos) << run.err;
     EXPECT_NE(run.err.find("cannot access field"), std::string::npos) << run.err;
     const CommandResult check = command({"check", "dim", "--backend", "software"}, 1);
     EXPECT_NE(check.err.find(hint), std::string::npos) << check.err;
+}
+
+TEST_F(EffectMessages, RunNamesThePassThatWritesNothingAndItsPictureIsZero) {
+    write_frame();
+    write_effect("dim", "color", "c");
+    write_text(folder_ / "dim/effect.json",
+               R"({"aftershade": 1, "id": "dim", "version": "1.0.0", "summary": "A test.",
+                   "inputs": {"color": {"role": "color", "doc": "An image."}},
+                   "outputs": {"color": {"role": "color", "doc": "An image."}},
+                   "passes": [{"name": "main", "shader": "main.frag", "reads": ["color"], "writes": ["color"]}]})");
+    write_text(folder_ / "look.json", R"({"aftershade": 1, "steps": [{"effect": "dim"}]})");
+    for (const char* shader : {"void main() {}", "void main() { if (color_size.x < 0) discard; }"}) {
+        write_text(folder_ / "dim/main.frag",
+                   std::string("#version 450 core\n#include <pass>\n") + shader + "\n");
+        const CommandResult run = command({"run", "look.json", "in_0001.exr", "--effect-path", ".", "-o",
+                                           "out.exr", "--backend", "software", "--pixel-type", "float"});
+        EXPECT_NE(run.err.find("pass 'main': 'main.frag' writes nothing to 'out_color'"), std::string::npos)
+            << run.err;
+        const Image color =
+            ExrFile(folder_ / "out.exr").read_floats(0, std::vector<std::string>{"R", "G", "B", "A"});
+        EXPECT_TRUE(std::ranges::all_of(color.floats(), [](float value) { return value == 0; })) << shader;
+    }
 }
 
 TEST_F(EffectMessages, NameAWriteThatIsNotDeclaredAndWhatWasMeant) {
@@ -80,9 +105,9 @@ TEST_F(EffectMessages, NameAWriteThatIsNotDeclaredAndWhatWasMeant) {
     const auto expect_both = [&](const std::string& message, int run_code) {
         const CommandResult check = command({"check", "dim", "--backend", "software"}, 1);
         EXPECT_NE(check.err.find(message), std::string::npos) << check.err;
-        const CommandResult run = command(
-            {"run", "look.json", "in_0001.exr", "--effect-path", ".", "-o", "out.exr", "--backend", "software"},
-            run_code);
+        const CommandResult run = command({"run", "look.json", "in_0001.exr", "--effect-path", ".", "-o",
+                                           "out.exr", "--backend", "software"},
+                                          run_code);
         EXPECT_NE(run.err.find(message), std::string::npos) << run.err;
     };
     write("out_colour", "color");

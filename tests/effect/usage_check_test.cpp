@@ -163,6 +163,34 @@ TEST(UsageCheck, RefusesATargetThatItsShaderOnlyReads) {
         EXPECT_EQ(faults_with(writes), Lines{}) << writes;
 }
 
+TEST(UsageCheck, RefusesVariablesThatAreReadButNeverAssigned) {
+    const auto faults_with = [](const std::string& statements) {
+        Sound effect;
+        effect.folder.write("b.frag",
+                            "#version 450 core\n#include <pass>\n#include \"mode.glsl\"\n"
+                            "void put(out vec4 to) { to = vec4(0); }\nvoid main() {\n"
+                            "    vec4 light = mode() * small_size.x * textureLod(color, vec2(0), 0);\n"
+                            "    light *= float(param.taps);\n    " +
+                                statements + "\n    out_color = light;\n}\n");
+        return effect.faults();
+    };
+    for (const char* reads :
+         {"float at[4]; light *= at[int(light.x)];", "vec4 more; light += more;",
+          "mat2 turn; light.xy = turn * light.xy;", "int at[2], to[3]; light.x = float(at[to[1]]);"}) {
+        const Lines lines = faults_with(reads);
+        ASSERT_EQ(lines.size(), 1U) << reads << ::testing::PrintToString(lines);
+        EXPECT_NE(lines[0].find("is read, but nothing is assigned to it"), std::string::npos) << lines[0];
+    }
+    for (const char* sound :
+         {"float at[4]; at[int(light.x)] = 1.0; light *= at[0];", "vec4 more; put(more); light += more;",
+          "vec4 more; more.xy = light.zw; light += more;",
+          "int to[3], at[2]; to[at[1]++] = 2; light.x = float(to[0]);",
+          "float x; for (int i = 0; i < 3; ++i) { if (i == 1) x = 1.0; } light *= x;",
+          "bool is_lit; is_lit = light.x > 0.0; if (is_lit) light *= 2.0;", "float unused;",
+          "float more[2] = float[2](1.0, 2.0); light *= more[0];"})
+        EXPECT_EQ(faults_with(sound), Lines{}) << sound;
+}
+
 TEST(UsageCheck, HoldsEffectsToWhetherTheyUseTheLights) {
     const auto faults = [](const std::string& shader, const std::string& uses) {
         Sound effect(uses.empty() ? test::Sections{} : test::Sections{{test::kMore, uses}});
