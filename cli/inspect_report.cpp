@@ -9,6 +9,7 @@
 
 #include "framework/core/text.h"
 #include "framework/image/role.h"
+#include "framework/image/square_pixels.h"
 
 namespace aftershade::cli {
 
@@ -40,7 +41,10 @@ std::string layout_text(const ExrPart& part) {
     else
         text += fmt::format("data window {}, display window {}", window_text(part.data_window),
                             window_text(part.display_window));
-    return part.pixel_aspect == 1 ? text : text + fmt::format(", pixel aspect {}", part.pixel_aspect);
+    if (part.pixel_aspect == 1) return text;
+    const Window square = stretched(part.display_window, part.display_window, square_pixels(part.pixel_aspect));
+    return text + fmt::format(", pixel aspect {} ({} x {} square px)", part.pixel_aspect, square.width(),
+                              square.height());
 }
 
 /// One line for parts of one layout; what cannot be read by name.

@@ -28,6 +28,7 @@
 #include "framework/core/text.h"
 #include "framework/file/frame_stream.h"
 #include "framework/pipeline/output.h"
+#include "framework/pipeline/pixel_shape.h"
 
 namespace aftershade::cli {
 
@@ -56,6 +57,9 @@ ExitCode explain(const Sequence& sequence, const CaptureReader& reader, const Pi
     std::cout << printable_lines("color space: " + capture.header.stored_colors.text() + "\n");
     for (const std::string& warning : capture.header.warnings)
         std::cout << "warning: " << printable_lines(warning) << "\n";
+    const CaptureHeader& header = capture.header;
+    if (const auto note = SquareSteps(pipeline, header.pixel_aspect).note(pipeline, header); !note.empty())
+        std::cout << printable_lines(note + "\n");
     std::cout << printable_lines(explain_params(pipeline, frame));
     return ExitCode::done;
 }

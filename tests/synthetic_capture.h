@@ -118,6 +118,7 @@ inline void write_capture(const Capture& capture, const std::filesystem::path& p
     ExrWriteOptions options;
     options.data_window = capture.header.data_window;
     options.display_window = capture.header.display_window;
+    options.pixel_aspect = capture.header.pixel_aspect;
     write_exr(path, channels, options);
 }
 

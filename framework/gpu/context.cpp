@@ -386,6 +386,7 @@ void Context::Impl::set_state() {
     gl.CreateVertexArrays(1, &vertex_array);
     gl.CreateProgramPipelines(1, &pipeline);
     gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &limits.texture_size);
+    info.texture_side_px = limits.texture_size;
     gl.GetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &limits.array_layers);
     gl.GetIntegerv(GL_MAX_COLOR_ATTACHMENTS, &limits.colour_attachments);
     if (info.software) gl.GetIntegerv(GL_MAX_FRAGMENT_IMAGE_UNIFORMS, &info.load_units);

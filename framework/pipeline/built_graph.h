@@ -24,6 +24,7 @@ struct BuiltGraph {
     std::vector<GraphBinding> bindings;
     std::vector<StepTextures> textures;                   ///< by step
     std::map<std::string, graph::TextureHandle> results;  ///< by role
+    std::map<std::string, graph::TextureHandle> taps;     ///< by "step.texture"
     std::vector<int> first_pass_of_step;  ///< its index in the graph; the next step's where it has no pass
     int first_single_pass = 0;  ///< passes before it run for every sub-frame, the others once a frame
     std::unique_ptr<CompileAhead> ahead;  ///< for the first run; nullptr where nothing needs it

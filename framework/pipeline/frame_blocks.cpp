@@ -70,11 +70,11 @@ struct MixBlock {
 };
 static_assert(sizeof(MixBlock) == kMixBlockBytes);
 
-void set_origin(const CaptureHeader& header, std::int32_t (&origin_px)[2], std::int32_t (&display_px)[2]) {
-    display_px[0] = header.display_window.width();
-    display_px[1] = header.display_window.height();
-    origin_px[0] = header.data_window.min_x - header.display_window.min_x;
-    origin_px[1] = header.data_window.min_y - header.display_window.min_y;
+void set_origin(const StepGrid& grid, std::int32_t (&origin_px)[2], std::int32_t (&display_px)[2]) {
+    display_px[0] = grid.display_window.width();
+    display_px[1] = grid.display_window.height();
+    origin_px[0] = grid.data_window.min_x - grid.display_window.min_x;
+    origin_px[1] = grid.data_window.min_y - grid.display_window.min_y;
 }
 
 }  // namespace
@@ -83,10 +83,11 @@ std::uint32_t step_seed(const std::string& name) {
     return fnv1a_32(name);
 }
 
-FrameBlock frame_block(const FrameInputs& frame, const std::string& step, bool history_valid) {
+FrameBlock frame_block(const FrameInputs& frame, const StepGrid& grid, const std::string& step,
+                       bool history_valid) {
     const CaptureHeader& header = frame.capture->header;
     FrameBlock block;
-    set_origin(header, block.origin_px, block.display_size_px);
+    set_origin(grid, block.origin_px, block.display_size_px);
     block.number = header.frame;
     block.step_seed = aftershade::step_seed(step);
     block.fps = float(frame.fps);
@@ -95,8 +96,8 @@ FrameBlock frame_block(const FrameInputs& frame, const std::string& step, bool h
     for (std::size_t row = 0; row < 3; ++row)
         for (std::size_t column = 0; column < 3; ++column)
             block.rec709_from_color[column][row] = float(matrix[row * 3 + column]);
-    block.size_px[0] = header.data_window.width();
-    block.size_px[1] = header.data_window.height();
+    block.size_px[0] = grid.data_window.width();
+    block.size_px[1] = grid.data_window.height();
     block.full_display_size_px[0] = int(std::lround(block.display_size_px[0] / frame.scale));
     block.full_display_size_px[1] = int(std::lround(block.display_size_px[1] / frame.scale));
     block.scale = float(frame.scale);
@@ -106,7 +107,7 @@ FrameBlock frame_block(const FrameInputs& frame, const std::string& step, bool h
     return block;
 }
 
-CameraBlock camera_block(const FrameInputs& frame, const FrameBefore& before) {
+CameraBlock camera_block(const FrameInputs& frame, const StepGrid& grid, const FrameBefore& before) {
     const Camera& camera = frame.capture->header.camera;
     CameraBlock block;
     set_matrices(camera, block);
@@ -122,8 +123,9 @@ CameraBlock camera_block(const FrameInputs& frame, const FrameBefore& before) {
         }
         block.has_prev_matrices = 1;
     }
-    const auto set_jitter = [](const Camera& from, float(&jitter_px)[2]) {
-        for (std::size_t i = 0; i < 2 && from.jitter_px; ++i) jitter_px[i] = float((*from.jitter_px)[i]);
+    const auto set_jitter = [&](const Camera& from, float(&jitter_px)[2]) {
+        for (std::size_t i = 0; i < 2 && from.jitter_px; ++i)
+            jitter_px[i] = float((*from.jitter_px)[i] * grid.stretch.scale(int(i)));
     };
     set_jitter(camera, block.jitter_px);
     if (known) set_jitter(*known, block.prev_jitter_px);
@@ -158,11 +160,11 @@ LightsBlock lights_block(const FrameInputs& frame, const std::string& step) {
     return block;
 }
 
-std::vector<std::byte> mix_block(const PipelineStep& step, const FrameInputs& frame) {
+std::vector<std::byte> mix_block(const PipelineStep& step, const StepGrid& grid, const FrameInputs& frame) {
     MixBlock block;
     block.amount =
         float(std::get<double>(evaluate(step.mix, mix_spec(), step.name + ".mix", *frame.capture)));
-    set_origin(frame.capture->header, block.origin_px, block.display_size_px);
+    set_origin(grid, block.origin_px, block.display_size_px);
     if (!step.mask) return bytes_of(block);
     block.invert = step.mask->invert ? 1 : 0;
     const std::vector<IdRange> ranges = id_ranges(step.mask->objects);

@@ -10,6 +10,7 @@
 #include "framework/effect/shader_source.h"
 #include "framework/pipeline/look_grammar.h"
 #include "framework/pipeline/pipeline.h"
+#include "framework/pipeline/pixel_shape.h"
 
 namespace aftershade {
 
@@ -23,10 +24,11 @@ struct FrameBefore {
 std::uint32_t step_seed(const std::string& step);
 
 /// The block `frame` of one step.
-FrameBlock frame_block(const FrameInputs& frame, const std::string& step, bool history_valid);
+FrameBlock frame_block(const FrameInputs& frame, const StepGrid& grid, const std::string& step,
+                       bool history_valid);
 
 /// The block `camera`; `before` gives the prev_ matrices, unless the capture before is at hand.
-CameraBlock camera_block(const FrameInputs& frame, const FrameBefore& before);
+CameraBlock camera_block(const FrameInputs& frame, const StepGrid& grid, const FrameBefore& before);
 
 /// The block `lights` of a step that uses it. Throws Error(ExitCode::capture) where the capture has more than
 /// kMaxShaderLights.
@@ -34,7 +36,7 @@ LightsBlock lights_block(const FrameInputs& frame, const std::string& step);
 
 /// The block of a step's "mix" and "mask" (glsl/host/mix.frag). Throws Error(ExitCode::capture) where the mix
 /// comes from the capture and does not fit.
-std::vector<std::byte> mix_block(const PipelineStep& step, const FrameInputs& frame);
+std::vector<std::byte> mix_block(const PipelineStep& step, const StepGrid& grid, const FrameInputs& frame);
 inline constexpr std::size_t kMixBlockBytes = 32 + 16 * kMaxMaskObjects;
 inline constexpr int kMixBinding = 0;
 

@@ -10,6 +10,7 @@
 #include "framework/core/error.h"
 #include "framework/image/role.h"
 #include "framework/pipeline/nan_policy.h"
+#include "framework/pipeline/pixel_shape.h"
 
 namespace aftershade {
 
@@ -108,7 +109,11 @@ Capture FrameLoader::read(int file) const {
 }
 
 void FrameLoader::place(Capture& capture, int file) const {
-    if (run_.region) crop_capture(capture, region_with_margin(run_, region_needs_, capture.header));
+    if (run_.region) {
+        const PixelStretch stretch = SquareSteps(pipeline_, capture.header.pixel_aspect).stretch();
+        const auto needs = region_needs_ ? in_stored_pixels(*region_needs_, stretch) : std::nullopt;
+        crop_capture(capture, region_with_margin(run_, needs, capture.header));
+    }
     scale_capture(capture, run_.scale_divisor);
     const int subframe = (file % sequence_.subframes + sequence_.subframes) % sequence_.subframes;
     capture.header.frame = (file - subframe) / sequence_.subframes;

@@ -100,17 +100,19 @@ private:
     std::vector<std::byte> block(BlockKind kind, int index) const {
         const FrameInputs& inputs = feed_.frame.inputs;
         const EffectManifest& manifest = *step(index).manifest;
+        const CaptureHeader& header = inputs.capture->header;
+        const StepGrid grid = SquareSteps(feed_.frame.pipeline, header.pixel_aspect).grid_of(index, header);
         switch (kind) {
             case BlockKind::param: return param_block(manifest, params(index));
             case BlockKind::frame:
-                return bytes_of(frame_block(inputs, step(index).name, feed_.before.history_valid));
-            case BlockKind::camera: return bytes_of(camera_block(inputs, feed_.before));
+                return bytes_of(frame_block(inputs, grid, step(index).name, feed_.before.history_valid));
+            case BlockKind::camera: return bytes_of(camera_block(inputs, grid, feed_.before));
             case BlockKind::lights: return bytes_of(lights_block(inputs, step(index).name));
             case BlockKind::native:
                 return native_block(manifest, native_values(*feed_.frame.natives.result(index)));
             case BlockKind::mix: break;
         }
-        return mix_block(step(index), inputs);
+        return mix_block(step(index), grid, inputs);
     }
 
     const GraphFeed& feed_;

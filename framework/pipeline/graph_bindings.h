@@ -56,7 +56,7 @@ struct BlockPlace {
 /// A block, the same in each of some passes.
 struct BlockBinding {
     BlockKind kind = BlockKind::param;
-    int step = 0;                    ///< of a camera, which is every step's: the first one
+    int step = 0;                    ///< of a camera, which is that of all steps on its grid: the first one
     std::vector<BlockPlace> places;  ///< by the pass's index in the graph, rising
 };
 

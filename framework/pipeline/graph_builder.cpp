@@ -76,8 +76,8 @@ GraphBuilder::GraphBuilder(const GraphTools& tools, const GraphFrame& frame)
     : tools_(tools),
       frame_(frame),
       pipeline_(frame.pipeline),
-      width_(frame_.width_px()),
-      height_(frame_.height_px()),
+      square_(frame_.square_pixels()),
+      square_steps_(frame.pipeline, square_.stretch),
       programs_({tools.context, tools.programs, tools.status, tools.fuses_passes, !tools.keeps_steps,
                  tools.keeps_steps || tools.programs.is_guarding_loops(), tools.compile_threads}),
       built_(std::make_unique<BuiltGraph>()) {}
@@ -86,9 +86,11 @@ std::unique_ptr<BuiltGraph> GraphBuilder::build() {
     const int accumulating = pipeline_.last_accumulating_step();
     for (int i = 0; i < int(pipeline_.steps.size()); ++i) {
         built_->first_pass_of_step.push_back(graph_.pass_count());
+        use_grid_of(i);
         add_step(i);
         if (i == accumulating) built_->first_single_pass = graph_.pass_count();
     }
+    use_grid_of(-1);
     keep_results();
     keep_taps();
     if (tools_.telemetry) keep_statistics();
@@ -109,32 +111,6 @@ std::unique_ptr<BuiltGraph> GraphBuilder::build() {
     built_->executor = std::make_unique<graph::Executor>(tools_.context, std::move(graph_),
                                                          !tools_.keeps_steps, textures.get());
     return std::move(built_);
-}
-
-void GraphBuilder::keep_results() {
-    for (const auto& [role, texture] : built_->results)
-        if (frame_.wants(role)) graph_.keep(texture);
-}
-
-void GraphBuilder::keep_taps() {
-    for (const Tap& tap : pipeline_.taps)
-        for (std::size_t i = 0; i < pipeline_.steps.size(); ++i) {
-            if (pipeline_.steps[i].name != tap.step) continue;
-            const graph::TextureHandle handle = built_->textures[i].at(tap.texture);
-            if (handle.version == 0)
-                throw Error(ExitCode::usage,
-                            "--tap " + tap.text() + ": no pass writes it with these parameters");
-            graph_.keep(handle);
-        }
-}
-
-void GraphBuilder::keep_statistics() {
-    for (std::size_t i = 0; i < pipeline_.steps.size(); ++i)
-        for (const TelemetrySpec& spec : pipeline_.steps[i].manifest->telemetry)
-            if (const auto found = find_textures(built_->textures[i], spec)) {
-                graph_.keep(found->of);
-                if (found->where) graph_.keep(*found->where);
-            }
 }
 
 std::vector<std::string> GraphBuilder::present_inputs(int index) {
@@ -173,8 +149,10 @@ void GraphBuilder::declare(StepBuild& build) {
     for (const InputSpec& input : manifest.inputs) {
         if (std::find(build.present.begin(), build.present.end(), input.name) == build.present.end())
             continue;
-        const auto handle = resolve(build.step.inputs.at(input.name), input.frame);
+        const InputSource& source = build.step.inputs.at(input.name);
+        graph::TextureHandle handle = resolve(source, input.frame);
         require_written(build, input, handle);
+        handle = on_grid(handle, source);
         build.inputs[input.name] = handle;
         if (!input.history) continue;
         gpu::TextureDesc desc = graph_.textures()[std::size_t(handle.texture)].desc;
@@ -267,7 +245,8 @@ graph::TextureHandle GraphBuilder::import(const std::string& role, int offset) {
     // Passes that run once a frame may need what those of each sub-frame have left.
     const bool is_given_each_run = pipeline_.last_accumulating_step() < 0;
     return imports_[image] = graph_.import_texture(
-               where + role, {width_, height_, texture_format_of_role(role)}, is_given_each_run);
+               where + role, {frame_.width_px(), frame_.height_px(), texture_format_of_role(role)},
+               is_given_each_run);
 }
 
 graph::TextureHandle GraphBuilder::resolve(const InputSource& source, int offset) {
@@ -310,7 +289,9 @@ void GraphBuilder::declare_native_tables(StepBuild& build) {
 void GraphBuilder::bind_block(const StepBuild& build, BlockKind kind, graph::Pass& pass) {
     pass.uniforms.push_back({gl_binding(kind), std::vector<std::byte>(block_bytes(kind, build.manifest()))});
     const auto same = [&](const BlockBinding& block) {
-        return block.kind == kind && (block.step == build.index || kind == BlockKind::camera);
+        return block.kind == kind &&
+               (block.step == build.index ||
+                (kind == BlockKind::camera && square_steps_.contains(block.step) == is_square_));
     };
     auto block = std::find_if(blocks_.begin(), blocks_.end(), same);
     if (block == blocks_.end()) block = blocks_.insert(block, BlockBinding{kind, build.index, {}});
@@ -348,19 +329,20 @@ void GraphBuilder::add_mix(StepBuild& build) {
         graph::Pass pass;
         pass.name = step.name + "." + name + ".mix";
         std::vector<std::string> defines;
-        const graph::TextureHandle before = resolve(source);
+        const auto mask_image = [&](const std::string& role) { return on_grid(import(role), {-1, role}); };
+        const graph::TextureHandle before = on_grid(resolve(source), source);
         pass.reads = {{before, 0, gpu::Filter::nearest, gpu::Wrap::clamp, input_level(before)},
                       {build.textures.at(name), 1}};
         if (step.mask && !step.mask->role.empty()) {
             defines = {"MASK_IMAGE"};
-            pass.reads.push_back({import(step.mask->role), 2});
+            pass.reads.push_back({mask_image(step.mask->role), 2});
         } else if (step.mask && step.mask->names_objects() &&
                    frame_.has_image(coverage_role(step.mask->objects), 0)) {
             defines = {"MASK_IMAGE"};
-            pass.reads.push_back({import(coverage_role(step.mask->objects)), 2});
+            pass.reads.push_back({mask_image(coverage_role(step.mask->objects)), 2});
         } else if (step.mask && !step.mask->objects.empty()) {
             defines = {"MASK_OBJECTS"};
-            pass.reads.push_back({import(kObjectIdRole), 2});
+            pass.reads.push_back({mask_image(kObjectIdRole), 2});
         } else if (step.mask) {
             defines = {"MASK_FILE"};
             pass.reads.push_back({mask_of(build), 2, gpu::Filter::linear});

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "framework/pipeline/graph_bindings.h"
 #include "framework/pipeline/graph_key.h"
 #include "framework/pipeline/pass_programs.h"
+#include "framework/pipeline/pixel_shape.h"
 #include "framework/pipeline/step_files.h"
 
 namespace aftershade {
@@ -42,6 +44,12 @@ std::unique_ptr<BuiltGraph> build_graph(const GraphTools& tools, const GraphFram
 
 struct StepBuild;
 
+/// Of glsl/host/square_pixels.frag.
+inline constexpr int kStretchBinding = 0;
+/// How the names of its passes and targets end; before it is the texture that it reads.
+inline constexpr const char* kToSquarePixels = "@square pixels";
+inline constexpr const char* kToStoredPixels = "@stored pixels";
+
 /// Adds the passes of one step after the other to a graph.
 class GraphBuilder {
 public:
@@ -54,6 +62,9 @@ private:
     std::vector<std::string> present_inputs(int index);
     graph::TextureHandle import(const std::string& role, int offset = 0);
     graph::TextureHandle resolve(const InputSource& source, int offset = 0);
+    void use_grid_of(int step);
+    /// What `source` is, `handle`, on the grid that is in use.
+    graph::TextureHandle on_grid(graph::TextureHandle handle, const InputSource& source);
     void declare(StepBuild& build);
     void require_written(const StepBuild& build, const InputSpec& input, graph::TextureHandle handle) const;
     /// An input is level 0 of a texture that has more.
@@ -92,15 +103,20 @@ private:
     const GraphTools& tools_;
     GraphFrameReader frame_;
     const Pipeline& pipeline_;
-    int width_ = 0;
+    const GraphFrameReader::SquareGrid square_;
+    const SquareSteps square_steps_;
+    bool is_square_ = false;  // the grid in use, of the step that is added
+    bool is_single_ = false;  // whether the step runs once a frame
+    int width_ = 0;           // of that grid
     int height_ = 0;
     graph::FrameGraph graph_;
     PassPrograms programs_;
     std::map<std::vector<std::string>, std::function<std::shared_ptr<const gpu::Program>()>>
         wipe_programs_;  // by defines
     std::unique_ptr<BuiltGraph> built_;
-    std::map<std::pair<std::string, int>, graph::TextureHandle> imports_;  // by role and offset
-    std::map<int, graph::TextureHandle> masks_;                            // by step
+    std::map<std::pair<std::string, int>, graph::TextureHandle> imports_;   // by role and offset
+    std::map<std::tuple<int, int, bool>, graph::TextureHandle> converted_;  // by texture, version, is_single_
+    std::map<int, graph::TextureHandle> masks_;                             // by step
     std::vector<ParamBinding> params_;
     std::vector<NativeTableBinding> native_tables_;
     std::vector<BlockBinding> blocks_;

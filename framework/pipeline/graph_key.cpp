@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "framework/pipeline/pixel_shape.h"
+
 namespace aftershade {
 
 namespace {
@@ -14,12 +16,26 @@ Value found_or(const std::map<std::string, Value>& values, const std::string& na
     return found == values.end() ? otherwise : found->second;
 }
 
+std::vector<double> square_pixels_of(const GraphFrame& frame) {
+    const CaptureHeader& header = frame.inputs.capture->header;
+    const SquareSteps steps(frame.pipeline, header.pixel_aspect);
+    const PixelStretch& stretch = steps.stretch();
+    if (stretch.is_none()) return {};
+    const Window &data = header.data_window, &display = header.display_window;
+    const Window window = stretched(data, display, stretch);
+    const int first_px = stretch.axis == 0 ? data.min_x - display.min_x : data.min_y - display.min_y;
+    return {double(stretch.axis),   double(stretch.to),
+            double(stretch.from),   double(stretch.phase(first_px)),
+            double(window.width()), double(window.height())};
+}
+
 ParamValue answer_to(const GraphQuestion& question, const GraphFrame& frame) {
     const std::string& name = question.name;
     const auto native = [&]() -> const NativeResult& { return *frame.natives.result(question.of); };
     switch (question.about) {
         case About::width_px: return std::int64_t(frame.inputs.capture->header.data_window.width());
         case About::height_px: return std::int64_t(frame.inputs.capture->header.data_window.height());
+        case About::square_pixels: return square_pixels_of(frame);
         case About::image: return frame.inputs.has_image(name, question.of);
         case About::wanted_role:
             return std::find(frame.roles.begin(), frame.roles.end(), name) != frame.roles.end();
@@ -65,6 +81,15 @@ int GraphFrameReader::width_px() {
 
 int GraphFrameReader::height_px() {
     return int(std::get<std::int64_t>(ask({About::height_px, 0, ""})));
+}
+
+GraphFrameReader::SquareGrid GraphFrameReader::square_pixels() {
+    const auto& values = std::get<std::vector<double>>(ask({About::square_pixels, 0, ""}));
+    if (values.empty()) return {};
+    return {{int(values[0]), std::int64_t(values[1]), std::int64_t(values[2])},
+            int(values[3]),
+            int(values[4]),
+            int(values[5])};
 }
 
 bool GraphFrameReader::has_image(const std::string& role, int offset) {

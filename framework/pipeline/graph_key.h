@@ -9,6 +9,7 @@
 
 #include "framework/effect/param_reader.h"
 #include "framework/gpu/texture.h"
+#include "framework/image/square_pixels.h"
 #include "framework/pipeline/native_steps.h"
 #include "framework/pipeline/pipeline.h"
 
@@ -28,6 +29,7 @@ struct GraphQuestion {
     enum class About {
         width_px,
         height_px,
+        square_pixels,   ///< of the steps that work on them: axis, to, from, phase, width, height
         image,           ///< whether the capture `of` frames after has the role `name`
         wanted_role,     ///< whether the role `name` is to be read back
         param,           ///< the `aspect` of the parameter `name` of step `of`
@@ -68,6 +70,14 @@ public:
     const Pipeline& pipeline() const { return frame_.pipeline; }
     int width_px();
     int height_px();
+    /// The grid of the steps that work on square pixels, and how it begins.
+    struct SquareGrid {
+        PixelStretch stretch;  ///< none where no step does
+        int phase = 0;         ///< of the data window's first pixel
+        int width_px = 0;
+        int height_px = 0;
+    };
+    SquareGrid square_pixels();
     /// `offset`: of which capture, in frames.
     bool has_image(const std::string& role, int offset);
     bool wants(const std::string& role);

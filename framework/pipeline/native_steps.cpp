@@ -5,6 +5,7 @@
 
 #include "framework/image/role.h"
 #include "framework/pipeline/frame_blocks.h"
+#include "framework/pipeline/pixel_shape.h"
 
 namespace aftershade {
 
@@ -20,8 +21,8 @@ NativeDeclaration declaration_of(const EffectManifest& manifest) {
     return declaration;
 }
 
-NativeFrame frame_of(const PipelineStep& step, const FrameInputs& frame, const ParamSet& params,
-                     bool history_valid) {
+NativeFrame frame_of(const PipelineStep& step, const StepGrid& grid, const FrameInputs& frame,
+                     const ParamSet& params, bool history_valid) {
     const CaptureHeader& header = frame.capture->header;
     NativeFrame native;
     native.specs = &step.manifest->params;
@@ -31,10 +32,10 @@ NativeFrame frame_of(const PipelineStep& step, const FrameInputs& frame, const P
         if (const auto text = header.metadata.text(name)) native.metadata[name] = *text;
     native.number = header.frame;
     native.fps = frame.fps;
-    native.width_px = header.data_window.width();
-    native.height_px = header.data_window.height();
-    native.display_width_px = header.display_window.width();
-    native.display_height_px = header.display_window.height();
+    native.width_px = grid.data_window.width();
+    native.height_px = grid.data_window.height();
+    native.display_width_px = grid.display_window.width();
+    native.display_height_px = grid.display_window.height();
     native.history_valid = history_valid;
     native.step_seed = step_seed(step.name);
     for (const InputSpec& input : step.manifest->inputs) {
@@ -74,11 +75,13 @@ NativeEffect& NativeSteps::effect(int index, const PipelineStep& step) {
 
 void NativeSteps::prepare(const Pipeline& pipeline, const FrameInputs& frame,
                           const std::vector<ParamSet>& params, bool history_valid) {
+    const CaptureHeader& header = frame.capture->header;
+    const SquareSteps square(pipeline, header.pixel_aspect);
     for (int i = 0; i < int(pipeline.steps.size()); ++i) {
         const PipelineStep& step = pipeline.steps[std::size_t(i)];
         if (!step.manifest->native) continue;
-        NativeResult result =
-            effect(i, step).prepare(frame_of(step, frame, params[std::size_t(i)], history_valid));
+        NativeResult result = effect(i, step).prepare(
+            frame_of(step, square.grid_of(i, header), frame, params[std::size_t(i)], history_valid));
         for (const NativeLogLine& line : result.log)
             messages_.push_back(step.name + ": " + std::string(level_name(line.level)) + line.text);
         const auto before = results_.find(i);

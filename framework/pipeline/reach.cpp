@@ -34,13 +34,7 @@ double most_of(const PipelineStep& step, const ParamSpec& spec) {
 /// Px as rendered; nullopt: all.
 std::optional<int> reach_of(const PipelineStep& step, double scale) {
     const EffectManifest& manifest = *step.manifest;
-    if (!manifest.reach) {
-        const bool is_pointwise = std::ranges::all_of(manifest.passes, [](const PassSpec& pass) {
-            return pass.kind == PassKind::draw && !pass.has_vertex_shader() && pass.images.empty() &&
-                   pass.buffers.empty() && std::ranges::all_of(pass.reads, &ReadSpec::is_pixel);
-        });
-        return is_pointwise ? std::optional(0) : std::nullopt;
-    }
+    if (!manifest.reach) return is_pointwise(manifest) ? std::optional(0) : std::nullopt;
     if (manifest.reach->is_all) return std::nullopt;
     int reach = manifest.reach->px;
     for (const std::string& name : manifest.reach->params)
@@ -113,6 +107,13 @@ bool needs_all(const PipelineStep& step) {
 
 }  // namespace
 
+bool is_pointwise(const EffectManifest& manifest) {
+    return std::ranges::all_of(manifest.passes, [](const PassSpec& pass) {
+        return pass.kind == PassKind::draw && !pass.has_vertex_shader() && pass.images.empty() &&
+               pass.buffers.empty() && std::ranges::all_of(pass.reads, &ReadSpec::is_pixel);
+    });
+}
+
 std::optional<RegionNeeds> needs_of_region(const Pipeline& pipeline, double scale) {
     RegionNeeds needs;
     std::vector<int> margins(pipeline.steps.size(), 0);  // around what later steps need of each
@@ -133,6 +134,13 @@ std::optional<RegionNeeds> needs_of_region(const Pipeline& pipeline, double scal
                 }
     }
     return needs;
+}
+
+std::optional<RegionNeeds> in_stored_pixels(const RegionNeeds& needs, const PixelStretch& stretch) {
+    if (stretch.is_none() || needs.align_px == 1) return needs;
+    for (int px = needs.align_px; px <= kMostAlignPx; px += needs.align_px)
+        if (px * stretch.to % (stretch.from * needs.align_px) == 0) return RegionNeeds{needs.margin_px, px};
+    return std::nullopt;
 }
 
 Window window_with_needs(const Window& region, const RegionNeeds& needs, const Window& data) {

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "framework/image/image.h"
+#include "framework/image/square_pixels.h"
 #include "framework/pipeline/pipeline.h"
 
 namespace aftershade {
@@ -20,6 +21,12 @@ struct RegionNeeds {
 /// what moves is elsewhere there; and with a history, for the same reason. `scale`: of what is rendered,
 /// relative to the full size.
 std::optional<RegionNeeds> needs_of_region(const Pipeline& pipeline, double scale);
+
+/// The same where steps work on square pixels: a stored pixel is at least as large as one of these.
+std::optional<RegionNeeds> in_stored_pixels(const RegionNeeds& needs, const PixelStretch& stretch);
+
+/// Whether each of its passes reads nothing but its own pixel.
+bool is_pointwise(const EffectManifest& manifest);
 
 /// `region` with what it needs, inside `data`, which is the window of the whole frame; both as rendered.
 Window window_with_needs(const Window& region, const RegionNeeds& needs, const Window& data);

@@ -37,6 +37,8 @@ graph::Executor::PassObserver auditor(const Pipeline& pipeline, std::vector<Audi
                                        const gpu::Texture& target) {
         const gpu::TextureDesc& desc = target.desc();
         if (gpu::is_integer(desc.format)) return;
+        // What these write has been looked at.
+        if (texture.ends_with(kToSquarePixels) || texture.ends_with(kToStoredPixels)) return;
         const auto role = role_of_output.find(texture);
         const bool infinity = role != role_of_output.end() && infinity_allowed(role->second);
         const std::vector<float> values = target.read_floats();
@@ -84,7 +86,22 @@ void PipelineRenderer::prepare(const FrameInputs& frame, const std::vector<std::
     if (old) built_->executor->take_history_from(*old->executor);
 }
 
+namespace {
+
+void require_room(const Pipeline& pipeline, const CaptureHeader& header, int most_px) {
+    const SquareSteps steps(pipeline, header.pixel_aspect);
+    const Window window = stretched(header.data_window, header.display_window, steps.stretch());
+    if (steps.stretch().is_none() || std::max(window.width(), window.height()) <= most_px) return;
+    throw Error(ExitCode::capture,
+                header.path.string() + ": " + steps.note(pipeline, header) +
+                    ", and a side may have at most " + std::to_string(most_px) +
+                    " with this renderer (correct pixelAspectRatio, or resample the frame to square pixels)");
+}
+
+}  // namespace
+
 void PipelineRenderer::build(const FrameInputs& frame, const std::vector<std::string>& roles, bool primes) {
+    require_room(pipeline_, frame.capture->header, context_.info().texture_side_px);
     built_ = build_graph(
         {context_, *programs_, files_, telemetry_, status_, keeps_steps_,
          fuses_passes_ && !keeps_steps_ && !audit_, compile_threads_, keeps_steps_ || audit_, primes},
@@ -202,8 +219,9 @@ FrameResult PipelineRenderer::render(const FrameInputs& frame, const std::vector
     result.messages = natives_.take_messages();
     const float aspect = frame.capture->header.pixel_aspect;
     if (aspect != std::exchange(aspect_, aspect))
-        if (std::string warning = square_pixels_warning(pipeline_, aspect); !warning.empty())
-            result.messages.push_back("warning: " + std::move(warning));
+        if (std::string note = SquareSteps(pipeline_, aspect).note(pipeline_, frame.capture->header);
+            !note.empty())
+            result.messages.push_back("note: " + std::move(note));
     for (const std::string& warning : programs_->take_warnings())
         result.messages.push_back("warning: " + warning);
     if (pipeline_.has_history() && is_first) result.history_reset = frame_fault_;

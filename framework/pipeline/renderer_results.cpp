@@ -95,12 +95,10 @@ void PipelineRenderer::read_results(const std::vector<std::string>& roles, bool 
         result.images[role] = std::move(read.image);
         if (read.is_finite) result.finite_roles.insert(role);
     }
-    for (const Tap& tap : pipeline_.taps)
-        for (std::size_t i = 0; i < pipeline_.steps.size(); ++i)
-            if (pipeline_.steps[i].name == tap.step) {
-                const gpu::Texture& texture = *executor.texture(built_->textures[i].at(tap.texture));
-                result.taps[tap.text()] = read_back(texture, gpu::channel_count(texture.desc().format)).image;
-            }
+    for (const auto& [tap, handle] : built_->taps) {
+        const gpu::Texture& texture = *executor.texture(handle);
+        result.taps[tap] = read_back(texture, gpu::channel_count(texture.desc().format)).image;
+    }
     if (timed) result.times.push_back({"readback", timer.stop_ms()});
 }
 

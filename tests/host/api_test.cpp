@@ -10,6 +10,7 @@
 #include "aftershade/host.h"
 #include "framework/file/exr_file.h"
 #include "tests/host/host_setup.h"
+#include "tests/synthetic_capture.h"
 #include "tests/temporary_folder.h"
 
 namespace {
@@ -36,6 +37,35 @@ TEST(HostApi, RendersWhatTheProgramWrites) {
     const Image image = result.image("color");
     ASSERT_EQ(image.floats().size(), expected.floats().size());
     EXPECT_TRUE(std::ranges::equal(image.floats(), expected.floats()));
+}
+
+TEST(HostApi, RendersWhatTheProgramWritesWherePixelsAreNotSquareToo) {
+    const TemporaryFolder folder;
+    const std::string look = folder.path() / "look.json", in = folder.path() / "in.exr",
+                      out = folder.path() / "out.exr";
+    write_file(look, kBlurLook);
+    aftershade::Capture frame = make_capture({.width = 51,
+                                              .height = 33,
+                                              .background = {0.1f, 0.2f, 0.4f},
+                                              .background_depth_m = 2,
+                                              .points = {{20, 10, 50}, {40, 25, 9}}});
+    frame.header.pixel_aspect = 1.5f;
+    write_capture(frame, in);
+    ASSERT_EQ(std::system(("\"" AFTERSHADE_EXECUTABLE "\" run " + look + " " + in + " -o " + out +
+                           " --backend software --pixel-type float --progress none")
+                              .c_str()),
+              0);
+    Host host(on_software());
+    Look from_file = host.load_look(look);
+    const Result result = from_file.render(from_file.read(in));
+    const std::vector<std::string> channels = {"R", "G", "B", "A"};
+    const auto expected = aftershade::ExrFile(out).read_floats(0, channels);
+    EXPECT_EQ(result.image("color").width(), 51);
+    EXPECT_TRUE(std::ranges::equal(result.image("color").floats(), expected.floats()));
+    const auto square = [](const std::string& text) {
+        return text.find("77 x 33 square") != std::string::npos;
+    };
+    EXPECT_TRUE(std::ranges::any_of(result.messages(), square));
 }
 
 TEST(HostApi, ArraysGiveTheBitsOfFiles) {

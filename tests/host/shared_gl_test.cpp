@@ -9,6 +9,8 @@
 #include "aftershade/host.h"
 #include "tests/host/host_setup.h"
 #include "tests/host/own_egl.h"
+#include "tests/synthetic_capture.h"
+#include "tests/temporary_folder.h"
 
 namespace {
 
@@ -33,7 +35,7 @@ std::vector<float> flipped(std::span<const float> rows, std::size_t row) {
 
 /// The capture's images as textures, as GL draws them: from the bottom up.
 Capture on_gpu(const OwnEgl& egl, const Capture& capture) {
-    Capture textures(kWidth, kHeight);
+    Capture textures = capture;
     const auto add = [&](const char* role, GLenum format, GLenum layout, std::size_t channels) {
         const GLuint name = egl.texture(format, kWidth, kHeight);
         const auto rows = flipped(capture.image(role).floats(), kWidth * channels);
@@ -71,6 +73,27 @@ TEST(HostSharedGl, TexturesGiveTheBitsOfArrays) {
     EXPECT_TRUE(std::ranges::equal(rows, expected.floats()));
     EXPECT_TRUE(result.roles().empty());
     EXPECT_EQ(egl.gl.GetError(), GLenum(GL_NO_ERROR));
+}
+
+TEST(HostSharedGl, TexturesOfPixelsThatAreNotSquareGiveTheBitsOfArraysToo) {
+    const TemporaryFolder folder;
+    const std::string in = folder.path() / "in.exr";
+    aftershade::Capture frame = make_capture({.width = kWidth,
+                                              .height = kHeight,
+                                              .background = {0.1f, 0.2f, 0.4f},
+                                              .background_depth_m = 2,
+                                              .points = {{20, 10, 50}, {40, 25, 9}}});
+    frame.header.pixel_aspect = 1.5f;
+    write_capture(frame, in);
+    OwnEgl egl;
+    Host host(sharing(egl));
+    Look look = host.parse_look(kBlurLook);
+    const Capture arrays = look.read(in);
+    const Image expected = look.render(arrays).image("color");
+    const GLuint target = egl.texture(GL_RGBA32F, kWidth, kHeight);
+    look.render(on_gpu(egl, arrays), {.targets = {{"color", {target, kWidth, kHeight}}}});
+    const auto rows = flipped(egl.read(target, GL_RGBA, kWidth * kHeight * 4), kWidth * 4);
+    EXPECT_TRUE(std::ranges::equal(rows, expected.floats()));
 }
 
 TEST(HostSharedGl, ValuesAreTakenFromTexturesToo) {

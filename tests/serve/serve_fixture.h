@@ -35,6 +35,7 @@ protected:
         for (int frame = 1; frame <= frames_; ++frame) {
             Capture capture = make_capture(scene, frame);
             if (has_nan_) capture.images.at(kColorRole).at(3, 2, 1) = std::numeric_limits<float>::quiet_NaN();
+            capture.header.pixel_aspect = pixel_aspect_;
             write_capture(capture, folder_ / ("in_000" + std::to_string(frame) + ".exr"));
         }
         write_text(folder_ / "look.json", look_);
@@ -96,6 +97,7 @@ protected:
     TemporaryFolder folder_;
     std::optional<Command> command_;
     bool has_nan_ = false;
+    float pixel_aspect_ = 1;
     int frames_ = 1;
     std::string look_ = kLook;
     int port_ = 0;

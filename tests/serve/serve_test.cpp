@@ -65,6 +65,27 @@ TEST_F(Serve, DrawsTheStepsFromTheChangedOneOnAndTheSameBits) {
     }
 }
 
+TEST_F(Serve, DrawsTheBitsOfARunWherePixelsAreNotSquareToo) {
+    pixel_aspect_ = 1.5f;
+    start();
+    const auto expect_bits_of_run = [&] {
+        write_text(folder_ / "shown.png", get("/api/picture?frame=1").body);
+        const CommandResult run =
+            run_aftershade({"run", "look.json", "in_0001.exr", "-o", "out.png"}, folder_.path());
+        ASSERT_NE(run.err.find("works on 96 x 36 square pixels"), std::string::npos) << run.err;
+        const Image shown = read_png(folder_ / "shown.png"), written = read_png(folder_ / "out.png");
+        EXPECT_EQ(shown.width(), 64);
+        EXPECT_TRUE(std::ranges::equal(shown.floats(), written.floats()));
+    };
+    expect_bits_of_run();
+    ASSERT_EQ(set(0.8, 0, "strength").status, 200);
+    ASSERT_EQ(post("/api/save").status, 200);
+    expect_bits_of_run();
+    ASSERT_EQ(set(1.25).status, 200);
+    ASSERT_EQ(post("/api/save").status, 200);
+    expect_bits_of_run();
+}
+
 TEST_F(Serve, HoldsAsManyGlObjectsAfterTheSameEditsAgain) {
     start();
     const auto objects_after_edits = [&] {
