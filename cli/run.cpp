@@ -130,10 +130,10 @@ CheckedRun checked_run(const RunArguments& options) {
     if (sequence && !diagnostics.has_errors()) require_some_file(*sequence);
     const Sequence checked = sequence.value_or(Sequence{});
     InputFiles inputs = run_inputs(*run.bound, checked, diagnostics);
-    check_run_outputs(options, run.outputs, checked, inputs, diagnostics);
+    const bool may_report = check_run_outputs(options, run.outputs, checked, inputs, diagnostics);
     check_worker_options(options, diagnostics);
     check_stream_options(options, diagnostics);
-    stop_at_errors(diagnostics);
+    stop_at_errors(diagnostics, !may_report);
     diagnostics.print(std::cerr);
     run.sequence = std::move(*sequence);
     run.settings.frames = run.share.run.frames;
@@ -237,7 +237,7 @@ Verb add_run(CLI::App& app) {
             write_early_report(*options, code, "");  // where there was no frame to run
             return code;
         } catch (const FaultyDocuments& faults) {
-            write_early_report(*options, faults.exit_code(), faults.details);
+            if (!faults.refuses_report) write_early_report(*options, faults.exit_code(), faults.details);
             throw;
         } catch (const Error& error) {
             write_early_report(*options, error.exit_code(), error.what());
