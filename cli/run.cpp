@@ -201,11 +201,7 @@ ExitCode run(const RunArguments& options) {
     const ProgressStyle progress = parse_progress(options.progress);
     CheckedRun run = checked_run(options);
     const auto profile_documents = documents_of(run.profiles, run.sequence);
-    CaptureReader reader(run.sequence, run.profiles, options.capture.limits);
-    // The whole run's, in its chunks and workers, too.
-    std::vector<int> files;
-    for (const int frame : run.sequence.frames) files.push_back(run.sequence.file_number(frame));
-    reader.hold_to_first_of(std::move(files));
+    const CaptureReader reader(run.sequence, run.profiles, options.capture.limits);
     if (options.explain) return explain(run.sequence, reader, run.bound->pipeline);
     if (options.stream.print_ffmpeg) {
         std::cout << ffmpeg_command(reader, run.sequence, run.settings, run.outputs) << "\n";
