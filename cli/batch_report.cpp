@@ -67,7 +67,8 @@ std::string report_json(const BatchSummary& summary) {
                                      {"frames", std::move(frames)}};
     if (!summary.renderer.empty()) {
         report["renderer"] = summary.renderer;
-        report["hardware_not_usable"] = summary.is_fall_back;
+        report["hardware_not_usable"] = !summary.hardware_fault.empty();
+        if (!summary.hardware_fault.empty()) report["hardware_fault"] = summary.hardware_fault;
     }
     if (!summary.error.empty()) report["error"] = summary.error;
     return report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";

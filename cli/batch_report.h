@@ -16,7 +16,7 @@ struct BatchSummary {
     double seconds = 0;
     ExitCode exit_code = ExitCode::done;
     std::string renderer{};  ///< "egl-software: llvmpipe (...), 4.5 ..."; "" where nothing was drawn here
-    bool is_fall_back = false;  ///< backend auto found no hardware GL
+    std::string hardware_fault{};  ///< why backend auto took software; "" where it did not
     std::string error{};  ///< the message of what ended the run; "" where nothing did
 };
 

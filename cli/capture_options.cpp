@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <iostream>
 
+#include "framework/capture/capture.h"
 #include "framework/capture/capture_grammar.h"
 #include "framework/capture/frame_range.h"
 #include "framework/core/data_path.h"
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 #include "framework/image/color_space.h"
 
 namespace aftershade::cli {
@@ -120,14 +122,19 @@ std::optional<Sequence> find_sequence(const CaptureOptions& options, const std::
     return sequence;
 }
 
-void stop_at_errors(const Diagnostics& diagnostics) {
+void print_differences(const CaptureHeader& header) {
+    for (const std::string& difference : header.differences)
+        std::cerr << "aftershade: warning: " << printable(header.path.string() + ": " + difference) << "\n";
+}
+
+void stop_at_errors(const Diagnostics& diagnostics, bool refuses_report) {
     if (!diagnostics.has_errors()) return;
     diagnostics.print(std::cerr);
     std::ostringstream faults;
     diagnostics.print(faults);
     throw FaultyDocuments(std::to_string(diagnostics.error_count()) +
                               (diagnostics.error_count() == 1 ? " error" : " errors") + "; nothing was run",
-                          faults.str());
+                          faults.str(), refuses_report);
 }
 
 }  // namespace aftershade::cli

@@ -17,6 +17,10 @@ class App;
 class Option;
 }  // namespace CLI
 
+namespace aftershade {
+struct CaptureHeader;
+}
+
 namespace aftershade::cli {
 
 struct CaptureOptions {
@@ -46,14 +50,18 @@ std::vector<Profile> load_profiles(const std::vector<std::string>& profile_paths
 std::optional<Sequence> find_sequence(const CaptureOptions& options, const std::vector<Profile>& profiles,
                                       Diagnostics& diagnostics);
 
+/// A warning for each of CaptureHeader::differences, to standard error.
+void print_differences(const CaptureHeader& header);
+
 /// Its message counts the faults, which have been printed.
 struct FaultyDocuments : Error {
-    FaultyDocuments(const std::string& message, std::string faults)
-        : Error(ExitCode::usage, message), details(std::move(faults)) {}
-    std::string details;  ///< a line for each fault
+    FaultyDocuments(const std::string& message, std::string faults, bool report)
+        : Error(ExitCode::usage, message), details(std::move(faults)), refuses_report(report) {}
+    std::string details;          ///< a line for each fault
+    bool refuses_report = false;  ///< the name of --report is at fault: nothing may be written to it
 };
 
-/// Throws Error(ExitCode::usage) with every fault collected so far.
-void stop_at_errors(const Diagnostics& diagnostics);
+/// Throws FaultyDocuments with every fault collected so far.
+void stop_at_errors(const Diagnostics& diagnostics, bool refuses_report = false);
 
 }  // namespace aftershade::cli

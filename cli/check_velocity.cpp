@@ -71,10 +71,13 @@ ExitCode check_velocity_of_files(const std::vector<std::string>& files, const Ca
 
     std::vector<Capture> captures;
     std::map<std::string, RoleDecoding> decodings;
+    const CaptureReader first(sequences[0], profiles, options.limits);
     for (const Sequence& sequence : sequences) {
-        const CaptureReader reader(sequence, profiles, options.limits);
+        CaptureReader reader(sequence, profiles, options.limits);
+        if (&sequence != &sequences[0]) reader.hold_to_first_of(first);
         captures.push_back(reader.read(sequence.frames.front(), velocity_check_roles()));
         decodings = reader.decodings(sequence.frames.front());
+        print_differences(captures.back().header);
     }
     nlohmann::ordered_json document{{"aftershade", 1},
                                     {"files", files},

@@ -65,9 +65,11 @@ ExitCode check_warmup(const WarmupCheck& check) {
     run.frames = sequence->frames;
     run.natives = {&natives, &status};
     const ScratchFolder scratch;
+    RunObserver observer;
+    observer.frame_started = [](const Capture& capture) { print_differences(capture.header); };
     const auto measured = measure_warmup(
         {[&]() -> gpu::Context& { return context; }, pipeline, *sequence, reader, run, {}, data_path()},
-        scratch.path());
+        scratch.path(), observer);
     fmt::print("{:>8}  {:>9}   frame {} after this many frames, against all {} before it\n", "warm-up",
                "error", run.frames.back(), run.frames.size() - 1);
     for (const WarmupError& one : measured) fmt::print("{:>8}  {:>9.3g}\n", one.frames, one.error);

@@ -39,11 +39,9 @@ void remove_old_report(const RunArguments& options) {
 void write_early_report(const RunArguments& options, ExitCode code, const std::string& message) {
     std::error_code failure;
     if (!begins_frames(options) || std::filesystem::exists(options.jobs.report, failure)) return;
-    // Where the report's own name is at fault, nothing may be written to it.
-    if (message.find("--report " + options.jobs.report) != std::string::npos) return;
     try {
         write_text_file(options.jobs.report,
-                        report_json({options.look, options.capture.capture, {}, 0, code, "", false, message}));
+                        report_json({options.look, options.capture.capture, {}, 0, code, "", "", message}));
     } catch (const Error& error) {
         std::cerr << printable_lines(error.what()) << "\n";
     }

@@ -88,6 +88,8 @@ Inspection inspect_frame(const Sequence& sequence, int frame, const CaptureReade
         inspection.parts.push_back(inspect_part(file, int(i), options));
     try {
         inspection.capture = reader.read_header(frame);
+        for (const std::string& difference : inspection.capture->differences)
+            inspection.capture->warnings.push_back(difference);
         inspection.cryptomattes = reader.cryptomattes(frame);
     } catch (const Error& error) {
         // The files are sound, but what they mean is not known: no profile, several, no such view.

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "cli/capture_options.h"
 #include "framework/file/png_file.h"
 #include "framework/image/display.h"
 #include "framework/image/role.h"
@@ -30,6 +31,7 @@ Image read_display(const Sequence& sequence, const CaptureReader& reader, int fr
     if (const auto path = sequence.path_of(file); path.extension() == ".png") return as_rgb(read_png(path));
     Capture capture = reader.read(file, std::vector{std::string(kColorRole)});
     const CaptureHeader& header = capture.header;
+    print_differences(header);
     if (!capture.images.contains(kColorRole))
         throw missing_role({"a thumbnail", kColorRole}, header, &reader);
     return cropped_display(display_of_color(std::move(capture.images.at(kColorRole)), header.primaries),

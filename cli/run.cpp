@@ -134,10 +134,10 @@ CheckedRun checked_run(const RunArguments& options) {
     if (sequence && !diagnostics.has_errors()) require_some_file(*sequence);
     const Sequence checked = sequence.value_or(Sequence{});
     InputFiles inputs = run_inputs(*run.bound, checked, diagnostics);
-    check_run_outputs(options, run.outputs, checked, inputs, diagnostics);
+    const bool may_report = check_run_outputs(options, run.outputs, checked, inputs, diagnostics);
     check_worker_options(options, diagnostics);
     check_stream_options(options, diagnostics);
-    stop_at_errors(diagnostics);
+    stop_at_errors(diagnostics, !may_report);
     diagnostics.print(std::cerr);
     run.sequence = std::move(*sequence);
     run.settings.frames = run.share.run.frames;
@@ -205,11 +205,7 @@ ExitCode run(const RunArguments& options) {
     const ProgressStyle progress = parse_progress(options.progress);
     CheckedRun run = checked_run(options);
     const auto profile_documents = documents_of(run.profiles, run.sequence);
-    CaptureReader reader(run.sequence, run.profiles, options.capture.limits);
-    // The whole run's, in its chunks and workers, too.
-    std::vector<int> files;
-    for (const int frame : run.sequence.frames) files.push_back(run.sequence.file_number(frame));
-    reader.hold_to_first_of(std::move(files));
+    const CaptureReader reader(run.sequence, run.profiles, options.capture.limits);
     if (options.explain) return explain(run.sequence, reader, run.bound->pipeline);
     if (options.stream.print_ffmpeg) {
         std::cout << ffmpeg_command(reader, run.sequence, run.settings, run.outputs) << "\n";
@@ -241,7 +237,7 @@ Verb add_run(CLI::App& app) {
             write_early_report(*options, code, "");  // where there was no frame to run
             return code;
         } catch (const FaultyDocuments& faults) {
-            write_early_report(*options, faults.exit_code(), faults.details);
+            if (!faults.refuses_report) write_early_report(*options, faults.exit_code(), faults.details);
             throw;
         } catch (const Error& error) {
             write_early_report(*options, error.exit_code(), error.what());

@@ -20,10 +20,10 @@ InputFiles run_inputs(const BoundLook& bound, const Sequence& sequence, const Di
     return inputs;
 }
 
-void check_run_outputs(const RunArguments& options, const OutputOptions& outputs, const Sequence& sequence,
+bool check_run_outputs(const RunArguments& options, const OutputOptions& outputs, const Sequence& sequence,
                        InputFiles& inputs, Diagnostics& diagnostics) {
     const auto check = [&](const std::string& word, const std::string& file) {
-        inputs.check_output({word + " " + file}, file, diagnostics);
+        return inputs.check_output({word + " " + file}, file, diagnostics);
     };
     check("--history-out", options.history_out);
     inputs.add(fs::path(options.history_in));
@@ -31,11 +31,12 @@ void check_run_outputs(const RunArguments& options, const OutputOptions& outputs
     check("--graph", options.graph);
     check("--telemetry-plot", options.telemetry_plot);
     check("--trace", options.trace);
-    check("--report", options.jobs.report);
+    const bool may_report = check("--report", options.jobs.report);
     for (const std::string& pattern : outputs.patterns)
         if (const auto input = inputs.replaced_by(run_state(pattern).journal()))
             diagnostics.error({"-o " + pattern}, "the journal beside it would replace the input " +
                                                      input->string() + " (--no-journal does without)");
+    return may_report;
 }
 
 }  // namespace aftershade::cli

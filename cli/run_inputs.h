@@ -15,8 +15,8 @@ namespace aftershade::cli {
 /// not be whole, and names no files.
 InputFiles run_inputs(const BoundLook& bound, const Sequence& sequence, const Diagnostics& faults);
 
-/// Every file of `run`: those of frames, and those that are written once.
-void check_run_outputs(const RunArguments& options, const OutputOptions& outputs, const Sequence& sequence,
+/// Every file of `run`: those of frames, and those that are written once. Whether --report may be written.
+bool check_run_outputs(const RunArguments& options, const OutputOptions& outputs, const Sequence& sequence,
                        InputFiles& inputs, Diagnostics& diagnostics);
 
 }  // namespace aftershade::cli

@@ -228,7 +228,7 @@ void RunReporter::print_json_summary(const RunReport& report) const {
                 {"stages", stages}});
 }
 
-void RunReporter::print_summary(const RunReport& report, bool is_fall_back) {
+void RunReporter::print_summary(const RunReport& report) {
     line_.clear();
     if (style_ == ProgressStyle::none) return;
     frame_count_ -= warmup_frames_ + report.frames_unwritten;  // what was to be written
@@ -248,7 +248,9 @@ void RunReporter::print_summary(const RunReport& report, bool is_fall_back) {
     if (!report.gl.renderer.empty())
         fmt::print(stderr, ", {}: {}, {}", gpu::backend_name(report.gl.backend), report.gl.renderer,
                    report.gl.version);
-    fmt::print(stderr, "{}\n", is_fall_back ? "; backend auto found no usable hardware GL" : "");
+    const std::string& fault = report.gl.hardware_fault;
+    fmt::print(stderr, "{}\n",
+               fault.empty() ? "" : "; backend auto found no usable hardware GL (" + printable(fault) + ")");
 }
 
 }  // namespace aftershade::cli

@@ -50,8 +50,7 @@ public:
         : style_(style), frame_count_(frame_count), warmup_frames_(warmup_frames), verbose_(verbose) {}
 
     RunObserver observer();
-    /// `is_fall_back`: the backend auto took software GL.
-    void print_summary(const RunReport& report, bool is_fall_back);
+    void print_summary(const RunReport& report);
     /// Whatever the style.
     void warn(const std::string& message);
 

@@ -35,11 +35,6 @@ std::string renderer_text(const gpu::ContextInfo& gl) {
     return std::string(gpu::backend_name(gl.backend)) + ": " + gl.renderer + ", " + gl.version;
 }
 
-/// Whether `auto` took software because no hardware GL can be used here.
-bool is_fall_back(const RunSession& session, const gpu::ContextInfo& gl) {
-    return gl.software && chosen_backend(session.arguments.backend) == gpu::Backend::automatic;
-}
-
 /// The device files of GPUs: a machine without them is not expected to draw on hardware.
 bool has_gpu_device() {
     std::error_code failure;
@@ -57,10 +52,10 @@ public:
         if (session_.arguments.jobs.report.empty()) return;
         try {
             const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start_;
-            write_text_file(
-                session_.arguments.jobs.report,
-                report_json({session_.arguments.look, session_.arguments.capture.capture,
-                             frame_events(session_.run, outcomes_, current_), taken.count(), code_, renderer_, is_fall_back_, error_}));
+            write_text_file(session_.arguments.jobs.report,
+                            report_json({session_.arguments.look, session_.arguments.capture.capture,
+                                         frame_events(session_.run, outcomes_, current_), taken.count(),
+                                         code_, renderer_, hardware_fault_, error_}));
         } catch (const Error& error) {
             std::cerr << printable_lines(error.what()) << "\n";
         }
@@ -88,7 +83,7 @@ public:
             report.frames_current = int(current_.size());
             ended(report.exit_code());
             if (!report.gl.renderer.empty()) renderer_ = renderer_text(report.gl);
-            is_fall_back_ = is_fall_back(session_, report.gl);
+            hardware_fault_ = report.gl.hardware_fault;
             return report;
         } catch (const Error& error) {
             ended(error.exit_code());
@@ -103,7 +98,7 @@ private:
     std::vector<FrameOutcome> outcomes_;
     ExitCode code_ = ExitCode::effect;  // of an error
     std::string renderer_;
-    bool is_fall_back_ = false;
+    std::string hardware_fault_;
     std::string error_;  // its message
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
@@ -122,13 +117,15 @@ ExitCode render(const RunSession& session, const RunOptions& run, const Pipeline
         report_file.run({session.context, pipeline, session.sequence, session.reader, settings,
                          session.outputs, data_path(), hooks, session.end_context},
                         reporter.observer(), stop);
-    if (is_fall_back(session, report.gl) && has_gpu_device())
-        reporter.warn("this machine has a GPU, but no hardware GL could be used, so the frames were drawn in "
-                      "software; aftershade doctor says why, and --backend egl refuses such a run");
+    if (!report.gl.hardware_fault.empty() && has_gpu_device())
+        reporter.warn(
+            "this machine has a GPU, but no hardware GL could be used, so the frames were drawn in "
+            "software: " +
+            report.gl.hardware_fault + " (--backend egl refuses such a run)");
     // Of several workers each sees only a part of the frames.
     if (!session.arguments.jobs.is_worker())
         for (const std::string& warning : report.objects_unmatched) reporter.warn(warning);
-    reporter.print_summary(report, is_fall_back(session, report.gl));
+    reporter.print_summary(report);
     if (session.outputs.stream && !report.failures.empty())
         std::cerr
             << "-o -: the stream ends before frame " << report.failures.front().frame

@@ -189,7 +189,7 @@ ExitCode run_by_workers(const RunArguments& arguments, const JobFrames& frames, 
     if (!arguments.jobs.report.empty())
         write_text_file(arguments.jobs.report,
                         report_json({arguments.look, arguments.capture.capture, report.frames, seconds,
-                                     report.exit_code, "", false, report.error}));
+                                     report.exit_code, "", "", report.error}));
     return report.exit_code;
 }
 

@@ -184,15 +184,16 @@ export class Costs {
   /** `steps`: names of the steps that the look has. */
   show(times, isCoarse, steps) {
     if (!times) return;
-    const { passes, total_ms, steps_drawn, steps_cached, memory_bytes, gl_objects, non_finite } = times;
+    const { passes, total_ms, steps_drawn, steps_cached, memory_bytes, gl_objects, non_finite, warnings } = times;
     this.total.textContent = `${milliseconds(total_ms)}${isCoarse ? " at 1/4" : ""}`;
-    const counted = (count) => `${count} ${count === 1 ? "step" : "steps"}`;
+    const counted = (count, what = "step") => `${count} ${what}${count === 1 ? "" : "s"}`;
     this.chips.replaceChildren(
       chip(
         non_finite ? `${non_finite} NaN or infinite` : "no NaN",
         non_finite ? "bad" : "good",
         "Values of the final picture that are NaN or infinite",
       ),
+      ...(warnings.length ? [chip(counted(warnings.length, "warning"), "bad", warnings.join("\n"))] : []),
       chip(`${counted(steps_drawn)} drawn`),
       chip(`${counted(steps_cached)} cached`, "", "Steps before the change, whose pictures were kept"),
       chip(megabytes(memory_bytes), "", `Memory of textures and buffers; the program has ${gl_objects} GL objects`),

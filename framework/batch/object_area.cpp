@@ -8,6 +8,7 @@
 #include "framework/core/data_path.h"
 #include "framework/core/diagnostics.h"
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
@@ -40,7 +41,11 @@ AreaShape object_area(const std::string& capture, std::optional<int> frame,
         throw Error(ExitCode::capture, read.header.path.string() +
                                            ": has no object ids: neither a Cryptomatte nor the " +
                                            "role object_id");
-    return covered_area(read.images.at(role), 0, read.header.data_window, read.header.display_window);
+    AreaShape shape =
+        covered_area(read.images.at(role), 0, read.header.data_window, read.header.display_window);
+    if (!read.header.differences.empty())
+        shape.note = read.header.path.string() + ": " + joined(read.header.differences, "; ", "; ");
+    return shape;
 }
 
 std::string object_area_name(const std::vector<TableKey>& objects) {

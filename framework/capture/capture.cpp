@@ -112,7 +112,11 @@ void require_one_picture(const std::string& role, const FrameFile& file, const F
 }  // namespace
 
 CaptureReader::CaptureReader(const Sequence& sequence, std::vector<Profile> profiles, ReadLimits limits)
-    : sequence_(sequence), profiles_(std::move(profiles)), limits_(limits) {}
+    : CaptureReader(sequence, std::move(profiles), limits, std::make_shared<FirstFrame>()) {}
+
+CaptureReader::CaptureReader(const Sequence& sequence, std::vector<Profile> profiles, ReadLimits limits,
+                             std::shared_ptr<FirstFrame> first)
+    : sequence_(sequence), profiles_(std::move(profiles)), limits_(limits), first_(std::move(first)) {}
 
 CaptureReader::~CaptureReader() = default;
 
@@ -147,7 +151,7 @@ void CaptureReader::add_role(OpenFrame& open, const std::string& role, const Rol
     luminance.layers = {{decoding.luminance.empty() && role == kColorRole ? "Y" : decoding.luminance}};
     const bool has_luminance = !luminance.layers[0][0].empty() && !has_x_y_z(file.merged()) &&
                                find_channels(luminance, "", file.merged());
-    if (found) hold_channels(role, file, *found, open.header);
+    hold_channels(role, file, found, open.header);
     if (found) source.channels = std::move(*found);
     else if (has_luminance) source.luminance = luminance.layers[0][0];
     else if (own_file != open.role_files.end() && &file != &cryptomatte_file(open))
@@ -178,6 +182,7 @@ void CaptureReader::find_roles(OpenFrame& open) const {
     note_assumed_space(open);
     note_data_read_as_color(open);
     find_cryptomatte_roles(open);
+    compare_sources(open);
     for (const auto& [role, source] : open.roles) {
         open.header.roles.push_back(role);
         if (source.file != open.main.get() || source.channels.empty()) open.header.derived_roles.insert(role);
@@ -191,10 +196,10 @@ void CaptureReader::find_roles(OpenFrame& open) const {
 
 CaptureReader::OpenFrame CaptureReader::open(int frame, int deep_layers) const {
     OpenFrame open;
-    open.main = std::make_unique<FrameFile>(sequence_.path_of(frame), limits_, sequence_.view, deep_layers);
+    open.main = open_file(sequence_.path_of(frame), "", deep_layers, open.header);
     for (const auto& [role, pattern] : sequence_.role_files) {
         auto& file = open.role_files[role];
-        file = std::make_unique<FrameFile>(pattern.path(frame), limits_, sequence_.view, deep_layers);
+        file = open_file(pattern.path(frame), role, deep_layers, open.header);
         require_one_picture(role, *file, *open.main);
     }
     const ExrPart& part = open.main->merged();
@@ -227,7 +232,7 @@ CaptureReader::OpenFrame CaptureReader::open(int frame, int deep_layers) const {
 bool CaptureReader::has_frame(int frame) const {
     for (std::size_t i = 0; i < sequence_.layers.size(); ++i) {
         const Sequence own = sequence_of_layer(sequence_, i);
-        if (!CaptureReader(own, {}, limits_).has_frame(frame)) return false;
+        if (!layer_reader(own, i).has_frame(frame)) return false;
     }
     if (!sequence_.layers.empty()) return true;
     std::error_code unreadable;

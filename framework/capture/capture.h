@@ -40,10 +40,10 @@ struct CaptureHeader {
     std::vector<std::string> layers;    ///< to choose from, by the profile
     std::vector<std::string> notes;     ///< on what was chosen for the user, in whole sentences
     std::vector<std::string> warnings;  ///< on what may be wrong in the file, in whole sentences
-    /// From the first frame of the run, by CaptureReader::hold_to_first_of(): what is read otherwise.
+    /// From the first frame of the capture, by which CaptureReader reads: what is otherwise.
     std::vector<std::string> differences;
-    bool keeps_alpha = false;  ///< opaque pictures of it have an alpha, too: those of the run are alike
-    Window data_window;        ///< colour's: the working grid
+    bool keeps_alpha = false;  ///< opaque pictures of it have an alpha, too: those of the capture are alike
+    Window data_window;               ///< colour's: the working grid
     Window display_window;
     float pixel_aspect = 1;
     int layer_count = 1;                   ///< of a deep capture, and of capture.json's "layers"
@@ -87,19 +87,26 @@ struct StoredChannel {
     Image image;  ///< over the working grid
 };
 
-/// Opens frames of a sequence, by the number in the file's name: Sequence::file_number(). [read() and
-/// read_header() may be called from several threads]
+/// Opens frames of a sequence, by the number in the file's name: Sequence::file_number(). Every frame is read
+/// as the first that can be read of Sequence::whole and Sequence::frames: by its profile, in its view, from
+/// its layer and its channels where the frame has them, and into its colour space. CaptureHeader::differences
+/// has what is otherwise. A frame without that view or layer is Error(ExitCode::capture). Each of a capture's
+/// layers has a first frame of its own. [read() and read_header() may be called from several threads]
 class CaptureReader {
 public:
     /// `sequence` must outlive the reader.
     CaptureReader(const Sequence& sequence, std::vector<Profile> profiles, ReadLimits limits);
     ~CaptureReader();
 
-    /// Every frame is read as the first of these files that can be read: by its profile, from its layer and
-    /// its channels where the frame has them, and into its colour space. CaptureHeader::differences has what
-    /// is otherwise. A frame without that layer is Error(ExitCode::capture). A capture with layers is read
-    /// frame by frame. Call before anything is read.
-    void hold_to_first_of(std::vector<int> files);
+    /// Frames are read as the first of another capture, of one picture as this one. Call before anything is
+    /// read.
+    void hold_to_first_of(const CaptureReader& other);
+    /// The same decision as that of a reader of this capture, without reading it again. Call before anything
+    /// is read.
+    void share_first_of(const CaptureReader& other) { first_ = other.first_; }
+    /// What the first frame decides of these roles and of all pictures, as text that changes with it; ""
+    /// where there is but one frame.
+    std::string decision(std::span<const std::string> roles) const;
     /// Whether the frame's main file is there.
     bool has_frame(int frame) const;
     /// Throws Error(ExitCode::capture): no such file, not readable, no profile.
@@ -138,10 +145,21 @@ private:
     struct OpenFrame;
     struct RoleSource;
     struct FirstFrame;
+    CaptureReader(const Sequence& sequence, std::vector<Profile> profiles, ReadLimits limits,
+                  std::shared_ptr<FirstFrame> first);
+    std::vector<int> deciding_files() const;
+    void decide(const std::vector<int>& files, FirstFrame& first) const;
     /// nullptr where no frame decides for others.
     const FirstFrame* first_frame() const;
-    void hold_channels(const std::string& role, const FrameFile& file, FoundChannels& found,
+    /// Of one layer of the capture, which outlives `own`.
+    CaptureReader layer_reader(const Sequence& own, std::size_t layer) const;
+    std::unique_ptr<FrameFile> open_file(const std::filesystem::path& path, const std::string& role,
+                                         int deep_layers, CaptureHeader& header) const;
+    void hold_channels(const std::string& role, const FrameFile& file, std::optional<FoundChannels>& found,
                        CaptureHeader& header) const;
+    bool is_named(const std::string& role) const;
+    static std::string text_of(const RoleSource& source);
+    void compare_sources(OpenFrame& open) const;
     void compare_profile(const ExrPart& part, const CaptureHeader& first, CaptureHeader& header) const;
     void compare_with_first(CaptureHeader& header, const Chromaticities& primaries) const;
     void compare_roles(CaptureHeader& header, std::span<const std::string> roles) const;

@@ -38,7 +38,7 @@ std::map<std::string, Image> CaptureReader::encode_role(const OpenFrame& open, c
 }
 
 std::map<std::string, RoleDecoding> CaptureReader::decodings(int frame) const {
-    if (const auto front = front_layer()) return CaptureReader(*front, profiles_, limits_).decodings(frame);
+    if (const auto front = front_layer()) return layer_reader(*front, 0).decodings(frame);
     std::map<std::string, RoleDecoding> decodings;
     for (const auto& [role, source] : open(frame).roles) decodings[role] = source.decoding;
     return decodings;

@@ -1,9 +1,11 @@
-// What the first frame of a run decides for all of them.
+// What the first frame of a capture decides for all of them.
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "framework/capture/capture_internal.h"
 #include "framework/capture/common_names.h"
+#include "framework/capture/layer_roles.h"
 #include "framework/core/error.h"
 #include "framework/core/units.h"
 #include "framework/image/role.h"
@@ -12,12 +14,12 @@ namespace aftershade {
 
 namespace {
 
-std::string list_of_found(const FoundChannels& found) {
+std::vector<std::string> named(const FoundChannels& found) {
     std::vector<std::string> names;
     for (const auto& layer : found)
         for (const std::string& name : layer)
             if (!name.empty()) names.push_back(name);
-    return list_of_names(names, "and");
+    return names;
 }
 
 bool has_all(const ExrPart& part, const FoundChannels& channels) {
@@ -29,53 +31,144 @@ bool has_all(const ExrPart& part, const FoundChannels& channels) {
 
 }  // namespace
 
-void CaptureReader::hold_to_first_of(std::vector<int> files) {
-    first_ = std::make_shared<FirstFrame>();
-    first_->files = std::move(files);
+std::string CaptureReader::text_of(const RoleSource& source) {
+    if (source.from_cryptomatte) return "a Cryptomatte";
+    if (!source.luminance.empty()) return list_of_names(std::vector{source.luminance});
+    return list_of_names(named(source.channels), "and");
+}
+
+/// Those of the whole capture before those that it does not have.
+std::vector<int> CaptureReader::deciding_files() const {
+    std::vector<int> files;
+    std::set<int> known;
+    for (const auto* frames : {&sequence_.whole, &sequence_.frames})
+        for (const int frame : *frames)
+            if (known.insert(frame).second) files.push_back(sequence_.file_number(frame));
+    return files;
+}
+
+void CaptureReader::decide(const std::vector<int>& files, FirstFrame& first) const {
+    // Of a capture whose files are gone each frame says so; a search of all would take minutes.
+    constexpr std::size_t kMostTries = 1000;
+    // Looks come and go while a reader lives: what they name does not decide.
+    Sequence unnamed = sequence_;
+    unnamed.object_names.clear();
+    const CaptureReader alone(unnamed, profiles_, limits_, nullptr);
+    for (std::size_t i = 0; i < std::min(kMostTries, files.size()); ++i) {
+        if (!alone.has_frame(files[i])) continue;
+        try {
+            const OpenFrame open = alone.open(files[i]);
+            first.views[""] = open.main->view();
+            for (const auto& [role, file] : open.role_files) first.views[role] = file->view();
+            for (const auto& [role, source] : open.roles) {
+                first.channels[role] = source.channels;
+                first.sources[role] = text_of(source);
+            }
+            const auto color = first.channels.find(kColorRole);
+            first.has_alpha = color != first.channels.end() && !color->second.empty() &&
+                              color->second[0].size() == 4 && !color->second[0][3].empty();
+            first.has_followers = files.size() > 1;
+            first.header = open.header;
+            return;
+        } catch (const Error&) {
+            // Reported when the frame itself is read.
+        }
+    }
 }
 
 const CaptureReader::FirstFrame* CaptureReader::first_frame() const {
     if (!first_ || !sequence_.layers.empty()) return nullptr;
     std::call_once(first_->once, [&] {
-        // Of a run whose files are gone each frame says so; a search of all would take minutes.
-        constexpr std::size_t kMostTries = 1000;
-        const CaptureReader alone(sequence_, profiles_, limits_);
-        for (std::size_t i = 0; i < std::min(kMostTries, first_->files.size()); ++i) {
-            const int file = first_->files[i];
-            if (!alone.has_frame(file)) continue;
-            try {
-                const OpenFrame open = alone.open(file);
-                for (const auto& [role, source] : open.roles) first_->channels[role] = source.channels;
-                const auto color = first_->channels.find(kColorRole);
-                first_->has_alpha = color != first_->channels.end() && !color->second.empty() &&
-                                    color->second[0].size() == 4 && !color->second[0][3].empty();
-                first_->header = open.header;
-                return;
-            } catch (const Error&) {
-                // Reported when the frame itself is read.
-            }
-        }
+        const std::vector<int> files = deciding_files();
+        if (files.size() > 1 || sequence_.subframes > 1) decide(files, *first_);
     });
     return first_->header ? first_.get() : nullptr;
 }
 
-void CaptureReader::hold_channels(const std::string& role, const FrameFile& file, FoundChannels& found,
-                                  CaptureHeader& header) const {
+void CaptureReader::hold_to_first_of(const CaptureReader& other) {
+    first_ = std::make_shared<FirstFrame>();
+    if (other.sequence_.layers.empty())
+        std::call_once(first_->once, [&] { other.decide(other.deciding_files(), *first_); });
+}
+
+std::string CaptureReader::decision(std::span<const std::string> roles) const {
+    std::string text;
+    for (std::size_t i = 0; i < sequence_.layers.size(); ++i) {
+        const Sequence own = sequence_of_layer(sequence_, i);
+        if (const std::string decided = layer_reader(own, i).decision(roles_of_any_layer(roles));
+            !decided.empty())
+            text += std::to_string(i) + " " + decided + "\n";
+    }
+    const FirstFrame* const first = first_frame();
+    if (!first) return text;
+    const CaptureHeader& header = *first->header;
+    text = header.profile + "\n" + header.layer + "\n" + (first->has_alpha ? "alpha" : "opaque");
+    for (const float number : header.primaries) text += " " + format_number(double(number));
+    for (const auto& [role, view] : first->views) text += "\n" + role + " in " + view;
+    for (const auto& [role, source] : first->sources)
+        if (role == kColorRole || std::ranges::find(roles, role) != roles.end())
+            text += "\n" + role + " from " + source;
+    return text;
+}
+
+std::unique_ptr<FrameFile> CaptureReader::open_file(const std::filesystem::path& path,
+                                                    const std::string& role, int deep_layers,
+                                                    CaptureHeader& header) const {
+    auto file = std::make_unique<FrameFile>(path, limits_, sequence_.view, deep_layers);
+    const FirstFrame* const first = sequence_.view.empty() ? first_frame() : nullptr;
+    if (!first || !first->views.contains(role) || first->views.at(role) == file->view()) return file;
+    const std::string &held = first->views.at(role), of = role.empty() ? "" : role + ": ";
+    const std::vector<std::string> views = file->views();
+    const std::string there = views.empty() ? "none" : list_of_names(views, "and");
+    const std::string& origin = first->header->path.string();
+    if (held.empty()) {
+        header.differences.push_back(of + "it has the views " + there + "; '" + file->view() +
+                                     "' is read, and " + origin + " has no views");
+        return file;
+    }
+    if (std::ranges::find(views, held) == views.end())
+        throw Error(ExitCode::capture,
+                    path.string() + ": has no view '" + held + "', which the first frame, " + origin +
+                        ", is read in; it has " + there +
+                        " (choose a view that every frame has with --view, or 'view' in capture.json)");
+    header.differences.push_back(of + "it has the views " + there + "; '" + held + "' is read, as in " +
+                                 origin);
+    return std::make_unique<FrameFile>(path, limits_, held, deep_layers);
+}
+
+void CaptureReader::hold_channels(const std::string& role, const FrameFile& file,
+                                  std::optional<FoundChannels>& found, CaptureHeader& header) const {
     const FirstFrame* const first = first_frame();
     if (!first || sequence_.channels.contains(role)) return;
     const auto held = first->channels.find(role);
-    if (held == first->channels.end() || held->second.empty() || held->second == found) return;
-    const std::string path = first->header->path.string();
-    if (has_all(file.merged(), held->second)) {
-        header.differences.push_back(role + " is read from " + list_of_found(held->second) + ", as in " +
-                                     path + ", and not from " + list_of_found(found));
-        found = held->second;
+    if (held == first->channels.end() || held->second.empty() || found == held->second ||
+        !has_all(file.merged(), held->second))
         return;
+    header.differences.push_back(role + " is read from " + first->sources.at(role) + ", as in " +
+                                 first->header->path.string() +
+                                 (found ? ", and not from " + list_of_names(named(*found), "and") : ""));
+    found = held->second;
+}
+
+/// Whether the look decides what the role is read from.
+bool CaptureReader::is_named(const std::string& role) const {
+    return role == kObjectIdRole && !sequence_.object_names.empty();
+}
+
+/// What could not be held.
+void CaptureReader::compare_sources(OpenFrame& open) const {
+    const FirstFrame* const first = first_frame();
+    if (!first) return;
+    for (const auto& [role, source] : open.roles) {
+        const auto held = first->sources.find(role);
+        const std::string text = text_of(source);
+        if (held == first->sources.end() || held->second == text || is_named(role)) continue;
+        const bool lacks_alpha = role == kColorRole && first->has_alpha && !source.channels.empty() &&
+                                 source.channels[0].size() == 4 && source.channels[0][3].empty();
+        open.header.differences.push_back(role + " is read from " + text + ", in " +
+                                          first->header->path.string() + " from " + held->second +
+                                          (lacks_alpha ? "; its alpha is 1" : ""));
     }
-    const bool lacks_alpha =
-        role == kColorRole && first->has_alpha && found[0].size() == 4 && found[0][3].empty();
-    header.differences.push_back(role + " is read from " + list_of_found(found) + ", in " + path + " from " +
-                                 list_of_found(held->second) + (lacks_alpha ? "; its alpha is 1" : ""));
 }
 
 void CaptureReader::compare_profile(const ExrPart& part, const CaptureHeader& first,
@@ -97,7 +190,7 @@ void CaptureReader::compare_with_first(CaptureHeader& header, const Chromaticiti
     if (!first) return;
     const CaptureHeader& other = *first->header;
     const bool has_other_primaries = primaries != other.primaries;  // before they are replaced
-    header.keeps_alpha = first->files.size() > 1 && first->has_alpha && !sequence_.alpha_is_opaque;
+    header.keeps_alpha = first->has_alpha && first->has_followers && !sequence_.alpha_is_opaque;
     header.primaries = other.primaries;
     if (has_other_primaries)
         header.differences.push_back("its colours have other primaries than those of " + other.path.string() +
@@ -123,7 +216,7 @@ void CaptureReader::compare_roles(CaptureHeader& header, std::span<const std::st
     const std::string path = first->header->path.string();
     for (const std::string& role : roles) {
         const bool is_there = has(header, role);
-        if (is_there == has(*first->header, role) || is_coverage_role(role)) continue;
+        if (is_there == has(*first->header, role) || is_coverage_role(role) || is_named(role)) continue;
         header.differences.push_back(is_there ? "it has " + role + ", which " + path + " does not have"
                                               : "it has no " + role + ", which " + path + " has");
     }

@@ -37,11 +37,15 @@ struct CaptureReader::OpenFrame {
 
 /// What the first frame of a run decides for the others.
 struct CaptureReader::FirstFrame {
-    std::vector<int> files;  ///< the first that can be read is the one
     std::once_flag once;
-    std::optional<CaptureHeader> header;  ///< nullopt where none can be read
-    std::map<std::string, FoundChannels> channels;
+    std::optional<CaptureHeader> header;            ///< nullopt where none can be read, or there is but one
+    std::map<std::string, std::string> views;       ///< by role, of files of their own; "" for the main file
+    std::map<std::string, FoundChannels> channels;  ///< by role
+    std::map<std::string, std::string> sources;     ///< by role, in words
     bool has_alpha = false;
+    bool has_followers = false;  ///< there are other frames, beside further sub-frames of this one
+    std::once_flag layers_once;
+    std::vector<std::shared_ptr<FirstFrame>> layers;  ///< of a capture with layers
 };
 
 }  // namespace aftershade

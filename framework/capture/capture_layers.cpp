@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "framework/capture/capture.h"
+#include "framework/capture/capture_internal.h"
 #include "framework/capture/layer_roles.h"
 #include "framework/core/error.h"
 #include "framework/image/role.h"
@@ -54,6 +54,8 @@ CaptureHeader header_of(const std::vector<CaptureHeader>& layers) {
     header.layer_roles.clear();
     header.notes.clear();
     header.warnings.clear();
+    header.differences.clear();
+    header.keeps_alpha = std::ranges::all_of(layers, &CaptureHeader::keeps_alpha);
     for (std::size_t i = 0; i < layers.size(); ++i) {
         require_color(layers[i], i);
         require_same_picture(layers[i], layers.front(), i);
@@ -67,6 +69,8 @@ CaptureHeader header_of(const std::vector<CaptureHeader>& layers) {
         for (const std::string& note : layers[i].notes) header.notes.push_back(layer_text(i) + ": " + note);
         for (const std::string& warning : layers[i].warnings)
             header.warnings.push_back(layer_text(i) + ": " + warning);
+        for (const std::string& difference : layers[i].differences)
+            header.differences.push_back(layer_text(i) + ": " + difference);
         // No channel of one file is that of the whole picture.
         header.derived_roles.insert(layers[i].roles.begin(), layers[i].roles.end());
     }
@@ -176,11 +180,20 @@ std::optional<Sequence> CaptureReader::front_layer() const {
     return sequence_.layers.empty() ? std::nullopt : std::optional(sequence_of_layer(sequence_, 0));
 }
 
+CaptureReader CaptureReader::layer_reader(const Sequence& own, std::size_t layer) const {
+    if (!first_) return {own, profiles_, limits_, nullptr};
+    std::call_once(first_->layers_once, [&] {
+        for (std::size_t i = 0; i < sequence_.layers.size(); ++i)
+            first_->layers.push_back(std::make_shared<FirstFrame>());
+    });
+    return {own, profiles_, limits_, first_->layers[layer]};
+}
+
 CaptureHeader CaptureReader::read_layered_header(int frame) const {
     std::vector<CaptureHeader> layers;
     for (std::size_t i = 0; i < sequence_.layers.size(); ++i) {
         const Sequence own = sequence_of_layer(sequence_, i);
-        layers.push_back(CaptureReader(own, profiles_, limits_).read_header(frame));
+        layers.push_back(layer_reader(own, i).read_header(frame));
     }
     return header_of(layers);
 }
@@ -192,7 +205,7 @@ Capture CaptureReader::read_layered(int frame, std::span<const std::string> role
     std::vector<CaptureHeader> headers;
     for (std::size_t i = 0; i < sequence_.layers.size(); ++i) {
         const Sequence own = sequence_of_layer(sequence_, i);
-        layers.push_back(CaptureReader(own, profiles_, limits_).read(frame, wanted));
+        layers.push_back(layer_reader(own, i).read(frame, wanted));
         headers.push_back(layers.back().header);
     }
     Capture capture;

@@ -324,7 +324,7 @@ RoleElsewhere CaptureReader::find_elsewhere(const CaptureHeader& header, const s
     const auto has_role = [&](const Sequence& other) {
         try {
             const CaptureHeader found =
-                CaptureReader(other, profiles_, limits_).read_header(header.source_frame);
+                CaptureReader(other, profiles_, limits_, nullptr).read_header(header.source_frame);
             return is_among(found.roles, role) && is_among(found.roles, kColorRole);
         } catch (const Error&) {
             return false;
@@ -345,15 +345,13 @@ RoleElsewhere CaptureReader::find_elsewhere(const CaptureHeader& header, const s
 }
 
 std::vector<CryptomatteLayer> CaptureReader::cryptomattes(int frame) const {
-    if (const auto front = front_layer())
-        return CaptureReader(*front, profiles_, limits_).cryptomattes(frame);
+    if (const auto front = front_layer()) return layer_reader(*front, 0).cryptomattes(frame);
     const OpenFrame open = this->open(frame);
     return find_cryptomattes(cryptomatte_file(open));
 }
 
 std::string CaptureReader::cryptomatte_name(int frame, const std::string& name) const {
-    if (const auto front = front_layer())
-        return CaptureReader(*front, profiles_, limits_).cryptomatte_name(frame, name);
+    if (const auto front = front_layer()) return layer_reader(*front, 0).cryptomatte_name(frame, name);
     const OpenFrame open = this->open(frame);
     const FrameFile& file = cryptomatte_file(open);
     const std::vector<CryptomatteLayer> mattes = find_cryptomattes(file);
@@ -364,8 +362,7 @@ std::string CaptureReader::cryptomatte_name(int frame, const std::string& name) 
 }
 
 std::vector<ObjectCoverage> CaptureReader::cryptomatte_coverage(int frame, const std::string& name) const {
-    if (const auto front = front_layer())
-        return CaptureReader(*front, profiles_, limits_).cryptomatte_coverage(frame, name);
+    if (const auto front = front_layer()) return layer_reader(*front, 0).cryptomatte_coverage(frame, name);
     const OpenFrame open = this->open(frame);
     const FrameFile& file = cryptomatte_file(open);
     const std::vector<CryptomatteLayer> mattes = find_cryptomattes(file);

@@ -279,6 +279,7 @@ std::optional<Sequence> open_sequence(const std::string& argument, Diagnostics& 
         sequence.files = file_or_pattern(argument);
     }
     find_missing_range(sequence, argument);
+    sequence.whole = sequence.frames;
     return sequence;
 }
 

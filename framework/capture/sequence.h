@@ -39,6 +39,9 @@ struct LayerSource {
 struct Sequence {
     std::vector<int> frames;       ///< in the order to be run
     bool frames_declared = false;  ///< by a capture.json's range or a bare file, not by what lies on disk
+    /// Of the whole capture, whatever part of it is run; the first that can be read decides how all frames
+    /// are read (CaptureReader). Empty: `frames` are all.
+    std::vector<int> whole;
     FramePattern files{""};        ///< absolute, or relative to the working directory
     std::map<std::string, FramePattern> role_files;  ///< roles that lie in files of their own
     std::map<std::string, RoleDecoding> channels;    ///< of capture.json, instead of the profile's

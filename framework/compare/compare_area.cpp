@@ -9,6 +9,7 @@
 #include "framework/compare/layer_file.h"
 #include "framework/core/diagnostics.h"
 #include "framework/core/error.h"
+#include "framework/file/png_file.h"
 
 namespace aftershade {
 
@@ -55,15 +56,12 @@ MaskSource source_of(const LayerFile& file, const std::string& channel) {
 }
 
 /// The largest of a PNG's colours: alpha is none.
-Image brightness_of(const LayerFile& file) {
-    const auto colors = std::ranges::find_if(
-        file.layers(), [](const LayerInfo& layer) { return layer.role != LayerRole::alpha; });
-    assert(colors != file.layers().end());
-    const Image image = file.read(*colors, colors->channels);
+Image brightness_of(const Image& image) {
+    const int colors = image.channels() - (image.channels() % 2 == 0 ? 1 : 0);
     Image largest(image.width(), image.height(), 1);
     for (int y = 0; y < image.height(); ++y)
         for (int x = 0; x < image.width(); ++x)
-            for (int c = 0; c < image.channels(); ++c)
+            for (int c = 0; c < colors; ++c)
                 largest.at(x, y, 0) = std::max(largest.at(x, y, 0), image.at(x, y, c));
     return largest;
 }
@@ -87,10 +85,13 @@ AreaShape mask_area(const fs::path& path, const std::string& channel, const Read
         if (!channel.empty())
             throw Error(ExitCode::capture,
                         path.string() + ": a PNG's channels have no names; leave '" + channel + "' out");
-        const Image bright = brightness_of(file);
+        PngColor color;  // LayerFile applies it, and a mask's numbers are data
+        const Image bright = brightness_of(read_png(path, &color));
         const Window window{0, 0, bright.width() - 1, bright.height() - 1};
         AreaShape shape = covered_area(bright, kHalf, window, window);
         shape.from_corner = true;
+        if (const std::string note = color.note_of_data(); !note.empty())
+            shape.note = path.string() + ": " + note;
         return shape;
     }
     const MaskSource source = source_of(file, channel);

@@ -25,6 +25,7 @@ struct AreaShape {
     /// which has none, only the size counts. nullopt: a rectangle.
     std::optional<Window> display;
     bool from_corner = true;  ///< the window is from the display window's upper left pixel
+    std::string note{};       ///< on how its file was read; "" where there is nothing to say
 };
 
 /// Most of a rectangle's width and height, and of x and y either way.

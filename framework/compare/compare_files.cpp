@@ -87,6 +87,8 @@ private:
             for (const std::string& what : traits->left_out) warn(fmt::format("not compared: {} in {}", what, where));
             for (const std::string& note : traits->notes) result_.notes.push_back(where + (": " + note));
         }
+        for (const CompareArea& area : rules_.areas)
+            if (!area.shape.note.empty()) result_.notes.push_back(area.shape.note);
         if (ours.pixel_aspect != theirs.pixel_aspect)
             warn(fmt::format("another pixel aspect: {:.6g} in the reference, {:.6g} in the test image",
                              ours.pixel_aspect, theirs.pixel_aspect));

@@ -169,6 +169,12 @@ PngColor PngColorReader::color() const {
     return take(primaries_);
 }
 
+std::string PngColor::note_of_data() const {
+    const std::string what = gamma ? fmt::format("gAMA {:.5g}", *gamma) : is_srgb() ? "" : space;
+    return what.empty() ? ""
+                        : "its " + what + " is not applied: the numbers of data are read as they are stored";
+}
+
 float encoded_as_srgb(float value, double gamma) {
     return float(encode_srgb(std::pow(double(value), 1 / gamma)));
 }

@@ -19,6 +19,9 @@ struct PngColor {
     std::optional<double> gamma;
     bool is_animated = false;  ///< there are further pictures
     bool is_srgb() const { return space == "sRGB"; }
+    /// Of a file that is read as data, whose numbers stay as they are stored: "its gAMA 1 is not applied:
+    /// ..."; "" of sRGB, and without chunks.
+    std::string note_of_data() const;
 };
 
 /// Gathers the chunks of one file.

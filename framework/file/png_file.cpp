@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstdint>
 #include <exception>
+#include <fstream>
 #include <functional>
 #include <memory>
 #include <new>
@@ -150,20 +151,45 @@ void write_png(const fs::path& path, const Image& display, const PngText& text, 
     stream.commit();
 }
 
-std::optional<std::string> read_png_text(const fs::path& path, const std::string& keyword) {
-    std::optional<std::string> found;
+namespace {
+
+/// Whether the file is a whole PNG.
+bool visit_chunks(const fs::path& path,
+                  const std::function<void(const std::string&, std::span<const unsigned char>)>& visit) {
+    std::error_code failure;
+    std::string head(kSignatureBytes, '\0');
+    if (!fs::is_regular_file(path, failure) ||
+        !std::ifstream(path, std::ios::binary).read(head.data(), std::streamsize(head.size())) ||
+        head != "\x89PNG\r\n\x1a\n")
+        return false;
     try {
         const std::string text = read_bytes(path);
-        const std::string head = keyword + '\0';
-        check_chunks(path, {reinterpret_cast<const unsigned char*>(text.data()), text.size()},
-                     [&](const std::string& type, std::span<const unsigned char> data) {
-                         const std::string content(data.begin(), data.end());
-                         if (type == "tEXt" && content.starts_with(head)) found = content.substr(head.size());
-                     });
+        check_chunks(path, {reinterpret_cast<const unsigned char*>(text.data()), text.size()}, visit);
     } catch (const Error&) {
-        return std::nullopt;
+        return false;
     }
-    return found;
+    return true;
+}
+
+}  // namespace
+
+std::optional<std::string> read_png_text(const fs::path& path, const std::string& keyword) {
+    std::optional<std::string> found;
+    const std::string head = keyword + '\0';
+    const bool is_whole =
+        visit_chunks(path, [&](const std::string& type, std::span<const unsigned char> data) {
+            const std::string content(data.begin(), data.end());
+            if (type == "tEXt" && content.starts_with(head)) found = content.substr(head.size());
+        });
+    return is_whole ? found : std::nullopt;
+}
+
+std::optional<PngColor> read_png_color(const fs::path& path) {
+    PngColorReader colors;
+    const auto read = [&](const std::string& type, std::span<const unsigned char> data) {
+        colors.read(type, data);
+    };
+    return visit_chunks(path, read) ? std::optional(colors.color()) : std::nullopt;
 }
 
 Image read_png(const fs::path& path, PngColor* color) {

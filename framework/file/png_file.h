@@ -34,6 +34,9 @@ void write_png(const std::filesystem::path& path, const Image& display, const Pn
 /// The text of a keyword; nullopt where the file is not a whole PNG or has no such text.
 std::optional<std::string> read_png_text(const std::filesystem::path& path, const std::string& keyword);
 
+/// What the chunks of a whole PNG say; nullopt of any other file.
+std::optional<PngColor> read_png_color(const std::filesystem::path& path);
+
 /// Reads PNG of 8 or 16 bits into [0, 1] floats, 1 to 4 channels as stored; `color` gets what they mean. Throws
 /// Error(ExitCode::capture).
 Image read_png(const std::filesystem::path& path, PngColor* color = nullptr);

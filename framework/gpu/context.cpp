@@ -177,6 +177,9 @@ Context::Context(Backend backend, SelfTest when) {
             impl_ = std::make_unique<Impl>(candidate);
             impl_->is_untested = true;
             if (when == SelfTest::now || backend == Backend::automatic || !impl_->info.software) test_once();
+            if (backend == Backend::automatic && !reasons.empty() && impl_->info.software)
+                impl_->info.hardware_fault =
+                    fmt::format("{}: {}", backend_name(reasons.front().backend), reasons.front().text);
             return;
         } catch (const Error& error) {
             impl_.reset();

@@ -28,6 +28,7 @@ struct ContextInfo {
     std::string version;                   ///< GL_VERSION
     std::string vendor;                    ///< GL_VENDOR
     bool software = false;                 ///< a CPU rasteriser (llvmpipe, softpipe, swrast)
+    std::string hardware_fault;  ///< of `automatic` that took software: "egl: EGL lists no hardware device"
     int load_units = 0;  ///< images of a shader where a load costs less than a texelFetch (llvmpipe), else 0
     int texture_side_px = 0;  ///< at most (GL_MAX_TEXTURE_SIZE)
 };

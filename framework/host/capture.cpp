@@ -105,6 +105,13 @@ Window public_window(const aftershade::Window& window) {
     return {window.min_x, window.min_y, window.width(), window.height()};
 }
 
+std::vector<std::string> notes_of(const CaptureHeader& header) {
+    std::vector<std::string> notes;
+    for (const auto* more : {&header.notes, &header.warnings, &header.differences})
+        notes.insert(notes.end(), more->begin(), more->end());
+    return notes;
+}
+
 Capture Access::capture(Capture::Data data) {
     return Capture(std::make_shared<Capture::Data>(std::move(data)));
 }
@@ -298,10 +305,7 @@ std::string Capture::path() const {
     return data_->capture.header.path.string();
 }
 std::vector<std::string> Capture::notes() const {
-    std::vector<std::string> notes = data_->capture.header.notes;
-    const std::vector<std::string>& warnings = data_->capture.header.warnings;
-    notes.insert(notes.end(), warnings.begin(), warnings.end());
-    return notes;
+    return notes_of(data_->capture.header);
 }
 
 }  // namespace aftershade::host

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -150,6 +151,7 @@ LayerFigures figures_of(const LayerComparison& layer, bool maps) {
     figures.ms_ssim = layer.ms_ssim;
     figures.verdict = Verdict(int(layer.verdict));
     figures.reasons = layer.reasons;
+    figures.is_judged = layer.not_judged.empty();
     if (maps) add_maps(layer, figures);
     return figures;
 }
@@ -199,6 +201,7 @@ Comparison compare_arrays(const aftershade::Image& reference, const aftershade::
         comparison.verdict = std::max(comparison.verdict, Verdict(int(layer.verdict)));
         comparison.labels.push_back(label);
         comparison.layers.push_back(figures_of(layer, options.maps));
+        std::ranges::copy(layer.not_judged, std::back_inserter(comparison.not_judged));
     };
     const std::vector<std::string> names = {"R", "G", "B", "A"};
     const int channels = reference.channels();
@@ -238,7 +241,10 @@ Comparison compare(const std::filesystem::path& reference, const std::filesystem
                         list_of_names(made.labels, "and"));
         comparison.verdict = Verdict(int(made.verdict));
         comparison.faults = made.faults;
+        comparison.warnings = made.warnings;
+        comparison.notes = made.notes;
         comparison.labels = made.labels;
+        comparison.not_judged = made.not_judged();
         return comparison;
     });
 }

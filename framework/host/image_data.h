@@ -81,6 +81,9 @@ std::shared_ptr<const Sequence::Data> open_sequence_data(Host::Data& host, const
 Capture read_capture(const Sequence::Data& data, int frame, int subframe,
                      const std::vector<std::string>& roles);
 
+/// Capture::notes().
+std::vector<std::string> notes_of(const CaptureHeader& header);
+
 aftershade::Window internal_window(const Window& window);
 Window public_window(const aftershade::Window& window);
 

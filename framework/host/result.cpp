@@ -81,6 +81,9 @@ std::vector<NonFiniteInfo> Result::non_finite() const {
 std::vector<std::string> Result::messages() const {
     return data_->frame->messages;
 }
+std::vector<std::string> Result::notes() const {
+    return notes_of(data_->capture->header);
+}
 std::string Result::history_reset() const {
     return data_->frame->history_reset;
 }

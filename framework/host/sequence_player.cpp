@@ -40,6 +40,7 @@ SequencePlayer::SequencePlayer(Rendering& rendering, std::shared_ptr<const Seque
       revision_(rendering.look().revision),
       sequence_(with_objects(from_->sequence, rendering.look().pipeline)),
       reader_(sequence_, from_->profiles, from_->limits) {
+    reader_.share_first_of(*from_->reader);
     run_.frames = sequence_.frames;
     run_.on_nan = policy_of(policy);
     run_.scale_divisor = from_->options.scale_divisor;

@@ -61,6 +61,7 @@ std::vector<VelocityCheck> check_velocity(const Host& host, const std::filesyste
         };
         const auto first = open_sequence_data(data, frame, options);
         const auto second = open_sequence_data(data, next_frame, options);
+        second->reader->hold_to_first_of(*first->reader);
         return checks_of(
             read(*first), read(*second),
             second->reader->decodings(second->sequence.file_number(second->sequence.frames.front())));

@@ -92,17 +92,6 @@ bool is_id_channel(const ExrOutputChannel& channel, const CaptureHeader& header)
     return is_role || channel.type == PixelType::uint32 || channel.name.find("Crypto") != std::string::npos;
 }
 
-/// Ids are names, not amounts: the next lower one is another object.
-void refuse_lossy_ids(const std::filesystem::path& path, const ExrContent& content,
-                      const CaptureHeader& header, const std::string& compression) {
-    const auto id = std::find_if(content.channels.begin(), content.channels.end(),
-                                 [&](const ExrOutputChannel& c) { return is_id_channel(c, header); });
-    if (is_lossy_compression(compression) && id != content.channels.end())
-        throw Error(ExitCode::output, path.string() + ": the compression " + compression +
-                                          " loses bits, and the channel '" + id->name +
-                                          "' holds ids (choose zip, zips, piz, rle or none)");
-}
-
 /// An attribute of the input's pixels is not always true of the output's: kept channels stay as they are
 /// stored, and all others are light. Where the space is assumed, nothing is added to what the file says.
 void name_color_space(ExrWriteOptions& write, const OutputOptions& options, const CaptureHeader& header) {
@@ -122,20 +111,20 @@ void name_color_space(ExrWriteOptions& write, const OutputOptions& options, cons
         write.attributes["colorInteropID"] = id;
 }
 
-/// Of pictures a user who chooses such a compression accepts the loss; of data, and of channels that are kept
-/// bit for bit, a run may alter none.
+/// Of pictures a user who chooses such a compression accepts the loss. Of data, and of channels that are kept
+/// bit for bit, a run may alter none: the id next to another is another object.
 void refuse_lossy_data(const std::filesystem::path& path, const ExrContent& content,
-                       const OutputOptions& options) {
-    constexpr const char* kRemedy = " (choose zip, zips, piz, rle or none)";
+                       const CaptureHeader& header, const OutputOptions& options) {
     for (const ExrOutputChannel& channel : content.channels) {
-        if (content.pictures.contains(channel.name) ||
-            !loses_bits(options.compression, channel.name, channel.type))
-            continue;
-        throw Error(ExitCode::output,
-                    path.string() + ": the compression " + options.compression +
-                        " loses bits of the channel '" + channel.name + "', which " +
-                        (options.keep_channels ? "--keep-channels keeps bit for bit" : "holds data") +
-                        kRemedy);
+        if (!loses_bits(options.compression, channel.name, channel.type)) continue;
+        const bool is_id = is_id_channel(channel, header);
+        if (!is_id && content.pictures.contains(channel.name)) continue;
+        throw Error(ExitCode::output, path.string() + ": the compression " + options.compression +
+                                          " loses bits of the channel '" + channel.name + "', which " +
+                                          (is_id                   ? "holds ids"
+                                           : options.keep_channels ? "--keep-channels keeps bit for bit"
+                                                                   : "holds data") +
+                                          " (choose zip, zips, piz, rle or none)");
     }
 }
 
@@ -207,8 +196,7 @@ std::string write_exr_output(const std::filesystem::path& path, const OutputOpti
         add_role(content, *find_role(name), *image, options.color_type);
     }
     ExrWriteOptions write = exr_write_options(options, capture.header);
-    refuse_lossy_ids(path, content, capture.header, write.compression);
-    refuse_lossy_data(path, content, options);
+    refuse_lossy_data(path, content, capture.header, options);
     if (options.crop_to_display) {
         crop(content, write.data_window, write.display_window);
         write.data_window = write.display_window;

@@ -43,9 +43,9 @@ struct FingerprintSource {
 
 /// The program's version, the renderer, the look's documents, the values of its steps, the files that these
 /// name, its effects and plug-ins by content, the options of outputs that change pixels, capture.json but for
-/// what only says which frames there are, and profiles. Throws Error(ExitCode::usage) for a file that cannot
-/// be read.
-FingerprintParts setup_parts(const FingerprintSource& source);
+/// what only says which frames there are, profiles, and what the first frame decides. Throws
+/// Error(ExitCode::usage) for a file that cannot be read.
+FingerprintParts setup_parts(const FingerprintSource& source, const CaptureReader& reader);
 
 /// One frame's.
 struct FrameFingerprint {

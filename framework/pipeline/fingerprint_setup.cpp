@@ -76,6 +76,16 @@ std::string capture_text(const FingerprintSource& source) {
     return text;
 }
 
+std::vector<std::string> roles_read(const FingerprintSource& source) {
+    std::vector<std::string> roles = source.pipeline.capture_roles();
+    const auto add = [&](const std::vector<std::string>& more) {
+        roles.insert(roles.end(), more.begin(), more.end());
+    };
+    add(source.outputs.roles);
+    for (const int offset : source.pipeline.neighbour_offsets()) add(source.pipeline.neighbour_roles(offset));
+    return roles;
+}
+
 /// The plug-in that a step's code is from; nothing where it is linked into the program, or where there is
 /// none, which rendering reports.
 void add_plugin(const EffectManifest& manifest, NativeRegistry* natives, FingerprintParts& parts) {
@@ -90,7 +100,7 @@ void add_plugin(const EffectManifest& manifest, NativeRegistry* natives, Fingerp
 
 }  // namespace
 
-FingerprintParts setup_parts(const FingerprintSource& source) {
+FingerprintParts setup_parts(const FingerprintSource& source, const CaptureReader& reader) {
     FingerprintParts parts;
     parts["program"] = AFTERSHADE_VERSION;
     parts["renderer"] = content_hash(source.renderer);
@@ -108,6 +118,8 @@ FingerprintParts setup_parts(const FingerprintSource& source) {
     }
     parts["output options"] = content_hash(outputs_text(source.outputs, source.run));
     parts["capture"] = content_hash(capture_text(source));
+    if (const std::string decision = reader.decision(roles_read(source)); !decision.empty())
+        parts["what the first frame decides"] = content_hash(decision);
     for (const fs::path& profile : source.profiles)
         parts["profile " + profile.stem().string()] =
             content_hash(document_content(profile, {"summary", "seen_on", "facts"}));

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "framework/core/units.h"
+#include "framework/file/png_file.h"
 #include "framework/image/role.h"
 #include "framework/pipeline/pipeline.h"
 #include "framework/pipeline/wiring.h"
@@ -165,16 +166,20 @@ private:
             (role->type != ComponentType::float32 || (role->channels != 1 && role->kind != RoleKind::other)))
             diagnostics_.error(mask.place, "a mask takes a role of one channel, such as mask or aov:hair; '" +
                                                mask.role + "' is none");
-        if (!mask.file.empty()) check_file(mask.file, "", mask.place);
+        if (!mask.file.empty()) check_file(mask.file, "", mask.place, true);
         step.mask = mask;
     }
 
-    void check_file(const std::filesystem::path& file, const std::string& label, const Place& place) {
+    void check_file(const std::filesystem::path& file, const std::string& label, const Place& place,
+                    bool is_data) {
         std::error_code failure;
         if (const std::string reason = FileRule::why_not(file); !reason.empty())
             diagnostics_.error(place, label + "'" + file.string() + "' " + reason);
         else if (!std::filesystem::is_regular_file(file, failure))
             diagnostics_.error(place, label + "no file '" + file.string() + "'");
+        else if (const auto color = is_data ? read_png_color(file) : std::nullopt)
+            if (const std::string note = color->note_of_data(); !note.empty())
+                diagnostics_.warning(place, label + "'" + file.string() + "': " + note);
     }
 
     /// What each output of a step is mixed with: the input of its role, else the image of that role before
@@ -260,7 +265,8 @@ private:
         const auto complete = [&](ParamValue& file) {
             file = with_file(*spec, std::move(file), folder);
             const auto& path = std::get<std::string>(file);
-            if (!path.empty()) check_file(path, step.name + "." + name + ": ", value.place);
+            if (!path.empty())
+                check_file(path, step.name + "." + name + ": ", value.place, spec->file_is_data);
         };
         auto* literal = std::get_if<ParamValue>(&*parsed);
         if (is_file_type(spec->type) && literal) complete(*literal);

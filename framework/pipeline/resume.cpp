@@ -17,7 +17,7 @@ ResumableRun::ResumableRun(const FingerprintSource& source, const CaptureReader&
       run_(source.run),
       options_(options),
       files_(source.sequence, reader, source.pipeline),
-      setup_(setup_parts(source)),
+      setup_(setup_parts(source, reader)),
       setup_hash_(hash_of_parts(setup_)),
       fingerprints_(setup_hash_, source.sequence, reader, source.pipeline, source.run),
       journal_(run_state(source.outputs.patterns.front())),

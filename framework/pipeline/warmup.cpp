@@ -11,7 +11,8 @@ namespace aftershade {
 namespace {
 
 /// The last frame's colour, after `warmup` of the frames before it.
-Image last_frame(const RunSetup& setup, const std::filesystem::path& folder, std::size_t warmup) {
+Image last_frame(const RunSetup& setup, const std::filesystem::path& folder, std::size_t warmup,
+                 const RunObserver& observer = {}) {
     RunOptions options = setup.options;
     options.frames.assign(setup.options.frames.end() - std::ptrdiff_t(warmup) - 1,
                           setup.options.frames.end());
@@ -22,7 +23,7 @@ Image last_frame(const RunSetup& setup, const std::filesystem::path& folder, std
     const std::atomic<bool> stop = false;
     const RunReport report = run_frames(
         {setup.context, setup.pipeline, setup.sequence, setup.reader, options, outputs, setup.data_folder},
-        {}, stop);
+        observer, stop);
     if (!report.failures.empty()) throw Error(ExitCode::capture, report.failures.front().message);
     return ExrFile(folder / "frame.exr").read_floats(0, std::vector<std::string>{"R", "G", "B"});
 }
@@ -57,9 +58,10 @@ LookWarmup warmup_of(const Pipeline& pipeline) {
     return warmup;
 }
 
-std::vector<WarmupError> measure_warmup(const RunSetup& setup, const std::filesystem::path& folder) {
+std::vector<WarmupError> measure_warmup(const RunSetup& setup, const std::filesystem::path& folder,
+                                        const RunObserver& observer) {
     const std::size_t before = setup.options.frames.size() - 1;
-    const Image uncut = last_frame(setup, folder, before);
+    const Image uncut = last_frame(setup, folder, before, observer);
     std::vector<WarmupError> errors;
     for (std::size_t warmup = 0; warmup < before; warmup = warmup ? warmup * 2 : 1)
         errors.push_back({int(warmup), difference(uncut, last_frame(setup, folder, warmup))});

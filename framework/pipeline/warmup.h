@@ -25,7 +25,8 @@ struct WarmupError {
 };
 
 /// Renders the last frame of `setup.options.frames` after all frames before it, then after 0, 1, 2, 4, 8, ...
-/// of them. Files go to `folder`. Throws Error.
-std::vector<WarmupError> measure_warmup(const RunSetup& setup, const std::filesystem::path& folder);
+/// of them. Files go to `folder`; `observer` sees the first of these runs. Throws Error.
+std::vector<WarmupError> measure_warmup(const RunSetup& setup, const std::filesystem::path& folder,
+                                        const RunObserver& observer = {});
 
 }  // namespace aftershade

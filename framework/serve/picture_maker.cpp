@@ -214,7 +214,8 @@ MadePicture PictureMaker::make(const PictureRequest& request) {
         shown = picture(scaled, request);
     }
     MadePicture made;
-    made.png = quick_png(shown);
+    const bool is_false_color = request.view.starts_with("role:") || request.view.starts_with("tap:");
+    made.png = quick_png(shown, !is_false_color);
     nlohmann::ordered_json times;
     times["passes"] = nlohmann::ordered_json::array();
     for (const graph::PassTime& time : scaled.result.times) {
@@ -233,7 +234,11 @@ MadePicture PictureMaker::make(const PictureRequest& request) {
     for (const NonFiniteOutput& output : apply_nan_policy(NanPolicy::warn, scaled.result))
         non_finite += output.pixels.count();
     times["non_finite"] = non_finite;
-    made.times = times.dump();
+    const CaptureHeader& header = scaled.loaded->captures.front()->header;
+    times["warnings"] = header.warnings;
+    for (const std::string& difference : header.differences) times["warnings"].push_back(difference);
+    // A header of HTTP is ASCII.
+    made.times = times.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
     return made;
 }
 

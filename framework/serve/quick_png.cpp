@@ -46,7 +46,7 @@ std::vector<std::uint8_t> filtered_rows(const Image& display) {
 
 }  // namespace
 
-std::string quick_png(const Image& display) {
+std::string quick_png(const Image& display, bool is_srgb) {
     const std::vector<std::uint8_t> rows = filtered_rows(display);
     uLongf size = compressBound(uLong(rows.size()));
     std::string packed(size, '\0');
@@ -58,7 +58,9 @@ std::string quick_png(const Image& display) {
     const std::string head = big_endian(std::uint32_t(display.width())) +
                              big_endian(std::uint32_t(display.height())) + '\x08' +
                              kColorTypes[std::size_t(display.channels())] + std::string(3, '\0');
-    return std::string("\x89PNG\r\n\x1a\n") + chunk("IHDR", head) + chunk("IDAT", packed) + chunk("IEND", "");
+    const std::string_view perceptual("\0", 1);  // the rendering intent
+    return std::string("\x89PNG\r\n\x1a\n") + chunk("IHDR", head) +
+           (is_srgb ? chunk("sRGB", perceptual) : "") + chunk("IDAT", packed) + chunk("IEND", "");
 }
 
 }  // namespace aftershade::serve

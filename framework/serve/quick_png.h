@@ -8,7 +8,8 @@
 
 namespace aftershade::serve {
 
-/// The same pixels as encode_png(). `display` has 1, 3 or 4 float channels and is not empty.
-std::string quick_png(const Image& display);
+/// The same pixels as encode_png(), and its chunk sRGB. `display` has 1, 3 or 4 float channels and is not
+/// empty.
+std::string quick_png(const Image& display, bool is_srgb);
 
 }  // namespace aftershade::serve

@@ -157,7 +157,7 @@ class Capture:
 
     @property
     def notes(self) -> list[str]:
-        """What reading chose, in whole sentences."""
+        """What reading chose, what may be wrong, and what differs from the sequence's first frame."""
         return self._native.notes
 
     def __repr__(self) -> str:

@@ -41,6 +41,7 @@ class Layer:
     ms_ssim: float | None
     verdict: str
     reasons: list[str]
+    is_judged: bool  #: False: no limit holds this layer, so that any difference passes
     flip_map: NDArray[np.float32] | None  #: (height, width), from 0 to 1; with maps=True
     ssim_map: NDArray[np.float32] | None  #: likewise, from -1 to 1; NaN at the border, which no window covers
 
@@ -49,7 +50,10 @@ class Layer:
 class Comparison:
     verdict: str  #: "same", "warning", "failure", "different size or channels" or "file error"
     faults: list[str]
+    warnings: list[str]  #: what is not compared, or has equal numbers and is another picture
+    notes: list[str]  #: how the files were read
     layers: list[Layer]
+    not_judged: list[str]  #: labels of what the verdict does not depend on: without a limit, or ignored
 
     def __bool__(self) -> bool:
         """Whether the pictures are the same, within the tolerance."""
@@ -110,4 +114,4 @@ def compare(
         raise TypeError("compare takes two files or two arrays")
     else:
         found = _native.compare_arrays(host_array(reference), host_array(test), role, options)  # type: ignore[arg-type]
-    return Comparison(found["verdict"], found["faults"], [Layer(**one) for one in found["layers"]])
+    return Comparison(**{**found, "layers": [Layer(**one) for one in found["layers"]]})

@@ -88,6 +88,11 @@ class Result:
         return self._native.messages
 
     @property
+    def notes(self) -> list[str]:
+        """How its capture was read: Capture.notes."""
+        return self._native.notes
+
+    @property
     def history_reset(self) -> str:
         """Why history began with this frame; "" where it continued, or where there is none."""
         return self._native.history_reset

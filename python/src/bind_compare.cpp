@@ -74,6 +74,7 @@ nb::dict layer_to(const api::LayerFigures& layer) {
     result["ms_ssim"] = optional_to(layer.ms_ssim);
     result["verdict"] = api::verdict_name(layer.verdict);
     result["reasons"] = layer.reasons;
+    result["is_judged"] = layer.is_judged;
     result["flip_map"] = layer.flip_map.empty() ? nb::none() : array_from(layer.flip_map);
     result["ssim_map"] = layer.ssim_map.empty() ? nb::none() : array_from(layer.ssim_map);
     return result;
@@ -83,6 +84,9 @@ nb::dict comparison_to(const api::Comparison& comparison) {
     nb::dict result;
     result["verdict"] = api::verdict_name(comparison.verdict);
     result["faults"] = comparison.faults;
+    result["warnings"] = comparison.warnings;
+    result["notes"] = comparison.notes;
+    result["not_judged"] = comparison.not_judged;
     nb::list layers;
     for (const api::LayerFigures& layer : comparison.layers) layers.append(layer_to(layer));
     result["layers"] = layers;

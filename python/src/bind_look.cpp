@@ -160,6 +160,7 @@ void bind_result(nb::module_& module) {
         .def_prop_ro("non_finite",
                      [](const api::Result& self) { return list_to(self.non_finite(), non_finite_to); })
         .def_prop_ro("messages", &api::Result::messages)
+        .def_prop_ro("notes", &api::Result::notes)
         .def_prop_ro("history_reset", &api::Result::history_reset)
         .def_prop_ro("gpu_bytes", &api::Result::gpu_bytes)
         .def("write", &write_result, "path"_a, "roles"_a, "half"_a, "crop_to_display"_a, "compression"_a);

@@ -241,6 +241,19 @@ TEST(CaptureHash, ChangesWithFramesNeighboursAndDocumentAndIsNoneOfAPipe) {
     EXPECT_EQ(hash(), "") << "and does not wait for its writer";
 }
 
+TEST(CaptureHash, ChangesWithTheFirstFrameWhichDecidesHowAllAreRead) {
+    TemporaryFolder folder;
+    for (const char* frame : {"f_0001.exr", "f_0002.exr", "f_0090.exr"}) write_text(folder / frame, frame);
+    GoldenCase test;
+    test.capture = (folder / "f_####.exr").string();
+    test.frames = "90";
+    const std::string before = CaptureHasher().hash(test);
+    write_text(folder / "f_0002.exr", "another picture");
+    EXPECT_EQ(CaptureHasher().hash(test), before);
+    write_text(folder / "f_0001.exr", "another picture");
+    EXPECT_NE(CaptureHasher().hash(test), before);
+}
+
 TEST(LookHash, ChangesWithTheLookItsManifestAndEveryShaderAndWithNothingElse) {
     TemporaryFolder folder;
     fs::create_directories(folder / "effects/tint/cases");

@@ -64,10 +64,35 @@ TEST_F(Batch, ARunThatEndsEarlyReplacesTheReportOfAnEarlierOne) {
     EXPECT_NE(faulty["error"].get<std::string>().find("no effect 'nope'"), std::string::npos);
     write_text(folder_ / "in_0002.exr", "no picture");
     EXPECT_EQ(run_with({"nothing.json", "in_0002.exr"}, int(ExitCode::capture))["exit_code"], 3);
+    // A fault that only quotes the option is no fault of its name.
+    EXPECT_EQ(run_with({"nothing.json", "in_0001.exr", "--var", "x --report report.json"},
+                       int(ExitCode::usage))["exit_code"],
+              2);
     // What is no report is not removed.
     write_text(folder_ / "notes.json", "{}");
     run({"faulty.json", "in_0001.exr", "-o", "out.exr", "--report", "notes.json"}, int(ExitCode::usage));
     EXPECT_EQ(read_text(folder_ / "notes.json"), "{}");
+}
+
+TEST_F(Batch, ARunThatFellBackToSoftwareQuotesWhy) {
+    const CommandResult doctor = run_aftershade({"doctor", "--json"}, folder_.path());
+    const auto backends = nlohmann::json::parse(doctor.out)["backends"];
+    if (backends[0]["usable"]) GTEST_SKIP() << "hardware GL works here";
+    const std::string why = "egl: " + backends[0]["reason"].get<std::string>();
+    write_frames(1, 1);
+    const CommandResult result = run_aftershade({"run", "nothing.json", "in_0001.exr", "-o", "out.exr",
+                                                 "--backend", "auto", "--report", "report.json"},
+                                                folder_.path());
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.err.find("; backend auto found no usable hardware GL (" + why + ")\n"),
+              std::string::npos)
+        << result.err;
+    const auto report = nlohmann::json::parse(read_text(folder_ / "report.json"));
+    EXPECT_EQ(report["hardware_not_usable"], true);
+    EXPECT_EQ(report["hardware_fault"], why);
+    run({"nothing.json", "in_0001.exr", "-o", "out.exr", "--report", "report.json"}, 0);
+    EXPECT_FALSE(nlohmann::json::parse(read_text(folder_ / "report.json")).contains("hardware_fault"))
+        << "software was asked for";
 }
 
 TEST_F(Batch, ASequenceOnTwosIsWholeAndSaysThatItIsOnTwos) {

@@ -80,6 +80,8 @@ TEST_F(Overwriting, OfALookOfAnyNameByItsGraphOrPlotIsRefused) {
 TEST_F(Overwriting, OfOneOutputByAnotherIsRefused) {
     expect_run_refused({"--trace", "t.json", "--report", "./t.json"},
                        "--report ./t.json: error: another output has this name");
+    expect_run_refused({"--trace", "t\x01.json", "--report", "./t\x01.json"},
+                       "--report ./t?.json: error: another output has this name");
     expect_run_refused({"--history-out", "out_0002.exr"},
                        "-o out_####.exr: error: another output has this name");
 }

@@ -103,6 +103,33 @@ TEST(OutputCompression, OfDataThatItWouldAlterIsRefused) {
     EXPECT_EQ(refusal("color", "pxr24").front(), '0');
 }
 
+TEST(OutputCompression, OfIdsThatItKeepsIsTaken) {
+    const TemporaryFolder folder;
+    const std::string out = (folder / "out.exr").string();
+    SyntheticScene scene{.width = 64, .height = 36};
+    scene.box = SyntheticBox{4, 6, 16, 12, 5, 2};
+    write_capture(make_capture(scene), folder / "in.exr");
+    for (const char* compression : {"dwaa", "dwab", "b44", "b44a", "pxr24"}) {
+        const CommandResult result =
+            run_on(folder, {"-o", out, "--output-roles", "color,object_id", "--compression", compression});
+        EXPECT_EQ(result.exit_code, 0) << compression << result.err;
+        const Args names = {"object_id.I"};
+        EXPECT_TRUE(std::ranges::equal(ExrFile(out).read_uints(0, names).uints(),
+                                       ExrFile(folder / "in.exr").read_uints(0, names).uints()))
+            << compression;
+    }
+    for (const PixelType type : {PixelType::float32, PixelType::half}) {
+        write_colors(folder / "in.exr", {}, {"CryptoObject00.X"}, type);
+        const CommandResult kept = run_on(folder, {"-o", out, "--keep-channels", "--compression", "b44"});
+        const bool is_lost = type == PixelType::half;
+        EXPECT_EQ(kept.exit_code, is_lost ? 6 : 0) << kept.err;
+        EXPECT_EQ(kept.err.find("loses bits of the channel 'CryptoObject00.X', which holds ids") !=
+                      std::string::npos,
+                  is_lost)
+            << kept.err;
+    }
+}
+
 TEST(OutputCompression, OfKeptChannelsKeepsThemOrIsRefused) {
     const TemporaryFolder folder;
     write_colors(folder / "in.exr", {}, {"custom.Y", "custom.Q"});

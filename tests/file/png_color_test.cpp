@@ -10,18 +10,17 @@
 #include "framework/file/picture.h"
 #include "framework/file/png_file.h"
 #include "framework/image/srgb.h"
+#include "tests/file/png_chunks.h"
 #include "tests/temporary_folder.h"
 
 namespace aftershade {
 namespace {
 
-std::string number(std::uint32_t value) {
-    return {char(value >> 24), char(value >> 16), char(value >> 8), char(value)};
-}
+using test::png_number;
 
 std::string numbers(const std::vector<std::uint32_t>& values) {
     std::string text;
-    for (const std::uint32_t value : values) text += number(value);
+    for (const std::uint32_t value : values) text += png_number(value);
     return text;
 }
 
@@ -34,16 +33,21 @@ PngColor color_of(const std::vector<std::pair<std::string, std::string>>& chunks
 
 /// A display's profile of three colorants and one curve, by ICC.1:2022.
 std::string icc_profile(const std::string& curve, bool exchanged = false) {
-    const auto fixed = [](double value) { return number(std::uint32_t(std::int32_t(std::lround(value * 65536)))); };
-    const auto xyz = [&](double x, double y, double z) { return "XYZ " + number(0) + fixed(x) + fixed(y) + fixed(z); };
+    const auto fixed = [](double value) {
+        return png_number(std::uint32_t(std::int32_t(std::lround(value * 65536))));
+    };
+    const auto xyz = [&](double x, double y, double z) {
+        return "XYZ " + png_number(0) + fixed(x) + fixed(y) + fixed(z);
+    };
     const std::string red = xyz(0.4361, 0.2225, 0.0139), green = xyz(0.3851, 0.7169, 0.0971),
                       blue = xyz(0.1431, 0.0606, 0.7141);
     const std::vector<std::pair<std::string, std::string>> tags = {
         {"rXYZ", exchanged ? blue : red}, {"gXYZ", green}, {"bXYZ", exchanged ? red : blue},
         {"rTRC", curve},                  {"gTRC", curve}, {"bTRC", curve}};
-    std::string table = number(std::uint32_t(tags.size())), data;
+    std::string table = png_number(std::uint32_t(tags.size())), data;
     for (const auto& [name, tag] : tags) {
-        table += name + number(std::uint32_t(132 + 12 * tags.size() + data.size())) + number(std::uint32_t(tag.size()));
+        table += name + png_number(std::uint32_t(132 + 12 * tags.size() + data.size())) +
+                 png_number(std::uint32_t(tag.size()));
         data += tag + std::string((4 - tag.size() % 4) % 4, '\0');
     }
     return std::string(16, '\0') + "RGB XYZ " + std::string(104, '\0') + table + data;
@@ -60,12 +64,12 @@ std::string iccp(const std::string& profile) {
 
 std::string power(double gamma) {
     const int value = int(std::lround(gamma * 256));
-    return "curv" + number(0) + number(1) + char(value >> 8) + char(value);
+    return "curv" + png_number(0) + png_number(1) + char(value >> 8) + char(value);
 }
 
 /// sRGB's own curve as a table and as numbers.
 std::string srgb_table() {
-    std::string text = "curv" + number(0) + number(1024);
+    std::string text = "curv" + png_number(0) + png_number(1024);
     for (int i = 0; i < 1024; ++i) {
         const int value = int(std::lround(65535 * decode_srgb(i / 1023.0)));
         text += {char(value >> 8), char(value)};
@@ -73,22 +77,27 @@ std::string srgb_table() {
     return text;
 }
 std::string srgb_numbers() {
-    std::string text = "para" + number(0) + std::string{0, 3, 0, 0};
+    std::string text = "para" + png_number(0) + std::string{0, 3, 0, 0};
     for (const double value : {2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045})
-        text += number(std::uint32_t(std::lround(value * 65536)));
+        text += png_number(std::uint32_t(std::lround(value * 65536)));
     return text;
 }
 
-const std::string kGamma1 = number(100000), kGamma22 = number(45455);
+const std::string kGamma1 = png_number(100000), kGamma22 = png_number(45455);
 const std::string kWide = numbers({31270, 32900, 70800, 29200, 17000, 79700, 13100, 4600});
 
 TEST(PngColor, IsSrgbWithoutChunksAndByEachOfThem) {
     EXPECT_TRUE(color_of({}).is_srgb());
     const std::string same = numbers({31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000});
-    for (const auto& chunk : std::vector<std::pair<std::string, std::string>>{
-             {"sRGB", std::string(1, '\0')}, {"gAMA", kGamma22}, {"gAMA", number(45450)}, {"cHRM", same},
-             {"cICP", {1, 13, 0, 1}}, {"iCCP", iccp(icc_profile(power(2.2)))}, {"iCCP", iccp(icc_profile(srgb_table()))},
-             {"iCCP", iccp(icc_profile(srgb_numbers()))}}) {
+    for (const auto& chunk :
+         std::vector<std::pair<std::string, std::string>>{{"sRGB", std::string(1, '\0')},
+                                                          {"gAMA", kGamma22},
+                                                          {"gAMA", png_number(45450)},
+                                                          {"cHRM", same},
+                                                          {"cICP", {1, 13, 0, 1}},
+                                                          {"iCCP", iccp(icc_profile(power(2.2)))},
+                                                          {"iCCP", iccp(icc_profile(srgb_table()))},
+                                                          {"iCCP", iccp(icc_profile(srgb_numbers()))}}) {
         EXPECT_EQ(color_of({chunk}).space, "sRGB") << chunk.first;
         EXPECT_FALSE(color_of({chunk}).gamma) << chunk.first;
     }
@@ -104,7 +113,7 @@ TEST(PngColor, NamesWhatIsNotSrgb) {
     EXPECT_NE(color_of({{"iCCP", iccp(icc_profile(power(1.8)))}}).space,
               color_of({{"iCCP", iccp(icc_profile(power(1)))}}).space);
     EXPECT_EQ(color_of({{"gAMA", kGamma1}}).gamma, 1.0);
-    EXPECT_EQ(color_of({{"gAMA", number(55556)}}).gamma, 0.55556);
+    EXPECT_EQ(color_of({{"gAMA", png_number(55556)}}).gamma, 0.55556);
 }
 
 TEST(PngColor, TakesTheStrongerChunk) {
@@ -128,14 +137,7 @@ TEST(PngColor, OfDamagedChunksIsNoFault) {
         damaged[at] = char(0xff);
         is_srgb_profile({reinterpret_cast<const unsigned char*>(damaged.data()), damaged.size()});
     }
-    EXPECT_TRUE(color_of({{"gAMA", number(0)}, {"gAMA", "x"}, {"cHRM", "x"}, {"cICP", "x"}}).is_srgb());
-}
-
-/// `png` with a chunk behind its first.
-std::string with_chunk(std::string png, const std::string& type, const std::string& data) {
-    const std::string checked = type + data;
-    const auto sum = std::uint32_t(crc32(0, reinterpret_cast<const Bytef*>(checked.data()), uInt(checked.size())));
-    return png.insert(8 + 25, number(std::uint32_t(data.size())) + checked + number(sum));
+    EXPECT_TRUE(color_of({{"gAMA", png_number(0)}, {"gAMA", "x"}, {"cHRM", "x"}, {"cICP", "x"}}).is_srgb());
 }
 
 TEST(Picture, DecodesAPngByItsGammaAndRefusesOtherSpaces) {
@@ -148,17 +150,40 @@ TEST(Picture, DecodesAPngByItsGammaAndRefusesOtherSpaces) {
         return read_picture(folder / "a.png", space).at(1, 1, 0);
     };
     EXPECT_FLOAT_EQ(light(plain), float(decode_srgb(128 / 255.0)));
-    EXPECT_FLOAT_EQ(light(with_chunk(plain, "gAMA", kGamma1)), 128 / 255.0f);
-    EXPECT_FLOAT_EQ(light(with_chunk(plain, "gAMA", number(50000))), float(std::pow(128 / 255.0, 2)));
-    EXPECT_FLOAT_EQ(light(with_chunk(plain, "cHRM", kWide), PictureSpace::data), 128 / 255.0f);
+    EXPECT_FLOAT_EQ(light(test::png_with_chunk(plain, "gAMA", kGamma1)), 128 / 255.0f);
+    EXPECT_FLOAT_EQ(light(test::png_with_chunk(plain, "gAMA", png_number(50000))),
+                    float(std::pow(128 / 255.0, 2)));
+    EXPECT_FLOAT_EQ(light(test::png_with_chunk(plain, "cHRM", kWide), PictureSpace::data), 128 / 255.0f);
     for (const auto& [type, data] : {std::pair{std::string("cHRM"), kWide}, {"cICP", {9, 16, 0, 1}}})
-        EXPECT_THROW(light(with_chunk(plain, type, data)), Error) << type;
+        EXPECT_THROW(light(test::png_with_chunk(plain, type, data)), Error) << type;
+}
+
+TEST(PngColor, IsNotAppliedToDataAndThatIsSaid) {
+    const test::TemporaryFolder folder;
+    const std::string plain = encode_png("", Image(2, 2, 1));
+    const auto note = [&](const std::string& bytes) {
+        test::write_text(folder / "a.png", bytes);
+        const auto color = read_png_color(folder / "a.png");
+        return color ? color->note_of_data() : "no PNG";
+    };
+    const std::string end = " is not applied: the numbers of data are read as they are stored";
+    EXPECT_EQ(note(plain), "");
+    EXPECT_EQ(note(test::png_with_chunk(plain, "gAMA", kGamma22)), "");
+    EXPECT_EQ(note(test::png_with_chunk(plain, "gAMA", kGamma1)), "its gAMA 1" + end);
+    EXPECT_EQ(note(test::png_with_chunk(plain, "cICP", {9, 16, 0, 1})), "its cICP 9 16 0 1" + end);
+    EXPECT_EQ(note(test::png_with_chunk(plain, "iCCP", iccp(icc_profile(power(1)))))
+                  .find("its ICC profile 'my screen'"),
+              0u);
+    EXPECT_EQ(note(plain.substr(0, 50)), "no PNG") << "cut off";
+    EXPECT_EQ(note("xxxx" + plain.substr(4)), "no PNG");
+    EXPECT_FALSE(read_png_color(folder / "none.png"));
+    EXPECT_FALSE(read_png_color(folder.path()));
 }
 
 TEST(Png, SaysThatItIsSrgbWhereItIs) {
     const test::TemporaryFolder folder;
     const Image grey(2, 2, 3);
-    const std::string chunk = number(1) + "sRGB" + std::string(1, '\0');
+    const std::string chunk = png_number(1) + "sRGB" + std::string(1, '\0');
     EXPECT_EQ(encode_png("", grey).find("sRGB"), std::string::npos);
     // PNG specification, 5.6: before the pixels.
     EXPECT_EQ(encode_png("", grey, {{"Title", "x"}}, {.is_srgb = true}).find(chunk), 8u + 25u);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -157,6 +158,43 @@ TEST(HostCompare, GivesFiguresAndMapsOfArrays) {
     EXPECT_EQ(other.layers[1].verdict, Verdict::same);
     // The largest difference is that of the brightest dots: a tenth of 20.
     EXPECT_NEAR(other.layers[0].largest.value, 2, 1e-5);
+}
+
+TEST(HostCompare, NamesWhatNoLimitHolds) {
+    const TemporaryFolder folder;
+    Host host(on_software());
+    Capture one = small_capture(), other = small_capture();
+    std::vector<float> depth(48 * 32, 1);
+    other.set_image("depth", view_of(depth, 48, 32, 1));
+    Look look = host.parse_look(R"({"aftershade": 1, "steps": []})");
+    for (const auto& [capture, name] : {std::pair(&one, "a.exr"), {&other, "b.exr"}})
+        look.render(*capture).write(folder / name, {.roles = {"color", "depth"}});
+    CompareOptions by_flip{.fail = {.limit = std::numeric_limits<double>::infinity()}, .fail_flip = 0.01};
+    const Comparison files = compare(folder / "a.exr", folder / "b.exr", by_flip);
+    EXPECT_EQ(files.verdict, Verdict::same);
+    EXPECT_EQ(files.not_judged, (std::vector<std::string>{"A", "Z"}));
+    for (const LayerFigures& layer : files.layers)
+        EXPECT_EQ(layer.is_judged, layer.label == "RGB") << layer.label;
+    const Comparison arrays = compare(one.image("color"), other.image("color"), "color", by_flip);
+    EXPECT_EQ(arrays.not_judged, std::vector<std::string>{"A"});
+    EXPECT_TRUE(compare(folder / "a.exr", folder / "b.exr").not_judged.empty());
+    EXPECT_EQ(compare(folder / "a.exr", folder / "b.exr", {.roles = {{"Z", "ignore"}}}).not_judged,
+              std::vector<std::string>{"Z"});
+}
+
+TEST(HostCompare, SaysWhyEqualNumbersAreAWarning) {
+    const TemporaryFolder folder;
+    Host host(on_software());
+    Capture rec709 = small_capture(), acescg = small_capture();
+    acescg.set_color_space("acescg");
+    Look look = host.parse_look(R"({"aftershade": 1, "steps": []})");
+    look.render(rec709).write(folder / "a.exr");
+    look.render(acescg).write(folder / "b.exr");
+    const Comparison comparison = compare(folder / "a.exr", folder / "b.exr");
+    EXPECT_EQ(comparison.verdict, Verdict::warning);
+    ASSERT_EQ(comparison.warnings.size(), 1u);
+    EXPECT_EQ(comparison.warnings[0].find("the same numbers are other colours"), 0u)
+        << comparison.warnings[0];
 }
 
 }  // namespace

@@ -83,7 +83,8 @@ protected:
                                 folder_ / "capture.json",
                                 {folder_ / "profile.json"},
                                 renderer_,
-                                source() / "glsl"}),
+                                source() / "glsl"},
+                               reader),
                    {}};
         FrameFingerprints fingerprints(hash_of_parts(result.setup), sequence, reader, pipeline, run);
         for (std::size_t i = 0; i < run.frames.size(); ++i) result.frames.push_back(fingerprints.of(i));

@@ -4,6 +4,7 @@
 #include "framework/capture/cryptomatte.h"
 #include "framework/core/error.h"
 #include "framework/file/png_file.h"
+#include "tests/file/png_chunks.h"
 #include "tests/pipeline/effect_fixture.h"
 
 namespace aftershade::test {
@@ -179,6 +180,21 @@ TEST_F(MixAndMask, AMaskIsARoleAnObjectOrAFile) {
         run(R"({ "effect": "white", "mask": { "file": ")" + (folder / "right.png").string() + "\" } }");
     EXPECT_EQ(image.at(1, 1, 0), 0.25f);
     EXPECT_EQ(image.at(18, 8, 0), 1.0f);
+}
+
+TEST_F(MixAndMask, ThatComeAsAPngOfAnotherSpaceSayThatItIsNotApplied) {
+    const TemporaryFolder folder;
+    Image half(20, 10, 1);
+    std::ranges::fill(half.floats(), 0.5f);
+    const std::string file = (folder / "half.png").string(), png = encode_png("", half);
+    const std::string step = R"({ "effect": "white", "mask": { "file": ")" + file + "\" } }";
+    write_text(file, png);
+    EXPECT_EQ(Bound(effects_, look_of(step)).faults(), "");
+    write_text(file, png_with_chunk(png, "gAMA", png_number(100000)));
+    const std::string faults = Bound(effects_, look_of(step)).faults();
+    EXPECT_NE(faults.find("warning: '" + file + "': its gAMA 1 is not applied"), std::string::npos) << faults;
+    const Capture grey = make_capture({.width = 20, .height = 10, .background = {0.25f, 0.25f, 0.25f}});
+    EXPECT_NEAR(Bench(effects_, look_of(step)).color(grey).at(1, 1, 0), 0.25f + 0.75f * 128 / 255, 1e-6f);
 }
 
 /// One row of a pixel for each id.

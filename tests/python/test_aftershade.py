@@ -151,6 +151,50 @@ def test_sequences_carry_history(host):
     assert jumped
 
 
+def write_frame(host, path, number, roles=("color", "depth"), **settings):
+    arrays = {role: image for role, image in frame_arrays().items() if role in roles}
+    capture = aftershade.Capture(arrays, frame=number)
+    for name, value in settings.items():
+        setattr(capture, name, value)
+    aftershade.Look({"aftershade": 1, "steps": []}, host=host).render(capture).write(path, roles=roles, half=False)
+
+
+def both_ways(host, tmp_path, frame):
+    """A frame as the sequence reads it, and as a session renders it."""
+    sequence = aftershade.Sequence(tmp_path / "f_####.exr", host=host)
+    look = aftershade.Look({"aftershade": 1, "steps": []}, host=host)
+    capture, (result,) = sequence.read(frame), look.frames(sequence, [frame], roles=["color"])
+    assert np.array_equal(capture["color"], result["color"]) and capture.notes == result.notes
+    return capture
+
+
+def test_a_sequence_has_the_color_space_of_its_first_frame(host, tmp_path):
+    write_frame(host, tmp_path / "f_0001.exr", 1)
+    write_frame(host, tmp_path / "f_0002.exr", 2, color_space="acescg")
+    capture = both_ways(host, tmp_path, 2)
+    # AP1 of D60 to Rec. 709 of D65 by Bradford's method, as published with ACES.
+    to_rec709 = [[1.70505, -0.62179, -0.08326], [-0.13026, 1.14080, -0.01055], [-0.02400, -0.12897, 1.15297]]
+    expected = frame_arrays()["color"][..., :3] @ np.transpose(to_rec709)
+    assert np.allclose(capture["color"][..., :3], expected, atol=1e-3) and capture.color_space == "rec709"
+    assert any("converted to these" in note for note in capture.notes), capture.notes
+
+
+def test_a_sequence_says_which_role_a_frame_lacks(host, tmp_path):
+    write_frame(host, tmp_path / "f_0001.exr", 1)
+    write_frame(host, tmp_path / "f_0002.exr", 2, roles=("color",))
+    sequence = aftershade.Sequence(tmp_path / "f_####.exr", host=host, roles=["color", "depth"])
+    assert sequence.read(1).notes == []
+    assert sequence.read(2).notes == [f"it has no depth, which {tmp_path / 'f_0001.exr'} has"]
+
+
+def test_a_sequence_says_that_its_pictures_have_two_sizes(host, tmp_path):
+    write_frame(host, tmp_path / "f_0001.exr", 1)
+    capture = aftershade.Capture(frame_arrays(24, 16), frame=2)
+    aftershade.Look({"aftershade": 1, "steps": []}, host=host).render(capture).write(tmp_path / "f_0002.exr")
+    (note,) = both_ways(host, tmp_path, 2).notes
+    assert "its display window has 24 x 16 px, that of" in note and "f_0001.exr has 48 x 32 px" in note
+
+
 def test_threads_may_share_a_host(host):
     look, arrays = aftershade.Look(BLUR, host=host), frame_arrays()
     expected, found = look.render(arrays)["color"], [None] * 4
@@ -178,6 +222,14 @@ def test_compare_has_the_figures_of_numpy(host):
     assert layer.ssim_map.shape == (32, 48) and np.isnan(layer.ssim_map[:5]).all() and same.layers[0].ssim_map is None
     assert np.nanmean(layer.ssim_map) == pytest.approx(layer.ssim, abs=1e-6)
     assert np.allclose(layer.ssim_map[14:-5, 16:-5], 1, atol=1e-6), "windows without the changed pixel"
+
+
+def test_compare_names_what_no_limit_holds(host):
+    a, b = frame_arrays()["color"], frame_arrays()["color"]
+    b[..., 3] = 0
+    found = aftershade.compare(a, b, limit=math.inf, fail_flip=0.01)
+    assert found and found.not_judged == ["A"] and not found["A"].is_judged and found["color"].is_judged
+    assert not aftershade.compare(a, b).not_judged and found.warnings == found.notes == []
 
 
 def test_check_velocity_tells_a_wrong_sign(host):

@@ -28,6 +28,8 @@ inline const std::string kLook = R"({ "aftershade": 1,
 
 class Serve : public ::testing::Test {
 protected:
+    /// Before the program starts.
+    virtual void change_frames() const {}
     void start(std::vector<std::string> more = {}) {
         SyntheticScene scene{
             .width = 64, .height = 36, .background = {0.1f, 0.2f, 0.4f}, .background_depth_m = 8};
@@ -38,6 +40,7 @@ protected:
             capture.header.pixel_aspect = pixel_aspect_;
             write_capture(capture, folder_ / ("in_000" + std::to_string(frame) + ".exr"));
         }
+        change_frames();
         write_text(folder_ / "look.json", look_);
         write_text(folder_ / "secret.txt", "secret");
         std::vector<std::string> words{"serve", "look.json", frames_ > 1 ? "in_####.exr" : "in_0001.exr",

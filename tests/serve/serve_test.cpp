@@ -256,6 +256,18 @@ void main() {
     EXPECT_EQ(shown(3, ""), alone) << "a frame that is looked up begins with itself";
 }
 
+TEST_F(Serve, GivesPngsThatAreSrgbWhereTheyArePictures) {
+    start();
+    const auto is_srgb = [&](const std::string& view) {
+        return get("/api/picture?frame=1&view=" + view).body.find("sRGB") != std::string::npos;
+    };
+    EXPECT_TRUE(is_srgb("final"));
+    EXPECT_TRUE(is_srgb("before"));
+    EXPECT_FALSE(is_srgb("role:depth")) << "false colours";
+    write_text(folder_ / "shown.png", get("/api/picture?frame=1").body);
+    EXPECT_EQ(read_png(folder_ / "shown.png").width(), 64) << "whose chunks are whole";
+}
+
 TEST_F(Serve, CountsTheNanOfTheFinalPicture) {
     has_nan_ = true;
     start();

@@ -131,7 +131,9 @@ public:
 
     std::string profile() const;             ///< id of the profile that the frame was read by; "": arrays
     std::string path() const;                ///< of the file; "": arrays
-    std::vector<std::string> notes() const;  ///< on what reading chose for the caller, in whole sentences
+    /// In whole sentences: what reading chose for the caller, what may be wrong in the file, and what it has
+    /// otherwise than the first frame of its sequence, which decides how all are read.
+    std::vector<std::string> notes() const;
 
     struct AFTERSHADE_LOCAL Data;  ///< what the library keeps; no part of the API
 
@@ -158,8 +160,9 @@ public:
     int subframes() const noexcept;   ///< captures that make up a frame; 1: no sub-frames
     std::vector<int> cuts() const;    ///< frames that begin a shot
 
-    /// Reads one frame. Throws Error(usage) where the sequence has no such frame or sub-frame (from 0),
-    /// Error(capture) where it cannot be read. [thread-safe: a program may read ahead]
+    /// Reads one frame as the sequence's first that can be read: by its profile, from its layer and channels,
+    /// into its colour space. Throws Error(usage) where the sequence has no such frame or sub-frame (from 0),
+    /// Error(capture) where it cannot be read or lacks that layer. [thread-safe: a program may read ahead]
     Capture read(int frame, int subframe = 0) const;
 
     struct AFTERSHADE_LOCAL Data;  ///< what the library keeps; no part of the API

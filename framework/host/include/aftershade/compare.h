@@ -82,6 +82,7 @@ struct LayerFigures {
     std::optional<double> ssim, ms_ssim;       ///< empty: not computed
     Verdict verdict = Verdict::same;
     std::vector<std::string> reasons;  ///< of the verdict, in whole sentences
+    bool is_judged = true;             ///< false: no limit holds this layer, so that any difference passes
     Image flip_map;  ///< one channel, from 0 to 1: HDR-FLIP where there are both; empty without `maps`
     /// One channel, from -1 to 1, of the window around each pixel; NaN where the window does not lie inside;
     /// 1 everywhere for equal bits. Empty without `maps`, and where SSIM is not computed.
@@ -93,8 +94,13 @@ struct Comparison {
     /// What keeps the files from being compared: layers, channels and windows of one alone, or why a file
     /// cannot be read.
     std::vector<std::string> faults;
+    /// What is not compared, or has equal numbers and is another picture: the verdict is at least a warning.
+    std::vector<std::string> warnings;
+    std::vector<std::string> notes;    ///< on how the files were read
     std::vector<LayerFigures> layers;  ///< in the reference's order
     std::vector<std::string> labels;   ///< of every layer of either file
+    /// Labels of what the verdict does not depend on: layers that no limit holds, and those that are ignored.
+    std::vector<std::string> not_judged;
 };
 
 /// Compares two files (.exr, .png, .hdr) layer by layer. A file that cannot be read is Verdict::file_error

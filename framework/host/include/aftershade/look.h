@@ -109,6 +109,7 @@ public:
     std::vector<StatisticInfo> statistics() const;  ///< empty unless RenderOptions::telemetry
     std::vector<NonFiniteInfo> non_finite() const;
     std::vector<std::string> messages() const;  ///< that plug-ins logged
+    std::vector<std::string> notes() const;     ///< on how its capture was read: Capture::notes()
     std::string history_reset() const;  ///< why history began with this frame; "": it continued, or is none
     std::uint64_t gpu_bytes() const noexcept;  ///< of the frame's textures and buffers
     /// The GLsync of RenderOptions::wants_fence, which the caller deletes; nullptr without.
