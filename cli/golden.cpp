@@ -47,13 +47,15 @@ bool may_replace(const fs::path& file, std::string_view begin) {
 /// A run that does not end must not leave the figures of an earlier one beside its own pictures.
 void remove_old_reports(const GoldenOptions& options) {
     std::error_code failure;
-    if (!options.junit.empty() && fs::is_regular_file(options.junit, failure)) fs::remove(options.junit, failure);
+    if (!options.junit.empty() && fs::is_regular_file(options.junit, failure))
+        fs::remove(options.junit, failure);
     if (options.report.empty()) return;
     if (!fs::remove(fs::path(options.report) / "report.json", failure)) return;
     fs::remove(fs::path(options.report) / "index.html", failure);
 }
 
-/// Reports of an earlier run would be taken for this one's. Faults of writing are not worth more than the cause.
+/// Reports of an earlier run would be taken for this one's. Faults of writing are not worth more than the
+/// cause.
 void write_early_end(const GoldenOptions& options, const std::string& message, int exit_code) {
     const GoldenEarlyEnd end{options.suite, message, exit_code};
     try {
@@ -63,7 +65,8 @@ void write_early_end(const GoldenOptions& options, const std::string& message, i
         if (options.report.empty() || !may_replace(json, "{\n  \"aftershade\"") || !may_replace(page, "<!"))
             return;
         fs::create_directories(report);
-        write_text_file(json, early_json_of(end).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+        write_text_file(
+            json, early_json_of(end).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
         write_text_file(page, early_page_of(end));
     } catch (const std::exception& error) {
         std::cerr << "aftershade: warning: " << error.what() << "\n";
@@ -195,7 +198,7 @@ ExitCode approve(const GoldenOptions& options) {
     approve_options.add = options.add;
     approve_options.renew_sidecars = options.renew_sidecars;
     approve_options.command =
-        shell_line({"aftershade", "golden", "approve", options.suite}) + setup.context.with_options;
+        printed_command({"aftershade", "golden", "approve", options.suite}) + setup.context.with_options;
     approve_options.approver = approver_of(options, setup.suite.folder());
     approve_options.approved = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)));
     const GoldenApproval approval = approve_goldens(

@@ -57,10 +57,10 @@ public:
         if (session_.arguments.jobs.report.empty()) return;
         try {
             const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start_;
-            write_text_file(
-                session_.arguments.jobs.report,
-                report_json({session_.arguments.look, session_.arguments.capture.capture,
-                             frame_events(session_.run, outcomes_, current_), taken.count(), code_, renderer_, is_fall_back_, error_}));
+            write_text_file(session_.arguments.jobs.report,
+                            report_json({session_.arguments.look, session_.arguments.capture.capture,
+                                         frame_events(session_.run, outcomes_, current_), taken.count(),
+                                         code_, renderer_, is_fall_back_, error_}));
         } catch (const Error& error) {
             std::cerr << printable_lines(error.what()) << "\n";
         }
@@ -123,8 +123,9 @@ ExitCode render(const RunSession& session, const RunOptions& run, const Pipeline
                          session.outputs, data_path(), hooks, session.end_context},
                         reporter.observer(), stop);
     if (is_fall_back(session, report.gl) && has_gpu_device())
-        reporter.warn("this machine has a GPU, but no hardware GL could be used, so the frames were drawn in "
-                      "software; aftershade doctor says why, and --backend egl refuses such a run");
+        reporter.warn(
+            "this machine has a GPU, but no hardware GL could be used, so the frames were drawn in "
+            "software; aftershade doctor says why, and --backend egl refuses such a run");
     // Of several workers each sees only a part of the frames.
     if (!session.arguments.jobs.is_worker())
         for (const std::string& warning : report.objects_unmatched) reporter.warn(warning);
@@ -134,10 +135,13 @@ ExitCode render(const RunSession& session, const RunOptions& run, const Pipeline
             << "-o -: the stream ends before frame " << report.failures.front().frame
             << ", since a gap would shift the frames behind it; --missing hold repeats a frame where the "
                "file of the next one is not there\n";
-    if (report.interrupted && !session.arguments.watch)
-        std::cerr << continuation_text(own_arguments(), settings, report);
     if (settings.trace) write_text_file(session.arguments.trace, trace.json());
     write_extras(session.arguments, report);
+    if (report.interrupted && !session.arguments.watch && !session.arguments.jobs.is_worker())
+        print_interruption(
+            session.progress, session.arguments,
+            {report.frames_done + report.frames_current,
+             int(session.run.frames.size()) - session.run.warmup_frames, false, pipeline.has_history()});
     return report.exit_code();
 }
 
@@ -181,8 +185,7 @@ ExitCode render_stale(const RunSession& session, const BoundLook& bound, const s
                                    session.profiles,     gl.renderer + ", " + gl.version,
                                    data_path() / "glsl", session.run.natives.registry};
     ResumeNeeds needs;
-    if (arguments.audit) needs.everything = "--audit";
-    if (!arguments.telemetry_plot.empty()) needs.everything = "--telemetry-plot";
+    needs.everything = arguments.needs_every_frame();
     needs.last_frame = !arguments.graph.empty();
     needs.says = session.progress != ProgressStyle::none;
     std::vector<int> current;

@@ -3,14 +3,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
-#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
-#include <set>
 
 #include "cli/bound_look.h"
+#include "cli/command_line.h"
 #include "cli/frame_gaps.h"
 #include "cli/job_options.h"
 #include "cli/run_inputs.h"
@@ -104,13 +103,11 @@ int task_count(const SubmitArguments& options, const JobFrames& run) {
 
 /// What the program reads from its environment here, and shall there.
 std::map<std::string, std::string> environment_of(const SubmitArguments& options) {
-    std::set<std::string> names{"AFTERSHADE_BACKEND", "AFTERSHADE_CACHE", "AFTERSHADE_DATA",
-                                "AFTERSHADE_PLUGIN_PATH"};
+    std::map<std::string, std::string> environment = own_variables();
     // Folders of this machine are not those of an image.
-    if (options.farm == "kubernetes") names = {"AFTERSHADE_BACKEND"};
-    std::map<std::string, std::string> environment;
-    for (const std::string& name : names)
-        if (const char* value = std::getenv(name.c_str())) environment[name] = value;
+    if (options.farm == "kubernetes")
+        std::erase_if(environment,
+                      [](const auto& variable) { return variable.first != "AFTERSHADE_BACKEND"; });
     return environment;
 }
 
@@ -187,7 +184,7 @@ ExitCode submit(const SubmitArguments& options) {
     write_job(job, files);
     std::cerr << division_text(options, *frames, job);
     for (const std::string& remark : files.remarks) std::cerr << "note: " << remark << "\n";
-    std::cout << shell_line(files.submit) << "\n";
+    std::cout << printed_command(files.submit) << "\n";
     return ExitCode::done;
 }
 

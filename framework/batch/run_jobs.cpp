@@ -118,9 +118,7 @@ private:
     /// Whether another worker should go on with what is left of the piece.
     bool run_one() {
         WorkerCommand command;
-        command.arguments = options_.command;
-        for (std::string& word : options_.frame_arguments(piece_))
-            command.arguments.push_back(std::move(word));
+        command.arguments = options_.command(piece_);
         command.limits.memory_bytes = options_.memory_bytes;
         if (!std::getenv("LP_NUM_THREADS"))
             command.environment["LP_NUM_THREADS"] = std::to_string(options_.threads);
