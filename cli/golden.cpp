@@ -16,6 +16,7 @@
 #include "framework/batch/report_page.h"
 #include "framework/core/atomic_file.h"
 #include "framework/core/input_files.h"
+#include "framework/core/side_file.h"
 #include "framework/core/text.h"
 
 namespace aftershade::cli {
@@ -32,7 +33,7 @@ void print_head(const GoldenReportContext& context) {
 }
 
 fs::path write_page(const fs::path& report, fs::path page, double limit_mb) {
-    if (page.empty()) page = report / "index.html";
+    if (page.empty()) page = path_below(report, "index.html");
     write_report_page(report, page, {std::uint64_t(limit_mb * 1024 * 1024)});
     return page;
 }
@@ -65,6 +66,8 @@ void write_early_end(const GoldenOptions& options, const std::string& message, i
         if (options.report.empty() || !may_replace(json, "{\n  \"aftershade\"") || !may_replace(page, "<!"))
             return;
         fs::create_directories(report);
+        path_below(report, page.filename());
+        path_below(report, json.filename());
         write_text_file(
             json, early_json_of(end).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
         write_text_file(page, early_page_of(end));
@@ -86,7 +89,7 @@ void write_reports(const GoldenOptions& options, const GoldenSuiteResult& result
     const std::string json =
         json_of(result, context).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
     if (!options.report.empty()) {
-        write_text_file(fs::path(options.report) / "report.json", json);
+        write_text_file(path_below(options.report, "report.json"), json);
         std::cerr << "report: " << write_page(options.report, "", options.page_limit_mb).string() << "\n";
     }
     if (options.json) std::fwrite(json.data(), 1, json.size(), stdout);
@@ -131,7 +134,7 @@ ExitCode run_prepared(const GoldenOptions& options, const GoldenSetup& setup) {
     remove_old_reports(options);
     if (!options.report.empty()) {
         std::error_code failure;
-        fs::create_directories(fs::path(options.report) / "images", failure);
+        fs::create_directories(options.report, failure);
         if (failure) throw Error(ExitCode::output, "--report " + options.report + ": " + failure.message());
     }
     print_head(setup.context);

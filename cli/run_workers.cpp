@@ -35,8 +35,7 @@ public:
         JobListener listener;
         listener.on_stdout = [this](std::string_view line) {
             line_.clear();
-            fmt::print("{}\n", line);
-            std::fflush(stdout);
+            print_path(line);
         };
         listener.on_stderr = [this](std::string_view line) {
             // Every worker says the same of what all frames have in common.
@@ -167,8 +166,15 @@ ExitCode run_by_workers(const RunArguments& arguments, const JobFrames& frames, 
     if (pipeline.has_foreign()) options.resident_bytes = foreign_memory_bytes() / options.pieces.size();
     options.stop_on_error = arguments.jobs.stop_on_error;
     WorkersReporter reporter(progress, frames.count(), pipeline);
-    const JobsReport report = run_jobs(options, reporter.listener(), stop);
-    clear_after_workers(arguments, {frames.frames.begin() + frames.lead_frames, frames.frames.end()});
+    const std::vector<int> written(frames.frames.begin() + frames.lead_frames, frames.frames.end());
+    JobsReport report;
+    try {
+        report = run_jobs(options, reporter.listener(), stop);
+    } catch (...) {
+        clear_after_workers(arguments, written);
+        throw;
+    }
+    clear_after_workers(arguments, written);
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     reporter.finish(report, options.pieces.size(), seconds);
     if (!arguments.jobs.report.empty())

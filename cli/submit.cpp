@@ -20,6 +20,7 @@
 #include "framework/batch/farm_job.h"
 #include "framework/capture/frame_range.h"
 #include "framework/core/atomic_file.h"
+#include "framework/core/side_file.h"
 #include "framework/core/text.h"
 
 namespace aftershade::cli {
@@ -140,13 +141,11 @@ FarmJob farm_job(const SubmitArguments& options, const RunArguments& parsed, con
 
 void write_job(const FarmJob& job, const FarmFiles& files) {
     std::error_code failure;
-    for (const char* folder : {"reports", "history", "logs"}) {
-        fs::create_directories(job.folder / folder, failure);
-        if (failure)
-            throw Error(ExitCode::output,
-                        (job.folder / folder).string() + ": cannot be made: " + failure.message());
-    }
-    for (const FarmFile& file : files.files) write_text_file(job.folder / file.name, file.text);
+    fs::create_directories(job.folder, failure);
+    if (failure)
+        throw Error(ExitCode::output, job.folder.string() + ": cannot be made: " + failure.message());
+    for (const char* folder : {"reports", "history", "logs"}) make_folder_below(job.folder, folder);
+    for (const FarmFile& file : files.files) write_text_file(path_below(job.folder, file.name), file.text);
 }
 
 std::string division_text(const SubmitArguments& options, const JobFrames& run, const FarmJob& job) {

@@ -288,7 +288,7 @@ std::string summary_of(const GoldenSuiteResult& result, const GoldenReportContex
             if (can_approve(test)) text += "    " + remedy_of(test, context) + "\n";
         }
     for (const fs::path& orphan : result.orphans)
-        text += fmt::format("\nFAILED {}: {}\n", orphan.string(), fault_of_orphan(orphan));
+        text += fmt::format("\nFAILED {}: {}\n", printable(orphan.string()), fault_of_orphan(orphan));
     if (const auto cases = cases_to_approve(result, false); cases.size() > 1)
         text += "\nto approve all: " + approve_command(context, cases) + "\n";
     if (const auto cases = cases_to_approve(result, true); cases.size() > 1)

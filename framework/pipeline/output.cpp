@@ -7,6 +7,7 @@
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
+#include "framework/core/side_file.h"
 #include "framework/core/text.h"
 #include "framework/file/png_file.h"
 #include "framework/image/display.h"
@@ -141,12 +142,12 @@ void check_outputs(const OutputOptions& options, const Sequence& sequence, Input
         const FramePattern pattern(text);
         const std::string type = extension(text);
         if (is_telemetry ? type != ".json" : type != ".exr" && type != ".png")
-            diagnostics.error(place,
-                              "the format '" + type + "' is not known; " +
-                                  (is_telemetry ? "telemetry ends in .json" : "outputs end in .exr or .png") +
-                                  (is_film(type) ? "; for a film, -o - --print-ffmpeg prints the command that "
-                                                   "gives the frames to ffmpeg"
-                                                 : ""));
+            diagnostics.error(
+                place, "the format '" + type + "' is not known; " +
+                           (is_telemetry ? "telemetry ends in .json" : "outputs end in .exr or .png") +
+                           (is_film(type) ? "; for a film, -o - --print-ffmpeg prints the command that "
+                                            "gives the frames to ffmpeg"
+                                          : ""));
         if (sequence.frames.size() > 1 && !pattern.has_frame())
             diagnostics.error(place, std::to_string(sequence.frames.size()) +
                                          " frames cannot share one file; write the number as #### or %04d");
@@ -214,6 +215,7 @@ WrittenFiles write_outputs(const OutputOptions& options, const FrameResult& resu
     if (options.stream) options.stream->write(frame, display_picture(result, capture));
     for (const auto& [tap, image] : result.taps) {
         const fs::path path = path_of_tap(options, tap, frame);
+        if (!options.tap_patterns.contains(tap)) path_below(path.parent_path(), path.filename());
         if (extension(path) == ".png") write_false_color(path, image, options, capture.header);
         else write_tap(path, image, options, capture.header);
         written.paths.push_back(path);

@@ -21,6 +21,7 @@
 #include <utility>
 
 #include "framework/core/error.h"
+#include "framework/core/side_file.h"
 #include "framework/core/text.h"
 #include "framework/pipeline/run_state.h"
 
@@ -93,7 +94,9 @@ std::string read_all(int file) {
     std::string text;
     std::array<char, 4096> buffer;
     ssize_t count = 0;
-    while ((count = pread(file, buffer.data(), buffer.size(), off_t(text.size()))) > 0)
+    constexpr std::size_t kMostBytes = std::size_t(1) << 24;  // of a planted one
+    while (text.size() < kMostBytes &&
+           (count = pread(file, buffer.data(), buffer.size(), off_t(text.size()))) > 0)
         text.append(buffer.data(), std::size_t(count));
     return text;
 }
@@ -130,7 +133,8 @@ bool lock_whole_file(int file) {
 RunLock::RunLock(const std::string& pattern, std::vector<int> frames, const std::string& command)
     : pattern_(pattern) {
     const RunState state = run_state(pattern);
-    path_ = state.lock();
+    folder_ = state.folder;
+    name_ = state.lock();
     // Without a number in its name, one file stands for every frame.
     if (state.output.find('#') == std::string::npos) frames = {0};
     make_state_folder(state);
@@ -141,15 +145,17 @@ RunLock::RunLock(const std::string& pattern, std::vector<int> frames, const std:
 /// The file that has the name, with byte 0 locked: the last holder may remove it between open and lock.
 void RunLock::open_file() {
     for (;;) {
-        file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-        if (file_ < 0)
-            throw Error(ExitCode::output, path_.string() + ": cannot be opened: " + std::strerror(errno) +
-                                              " (--no-journal runs without locks)");
+        std::string fault;
+        auto opened = open_file_below(folder_, name_, fault, FileUse::update);
+        if (!opened)
+            throw Error(ExitCode::output,
+                        (folder_ / name_).string() + ": " + fault + " (--no-journal runs without locks)");
+        file_ = opened->release();
         held_ = lock_bytes(file_, F_OFD_SETLKW, F_WRLCK, 0, 1);
         struct stat ours {
         }, named{};
         fstat(file_, &ours);
-        if (!held_ || (stat(path_.c_str(), &named) == 0 && ours.st_ino == named.st_ino)) return;
+        if (!held_ || (lstat((folder_ / name_).c_str(), &named) == 0 && ours.st_ino == named.st_ino)) return;
         close(file_);
     }
 }
@@ -242,11 +248,10 @@ RunLock::~RunLock() {
         const std::string others = kept_lines(
             read_all(file_), [&](const std::string& line, const json&) { return line == holder_; });
         replace_all(file_, others);
-        if (others.empty()) unlink(path_.c_str());
+        if (others.empty()) unlink((folder_ / name_).c_str());
     }
     close(file_);
-    std::error_code in_use;
-    fs::remove(path_.parent_path(), in_use);  // only where nothing else is in it
+    rmdir((folder_ / name_).parent_path().c_str());  // only where nothing else is in it
 }
 
 }  // namespace aftershade
