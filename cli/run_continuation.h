@@ -21,7 +21,7 @@ struct Interruption {
 };
 
 /// Says so, with the command that does the rest in a line of its own, last: the run's own command, since the
-/// journal knows what is done and where history can start.
+/// journal has what is done and where history can start.
 void print_interruption(ProgressStyle style, const RunArguments& run, const Interruption& end);
 
 /// A warning where `first`, which begins a run of frames without history, is not the first of its shot; "" if

@@ -22,7 +22,7 @@ enum class FileUse {
 inline constexpr const char* kNoSuchFile = "no such file";
 
 /// The regular file with the relative path `name`. Else nullopt, and `fault` says why with the remedy, as a
-/// message goes on after the file's name. A file that is written has no second name (hard link) either.
+/// message continues after the file's name. A file that is written has no second name (hard link) either.
 std::optional<OpenFile> open_file_below(const std::filesystem::path& folder,
                                         const std::filesystem::path& name, std::string& fault,
                                         FileUse use = FileUse::read);
